@@ -1,0 +1,15 @@
+# Every package Orbweaver uses, as imported targets. docs/dependencies.md says what each is for.
+find_package(MPI REQUIRED COMPONENTS C)
+# mpi.h brings the removed C++ bindings, and with them a need for libmpi_cxx, unless told not to.
+target_compile_definitions(MPI::MPI_C INTERFACE OMPI_SKIP_MPICXX)
+find_package(Boost 1.74 REQUIRED COMPONENTS serialization)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(fmt 9 REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(yaml-cpp REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(PETSC REQUIRED IMPORTED_TARGET petsc>=3.18)
+pkg_check_modules(SLEPC REQUIRED IMPORTED_TARGET slepc>=3.18)
+pkg_check_modules(HDF5_PARALLEL REQUIRED IMPORTED_TARGET hdf5-openmpi)
+pkg_check_modules(FFTW3 REQUIRED IMPORTED_TARGET fftw3)

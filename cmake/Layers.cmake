@@ -1,0 +1,37 @@
+# The layers in the order of docs/architecture.md. A layer may include only those before it; tests/structure checks the includes.
+set(ORBWEAVER_LAYERS
+  core ad systems scene loop loss spectrum corrector continuation bifurcation certificate archive queue survey)
+
+# g++ 12 reports its own AVX-512 intrinsics as maybe-uninitialized wherever Eigen inlines them.
+set(ORBWEAVER_WARNING_FLAGS -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wno-maybe-uninitialized)
+if(ORBWEAVER_WARNINGS_AS_ERRORS)
+  list(APPEND ORBWEAVER_WARNING_FLAGS -Werror)
+endif()
+
+add_library(orbweaver_build_flags INTERFACE)
+target_compile_features(orbweaver_build_flags INTERFACE cxx_std_20)
+target_compile_options(orbweaver_build_flags INTERFACE ${ORBWEAVER_WARNING_FLAGS})
+if(ORBWEAVER_NATIVE)
+  target_compile_options(orbweaver_build_flags INTERFACE -march=native)
+endif()
+if(ORBWEAVER_SANITIZE)
+  target_compile_options(orbweaver_build_flags INTERFACE -fsanitize=address,undefined -fno-omit-frame-pointer)
+  target_link_options(orbweaver_build_flags INTERFACE -fsanitize=address,undefined)
+endif()
+
+# orbweaver_layer(<name> [SOURCES ...] [DEPENDS layer-or-library ...])
+# One static library a layer: target orbweaver_<name>, alias orbweaver::<name>.
+function(orbweaver_layer name)
+  cmake_parse_arguments(LAYER "" "" "SOURCES;DEPENDS" ${ARGN})
+  if(LAYER_SOURCES)
+    add_library(orbweaver_${name} STATIC ${LAYER_SOURCES})
+    set(scope PUBLIC)
+    target_link_libraries(orbweaver_${name} PRIVATE orbweaver_build_flags)
+  else()
+    add_library(orbweaver_${name} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  add_library(orbweaver::${name} ALIAS orbweaver_${name})
+  target_include_directories(orbweaver_${name} ${scope} "${PROJECT_SOURCE_DIR}/include")
+  target_link_libraries(orbweaver_${name} ${scope} ${LAYER_DEPENDS})
+endfunction()

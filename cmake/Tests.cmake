@@ -1,0 +1,53 @@
+# Test registration. Every test runs in a working folder of its own, with one BLAS thread and oversubscription allowed.
+find_package(GTest 1.12 REQUIRED)
+include(GoogleTest)
+
+set(ORBWEAVER_TEST_ENVIRONMENT
+  "OMP_NUM_THREADS=1"
+  "OPENBLAS_NUM_THREADS=1"
+  "OMPI_ALLOW_RUN_AS_ROOT=1"
+  "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1"
+  "OMPI_MCA_rmaps_base_oversubscribe=1"
+  "OMPI_MCA_btl_base_warn_component_unused=0"
+  "ASAN_OPTIONS=fast_unwind_on_malloc=0"
+  "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/cmake/lsan.supp")
+
+# orbweaver_test(<name> LAYER <layer> SOURCES ... [DEPENDS ...] [RANKS 1 2 3] [TIMEOUT seconds] [LABELS ...])
+# A GoogleTest program. Without RANKS it runs alone; with RANKS it runs under mpirun once for each rank count.
+# SESSION links a main that starts MPI, PETSc and SLEPc around the tests.
+function(orbweaver_test name)
+  cmake_parse_arguments(TEST "SESSION" "LAYER;TIMEOUT" "SOURCES;DEPENDS;RANKS;LABELS" ${ARGN})
+  set(target test_${name})
+  add_executable(${target} ${TEST_SOURCES})
+  if(TEST_SESSION OR TEST_RANKS)
+    target_link_libraries(${target} PRIVATE orbweaver_test_main GTest::gmock)
+  else()
+    target_link_libraries(${target} PRIVATE GTest::gmock GTest::gtest_main)
+  endif()
+  target_link_libraries(${target} PRIVATE orbweaver_build_flags ${TEST_DEPENDS})
+  target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/tests")
+  target_compile_definitions(${target} PRIVATE
+    ORBWEAVER_SOURCE_DIR="${PROJECT_SOURCE_DIR}" ORBWEAVER_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  if(NOT TEST_TIMEOUT)
+    set(TEST_TIMEOUT 120)
+  endif()
+  if(NOT TEST_RANKS)
+    orbweaver_add_ctest(${name} 1 "${TEST_LAYER};${TEST_LABELS}" ${TEST_TIMEOUT} $<TARGET_FILE:${target}>)
+  endif()
+  foreach(ranks IN LISTS TEST_RANKS)
+    orbweaver_add_ctest(${name}.ranks${ranks} ${ranks} "${TEST_LAYER};mpi;${TEST_LABELS}" ${TEST_TIMEOUT}
+      ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks} $<TARGET_FILE:${target}>)
+  endforeach()
+endfunction()
+
+# orbweaver_add_ctest(<name> <processors> <labels> <timeout> <command> [args...])
+# Any command as a CTest in the common environment.
+function(orbweaver_add_ctest name processors labels timeout)
+  set(folder "${PROJECT_BINARY_DIR}/test_runs/${name}")
+  file(MAKE_DIRECTORY "${folder}")
+  add_test(NAME ${name} COMMAND ${ARGN} WORKING_DIRECTORY "${folder}")
+  list(REMOVE_ITEM labels "")
+  set_tests_properties(${name} PROPERTIES
+    PROCESSORS ${processors} LABELS "${labels}" TIMEOUT ${timeout}
+    ENVIRONMENT "${ORBWEAVER_TEST_ENVIRONMENT}")
+endfunction()

@@ -1,0 +1,182 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "command.hpp"
+#include "common_options.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::drivers {
+
+namespace {
+
+using Lines = std::vector<std::pair<std::string, std::string>>;
+
+void print_group(const std::string& title, const Lines& lines) {
+  fmt::print("\n{}\n", title);
+  for (const auto& [label, text] : lines) fmt::print("  {:<14}{}\n", label, text);
+}
+
+bool is_angle(const systems::Description& system, std::size_t coordinate) {
+  return std::count(system.angles.begin(), system.angles.end(), static_cast<int>(coordinate)) > 0;
+}
+
+std::string in_degrees(double radians) { return fmt::format("{:.6g} deg", radians / std::numbers::pi * 180.0); }
+
+std::string value_text(const systems::Description& system, std::size_t coordinate, double value) {
+  return is_angle(system, coordinate) ? in_degrees(value) : fmt::format("{:.6g}", value);
+}
+
+std::string parameter_text(const systems::Description& system, const std::string& name, double value) {
+  std::vector<systems::Parameter> known = system.parameters;
+  for (const systems::Effect& effect : system.effects)
+    known.insert(known.end(), effect.parameters.begin(), effect.parameters.end());
+  const auto found =
+      std::find_if(known.begin(), known.end(), [&](const systems::Parameter& p) { return p.name == name; });
+  if (found == known.end()) return fmt::format("{} = {}", name, value);
+  return fmt::format("{} = {}{} ({})", name, value, found->unit == "1" ? "" : " " + found->unit, found->meaning);
+}
+
+void print_system(const scene::Scene& scene, const systems::Description& system) {
+  std::vector<std::string> coordinates, parameters;
+  for (std::size_t i = 0; i < system.state_names.size(); ++i)
+    coordinates.push_back(system.state_names[i] + (is_angle(system, i) ? " (angle)" : ""));
+  const auto bound = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  Lines lines{{"coordinates", fmt::format("{}", fmt::join(coordinates, ", "))}};
+  for (const auto& [name, value] : bound->parameters())
+    lines.emplace_back(lines.size() == 1 ? "parameters" : "", parameter_text(system, name, value));
+  const auto& effects = scene.system.effects;
+  lines.emplace_back("effects", effects.empty() ? "none" : fmt::format("{}", fmt::join(effects, ", ")));
+  print_group(fmt::format("System: {} ({})", system.title, system.name), lines);
+}
+
+std::string name_list(const scene::FixedPoints& points, const std::vector<std::string>& names) {
+  std::vector<std::string> texts;
+  for (const std::string& name : names) {
+    const auto letters = points.letters.find(name);
+    texts.push_back(letters == points.letters.end() ? name : fmt::format("{} (branches: {})", name, letters->second));
+  }
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+void print_starts(const scene::Scene& scene, const systems::Description& system) {
+  const scene::FixedPoints& points = scene.fixed_points;
+  std::size_t count = 1;
+  std::vector<std::string> axes;
+  for (std::size_t i = 0; i < system.state_names.size(); ++i) {
+    const std::vector<double> values = i < points.grid.size() ? points.grid[i] : std::vector<double>{0.0};
+    std::vector<std::string> texts;
+    for (const double value : values) texts.push_back(value_text(system, i, value));
+    axes.push_back(fmt::format("{} = {}", system.state_names[i], fmt::join(texts, ", ")));
+    count *= values.size();
+  }
+  Lines lines{{"equilibria", fmt::format("Newton's method from {} point{}: {}", count, count == 1 ? "" : "s",
+                                         fmt::join(axes, "; "))}};
+  for (const scene::FixedPoints::Names& named : points.names) {
+    std::vector<std::string> texts;
+    for (std::size_t i = 0; i < named.point.size(); ++i) texts.push_back(value_text(system, i, named.point[i]));
+    lines.emplace_back(lines.size() == 1 ? "names" : "",
+                       fmt::format("at ({}): {}", fmt::join(texts, ", "), name_list(points, named.names)));
+  }
+  lines.emplace_back("sweep", fmt::format("smallest eigenvalue for periods from {} to {} in steps of {}",
+                                          scene.sweep.period_from, scene.sweep.period_to, scene.sweep.step));
+  print_group("Starts", lines);
+}
+
+void print_continuation(const scene::Scene& scene) {
+  const scene::Continuation& c = scene.continuation;
+  print_group("Continuation", {{"first orbit", in_degrees(c.start_amplitude) + " from its equilibrium"},
+                               {"step", c.fixed_step ? "fixed, " + in_degrees(*c.fixed_step) : "adaptive"},
+                               {"tolerance", fmt::format("sqrt(loss) < {:g} * min(1, rms |dz/dt|)", c.tolerance)},
+                               {"harmonics", fmt::format("K from {} to {}", c.cutoff_from, c.cutoff_to)},
+                               {"corrector", c.corrector}});
+}
+
+void print_survey(const scene::Scene& scene) {
+  const scene::Survey& survey = scene.survey;
+  const bool all = survey.spectrum == scene::Spectrum::all;
+  const std::string depth =
+      survey.depth == 0 ? "base families only" : "base families and branches up to that generation";
+  print_group("Survey",
+              {{"depth", fmt::format("{}: {}", survey.depth, depth)},
+               {"subharmonics", fmt::format("branches that close after up to {} period{}", survey.subharmonics,
+                                            survey.subharmonics == 1 ? "" : "s")},
+               {"spectrum", all ? "at every orbit" : "at events"},
+               {"team size", fmt::format("{} rank{} a task", survey.team_size, survey.team_size == 1 ? "" : "s")}});
+}
+
+std::string energy_text(const scene::Limits& limits) {
+  if (std::isinf(limits.energy_from) && std::isinf(limits.energy_to)) return "any";
+  return fmt::format("from {} to {}", limits.energy_from, limits.energy_to);
+}
+
+void print_limits(const scene::Scene& scene) {
+  const scene::Limits& limits = scene.limits;
+  print_group("Limits", {{"period", std::isinf(limits.period) ? "any" : fmt::format("up to {}", limits.period)},
+                         {"energy", energy_text(limits)},
+                         {"families", fmt::format("at most {}", limits.families)},
+                         {"steps", fmt::format("at most {} a family", limits.steps)}});
+}
+
+std::string value_list(const std::vector<double>& values) {
+  return values.empty() ? "none" : fmt::format("{}", fmt::join(values, ", "));
+}
+
+std::string section_text(const scene::Scene& scene, const systems::Description& system) {
+  if (scene.section.coordinate.empty()) return "none";
+  const auto place = std::find(system.state_names.begin(), system.state_names.end(), scene.section.coordinate);
+  const auto index = static_cast<std::size_t>(place - system.state_names.begin());
+  return fmt::format("{} = {}", scene.section.coordinate, value_text(system, index, scene.section.value));
+}
+
+void print_outputs(const scene::Scene& scene, const systems::Description& system) {
+  print_group(
+      "Output",
+      {{"periods", value_list(scene.events.periods)},
+       {"energies", value_list(scene.events.energies)},
+       {"section", section_text(scene, system)},
+       {"flush", fmt::format("every {} s or {} orbits", scene.output.flush_seconds, scene.output.flush_orbits)}});
+}
+
+void print_not_built(const scene::Scene& scene) {
+  const std::vector<std::string> sentences = scene::not_built_yet(scene);
+  if (sentences.empty()) return;
+  fmt::print("\nNot built yet:\n");
+  for (const std::string& sentence : sentences) fmt::print("  - {}\n", sentence);
+}
+
+int check(const SceneOptions& options, const Invocation& invocation) {
+  if (!invocation.petsc_options.empty())
+    throw core::InputError(
+        fmt::format("check: expected no PETSc options, got `{}`; it computes nothing, so drop `--` and what follows",
+                    fmt::join(invocation.petsc_options, " ")));
+  const scene::Scene scene = options.load();
+  const systems::Description& system = systems::describe_system(scene.system.name);
+  fmt::print("{}: a valid scene, \"{}\"\n", options.file.string(), scene.name);
+  print_system(scene, system);
+  print_starts(scene, system);
+  print_continuation(scene);
+  print_survey(scene);
+  print_limits(scene);
+  print_outputs(scene, system);
+  print_not_built(scene);
+  return 0;
+}
+
+}  // namespace
+
+Command make_check_command(CLI::App& program) {
+  CLI::App* parser = program.add_subcommand("check", "Validate a scene and say what would be simulated");
+  auto options = std::make_shared<SceneOptions>();
+  add_scene_options(*parser, *options);
+  return {parser, [options](const Invocation& invocation) { return check(*options, invocation); }};
+}
+
+}  // namespace orbweaver::drivers

@@ -1,0 +1,23 @@
+#include "common_options.hpp"
+
+namespace orbweaver::drivers {
+
+core::LogLevel LogOptions::level() const {
+  if (quiet) return core::LogLevel::error;
+  return verbose ? core::LogLevel::debug : core::LogLevel::info;
+}
+
+void add_scene_options(CLI::App& parser, SceneOptions& options) {
+  parser.add_option("scene", options.file, "The scene file (YAML)")->required()->type_name("SCENE");
+  parser.add_option("--set", options.overrides, "Override a key of the scene: --set limits.period=20 (repeatable)")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false)
+      ->take_all();
+}
+
+void add_log_options(CLI::App& parser, LogOptions& options) {
+  CLI::Option* quiet = parser.add_flag("-q,--quiet", options.quiet, "Say errors only");
+  parser.add_flag("-v,--verbose", options.verbose, "Say more, from every rank")->excludes(quiet);
+}
+
+}  // namespace orbweaver::drivers

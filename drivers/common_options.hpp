@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "orbweaver/core/log.hpp"
+#include "orbweaver/scene/scene.hpp"
+
+namespace orbweaver::drivers {
+
+/// SCENE and --set, as every subcommand that reads a scene has them.
+struct SceneOptions {
+  std::filesystem::path file;
+  std::vector<std::string> overrides;
+
+  /// Reads and checks the scene; throws core::InputError.
+  [[nodiscard]] scene::Scene load() const { return scene::load(file, overrides); }
+};
+
+/// --quiet and --verbose.
+struct LogOptions {
+  bool quiet = false;
+  bool verbose = false;
+
+  [[nodiscard]] core::LogLevel level() const;
+};
+
+/// Adds the options to a subcommand; `options` must outlive the parser.
+void add_scene_options(CLI::App& parser, SceneOptions& options);
+void add_log_options(CLI::App& parser, LogOptions& options);
+
+}  // namespace orbweaver::drivers

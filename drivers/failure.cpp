@@ -1,0 +1,92 @@
+#include "failure.hpp"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "orbweaver/core/check.hpp"
+#include "orbweaver/core/error.hpp"
+
+namespace orbweaver::drivers {
+
+namespace {
+
+constexpr int environment_failed = static_cast<int>(core::ExitStatus::environment_failed);
+
+// Marks the exception that `agree` lets through on the reporting rank, so that run_on_ranks does not abort.
+class Agreed : public std::exception {
+ public:
+  explicit Agreed(std::exception_ptr cause) : _cause(std::move(cause)) {}
+  [[nodiscard]] const std::exception_ptr& cause() const noexcept { return _cause; }
+
+ private:
+  std::exception_ptr _cause;
+};
+
+}  // namespace
+
+Failure describe_failure(const std::exception_ptr& error) {
+  try {
+    std::rethrow_exception(error);
+  } catch (const core::Error& e) {
+    return {static_cast<int>(e.status()), e.what()};
+  } catch (const core::MisuseError& e) {
+    return {environment_failed, fmt::format("internal error (please report it): {}", e.what())};
+  } catch (const ReportedElsewhere& e) {
+    return {e.status(), e.what()};
+  } catch (const Agreed& e) {
+    return describe_failure(e.cause());
+  } catch (const std::exception& e) {
+    return {environment_failed, e.what()};
+  } catch (...) {
+    return {environment_failed, "an exception of unknown type"};
+  }
+}
+
+int report_failure(const std::exception_ptr& error) {
+  const Failure failure = describe_failure(error);
+  try {
+    std::rethrow_exception(error);
+  } catch (const ReportedElsewhere&) {
+    return failure.status;
+  } catch (...) {
+    fmt::print(stderr, "orbweaver: {}\n", failure.message);
+  }
+  return failure.status;
+}
+
+void agree(const core::Communicator& comm, const std::function<void()>& stage) {
+  std::exception_ptr error;
+  try {
+    stage();
+  } catch (...) {
+    error = std::current_exception();
+  }
+  const int mine = error ? comm.rank() : comm.size();
+  int reporter = mine;
+  core::check_mpi(MPI_Allreduce(&mine, &reporter, 1, MPI_INT, MPI_MIN, comm.get()), "MPI_Allreduce");
+  if (reporter == comm.size()) return;
+  int status = error ? describe_failure(error).status : 0;
+  core::check_mpi(MPI_Bcast(&status, 1, MPI_INT, reporter, comm.get()), "MPI_Bcast");
+  if (comm.rank() == reporter) throw Agreed(error);
+  throw ReportedElsewhere(status);
+}
+
+int run_on_ranks(const core::Communicator& comm, const std::function<int()>& body) {
+  try {
+    return body();
+  } catch (const Agreed&) {
+    throw;
+  } catch (const ReportedElsewhere&) {
+    throw;
+  } catch (...) {
+    if (comm.size() == 1) throw;
+    const Failure failure = describe_failure(std::current_exception());
+    fmt::print(stderr, "orbweaver: rank {}: {}\n", comm.rank(), failure.message);
+    std::fflush(nullptr);
+    MPI_Abort(comm.get(), failure.status);
+    return failure.status;
+  }
+}
+
+}  // namespace orbweaver::drivers

@@ -1,0 +1,62 @@
+#include <algorithm>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "command.hpp"
+#include "failure.hpp"
+#include "orbweaver/core/error.hpp"
+
+namespace {
+
+using orbweaver::drivers::Command;
+using orbweaver::drivers::Invocation;
+
+constexpr int wrong_input = static_cast<int>(orbweaver::core::ExitStatus::wrong_input);
+
+std::vector<Command> add_commands(CLI::App& program) {
+  using namespace orbweaver::drivers;
+  return {
+      make_check_command(program),
+      make_show_command(program),
+  };
+}
+
+/// Cuts the words after the first `--` off `words`.
+Invocation take_petsc_options(std::vector<std::string>& words) {
+  const auto mark = std::find(words.begin(), words.end(), "--");
+  Invocation invocation;
+  if (mark != words.end()) invocation.petsc_options.assign(mark + 1, words.end());
+  words.erase(mark, words.end());
+  return invocation;
+}
+
+int run(std::vector<std::string> words) {
+  CLI::App program("Orbweaver maps how the periodic orbits of a dynamical system hang together.", "orbweaver");
+  program.set_version_flag("--version", "orbweaver " ORBWEAVER_VERSION);
+  program.footer("Options for PETSc, SLEPc and TAO follow after `--`.");
+  program.require_subcommand(1);
+  const std::vector<Command> commands = add_commands(program);
+  const Invocation invocation = take_petsc_options(words);
+  std::reverse(words.begin(), words.end());  // the order in which CLI11 wants a vector
+  try {
+    program.parse(words);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? 0 : wrong_input;
+  }
+  const auto chosen =
+      std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.parser->parsed(); });
+  return chosen->run(invocation);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run({argv + 1, argv + argc});
+  } catch (...) {
+    return orbweaver::drivers::report_failure(std::current_exception());
+  }
+}

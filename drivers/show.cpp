@@ -1,0 +1,51 @@
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "command.hpp"
+#include "orbweaver/archive/show.hpp"
+
+namespace orbweaver::drivers {
+
+namespace {
+
+struct ShowOptions {
+  std::filesystem::path atlas;
+  std::string table;
+  bool csv = false;
+  bool json = false;
+
+  [[nodiscard]] archive::TextFormat format() const {
+    if (csv) return archive::TextFormat::csv;
+    return json ? archive::TextFormat::json : archive::TextFormat::readable;
+  }
+};
+
+int show(const ShowOptions& options) {
+  const archive::Archive atlas(options.atlas);
+  if (options.table.empty())
+    archive::print_summary(std::cout, atlas);
+  else
+    archive::print_table(std::cout, atlas, options.table, options.format());
+  std::cout.flush();
+  if (!std::cout) throw core::EnvironmentError("cannot write to the standard output: is the disk full?");
+  return 0;
+}
+
+}  // namespace
+
+Command make_show_command(CLI::App& program) {
+  CLI::App* parser = program.add_subcommand("show", "Print what an atlas holds");
+  auto options = std::make_shared<ShowOptions>();
+  parser->add_option("atlas", options->atlas, "The atlas.h5 of a survey")->required();
+  CLI::Option* table = parser->add_option("table", options->table, "families, orbits or crossings; none: a summary")
+                           ->check(CLI::IsMember({"families", "orbits", "crossings"}));
+  CLI::Option* csv = parser->add_flag("--csv", options->csv, "The table as CSV, full precision")->needs(table);
+  parser->add_flag("--json", options->json, "The table as JSON, full precision")->needs(table)->excludes(csv);
+  return {parser, [options](const Invocation&) { return show(*options); }};
+}
+
+}  // namespace orbweaver::drivers

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace orbweaver::archive {
+
+inline constexpr double not_computed = std::numeric_limits<double>::quiet_NaN();
+
+/// One row of /families (docs/file_format.md). `key` is the path that identifies the family in any run; rows are sorted by it.
+struct FamilyRecord {
+  std::string key;
+  std::string name;
+  std::string parent_key;   ///< empty: none
+  int crossing = -1;        ///< where it was born: index into the crossings that are handed over with it (Records), or -1
+  int multiplicity = 1;
+  std::string isotropy;     ///< "S@1/2 R@0"
+  std::string end_reason;   ///< sentence-like text, never empty in a finished archive
+  std::string end_family_key;  ///< empty: none
+  int end_crossing = -1;       ///< as `crossing`
+};
+
+/// One row of /orbits. Columns that were not computed stay NaN. `step` orders the orbits of a family.
+struct OrbitRecord {
+  std::string family_key;
+  int step = 0;
+  double arclength = 0.0;
+  double period = 0.0;
+  double energy = not_computed;
+  double action = not_computed;
+  double parameter = not_computed;
+  int cutoff = 0;
+  double loss_rms = 0.0;
+  double off_branch_eigenvalue = not_computed;
+  std::vector<double> stability;              ///< stability_width(header) values (schema.hpp), or empty: not computed
+  std::vector<double> fundamental_stability;  ///< the same
+  double stability_error = not_computed;
+  std::vector<double> state;                  ///< dimension, at s = 0
+  double closure = not_computed;
+  double single_shot = not_computed;
+  double energy_drift = not_computed;
+  double tail = not_computed;
+  std::vector<double> modes;                  ///< (2 cutoff + 1) x dimension
+  std::vector<double> time_map;               ///< empty = identity
+  std::vector<double> winding;                ///< one an angle, or empty: not computed
+};
+
+/// One row of /crossings.
+struct CrossingRecord {
+  std::string family_key;
+  double arclength = 0.0;
+  double period = 0.0;
+  double energy = not_computed;
+  std::string kind;
+  int multiplicity = 1;
+  int kernel_dimension = 0;
+  double residual = not_computed;
+  std::vector<double> state;
+  int sector_j = 0;
+  int sector_q = 1;
+  int fundamental_order = 1;
+  double test_value = not_computed;
+};
+
+/// One row of /sections: a crossing of the scene's Poincare section by an orbit (family_key, step).
+struct SectionRecord {
+  std::string family_key;
+  int step = 0;
+  double time = 0.0;
+  std::vector<double> state;
+};
+
+/// What stands on the root group and fixes the width of vector columns.
+struct Header {
+  std::string orbweaver_version;
+  std::string scene;                        ///< the YAML text
+  std::vector<std::string> state_names;
+  std::vector<std::string> winding_names;
+  int pairs = 0;                            ///< width of the stability columns
+  bool symplectic = true;
+};
+
+/// Records in any order; tables are sorted by key and step when they are written.
+struct Records {
+  std::vector<FamilyRecord> families;
+  std::vector<OrbitRecord> orbits;
+  std::vector<CrossingRecord> crossings;
+  std::vector<SectionRecord> sections;
+};
+
+}  // namespace orbweaver::archive

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::certificate {
+
+struct Options {
+  int segments = 32;         ///< equal parts of the period, each integrated from the loop's own state
+  double tolerance = 1e-13;  ///< of the integrator (integrate.hpp)
+};
+
+/// What an independent integrator says of one loop. Distances are Euclidean in the coordinates of phase space; an angle
+/// that turns n times is expected to have grown by 2 pi n after a period.
+struct Certificate {
+  double closure = 0.0;       ///< largest |z(t_m+1) - Phi(z(t_m))| over the segments, z being the loop
+  double single_shot = 0.0;   ///< |z(T) - Phi_T(z(0))|: once around without help; grows with the largest multiplier
+  double energy_drift = 0.0;  ///< largest |H(z(t_m)) - H(z(0))|; NaN for a system that conserves no energy
+};
+
+/// Integrates the loop's own states and compares. Deterministic; knows no residual, loss or Jacobian.
+/// Throws core::MisuseError if the loop is not valid or not of the system's dimension, `segments` < 1 or the tolerance
+/// is out of range; core::NumericalError if an integration fails, saying in which segment and at what time.
+[[nodiscard]] Certificate certify(const systems::System& system, const loop::Loop& loop, const Options& options = {});
+
+}  // namespace orbweaver::certificate

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <Eigen/Dense>
+
+#include "orbweaver/continuation/ending.hpp"
+#include "orbweaver/continuation/orbit.hpp"
+#include "orbweaver/corrector/correct.hpp"
+#include "orbweaver/loop/isotropy.hpp"
+
+namespace orbweaver::continuation {
+
+/// How to step along a branch and where to stop.
+struct Options {
+  corrector::Options corrector;
+  int cutoff_from = 8;
+  int cutoff_to = 4096;
+  std::optional<double> fixed_step;     ///< |dz(s = 0)| of every step, radians (paper: 0.5 degrees); none = adaptive
+  double start_amplitude = 8.7e-3;      ///< |dz(s = 0)| of the first orbit, radians
+  double tail_tolerance = 1e-12;        ///< last harmonics, relative to min(1, rms amplitude): above it K is raised
+  double largest_step = 1.0;            ///< in the coefficients' own length (a_0, a_k, b_k and T)
+  double smallest_step = 1e-9;          ///< relative to 1 + amplitude; below it the branch has failed
+  double turning_angle = 0.25;          ///< wanted angle between neighbouring tangents, radians
+  double period_limit = std::numeric_limits<double>::infinity();
+  double energy_from = -std::numeric_limits<double>::infinity();
+  double energy_to = std::numeric_limits<double>::infinity();
+  int step_limit = 5000;
+  bool off_branch_spectrum = false;     ///< the paper's minimum off-branch eigenvalue at every orbit
+};
+
+/// A place to start from: a known loop (a fixed point as a constant loop, or an orbit) and a direction in which loops
+/// near it are orbits. The isotropy is that of the born orbits and holds for the base loop as well.
+struct Start {
+  loop::Loop base;
+  std::vector<double> direction;  ///< modes, (2 cutoff + 1) x dimension, of any length > 0
+  loop::Isotropy isotropy;
+};
+
+/// Everything a step depends on: a step is a pure function of it and of the options.
+struct Frontier {
+  Orbit orbit;                         ///< the last one; `loop` may have another cutoff than when it was accepted
+  std::vector<double> tangent_modes;   ///< flat direction there, in the modes of orbit.loop
+  double tangent_period = 0.0;
+  double next_length = 0.0;            ///< step to try next, in unknowns
+  double last_increment = 0.0;         ///< arclength of the last step
+  loop::Loop first;                    ///< loop of orbit 0
+  double first_energy = 0.0;
+  double earlier_energy = 0.0;         ///< energy when the period was about a tenth smaller
+  double earlier_period = 0.0;
+};
+
+/// One family, traced orbit by orbit in the subspace of its isotropy (paper, section III B).
+class Branch {
+ public:
+  /// Throws MisuseError for a start whose sizes disagree or whose direction is zero.
+  Branch(std::shared_ptr<const systems::System> system, const Start& start, Options options);
+  ~Branch();
+  Branch(Branch&&) noexcept;
+  Branch& operator=(Branch&&) noexcept;
+  Branch(const Branch&) = delete;
+  Branch& operator=(const Branch&) = delete;
+
+  /// The next accepted orbit (the first call gives orbit 0), or none when the branch has ended.
+  [[nodiscard]] std::optional<Orbit> advance();
+  /// Set once `advance` has returned none.
+  [[nodiscard]] const std::optional<Ending>& ending() const;
+  /// Where the branch stands (after at least one orbit).
+  [[nodiscard]] const Frontier& frontier() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> _implementation;
+};
+
+/// Called after each orbit; false stops the branch.
+using Observer = std::function<bool(const Orbit&)>;
+
+/// Follows a branch to its end.
+[[nodiscard]] Ending trace(std::shared_ptr<const systems::System> system, const Start& start, const Options& options,
+                           const Observer& observer);
+
+/// The orbit of the family through `near` that has exactly the period `period`, starting the correction from `near`.
+[[nodiscard]] corrector::Result orbit_at_period(const systems::System& system, const loop::Loop& near, const loop::Isotropy& isotropy,
+                                                double period, const Options& options);
+
+}  // namespace orbweaver::continuation

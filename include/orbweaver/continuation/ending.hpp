@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace orbweaver::continuation {
+
+/// Why a branch ended (docs/mathematics.md, "Ends").
+enum class EndReason {
+  period_limit,       ///< the scene's limit; the last orbit has exactly that period
+  energy_limit,       ///< the scene's limit; the last orbit has exactly that energy
+  step_limit,
+  cutoff_limit,       ///< the next orbit needs more harmonics than the scene allows
+  period_divergence,  ///< T grows without bound at settled energy, and double precision or the cutoff ends it
+  fixed_point,        ///< the amplitude shrank to nothing
+  closed_loop,        ///< back at the first orbit
+  stopped,            ///< the observer asked for it
+  failure,            ///< the corrector failed at the smallest step
+};
+
+[[nodiscard]] std::string_view name_of(EndReason reason);
+
+/// A branch's end in a form to print and to store.
+struct Ending {
+  EndReason reason = EndReason::failure;
+  std::string detail;  ///< numbers that go with it; never empty
+
+  [[nodiscard]] bool failed() const { return reason == EndReason::failure; }
+  /// "period limit (T = 30)".
+  [[nodiscard]] std::string text() const;
+};
+
+}  // namespace orbweaver::continuation

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <limits>
+
+#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::continuation {
+
+/// One accepted orbit of a family with what was measured on it.
+struct Orbit {
+  loop::Loop loop;
+  int step = 0;              ///< 0 for the first orbit of the branch
+  double arclength = 0.0;    ///< from the first orbit: sum of sqrt(mean |dz|^2 + (dT/T)^2)
+  double energy = 0.0;
+  double action = 0.0;       ///< closed integral of p dq
+  double loss_rms = 0.0;
+  double tail = 0.0;
+  int iterations = 0;
+  double off_branch_eigenvalue = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// Energy of a loop: that of its state at s = 0 (NaN for systems without one).
+[[nodiscard]] double energy_of(const systems::System& system, const loop::Loop& loop);
+
+/// Action over one period: T times the mean of p . dq/dt over the loss's nodes (spectrally accurate).
+[[nodiscard]] double action_of(const systems::System& system, const loop::Loop& loop);
+
+/// sqrt(mean |dz|^2 + (dT/T)^2) between neighbours: the archive's arclength.
+[[nodiscard]] double arclength_between(const loop::Loop& from, const loop::Loop& to);
+
+}  // namespace orbweaver::continuation

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace orbweaver::loop {
+
+/// A closed curve in phase space with a period: z(s) = n s + a_0 + sum_k a_k cos ks + b_k sin ks, s = 2 pi t / T
+/// (paper, section II D; winding numbers n added for angles that turn over).
+struct Loop {
+  int dimension = 0;
+  int cutoff = 0;          ///< K, the highest harmonic
+  double period = 0.0;     ///< T
+  std::vector<double> modes;  ///< (2K + 1) x dimension, rows a_0, a_1, b_1, a_2, b_2, ...
+  std::vector<double> winding;  ///< n of each coordinate (size dimension, whole numbers; 0 but for angles that turn over)
+
+  [[nodiscard]] double& cosine(int k, int i) { return modes[index(k == 0 ? 0 : 2 * k - 1, i)]; }
+  [[nodiscard]] double cosine(int k, int i) const { return modes[index(k == 0 ? 0 : 2 * k - 1, i)]; }
+  [[nodiscard]] double& sine(int k, int i) { return modes[index(2 * k, i)]; }
+  [[nodiscard]] double sine(int k, int i) const { return modes[index(2 * k, i)]; }
+
+ private:
+  [[nodiscard]] std::size_t index(int row, int i) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(dimension) + static_cast<std::size_t>(i);
+  }
+};
+
+/// The constant loop at `point` with period `period` and room for `cutoff` harmonics.
+/// Throws MisuseError for an empty point, cutoff < 1 or a period that is not positive and finite.
+[[nodiscard]] Loop constant_loop(std::span<const double> point, double period, int cutoff);
+
+/// Throws MisuseError unless sizes agree, cutoff >= 1, the period is positive and finite and every mode is finite.
+void validate(const Loop& loop);
+
+/// z(t) at one time (any real t; size dimension). The one place where a loop is evaluated at a time.
+[[nodiscard]] std::vector<double> state_at(const Loop& loop, double time);
+
+/// The same loop with `cutoff` harmonics: padded with zeros or truncated.
+[[nodiscard]] Loop with_cutoff(const Loop& loop, int cutoff);
+
+/// The same orbit started `fraction` of a period later: z(s + 2 pi fraction).
+[[nodiscard]] Loop time_shifted(const Loop& loop, double fraction);
+
+/// sqrt of the mean over a period of |z - w|^2 (Parseval); cutoffs may differ, dimensions and windings must agree.
+[[nodiscard]] double mean_distance(const Loop& a, const Loop& b);
+
+/// sqrt of the mean over a period of |dz/dt|^2.
+[[nodiscard]] double rms_speed(const Loop& loop);
+
+/// sqrt of the mean over a period of |z - a_0|^2 (winding left out): how far the loop is from a constant one.
+[[nodiscard]] double rms_amplitude(const Loop& loop);
+
+/// The largest modulus among the last eighth of the harmonics (at least two), relative to nothing: what the truncation
+/// at `cutoff` leaves out is of this size.
+[[nodiscard]] double tail(const Loop& loop);
+
+/// The cutoffs K that are used: 2K + 1 is odd with prime factors 3, 5 and 7 only, each about 1.3 times the one before.
+/// `at_least` returns the smallest allowed K >= k; `next` / `previous` the neighbours of an allowed K.
+[[nodiscard]] int allowed_cutoff_at_least(int k);
+[[nodiscard]] int next_cutoff(int k);
+[[nodiscard]] int previous_cutoff(int k);
+
+}  // namespace orbweaver::loop

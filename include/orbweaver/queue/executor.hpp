@@ -1,0 +1,30 @@
+#pragma once
+
+#include "orbweaver/queue/progress.hpp"
+#include "orbweaver/queue/task.hpp"
+
+namespace orbweaver::queue {
+
+/// What running work sees of the run.
+class TaskContext {
+ public:
+  virtual ~TaskContext() = default;
+
+  /// To be called between the steps of the work, every millisecond to every second, with all rows of the finished
+  /// steps where the Flusher finds them: a flush takes place inside this call. Tells rank 0 (seldom enough not to
+  /// flood it) and costs microseconds otherwise. Never throws.
+  /// Returns false when the run is to stop: the work then returns its outcome so far at once.
+  [[nodiscard]] virtual bool report(const Progress& progress) = 0;
+};
+
+/// Does the work of a rank.
+class Executor {
+ public:
+  virtual ~Executor() = default;
+
+  /// Called on any rank that computes, one task at a time. Whatever it throws becomes a failed outcome with the
+  /// exception's text as its reason, and the run goes on.
+  virtual TaskOutcome execute(const Task& task, TaskContext& context) = 0;
+};
+
+}  // namespace orbweaver::queue

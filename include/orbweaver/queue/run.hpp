@@ -1,0 +1,70 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "orbweaver/core/communicator.hpp"
+#include "orbweaver/queue/executor.hpp"
+#include "orbweaver/queue/flusher.hpp"
+#include "orbweaver/queue/observer.hpp"
+#include "orbweaver/queue/task.hpp"
+
+namespace orbweaver::queue {
+
+/// How a run behaves. The same on all ranks. None of it changes an outcome.
+struct Options {
+  double flush_seconds = 5.0;      ///< a flush this long after the last one; 0: none by time
+  std::int64_t flush_rows = 5000;  ///< a flush after this many reported rows; 0: none by amount
+  /// Least time (s) between two progress messages of a worker; longer with more than 1000 x this many workers, so that
+  /// rank 0 never gets more than about 1000 of them a second.
+  double progress_seconds = 0.2;
+  double tick_seconds = 0.1;                     ///< between two ticks of the observer
+  std::chrono::microseconds shortest_sleep{50};  ///< of a rank that waits; grows until something happens, up to:
+  std::chrono::microseconds longest_sleep{2000};
+  bool keep_outcomes = false;  ///< whether RunSummary::outcomes is filled (memory grows with the run)
+};
+
+struct Failure {
+  std::string key;
+  std::string reason;
+
+  friend bool operator==(const Failure&, const Failure&) = default;
+};
+
+/// What one rank did.
+struct RankLoad {
+  std::int64_t tasks = 0;
+  double busy_seconds = 0.0;  ///< inside Executor::execute, without flushes
+};
+
+/// How a run ended. The numbers are known on all ranks, the lists on rank 0 only.
+struct RunSummary {
+  std::size_t done = 0;
+  std::size_t failed = 0;
+  std::size_t waiting = 0;     ///< not finished: only after an early stop
+  std::size_t stopped = 0;     ///< those of them that were running when the stop came
+  bool stopped_early = false;  ///< a stop left work undone
+  int flushes = 0;             ///< with the one at the end
+  std::int64_t rows = 0;       ///< all that was reported
+  double seconds = 0.0;
+  std::vector<Failure> failures;      ///< by key
+  std::vector<TaskOutcome> outcomes;  ///< by key; empty unless Options::keep_outcomes
+  std::vector<RankLoad> loads;        ///< one a rank
+};
+
+/// Does `initial` and all children of it. Collective over `comm`; docs/protocol.md tells how.
+///
+/// With one rank it executes the tasks itself, in the queue's order. With more, rank 0 keeps the queue and only waits,
+/// the others work. No rank spins while it waits. `initial` and `observer` count on rank 0 only. Nobody else may send
+/// on `comm` meanwhile, except within a collective flush.
+///
+/// A task that fails is recorded and the run goes on. The run ends with the same EnvironmentError on all ranks when a
+/// flush or the observer throws, when a key comes twice, or when a message is torn, foreign, or of another version.
+/// Throws MisuseError for options out of range, on every rank alike.
+RunSummary run(const core::Communicator& comm, const Options& options, std::vector<Task> initial, Executor& executor,
+               Observer& observer, Flusher& flusher);
+
+}  // namespace orbweaver::queue

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace orbweaver::queue {
+
+/// A piece of work. The queue never looks into `kind` and `payload`; they belong to whoever makes and executes tasks.
+struct Task {
+  std::string key;      ///< unique in a run and not empty; the same work has the same key in every run
+  int priority = 0;     ///< smaller runs first; ties go by key, compared byte by byte
+  std::string kind;     ///< what the executor is to do
+  std::string payload;  ///< serialised input, any bytes
+
+  friend bool operator==(const Task&, const Task&) = default;
+};
+
+/// What became of a task. Must be a pure function of the task, so that a run does not depend on the number of ranks.
+struct TaskOutcome {
+  std::string key;  ///< filled in by the queue
+  bool failed = false;
+  std::string reason;  ///< why it failed; never empty in a failed outcome
+  std::vector<Task>
+      children;          ///< queued when the outcome arrives, also those of a failed task; not those of a stopped one
+  std::string payload;   ///< serialised result, any bytes
+  bool stopped = false;  ///< filled in by the queue: report() had told the work to stop, so this is not its end
+
+  friend bool operator==(const TaskOutcome&, const TaskOutcome&) = default;
+};
+
+}  // namespace orbweaver::queue

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace orbweaver::scene {
+
+struct SystemChoice {
+  std::string name;
+  std::map<std::string, double> parameters;
+  std::vector<std::string> effects;
+};
+
+/// Where the search for equilibria starts, and what the user calls the families found there.
+struct FixedPoints {
+  /// One list of values a coordinate, angles in radians; missing coordinates start at 0.
+  std::vector<std::vector<double>> grid;
+  struct Names {
+    std::vector<double> point;       ///< the leading coordinates of the equilibrium, angles in radians
+    std::vector<std::string> names;  ///< its families, longest normal-mode period first
+  };
+  std::vector<Names> names;
+  std::map<std::string, std::string> letters;  ///< family name -> letter for its branches
+};
+
+struct Sweep {
+  double period_from = 1.0;
+  double period_to = 12.0;
+  double step = 0.01;
+};
+
+struct Continuation {
+  std::optional<double> fixed_step;                         ///< |dz(s = 0)| in radians; none = adaptive
+  double start_amplitude = 0.5 / 180.0 * std::numbers::pi;  ///< |dz(s = 0)| of the first orbit, radians
+  double tolerance = 1e-10;
+  int cutoff_from = 8;
+  int cutoff_to = 4096;
+  std::string corrector = "nls";  ///< brgn | nls | ntr | lmvm | rprop | rprop-extrapolated
+};
+
+enum class Spectrum { all, events };
+
+struct Survey {
+  int depth = 0;
+  int subharmonics = 1;
+  Spectrum spectrum = Spectrum::events;
+  int team_size = 1;
+};
+
+struct Limits {
+  double period = 30.0;
+  double energy_from = -std::numeric_limits<double>::infinity();
+  double energy_to = std::numeric_limits<double>::infinity();
+  int families = 1000;
+  int steps = 5000;
+};
+
+struct Events {
+  std::vector<double> periods;
+  std::vector<double> energies;
+};
+
+struct Section {
+  std::string coordinate;  ///< empty: no section
+  double value = 0.0;      ///< radians where the coordinate is an angle (degrees in the YAML)
+};
+
+struct Output {
+  double flush_seconds = 5.0;
+  int flush_orbits = 5000;
+};
+
+/// A checked scene: what to simulate and how far. Every value is in range and every name is known.
+struct Scene {
+  std::string name;
+  SystemChoice system;
+  FixedPoints fixed_points;
+  Sweep sweep;
+  Continuation continuation;
+  Survey survey;
+  Limits limits;
+  Events events;
+  Section section;
+  Output output;
+  std::string text;  ///< the YAML with overrides applied, as the archive stores it
+};
+
+/// Reads, overrides and checks a scene. `overrides`: "limits.period=30", applied in order before the check.
+/// Throws core::InputError on the first thing wrong: file:line, key, what was expected, what came, what to do.
+[[nodiscard]] Scene load(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+/// The same for a text; `origin` stands in messages where a file name would.
+[[nodiscard]] Scene parse(const std::string& text, const std::string& origin,
+                          const std::vector<std::string>& overrides = {});
+
+/// What the scene asks for that this version does not compute yet, one sentence each (empty: everything is built).
+[[nodiscard]] std::vector<std::string> not_built_yet(const Scene& scene);
+
+}  // namespace orbweaver::scene

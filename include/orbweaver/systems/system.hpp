@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "orbweaver/systems/description.hpp"
+
+namespace orbweaver::systems {
+
+/// An autonomous vector field dz/dt = f(z) with its parameters and effects bound. Immutable; safe to share in a process.
+///
+/// Nodal arrays are component-major: coordinate i of node j stands at [i * nodes + j]. Functions do not check for NaN:
+/// the loss does, and says at which node.
+class System {
+ public:
+  virtual ~System() = default;
+  System() = default;
+  System(const System&) = delete;
+  System& operator=(const System&) = delete;
+
+  [[nodiscard]] virtual const Description& description() const = 0;
+  /// Bound value of every parameter, by name (defaults filled in).
+  [[nodiscard]] virtual const std::map<std::string, double>& parameters() const = 0;
+  [[nodiscard]] int dimension() const { return description().dimension(); }
+
+  /// f at each node. `z`, `f`: dimension x nodes.
+  virtual void field(std::size_t nodes, const double* z, double* f) const = 0;
+  /// f and its Jacobian. `jacobian`: entry (i, l) = df_i/dz_l of node j at [(i * dimension + l) * nodes + j].
+  virtual void field_jacobian(std::size_t nodes, const double* z, double* f, double* jacobian) const = 0;
+  /// Second derivatives contracted with `weights` (dimension x nodes): entry (l, m) = sum_i weights_i d2f_i/dz_l dz_m of
+  /// node j at [(l * dimension + m) * nodes + j], symmetric.
+  virtual void second_derivatives(std::size_t nodes, const double* z, const double* weights, double* contracted) const = 0;
+
+  /// Conserved energy at one state (size dimension); NaN where the system has none.
+  [[nodiscard]] virtual double energy(std::span<const double> z) const = 0;
+  /// Its gradient at one state; `gradient` has size dimension.
+  virtual void energy_gradient(std::span<const double> z, std::span<double> gradient) const = 0;
+  /// p . dq/dt at one state, whose time integral over a period is the action; NaN where the system has none.
+  [[nodiscard]] virtual double action_density(std::span<const double> z) const = 0;
+};
+
+/// Names of all registered systems.
+[[nodiscard]] std::vector<std::string> system_names();
+
+/// Description of the system `name`. Throws core::InputError naming the known ones.
+[[nodiscard]] const Description& describe_system(const std::string& name);
+
+/// Binds parameters and effects. Throws core::InputError on an unknown system, parameter or effect, or a value out of
+/// range, saying what is known or allowed.
+[[nodiscard]] std::shared_ptr<const System> make_system(const std::string& name,
+                                                        const std::map<std::string, double>& parameters = {},
+                                                        const std::vector<std::string>& effects = {});
+
+}  // namespace orbweaver::systems

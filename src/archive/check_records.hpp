@@ -1,0 +1,15 @@
+#pragma once
+
+#include "orbweaver/archive/records.hpp"
+
+namespace orbweaver::archive {
+
+/// Each throws MisuseError, saying which record and which member is wrong, what it holds and what was expected.
+void check_header(const Header& header);
+void check_orbits(const Header& header, const Records& records);
+void check_sections(const Header& header, const Records& records);
+/// Families and crossings as they are handed over for a finished archive.
+void check_families(const Records& records);
+void check_crossings(const Header& header, const Records& records);
+
+}  // namespace orbweaver::archive

@@ -1,0 +1,121 @@
+#include "layout_file.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "h5_types.hpp"
+#include "posix_file.hpp"
+
+namespace orbweaver::archive {
+
+namespace {
+
+// Room for attributes, headers and groups beside the datasets.
+constexpr std::uint64_t metadata_bytes = std::uint64_t{1} << 18;
+
+std::uint64_t value_bytes(const ColumnSpec& spec) { return spec.type == ColumnType::text ? spec.text_width : 8; }
+
+H5Handle property_list(hid_t list_class) { return {check_h5(H5Pcreate(list_class), "H5Pcreate"), H5Pclose}; }
+
+// Times would make two runs of the same scene differ.
+H5Handle timeless_list(hid_t list_class) {
+  H5Handle list = property_list(list_class);
+  check_h5(H5Pset_obj_track_times(list.get(), false), "H5Pset_obj_track_times");
+  return list;
+}
+
+H5Handle scalar_space() { return {check_h5(H5Screate(H5S_SCALAR), "H5Screate"), H5Sclose}; }
+
+H5Handle dataspace(const std::vector<hsize_t>& extents) {
+  const hid_t id = H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr);
+  return {check_h5(id, "H5Screate_simple"), H5Sclose};
+}
+
+class Layout {
+ public:
+  explicit Layout(const std::filesystem::path& path) : _path(path.string()) {
+    const H5Handle access = property_list(H5P_FILE_ACCESS);
+    check_h5(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_V18), "H5Pset_libver_bounds");
+    check_h5(H5Pset_file_locking(access.get(), false, true), "H5Pset_file_locking");
+    const H5Handle creation = timeless_list(H5P_FILE_CREATE);
+    const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get());
+    _file = {check_h5(file, fmt::format("cannot create '{}'", _path)), H5Fclose};
+  }
+
+  void write_attributes(const char* format, const Header& header) {
+    const std::int64_t version = format_version;
+    write_text("format", format);
+    write_attribute("format_version", h5_memory_type({"", ColumnType::integer, {}}), scalar_space(), &version);
+    write_text("orbweaver_version", header.orbweaver_version);
+    write_text("scene", header.scene);
+    write_texts("state_names", header.state_names);
+    write_texts("winding_names", header.winding_names);
+  }
+
+  void create_table(const TableSpec& table, std::uint64_t rows) {
+    const H5Handle creation = timeless_list(H5P_GROUP_CREATE);
+    const hid_t id = H5Gcreate2(_file.get(), table.name.c_str(), H5P_DEFAULT, creation.get(), H5P_DEFAULT);
+    const H5Handle group(check_h5(id, fmt::format("cannot create /{} in '{}'", table.name, _path)), H5Gclose);
+    for (const ColumnSpec& column : table.columns) create_dataset(table.name + '/' + column.name, column, rows);
+  }
+
+  void create_dataset(const std::string& name, const ColumnSpec& spec, std::uint64_t rows) {
+    std::vector<hsize_t> extents{rows};
+    extents.insert(extents.end(), spec.row_shape.begin(), spec.row_shape.end());
+    const H5Handle creation = timeless_list(H5P_DATASET_CREATE);
+    check_h5(H5Pset_alloc_time(creation.get(), H5D_ALLOC_TIME_EARLY), "H5Pset_alloc_time");
+    check_h5(H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER), "H5Pset_fill_time");
+    const H5Handle type = h5_file_type(spec);
+    const H5Handle space = dataspace(extents);
+    const hid_t id =
+        H5Dcreate2(_file.get(), name.c_str(), type.get(), space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT);
+    const H5Handle dataset(check_h5(id, fmt::format("cannot create /{} in '{}'", name, _path)), H5Dclose);
+  }
+
+  void close() { _file.close(fmt::format("cannot close '{}'", _path)); }
+
+ private:
+  void write_attribute(const char* name, const H5Handle& type, const H5Handle& space, const void* data) {
+    const std::string doing = fmt::format("cannot write attribute '{}' of '{}'", name, _path);
+    const hid_t id = H5Acreate2(_file.get(), name, type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT);
+    const H5Handle attribute(check_h5(id, doing), H5Aclose);
+    check_h5(H5Awrite(attribute.get(), type.get(), data), doing);
+  }
+
+  void write_text(const char* name, const std::string& text) {
+    write_attribute(name, h5_text_type(std::max<std::size_t>(text.size(), 1)), scalar_space(), text.c_str());
+  }
+
+  void write_texts(const char* name, const std::vector<std::string>& texts) {
+    const std::size_t width = longest_text(texts);
+    const std::string block = padded_texts(texts, width);
+    write_attribute(name, h5_text_type(width), dataspace({texts.size()}), block.c_str());
+  }
+
+  std::string _path;
+  H5Handle _file;
+};
+
+}  // namespace
+
+std::uint64_t FileLayout::bytes() const {
+  std::uint64_t sum = 0;
+  for (const auto& [table, rows] : tables)
+    for (const ColumnSpec& column : table.columns) sum += rows * column.width() * value_bytes(column);
+  for (const auto& [name, count] : flats) sum += count * sizeof(double);
+  return sum;
+}
+
+void create_layout_file(const std::filesystem::path& path, const FileLayout& layout) {
+  const std::uint64_t bytes = layout.bytes();
+  try_out_file(path, bytes + metadata_bytes);
+  Layout file(path);
+  file.write_attributes(layout.format, layout.header);
+  for (const auto& [table, rows] : layout.tables) file.create_table(table, rows);
+  for (const auto& [name, count] : layout.flats) file.create_dataset(name, {name, ColumnType::real, {}}, count);
+  file.close();
+  reserve_space(path, std::filesystem::file_size(path));
+}
+
+}  // namespace orbweaver::archive

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <mpi.h>
+
+#include "orbweaver/archive/records.hpp"
+
+namespace orbweaver::archive {
+
+/// An orbit's place in the archive's order, and where its row lies.
+struct OrbitRow {
+  std::int64_t family = -1;  ///< index into the sorted family keys
+  std::int64_t step = 0;
+  std::int64_t segment = 0;
+  std::int64_t row = 0;
+  std::int64_t modes_begin = 0;  ///< in the segment
+  std::int64_t modes_count = 0;
+  std::int64_t map_begin = 0;
+  std::int64_t map_count = 0;
+};
+
+struct SectionRow {
+  std::int64_t family = -1;
+  std::int64_t step = 0;
+  std::int64_t segment = 0;
+  std::int64_t row = 0;
+  std::int64_t orbit = -1;  ///< row of /orbits
+  double time = 0.0;
+};
+
+/// All rows of all segments in canonical order, the same on every rank.
+struct Numbering {
+  std::vector<OrbitRow> orbits;
+  std::vector<SectionRow> sections;
+  std::vector<std::uint64_t> modes_at;  ///< where orbit i's modes begin in the archive; one more than orbits
+  std::vector<std::uint64_t> maps_at;
+
+  /// First row of /orbits of the family with index `family`, or of the next one that has any.
+  [[nodiscard]] std::int64_t first_orbit(std::int64_t family) const;
+};
+
+/// Collective. Checks the segments (each by one rank) and numbers their rows. `family_keys` is sorted. Throws InputError
+/// on all ranks as `consolidate` says.
+[[nodiscard]] Numbering number_rows(MPI_Comm comm, const std::vector<std::string>& segments, const Header& header,
+                                    const std::vector<std::string>& family_keys);
+
+}  // namespace orbweaver::archive

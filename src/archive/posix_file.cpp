@@ -1,0 +1,75 @@
+#include "posix_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "orbweaver/core/error.hpp"
+
+namespace orbweaver::archive {
+
+namespace {
+
+[[noreturn]] void throw_system_error(const char* doing, const std::filesystem::path& path) {
+  const int code = errno;
+  throw core::EnvironmentError(fmt::format("cannot {} '{}': {}. Check the folder, its permissions and the free space.",
+                                           doing, path.string(), std::strerror(code)));
+}
+
+class Descriptor {
+ public:
+  Descriptor(const std::filesystem::path& path, int flags, const char* doing)
+      : _number(open(path.c_str(), flags | O_CLOEXEC, 0666)) {
+    if (_number < 0) throw_system_error(doing, path);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() { close(_number); }
+  [[nodiscard]] int get() const { return _number; }
+
+ private:
+  int _number;
+};
+
+void reserve(const Descriptor& file, int mode, std::uint64_t bytes, const std::filesystem::path& path) {
+  // File systems without this call cannot be asked in advance.
+  if (fallocate(file.get(), mode, 0, static_cast<off_t>(bytes)) != 0 && errno != EOPNOTSUPP && errno != ENOSYS)
+    throw_system_error("reserve disk space for", path);
+}
+
+void sync(const std::filesystem::path& path, int flags) {
+  const Descriptor descriptor(path, flags, "open");
+  if (fsync(descriptor.get()) != 0) throw_system_error("sync", path);
+}
+
+}  // namespace
+
+void try_out_file(const std::filesystem::path& path, std::uint64_t bytes) {
+  const Descriptor file(path, O_WRONLY | O_CREAT | O_TRUNC, "create");
+  reserve(file, 0, bytes, path);
+  const std::array<char, 4096> block{};
+  const off_t last = static_cast<off_t>(bytes > block.size() ? bytes - block.size() : 0);
+  for (const off_t at : {off_t{0}, last})
+    if (pwrite(file.get(), block.data(), block.size(), at) != static_cast<ssize_t>(block.size()))
+      throw_system_error("write to", path);
+}
+
+void reserve_space(const std::filesystem::path& path, std::uint64_t bytes) {
+  if (bytes > 0) reserve(Descriptor(path, O_WRONLY, "open"), FALLOC_FL_KEEP_SIZE, bytes, path);
+}
+
+void sync_file(const std::filesystem::path& path) { sync(path, O_WRONLY); }
+
+void rename_file(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (std::rename(from.c_str(), to.c_str()) != 0) throw_system_error("rename to its final name the file", from);
+  sync(to.has_parent_path() ? to.parent_path() : std::filesystem::path("."), O_RDONLY | O_DIRECTORY);
+}
+
+}  // namespace orbweaver::archive

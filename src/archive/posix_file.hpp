@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+namespace orbweaver::archive {
+
+/// Creates (or empties) the file, gives it `bytes` bytes of disk and shows that they can be written.
+/// All of these throw EnvironmentError with the path, what was being done and the system's reason.
+void try_out_file(const std::filesystem::path& path, std::uint64_t bytes);
+
+/// Takes the disk space of an existing file's first `bytes` bytes without changing its size.
+void reserve_space(const std::filesystem::path& path, std::uint64_t bytes);
+
+/// Waits until what this machine wrote to the file is on the disk.
+void sync_file(const std::filesystem::path& path);
+
+/// Renames, and waits until the folder remembers it.
+void rename_file(const std::filesystem::path& from, const std::filesystem::path& to);
+
+}  // namespace orbweaver::archive

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "numbering.hpp"
+#include "orbweaver/archive/table.hpp"
+
+namespace orbweaver::archive {
+
+/// The tables that rank 0 hands over, in canonical order with indices instead of keys.
+struct RootTables {
+  Table families;
+  Table crossings;
+};
+
+/// Keys of the families, sorted.
+[[nodiscard]] std::vector<std::string> sorted_keys(const Records& tables);
+
+/// `tables` must have been checked (check_records.hpp); `keys` are its sorted keys.
+[[nodiscard]] RootTables make_root_tables(const Header& header, const Records& tables,
+                                          const std::vector<std::string>& keys, const Numbering& numbering);
+
+}  // namespace orbweaver::archive

@@ -1,0 +1,76 @@
+#include "orbweaver/certificate/certificate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "orbweaver/certificate/integrate.hpp"
+#include "orbweaver/core/error.hpp"
+
+namespace orbweaver::certificate {
+
+namespace {
+
+using State = std::vector<double>;
+
+double distance(const State& a, const State& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum);
+}
+
+/// z(t_0), ..., z(t_segments); the last is the first after all windings, so that it is exactly as far as the angles
+/// turned.
+std::vector<State> states_at_segment_ends(const loop::Loop& loop, int segments) {
+  std::vector<State> states;
+  for (int m = 0; m < segments; ++m) states.push_back(loop::state_at(loop, loop.period * m / segments));
+  State end = states.front();
+  for (std::size_t i = 0; i < end.size(); ++i) end[i] += 2.0 * std::numbers::pi * loop.winding[i];
+  states.push_back(std::move(end));
+  return states;
+}
+
+double closure_of(const systems::System& system, const loop::Loop& loop, const std::vector<State>& states,
+                  const Options& options) {
+  double largest = 0.0;
+  for (int m = 0; m < options.segments; ++m) {
+    const auto here = static_cast<std::size_t>(m);
+    try {
+      const State end = integrate(system, states[here], loop.period / options.segments, options.tolerance);
+      largest = std::max(largest, distance(end, states[here + 1]));
+    } catch (const core::NumericalError& error) {
+      throw core::NumericalError(fmt::format("segment {} of {} of a loop with period {} (from t = {}): {}", m + 1,
+                                             options.segments, loop.period, loop.period * m / options.segments,
+                                             error.what()));
+    }
+  }
+  return largest;
+}
+
+double energy_drift_of(const systems::System& system, const std::vector<State>& states) {
+  if (!system.description().conservative) return std::numeric_limits<double>::quiet_NaN();
+  const double start = system.energy(states.front());
+  double largest = 0.0;
+  for (const State& state : states) largest = std::max(largest, std::abs(system.energy(state) - start));
+  return largest;
+}
+
+}  // namespace
+
+Certificate certify(const systems::System& system, const loop::Loop& loop, const Options& options) {
+  loop::validate(loop);
+  core::require(loop.dimension == system.dimension(), "the loop and the system must have the same dimension");
+  core::require(options.segments >= 1, "a certificate needs at least one segment");
+  const std::vector<State> states = states_at_segment_ends(loop, options.segments);
+  Certificate certificate;
+  certificate.closure = closure_of(system, loop, states, options);
+  certificate.single_shot = distance(integrate(system, states.front(), loop.period, options.tolerance), states.back());
+  certificate.energy_drift = energy_drift_of(system, states);
+  return certificate;
+}
+
+}  // namespace orbweaver::certificate

@@ -1,0 +1,72 @@
+#include "attempt.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "orbweaver/loss/slice.hpp"
+
+namespace orbweaver::continuation {
+
+double Direction::norm() const {
+  double sum = period * period;
+  for (const double v : modes) sum += v * v;
+  return std::sqrt(sum);
+}
+
+Direction with_cutoff(Direction direction, int cutoff, int dimension) {
+  direction.modes.resize((2 * static_cast<std::size_t>(cutoff) + 1) * static_cast<std::size_t>(dimension), 0.0);
+  return direction;
+}
+
+double state_change(const loop::Loop& loop, const Direction& direction) {
+  loop::Loop perturbation = loop;
+  perturbation.modes = direction.modes;
+  std::fill(perturbation.winding.begin(), perturbation.winding.end(), 0.0);
+  double sum = 0.0;
+  for (const double v : loop::state_at(perturbation, 0.0)) sum += v * v;
+  return std::sqrt(sum);
+}
+
+Attempt correct_along(const systems::System& system, const loop::Loop& base, const Direction& direction, double length,
+                      const loop::Isotropy& isotropy, const corrector::Options& options) {
+  const loss::Unknowns unknowns{loop::Subspace(base.dimension, base.cutoff, isotropy), true};
+  const auto coordinates = static_cast<std::size_t>(unknowns.subspace.size());
+  Eigen::VectorXd normal(unknowns.size());
+  unknowns.subspace.project(direction.modes, std::span(normal.data(), coordinates));
+  normal(unknowns.size() - 1) = direction.period;
+  normal.normalize();
+  const Eigen::VectorXd move = length * normal;
+  Attempt attempt;
+  const loop::Loop guess = unknowns.moved(base, std::span<const double>(move.data(), static_cast<std::size_t>(move.size())));
+  if (!(guess.period > 0.0)) {
+    attempt.result.outcome = corrector::Outcome::period_not_positive;
+    attempt.result.detail = fmt::format("the predicted period is {:.6g}", guess.period);
+    return attempt;
+  }
+  attempt.result = corrector::correct(system, guess, unknowns, loss::Slice(unknowns.size(), normal), options, normal);
+  if (!attempt.result.converged()) return attempt;
+  const Eigen::VectorXd& tangent = attempt.result.flat_direction.value();
+  attempt.turning = std::acos(std::clamp(tangent.dot(normal), -1.0, 1.0));
+  attempt.tangent.modes.assign(base.modes.size(), 0.0);
+  unknowns.subspace.add_to(std::span<const double>(tangent.data(), coordinates), attempt.tangent.modes);
+  attempt.tangent.period = tangent(unknowns.size() - 1);
+  return attempt;
+}
+
+double tail_limit(const loop::Loop& loop, const Options& options) {
+  double mean_square = 0.0;
+  for (int i = 0; i < loop.dimension; ++i) mean_square += loop.cosine(0, i) * loop.cosine(0, i);
+  // Every harmonic carries rounding of the size of the mean: no cutoff takes a tail below that.
+  const double rounding = std::numeric_limits<double>::epsilon() * std::sqrt(mean_square);
+  return std::max(options.tail_tolerance * std::min(1.0, loop::rms_amplitude(loop)), rounding);
+}
+
+bool needs_more_harmonics(const corrector::Result& result, const Options& options) {
+  if (result.outcome == corrector::Outcome::under_resolved) return true;
+  return result.converged() && loop::tail(result.loop) > tail_limit(result.loop, options);
+}
+
+}  // namespace orbweaver::continuation

@@ -1,0 +1,24 @@
+#include "orbweaver/continuation/ending.hpp"
+
+#include <fmt/format.h>
+
+namespace orbweaver::continuation {
+
+std::string_view name_of(EndReason reason) {
+  switch (reason) {
+    case EndReason::period_limit: return "period limit";
+    case EndReason::energy_limit: return "energy limit";
+    case EndReason::step_limit: return "step limit";
+    case EndReason::cutoff_limit: return "cutoff limit";
+    case EndReason::period_divergence: return "period divergence";
+    case EndReason::fixed_point: return "arrived at a fixed point";
+    case EndReason::closed_loop: return "closed loop";
+    case EndReason::stopped: return "stopped";
+    case EndReason::failure: return "failure";
+  }
+  return "unknown";
+}
+
+std::string Ending::text() const { return detail.empty() ? std::string(name_of(reason)) : fmt::format("{} ({})", name_of(reason), detail); }
+
+}  // namespace orbweaver::continuation

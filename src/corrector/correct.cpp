@@ -1,0 +1,140 @@
+#include "orbweaver/corrector/correct.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "objective.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/spectrum/sliced_hessian.hpp"
+#include "tao_solver.hpp"
+
+namespace orbweaver::corrector {
+
+namespace {
+
+double rms_field_jacobian(const loss::Linearization& lin) {
+  double sum = 0.0;
+  for (int i = 0; i < lin.dimension(); ++i)
+    for (int l = 0; l < lin.dimension(); ++l) {
+      const double* a = lin.field_jacobian(i, l);
+      for (int j = 0; j < lin.nodes(); ++j) sum += a[j] * a[j];
+    }
+  return std::sqrt(sum / lin.nodes());
+}
+
+double length(const loop::Loop& loop) {
+  double sum = 0.0;
+  for (const double v : loop.modes) sum += v * v;
+  return std::sqrt(sum);
+}
+
+struct Polished {
+  loop::Loop loop;
+  double loss_rms;
+  double newton_step;
+  Eigen::VectorXd flat_direction;
+};
+
+// One more Newton step from the factored Hessian: shows that the step is small, and takes the orbit to rounding level.
+Polished polish(const systems::System& system, const loop::Loop& found, const loss::Unknowns& unknowns, const loss::Slice& slice,
+                const std::optional<Eigen::VectorXd>& normal, bool apply_step) {
+  const loss::Linearization lin(system, found, loss::Linearization::Order::jacobian);
+  const spectrum::SlicedHessian hessian(lin, unknowns, slice);
+  const Eigen::VectorXd step = hessian.newton_step();
+  Polished out{found, std::sqrt(lin.loss()), step.norm(), {}};
+  if (normal) out.flat_direction = hessian.flat_direction(*normal);
+  if (!apply_step) return out;
+  const loop::Loop moved = unknowns.moved(found, std::span<const double>(step.data(), static_cast<std::size_t>(step.size())));
+  if (!(moved.period > 0.0)) return out;
+  const loss::Linearization after(system, moved, loss::Linearization::Order::residual);
+  if (std::sqrt(after.loss()) <= out.loss_rms) {
+    out.loop = moved;
+    out.loss_rms = std::sqrt(after.loss());
+  }
+  return out;
+}
+
+bool tail_is_heavy(const loop::Loop& loop, double threshold, const Options& options) {
+  const double rate = 2.0 * M_PI / loop.period;
+  return rate * loop.cutoff * loop::tail(loop) > options.tail_tolerance * threshold;
+}
+
+Outcome outcome_of(const TaoRun& run, const loop::Loop& loop, double threshold, const Options& options) {
+  switch (run.stop) {
+    case Stop::threshold: return Outcome::converged;
+    case Stop::iterations:
+    case Stop::stagnation:
+    case Stop::tao:
+      if (is_second_order(options.method) && tail_is_heavy(loop, threshold, options)) return Outcome::under_resolved;
+      return run.stop == Stop::iterations ? Outcome::iteration_limit
+             : run.stop == Stop::stagnation ? Outcome::stalled : Outcome::solver_failed;
+    case Stop::none: break;
+  }
+  return Outcome::solver_failed;
+}
+
+}  // namespace
+
+double acceptance_threshold(const loop::Loop& loop, const loss::Linearization& linearization, double tolerance) {
+  double mean_square = 0.0;
+  for (int i = 0; i < loop.dimension; ++i) mean_square += loop.cosine(0, i) * loop.cosine(0, i);
+  const double size = std::sqrt(mean_square);
+  const double rounding = linearization.order() == loss::Linearization::Order::residual
+                              ? 0.0
+                              : 4.0 * std::numeric_limits<double>::epsilon() * size * rms_field_jacobian(linearization);
+  return std::max(tolerance * std::min(1.0, loop::rms_speed(loop)), rounding);
+}
+
+Result correct(const systems::System& system, const loop::Loop& guess, const loss::Unknowns& unknowns, const loss::Slice& slice,
+               const Options& options, const std::optional<Eigen::VectorXd>& normal) {
+  core::require(slice.unknowns() == unknowns.size(), "the slice belongs to other unknowns");
+  Result result;
+  result.loop = guess;
+  const auto order = options.curvature == loss::Curvature::full ? loss::Linearization::Order::second : loss::Linearization::Order::jacobian;
+  try {
+    Objective objective(system, guess, unknowns, slice, order);
+    const TaoRun run = run_tao(objective, options);
+    result.iterations = run.iterations;
+    result.loop = objective.loop_at(run.x);
+    if (!(result.loop.period > 0.0)) {
+      result.outcome = Outcome::period_not_positive;
+      result.detail = fmt::format("the period became {:.6g}", result.loop.period);
+      return result;
+    }
+    const loss::Linearization& lin = objective.at(run.x);
+    result.loss_rms = std::sqrt(lin.loss());
+    result.threshold = acceptance_threshold(result.loop, lin, options.tolerance);
+    result.outcome = outcome_of(run, result.loop, result.threshold, options);
+    if (result.outcome != Outcome::converged) {
+      result.detail = fmt::format("{} after {} iterations at sqrt(loss) = {:.3g}, wanted {:.3g}, K = {} (TAO: {})",
+                                  name_of(result.outcome), run.iterations, result.loss_rms, result.threshold, result.loop.cutoff,
+                                  run.tao_reason);
+      return result;
+    }
+    const Polished polished = polish(system, result.loop, unknowns, slice, normal, is_second_order(options.method));
+    result.loop = polished.loop;
+    result.loss_rms = polished.loss_rms;
+    result.newton_step = polished.newton_step;
+    if (normal) result.flat_direction = polished.flat_direction;
+    if (result.newton_step > options.step_tolerance * (1.0 + length(result.loop))) {
+      result.outcome = Outcome::stalled;
+      result.detail = fmt::format("sqrt(loss) = {:.3g} is under its threshold, but the Newton step is still {:.3g}: the loss is flat "
+                                  "in more than one direction here", result.loss_rms, result.newton_step);
+    }
+  } catch (const core::NotFiniteError& error) {
+    result.outcome = Outcome::not_finite;
+    result.detail = error.what();
+  } catch (const core::NumericalError& error) {
+    result.outcome = Outcome::singular;
+    result.detail = error.what();
+  } catch (const core::EnvironmentError& error) {
+    // A direct solver inside TAO that meets a zero pivot reports an error of PETSc's.
+    result.outcome = Outcome::singular;
+    result.detail = error.what();
+  }
+  return result;
+}
+
+}  // namespace orbweaver::corrector

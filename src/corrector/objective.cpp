@@ -1,0 +1,37 @@
+#include "objective.hpp"
+
+#include "orbweaver/loss/dense.hpp"
+#include "orbweaver/loss/matrices.hpp"
+
+namespace orbweaver::corrector {
+
+loop::Loop Objective::loop_at(const Eigen::VectorXd& x) const {
+  const Eigen::VectorXd u = _slice.expand(x);
+  return _unknowns.moved(_base, std::span<const double>(u.data(), static_cast<std::size_t>(u.size())));
+}
+
+const loss::Linearization& Objective::at(const Eigen::VectorXd& x) {
+  if (!_linearization || _point.size() != x.size() || _point != x) {
+    _linearization.reset();
+    _linearization = std::make_unique<loss::Linearization>(_system, loop_at(x), _order);
+    _point = x;
+  }
+  return *_linearization;
+}
+
+Eigen::VectorXd Objective::gradient(const Eigen::VectorXd& x) {
+  const std::vector<double> g = at(x).gradient(_unknowns);
+  return _slice.reduce(loss::ConstVectorMap(g.data(), static_cast<Eigen::Index>(g.size())));
+}
+
+core::Handle<Mat> Objective::hessian(const Eigen::VectorXd& x, loss::Curvature curvature) {
+  return _slice.reduce_symmetric(loss::assemble_hessian(at(x), _unknowns, curvature));
+}
+
+core::Handle<Mat> Objective::jacobian(const Eigen::VectorXd& x) {
+  return _slice.reduce_columns(loss::assemble_jacobian(at(x), _unknowns));
+}
+
+int Objective::rows() const { return _base.dimension * loop::FourierGrid::nodes_for(_base.cutoff); }
+
+}  // namespace orbweaver::corrector

@@ -1,0 +1,195 @@
+#include "tao_solver.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <petsctao.h>
+
+#include "orbweaver/core/check.hpp"
+#include "orbweaver/core/handle.hpp"
+#include "orbweaver/loss/dense.hpp"
+
+namespace orbweaver::corrector {
+
+namespace {
+
+struct Context {
+  Objective& objective;
+  const Options& options;
+  int max_iterations;
+  core::CallbackGuard guard{};
+  Stop stop = Stop::none;
+  double last_loss = std::numeric_limits<double>::infinity();
+  int without_progress = 0;
+};
+
+Context& context_of(void* raw) { return *static_cast<Context*>(raw); }
+
+void copy_matrix(const core::Handle<Mat>& from, Mat to) {
+  core::check(MatCopy(from.get(), to, SAME_NONZERO_PATTERN), "MatCopy");
+}
+
+PetscErrorCode objective_and_gradient(Tao, Vec x, PetscReal* value, Vec gradient, void* raw) {
+  Context& c = context_of(raw);
+  return c.guard.run([&] {
+    const Eigen::VectorXd point = loss::to_eigen(x);
+    if (!c.objective.defined_at(point)) {
+      *value = std::numeric_limits<double>::infinity();
+      loss::assign(gradient, Eigen::VectorXd::Zero(point.size()));
+      return;
+    }
+    *value = c.objective.at(point).loss();
+    loss::assign(gradient, c.objective.gradient(point));
+  });
+}
+
+PetscErrorCode hessian(Tao, Vec x, Mat h, Mat, void* raw) {
+  Context& c = context_of(raw);
+  return c.guard.run([&] {
+    const core::Handle<Mat> fresh = c.objective.hessian(loss::to_eigen(x), c.options.curvature);
+    copy_matrix(fresh, h);
+    if (c.options.curvature != loss::Curvature::gauss_newton) return;
+    // J'J is positive definite up to rounding; this keeps Cholesky from meeting a negative pivot of rounding size.
+    double norm = 0.0;
+    core::check(MatNorm(h, NORM_INFINITY, &norm), "MatNorm");
+    core::check(MatShift(h, 4.0 * std::numeric_limits<double>::epsilon() * norm), "MatShift");
+    core::check(MatSetOption(h, MAT_SPD, PETSC_TRUE), "MatSetOption");
+  });
+}
+
+PetscErrorCode residual(Tao, Vec x, Vec r, void* raw) {
+  Context& c = context_of(raw);
+  return c.guard.run([&] {
+    const std::vector<double> values = c.objective.at(loss::to_eigen(x)).residual();
+    loss::assign(r, loss::ConstVectorMap(values.data(), static_cast<Eigen::Index>(values.size())));
+  });
+}
+
+PetscErrorCode residual_jacobian(Tao, Vec x, Mat j, Mat, void* raw) {
+  Context& c = context_of(raw);
+  return c.guard.run([&] { copy_matrix(c.objective.jacobian(loss::to_eigen(x)), j); });
+}
+
+// One test for every type: sqrt(loss) against the threshold, else stagnation (second order only), else the limit.
+PetscErrorCode convergence_test(Tao tao, void* raw) {
+  Context& c = context_of(raw);
+  return c.guard.run([&] {
+    Vec solution = nullptr;
+    PetscInt iteration = 0;
+    core::check(TaoGetSolution(tao, &solution), "TaoGetSolution");
+    core::check(TaoGetIterationNumber(tao, &iteration), "TaoGetIterationNumber");
+    const Eigen::VectorXd x = loss::to_eigen(solution);
+    const loss::Linearization& lin = c.objective.at(x);
+    const double threshold = acceptance_threshold(c.objective.loop_at(x), lin, c.options.tolerance);
+    const bool progress = lin.loss() < 0.25 * c.last_loss;
+    c.without_progress = progress ? 0 : c.without_progress + 1;
+    c.last_loss = lin.loss();
+    if (std::sqrt(lin.loss()) < threshold) {
+      c.stop = Stop::threshold;
+    } else if (is_second_order(c.options.method) && iteration >= 3 && c.without_progress >= 3) {
+      c.stop = Stop::stagnation;
+    } else if (iteration >= c.max_iterations) {
+      c.stop = Stop::iterations;
+    } else {
+      core::check(TaoSetConvergedReason(tao, TAO_CONTINUE_ITERATING), "TaoSetConvergedReason");
+      return;
+    }
+    core::check(TaoSetConvergedReason(tao, c.stop == Stop::threshold ? TAO_CONVERGED_USER : TAO_DIVERGED_USER), "TaoSetConvergedReason");
+  });
+}
+
+TaoType type_of(Method method) {
+  switch (method) {
+    case Method::brgn: return TAOBRGN;
+    case Method::nls: return TAONLS;
+    case Method::ntr: return TAONTR;
+    case Method::lmvm: return TAOLMVM;
+    case Method::rprop: return "orbweaver_rprop";
+    case Method::rprop_extrapolated: return "orbweaver_rprop_extrapolated";
+  }
+  return TAONLS;
+}
+
+void default_option(const char* name, const char* value) {
+  PetscBool set = PETSC_FALSE;
+  core::check(PetscOptionsHasName(nullptr, nullptr, name, &set), "PetscOptionsHasName");
+  if (set == PETSC_FALSE) core::check(PetscOptionsSetValue(nullptr, name, value), "PetscOptionsSetValue");
+}
+
+void solve_directly(Tao tao, KSPType type) {
+  KSP ksp = nullptr;
+  PC pc = nullptr;
+  core::check(TaoGetKSP(tao, &ksp), "TaoGetKSP");
+  core::check(KSPSetType(ksp, type), "KSPSetType");
+  core::check(KSPGetPC(ksp, &pc), "KSPGetPC");
+  core::check(PCSetType(pc, PCCHOLESKY), "PCSetType");
+}
+
+}  // namespace
+
+TaoRun run_tao(Objective& objective, const Options& options) {
+  register_rprop();
+  const int size = objective.slice().free();
+  const bool second_order = is_second_order(options.method);
+  Context context{objective, options, options.max_iterations > 0 ? options.max_iterations : (second_order ? 30 : 200000)};
+
+  const core::Handle<Vec> x = loss::create_vector(size);
+  core::Handle<Mat> matrix;
+  core::Handle<Vec> residual_vector;
+  core::Handle<Tao> tao;
+  core::check(TaoCreate(PETSC_COMM_SELF, tao.put()), "TaoCreate");
+  core::check(TaoSetOptionsPrefix(tao.get(), "corrector_"), "TaoSetOptionsPrefix");
+  if (options.method == Method::brgn) {
+    default_option("-corrector_tao_brgn_regularization_type", "lm");
+    default_option("-corrector_tao_brgn_regularizer_weight", "1e-10");
+    default_option("-corrector_tao_brgn_mat_explicit", "true");
+  }
+  core::check(TaoSetType(tao.get(), type_of(options.method)), "TaoSetType");
+  core::check(TaoSetSolution(tao.get(), x.get()), "TaoSetSolution");
+  core::check(TaoSetTolerances(tao.get(), 0.0, 0.0, 0.0), "TaoSetTolerances");
+  core::check(TaoSetMaximumIterations(tao.get(), context.max_iterations), "TaoSetMaximumIterations");
+  core::check(TaoSetMaximumFunctionEvaluations(tao.get(), 100 * context.max_iterations), "TaoSetMaximumFunctionEvaluations");
+  Tao tested = tao.get();
+  if (options.method == Method::brgn) {
+    residual_vector = loss::create_vector(objective.rows());
+    matrix = loss::create_dense(objective.rows(), size);
+    core::check(TaoSetResidualRoutine(tao.get(), residual_vector.get(), residual, &context), "TaoSetResidualRoutine");
+    core::check(TaoSetJacobianResidualRoutine(tao.get(), matrix.get(), matrix.get(), residual_jacobian, &context),
+                "TaoSetJacobianResidualRoutine");
+    core::check(TaoBRGNGetSubsolver(tao.get(), &tested), "TaoBRGNGetSubsolver");
+    core::check(TaoSetTolerances(tested, 0.0, 0.0, 0.0), "TaoSetTolerances");
+    core::check(TaoSetMaximumIterations(tested, context.max_iterations), "TaoSetMaximumIterations");
+  } else {
+    core::check(TaoSetObjectiveAndGradient(tao.get(), nullptr, objective_and_gradient, &context), "TaoSetObjectiveAndGradient");
+    if (second_order) {
+      matrix = loss::create_dense(size, size);
+      core::check(TaoSetHessian(tao.get(), matrix.get(), matrix.get(), hessian, &context), "TaoSetHessian");
+    }
+  }
+  if (options.method == Method::nls) solve_directly(tao.get(), KSPPREONLY);
+  if (options.method == Method::ntr) solve_directly(tao.get(), KSPSTCG);
+  core::check(TaoSetFromOptions(tao.get()), "TaoSetFromOptions");
+  if (options.method == Method::brgn) {
+    core::check(TaoSetUp(tao.get()), "TaoSetUp");
+    solve_directly(tested, KSPPREONLY);
+  }
+  core::check(TaoSetConvergenceTest(tested, convergence_test, &context), "TaoSetConvergenceTest");
+
+  const PetscErrorCode code = TaoSolve(tao.get());
+  context.guard.rethrow();
+  core::check(code, "TaoSolve");
+
+  TaoRun run;
+  PetscInt iterations = 0;
+  TaoConvergedReason reason = TAO_CONTINUE_ITERATING;
+  core::check(TaoGetIterationNumber(tested, &iterations), "TaoGetIterationNumber");
+  core::check(TaoGetConvergedReason(tested, &reason), "TaoGetConvergedReason");
+  run.x = loss::to_eigen(x.get());
+  run.iterations = static_cast<int>(iterations);
+  run.stop = context.stop == Stop::none ? Stop::tao : context.stop;
+  run.tao_reason = TaoConvergedReasons[reason];
+  return run;
+}
+
+}  // namespace orbweaver::corrector

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+
+#include <Eigen/Dense>
+
+#include "objective.hpp"
+#include "orbweaver/core/callback.hpp"
+#include "orbweaver/corrector/correct.hpp"
+
+namespace orbweaver::corrector {
+
+/// Why the iteration stopped, in our own terms: TAO's convergence test is ours (TaoStop::test), whatever the type.
+enum class Stop { none, threshold, stagnation, iterations, tao };
+
+/// What one run of a TAO solver left.
+struct TaoRun {
+  Eigen::VectorXd x;
+  Stop stop = Stop::none;
+  int iterations = 0;
+  std::string tao_reason;
+};
+
+/// Runs the TAO type of `options.method` on the objective from x = 0. Throws what a callback threw.
+[[nodiscard]] TaoRun run_tao(Objective& objective, const Options& options);
+
+/// Registers the TAO types "orbweaver_rprop" and "orbweaver_rprop_extrapolated" (once a process).
+void register_rprop();
+
+}  // namespace orbweaver::corrector

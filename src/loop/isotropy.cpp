@@ -1,0 +1,127 @@
+#include "orbweaver/loop/isotropy.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/subspace.hpp"
+
+namespace orbweaver::loop {
+
+namespace {
+
+void apply_matrix(const Eigen::MatrixXd& matrix, Loop& loop) {
+  const auto rows = static_cast<Eigen::Index>(2 * loop.cutoff + 1);
+  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> modes(loop.modes.data(), rows,
+                                                                                            loop.dimension);
+  modes = (modes * matrix.transpose()).eval();
+  Eigen::Map<Eigen::VectorXd> winding(loop.winding.data(), loop.dimension);
+  winding = (matrix * winding).eval();
+}
+
+Loop reversed(const Loop& loop) {
+  Loop out = loop;
+  for (int k = 1; k <= loop.cutoff; ++k)
+    for (int i = 0; i < loop.dimension; ++i) out.sine(k, i) = -loop.sine(k, i);
+  for (double& n : out.winding) n = -n;
+  return out;
+}
+
+// Shifts the means of the angles by whole turns to those of `target`.
+void reduce_angles_to(const Loop& target, const std::vector<int>& angles, Loop& loop) {
+  for (const int i : angles) {
+    const double turns = std::round((loop.cosine(0, i) - target.cosine(0, i)) / (2.0 * std::numbers::pi));
+    loop.cosine(0, i) -= 2.0 * std::numbers::pi * turns;
+  }
+}
+
+// Enough harmonics to see every pattern of shifts with denominators up to 12.
+constexpr int pattern_cutoff = 12;
+
+std::optional<SymmetryElement> match(const systems::Symmetry& declared, bool reversing, const systems::Description& system,
+                                     const Loop& loop, double tolerance, int max_denominator) {
+  for (int q = 1; q <= max_denominator; ++q)
+    for (int p = 0; p < q; ++p) {
+      if (std::gcd(p, q) != 1) continue;
+      SymmetryElement element{declared.name, reversing, declared.matrix, p, q};
+      if (symmetry_defect(loop, element, system.angles) <= tolerance) return element;
+    }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string to_text(const Isotropy& isotropy) {
+  std::string text;
+  for (const bool reversing : {false, true})
+    for (const SymmetryElement& e : isotropy) {
+      if (e.reversing != reversing) continue;
+      if (!text.empty()) text += ' ';
+      text += e.shift_numerator == 0 ? fmt::format("{}@0", e.name)
+                                     : fmt::format("{}@{}/{}", e.name, e.shift_numerator, e.shift_denominator);
+    }
+  return text;
+}
+
+Loop transformed(const Loop& loop, const SymmetryElement& element) {
+  core::require(element.matrix.rows() == loop.dimension, "a symmetry of another dimension cannot act on this loop");
+  // w(t) = S^-1 z(t + shift) or R^-1 z(shift - t): for a symmetry of z both give z back.
+  Loop out = element.reversing ? reversed(time_shifted(loop, element.shift())) : time_shifted(loop, element.shift());
+  apply_matrix(element.matrix.inverse(), out);
+  return out;
+}
+
+double symmetry_defect(const Loop& loop, const SymmetryElement& element, const std::vector<int>& angles) {
+  Loop image = transformed(loop, element);
+  if (image.winding != loop.winding) return std::numeric_limits<double>::infinity();
+  reduce_angles_to(loop, angles, image);
+  return mean_distance(loop, image);
+}
+
+Isotropy find_isotropy(const systems::Description& system, const Loop& loop, double tolerance, int max_denominator) {
+  Isotropy isotropy;
+  const auto size_with = [&loop](const Isotropy& generators) { return Subspace(loop.dimension, pattern_cutoff, generators).size(); };
+  const auto consider = [&](const systems::Symmetry& declared, bool reversing) {
+    const auto element = match(declared, reversing, system, loop, tolerance, max_denominator);
+    if (!element) return;
+    Isotropy extended = isotropy;
+    extended.push_back(*element);
+    // A product of the generators so far restricts nothing further.
+    if (size_with(extended) < size_with(isotropy)) isotropy = std::move(extended);
+  };
+  for (const systems::Symmetry& s : system.equivariances) consider(s, false);
+  for (const systems::Symmetry& r : system.reversors) consider(r, true);
+  return isotropy;
+}
+
+std::optional<SymmetryElement> find_map(const systems::Description& system, const Loop& from, const Loop& to, double tolerance,
+                                        int max_denominator) {
+  const auto fits = [&](const SymmetryElement& element) {
+    Loop image = transformed(from, element);
+    if (image.winding != to.winding) return false;
+    reduce_angles_to(to, system.angles, image);
+    return mean_distance(image, to) <= tolerance;
+  };
+  const auto search = [&](const systems::Symmetry& declared, bool reversing) -> std::optional<SymmetryElement> {
+    for (int q = 1; q <= max_denominator; ++q)
+      for (int p = 0; p < q; ++p) {
+        const SymmetryElement element{declared.name, reversing, declared.matrix, p, q};
+        if (std::gcd(p, q) == 1 && fits(element)) return element;
+      }
+    return std::nullopt;
+  };
+  if (auto found = search({"1", Eigen::MatrixXd::Identity(from.dimension, from.dimension)}, false)) return found;
+  for (const systems::Symmetry& s : system.equivariances)
+    if (auto found = search(s, false)) return found;
+  for (const systems::Symmetry& r : system.reversors)
+    if (auto found = search(r, true)) return found;
+  return std::nullopt;
+}
+
+}  // namespace orbweaver::loop

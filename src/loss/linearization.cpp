@@ -1,0 +1,208 @@
+#include "orbweaver/loss/linearization.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "orbweaver/core/error.hpp"
+
+namespace orbweaver::loss {
+
+Linearization::Linearization(const systems::System& system, const loop::Loop& loop, Order order)
+    : _nodes(loop::FourierGrid::nodes_for(loop.cutoff)),
+      _dimension(loop.dimension),
+      _cutoff(loop.cutoff),
+      _order(order),
+      _period(loop.period),
+      _rate(2.0 * std::numbers::pi / loop.period),
+      _grid(&loop::FourierGrid::of_size(_nodes)) {
+  loop::validate(loop);
+  core::require(system.dimension() == loop.dimension, "the loop's dimension is not the system's");
+  const auto n = static_cast<std::size_t>(_nodes);
+  const auto d = static_cast<std::size_t>(_dimension);
+  _z.resize(d * n);
+  _slope.resize(d * n);
+  _grid->synthesize(_cutoff, _dimension, loop.modes.data(), _z.data());
+  _grid->synthesize_derivative(_cutoff, _dimension, loop.modes.data(), _slope.data());
+  for (std::size_t i = 0; i < d; ++i) {
+    if (loop.winding[i] == 0.0) continue;
+    for (std::size_t j = 0; j < n; ++j) {
+      _z[i * n + j] += loop.winding[i] * 2.0 * std::numbers::pi * static_cast<double>(j) / _nodes;
+      _slope[i * n + j] += loop.winding[i];
+    }
+  }
+  std::vector<double> f(d * n);
+  if (order == Order::residual) {
+    system.field(n, _z.data(), f.data());
+  } else {
+    _a.resize(d * d * n);
+    system.field_jacobian(n, _z.data(), f.data(), _a.data());
+    check_finite(system, _a, "Jacobian");
+  }
+  check_finite(system, f, "vector field");
+  _r.resize(d * n);
+  double sum = 0.0;
+  for (std::size_t m = 0; m < d * n; ++m) {
+    _r[m] = _rate * _slope[m] - f[m];
+    sum += _r[m] * _r[m];
+  }
+  _loss = sum / _nodes;
+  if (order == Order::second) {
+    _s.resize(d * d * n);
+    system.second_derivatives(n, _z.data(), _r.data(), _s.data());
+    check_finite(system, _s, "second derivative");
+  }
+}
+
+void Linearization::check_finite(const systems::System& system, std::span<const double> values, const char* what) const {
+  const auto bad = std::find_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); });
+  if (bad == values.end()) return;
+  const auto n = static_cast<std::size_t>(_nodes);
+  const std::size_t node = static_cast<std::size_t>(bad - values.begin()) % n;
+  std::vector<double> state(static_cast<std::size_t>(_dimension));
+  for (std::size_t i = 0; i < state.size(); ++i) state[i] = _z[i * n + node];
+  throw core::NotFiniteError(
+      fmt::format("the {} of {} is not finite ({}) at t = {:.6g} of a loop with T = {:.6g}, state ({:.6g}); the loop left the "
+                  "region where the system is defined: start from another guess or take smaller steps",
+                  what, system.description().name, *bad, _period * static_cast<double>(node) / _nodes, _period,
+                  fmt::join(state, ", ")));
+}
+
+void Linearization::require_order(Order order) const {
+  core::require(static_cast<int>(_order) >= static_cast<int>(order), "this linearization was made with too low an order");
+}
+
+std::vector<double> Linearization::residual() const {
+  std::vector<double> out = _r;
+  const double scale = 1.0 / std::sqrt(static_cast<double>(_nodes));
+  for (double& value : out) value *= scale;
+  return out;
+}
+
+std::vector<double> Linearization::perturbation(const Unknowns& unknowns, std::span<const double> v) const {
+  core::require(static_cast<int>(v.size()) == unknowns.size(), "one value an unknown is needed");
+  std::vector<double> modes((2 * static_cast<std::size_t>(_cutoff) + 1) * static_cast<std::size_t>(_dimension), 0.0);
+  unknowns.subspace.add_to(v.first(static_cast<std::size_t>(unknowns.subspace.size())), modes);
+  return modes;
+}
+
+std::vector<double> Linearization::apply_jacobian(const Unknowns& unknowns, std::span<const double> v) const {
+  require_order(Order::jacobian);
+  const std::vector<double> modes = perturbation(unknowns, v);
+  const auto n = static_cast<std::size_t>(_nodes);
+  const auto d = static_cast<std::size_t>(_dimension);
+  std::vector<double> dz(d * n);
+  std::vector<double> out(d * n);
+  _grid->synthesize(_cutoff, _dimension, modes.data(), dz.data());
+  _grid->synthesize_derivative(_cutoff, _dimension, modes.data(), out.data());
+  const double scale = 1.0 / std::sqrt(static_cast<double>(_nodes));
+  const double dt = unknowns.period ? -_rate / _period * v.back() : 0.0;
+  for (std::size_t i = 0; i < d; ++i) {
+    double* row = out.data() + i * n;
+    const double* slope_i = _slope.data() + i * n;
+    for (std::size_t j = 0; j < n; ++j) row[j] = _rate * row[j] + dt * slope_i[j];
+    for (std::size_t l = 0; l < d; ++l) {
+      const double* a = _a.data() + (i * d + l) * n;
+      const double* z = dz.data() + l * n;
+      for (std::size_t j = 0; j < n; ++j) row[j] -= a[j] * z[j];
+    }
+    for (std::size_t j = 0; j < n; ++j) row[j] *= scale;
+  }
+  return out;
+}
+
+// sum over nodes of with_slope . (d/ds basis) + with_value . basis, for every basis vector of the subspace.
+std::vector<double> Linearization::project_adjoint(const Unknowns& unknowns, const std::vector<double>& with_slope,
+                                                   const std::vector<double>& with_value) const {
+  const auto n = static_cast<std::size_t>(_nodes);
+  const auto d = static_cast<std::size_t>(_dimension);
+  const auto highest = static_cast<std::size_t>(_cutoff);
+  std::vector<double> modes((2 * highest + 1) * d);
+  std::vector<double> c(highest + 1);
+  std::vector<double> s(highest + 1);
+  for (std::size_t i = 0; i < d; ++i) {
+    _grid->sums(with_value.data() + i * n, _cutoff, c.data(), s.data());
+    modes[i] = c[0];
+    for (std::size_t k = 1; k <= highest; ++k) {
+      modes[(2 * k - 1) * d + i] = c[k];
+      modes[2 * k * d + i] = s[k];
+    }
+    _grid->sums(with_slope.data() + i * n, _cutoff, c.data(), s.data());
+    for (std::size_t k = 1; k <= highest; ++k) {
+      modes[(2 * k - 1) * d + i] -= static_cast<double>(k) * s[k];
+      modes[2 * k * d + i] += static_cast<double>(k) * c[k];
+    }
+  }
+  std::vector<double> out(static_cast<std::size_t>(unknowns.size()), 0.0);
+  unknowns.subspace.project(modes, std::span(out).first(static_cast<std::size_t>(unknowns.subspace.size())));
+  return out;
+}
+
+std::vector<double> Linearization::apply_jacobian_transposed(const Unknowns& unknowns, std::span<const double> y) const {
+  require_order(Order::jacobian);
+  core::require(static_cast<int>(y.size()) == rows(), "one value a residual is needed");
+  const auto n = static_cast<std::size_t>(_nodes);
+  const auto d = static_cast<std::size_t>(_dimension);
+  const double scale = 1.0 / std::sqrt(static_cast<double>(_nodes));
+  std::vector<double> with_slope(d * n);
+  std::vector<double> with_value(d * n, 0.0);
+  double along_slope = 0.0;
+  for (std::size_t m = 0; m < d * n; ++m) {
+    with_slope[m] = scale * _rate * y[m];
+    along_slope += y[m] * _slope[m];
+  }
+  for (std::size_t i = 0; i < d; ++i)
+    for (std::size_t l = 0; l < d; ++l) {
+      const double* a = _a.data() + (i * d + l) * n;
+      for (std::size_t j = 0; j < n; ++j) with_value[l * n + j] -= scale * a[j] * y[i * n + j];
+    }
+  std::vector<double> out = project_adjoint(unknowns, with_slope, with_value);
+  if (unknowns.period) out.back() = -scale * _rate / _period * along_slope;
+  return out;
+}
+
+std::vector<double> Linearization::gradient(const Unknowns& unknowns) const {
+  std::vector<double> g = apply_jacobian_transposed(unknowns, residual());
+  for (double& value : g) value *= 2.0;
+  return g;
+}
+
+std::vector<double> Linearization::apply_hessian(const Unknowns& unknowns, std::span<const double> v,
+                                                 Curvature curvature) const {
+  std::vector<double> out = apply_jacobian_transposed(unknowns, apply_jacobian(unknowns, v));
+  if (curvature == Curvature::full) {
+    require_order(Order::second);
+    const std::vector<double> modes = perturbation(unknowns, v);
+    const auto n = static_cast<std::size_t>(_nodes);
+    const auto d = static_cast<std::size_t>(_dimension);
+    std::vector<double> dz(d * n);
+    std::vector<double> dslope(d * n);
+    _grid->synthesize(_cutoff, _dimension, modes.data(), dz.data());
+    _grid->synthesize_derivative(_cutoff, _dimension, modes.data(), dslope.data());
+    const double mean = 1.0 / _nodes;
+    const double dt = unknowns.period ? v.back() : 0.0;
+    const double cross = -_rate / _period * mean;
+    std::vector<double> with_slope(d * n);
+    std::vector<double> with_value(d * n, 0.0);
+    double period_entry = 0.0;
+    for (std::size_t m = 0; m < d * n; ++m) {
+      with_slope[m] = cross * dt * _r[m];
+      period_entry += _r[m] * (cross * dslope[m] + 2.0 * _rate / (_period * _period) * mean * dt * _slope[m]);
+    }
+    for (std::size_t l = 0; l < d; ++l)
+      for (std::size_t m = 0; m < d; ++m) {
+        const double* s = _s.data() + (l * d + m) * n;
+        for (std::size_t j = 0; j < n; ++j) with_value[l * n + j] -= mean * s[j] * dz[m * n + j];
+      }
+    const std::vector<double> second = project_adjoint(unknowns, with_slope, with_value);
+    for (std::size_t m = 0; m < out.size(); ++m) out[m] += second[m];
+    if (unknowns.period) out.back() += period_entry;
+  }
+  for (double& value : out) value *= 2.0;
+  return out;
+}
+
+}  // namespace orbweaver::loss

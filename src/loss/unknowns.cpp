@@ -1,0 +1,48 @@
+#include "orbweaver/loss/unknowns.hpp"
+
+#include "orbweaver/core/error.hpp"
+
+namespace orbweaver::loss {
+
+namespace {
+
+std::span<const double> coordinates_of(const Unknowns& unknowns, std::span<const double> u) {
+  return u.first(static_cast<std::size_t>(unknowns.subspace.size()));
+}
+
+}  // namespace
+
+loop::Loop Unknowns::moved(const loop::Loop& base, std::span<const double> u) const {
+  core::require(static_cast<int>(u.size()) == size(), "one value an unknown is needed");
+  core::require(base.cutoff == subspace.cutoff(), "the loop and the subspace have different cutoffs");
+  loop::Loop out = base;
+  subspace.add_to(coordinates_of(*this, u), out.modes);
+  if (period) out.period += u.back();
+  return out;
+}
+
+std::vector<double> Unknowns::difference(const loop::Loop& from, const loop::Loop& to) const {
+  core::require(from.modes.size() == to.modes.size(), "the loops have different sizes");
+  std::vector<double> modes(from.modes.size());
+  for (std::size_t n = 0; n < modes.size(); ++n) modes[n] = to.modes[n] - from.modes[n];
+  std::vector<double> u(static_cast<std::size_t>(size()));
+  subspace.project(modes, std::span(u).first(static_cast<std::size_t>(subspace.size())));
+  if (period) u.back() = to.period - from.period;
+  return u;
+}
+
+std::vector<double> Unknowns::time_shift_direction(const loop::Loop& loop) const {
+  loop::Loop derivative = loop;
+  for (int i = 0; i < loop.dimension; ++i) {
+    derivative.cosine(0, i) = loop.winding[static_cast<std::size_t>(i)];
+    for (int k = 1; k <= loop.cutoff; ++k) {
+      derivative.cosine(k, i) = k * loop.sine(k, i);
+      derivative.sine(k, i) = -k * loop.cosine(k, i);
+    }
+  }
+  std::vector<double> u(static_cast<std::size_t>(size()), 0.0);
+  subspace.project(derivative.modes, std::span(u).first(static_cast<std::size_t>(subspace.size())));
+  return u;
+}
+
+}  // namespace orbweaver::loss

@@ -1,0 +1,92 @@
+#include "alone.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "flush_round.hpp"
+#include "guarded.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/queue/stop.hpp"
+
+namespace orbweaver::queue {
+
+Alone::Alone(const Options& options, Executor& executor, Observer& observer, Flusher& flusher)
+    : _executor(executor),
+      _flusher(flusher),
+      _ledger(options, 1, observer),
+      _schedule(options),
+      _progress_interval(options.progress_seconds) {}
+
+RunSummary Alone::run(std::vector<Task> initial) {
+  try {
+    _ledger.add(std::move(initial));
+    do_all();
+  } catch (...) {
+    if (_error.empty()) _error = current_exception_text();
+  }
+  if (!_error.empty()) throw core::EnvironmentError(run_ended_text(_error));
+  _ledger.set_load(0, _load);
+  return _ledger.close();
+}
+
+void Alone::do_all() {
+  while (!stop_requested() && _ledger.counts().waiting > 0) {
+    do_next();
+    if (!_error.empty()) return;
+    _ledger.tick();
+    if (_schedule.due()) flush();
+  }
+  flush();
+}
+
+void Alone::do_next() {
+  const Task& task = _ledger.start(0);
+  _key = task.key;
+  _unshown_rows = 0;
+  _flush_seconds = 0.0;
+  _told_to_stop = false;
+  const Stopwatch watch;
+  TaskOutcome outcome = execute_guarded(_executor, task, *this);
+  _load.busy_seconds += watch.seconds() - _flush_seconds;
+  ++_load.tasks;
+  outcome.stopped = _told_to_stop;
+  if (_error.empty()) _ledger.settle(std::move(outcome));
+}
+
+bool Alone::report(const Progress& progress) {
+  try {
+    if (_error.empty()) note(progress);
+  } catch (...) {
+    _error = current_exception_text();
+  }
+  if (stop_requested() || !_error.empty()) _told_to_stop = true;
+  return !_told_to_stop;
+}
+
+void Alone::note(const Progress& progress) {
+  _unshown_rows += progress.rows;
+  _ledger.count_rows(progress.rows);
+  _schedule.count(progress.rows);
+  if (_progress_interval.over()) {
+    _progress_interval.restart();
+    Progress shown = progress;
+    shown.rows = std::exchange(_unshown_rows, 0);
+    _ledger.report(_key, shown, 0);
+  }
+  _ledger.tick();
+  if (_schedule.due()) flush();
+}
+
+void Alone::flush() {
+  const int number = _flushes++;
+  _ledger.flushing(number);
+  const Stopwatch watch;
+  const std::string error = flush_guarded(_flusher, number);
+  _flush_seconds += watch.seconds();
+  if (!error.empty()) throw core::EnvironmentError(flush_failed_text(number, {{0, error}}, 1));
+  _ledger.flushed();
+  _schedule.flushed();
+}
+
+}  // namespace orbweaver::queue

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "channel.hpp"
+#include "flush_round.hpp"
+#include "flush_schedule.hpp"
+#include "ledger.hpp"
+#include "orbweaver/queue/run.hpp"
+
+namespace orbweaver::queue {
+
+/// Rank 0 of a run with workers: hands out tasks, gathers outcomes, leads flushes, and sleeps.
+class Coordinator {
+ public:
+  Coordinator(const core::Communicator& comm, const Options& options, Observer& observer, Flusher& flusher);
+
+  RunSummary run(std::vector<Task> initial);
+
+ private:
+  void serve();
+  void part(const std::string& error);
+  void note_load(const Received& received);
+  bool receive_some();
+  bool pass_on_stop();
+  bool advance_flush();
+  bool hand_out();
+  [[nodiscard]] bool work_over() const;
+  void flush_together();
+  void count_rows(std::int64_t rows);
+
+  void accept(int worker, const Message& message);
+  void accept(int worker, const Hello& hello);
+  void accept(int worker, const Outcome& outcome);
+  void accept(int worker, const ProgressReport& report);
+  [[noreturn]] void refuse(int worker, Tag tag) const;
+
+  const core::Communicator& _comm;
+  const Options& _options;
+  Flusher& _flusher;
+  Channel _channel;
+  Ledger _ledger;
+  FlushSchedule _schedule;
+  FlushRound _round;
+  std::vector<std::string> _task_of;  // by rank; empty: none
+  std::vector<bool> _greeted;         // by rank
+  std::set<int> _idle;
+  bool _stopping = false;
+  bool _last_round = false;
+  bool _over = false;
+};
+
+}  // namespace orbweaver::queue

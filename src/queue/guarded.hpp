@@ -1,0 +1,20 @@
+#pragma once
+
+#include <exception>
+#include <string>
+
+#include "orbweaver/queue/executor.hpp"
+#include "orbweaver/queue/flusher.hpp"
+
+namespace orbweaver::queue {
+
+/// The text of the exception being handled; call inside a catch block. Never empty.
+[[nodiscard]] std::string current_exception_text();
+
+/// The executor's outcome with its key filled in; a thrown exception becomes a failed outcome.
+[[nodiscard]] TaskOutcome execute_guarded(Executor& executor, const Task& task, TaskContext& context);
+
+/// Flushes; returns the text of what was thrown, empty if nothing was.
+[[nodiscard]] std::string flush_guarded(Flusher& flusher, int number);
+
+}  // namespace orbweaver::queue

@@ -1,0 +1,81 @@
+#include "ledger.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace orbweaver::queue {
+
+Ledger::Ledger(const Options& options, int ranks, Observer& observer)
+    : _keep_outcomes(options.keep_outcomes), _observer(observer), _tick(options.tick_seconds) {
+  _summary.loads.resize(static_cast<std::size_t>(ranks));
+}
+
+void Ledger::add(std::vector<Task> tasks) {
+  for (Task& task : tasks) _queue.add(std::move(task));
+}
+
+const Task& Ledger::start(int rank) {
+  const Task& task = _queue.start_next();
+  _observer.started(task, rank);
+  return task;
+}
+
+void Ledger::report(const std::string& key, const Progress& progress, int rank) {
+  _observer.progress(_queue.running(key), progress, rank);
+}
+
+void Ledger::settle(TaskOutcome outcome) {
+  if (outcome.stopped)
+    put_back(outcome);
+  else
+    end(outcome);
+  if (_keep_outcomes) _summary.outcomes.push_back(std::move(outcome));
+}
+
+void Ledger::put_back(const TaskOutcome& outcome) {
+  const Task task = _queue.put_back(outcome.key);
+  ++_summary.stopped;
+  _observer.stopped(task, outcome);
+}
+
+void Ledger::end(TaskOutcome& outcome) {
+  const Task task = outcome.failed ? _queue.fail(outcome.key) : _queue.finish(outcome.key);
+  if (outcome.failed) _summary.failures.push_back({outcome.key, outcome.reason});
+  add(outcome.children);
+  if (outcome.failed)
+    _observer.failed(task, outcome);
+  else
+    _observer.finished(task, outcome);
+}
+
+void Ledger::tick() {
+  if (!_tick.over()) return;
+  _tick.restart();
+  _observer.tick(_queue.counts());
+}
+
+RunSummary Ledger::numbers() const {
+  RunSummary summary;
+  summary.done = _queue.counts().done;
+  summary.failed = _queue.counts().failed;
+  summary.waiting = _queue.counts().waiting;
+  summary.stopped = _summary.stopped;
+  summary.stopped_early = summary.waiting > 0;
+  summary.flushes = _summary.flushes;
+  summary.rows = _summary.rows;
+  summary.seconds = _since_start.seconds();
+  return summary;
+}
+
+RunSummary Ledger::close() {
+  RunSummary summary = numbers();
+  summary.failures = std::move(_summary.failures);
+  summary.outcomes = std::move(_summary.outcomes);
+  summary.loads = std::move(_summary.loads);
+  const auto by_key = [](const auto& a, const auto& b) { return a.key < b.key; };
+  std::sort(summary.failures.begin(), summary.failures.end(), by_key);
+  std::sort(summary.outcomes.begin(), summary.outcomes.end(), by_key);
+  return summary;
+}
+
+}  // namespace orbweaver::queue

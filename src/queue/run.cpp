@@ -1,0 +1,33 @@
+#include "orbweaver/queue/run.hpp"
+
+#include <utility>
+
+#include "alone.hpp"
+#include "coordinator.hpp"
+#include "orbweaver/core/error.hpp"
+#include "worker.hpp"
+
+namespace orbweaver::queue {
+
+namespace {
+
+void require_valid(const Options& options) {
+  core::require(options.flush_seconds >= 0, "flush_seconds must be 0 or more");
+  core::require(options.flush_rows >= 0, "flush_rows must be 0 or more");
+  core::require(options.progress_seconds >= 0, "progress_seconds must be 0 or more");
+  core::require(options.tick_seconds >= 0, "tick_seconds must be 0 or more");
+  core::require(options.shortest_sleep.count() > 0, "shortest_sleep must be more than 0, or a waiting rank would spin");
+  core::require(options.longest_sleep >= options.shortest_sleep, "longest_sleep must not be less than shortest_sleep");
+}
+
+}  // namespace
+
+RunSummary run(const core::Communicator& comm, const Options& options, std::vector<Task> initial, Executor& executor,
+               Observer& observer, Flusher& flusher) {
+  require_valid(options);
+  if (comm.size() == 1) return Alone(options, executor, observer, flusher).run(std::move(initial));
+  if (comm.is_root()) return Coordinator(comm, options, observer, flusher).run(std::move(initial));
+  return Worker(comm, options, executor, flusher).run();
+}
+
+}  // namespace orbweaver::queue

@@ -1,0 +1,192 @@
+#include "worker.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "backoff.hpp"
+#include "guarded.hpp"
+#include "orbweaver/core/error.hpp"
+#include "overloaded.hpp"
+
+namespace orbweaver::queue {
+
+namespace {
+
+constexpr double most_progress_messages_a_second = 1000.0;
+
+double progress_seconds(const Options& options, int workers) {
+  return std::max(options.progress_seconds, workers / most_progress_messages_a_second);
+}
+
+RunSummary summary_of(const Shutdown& shutdown) {
+  RunSummary summary;
+  summary.done = shutdown.done;
+  summary.failed = shutdown.failed;
+  summary.waiting = shutdown.waiting;
+  summary.stopped = shutdown.stopped;
+  summary.stopped_early = shutdown.stopped_early;
+  summary.flushes = shutdown.flushes;
+  summary.rows = shutdown.rows;
+  summary.seconds = shutdown.seconds;
+  return summary;
+}
+
+}  // namespace
+
+Worker::Worker(const core::Communicator& comm, const Options& options, Executor& executor, Flusher& flusher)
+    : _options(options),
+      _executor(executor),
+      _flusher(flusher),
+      _channel(comm),
+      _progress_interval(progress_seconds(options, comm.size() - 1)) {}
+
+RunSummary Worker::run() {
+  try {
+    work();
+  } catch (...) {
+    _trouble = current_exception_text();
+  }
+  if (!_shutdown) {
+    _channel.send(0, Alarm{_trouble});
+    _shutdown = wait_for_shutdown();
+  }
+  part();
+  if (!_shutdown->error.empty()) throw core::EnvironmentError(_shutdown->error);
+  return summary_of(*_shutdown);
+}
+
+void Worker::work() {
+  _channel.send(0, Hello{});
+  while (!_shutdown && _trouble.empty()) {
+    if (_task)
+      do_task();
+    else
+      take(wait());
+  }
+}
+
+void Worker::do_task() {
+  _executing = true;
+  _told_to_stop = false;
+  _flush_seconds = 0.0;
+  const Stopwatch watch;
+  TaskOutcome outcome = execute_guarded(_executor, *_task, *this);
+  _load.busy_seconds += watch.seconds() - _flush_seconds;
+  ++_load.tasks;
+  outcome.stopped = _told_to_stop;
+  _executing = false;
+  _task.reset();
+  if (!_shutdown && _trouble.empty()) _channel.send(0, Outcome{std::move(outcome), std::exchange(_uncounted_rows, 0)});
+}
+
+bool Worker::report(const Progress& progress) {
+  try {
+    if (!_shutdown && _trouble.empty()) tell(progress);
+    while (!_shutdown && _trouble.empty()) {
+      const auto received = _channel.poll();
+      if (!received) break;
+      take(received->open());
+    }
+  } catch (...) {
+    _trouble = current_exception_text();
+  }
+  if (_stopping || _shutdown || !_trouble.empty()) _told_to_stop = true;
+  return !_told_to_stop;
+}
+
+void Worker::tell(const Progress& progress) {
+  _uncounted_rows += progress.rows;
+  // While rank 0 has not taken the last message, another would only lengthen the line.
+  if (!_progress_interval.over() || _channel.sending()) return;
+  _progress_interval.restart();
+  Progress counted = progress;
+  counted.rows = std::exchange(_uncounted_rows, 0);
+  _channel.send(0, ProgressReport{_task->key, std::move(counted)});
+}
+
+Message Worker::wait() {
+  Backoff backoff(_options);
+  for (;;) {
+    if (const auto received = _channel.poll()) return received->open();
+    if (_channel.sending()) backoff.reset();
+    backoff.wait();
+  }
+}
+
+Shutdown Worker::wait_for_shutdown() {
+  Backoff backoff(_options);
+  for (;;) {
+    const auto received = _channel.poll();
+    if (!received) {
+      if (_channel.sending()) backoff.reset();
+      backoff.wait();
+      continue;
+    }
+    if (!received->is(Shutdown::tag)) continue;
+    try {
+      return std::get<Shutdown>(received->open());
+    } catch (...) {
+      Shutdown unreadable;
+      unreadable.error = _trouble;
+      return unreadable;
+    }
+  }
+}
+
+void Worker::part() {
+  _channel.send(0, Goodbye{_load.tasks, _load.busy_seconds});
+  Backoff backoff(_options);
+  while (_channel.sending()) backoff.wait();
+}
+
+void Worker::take(const Message& message) {
+  std::visit(
+      Overloaded{
+          [&](const Assign& assign) {
+            if (_executing)
+              throw core::EnvironmentError(fmt::format(
+                  "rank 0 assigned task \"{}\" to a rank that was still doing \"{}\"", assign.task.key, _task->key));
+            _task = assign.task;
+          },
+          [&](const FlushRequest& request) { stand_still(request.number); },
+          [&](const Stop&) { _stopping = true; },
+          [&](const Shutdown& shutdown) { _shutdown = shutdown; },
+          [&](const auto& other) {
+            throw core::EnvironmentError(
+                fmt::format("a message \"{}\" came to a worker that did not expect one; the "
+                            "protocol is broken",
+                            tag_name(static_cast<int>(other.tag))));
+          },
+      },
+      message);
+}
+
+void Worker::stand_still(int number) {
+  const Stopwatch watch;
+  _channel.send(0, FlushReady{number, std::exchange(_uncounted_rows, 0)});
+  bool go = false;
+  while (!go && !_shutdown) {
+    const Message message = wait();
+    if (const auto* flush_go = std::get_if<FlushGo>(&message); flush_go != nullptr && flush_go->number == number)
+      go = true;
+    else if (std::holds_alternative<Stop>(message) || std::holds_alternative<Shutdown>(message))
+      take(message);
+    else
+      throw core::EnvironmentError(
+          fmt::format("a message \"{}\" came to a worker that waited to begin flush {}; the protocol is "
+                      "broken",
+                      tag_name(static_cast<int>(tag_of(message))), number));
+  }
+  if (go) flush(number);
+  _flush_seconds += watch.seconds();
+}
+
+void Worker::flush(int number) {
+  const std::string error = flush_guarded(_flusher, number);
+  if (!error.empty()) _stopping = true;
+  _channel.send(0, FlushDone{number, error});
+}
+
+}  // namespace orbweaver::queue

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "channel.hpp"
+#include "interval.hpp"
+#include "orbweaver/queue/run.hpp"
+
+namespace orbweaver::queue {
+
+/// Any rank but 0: waits for tasks, does them, takes part in flushes.
+class Worker final : public TaskContext {
+ public:
+  Worker(const core::Communicator& comm, const Options& options, Executor& executor, Flusher& flusher);
+
+  RunSummary run();
+  [[nodiscard]] bool report(const Progress& progress) override;
+
+ private:
+  void work();
+  void do_task();
+  void tell(const Progress& progress);
+  Message wait();
+  Shutdown wait_for_shutdown();
+  void part();
+  void take(const Message& message);
+  void stand_still(int number);
+  void flush(int number);
+
+  const Options& _options;
+  Executor& _executor;
+  Flusher& _flusher;
+  Channel _channel;
+  Interval _progress_interval;
+  std::optional<Task> _task;
+  bool _executing = false;
+  std::int64_t _uncounted_rows = 0;  // not yet sent to rank 0
+  double _flush_seconds = 0.0;       // inside the running task
+  bool _stopping = false;
+  bool _told_to_stop = false;  // the running task
+  std::string _trouble;        // met inside report(), which must not throw
+  std::optional<Shutdown> _shutdown;
+  RankLoad _load;
+};
+
+}  // namespace orbweaver::queue

@@ -1,0 +1,131 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "sections.hpp"
+#include "suggest.hpp"
+#include "units.hpp"
+
+namespace orbweaver::scene {
+
+namespace {
+
+constexpr double most_grid_points = 1e6;
+constexpr std::string_view grid_example = "[[0, 180], [0, 180]]";
+constexpr std::string_view names_example = "{[0, 180]: [Down-Up]}";
+
+bool is_angle(const systems::Description& system, std::size_t coordinate) {
+  return std::count(system.angles.begin(), system.angles.end(), static_cast<int>(coordinate)) > 0;
+}
+
+bool same_value(double a, double b, bool angle) {
+  return angle ? std::abs(std::remainder(a - b, 2 * std::numbers::pi)) < 1e-9 : a == b;
+}
+
+bool same_point(const systems::Description& system, const std::vector<double>& a, const std::vector<double>& b) {
+  const auto at = [](const std::vector<double>& point, std::size_t i) { return i < point.size() ? point[i] : 0.0; };
+  for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i)
+    if (!same_value(at(a, i), at(b, i), is_angle(system, i))) return false;
+  return true;
+}
+
+double read_value(const Field& field, bool angle) {
+  const double value = field.number({.example = angle ? "180 (degrees)" : "0"});
+  return angle ? radians(value) : value;
+}
+
+void check_size(const Field& field, std::size_t size, const systems::Description& system) {
+  if (size == 0 || size > system.state_names.size())
+    field.fail(fmt::format("1 to {} entries, for the coordinates {} in this order", system.dimension(),
+                           fmt::join(system.state_names, ", ")),
+               fmt::format("{}", size), "leave trailing coordinates out to have them 0");
+}
+
+void read_grid(const Field& field, const systems::Description& system, FixedPoints& points) {
+  const std::vector<Field> coordinates = field.list(grid_example);
+  check_size(field, coordinates.size(), system);
+  double count = 1;
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    std::vector<double> values;
+    for (const Field& item : coordinates[i].list("[0, 180]")) {
+      const double value = read_value(item, is_angle(system, i));
+      const auto same = [&](double other) { return same_value(value, other, is_angle(system, i)); };
+      if (std::any_of(values.begin(), values.end(), same))
+        item.fail("a value that the list does not hold yet", item.got() + " again (angles count modulo 360)",
+                  "remove one");
+      values.push_back(value);
+    }
+    if (values.empty()) coordinates[i].fail("at least one value", "an empty list", "for example [0]");
+    count *= static_cast<double>(values.size());
+    points.grid.push_back(std::move(values));
+  }
+  if (count > most_grid_points)
+    field.fail(fmt::format("at most {} grid points", most_grid_points), fmt::format("{}", count), "thin the lists out");
+}
+
+std::vector<double> read_point(const Field& key, const systems::Description& system) {
+  const std::vector<Field> coordinates = key.list("[0, 180]");
+  check_size(key, coordinates.size(), system);
+  std::vector<double> point;
+  for (const Field& coordinate : coordinates) point.push_back(read_value(coordinate, is_angle(system, point.size())));
+  return point;
+}
+
+void read_names(const Field& field, const systems::Description& system, FixedPoints& points) {
+  std::set<std::string> used;
+  for (const Field::Entry& entry : field.entries(names_example, true)) {
+    FixedPoints::Names named{.point = read_point(entry.key, system), .names = {}};
+    for (const FixedPoints::Names& other : points.names)
+      if (same_point(system, named.point, other.point))
+        entry.key.fail("each fixed point once", "the same point again", "join the two lists of names");
+    for (const Field& item : entry.value.list("[In-Phase, Out-Phase]")) {
+      named.names.push_back(item.text("In-Phase"));
+      if (!used.insert(named.names.back()).second)
+        item.fail("a family name that is not used yet", item.got() + " again", "choose another name");
+    }
+    if (named.names.empty()) entry.value.fail("at least one name", "an empty list", "for example [In-Phase]");
+    points.names.push_back(std::move(named));
+  }
+}
+
+void check_letters(const Field& field, const std::string& letters) {
+  const auto is_letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
+  if (letters.empty() || letters.size() > 4 || !std::all_of(letters.begin(), letters.end(), is_letter))
+    field.fail("1 to 4 letters from A-Z and a-z", field.got(),
+               "for example `I`, so that its branches are IB, ID1, ...");
+}
+
+void read_letters(const Field& field, FixedPoints& points) {
+  std::vector<std::string> families;
+  for (const FixedPoints::Names& named : points.names)
+    families.insert(families.end(), named.names.begin(), named.names.end());
+  std::set<std::string> used;
+  for (const Field::Entry& entry : field.entries("letters: {In-Phase: I}")) {
+    const std::string family = entry.key.path().substr(field.path().size() + 1);
+    if (std::find(families.begin(), families.end(), family) == families.end()) {
+      const std::string near = nearest(family, families);
+      entry.key.fail(
+          families.empty() ? "a family of `names`, which lists none" : "a family of `names`: " + alternatives(families),
+          entry.key.got(), near.empty() ? "name it there first" : fmt::format("did you mean `{}`?", near));
+    }
+    const std::string letters = entry.value.text("I");
+    check_letters(entry.value, letters);
+    if (!used.insert(letters).second)
+      entry.value.fail("letters that no other family has", entry.value.got() + " again", "choose others");
+    points.letters[family] = letters;
+  }
+}
+
+}  // namespace
+
+void read_fixed_points(const Field& field, const systems::Description& system, FixedPoints& points) {
+  const Keys keys(field, {"grid", "names", "letters"}, "fixed_points: {grid: [[0, 180], [0, 180]]}");
+  if (const auto grid = keys.find("grid")) read_grid(*grid, system, points);
+  if (const auto names = keys.find("names")) read_names(*names, system, points);
+  if (const auto letters = keys.find("letters")) read_letters(*letters, points);
+}
+
+}  // namespace orbweaver::scene

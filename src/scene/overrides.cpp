@@ -1,0 +1,61 @@
+#include "overrides.hpp"
+
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "orbweaver/core/error.hpp"
+
+namespace orbweaver::scene {
+
+namespace {
+
+std::vector<std::string> split_path(const Override& change) {
+  std::vector<std::string> keys;
+  std::istringstream stream(change.path);
+  for (std::string key; std::getline(stream, key, '.');) keys.push_back(key);
+  return keys;
+}
+
+YAML::Node with_value(const YAML::Node& node, const std::vector<std::string>& keys, std::size_t depth,
+                      const Override& change) {
+  if (depth == keys.size()) return change.value;
+  if (!node.IsMap() && !node.IsNull()) {
+    throw core::InputError(fmt::format("--set {}: expected a map at `{}`, got {}; set the whole value instead",
+                                       change.words,
+                                       fmt::join(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(depth), "."),
+                                       node.IsSequence() ? "a list" : fmt::format("`{}`", node.Scalar())));
+  }
+  YAML::Node changed(YAML::NodeType::Map);
+  bool found = false;
+  if (node.IsMap()) {
+    changed.SetStyle(node.Style());
+    for (const auto& pair : node) {
+      const bool here = pair.first.IsScalar() && pair.first.Scalar() == keys[depth];
+      changed.force_insert(pair.first, here ? with_value(pair.second, keys, depth + 1, change) : pair.second);
+      found = found || here;
+    }
+  }
+  if (!found) changed.force_insert(keys[depth], with_value(YAML::Node(YAML::NodeType::Null), keys, depth + 1, change));
+  return changed;
+}
+
+}  // namespace
+
+Override parse_override(const std::string& words) {
+  const std::size_t equals = words.find('=');
+  const std::string path = words.substr(0, equals);
+  const bool hollow = path.empty() || path.front() == '.' || path.back() == '.' || path.find("..") != std::string::npos;
+  if (equals == std::string::npos || hollow)
+    throw core::InputError(
+        fmt::format("--set {}: expected KEY=VALUE, got `{}`; for example --set limits.period=30", words, words));
+  return {path, parse_document(words.substr(equals + 1), fmt::format("--set {}", words), false), words};
+}
+
+YAML::Node apply_overrides(const YAML::Node& root, const std::vector<Override>& overrides) {
+  YAML::Node changed = root;
+  for (const Override& change : overrides) changed.reset(with_value(changed, split_path(change), 0, change));
+  return changed;
+}
+
+}  // namespace orbweaver::scene

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <yaml-cpp/yaml.h>
+
+#include "source.hpp"
+
+namespace orbweaver::scene {
+
+/// What a number may be. `example` stands in messages.
+struct NumberRule {
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+  bool lower_open = false;
+  bool infinite = false;  ///< `.inf` and `-.inf` within the bounds are allowed
+  std::string_view example = "1";
+
+  [[nodiscard]] bool admits(double value) const;
+  [[nodiscard]] std::string describe() const;
+};
+
+struct IntegerRule {
+  int lower = 0;
+  int upper = std::numeric_limits<int>::max();
+  std::string_view example = "1";
+
+  [[nodiscard]] std::string describe() const;
+};
+
+/// A node of the scene with its place: the only access to YAML that the readers of keys have. Every function throws
+/// core::InputError with place, path, what was expected, what came and what to do.
+class Field {
+ public:
+  Field(const Source& source, YAML::Node node, std::string path, int line);
+
+  [[nodiscard]] const std::string& path() const noexcept { return _path; }
+  /// The last key of the path.
+  [[nodiscard]] std::string key() const;
+  /// What stands here, for messages.
+  [[nodiscard]] std::string got() const;
+  [[nodiscard]] bool is_list() const { return _node.IsSequence(); }
+
+  [[noreturn]] void fail(const std::string& problem) const;
+  [[noreturn]] void fail(const std::string& expected, const std::string& came, const std::string& advice) const;
+
+  /// Non-empty text of at most 64 characters on one line, without control characters.
+  [[nodiscard]] std::string text(std::string_view example) const;
+  /// One of the words in `known`.
+  [[nodiscard]] std::string choice(const std::vector<std::string>& known) const;
+  [[nodiscard]] double number(const NumberRule& rule) const;
+  [[nodiscard]] int integer(const IntegerRule& rule) const;
+  /// An angle with its unit, in radians, in (0, 90 degrees]; `also` names what else the key takes, for the message.
+  [[nodiscard]] double angle(std::string_view also = "") const;
+  /// A plain scalar as written; none for anything else.
+  [[nodiscard]] std::optional<std::string> plain_scalar() const;
+
+  [[nodiscard]] std::vector<Field> list(std::string_view example) const;
+  /// Two numbers, the first smaller than the second.
+  [[nodiscard]] std::pair<double, double> range(const NumberRule& rule) const;
+  /// Distinct numbers.
+  [[nodiscard]] std::vector<double> numbers(const NumberRule& rule) const;
+
+  struct Entry;
+  /// The pairs of a map in their order; duplicate keys are refused. Keys may be text or, with `complex_keys`, lists.
+  [[nodiscard]] std::vector<Entry> entries(std::string_view example, bool complex_keys = false) const;
+
+ private:
+  [[nodiscard]] std::string example_advice(std::string_view example) const;
+
+  const Source* _source;
+  YAML::Node _node;
+  std::string _path;
+  int _line;
+};
+
+struct Field::Entry {
+  Field key;
+  Field value;
+};
+
+/// A map whose keys are known beforehand.
+class Keys {
+ public:
+  /// Refuses every key of `field` that is not in `known`, naming the nearest.
+  Keys(const Field& field, std::vector<std::string> known, std::string_view example);
+
+  /// The value of `key`, if the scene has it.
+  [[nodiscard]] std::optional<Field> find(std::string_view key) const;
+
+ private:
+  std::vector<Field::Entry> _entries;
+};
+
+}  // namespace orbweaver::scene

@@ -1,0 +1,90 @@
+#include "orbweaver/scene/scene.hpp"
+
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/systems/system.hpp"
+#include "overrides.hpp"
+#include "reader.hpp"
+#include "sections.hpp"
+
+namespace orbweaver::scene {
+
+namespace {
+
+constexpr std::string_view smallest_scene =
+    "{system: {name: double_pendulum}, starts: {fixed_points: {grid: [[0, 180], [0, 180]]}}}";
+
+Field require_key(const Keys& keys, const Field& root, const std::string& key, std::string_view example) {
+  if (const auto field = keys.find(key)) return *field;
+  root.fail(fmt::format("the key `{}`", key), "a scene without it", fmt::format("add for example `{}`", example));
+}
+
+void read_starts(const Field& field, const systems::Description& system, Scene& scene) {
+  const Keys keys(field, {"fixed_points", "sweep"}, "starts: {fixed_points: {grid: [[0, 180], [0, 180]]}}");
+  if (const auto points = keys.find("fixed_points")) read_fixed_points(*points, system, scene.fixed_points);
+  if (const auto sweep = keys.find("sweep")) read_sweep(*sweep, scene.sweep);
+}
+
+Scene read_scene(const Field& root) {
+  const Keys keys(root, {"name", "system", "starts", "continuation", "survey", "limits", "events", "section", "output"},
+                  smallest_scene);
+  Scene scene;
+  read_system(require_key(keys, root, "system", "system: {name: double_pendulum}"), scene.system);
+  const systems::Description& system = systems::describe_system(scene.system.name);
+  scene.name = scene.system.name;
+  if (const auto name = keys.find("name")) scene.name = name->text("double-pendulum");
+  read_starts(require_key(keys, root, "starts", "starts: {fixed_points: {grid: [[0, 180], [0, 180]]}}"), system, scene);
+  if (const auto field = keys.find("continuation")) read_continuation(*field, scene.continuation);
+  if (const auto field = keys.find("survey")) read_survey(*field, scene.survey);
+  if (const auto field = keys.find("limits")) read_limits(*field, scene.limits);
+  if (const auto field = keys.find("events")) read_events(*field, scene.events);
+  if (const auto field = keys.find("section")) read_section(*field, system, scene.section);
+  if (const auto field = keys.find("output")) read_output(*field, scene.output);
+  return scene;
+}
+
+std::string emit(const YAML::Node& root) {
+  YAML::Emitter emitter;
+  emitter << root;
+  return std::string(emitter.c_str()) + "\n";
+}
+
+std::string read_file(const std::filesystem::path& file) {
+  std::error_code ignored;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream || !std::filesystem::is_regular_file(file, ignored))
+    throw core::InputError(fmt::format("{}: expected a scene file that can be read, got {}; check the path",
+                                       file.string(),
+                                       std::filesystem::is_directory(file, ignored) ? "a folder" : "none"));
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+Scene parse(const std::string& text, const std::string& origin, const std::vector<std::string>& overrides) {
+  std::vector<Override> changes;
+  for (const std::string& words : overrides) changes.push_back(parse_override(words));
+  const YAML::Node document = parse_document(text, origin, true);
+  const Source source(origin, std::move(changes));
+  if (!document.IsMap()) {
+    const std::string came = document.IsNull() ? "an empty document" : Field(source, document, "", 1).got();
+    throw core::InputError(
+        fmt::format("{}:1: expected a scene, a map, got {}; for example {}", origin, came, smallest_scene));
+  }
+  const YAML::Node root = apply_overrides(document, source.overrides());
+  Scene scene = read_scene(Field(source, root, "", 1));
+  scene.text = overrides.empty() ? text : emit(root);
+  return scene;
+}
+
+Scene load(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  return parse(read_file(file), file.string(), overrides);
+}
+
+}  // namespace orbweaver::scene

@@ -1,0 +1,96 @@
+#include "sections.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "units.hpp"
+
+namespace orbweaver::scene {
+
+void read_sweep(const Field& field, Sweep& sweep) {
+  const Keys keys(field, {"period", "step"}, "sweep: {period: [1, 12], step: 0.01}");
+  if (const auto period = keys.find("period"))
+    std::tie(sweep.period_from, sweep.period_to) =
+        period->range({.lower = 0, .lower_open = true, .example = "[1, 12]"});
+  const double width = sweep.period_to - sweep.period_from;
+  const auto step = keys.find("step");
+  if (step) sweep.step = step->number({.lower = 0, .lower_open = true, .example = "0.01"});
+  constexpr double most_steps = 1e6;
+  if (sweep.step > width || width / sweep.step > most_steps)
+    step.value_or(field).fail(fmt::format("a step from {:g} to {:g}, the width of the sweep over [{}, {}]",
+                                          width / most_steps, width, sweep.period_from, sweep.period_to),
+                              fmt::format("{:g}", sweep.step), "change the step or the periods");
+}
+
+void read_continuation(const Field& field, Continuation& continuation) {
+  const Keys keys(field, {"step", "start", "tolerance", "cutoff", "corrector"}, "continuation: {step: adaptive}");
+  if (const auto step = keys.find("step"); step && step->plain_scalar() != "adaptive")
+    continuation.fixed_step = step->angle("`adaptive` or ");
+  if (const auto start = keys.find("start")) continuation.start_amplitude = start->angle();
+  if (const auto tolerance = keys.find("tolerance"))
+    continuation.tolerance = tolerance->number({.lower = 1e-14, .upper = 1e-3, .example = "1e-10"});
+  if (const auto cutoff = keys.find("cutoff")) {
+    const std::vector<Field> ends = cutoff->list("[8, 4096]");
+    if (ends.size() != 2) cutoff->fail("a list of two integers, from and to", cutoff->got(), "for example [8, 4096]");
+    continuation.cutoff_from = ends[0].integer({.lower = 1, .upper = 1000000, .example = "8"});
+    continuation.cutoff_to = ends[1].integer({.lower = 1, .upper = 1000000, .example = "4096"});
+    if (continuation.cutoff_from > continuation.cutoff_to)
+      cutoff->fail("from <= to", cutoff->got(), "give the smaller number first");
+  }
+  if (const auto corrector = keys.find("corrector"))
+    continuation.corrector = corrector->choice({"brgn", "nls", "ntr", "lmvm", "rprop", "rprop-extrapolated"});
+}
+
+void read_survey(const Field& field, Survey& survey) {
+  const Keys keys(field, {"depth", "subharmonics", "spectrum", "team_size"}, "survey: {depth: 2, subharmonics: 2}");
+  if (const auto depth = keys.find("depth")) survey.depth = depth->integer({.lower = 0, .upper = 100, .example = "2"});
+  if (const auto most = keys.find("subharmonics"))
+    survey.subharmonics = most->integer({.lower = 1, .upper = 1000, .example = "2"});
+  if (const auto spectrum = keys.find("spectrum"))
+    survey.spectrum = spectrum->choice({"all", "events"}) == "all" ? Spectrum::all : Spectrum::events;
+  if (const auto team = keys.find("team_size"))
+    survey.team_size = team->integer({.lower = 1, .upper = 1000000, .example = "1"});
+}
+
+void read_limits(const Field& field, Limits& limits) {
+  const Keys keys(field, {"period", "energy", "families", "steps"}, "limits: {period: 30}");
+  if (const auto period = keys.find("period"))
+    limits.period = period->number({.lower = 0, .lower_open = true, .infinite = true, .example = "30"});
+  if (const auto energy = keys.find("energy"))
+    std::tie(limits.energy_from, limits.energy_to) = energy->range({.infinite = true, .example = "[-.inf, .inf]"});
+  if (const auto families = keys.find("families")) limits.families = families->integer({.lower = 1, .example = "1000"});
+  if (const auto steps = keys.find("steps")) limits.steps = steps->integer({.lower = 1, .example = "5000"});
+}
+
+void read_events(const Field& field, Events& events) {
+  const Keys keys(field, {"periods", "energies"}, "events: {periods: [10], energies: [0]}");
+  if (const auto periods = keys.find("periods"))
+    events.periods = periods->numbers({.lower = 0, .lower_open = true, .example = "10"});
+  if (const auto energies = keys.find("energies")) events.energies = energies->numbers({.example = "0.5"});
+}
+
+void read_section(const Field& field, const systems::Description& system, Section& section) {
+  const Keys keys(field, {"coordinate", "value"}, "section: {coordinate: w1, value: 0}");
+  const auto coordinate = keys.find("coordinate");
+  if (!coordinate)
+    field.fail("the section's `coordinate`", "a section without it", "name one of the system's coordinates");
+  section.coordinate = coordinate->choice(system.state_names);
+  const auto value = keys.find("value");
+  if (!value) return;
+  section.value = value->number({.example = "0"});
+  const auto place = std::find(system.state_names.begin(), system.state_names.end(), section.coordinate);
+  const auto index = static_cast<int>(place - system.state_names.begin());
+  if (std::count(system.angles.begin(), system.angles.end(), index) > 0) section.value = radians(section.value);
+}
+
+void read_output(const Field& field, Output& output) {
+  const Keys keys(field, {"flush_seconds", "flush_orbits"}, "output: {flush_seconds: 5}");
+  if (const auto seconds = keys.find("flush_seconds"))
+    output.flush_seconds = seconds->number({.lower = 0, .lower_open = true, .example = "5"});
+  if (const auto orbits = keys.find("flush_orbits"))
+    output.flush_orbits = orbits->integer({.lower = 1, .example = "5000"});
+}
+
+}  // namespace orbweaver::scene

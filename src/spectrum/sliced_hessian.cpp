@@ -1,0 +1,54 @@
+#include "orbweaver/spectrum/sliced_hessian.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "orbweaver/core/check.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/loss/dense.hpp"
+#include "orbweaver/loss/matrices.hpp"
+
+namespace orbweaver::spectrum {
+
+SlicedHessian::SlicedHessian(const loss::Linearization& linearization, const loss::Unknowns& unknowns, const loss::Slice& slice)
+    : _slice(slice), _hessian(loss::assemble_hessian(linearization, unknowns, loss::Curvature::gauss_newton)) {
+  const std::vector<double> gradient = linearization.gradient(unknowns);
+  _gradient = loss::ConstVectorMap(gradient.data(), static_cast<Eigen::Index>(gradient.size()));
+  factor(_slice.reduce_symmetric(_hessian));
+}
+
+void SlicedHessian::factor(const core::Handle<Mat>& reduced) {
+  double norm = 0.0;
+  core::check(MatNorm(reduced.get(), NORM_INFINITY, &norm), "MatNorm");
+  for (_shift = 0.0; _shift <= 1e-9 * norm; _shift = std::max(10.0 * _shift, 1e-15 * norm)) {
+    core::check(MatDuplicate(reduced.get(), MAT_COPY_VALUES, _factor.put()), "MatDuplicate");
+    if (_shift > 0.0) core::check(MatShift(_factor.get(), _shift), "MatShift");
+    core::check(MatSetOption(_factor.get(), MAT_SPD, PETSC_TRUE), "MatSetOption");
+    if (MatCholeskyFactor(_factor.get(), nullptr, nullptr) == 0) return;
+  }
+  throw core::NumericalError(
+      fmt::format("the Hessian on the slice cannot be factored even with 1e-9 |H| = {:.1e} added: the loop is not near a "
+                  "regular point of a family",
+                  1e-9 * norm));
+}
+
+Eigen::VectorXd SlicedHessian::solve(const Eigen::VectorXd& right_side) const {
+  const int size = static_cast<int>(right_side.size());
+  const core::Handle<Vec> b = loss::create_vector(size);
+  const core::Handle<Vec> x = loss::create_vector(size);
+  loss::assign(b.get(), right_side);
+  core::check(MatSolve(_factor.get(), b.get(), x.get()), "MatSolve");
+  return loss::to_eigen(x.get());
+}
+
+Eigen::VectorXd SlicedHessian::newton_step() const { return _slice.expand(-solve(_slice.reduce(_gradient))); }
+
+Eigen::VectorXd SlicedHessian::flat_direction(const Eigen::VectorXd& normal) const {
+  Eigen::VectorXd image;
+  loss::with_dense_array(_hessian, [&](loss::DenseMap h) { image = h * normal; });
+  const Eigen::VectorXd direction = normal - _slice.expand(solve(_slice.reduce(image)));
+  return direction.normalized();
+}
+
+}  // namespace orbweaver::spectrum

@@ -1,0 +1,54 @@
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "checks.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/systems/system.hpp"
+#include "registered.hpp"
+
+namespace orbweaver::systems {
+
+struct RegistryLine {
+  const Description& (*describe)();
+  std::shared_ptr<const System> (*make)(const std::map<std::string, double>& parameters);
+};
+
+template <class Model>
+constexpr RegistryLine line{&Registered<Model>::describe, &Registered<Model>::make};
+
+// One line a system; `class` declares the model, which is defined in its own file.
+constexpr std::array registry{
+    line<class DoublePendulum>,
+    line<class HarmonicOscillator>,
+    line<class HenonHeiles>,
+};
+
+namespace {
+
+const RegistryLine& find_line(const std::string& name) {
+  const auto found = std::find_if(registry.begin(), registry.end(),
+                                  [&](const RegistryLine& candidate) { return candidate.describe().name == name; });
+  if (found == registry.end())
+    throw core::InputError(fmt::format("there is no system '{}'; the systems are: {}", name, joined(system_names())));
+  return *found;
+}
+
+}  // namespace
+
+std::vector<std::string> system_names() {
+  std::vector<std::string> names;
+  for (const RegistryLine& candidate : registry) names.push_back(candidate.describe().name);
+  return names;
+}
+
+const Description& describe_system(const std::string& name) { return find_line(name).describe(); }
+
+std::shared_ptr<const System> make_system(const std::string& name, const std::map<std::string, double>& parameters,
+                                          const std::vector<std::string>& effects) {
+  const RegistryLine& found = find_line(name);
+  return found.make(bind_parameters(found.describe(), parameters, effects));
+}
+
+}  // namespace orbweaver::systems

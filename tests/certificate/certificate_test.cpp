@@ -1,0 +1,126 @@
+#include "orbweaver/certificate/certificate.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "certificate/decay.hpp"
+#include "orbweaver/core/error.hpp"
+
+namespace orbweaver::certificate {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+constexpr double pi = std::numbers::pi;
+constexpr double omega = 1.7;
+
+std::shared_ptr<const systems::System> oscillator() {
+  return systems::make_system("harmonic_oscillator", {{"omega", omega}});
+}
+
+/// q = cos s, p = -omega sin s: an orbit when `period` is 2 pi / omega.
+loop::Loop oscillation(double period) {
+  const std::vector<double> origin{0.0, 0.0};
+  loop::Loop loop = loop::constant_loop(origin, period, 3);
+  loop.cosine(1, 0) = 1.0;
+  loop.sine(1, 1) = -omega;
+  return loop;
+}
+
+/// The exact flow of the oscillator, from q = cos(phase), p = -omega sin(phase).
+double distance_to_flow(double phase, double time, double next_phase) {
+  return std::hypot(std::cos(phase + omega * time) - std::cos(next_phase),
+                    omega * (std::sin(phase + omega * time) - std::sin(next_phase)));
+}
+
+TEST(Certificate, AcceptsAnExactOrbit) {
+  const Certificate certificate = certify(*oscillator(), oscillation(2.0 * pi / omega));
+  EXPECT_LT(certificate.closure, 5e-14);
+  EXPECT_LT(certificate.single_shot, 1e-12);
+  EXPECT_LT(certificate.energy_drift, 5e-15);
+}
+
+TEST(Certificate, MeasuresHowFarALoopIsFromAnOrbit) {
+  constexpr double period = 2.0 * pi / omega * 1.01;
+  constexpr int segments = 8;
+  const Certificate certificate = certify(*oscillator(), oscillation(period), {.segments = segments});
+  double expected = 0.0;
+  for (int m = 0; m < segments; ++m)
+    expected =
+        std::max(expected, distance_to_flow(2.0 * pi * m / segments, period / segments, 2.0 * pi * (m + 1) / segments));
+  EXPECT_NEAR(certificate.closure, expected, 1e-12);
+  EXPECT_NEAR(certificate.single_shot, distance_to_flow(0.0, period, 0.0), 1e-12);
+  EXPECT_GT(certificate.single_shot, 0.05);
+}
+
+TEST(Certificate, SeesAnErrorAnywhereOnTheLoop) {
+  // A ripple that vanishes at t = 0, T / 4, T / 2 and 3 T / 4 stays unseen with four segments, not with sixteen.
+  loop::Loop loop = oscillation(2.0 * pi / omega);
+  loop = loop::with_cutoff(loop, 4);
+  loop.sine(4, 0) = 1e-6;
+  EXPECT_LT(certify(*oscillator(), loop, {.segments = 4}).closure, 1e-12);
+  const double carried_on = 1e-6 * std::hypot(std::cos(pi / 8.0), omega * std::sin(pi / 8.0));
+  EXPECT_NEAR(certify(*oscillator(), loop, {.segments = 16}).closure, carried_on, 1e-12);
+}
+
+TEST(Certificate, OneSegmentIsASingleShot) {
+  const Certificate certificate = certify(*oscillator(), oscillation(3.0), {.segments = 1});
+  EXPECT_EQ(certificate.closure, certificate.single_shot);
+}
+
+TEST(Certificate, MeasuresEnergyAlongTheLoop) {
+  loop::Loop loop = oscillation(2.0 * pi / omega);
+  loop.sine(1, 1) *= 1.001;
+  const double expected = 0.5 * omega * omega * (1.001 * 1.001 - 1.0);
+  EXPECT_NEAR(certify(*oscillator(), loop, {.segments = 8}).energy_drift, expected, 1e-15);
+}
+
+TEST(Certificate, AnglesMayTurnOver) {
+  // Without gravity the stretched pendulum rotates uniformly: th1 = th2 = 3 t.
+  const auto system = systems::make_system("double_pendulum", {{"m1", 1.3}, {"l2", 0.6}, {"g", 1e-30}});
+  const std::vector<double> start{0.4, 0.4, 3.0, 3.0};
+  for (const double turns : {1.0, 2.0}) {
+    loop::Loop loop = loop::constant_loop(start, turns * 2.0 * pi / 3.0, 2);
+    loop.winding = {turns, turns, 0.0, 0.0};
+    const Certificate certificate = certify(*system, loop);
+    EXPECT_LT(certificate.closure, 5e-14);
+    EXPECT_LT(certificate.single_shot, 5e-12);
+    EXPECT_LT(certificate.energy_drift, 1e-13);
+    loop.winding = {0.0, 0.0, 0.0, 0.0};
+    EXPECT_NEAR(certify(*system, loop).single_shot, turns * 2.0 * pi * std::numbers::sqrt2, 1e-10);
+  }
+}
+
+TEST(Certificate, SystemsWithoutEnergyHaveNoDrift) {
+  const std::vector<double> rest{0.0};
+  const Certificate certificate = certify(Decay(1.0), loop::constant_loop(rest, 2.0, 1));
+  EXPECT_EQ(certificate.closure, 0.0);
+  EXPECT_TRUE(std::isnan(certificate.energy_drift));
+}
+
+TEST(Certificate, FailureNamesTheSegmentAndTheTime) {
+  const std::vector<double> mean{1.0};
+  loop::Loop loop = loop::constant_loop(mean, 4.0, 1);
+  loop.cosine(1, 0) = 0.5;  // z = 1.5, 1, 0.5, 1 at the quarters
+  EXPECT_THAT(([&] { (void)certify(Decay(0.1, 0.49), loop, {.segments = 4}); }),
+              ThrowsMessage<core::NumericalError>(AllOf(HasSubstr("segment 3 of 4"), HasSubstr("period 4 (from t = 2)"),
+                                                        HasSubstr("stopped at t = 0.2"))));
+}
+
+TEST(Certificate, MisuseIsRefused) {
+  EXPECT_THAT(([] { (void)certify(Decay(1.0), oscillation(1.0)); }),
+              ThrowsMessage<core::MisuseError>(HasSubstr("same dimension")));
+  EXPECT_THAT(([] { (void)certify(*oscillator(), oscillation(1.0), {.segments = 0}); }),
+              ThrowsMessage<core::MisuseError>(HasSubstr("at least one segment")));
+  loop::Loop broken = oscillation(1.0);
+  broken.cosine(1, 0) = std::nan("");
+  EXPECT_THAT(([&] { (void)certify(*oscillator(), broken); }), ThrowsMessage<core::MisuseError>(HasSubstr("finite")));
+}
+
+}  // namespace
+}  // namespace orbweaver::certificate

@@ -1,0 +1,41 @@
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "orbweaver/scene/scene.hpp"
+
+namespace {
+
+namespace scene = orbweaver::scene;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+std::vector<std::string> sentences(const std::vector<std::string>& overrides) {
+  return not_built_yet(scene::parse("system: {name: double_pendulum}\nstarts: {}\n", "text", overrides));
+}
+
+TEST(NotBuiltYet, SaysNothingAboutBaseFamilies) {
+  EXPECT_THAT(sentences({}), IsEmpty());
+  EXPECT_THAT(sentences({"limits.period=60", "continuation.step=0.5deg", "survey.subharmonics=1"}), IsEmpty());
+}
+
+TEST(NotBuiltYet, SaysOneSentenceForEachThingAsked) {
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"survey.depth=1", "survey.depth = 1:"},         {"survey.subharmonics=2", "survey.subharmonics = 2:"},
+      {"survey.team_size=2", "survey.team_size = 2:"}, {"events.periods=[10]", "events.periods:"},
+      {"events.energies=[0]", "events.energies:"},     {"section={coordinate: w1}", "section:"}};
+  std::vector<std::string> all;
+  for (const auto& [change, beginning] : cases) {
+    const std::vector<std::string> said = sentences({change});
+    ASSERT_THAT(said, SizeIs(1)) << change;
+    EXPECT_EQ(said[0].find(beginning), 0U) << said[0];
+    EXPECT_THAT(said[0], HasSubstr("yet"));
+    all.push_back(change);
+  }
+  EXPECT_THAT(sentences(all), SizeIs(cases.size()));
+}
+
+}  // namespace

@@ -1,0 +1,31 @@
+# Runs check_includes.cmake on every tree in FIXTURES: each must print what its expected.txt says, and all but `clean`
+# must fail. A check that lets a fault through shows here.
+#   cmake -DFIXTURES=<folder> -DLAYERS=core,ad,... -P check_fixtures.cmake
+cmake_minimum_required(VERSION 3.25)
+file(GLOB trees LIST_DIRECTORIES TRUE "${FIXTURES}/*")
+set(wrong 0)
+foreach(tree IN LISTS trees)
+  get_filename_component(name "${tree}" NAME)
+  file(READ "${tree}/expected.txt" expected)
+  string(STRIP "${expected}" expected)
+  execute_process(
+    COMMAND "${CMAKE_COMMAND}" "-DROOT=${tree}" "-DLAYERS=${LAYERS}" -P "${CMAKE_CURRENT_LIST_DIR}/check_includes.cmake"
+    RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  string(FIND "${output}" "${expected}" position)
+  if(name STREQUAL "clean" AND NOT status EQUAL 0)
+    set(verdict "was refused")
+  elseif(NOT name STREQUAL "clean" AND status EQUAL 0)
+    set(verdict "was let through")
+  elseif(position EQUAL -1)
+    set(verdict "did not print '${expected}'")
+  else()
+    message(NOTICE "${name}: as expected")
+    continue()
+  endif()
+  math(EXPR wrong "${wrong} + 1")
+  message(NOTICE "${name} ${verdict}:\n${output}")
+endforeach()
+list(LENGTH trees count)
+if(count EQUAL 0 OR wrong GREATER 0)
+  message(FATAL_ERROR "${wrong} of ${count} trees went wrong")
+endif()

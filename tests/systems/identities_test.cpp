@@ -1,0 +1,202 @@
+// What must hold for every registered system, at random states and parameters. A new system is tested here without a
+// new line.
+#include <cmath>
+#include <complex>
+
+#include <gtest/gtest.h>
+#include <Eigen/Dense>
+
+#include "complex_system.hpp"
+#include "systems/samples.hpp"
+
+namespace orbweaver::systems {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr int samples = 25;
+
+class Identities : public testing::TestWithParam<std::string> {
+ protected:
+  std::mt19937 generator{2024};
+  const Description& description = describe_system(GetParam());
+  const std::size_t dimension = static_cast<std::size_t>(description.dimension());
+
+  std::shared_ptr<const System> random_system() {
+    return make_system(GetParam(), random_parameters(description, generator));
+  }
+  std::vector<double> random_state() { return random_numbers(dimension, generator); }
+
+  static Eigen::VectorXd field(const System& system, const Eigen::VectorXd& z) {
+    Eigen::VectorXd f(z.size());
+    system.field(1, z.data(), f.data());
+    return f;
+  }
+
+  static Eigen::VectorXd vector(const std::vector<double>& values) {
+    return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  }
+
+  std::vector<double> jacobian(const System& system, const std::vector<double>& z) const {
+    std::vector<double> f(dimension);
+    std::vector<double> entries(dimension * dimension);
+    system.field_jacobian(1, z.data(), f.data(), entries.data());
+    return entries;
+  }
+};
+
+double largest(const std::vector<double>& values) {
+  double result = 0.0;
+  for (const double value : values) result = std::max(result, std::abs(value));
+  return result;
+}
+
+TEST_P(Identities, JacobianAgreesWithComplexStep) {
+  constexpr double h = 1e-200;
+  for (int sample = 0; sample < samples; ++sample) {
+    const auto system = random_system();
+    const auto& complex_system = dynamic_cast<const ComplexSystem&>(*system);
+    const auto z = random_state();
+    const auto entries = jacobian(*system, z);
+    for (std::size_t l = 0; l < dimension; ++l) {
+      std::vector<Complex> shifted(z.begin(), z.end());
+      std::vector<Complex> f(dimension);
+      shifted[l] += Complex(0.0, h);
+      complex_system.complex_field(shifted.data(), f.data());
+      for (std::size_t i = 0; i < dimension; ++i)
+        EXPECT_NEAR(entries[i * dimension + l], f[i].imag() / h, 1e-13 * (1.0 + largest(entries)));
+    }
+  }
+}
+
+TEST_P(Identities, SecondDerivativesAreDerivativesOfTheJacobian) {
+  // Central differences of order eight.
+  constexpr double h = 0.003;
+  constexpr std::array<double, 4> stencil{4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0};
+  for (int sample = 0; sample < samples; ++sample) {
+    const auto system = random_system();
+    const auto z = random_state();
+    const auto weights = random_state();
+    std::vector<double> contracted(dimension * dimension);
+    system->second_derivatives(1, z.data(), weights.data(), contracted.data());
+    for (std::size_t m = 0; m < dimension; ++m) {
+      std::vector<double> column(dimension, 0.0);
+      for (std::size_t k = 0; k < stencil.size(); ++k) {
+        auto above = z;
+        auto below = z;
+        above[m] += h * static_cast<double>(k + 1);
+        below[m] -= h * static_cast<double>(k + 1);
+        const auto upper = jacobian(*system, above);
+        const auto lower = jacobian(*system, below);
+        for (std::size_t i = 0; i < dimension; ++i)
+          for (std::size_t l = 0; l < dimension; ++l)
+            column[l] += weights[i] * stencil[k] * (upper[i * dimension + l] - lower[i * dimension + l]) / h;
+      }
+      for (std::size_t l = 0; l < dimension; ++l) {
+        EXPECT_NEAR(contracted[l * dimension + m], column[l], 1e-10 * (1.0 + largest(contracted)));
+        EXPECT_EQ(contracted[l * dimension + m], contracted[m * dimension + l]);
+      }
+    }
+  }
+}
+
+TEST_P(Identities, EnergyGradientAgreesWithComplexStep) {
+  constexpr double h = 1e-200;
+  for (int sample = 0; sample < samples; ++sample) {
+    const auto system = random_system();
+    const auto& complex_system = dynamic_cast<const ComplexSystem&>(*system);
+    const auto z = random_state();
+    std::vector<double> gradient(dimension);
+    system->energy_gradient(z, gradient);
+    for (std::size_t l = 0; l < dimension; ++l) {
+      std::vector<Complex> shifted(z.begin(), z.end());
+      shifted[l] += Complex(0.0, h);
+      const Complex energy = complex_system.complex_energy(shifted.data());
+      EXPECT_NEAR(gradient[l], energy.imag() / h, 1e-13 * (1.0 + largest(gradient)));
+      EXPECT_NEAR(system->energy(z), energy.real(), 1e-13 * (1.0 + std::abs(energy.real())));
+    }
+  }
+}
+
+TEST_P(Identities, ConservativeFieldsKeepTheirEnergy) {
+  ASSERT_TRUE(description.conservative) << "the registry has no other systems yet: say here what holds for the new one";
+  for (int sample = 0; sample < samples; ++sample) {
+    const auto system = random_system();
+    const auto z = random_state();
+    std::vector<double> gradient(dimension);
+    system->energy_gradient(z, gradient);
+    const Eigen::VectorXd f = field(*system, vector(z));
+    EXPECT_NEAR(vector(gradient).dot(f), 0.0, 1e-14 * vector(gradient).norm() * f.norm());
+  }
+}
+
+TEST_P(Identities, EquivariancesCarryTheFieldAlong) {
+  for (int sample = 0; sample < samples; ++sample) {
+    const auto system = random_system();
+    const Eigen::VectorXd z = vector(random_state());
+    const Eigen::VectorXd f = field(*system, z);
+    for (const Symmetry& s : description.equivariances)
+      EXPECT_LT((field(*system, s.matrix * z) - s.matrix * f).norm(), 1e-14 * (1.0 + f.norm())) << s.name;
+  }
+}
+
+TEST_P(Identities, ReversorsTurnTheFieldBack) {
+  for (int sample = 0; sample < samples; ++sample) {
+    const auto system = random_system();
+    const Eigen::VectorXd z = vector(random_state());
+    const Eigen::VectorXd f = field(*system, z);
+    for (const Symmetry& r : description.reversors)
+      EXPECT_LT((field(*system, r.matrix * z) + r.matrix * f).norm(), 1e-14 * (1.0 + f.norm())) << r.name;
+  }
+}
+
+TEST_P(Identities, ActionDensityIsTwiceTheKineticEnergy) {
+  for (int sample = 0; sample < samples; ++sample) {
+    const auto system = random_system();
+    const auto z = random_state();
+    auto at_rest = z;
+    for (std::size_t i = dimension / 2; i < dimension; ++i) at_rest[i] = 0.0;
+    const double kinetic = system->energy(z) - system->energy(at_rest);
+    EXPECT_NEAR(system->action_density(z), 2.0 * kinetic, 1e-13 * (1.0 + std::abs(system->energy(at_rest)) + kinetic));
+  }
+}
+
+TEST_P(Identities, NodalArraysAreComponentMajor) {
+  constexpr std::size_t nodes = 5;
+  const auto system = random_system();
+  const auto z = random_numbers(dimension * nodes, generator);
+  const auto weights = random_numbers(dimension * nodes, generator);
+  std::vector<double> f(dimension * nodes);
+  std::vector<double> g(dimension * nodes);
+  std::vector<double> entries(dimension * dimension * nodes);
+  std::vector<double> contracted(dimension * dimension * nodes);
+  system->field(nodes, z.data(), f.data());
+  system->field_jacobian(nodes, z.data(), g.data(), entries.data());
+  system->second_derivatives(nodes, z.data(), weights.data(), contracted.data());
+  for (std::size_t j = 0; j < nodes; ++j) {
+    std::vector<double> state(dimension);
+    std::vector<double> weight(dimension);
+    for (std::size_t i = 0; i < dimension; ++i) {
+      state[i] = z[i * nodes + j];
+      weight[i] = weights[i * nodes + j];
+    }
+    const Eigen::VectorXd one = field(*system, vector(state));
+    const auto one_jacobian = jacobian(*system, state);
+    std::vector<double> one_contracted(dimension * dimension);
+    system->second_derivatives(1, state.data(), weight.data(), one_contracted.data());
+    for (std::size_t i = 0; i < dimension; ++i) {
+      EXPECT_EQ(f[i * nodes + j], one[static_cast<Eigen::Index>(i)]);
+      EXPECT_NEAR(g[i * nodes + j], f[i * nodes + j], 1e-14 * (1.0 + one.norm()));
+    }
+    for (std::size_t entry = 0; entry < dimension * dimension; ++entry) {
+      EXPECT_EQ(entries[entry * nodes + j], one_jacobian[entry]);
+      EXPECT_EQ(contracted[entry * nodes + j], one_contracted[entry]);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(AllSystems, Identities, testing::ValuesIn(system_names()),
+                         [](const testing::TestParamInfo<std::string>& test) { return test.param; });
+
+}  // namespace
+}  // namespace orbweaver::systems
