@@ -25,5 +25,7 @@ struct Command {
 // option values live in a shared_ptr that `run` captures.
 Command make_check_command(CLI::App& program);
 Command make_show_command(CLI::App& program);
+Command make_survey_command(CLI::App& program);
+Command make_sweep_command(CLI::App& program);
 
 }  // namespace orbweaver::drivers

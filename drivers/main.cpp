@@ -21,6 +21,8 @@ std::vector<Command> add_commands(CLI::App& program) {
   return {
       make_check_command(program),
       make_show_command(program),
+      make_survey_command(program),
+      make_sweep_command(program),
   };
 }
 

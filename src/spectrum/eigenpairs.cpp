@@ -1,7 +1,6 @@
 #include "orbweaver/spectrum/eigenpairs.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 #include <slepceps.h>
@@ -45,11 +44,12 @@ Eigenpairs smallest_eigenpairs(const core::Handle<Mat>& matrix, const EigenOptio
   core::check(EPSSetProblemType(eps.get(), EPS_HEP), "EPSSetProblemType");
   core::check(EPSSetDimensions(eps.get(), options.count, PETSC_DEFAULT, PETSC_DEFAULT), "EPSSetDimensions");
   core::check(EPSSetTolerances(eps.get(), options.tolerance, PETSC_DEFAULT), "EPSSetTolerances");
-  if (size <= options.lapack_below) {
+  if (size <= options.lapack_below || norm == 0.0) {
     core::check(EPSSetType(eps.get(), EPSLAPACK), "EPSSetType");
     core::check(EPSSetWhichEigenpairs(eps.get(), EPS_SMALLEST_REAL), "EPSSetWhichEigenpairs");
   } else {
-    shift_and_invert(eps.get(), -16.0 * std::numeric_limits<double>::epsilon() * std::max(norm, 1e-300));
+    // Closer to a singular H, rounding of size eps / shift in the solves drowns all but the smallest pairs.
+    shift_and_invert(eps.get(), -1e-8 * norm);
     const core::Handle<Vec> start = start_vector(static_cast<int>(size));
     Vec raw = start.get();
     core::check(EPSSetInitialSpace(eps.get(), 1, &raw), "EPSSetInitialSpace");

@@ -1,0 +1,73 @@
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "command.hpp"
+#include "common_options.hpp"
+#include "failure.hpp"
+#include "orbweaver/core/communicator.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/core/session.hpp"
+#include "orbweaver/survey/standing.hpp"
+#include "orbweaver/survey/survey.hpp"
+
+namespace orbweaver::drivers {
+
+namespace {
+
+struct Options {
+  SceneOptions scene;
+  LogOptions log;
+  std::filesystem::path directory;
+  bool resume = false;
+};
+
+survey::Display display_for(const LogOptions& log) {
+  if (log.quiet) return survey::Display::none;
+  return isatty(STDERR_FILENO) != 0 ? survey::Display::live : survey::Display::lines;
+}
+
+core::ExitStatus status_of(const survey::Summary& summary) {
+  if (summary.stopped_early) return core::ExitStatus::stopped_early;
+  return summary.failures > 0 ? core::ExitStatus::goal_missed : core::ExitStatus::done;
+}
+
+int run(const Options& options, const Invocation& invocation) {
+  const core::Session session(invocation.petsc_options);
+  const core::Communicator comm;
+  core::start_logging(options.log.level(), comm.rank(), comm.size());
+  return run_on_ranks(comm, [&] {
+    scene::Scene scene;
+    survey::Standing standing = survey::Standing::none;
+    agree(comm, [&] {
+      scene = options.scene.load();
+      standing = survey::standing_of(options.directory, scene);
+      survey::require_startable(standing, options.directory, options.resume);
+    });
+    if (standing == survey::Standing::finished) {
+      if (comm.is_root()) fmt::print("{} holds this survey, finished: nothing to do\n", options.directory.string());
+      return 0;
+    }
+    if (comm.is_root())
+      for (const std::string& sentence : scene::not_built_yet(scene)) core::log_warning(fmt::format("not built yet: {}", sentence));
+    const survey::Summary summary = survey::run_survey(comm, scene, options.directory, display_for(options.log));
+    if (comm.is_root()) fmt::print("{}", survey::to_text(summary));
+    return static_cast<int>(status_of(summary));
+  });
+}
+
+}  // namespace
+
+Command make_survey_command(CLI::App& program) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* parser = program.add_subcommand("survey", "Find, follow and archive the families of a scene (under mpirun or alone)");
+  add_scene_options(*parser, options->scene);
+  parser->add_option("-o,--output", options->directory, "Folder for the archive, atlas.h5")->required();
+  parser->add_flag("--resume", options->resume, "Accept a folder that already holds this survey");
+  add_log_options(*parser, options->log);
+  return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
+}
+
+}  // namespace orbweaver::drivers

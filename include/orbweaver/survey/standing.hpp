@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+
+#include "orbweaver/scene/scene.hpp"
+
+namespace orbweaver::survey {
+
+/// What a folder holds of a survey.
+enum class Standing {
+  none,        ///< nothing: absent, empty, or no survey in it
+  unfinished,  ///< segments of a survey that did not reach its archive
+  finished,    ///< an archive of this very scene
+};
+
+/// Looks into `directory`. Throws InputError if an archive there is unreadable or of another scene. Not collective.
+[[nodiscard]] Standing standing_of(const std::filesystem::path& directory, const scene::Scene& scene);
+
+/// Throws InputError where a survey may not begin: a folder with a survey needs `resume`. An unfinished one is begun
+/// anew, since checkpoints are not written yet.
+void require_startable(Standing standing, const std::filesystem::path& directory, bool resume);
+
+}  // namespace orbweaver::survey

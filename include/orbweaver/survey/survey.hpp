@@ -1,0 +1,52 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "orbweaver/core/communicator.hpp"
+#include "orbweaver/scene/scene.hpp"
+
+namespace orbweaver::survey {
+
+/// One family as the summary shows it.
+struct FamilySummary {
+  std::string key;
+  std::string name;
+  std::string isotropy;
+  int orbits = 0;
+  double period_from = 0.0;
+  double period_to = 0.0;
+  double energy_from = 0.0;
+  double energy_to = 0.0;
+  std::string end_reason;
+  bool failed = false;
+};
+
+/// What a survey came to; complete on rank 0, `failures` and `stopped_early` on all ranks.
+struct Summary {
+  std::vector<FamilySummary> families;      ///< in order of their keys
+  std::vector<std::string> remarks;         ///< equilibria without oscillations, rejected dips, limits that cut
+  std::vector<std::string> failed_tasks;    ///< key and reason
+  std::size_t failures = 0;
+  bool stopped_early = false;
+  long orbits = 0;
+  double seconds = 0.0;
+  std::vector<double> peak_memory_mib;      ///< one a rank
+  std::filesystem::path atlas;
+};
+
+/// How the survey talks while it runs.
+enum class Display { none, lines, live };
+
+/// Surveys a scene into `directory`/atlas.h5: equilibria, sweeps, then every family found, as tasks of the queue
+/// (docs/architecture.md). Collective over `comm`; works with any number of ranks, and the datasets of the archive have
+/// the same bytes for all of them. Failed tasks are recorded and do not stop the others.
+/// Throws InputError or EnvironmentError, on all ranks alike, if the scene cannot be begun or a flush fails.
+[[nodiscard]] Summary run_survey(const core::Communicator& comm, const scene::Scene& scene, const std::filesystem::path& directory,
+                                 Display display);
+
+/// The summary as a table for people.
+[[nodiscard]] std::string to_text(const Summary& summary);
+
+}  // namespace orbweaver::survey

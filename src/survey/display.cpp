@@ -1,0 +1,81 @@
+#include "display.hpp"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "orbweaver/survey/work.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr auto time_between_lines = std::chrono::seconds(2);
+
+std::string line_of(const FamilyState& f) {
+  const double seconds = std::chrono::duration<double>(f.changed - f.began).count();
+  const std::string rate = seconds > 0.0 ? fmt::format("{:7.1f} orbits/s", static_cast<double>(f.orbits) / seconds) : "";
+  return fmt::format("{:<14} {:>6} orbits  T = {:9.5f}  E = {:12.8f}  K = {:<5} {:>16}  {}", f.name, f.orbits, f.period, f.energy, f.cutoff,
+                     rate, f.running ? "" : f.end);
+}
+
+}  // namespace
+
+void ProgressDisplay::started(const queue::Task& task, int) {
+  if (task.kind != branch_kind) return;
+  _families[task.key].name = unpack_branch_work(task.payload).name;
+}
+
+void ProgressDisplay::progress(const queue::Task& task, const queue::Progress& progress, int) {
+  if (task.kind != branch_kind || progress.values.size() < 3) return;
+  FamilyState& f = _families[task.key];
+  f.orbits = progress.step;
+  f.period = progress.values[0];
+  f.energy = progress.values[1];
+  f.cutoff = static_cast<int>(progress.values[2]);
+  f.changed = Clock::now();
+}
+
+void ProgressDisplay::ended(const queue::Task& task, const queue::TaskOutcome& outcome) {
+  if (task.kind != branch_kind) return;
+  FamilyState& f = _families[task.key];
+  f.running = false;
+  f.changed = Clock::now();
+  f.end = outcome.reason;
+  if (!outcome.payload.empty()) {
+    const BranchOutcome branch = unpack_branch_outcome(outcome.payload);
+    f.orbits = branch.orbits;
+    f.end = branch.end_reason;
+  }
+  if (_style == Display::lines) print_line(f);
+  if (_style == Display::live) redraw();
+}
+
+void ProgressDisplay::finished(const queue::Task& task, const queue::TaskOutcome& outcome) { ended(task, outcome); }
+void ProgressDisplay::failed(const queue::Task& task, const queue::TaskOutcome& outcome) { ended(task, outcome); }
+
+void ProgressDisplay::tick(const queue::TaskCounts&) {
+  if (_style == Display::none) return;
+  if (_style == Display::live) {
+    redraw();
+    return;
+  }
+  if (Clock::now() - _last < time_between_lines) return;
+  _last = Clock::now();
+  for (const auto& [key, family] : _families)
+    if (family.running && family.orbits > 0) print_line(family);
+}
+
+void ProgressDisplay::print_line(const FamilyState& family) { fmt::print(stderr, "{}\n", line_of(family)); }
+
+void ProgressDisplay::redraw() {
+  std::string text;
+  if (_drawn > 0) text = fmt::format("\x1b[{}A", _drawn);
+  for (const auto& [key, family] : _families) text += fmt::format("\x1b[2K{}\n", line_of(family));
+  _drawn = static_cast<int>(_families.size());
+  fmt::print(stderr, "{}", text);
+  std::fflush(stderr);
+}
+
+}  // namespace orbweaver::survey

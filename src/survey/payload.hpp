@@ -1,0 +1,52 @@
+#pragma once
+
+#include <sstream>
+#include <string>
+
+#include <boost/archive/archive_exception.hpp>
+#include <boost/archive/binary_iarchive.hpp>
+#include <boost/archive/binary_oarchive.hpp>
+#include <boost/serialization/string.hpp>
+#include <boost/serialization/vector.hpp>
+#include <fmt/format.h>
+
+#include "orbweaver/core/error.hpp"
+
+namespace orbweaver::survey {
+
+/// Version of everything that travels in task and outcome payloads; ranks of one job share it, files will name it.
+inline constexpr int payload_version = 1;
+
+/// `value` as bytes: a name, the version, and its members.
+template <class T>
+[[nodiscard]] std::string to_payload(const T& value) {
+  std::ostringstream stream;
+  {
+    boost::archive::binary_oarchive archive(stream);
+    const std::string name = T::payload_name;
+    archive << name << payload_version << value;
+  }
+  return stream.str();
+}
+
+/// The value in `bytes`. Throws EnvironmentError unless they hold a T of this version, whole.
+template <class T>
+[[nodiscard]] T from_payload(const std::string& bytes) {
+  try {
+    std::istringstream stream(bytes);
+    boost::archive::binary_iarchive archive(stream);
+    std::string name;
+    int version = 0;
+    archive >> name >> version;
+    if (name != T::payload_name || version != payload_version)
+      throw core::EnvironmentError(fmt::format("expected a {} of version {}, got a {} of version {}: all ranks must run the same "
+                                               "build of Orbweaver", T::payload_name, payload_version, name, version));
+    T value;
+    archive >> value;
+    return value;
+  } catch (const boost::archive::archive_exception& error) {
+    throw core::EnvironmentError(fmt::format("a {} of {} bytes cannot be read: {}", T::payload_name, bytes.size(), error.what()));
+  }
+}
+
+}  // namespace orbweaver::survey

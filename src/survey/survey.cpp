@@ -1,0 +1,204 @@
+#include "orbweaver/survey/survey.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include "display.hpp"
+#include "executor.hpp"
+#include "naming.hpp"
+#include "orbweaver/archive/consolidate.hpp"
+#include "orbweaver/continuation/fixed_points.hpp"
+#include "orbweaver/core/check.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/queue/run.hpp"
+#include "orbweaver/survey/version.hpp"
+#include "segment_flusher.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Passes everything on to the display and keeps the outcomes that the summary and the archive need.
+class Recorder : public queue::Observer {
+ public:
+  explicit Recorder(queue::Observer& display) : _display(display) {}
+
+  void started(const queue::Task& task, int rank) override { _display.started(task, rank); }
+  void progress(const queue::Task& task, const queue::Progress& p, int rank) override { _display.progress(task, p, rank); }
+  void finished(const queue::Task& task, const queue::TaskOutcome& outcome) override {
+    _ended.insert_or_assign(task.key, std::pair(task, outcome));
+    _display.finished(task, outcome);
+  }
+  void failed(const queue::Task& task, const queue::TaskOutcome& outcome) override {
+    _ended.insert_or_assign(task.key, std::pair(task, outcome));
+    _display.failed(task, outcome);
+  }
+  void tick(const queue::TaskCounts& counts) override { _display.tick(counts); }
+
+  /// Tasks with their outcomes in order of keys.
+  [[nodiscard]] const std::map<std::string, std::pair<queue::Task, queue::TaskOutcome>>& ended() const { return _ended; }
+
+ private:
+  queue::Observer& _display;
+  std::map<std::string, std::pair<queue::Task, queue::TaskOutcome>> _ended;
+};
+
+double peak_memory_mib() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+archive::Header header_of(const scene::Scene& scene, const systems::Description& system) {
+  archive::Header header;
+  header.orbweaver_version = version();
+  header.scene = scene.text;
+  header.state_names = system.state_names;
+  header.winding_names = system.winding_names;
+  header.pairs = system.pairs();
+  header.symplectic = system.symplectic;
+  return header;
+}
+
+std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::System& system, Summary& summary) {
+  std::vector<queue::Task> tasks;
+  for (const std::vector<double>& point : continuation::find_fixed_points(system, scene.fixed_points.grid))
+    tasks.push_back(task_of(SweepWork{static_cast<int>(tasks.size()), point}));
+  if (tasks.empty())
+    summary.remarks.push_back("Newton's method found no equilibrium from the scene's grid: nothing to survey");
+  return tasks;
+}
+
+// Families in the order of their keys: equilibria sorted, longest period first; no more than the scene allows.
+std::vector<queue::Task> branch_tasks(const scene::Scene& scene, const systems::Description& system, const Recorder& sweeps, Summary& summary) {
+  std::vector<queue::Task> tasks;
+  for (const auto& [key, ended] : sweeps.ended()) {
+    const auto& [task, outcome] = ended;
+    if (outcome.failed) {
+      summary.failed_tasks.push_back(fmt::format("{}: {}", key, outcome.reason));
+      continue;
+    }
+    const SweepOutcome found = unpack_sweep_outcome(outcome.payload);
+    if (found.modes.empty())
+      summary.remarks.push_back(fmt::format("no small oscillations around {} for T in [{:g}, {:g}]", point_text(system, found.point),
+                                            scene.sweep.period_from, scene.sweep.period_to));
+    for (const std::string& reason : found.rejected)
+      summary.remarks.push_back(fmt::format("dip passed over at {}: {}", point_text(system, found.point), reason));
+    for (std::size_t n = 0; n < found.modes.size(); ++n) {
+      const std::string name = base_name(scene, system, found.point, found.index, static_cast<int>(n));
+      const std::string branch_key = fmt::format("{:04}.{:04}", found.index, n);
+      if (found.modes[n].one_direction) {
+        tasks.push_back(task_of(BranchWork{branch_key, name, found.point, found.modes[n], 1}));
+      } else {
+        tasks.push_back(task_of(BranchWork{branch_key + "+", name, found.point, found.modes[n], 1}));
+        tasks.push_back(task_of(BranchWork{branch_key + "-", name, found.point, found.modes[n], -1}));
+      }
+    }
+  }
+  const auto allowed = static_cast<std::size_t>(scene.limits.families);
+  if (tasks.size() > allowed) {
+    summary.remarks.push_back(fmt::format("{} families found, {} followed (limits.families)", tasks.size(), allowed));
+    tasks.resize(allowed);
+  }
+  return tasks;
+}
+
+void gather_families(const systems::Description& system, const Recorder& branches, Summary& summary, archive::Records& tables) {
+  for (const auto& [key, ended] : branches.ended()) {
+    const auto& [task, outcome] = ended;
+    const BranchWork work = unpack_branch_work(task.payload);
+    FamilySummary family;
+    family.key = key;
+    family.name = work.name;
+    family.isotropy = loop::to_text(isotropy_of(work.start, system));
+    family.failed = outcome.failed;
+    family.end_reason = fmt::format("failure ({})", outcome.reason);
+    if (!outcome.payload.empty()) {
+      const BranchOutcome branch = unpack_branch_outcome(outcome.payload);
+      family.orbits = branch.orbits;
+      family.period_from = branch.period_from;
+      family.period_to = branch.period_to;
+      family.energy_from = branch.energy_from;
+      family.energy_to = branch.energy_to;
+      family.end_reason = branch.end_reason;
+    }
+    if (family.failed) summary.failed_tasks.push_back(fmt::format("{} ({}): {}", key, family.name, outcome.reason));
+    summary.orbits += family.orbits;
+    archive::FamilyRecord record;
+    record.key = key;
+    record.name = family.name;
+    record.isotropy = family.isotropy;
+    record.end_reason = family.end_reason;
+    tables.families.push_back(std::move(record));
+    summary.families.push_back(std::move(family));
+  }
+}
+
+void make_folder(const core::Communicator& comm, const std::filesystem::path& folder) {
+  std::string problem;
+  if (comm.is_root()) {
+    std::error_code error;
+    std::filesystem::remove_all(folder, error);
+    std::filesystem::create_directories(folder, error);
+    if (error) problem = error.message();
+  }
+  int failed = problem.empty() ? 0 : 1;
+  core::check_mpi(MPI_Bcast(&failed, 1, MPI_INT, 0, comm.get()), "MPI_Bcast");
+  if (failed != 0)
+    throw core::EnvironmentError(fmt::format("cannot create the folder {}{}{}: give -o a place where you may write", folder.string(),
+                                             problem.empty() ? "" : ": ", problem));
+}
+
+void gather_memory(const core::Communicator& comm, Summary& summary) {
+  const double mine = peak_memory_mib();
+  summary.peak_memory_mib.resize(static_cast<std::size_t>(comm.size()));
+  core::check_mpi(MPI_Gather(&mine, 1, MPI_DOUBLE, summary.peak_memory_mib.data(), 1, MPI_DOUBLE, 0, comm.get()), "MPI_Gather");
+}
+
+}  // namespace
+
+Summary run_survey(const core::Communicator& comm, const scene::Scene& scene, const std::filesystem::path& directory, Display display) {
+  const auto began = Clock::now();
+  Summary summary;
+  const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  const archive::Header header = header_of(scene, system->description());
+  const std::filesystem::path segments = directory / "segments";
+  make_folder(comm, segments);
+
+  archive::Records rows;
+  Executor executor(scene, system, rows);
+  SegmentFlusher flusher(comm, segments, header, rows);
+  ProgressDisplay progress(display);
+  queue::Options options;
+  options.flush_seconds = scene.output.flush_seconds;
+  options.flush_rows = scene.output.flush_orbits;
+
+  Recorder sweeps(progress);
+  const queue::RunSummary swept = queue::run(comm, options, sweep_tasks(scene, *system, summary), executor, sweeps, flusher);
+  Recorder branches(progress);
+  const queue::RunSummary followed =
+      queue::run(comm, options, branch_tasks(scene, system->description(), sweeps, summary), executor, branches, flusher);
+
+  archive::Records tables;
+  gather_families(system->description(), branches, summary, tables);
+  summary.atlas = directory / "atlas.h5";
+  archive::consolidate(comm.get(), flusher.segments(), summary.atlas, header, tables);
+  if (comm.is_root()) {
+    std::error_code ignored;  // segments that stay behind do no harm
+    std::filesystem::remove_all(segments, ignored);
+  }
+  gather_memory(comm, summary);
+  summary.failures = swept.failed + followed.failed;
+  summary.stopped_early = swept.stopped_early || followed.stopped_early;
+  summary.seconds = std::chrono::duration<double>(Clock::now() - began).count();
+  return summary;
+}
+
+}  // namespace orbweaver::survey
