@@ -7,6 +7,7 @@
 
 #include "command.hpp"
 #include "failure.hpp"
+#include "orbweaver/core/blas_kernels.hpp"
 #include "orbweaver/core/error.hpp"
 
 namespace {
@@ -56,6 +57,7 @@ int run(std::vector<std::string> words) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  orbweaver::core::prefer_fitting_blas_kernels(argv);
   try {
     return run({argv + 1, argv + argc});
   } catch (...) {

@@ -52,7 +52,8 @@ int run(const Options& options, const Invocation& invocation) {
     }
     if (comm.is_root())
       for (const std::string& sentence : scene::not_built_yet(scene)) core::log_warning(fmt::format("not built yet: {}", sentence));
-    const survey::Summary summary = survey::run_survey(comm, scene, options.directory, display_for(options.log));
+    const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+    const survey::Summary summary = survey::run_survey(comm, scene, system, options.directory, display_for(options.log));
     if (comm.is_root()) fmt::print("{}", survey::to_text(summary));
     return static_cast<int>(status_of(summary));
   });

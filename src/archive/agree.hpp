@@ -10,9 +10,9 @@
 
 namespace orbweaver::archive {
 
-/// Collective. Runs `work` on every rank and then agrees: if it threw on any rank, every rank throws what the lowest such
-/// rank threw (the same type of error, the same text). Between two calls of this, no rank can leave the others waiting.
-/// `work` may hold at most one collective call.
+/// Collective. Runs `work` on every rank and then agrees: if it threw on any rank, every rank throws what the lowest
+/// such rank threw (the same type of error, the same text). Between two calls of this, no rank can leave the others
+/// waiting. `work` may hold at most one collective call.
 void collectively(MPI_Comm comm, const std::function<void()>& work);
 
 [[nodiscard]] int rank_of(MPI_Comm comm);

@@ -33,9 +33,10 @@ void expect_mode_counts(const SerialFile& file, const Table& orbits) {
   for (std::size_t i = 0; i < counts.size(); ++i) {
     const bool is_right = cutoffs[i] >= 0 && counts[i] % dimension == 0 && counts[i] / dimension == 2 * cutoffs[i] + 1;
     if (!is_right)
-      file.expect(false, fmt::format("has /orbits/modes_count = {} in row {}, where cutoff {} and {} coordinates ask for "
-                                     "(2 cutoff + 1) x coordinates",
-                                     counts[i], i, cutoffs[i], dimension));
+      file.expect(false,
+                  fmt::format("has /orbits/modes_count = {} in row {}, where cutoff {} and {} coordinates ask for "
+                              "(2 cutoff + 1) x coordinates",
+                              counts[i], i, cutoffs[i], dimension));
   }
 }
 
@@ -48,9 +49,10 @@ void expect_family_lots(const SerialFile& file, const AtlasTables& tables) {
   std::int64_t next = 0;
   for (std::size_t i = 0; i < firsts.size(); ++i) {
     if (firsts[i] != next || counts[i] < 0 || counts[i] > rows - next)
-      file.expect(false, fmt::format("has /families/first_orbit = {} and /families/orbit_count = {} in row {}; the family "
-                                     "was expected to begin at orbit {} of {}",
-                                     firsts[i], counts[i], i, next, rows));
+      file.expect(false,
+                  fmt::format("has /families/first_orbit = {} and /families/orbit_count = {} in row {}; the family "
+                              "was expected to begin at orbit {} of {}",
+                              firsts[i], counts[i], i, next, rows));
     for (const std::int64_t end = next + counts[i]; next < end; ++next)
       if (family[static_cast<std::size_t>(next)] != static_cast<std::int64_t>(i))
         file.expect(false, fmt::format("has /orbits/family = {} in row {}, which lies in the lot of family {}",

@@ -96,7 +96,11 @@ class Values {
  public:
   Values(const Numbering& numbering, Range range, const std::vector<std::uint64_t>& at, std::int64_t OrbitRow::*begin,
          std::int64_t OrbitRow::*count)
-      : _numbering(numbering), _range(range), _at(at), _begin(begin), _count(count),
+      : _numbering(numbering),
+        _range(range),
+        _at(at),
+        _begin(begin),
+        _count(count),
         _values(at[range.end] - at[range.begin]) {}
 
   void read(const Run& run, const std::string& name) {
@@ -138,7 +142,8 @@ void number_orbits(Table& block, const Numbering& numbering, Range range) {
 
 void write_orbits(MPI_Comm comm, ParallelFile& file, const Order& order, const Numbering& numbering) {
   std::vector<std::uint64_t> weight(numbering.modes_at.size());
-  for (std::size_t i = 0; i < weight.size(); ++i) weight[i] = numbering.modes_at[i] + numbering.maps_at[i] + row_weight * i;
+  for (std::size_t i = 0; i < weight.size(); ++i)
+    weight[i] = numbering.modes_at[i] + numbering.maps_at[i] + row_weight * i;
   Blocks blocks(comm, std::move(weight), order.block_values);
   for (Range mine; blocks.next(mine);) {
     Table block;
@@ -190,9 +195,8 @@ void check_input(MPI_Comm comm, const Header& header, const Records& tables) {
 
 }  // namespace
 
-void consolidate(MPI_Comm comm, const std::vector<std::filesystem::path>& segments,
-                 const std::filesystem::path& output, const Header& header, const Records& tables,
-                 const ConsolidateOptions& options) {
+void consolidate(MPI_Comm comm, const std::vector<std::filesystem::path>& segments, const std::filesystem::path& output,
+                 const Header& header, const Records& tables, const ConsolidateOptions& options) {
   const bool is_root = rank_of(comm) == 0;
   check_input(comm, header, tables);
   Order given;
@@ -204,8 +208,8 @@ void consolidate(MPI_Comm comm, const std::vector<std::filesystem::path>& segmen
   const Numbering numbering = number_rows(comm, order.segments, order.header, order.keys);
   RootTables root;
   collectively(comm, [&] {
-    root = make_root_tables(order.header, is_root ? tables : Records{}, is_root ? order.keys : std::vector<std::string>{},
-                            numbering);
+    root = make_root_tables(order.header, is_root ? tables : Records{},
+                            is_root ? order.keys : std::vector<std::string>{}, numbering);
   });
 
   agree_on_text_widths(comm, root.families);

@@ -21,8 +21,8 @@ struct FileLayout {
   [[nodiscard]] std::uint64_t bytes() const;
 };
 
-/// Creates (or empties) `path` and lays out all attributes and datasets, contiguous, with their final place and disk space
-/// taken. One rank alone. Throws EnvironmentError; a full disk is met before HDF5 writes anything.
+/// Creates (or empties) `path` and lays out all attributes and datasets, contiguous, with their final place and disk
+/// space taken. One rank alone. Throws EnvironmentError; a full disk is met before HDF5 writes anything.
 void create_layout_file(const std::filesystem::path& path, const FileLayout& layout);
 
 }  // namespace orbweaver::archive

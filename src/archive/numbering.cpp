@@ -64,8 +64,7 @@ class SegmentScan {
     const auto& steps = table.integers("step");
     const auto& times = table.reals("time");
     for (std::size_t i = 0; i < keys.size(); ++i)
-      sections.push_back(
-          {family_of(segment, keys[i]), steps[i], index, static_cast<std::int64_t>(i), -1, times[i]});
+      sections.push_back({family_of(segment, keys[i]), steps[i], index, static_cast<std::int64_t>(i), -1, times[i]});
   }
 
   const std::vector<std::string>& _segments;
@@ -100,10 +99,11 @@ void sort_sections(std::vector<SectionRow>& sections, const std::vector<OrbitRow
     const auto found = std::lower_bound(orbits.begin(), orbits.end(), section,
                                         [](const auto& a, const auto& b) { return place(a) < place(b); });
     if (found == orbits.end() || place(*found) != place(section))
-      throw core::InputError(fmt::format("'{}' has a section point of orbit {} of family '{}', which no segment holds. "
-                                         "Give all segments that the last checkpoint lists.",
-                                         segments[static_cast<std::size_t>(section.segment)], section.step,
-                                         keys[static_cast<std::size_t>(section.family)]));
+      throw core::InputError(
+          fmt::format("'{}' has a section point of orbit {} of family '{}', which no segment holds. "
+                      "Give all segments that the last checkpoint lists.",
+                      segments[static_cast<std::size_t>(section.segment)], section.step,
+                      keys[static_cast<std::size_t>(section.family)]));
     section.orbit = found - orbits.begin();
   }
   std::sort(sections.begin(), sections.end(), [](const auto& a, const auto& b) {

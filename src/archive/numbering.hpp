@@ -42,8 +42,8 @@ struct Numbering {
   [[nodiscard]] std::int64_t first_orbit(std::int64_t family) const;
 };
 
-/// Collective. Checks the segments (each by one rank) and numbers their rows. `family_keys` is sorted. Throws InputError
-/// on all ranks as `consolidate` says.
+/// Collective. Checks the segments (each by one rank) and numbers their rows. `family_keys` is sorted. Throws
+/// InputError on all ranks as `consolidate` says.
 [[nodiscard]] Numbering number_rows(MPI_Comm comm, const std::vector<std::string>& segments, const Header& header,
                                     const std::vector<std::string>& family_keys);
 

@@ -36,6 +36,8 @@ void ParallelFile::abandon() noexcept {
 }
 
 void ParallelFile::open_together() {
+  // Open MPI hangs when opening fails on some ranks only.
+  collectively(_comm, [&] { expect_writable(_part); });
   collectively(_comm, [&] {
     const H5Handle access(check_h5(H5Pcreate(H5P_FILE_ACCESS), "H5Pcreate"), H5Pclose);
     check_h5(H5Pset_fapl_mpio(access.get(), _comm, MPI_INFO_NULL), "H5Pset_fapl_mpio");

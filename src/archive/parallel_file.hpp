@@ -17,9 +17,9 @@ namespace orbweaver::archive {
 /// whole and on the disk. Every member is collective. Whatever fails on one rank (EnvironmentError) is thrown on all;
 /// a file that was not published is removed with the object.
 ///
-/// Rank 0 lays the file out, so that afterwards no rank changes metadata; then all ranks open it through the MPI-IO driver
-/// and write their rows at the same time. The transfers are independent: in a collective one, a rank whose disk fails
-/// leaves the others waiting inside HDF5 1.10 for ever.
+/// Rank 0 lays the file out, so that afterwards no rank changes metadata; then all ranks open it through the MPI-IO
+/// driver and write their rows at the same time. The transfers are independent: in a collective one, a rank whose disk
+/// fails leaves the others waiting inside HDF5 1.10 for ever.
 class ParallelFile {
  public:
   /// All ranks pass the same arguments (text widths included).

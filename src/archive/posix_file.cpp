@@ -65,6 +65,10 @@ void reserve_space(const std::filesystem::path& path, std::uint64_t bytes) {
   if (bytes > 0) reserve(Descriptor(path, O_WRONLY, "open"), FALLOC_FL_KEEP_SIZE, bytes, path);
 }
 
+void expect_writable(const std::filesystem::path& path) {
+  const Descriptor file(path, O_RDWR, "open for writing on every rank (is the folder shared by all machines?)");
+}
+
 void sync_file(const std::filesystem::path& path) { sync(path, O_WRONLY); }
 
 void rename_file(const std::filesystem::path& from, const std::filesystem::path& to) {

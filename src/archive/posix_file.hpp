@@ -12,6 +12,9 @@ void try_out_file(const std::filesystem::path& path, std::uint64_t bytes);
 /// Takes the disk space of an existing file's first `bytes` bytes without changing its size.
 void reserve_space(const std::filesystem::path& path, std::uint64_t bytes);
 
+/// Shows that this rank can open the file for writing.
+void expect_writable(const std::filesystem::path& path);
+
 /// Waits until what this machine wrote to the file is on the disk.
 void sync_file(const std::filesystem::path& path);
 

@@ -33,7 +33,8 @@ std::vector<std::int64_t> inverse(const std::vector<std::size_t>& order) {
   return rows;
 }
 
-void fill_crossing(Table& table, std::size_t row, const CrossingRecord& crossing, const std::vector<std::string>& keys) {
+void fill_crossing(Table& table, std::size_t row, const CrossingRecord& crossing,
+                   const std::vector<std::string>& keys) {
   table.integers("family")[row] = index_of(keys, crossing.family_key);
   table.reals("arclength")[row] = crossing.arclength;
   table.reals("period")[row] = crossing.period;
@@ -85,8 +86,7 @@ RootTables make_root_tables(const Header& header, const Records& tables, const s
   for (std::size_t row = 0; row < order.size(); ++row)
     fill_crossing(root.crossings, row, tables.crossings[order[row]], keys);
   const std::vector<std::int64_t> crossing_rows = inverse(order);
-  for (const FamilyRecord& family : tables.families)
-    fill_family(root.families, family, keys, crossing_rows, numbering);
+  for (const FamilyRecord& family : tables.families) fill_family(root.families, family, keys, crossing_rows, numbering);
   return root;
 }
 

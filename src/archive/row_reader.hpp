@@ -29,8 +29,8 @@ struct Run {
 void for_each_run(const std::vector<std::string>& segments, std::vector<RowSource> sources,
                   const std::function<void(const Run&)>& visit);
 
-/// Reads the run's rows of each column that `stored` (the segment's table) and `block` share, except `without`, into their
-/// targets.
+/// Reads the run's rows of each column that `stored` (the segment's table) and `block` share, except `without`, into
+/// their targets.
 void read_columns(const Run& run, const TableSpec& stored, const std::vector<std::string>& without, Table& block);
 
 }  // namespace orbweaver::archive

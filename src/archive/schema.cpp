@@ -74,9 +74,7 @@ TableSpec crossings_spec(const Header& header) {
            integer("fundamental_order"), real("test_value")}};
 }
 
-TableSpec sections_spec(const Header& header) {
-  return {"sections", {integer("orbit"), real("time"), state(header)}};
-}
+TableSpec sections_spec(const Header& header) { return {"sections", {integer("orbit"), real("time"), state(header)}}; }
 
 TableSpec segment_orbits_spec(const Header& header) { return {"orbits", orbit_columns(text("family_key"), header)}; }
 

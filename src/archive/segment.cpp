@@ -75,8 +75,7 @@ Table orbit_table(const Header& header, const Records& mine) {
   }
   for (const auto& [name, member] : vector_columns) {
     const std::size_t width = table.column(name).spec.width();
-    for (std::size_t i = 0; i < mine.orbits.size(); ++i)
-      copy_into(table.reals(name), i, width, mine.orbits[i].*member);
+    for (std::size_t i = 0; i < mine.orbits.size(); ++i) copy_into(table.reals(name), i, width, mine.orbits[i].*member);
   }
   return table;
 }

@@ -45,8 +45,7 @@ std::vector<std::int64_t> SegmentFile::orbit_integers(const char* name) const {
 
 std::vector<std::string> SegmentFile::orbit_texts(const char* name) const {
   for (const ColumnSpec& spec : _orbits.columns)
-    if (spec.name == name)
-      return std::get<std::vector<std::string>>(_file.read("orbits", spec, 0, _orbit_rows).values);
+    if (spec.name == name) return std::get<std::vector<std::string>>(_file.read("orbits", spec, 0, _orbit_rows).values);
   throw core::MisuseError(fmt::format("segments have no column '{}'", name));
 }
 

@@ -123,7 +123,8 @@ H5Handle SerialFile::attribute(const char* name, H5T_class_t type) const {
 std::int64_t SerialFile::integer_attribute(const char* name) const {
   const H5Handle found = attribute(name, H5T_INTEGER);
   const H5Handle space(check_h5<core::InputError>(H5Aget_space(found.get()), "H5Aget_space"), H5Sclose);
-  expect(H5Sget_simple_extent_npoints(space.get()) == 1, fmt::format("has more than one value in attribute '{}'", name));
+  expect(H5Sget_simple_extent_npoints(space.get()) == 1,
+         fmt::format("has more than one value in attribute '{}'", name));
   std::int64_t value = 0;
   check_h5<core::InputError>(H5Aread(found.get(), H5T_NATIVE_INT64, &value),
                              fmt::format("'{}': attribute '{}'", _path.string(), name));
@@ -192,8 +193,8 @@ std::uint64_t SerialFile::expect_flat(const std::string& name) {
   ColumnSpec spec{name, ColumnType::real, {}};
   expect_type(name, spec);
   const std::vector<hsize_t> actual = extents(dataset(name));
-  expect(actual.size() == 1, fmt::format("has a dataset /{} of shape {}; one extent was expected", name,
-                                         shape_text(actual)));
+  expect(actual.size() == 1,
+         fmt::format("has a dataset /{} of shape {}; one extent was expected", name, shape_text(actual)));
   return actual[0];
 }
 
@@ -242,8 +243,8 @@ void SerialFile::read_rows(const std::string& name, hid_t memory_type, std::uint
   const H5Handle memory(
       check_h5<core::InputError>(H5Screate_simple(static_cast<int>(counts.size()), counts.data(), nullptr), doing),
       H5Sclose);
-  check_h5<core::InputError>(
-      H5Dread(found->second.get(), memory_type, memory.get(), place.get(), H5P_DEFAULT, data), doing);
+  check_h5<core::InputError>(H5Dread(found->second.get(), memory_type, memory.get(), place.get(), H5P_DEFAULT, data),
+                             doing);
 }
 
 }  // namespace orbweaver::archive

@@ -21,8 +21,8 @@ struct FileKind {
 [[nodiscard]] const FileKind& atlas_kind();
 [[nodiscard]] const FileKind& segment_kind();
 
-/// One HDF5 file of Orbweaver, opened for reading by this rank alone; no MPI is needed and no lock is taken. Whatever is
-/// missing, torn or foreign throws InputError with the path, the problem and the remedy.
+/// One HDF5 file of Orbweaver, opened for reading by this rank alone; no MPI is needed and no lock is taken. Whatever
+/// is missing, torn or foreign throws InputError with the path, the problem and the remedy.
 class SerialFile {
  public:
   /// Opens and checks the attributes; datasets are checked by `expect_table` and `expect_flat`.

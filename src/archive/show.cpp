@@ -41,8 +41,7 @@ std::string value_name(const Header& header, const ColumnSpec& spec, std::size_t
   if (spec.row_shape.empty()) return spec.name;
   if (spec.name == "state") return "state_" + header.state_names[index];
   if (spec.name == "winding") return "winding_" + header.winding_names[index];
-  if (spec.row_shape.size() == 2)
-    return fmt::format("{}_{}_{}", spec.name, index / 2, index % 2 == 0 ? "re" : "im");
+  if (spec.row_shape.size() == 2) return fmt::format("{}_{}_{}", spec.name, index / 2, index % 2 == 0 ? "re" : "im");
   return fmt::format("{}_{}", spec.name, index);
 }
 

@@ -35,7 +35,8 @@ auto& find_column(Columns& columns, const std::string& table, std::string_view n
 
 }  // namespace
 
-Column::Column(ColumnSpec column_spec, std::size_t rows) : spec(std::move(column_spec)), values(empty_values(spec, rows)) {}
+Column::Column(ColumnSpec column_spec, std::size_t rows)
+    : spec(std::move(column_spec)), values(empty_values(spec, rows)) {}
 
 Table::Table(const TableSpec& spec, std::size_t rows) : _name(spec.name), _rows(rows) {
   for (const ColumnSpec& column : spec.columns) _columns.emplace_back(column, rows);

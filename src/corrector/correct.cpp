@@ -92,6 +92,11 @@ Result correct(const systems::System& system, const loop::Loop& guess, const los
   core::require(slice.unknowns() == unknowns.size(), "the slice belongs to other unknowns");
   Result result;
   result.loop = guess;
+  if (!(guess.period > 0.0)) {
+    result.outcome = Outcome::period_not_positive;
+    result.detail = fmt::format("the guess has the period {:.6g}", guess.period);
+    return result;
+  }
   const auto order = options.curvature == loss::Curvature::full ? loss::Linearization::Order::second : loss::Linearization::Order::jacobian;
   try {
     Objective objective(system, guess, unknowns, slice, order);

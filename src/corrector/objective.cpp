@@ -24,8 +24,8 @@ Eigen::VectorXd Objective::gradient(const Eigen::VectorXd& x) {
   return _slice.reduce(loss::ConstVectorMap(g.data(), static_cast<Eigen::Index>(g.size())));
 }
 
-core::Handle<Mat> Objective::hessian(const Eigen::VectorXd& x, loss::Curvature curvature) {
-  return _slice.reduce_symmetric(loss::assemble_hessian(at(x), _unknowns, curvature));
+void Objective::hessian(const Eigen::VectorXd& x, loss::Curvature curvature, const core::Handle<Mat>& out) {
+  _slice.reduce_symmetric(loss::assemble_hessian(at(x), _unknowns, curvature), out);
 }
 
 core::Handle<Mat> Objective::jacobian(const Eigen::VectorXd& x) {

@@ -25,7 +25,8 @@ class Objective {
   [[nodiscard]] bool defined_at(const Eigen::VectorXd& x) const { return loop_at(x).period > 0.0; }
   [[nodiscard]] const loss::Linearization& at(const Eigen::VectorXd& x);
   [[nodiscard]] Eigen::VectorXd gradient(const Eigen::VectorXd& x);
-  [[nodiscard]] core::Handle<Mat> hessian(const Eigen::VectorXd& x, loss::Curvature curvature);
+  /// The Hessian on the slice into `out` (free x free).
+  void hessian(const Eigen::VectorXd& x, loss::Curvature curvature, const core::Handle<Mat>& out);
   [[nodiscard]] core::Handle<Mat> jacobian(const Eigen::VectorXd& x);
 
   [[nodiscard]] const loss::Slice& slice() const { return _slice; }

@@ -47,8 +47,7 @@ PetscErrorCode objective_and_gradient(Tao, Vec x, PetscReal* value, Vec gradient
 PetscErrorCode hessian(Tao, Vec x, Mat h, Mat, void* raw) {
   Context& c = context_of(raw);
   return c.guard.run([&] {
-    const core::Handle<Mat> fresh = c.objective.hessian(loss::to_eigen(x), c.options.curvature);
-    copy_matrix(fresh, h);
+    c.objective.hessian(loss::to_eigen(x), c.options.curvature, core::Handle<Mat>::share(h));
     if (c.options.curvature != loss::Curvature::gauss_newton) return;
     // J'J is positive definite up to rounding; this keeps Cholesky from meeting a negative pivot of rounding size.
     double norm = 0.0;
@@ -61,14 +60,26 @@ PetscErrorCode hessian(Tao, Vec x, Mat h, Mat, void* raw) {
 PetscErrorCode residual(Tao, Vec x, Vec r, void* raw) {
   Context& c = context_of(raw);
   return c.guard.run([&] {
-    const std::vector<double> values = c.objective.at(loss::to_eigen(x)).residual();
+    const Eigen::VectorXd point = loss::to_eigen(x);
+    if (!c.objective.defined_at(point)) {
+      // Finite, since TAO refuses infinite residuals; no line search accepts it.
+      loss::assign(r, Eigen::VectorXd::Constant(c.objective.rows(), 1e100));
+      return;
+    }
+    const std::vector<double> values = c.objective.at(point).residual();
     loss::assign(r, loss::ConstVectorMap(values.data(), static_cast<Eigen::Index>(values.size())));
   });
 }
 
 PetscErrorCode residual_jacobian(Tao, Vec x, Mat j, Mat, void* raw) {
   Context& c = context_of(raw);
-  return c.guard.run([&] { copy_matrix(c.objective.jacobian(loss::to_eigen(x)), j); });
+  return c.guard.run([&] {
+    const Eigen::VectorXd point = loss::to_eigen(x);
+    if (c.objective.defined_at(point))
+      copy_matrix(c.objective.jacobian(point), j);
+    else
+      core::check(MatZeroEntries(j), "MatZeroEntries");
+  });
 }
 
 // One test for every type: sqrt(loss) against the threshold, else stagnation (second order only), else the limit.
@@ -80,6 +91,10 @@ PetscErrorCode convergence_test(Tao tao, void* raw) {
     core::check(TaoGetSolution(tao, &solution), "TaoGetSolution");
     core::check(TaoGetIterationNumber(tao, &iteration), "TaoGetIterationNumber");
     const Eigen::VectorXd x = loss::to_eigen(solution);
+    if (!c.objective.defined_at(x)) {
+      core::check(TaoSetConvergedReason(tao, TAO_DIVERGED_USER), "TaoSetConvergedReason");
+      return;
+    }
     const loss::Linearization& lin = c.objective.at(x);
     const double threshold = acceptance_threshold(c.objective.loop_at(x), lin, c.options.tolerance);
     const bool progress = lin.loss() < 0.25 * c.last_loss;
@@ -171,7 +186,9 @@ TaoRun run_tao(Objective& objective, const Options& options) {
   if (options.method == Method::ntr) solve_directly(tao.get(), KSPSTCG);
   core::check(TaoSetFromOptions(tao.get()), "TaoSetFromOptions");
   if (options.method == Method::brgn) {
-    core::check(TaoSetUp(tao.get()), "TaoSetUp");
+    const PetscErrorCode set_up = TaoSetUp(tao.get());  // evaluates the guess
+    context.guard.rethrow();
+    core::check(set_up, "TaoSetUp");
     solve_directly(tested, KSPPREONLY);
   }
   core::check(TaoSetConvergenceTest(tested, convergence_test, &context), "TaoSetConvergenceTest");

@@ -103,6 +103,8 @@ void Subspace::append_harmonic(int k, const Eigen::MatrixXd& basis) {
 
 void Subspace::add_to(std::span<const double> coordinates, std::span<double> modes) const {
   core::require(static_cast<int>(coordinates.size()) == size(), "a coordinate a basis vector is needed");
+  core::require(modes.size() == (2 * static_cast<std::size_t>(_cutoff) + 1) * static_cast<std::size_t>(_dimension),
+                "the modes and the subspace have different sizes");
   for (int n = 0; n < size(); ++n)
     for (const Entry& e : basis(n))
       modes[static_cast<std::size_t>(e.row * _dimension + e.coordinate)] += e.weight * coordinates[static_cast<std::size_t>(n)];
@@ -110,6 +112,8 @@ void Subspace::add_to(std::span<const double> coordinates, std::span<double> mod
 
 void Subspace::project(std::span<const double> modes, std::span<double> coordinates) const {
   core::require(static_cast<int>(coordinates.size()) == size(), "a coordinate a basis vector is needed");
+  core::require(modes.size() == (2 * static_cast<std::size_t>(_cutoff) + 1) * static_cast<std::size_t>(_dimension),
+                "the modes and the subspace have different sizes");
   for (int n = 0; n < size(); ++n) {
     double sum = 0.0;
     for (const Entry& e : basis(n)) sum += e.weight * modes[static_cast<std::size_t>(e.row * _dimension + e.coordinate)];

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 #include <vector>
 
@@ -12,18 +11,6 @@ namespace orbweaver::loss {
 
 namespace {
 
-// sum_j g_j cos(m s_j) and sum_j g_j sin(m s_j), m = 0 .. 2K, of one nodal function.
-struct Sums {
-  std::vector<double> c;
-  std::vector<double> s;
-};
-
-Sums sums_of(const loop::FourierGrid& grid, const double* g, int highest) {
-  Sums out{std::vector<double>(static_cast<std::size_t>(highest) + 1), std::vector<double>(static_cast<std::size_t>(highest) + 1)};
-  grid.sums(g, highest, out.c.data(), out.s.data());
-  return out;
-}
-
 // A basis function of s: cos(k s) or sin(k s).
 struct Wave {
   int k;
@@ -34,16 +21,67 @@ Wave wave_of_row(int row) { return {(row + 1) / 2, row > 0 && row % 2 == 0}; }
 
 // d/ds of cos(ks) is -k sin(ks), of sin(ks) is k cos(ks).
 double slope_factor(Wave w) { return w.sine ? w.k : -w.k; }
-Wave slope_wave(Wave w) { return {w.k, !w.sine}; }
 
-// sum_j g_j P(s_j) Q(s_j) by the product formulas of cosine and sine.
-double product_sum(const Sums& g, Wave p, Wave q) {
-  const auto plus = static_cast<std::size_t>(p.k + q.k);
-  const int difference = p.k - q.k;
-  const auto minus = static_cast<std::size_t>(std::abs(difference));
-  if (p.sine == q.sine) return 0.5 * (g.c[minus] + (p.sine ? -g.c[plus] : g.c[plus]));
-  const double s_minus = difference >= 0 ? g.s[minus] : -g.s[minus];
-  return 0.5 * (g.s[plus] + (p.sine ? s_minus : -s_minus));
+// Fourier sums of one nodal function, sum_j g_j cos(m s_j) and sum_j g_j sin(m s_j), for -2K <= m <= 2K, so that products
+// of two waves need no case for the sign of a difference.
+class Sums {
+ public:
+  Sums() = default;
+  Sums(const loop::FourierGrid& grid, const double* g, int highest)
+      : _highest(highest), _c(2 * static_cast<std::size_t>(highest) + 1), _s(_c.size()) {
+    double* c = _c.data() + highest;
+    double* s = _s.data() + highest;
+    grid.sums(g, highest, c, s);
+    for (int m = 1; m <= highest; ++m) {
+      c[-m] = c[m];
+      s[-m] = -s[m];
+    }
+  }
+  [[nodiscard]] const double* c() const { return _c.data() + _highest; }
+  [[nodiscard]] const double* s() const { return _s.data() + _highest; }
+
+ private:
+  int _highest = 0;
+  std::vector<double> _c;
+  std::vector<double> _s;
+};
+
+// sum_j g_j P(s_j) Q(s_j) for P = cos or sin of p s and Q = cos or sin of q s, by the product formulas.
+template <bool PSine, bool QSine>
+double product_sum(const double* c, const double* s, int p, int q) {
+  if constexpr (PSine && QSine) return 0.5 * (c[p - q] - c[p + q]);
+  if constexpr (!PSine && !QSine) return 0.5 * (c[p - q] + c[p + q]);
+  if constexpr (PSine && !QSine) return 0.5 * (s[p + q] + s[p - q]);
+  return 0.5 * (s[p + q] - s[p - q]);
+}
+
+// The coefficients of all basis vectors that stand at one coordinate and are all cosines or all sines.
+struct Term {
+  int unknown;
+  int k;
+  double weight;
+};
+struct Group {
+  int coordinate;
+  bool sine;
+  std::vector<Term> terms;
+};
+
+std::vector<Group> groups_of(const loop::Subspace& subspace) {
+  std::vector<Group> groups;
+  for (int i = 0; i < subspace.dimension(); ++i)
+    for (const bool sine : {false, true}) groups.push_back({i, sine, {}});
+  for (int n = 0; n < subspace.size(); ++n)
+    for (const auto& e : subspace.basis(n)) {
+      const Wave w = wave_of_row(e.row);
+      groups[static_cast<std::size_t>(2 * e.coordinate + (w.sine ? 1 : 0))].terms.push_back({n, w.k, e.weight});
+    }
+  return groups;
+}
+
+void require_same_size(const Linearization& lin, const Unknowns& unknowns) {
+  core::require(unknowns.subspace.cutoff() == lin.cutoff() && unknowns.subspace.dimension() == lin.dimension(),
+                "the unknowns belong to loops of another size than the linearization");
 }
 
 class HessianAssembly {
@@ -53,21 +91,26 @@ class HessianAssembly {
     const int highest = 2 * lin.cutoff();
     for (int i = 0; i < _d; ++i)
       for (int l = 0; l < _d; ++l) {
-        _a.push_back(sums_of(lin.grid(), lin.field_jacobian(i, l), highest));
-        _m.push_back(l < i ? Sums{} : sums_of(lin.grid(), value_block(i, l).data(), highest));
+        _a.emplace_back(lin.grid(), lin.field_jacobian(i, l), highest);
+        if (l < i) {
+          _m.emplace_back();
+        } else {
+          _m.emplace_back(lin.grid(), value_block(i, l).data(), highest);
+        }
       }
   }
 
+  /// `h` must be zero.
   void fill(DenseMap h) const {
-    const double scale = 2.0 / _lin.nodes();
-    const int n = _unknowns.subspace.size();
-    for (int col = 0; col < n; ++col)
-      for (int row = col; row < n; ++row) {
-        double sum = 0.0;
-        for (const auto& p : _unknowns.subspace.basis(row))
-          for (const auto& q : _unknowns.subspace.basis(col)) sum += p.weight * q.weight * entry(p, q);
-        h(row, col) = h(col, row) = scale * sum;
+    const std::vector<Group> groups = groups_of(_unknowns.subspace);
+    for (const Group& columns : groups)
+      for (const Group& rows : groups) {
+        if (columns.sine)
+          rows.sine ? add_pair<true, true>(columns, rows, h) : add_pair<true, false>(columns, rows, h);
+        else
+          rows.sine ? add_pair<false, true>(columns, rows, h) : add_pair<false, false>(columns, rows, h);
       }
+    h.triangularView<Eigen::StrictlyUpper>() = h.transpose();
     if (_unknowns.period) fill_period(h);
   }
 
@@ -88,18 +131,32 @@ class HessianAssembly {
     return block;
   }
 
-  [[nodiscard]] double entry(const loop::Subspace::Entry& pe, const loop::Subspace::Entry& qe) const {
-    const Wave p = wave_of_row(pe.row);
-    const Wave q = wave_of_row(qe.row);
-    const int i = pe.coordinate;
-    const int l = qe.coordinate;
-    const double rate = _lin.rate();
+  // The lower triangle's share of all products of a coefficient of `columns` (P, coordinate i) with one of `rows` (Q, l):
+  //   (2/N) sum_j [ rate^2 P'Q' delta_il - rate P' A_il Q - rate P A_li Q' + P M_il Q ].
+  template <bool PSine, bool QSine>
+  void add_pair(const Group& columns, const Group& rows, DenseMap h) const {
+    const int i = columns.coordinate;
+    const int l = rows.coordinate;
     const auto at = [this](int a, int b) { return static_cast<std::size_t>(a * _d + b); };
-    double sum = i <= l ? product_sum(_m[at(i, l)], p, q) : product_sum(_m[at(l, i)], p, q);
-    if (p.k > 0) sum -= rate * slope_factor(p) * product_sum(_a[at(i, l)], slope_wave(p), q);
-    if (q.k > 0) sum -= rate * slope_factor(q) * product_sum(_a[at(l, i)], p, slope_wave(q));
-    if (i == l && p.k == q.k && p.sine == q.sine && p.k > 0) sum += rate * rate * p.k * p.k * 0.5 * _lin.nodes();
-    return sum;
+    const Sums& m = i <= l ? _m[at(i, l)] : _m[at(l, i)];
+    const Sums& a = _a[at(i, l)];
+    const Sums& b = _a[at(l, i)];
+    const double *mc = m.c(), *ms = m.s(), *ac = a.c(), *as = a.s(), *bc = b.c(), *bs = b.s();
+    const double rate = _lin.rate();
+    const double scale = 2.0 / _lin.nodes();
+    for (const Term& p : columns.terms) {
+      const double p_slope = rate * slope_factor({p.k, PSine});
+      double* column = &h(0, p.unknown);
+      for (const Term& q : rows.terms) {
+        if (q.unknown < p.unknown) continue;
+        const double q_slope = rate * slope_factor({q.k, QSine});
+        double sum = product_sum<PSine, QSine>(mc, ms, p.k, q.k);
+        sum -= p_slope * product_sum<!PSine, QSine>(ac, as, p.k, q.k);
+        sum -= q_slope * product_sum<PSine, !QSine>(bc, bs, p.k, q.k);
+        if (PSine == QSine && i == l && p.k == q.k) sum += 0.5 * _lin.nodes() * p_slope * q_slope;
+        column[q.unknown] += scale * p.weight * q.weight * sum;
+      }
+    }
   }
 
   void fill_period(DenseMap h) const {
@@ -123,6 +180,7 @@ class HessianAssembly {
 
 core::Handle<Mat> assemble_jacobian(const Linearization& lin, const Unknowns& unknowns) {
   core::require(lin.order() != Linearization::Order::residual, "a Jacobian needs a linearization of order jacobian");
+  require_same_size(lin, unknowns);
   const int nodes = lin.nodes();
   const int d = lin.dimension();
   const double scale = 1.0 / std::sqrt(static_cast<double>(nodes));
@@ -166,6 +224,7 @@ core::Handle<Mat> assemble_hessian(const Linearization& lin, const Unknowns& unk
   core::require(lin.order() != Linearization::Order::residual, "a Hessian needs a linearization of order jacobian");
   core::require(curvature == Curvature::gauss_newton || lin.order() == Linearization::Order::second,
                 "the full curvature needs a linearization of order second");
+  require_same_size(lin, unknowns);
   core::Handle<Mat> matrix = create_dense(unknowns.size(), unknowns.size());
   const HessianAssembly assembly(lin, unknowns, curvature);
   with_dense_array(matrix, [&](DenseMap h) { assembly.fill(h); });

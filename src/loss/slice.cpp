@@ -5,6 +5,18 @@
 
 namespace orbweaver::loss {
 
+namespace {
+
+// The w of (I - 2vv') H (I - 2vv') = H - v w' - w v' for a symmetric H and a unit vector v.
+template <class Matrix>
+Eigen::VectorXd rank_two_partner(const Matrix& h, const Eigen::VectorXd& v) {
+  Eigen::VectorXd w = 2.0 * (h * v);
+  w -= v.dot(w) * v;
+  return w;
+}
+
+}  // namespace
+
 Slice::Slice(int unknowns, const Eigen::MatrixXd& conditions)
     : _unknowns(unknowns), _conditions(static_cast<int>(conditions.cols())) {
   core::require(conditions.cols() == 0 || conditions.rows() == unknowns, "conditions need one entry an unknown");
@@ -40,18 +52,31 @@ Eigen::VectorXd Slice::reduce(const Eigen::VectorXd& u) const {
 
 core::Handle<Mat> Slice::reduce_symmetric(const core::Handle<Mat>& matrix) const {
   core::Handle<Mat> out = create_dense(free(), free());
+  reduce_symmetric(matrix, out);
+  return out;
+}
+
+void Slice::reduce_symmetric(const core::Handle<Mat>& matrix, const core::Handle<Mat>& out) const {
   with_dense_array(matrix, [&](DenseMap h) {
     core::require(h.rows() == _unknowns && h.cols() == _unknowns, "a matrix of another size");
-    Eigen::MatrixXd work = h;
-    for (const Eigen::VectorXd& v : _reflectors) {
-      Eigen::VectorXd w = 2.0 * (work * v);
-      w -= v.dot(w) * v;
-      work.noalias() -= v * w.transpose();
-      work.noalias() -= w * v.transpose();
-    }
-    with_dense_array(out, [&](DenseMap reduced) { reduced = work.bottomRightCorner(free(), free()); });
+    with_dense_array(out, [&](DenseMap reduced) {
+      core::require(reduced.rows() == free() && reduced.cols() == free(), "a reduced matrix of another size");
+      if (_reflectors.size() == 1) {
+        // (I - 2vv') H (I - 2vv') = H - v w' - w v' needs one pass over H and no copy of it.
+        const Eigen::VectorXd& v = _reflectors.front();
+        const Eigen::VectorXd w = rank_two_partner(h, v);
+        for (int c = 0; c < free(); ++c)
+          reduced.col(c) = h.col(c + 1).tail(free()) - w(c + 1) * v.tail(free()) - v(c + 1) * w.tail(free());
+        return;
+      }
+      Eigen::MatrixXd work = h;
+      for (const Eigen::VectorXd& v : _reflectors) {
+        const Eigen::VectorXd w = rank_two_partner(work, v);
+        for (int c = 0; c < _unknowns; ++c) work.col(c) -= w(c) * v + v(c) * w;
+      }
+      reduced = work.bottomRightCorner(free(), free());
+    });
   });
-  return out;
 }
 
 core::Handle<Mat> Slice::reduce_columns(const core::Handle<Mat>& matrix) const {

@@ -11,7 +11,7 @@ namespace orbweaver::survey {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr auto time_between_lines = std::chrono::seconds(2);
+constexpr auto time_between_lines = std::chrono::seconds(5);
 
 std::string line_of(const FamilyState& f) {
   const double seconds = std::chrono::duration<double>(f.changed - f.began).count();
@@ -46,6 +46,9 @@ void ProgressDisplay::ended(const queue::Task& task, const queue::TaskOutcome& o
   if (!outcome.payload.empty()) {
     const BranchOutcome branch = unpack_branch_outcome(outcome.payload);
     f.orbits = branch.orbits;
+    f.period = branch.last_period;
+    f.energy = branch.last_energy;
+    f.cutoff = branch.last_cutoff;
     f.end = branch.end_reason;
   }
   if (_style == Display::lines) print_line(f);
@@ -63,11 +66,14 @@ void ProgressDisplay::tick(const queue::TaskCounts&) {
   }
   if (Clock::now() - _last < time_between_lines) return;
   _last = Clock::now();
-  for (const auto& [key, family] : _families)
-    if (family.running && family.orbits > 0) print_line(family);
+  for (auto& [key, family] : _families)
+    if (family.running && family.orbits > family.printed) print_line(family);
 }
 
-void ProgressDisplay::print_line(const FamilyState& family) { fmt::print(stderr, "{}\n", line_of(family)); }
+void ProgressDisplay::print_line(FamilyState& family) {
+  family.printed = family.orbits;
+  fmt::print(stderr, "{}\n", line_of(family));
+}
 
 void ProgressDisplay::redraw() {
   std::string text;

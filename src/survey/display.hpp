@@ -18,6 +18,7 @@ struct FamilyState {
   double energy = 0.0;
   int cutoff = 0;
   bool running = true;
+  long printed = 0;  // orbits at the last plain line
   std::string end;
   std::chrono::steady_clock::time_point began = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point changed = began;
@@ -37,7 +38,7 @@ class ProgressDisplay : public queue::Observer {
  private:
   void ended(const queue::Task& task, const queue::TaskOutcome& outcome);
   void redraw();
-  void print_line(const FamilyState& family);
+  void print_line(FamilyState& family);
 
   Display _style;
   std::map<std::string, FamilyState> _families;

@@ -91,6 +91,9 @@ queue::TaskOutcome Executor::follow(const BranchWork& work, queue::TaskContext& 
         outcome.period_to = to;
         outcome.energy_from = low;
         outcome.energy_to = high;
+        outcome.last_period = orbit.loop.period;
+        outcome.last_energy = orbit.energy;
+        outcome.last_cutoff = orbit.loop.cutoff;
         ++outcome.orbits;
         _rows.orbits.push_back(record(work.key, orbit));
         return context.report({orbit.step + 1, 1, {orbit.loop.period, orbit.energy, static_cast<double>(orbit.loop.cutoff)}});

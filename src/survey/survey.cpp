@@ -164,10 +164,10 @@ void gather_memory(const core::Communicator& comm, Summary& summary) {
 
 }  // namespace
 
-Summary run_survey(const core::Communicator& comm, const scene::Scene& scene, const std::filesystem::path& directory, Display display) {
+Summary run_survey(const core::Communicator& comm, const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
+                   const std::filesystem::path& directory, Display display) {
   const auto began = Clock::now();
   Summary summary;
-  const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
   const archive::Header header = header_of(scene, system->description());
   const std::filesystem::path segments = directory / "segments";
   make_folder(comm, segments);

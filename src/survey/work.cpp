@@ -29,7 +29,7 @@ void serialize(Archive& archive, orbweaver::survey::BranchWork& w, unsigned) {
 
 template <class Archive>
 void serialize(Archive& archive, orbweaver::survey::BranchOutcome& o, unsigned) {
-  archive & o.key & o.orbits & o.period_from & o.period_to & o.energy_from & o.energy_to & o.end_reason;
+  archive & o.key & o.orbits & o.period_from & o.period_to & o.energy_from & o.energy_to & o.last_period & o.last_energy & o.last_cutoff & o.end_reason;
 }
 
 }  // namespace boost::serialization

@@ -85,7 +85,8 @@ std::string raw_bytes(hid_t file, const std::string& name) {
   const auto values = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.get()));
   std::string bytes(values * H5Tget_size(type.get()), '\0');
   if (values > 0) check_h5(H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()), name);
-  std::string head = fmt::format("class {} size {}", static_cast<int>(H5Tget_class(type.get())), H5Tget_size(type.get()));
+  std::string head =
+      fmt::format("class {} size {}", static_cast<int>(H5Tget_class(type.get())), H5Tget_size(type.get()));
   for (const hsize_t extent : extents) head += fmt::format(" x {}", extent);
   return head + ':' + bytes;
 }
@@ -176,6 +177,7 @@ std::map<std::string, std::string> dataset_bytes(const std::filesystem::path& pa
 std::filesystem::path fresh_folder(const std::string& name, MPI_Comm comm) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
+  MPI_Barrier(comm);
   if (rank == 0) {
     std::filesystem::remove_all(name);
     std::filesystem::create_directories(name);

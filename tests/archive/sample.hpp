@@ -14,9 +14,9 @@ namespace orbweaver::test {
 /// Two state coordinates and one angle of a made-up system; `pairs` and `symplectic` fix the width of the stability.
 archive::Header sample_header(int pairs = 1, bool symplectic = true);
 
-/// Five families (one without orbits), 29 orbits of cutoffs 0 to 6 with steps below and above zero, some with time maps,
-/// two crossings, one or two section points an orbit, texts with letters outside ASCII. Families and orbits are given out
-/// of order.
+/// Five families (one without orbits), 29 orbits of cutoffs 0 to 6 with steps below and above zero, some with time
+/// maps, two crossings, one or two section points an orbit, texts with letters outside ASCII. Families and orbits are
+/// given out of order.
 archive::Records sample_records(const archive::Header& header);
 
 /// The families and crossings, or the orbits and sections, of `records` alone.

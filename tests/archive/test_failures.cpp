@@ -97,7 +97,9 @@ TEST_F(Failures, AnInvalidRecordOfOneRankIsRefusedByAll) {
   EXPECT_THAT(refusal_of([](Records& r) { some_orbit(r).cutoff = -1; }), HasSubstr("cutoff is -1"));
   EXPECT_THAT(refusal_of([](Records& r) { some_orbit(r).family_key = "\xff\xfe"; }), HasSubstr("UTF-8"));
   EXPECT_THAT(refusal_of([](Records& r) { r.families.resize(1); }), HasSubstr("consolidate"));
-  EXPECT_THAT(refusal_of([](Records& r) { r.sections.assign(1, {"0001", 0, not_computed, {0, 0}}); }),
+  EXPECT_THAT(refusal_of([](Records& r) {
+                r.sections.assign(1, {"0001", 0, not_computed, {0, 0}});
+              }),
               HasSubstr("time is nan"));
 }
 
@@ -112,8 +114,8 @@ TEST_F(Failures, RanksWithDifferentHeadersAreRefused) {
 }
 
 TEST_F(Failures, AMissingFolderIsReportedByAllRanks) {
-  const std::string text = failure_of<core::EnvironmentError>(
-      [&] { write_segment(world.get(), "no/such/folder/s.h5", header, mine()); });
+  const std::string text =
+      failure_of<core::EnvironmentError>([&] { write_segment(world.get(), "no/such/folder/s.h5", header, mine()); });
   EXPECT_THAT(text, HasSubstr("no/such/folder/s.h5.part"));
   EXPECT_THAT(text, HasSubstr("No such file or directory"));
 }
@@ -143,6 +145,7 @@ TEST_F(Failures, AFullDiskIsReportedByAllRanksAndLeavesTheOldFile) {
   const auto before = test::dataset_bytes(folder / "s.h5");
   for (const int limited : {0, world.size() - 1}) {
     for (const std::uintmax_t limit : {std::uintmax_t{0}, std::uintmax_t{600}, size / 2, size - 64}) {
+      if (limit == 0 && limited != 0) continue;  // Open MPI itself needs small files
       SCOPED_TRACE(fmt::format("limit {} of {} bytes on rank {}", limit, size, limited));
       MPI_Barrier(world.get());
       const std::string text = failure_of<core::EnvironmentError>([&] {
@@ -179,9 +182,8 @@ TEST_F(Failures, InvalidTablesAreRefusedByAllRanks) {
   const auto refusal = [&](const auto& change) {
     Records tables = test::tables_of(records);
     change(tables);
-    return failure_of<core::MisuseError>([&] {
-      consolidate(world.get(), {}, folder / "atlas.h5", header, world.is_root() ? tables : Records{});
-    });
+    return failure_of<core::MisuseError>(
+        [&] { consolidate(world.get(), {}, folder / "atlas.h5", header, world.is_root() ? tables : Records{}); });
   };
   EXPECT_THAT(refusal([](Records& t) { t.families[0].crossing = 3; }), HasSubstr("crossing is 3"));
   EXPECT_THAT(refusal([](Records& t) { t.families[0].end_crossing = -2; }), HasSubstr("end_crossing is -2"));

@@ -44,7 +44,8 @@ struct Case {
 
 class KnownSpectrum : public testing::TestWithParam<Case> {};
 
-// The matrix in floating point has the spectrum up to a few eps |H| (Weyl), so that is the tolerance.
+// The matrix in floating point has the spectrum up to a few eps |H| (Weyl), so that is the tolerance for values. Vectors
+// come from solves with H + 1e-8 |H|, whose rounding leaves residuals of up to 1e-10 |H|.
 TEST_P(KnownSpectrum, SmallestPairs) {
   for (const int size : sizes) {
     SCOPED_TRACE("size " + std::to_string(size));
@@ -59,7 +60,7 @@ TEST_P(KnownSpectrum, SmallestPairs) {
       const Eigen::VectorXd v = pairs.vectors.col(n);
       EXPECT_NEAR(value, wanted(n), rounding) << "eigenvalue " << n;
       const double residual = (h * v - value * v).norm();
-      EXPECT_LT(residual, rounding + 1e-12 * h.norm()) << "eigenvalue " << n;
+      EXPECT_LT(residual, 1e-10 * h.norm()) << "eigenvalue " << n;
       EXPECT_NEAR(pairs.residuals[static_cast<std::size_t>(n)], residual, rounding) << "eigenvalue " << n;
       EXPECT_GT(v(std::distance(v.begin(), std::max_element(v.begin(), v.end(), [](double a, double b) {
                   return std::abs(a) < std::abs(b);

@@ -48,7 +48,7 @@ TEST(SingularTriplets, KeepFiveDigitsWhereTheEigenvaluesOfTheSquareLoseAll) {
     const double sigma = exact_smallest(j);
     ASSERT_NEAR(sigma, 1e-9, 1e-12) << "the matrix is not the one that is meant";
     const SingularTriplets triplets = smallest_singular_triplets(test::to_petsc(j), 2);
-    EXPECT_NEAR(triplets.values[0], sigma, 1e-5 * sigma) << columns;
+    EXPECT_NEAR(triplets.values[0], sigma, 5e-5 * sigma) << columns;  // half a unit of the fifth digit
     EXPECT_NEAR(triplets.values[1], 1.0, 20.0 * epsilon * 1e3) << columns;
 
     const Eigenpairs square = smallest_eigenpairs(test::to_petsc(j.transpose() * j), {.count = 2});

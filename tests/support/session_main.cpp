@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 #include <mpi.h>
 
+#include "orbweaver/core/blas_kernels.hpp"
 #include "orbweaver/core/session.hpp"
 
 int main(int argc, char** argv) {
+  orbweaver::core::prefer_fitting_blas_kernels(argv);
   const orbweaver::core::Session session;
   ::testing::InitGoogleTest(&argc, argv);
   int rank = 0;

@@ -15,8 +15,8 @@ void quiet_h5();
 /// The text of HDF5's current error stack, innermost cause first, in one line; "no further detail" when it is empty.
 [[nodiscard]] std::string h5_error_text();
 
-/// Throws `Failure` (EnvironmentError by default, InputError where a file of the user is read) with HDF5's own text when
-/// `result`, an hid_t, herr_t or htri_t, is negative; otherwise returns it. `what` says what was being done.
+/// Throws `Failure` (EnvironmentError by default, InputError where a file of the user is read) with HDF5's own text
+/// when `result`, an hid_t, herr_t or htri_t, is negative; otherwise returns it. `what` says what was being done.
 template <class Failure = core::EnvironmentError, class Result>
 Result check_h5(Result result, std::string_view what) {
   if (result < 0) [[unlikely]]
@@ -43,7 +43,8 @@ class H5Handle {
   [[nodiscard]] hid_t get() const;
   [[nodiscard]] bool empty() const noexcept { return _id < 0; }
 
-  /// Closes and reports a failure, which the destructor cannot: throws EnvironmentError. The handle is empty afterwards.
+  /// Closes and reports a failure, which the destructor cannot: throws EnvironmentError. The handle is empty
+  /// afterwards.
   void close(std::string_view what);
 
  private:

@@ -11,13 +11,13 @@ namespace orbweaver::archive {
 
 class SerialFile;
 
-/// An atlas opened for reading by this rank alone (MPI need not be running). Modes stay in the file until they are asked
-/// for; tables are read column by column, whole.
+/// An atlas opened for reading by this rank alone (MPI need not be running). Modes stay in the file until they are
+/// asked for; tables are read column by column, whole.
 class Archive {
  public:
-  /// Opens and checks everything but the numbers: format and version, that all columns of docs/file_format.md exist with
-  /// the right type, shape and equal lengths, and that every index and every lot of modes lies within its table. Throws
-  /// InputError that says what is wrong, where, and what to do.
+  /// Opens and checks everything but the numbers: format and version, that all columns of docs/file_format.md exist
+  /// with the right type, shape and equal lengths, and that every index and every lot of modes lies within its table.
+  /// Throws InputError that says what is wrong, where, and what to do.
   explicit Archive(const std::filesystem::path& path);
   Archive(Archive&&) noexcept;
   Archive& operator=(Archive&&) noexcept;
@@ -35,8 +35,8 @@ class Archive {
   /// Values in /modes.
   [[nodiscard]] std::uint64_t mode_values() const noexcept { return _mode_values; }
 
-  /// The Fourier coefficients of row `orbit` of /orbits: (2 cutoff + 1) x dimension, row after row: a0, a1, b1, a2, b2, ...
-  /// Throws MisuseError if there is no such row, InputError if the file cannot be read.
+  /// The Fourier coefficients of row `orbit` of /orbits: (2 cutoff + 1) x dimension, row after row: a0, a1, b1, a2, b2,
+  /// ... Throws MisuseError if there is no such row, InputError if the file cannot be read.
   [[nodiscard]] std::vector<double> modes(std::size_t orbit) const;
 
   /// The coefficients of the orbit's time map; empty: the identity.

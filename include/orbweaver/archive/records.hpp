@@ -8,15 +8,16 @@ namespace orbweaver::archive {
 
 inline constexpr double not_computed = std::numeric_limits<double>::quiet_NaN();
 
-/// One row of /families (docs/file_format.md). `key` is the path that identifies the family in any run; rows are sorted by it.
+/// One row of /families (docs/file_format.md). `key` is the path that identifies the family in any run; rows are sorted
+/// by it.
 struct FamilyRecord {
   std::string key;
   std::string name;
-  std::string parent_key;   ///< empty: none
-  int crossing = -1;        ///< where it was born: index into the crossings that are handed over with it (Records), or -1
+  std::string parent_key;  ///< empty: none
+  int crossing = -1;  ///< where it was born: index into the crossings that are handed over with it (Records), or -1
   int multiplicity = 1;
-  std::string isotropy;     ///< "S@1/2 R@0"
-  std::string end_reason;   ///< sentence-like text, never empty in a finished archive
+  std::string isotropy;        ///< "S@1/2 R@0"
+  std::string end_reason;      ///< sentence-like text, never empty in a finished archive
   std::string end_family_key;  ///< empty: none
   int end_crossing = -1;       ///< as `crossing`
 };
@@ -36,14 +37,14 @@ struct OrbitRecord {
   std::vector<double> stability;              ///< stability_width(header) values (schema.hpp), or empty: not computed
   std::vector<double> fundamental_stability;  ///< the same
   double stability_error = not_computed;
-  std::vector<double> state;                  ///< dimension, at s = 0
+  std::vector<double> state;  ///< dimension, at s = 0
   double closure = not_computed;
   double single_shot = not_computed;
   double energy_drift = not_computed;
   double tail = not_computed;
-  std::vector<double> modes;                  ///< (2 cutoff + 1) x dimension
-  std::vector<double> time_map;               ///< empty = identity
-  std::vector<double> winding;                ///< one an angle, or empty: not computed
+  std::vector<double> modes;     ///< (2 cutoff + 1) x dimension
+  std::vector<double> time_map;  ///< empty = identity
+  std::vector<double> winding;   ///< one an angle, or empty: not computed
 };
 
 /// One row of /crossings.
@@ -74,10 +75,10 @@ struct SectionRecord {
 /// What stands on the root group and fixes the width of vector columns.
 struct Header {
   std::string orbweaver_version;
-  std::string scene;                        ///< the YAML text
+  std::string scene;  ///< the YAML text
   std::vector<std::string> state_names;
   std::vector<std::string> winding_names;
-  int pairs = 0;                            ///< width of the stability columns
+  int pairs = 0;  ///< width of the stability columns
   bool symplectic = true;
 };
 

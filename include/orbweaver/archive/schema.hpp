@@ -32,11 +32,13 @@ struct TableSpec {
   std::vector<ColumnSpec> columns;
 };
 
-/// True where a stability value is a complex number, stored as re, im: multipliers of a system that is not symplectic, and
-/// the indices of two or more symplectic pairs, which leave the real axis in a Krein collision. One pair's index is real.
+/// True where a stability value is a complex number, stored as re, im: multipliers of a system that is not symplectic,
+/// and the indices of two or more symplectic pairs, which leave the real axis in a Krein collision. One pair's index is
+/// real.
 [[nodiscard]] bool has_complex_stability(const Header& header);
 
-/// Doubles in OrbitRecord::stability and ::fundamental_stability: pairs, or 2 pairs (re, im, re, im, ...) where complex.
+/// Doubles in OrbitRecord::stability and ::fundamental_stability: pairs, or 2 pairs (re, im, re, im, ...) where
+/// complex.
 [[nodiscard]] std::size_t stability_width(const Header& header);
 
 /// The tables of an atlas (docs/file_format.md). Widths of vector columns come from the header.

@@ -17,8 +17,8 @@ namespace orbweaver::archive {
 /// families and crossings are few, change until a survey ends, and are handed to `consolidate` by rank 0.
 ///
 /// Throws, on all ranks alike: MisuseError if a record of any rank is invalid or the ranks' headers differ or a rank
-/// gives families or crossings; EnvironmentError if the file cannot be created, written, synced or renamed (PATH.part is
-/// then removed and an older PATH is untouched).
+/// gives families or crossings; EnvironmentError if the file cannot be created, written, synced or renamed (PATH.part
+/// is then removed and an older PATH is untouched).
 void write_segment(MPI_Comm comm, const std::filesystem::path& path, const Header& header, const Records& mine);
 
 /// What a valid segment holds.
@@ -29,8 +29,8 @@ struct SegmentInfo {
   std::uint64_t mode_values = 0;
 };
 
-/// Checks a segment from end to end, except the numbers themselves: whole file, version, columns, lengths and indices. Not
-/// collective. Throws InputError, with what is wrong, for a torn or foreign file.
+/// Checks a segment from end to end, except the numbers themselves: whole file, version, columns, lengths and indices.
+/// Not collective. Throws InputError, with what is wrong, for a torn or foreign file.
 SegmentInfo inspect_segment(const std::filesystem::path& path);
 
 }  // namespace orbweaver::archive

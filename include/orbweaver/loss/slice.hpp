@@ -26,6 +26,8 @@ class Slice {
   [[nodiscard]] Eigen::VectorXd reduce(const Eigen::VectorXd& u) const;
   /// Q' H Q of a symmetric dense matrix (free x free).
   [[nodiscard]] core::Handle<Mat> reduce_symmetric(const core::Handle<Mat>& matrix) const;
+  /// The same into an existing matrix of size free x free.
+  void reduce_symmetric(const core::Handle<Mat>& matrix, const core::Handle<Mat>& out) const;
   /// J Q of a dense matrix (rows x free).
   [[nodiscard]] core::Handle<Mat> reduce_columns(const core::Handle<Mat>& matrix) const;
 

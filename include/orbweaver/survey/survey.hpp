@@ -1,11 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "orbweaver/core/communicator.hpp"
 #include "orbweaver/scene/scene.hpp"
+#include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::survey {
 
@@ -42,8 +44,10 @@ enum class Display { none, lines, live };
 /// Surveys a scene into `directory`/atlas.h5: equilibria, sweeps, then every family found, as tasks of the queue
 /// (docs/architecture.md). Collective over `comm`; works with any number of ranks, and the datasets of the archive have
 /// the same bytes for all of them. Failed tasks are recorded and do not stop the others.
-/// Throws InputError or EnvironmentError, on all ranks alike, if the scene cannot be begun or a flush fails.
-[[nodiscard]] Summary run_survey(const core::Communicator& comm, const scene::Scene& scene, const std::filesystem::path& directory,
+/// `system` is the scene's system (systems::make_system). Throws InputError or EnvironmentError, on all ranks alike, if the
+/// scene cannot be begun or a flush fails.
+[[nodiscard]] Summary run_survey(const core::Communicator& comm, const scene::Scene& scene,
+                                 const std::shared_ptr<const systems::System>& system, const std::filesystem::path& directory,
                                  Display display);
 
 /// The summary as a table for people.

@@ -58,6 +58,9 @@ struct BranchOutcome {
   double period_to = 0.0;
   double energy_from = 0.0;
   double energy_to = 0.0;
+  double last_period = 0.0;
+  double last_energy = 0.0;
+  int last_cutoff = 0;
   std::string end_reason;
 };
 

@@ -1,0 +1,90 @@
+#include "loss/cases.hpp"
+
+#include <map>
+#include <stdexcept>
+
+#include "loop/samples.hpp"
+
+namespace orbweaver::test {
+
+namespace {
+
+Case free_case(const std::string& system, int cutoff, bool period, std::vector<double> winding = {}) {
+  auto made = systems::make_system(system);
+  loop::Loop loop = random_loop(made->dimension(), cutoff, 61);
+  if (!winding.empty()) loop.winding = std::move(winding);
+  loop::Subspace all = loop::Subspace::unrestricted(loop.dimension, cutoff);
+  return {std::move(made), std::move(loop), {std::move(all), period}};
+}
+
+Case symmetric_case(const std::string& system, const loop::Isotropy& isotropy, const std::vector<double>& mean,
+                    bool period, std::vector<int> signs = {}) {
+  auto made = systems::make_system(system);
+  const loop::Loop base = loop::constant_loop(mean, 4.2, 9);
+  loop::Loop loop = random_loop_in(loop::Subspace(4, 9, isotropy), base, 62);
+  loop::Subspace sector(4, 9, isotropy, signs);
+  return {std::move(made), std::move(loop), {std::move(sector), period}};
+}
+
+loop::Isotropy of_pendulum() {
+  const systems::Description& pendulum = systems::describe_system("double_pendulum");
+  return {element_of(pendulum, "S", 1, 2), element_of(pendulum, "R")};
+}
+
+loop::Isotropy of_rotation() { return {element_of(systems::describe_system("henon_heiles"), "C", 1, 3)}; }
+
+}  // namespace
+
+std::vector<std::string> case_names() {
+  return {"pendulum_free_period",
+          "pendulum_free",
+          "pendulum_symmetric_period",
+          "pendulum_symmetric",
+          "pendulum_inverted_period",
+          "pendulum_winding_period",
+          "henon_free",
+          "henon_rotation_period",
+          "oscillator_period"};
+}
+
+std::vector<std::string> all_case_names() {
+  std::vector<std::string> names = case_names();
+  for (const char* sector : {"pendulum_breaking_mirror", "pendulum_breaking_reversor", "pendulum_breaking_both"})
+    names.emplace_back(sector);
+  return names;
+}
+
+Case make_case(const std::string& name) {
+  const std::vector<double> origin(4, 0.0);
+  if (name == "pendulum_free_period") return free_case("double_pendulum", 5, true);
+  if (name == "pendulum_free") return free_case("double_pendulum", 5, false);
+  if (name == "pendulum_symmetric_period") return symmetric_case("double_pendulum", of_pendulum(), origin, true);
+  if (name == "pendulum_symmetric") return symmetric_case("double_pendulum", of_pendulum(), origin, false);
+  if (name == "pendulum_inverted_period")
+    return symmetric_case("double_pendulum", of_pendulum(), {0.0, std::numbers::pi, 0.0, 0.0}, true);
+  if (name == "pendulum_winding_period") return free_case("double_pendulum", 5, true, {1.0, -2.0, 0.0, 0.0});
+  if (name == "henon_free") return free_case("henon_heiles", 4, false);
+  if (name == "henon_rotation_period") return symmetric_case("henon_heiles", of_rotation(), origin, true);
+  if (name == "oscillator_period") return free_case("harmonic_oscillator", 3, true);
+  if (name == "pendulum_breaking_mirror")
+    return symmetric_case("double_pendulum", of_pendulum(), origin, false, {-1, 1});
+  if (name == "pendulum_breaking_reversor")
+    return symmetric_case("double_pendulum", of_pendulum(), origin, false, {1, -1});
+  if (name == "pendulum_breaking_both")
+    return symmetric_case("double_pendulum", of_pendulum(), origin, false, {-1, -1});
+  throw std::invalid_argument("no case " + name);
+}
+
+Eigen::VectorXd unit_direction(int size, std::uint64_t seed) {
+  return vector_of(random_values(static_cast<std::size_t>(size), seed)).normalized();
+}
+
+loss::Linearization linearize(const Case& sample, const Eigen::VectorXd& u, loss::Linearization::Order order) {
+  return {*sample.system, sample.unknowns.moved(sample.loop, view(u)), order};
+}
+
+loss::Linearization linearize(const Case& sample, loss::Linearization::Order order) {
+  return {*sample.system, sample.loop, order};
+}
+
+}  // namespace orbweaver::test
