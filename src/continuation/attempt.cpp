@@ -30,6 +30,27 @@ double state_change(const loop::Loop& loop, const Direction& direction) {
   return std::sqrt(sum);
 }
 
+Eigen::MatrixXd conditions_at(const loop::Loop& guess, const loss::Unknowns& unknowns, const Eigen::VectorXd& normal) {
+  std::vector<double> shift = unknowns.time_shift_direction(guess);
+  const Eigen::Map<const Eigen::VectorXd> direction(shift.data(), static_cast<Eigen::Index>(shift.size()));
+  const double length = direction.norm();
+  if (length < 1e-8 * loop::rms_amplitude(guess)) return normal;
+  Eigen::MatrixXd conditions(normal.size(), 2);
+  conditions << normal, direction / length;
+  return conditions;
+}
+
+namespace {
+
+// A tangent does not shift the phase.
+Eigen::VectorXd without_shift(const Eigen::MatrixXd& conditions) {
+  Eigen::VectorXd normal = conditions.col(0);
+  if (conditions.cols() > 1) normal -= conditions.col(1).dot(normal) * conditions.col(1);
+  return normal.normalized();
+}
+
+}  // namespace
+
 Attempt correct_along(const systems::System& system, const loop::Loop& base, const Direction& direction, double length,
                       const loop::Isotropy& isotropy, const corrector::Options& options) {
   const loss::Unknowns unknowns{loop::Subspace(base.dimension, base.cutoff, isotropy), true};
@@ -46,7 +67,9 @@ Attempt correct_along(const systems::System& system, const loop::Loop& base, con
     attempt.result.detail = fmt::format("the predicted period is {:.6g}", guess.period);
     return attempt;
   }
-  attempt.result = corrector::correct(system, guess, unknowns, loss::Slice(unknowns.size(), normal), options, normal);
+  const Eigen::MatrixXd conditions = conditions_at(guess, unknowns, normal);
+  normal = without_shift(conditions);
+  attempt.result = corrector::correct(system, guess, unknowns, loss::Slice(unknowns.size(), conditions), options, normal);
   if (!attempt.result.converged()) return attempt;
   const Eigen::VectorXd& tangent = attempt.result.flat_direction.value();
   attempt.turning = std::acos(std::clamp(tangent.dot(normal), -1.0, 1.0));

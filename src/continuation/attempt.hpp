@@ -4,6 +4,7 @@
 
 #include "orbweaver/continuation/branch.hpp"
 #include "orbweaver/corrector/correct.hpp"
+#include "orbweaver/loss/unknowns.hpp"
 
 namespace orbweaver::continuation {
 
@@ -27,6 +28,10 @@ struct Attempt {
   Direction tangent;      ///< unit flat direction at the result, on the side of the one it was predicted along
   double turning = 0.0;   ///< angle between the two, radians
 };
+
+/// The conditions under which `guess` is corrected: the step orthogonal to `normal`, and orthogonal to the time shift where
+/// the subspace contains it (the phase condition of loops without a reversor; paper, section II B). One a column.
+[[nodiscard]] Eigen::MatrixXd conditions_at(const loop::Loop& guess, const loss::Unknowns& unknowns, const Eigen::VectorXd& normal);
 
 /// Predicts base + length * direction / |direction| and corrects it with the step held orthogonal to the direction, in
 /// the subspace of `isotropy` (paper, section III B).

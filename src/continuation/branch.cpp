@@ -246,7 +246,8 @@ corrector::Result orbit_at_period(const systems::System& system, const loop::Loo
   while (true) {
     const loss::Unknowns unknowns{loop::Subspace(guess.dimension, guess.cutoff, isotropy), true};
     const Eigen::VectorXd pinned = Eigen::VectorXd::Unit(unknowns.size(), unknowns.size() - 1);
-    corrector::Result result = corrector::correct(system, guess, unknowns, loss::Slice(unknowns.size(), pinned), options.corrector);
+    corrector::Result result =
+        corrector::correct(system, guess, unknowns, loss::Slice(unknowns.size(), conditions_at(guess, unknowns, pinned)), options.corrector);
     const int larger = loop::next_cutoff(guess.cutoff);
     if (!needs_more_harmonics(result, options) || larger > options.cutoff_to) return result;
     guess = loop::with_cutoff(guess, larger);

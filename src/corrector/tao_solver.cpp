@@ -49,10 +49,13 @@ PetscErrorCode hessian(Tao, Vec x, Mat h, Mat, void* raw) {
   return c.guard.run([&] {
     c.objective.hessian(loss::to_eigen(x), c.options.curvature, core::Handle<Mat>::share(h));
     if (c.options.curvature != loss::Curvature::gauss_newton) return;
-    // J'J is positive definite up to rounding; this keeps Cholesky from meeting a negative pivot of rounding size.
-    double norm = 0.0;
-    core::check(MatNorm(h, NORM_INFINITY, &norm), "MatNorm");
-    core::check(MatShift(h, 4.0 * std::numeric_limits<double>::epsilon() * norm), "MatShift");
+    // J'J is positive definite up to rounding; this keeps Cholesky from meeting a negative pivot of rounding size. A
+    // multiple of each diagonal entry, since the period's is as small as the square of the amplitude.
+    core::Handle<Vec> diagonal;
+    core::check(MatCreateVecs(h, diagonal.put(), nullptr), "MatCreateVecs");
+    core::check(MatGetDiagonal(h, diagonal.get()), "MatGetDiagonal");
+    core::check(VecScale(diagonal.get(), 4.0 * std::numeric_limits<double>::epsilon()), "VecScale");
+    core::check(MatDiagonalSet(h, diagonal.get(), ADD_VALUES), "MatDiagonalSet");
     core::check(MatSetOption(h, MAT_SPD, PETSC_TRUE), "MatSetOption");
   });
 }
@@ -62,7 +65,7 @@ PetscErrorCode residual(Tao, Vec x, Vec r, void* raw) {
   return c.guard.run([&] {
     const Eigen::VectorXd point = loss::to_eigen(x);
     if (!c.objective.defined_at(point)) {
-      // Finite, since TAO refuses infinite residuals; no line search accepts it.
+      // Finite, since TAO refuses infinite residuals; if a solver steps here all the same, the test below ends the run.
       loss::assign(r, Eigen::VectorXd::Constant(c.objective.rows(), 1e100));
       return;
     }

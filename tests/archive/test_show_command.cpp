@@ -19,7 +19,7 @@ struct Outcome {
 };
 
 Outcome run_show(const std::string& arguments) {
-  const std::string command = std::string(ORBWEAVER_PROGRAM) + " show " + arguments + " 2>&1";
+  const std::string command = std::string(ORBWEAVER_PROGRAM) + " 2>&1 show " + arguments;
   std::FILE* pipe = popen(command.c_str(), "r");
   Outcome outcome;
   for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) outcome.out += static_cast<char>(c);
@@ -66,7 +66,9 @@ TEST_F(ShowCommand, WrongInputExitsWithTwo) {
 }
 
 TEST_F(ShowCommand, AFullOutputIsAnEnvironmentFailure) {
-  EXPECT_EQ(run_show(atlas + " orbits --json > /dev/full").status, 3);
+  const Outcome outcome = run_show(atlas + " orbits --json > /dev/full");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.out, HasSubstr("standard output"));
 }
 
 }  // namespace
