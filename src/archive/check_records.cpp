@@ -59,14 +59,15 @@ void check_key(const std::string& record, const std::string& key) {
   check_text(record, "the family key", key);
 }
 
+// The text is made only when it is needed: modes are many.
 void check_finite(const std::string& record, const char* member, double value) {
-  expect(std::isfinite(value), record, fmt::format("{} is {}; a finite number was expected", member, value));
+  if (!std::isfinite(value)) refuse(record, fmt::format("{} is {}; a finite number was expected", member, value));
 }
 
 void check_size(const std::string& record, const char* member, std::size_t size, std::size_t expected,
                 const std::string& because) {
-  expect(size == expected, record,
-         fmt::format("{} holds {} values; {} were expected ({})", member, size, expected, because));
+  if (size != expected)
+    refuse(record, fmt::format("{} holds {} values; {} were expected ({})", member, size, expected, because));
 }
 
 void check_vector(const std::string& record, const char* member, const std::vector<double>& values,

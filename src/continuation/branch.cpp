@@ -111,13 +111,22 @@ struct Branch::Implementation {
           return end(EndReason::cutoff_limit, fmt::format("the first orbit needs more than K = {}", options.cutoff_to));
       } else if (attempt.result.converged()) {
         frontier.next_length = length;
-        return accept(attempt);
+        return accept_first(attempt);
       } else {
         amplitude *= 0.5;
         if (amplitude < 1e-6 * options.start_amplitude)
           return end(EndReason::failure, fmt::format("no orbit near the start: {}", attempt.result.detail));
       }
     }
+  }
+
+  std::optional<Orbit> accept_first(const Attempt& attempt) {
+    const double period = attempt.result.loop.period;
+    const double energy = energy_of(*system, attempt.result.loop);
+    if (period > options.period_limit) return end(EndReason::period_limit, fmt::format("begins beyond it, at T = {:.9g}", period));
+    if (energy > options.energy_to || energy < options.energy_from)
+      return end(EndReason::energy_limit, fmt::format("begins beyond it, at E = {:.9g}", energy));
+    return accept(attempt);
   }
 
   [[nodiscard]] double length_to_try() const {

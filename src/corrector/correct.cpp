@@ -134,10 +134,6 @@ Result correct(const systems::System& system, const loop::Loop& guess, const los
   } catch (const core::NumericalError& error) {
     result.outcome = Outcome::singular;
     result.detail = error.what();
-  } catch (const core::EnvironmentError& error) {
-    // A direct solver inside TAO that meets a zero pivot reports an error of PETSc's.
-    result.outcome = Outcome::singular;
-    result.detail = error.what();
   }
   return result;
 }

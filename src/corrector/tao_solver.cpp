@@ -7,6 +7,7 @@
 #include <petsctao.h>
 
 #include "orbweaver/core/check.hpp"
+#include "orbweaver/core/error.hpp"
 #include "orbweaver/core/handle.hpp"
 #include "orbweaver/loss/dense.hpp"
 
@@ -198,6 +199,8 @@ TaoRun run_tao(Objective& objective, const Options& options) {
 
   const PetscErrorCode code = TaoSolve(tao.get());
   context.guard.rethrow();
+  if (code == PETSC_ERR_MAT_CH_ZRPVT || code == PETSC_ERR_MAT_LU_ZRPVT)
+    throw core::NumericalError("the Hessian on the slice has a pivot that is not positive: the loss is flat in more than one direction");
   core::check(code, "TaoSolve");
 
   TaoRun run;

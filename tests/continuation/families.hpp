@@ -1,0 +1,64 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "orbweaver/continuation/branch.hpp"
+#include "spectrum/pendulum_loops.hpp"
+
+namespace orbweaver::test {
+
+inline std::shared_ptr<const systems::System> pendulum() {
+  static const std::shared_ptr<const systems::System> system = systems::make_system("double_pendulum");
+  return system;
+}
+
+/// The start of a family as the sweep hands it over: the equilibrium with its normal mode.
+inline continuation::Start start_of(const PendulumMode& mode, int cutoff = 10) {
+  continuation::Start start;
+  start.base = loop::constant_loop(mode.point, mode.period(), cutoff);
+  start.direction = linear_loop(mode, 1.0, cutoff).modes;
+  for (std::size_t i = 0; i < 4; ++i) start.direction[i] = 0.0;
+  start.isotropy = pendulum_isotropy(*pendulum());
+  return start;
+}
+
+struct Trace {
+  std::vector<continuation::Orbit> orbits;
+  continuation::Ending ending;
+
+  [[nodiscard]] const continuation::Orbit& last() const { return orbits.back(); }
+};
+
+inline Trace trace_of(std::shared_ptr<const systems::System> system, const continuation::Start& start,
+                      const continuation::Options& options) {
+  Trace out;
+  out.ending = continuation::trace(std::move(system), start, options, [&](const continuation::Orbit& orbit) {
+    out.orbits.push_back(orbit);
+    return true;
+  });
+  return out;
+}
+
+inline Trace trace_of(const PendulumMode& mode, const continuation::Options& options) {
+  return trace_of(pendulum(), start_of(mode), options);
+}
+
+/// The family from its equilibrium to T = 12 with adaptive steps, traced once a process.
+inline const Trace& family_to_twelve(const PendulumMode& mode) {
+  static std::map<std::string, Trace> traced;
+  if (traced.count(mode.name) == 0) traced[mode.name] = trace_of(mode, {.period_limit = 12.0});
+  return traced[mode.name];
+}
+
+/// The orbit of a traced family with exactly this period.
+inline corrector::Result orbit_at(const Trace& family, double period) {
+  const continuation::Orbit* nearest = &family.orbits.front();
+  for (const continuation::Orbit& orbit : family.orbits)
+    if (std::abs(orbit.loop.period - period) < std::abs(nearest->loop.period - period)) nearest = &orbit;
+  return continuation::orbit_at_period(*pendulum(), nearest->loop, pendulum_isotropy(*pendulum()), period, {});
+}
+
+}  // namespace orbweaver::test
