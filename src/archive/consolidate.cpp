@@ -62,9 +62,7 @@ class Blocks {
     if (_at == rows) return false;
     const std::size_t end = std::clamp(position(_weight_before[_at] + _budget), _at + 1, rows);
     const std::uint64_t weight = _weight_before[end] - _weight_before[_at];
-    const auto cut = [&](std::uint64_t rank) {
-      return std::min(position(_weight_before[_at] + weight * rank / _ranks), end);
-    };
+    const auto cut = [&](std::uint64_t rank) { return position(_weight_before[_at] + weight * rank / _ranks); };
     mine = {_rank == 0 ? _at : cut(_rank), _rank + 1 == _ranks ? end : cut(_rank + 1)};
     _at = end;
     return true;

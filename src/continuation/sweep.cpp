@@ -70,6 +70,25 @@ loop::Isotropy isotropy_of(const systems::Description& system, std::span<const d
   return loop::find_isotropy(system, loop, 1e-7);
 }
 
+NormalMode normal_mode(const systems::System& system, std::span<const double> fixed_point, const LinearModes& linear,
+                       const LinearModes::Root& root, double grid_period, int cutoff) {
+  const systems::Description& description = system.description();
+  NormalMode mode;
+  mode.period = root.period;
+  mode.grid_period = grid_period;
+  mode.residual = root.residual;
+  mode.direction = direction_of(with_standard_phase(description, root.kernel.col(0)), cutoff);
+  mode.grid_direction = direction_of(with_standard_phase(description, linear.softest(1, grid_period)), cutoff);
+  mode.isotropy = isotropy_of(description, fixed_point, mode.period, mode.direction, cutoff);
+  return mode;
+}
+
+std::string why_rejected(int k, const LinearModes::Root& root) {
+  if (k > 1) return fmt::format("{} times around the oscillation with T = {:.12g}", k, root.period / k);
+  return fmt::format("{} oscillations share this period: telling their families apart needs the bifurcation layer, which is not built yet",
+                     root.multiplicity);
+}
+
 }  // namespace
 
 SweepResult sweep(const systems::System& system, std::span<const double> fixed_point, const SweepOptions& options) {
@@ -86,30 +105,27 @@ SweepResult sweep(const systems::System& system, std::span<const double> fixed_p
     result.table.push_back(s.point);
     harmonics.push_back(s.harmonic);
   }
+  std::vector<double> last_found(static_cast<std::size_t>(options.cutoff) + 1, 0.0);
   for (std::size_t n = 1; n + 1 < result.table.size(); ++n) {
     const SweepPoint& here = result.table[n];
     if (!(here.eigenvalue < result.table[n - 1].eigenvalue && here.eigenvalue <= result.table[n + 1].eigenvalue)) continue;
-    const int k = harmonics[n];
-    if (k == 0) continue;  // the mean of the loop: does not depend on T, its minima are rounding
-    const auto root = linear.root(k, result.table[n - 1].period, here.period, result.table[n + 1].period);
-    if (!root) {
-      result.rejected.push_back({here.period, "a dip that does not reach zero: no small oscillation with this period"});
-    } else if (k > 1) {
-      result.rejected.push_back({root->period, fmt::format("{} times around the oscillation with T = {:.12g}", k, root->period / k)});
-    } else if (root->multiplicity > 1) {
-      result.rejected.push_back({root->period, fmt::format("{} oscillations share this period: telling their families apart needs "
-                                                           "the bifurcation layer, which is not built yet", root->multiplicity)});
-    } else {
-      const systems::Description& description = system.description();
-      NormalMode mode;
-      mode.period = root->period;
-      mode.grid_period = here.period;
-      mode.residual = root->residual;
-      mode.direction = direction_of(with_standard_phase(description, root->kernel.col(0)), options.cutoff);
-      mode.grid_direction = direction_of(with_standard_phase(description, linear.softest(k, here.period)), options.cutoff);
-      mode.isotropy = isotropy_of(description, fixed_point, mode.period, mode.direction, options.cutoff);
-      result.modes.push_back(std::move(mode));
+    bool reaches_zero = false;
+    // All harmonics, not only the softest one: dips that lie closer together than a step show as one.
+    for (int k = 1; k <= options.cutoff; ++k) {
+      const auto root = linear.root(k, result.table[n - 1].period, here.period, result.table[n + 1].period);
+      if (!root) continue;
+      reaches_zero = true;
+      double& known = last_found[static_cast<std::size_t>(k)];
+      if (std::abs(root->period - known) < 1e-9 * root->period) continue;
+      known = root->period;
+      if (k == 1 && root->multiplicity == 1)
+        result.modes.push_back(normal_mode(system, fixed_point, linear, *root, here.period, options.cutoff));
+      else
+        result.rejected.push_back({root->period, why_rejected(k, *root)});
     }
+    // Harmonic 0 is the mean of the loop: it does not depend on T, its minima are rounding.
+    if (!reaches_zero && harmonics[n] > 0)
+      result.rejected.push_back({here.period, "a dip that does not reach zero: no small oscillation with this period"});
   }
   std::stable_sort(result.modes.begin(), result.modes.end(), [](const NormalMode& a, const NormalMode& b) { return a.period > b.period; });
   return result;

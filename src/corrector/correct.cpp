@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "newton_krylov.hpp"
 #include "objective.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/spectrum/sliced_hessian.hpp"
@@ -61,15 +62,15 @@ bool tail_is_heavy(const loop::Loop& loop, double threshold, const Options& opti
   return rate * loop.cutoff * loop::tail(loop) > options.tail_tolerance * threshold;
 }
 
-Outcome outcome_of(const TaoRun& run, const loop::Loop& loop, double threshold, const Options& options) {
-  switch (run.stop) {
+Outcome outcome_of(Stop stop, const loop::Loop& loop, double threshold, const Options& options) {
+  switch (stop) {
     case Stop::threshold: return Outcome::converged;
     case Stop::iterations:
     case Stop::stagnation:
     case Stop::tao:
       if (is_second_order(options.method) && tail_is_heavy(loop, threshold, options)) return Outcome::under_resolved;
-      return run.stop == Stop::iterations ? Outcome::iteration_limit
-             : run.stop == Stop::stagnation ? Outcome::stalled : Outcome::solver_failed;
+      return stop == Stop::iterations ? Outcome::iteration_limit
+             : stop == Stop::stagnation ? Outcome::stalled : Outcome::solver_failed;
     case Stop::none: break;
   }
   return Outcome::solver_failed;
@@ -87,6 +88,89 @@ double acceptance_threshold(const loop::Loop& loop, const loss::Linearization& l
   return std::max(tolerance * std::min(1.0, loop::rms_speed(loop)), rounding);
 }
 
+namespace {
+
+// Sets outcome and detail of a result whose loop, loss, threshold and Newton step are known.
+void judge(Result& result, Stop stop, const std::string& solver_reason, const Options& options) {
+  result.outcome = outcome_of(stop, result.loop, result.threshold, options);
+  if (result.outcome != Outcome::converged) {
+    result.detail = fmt::format("{} after {} iterations at sqrt(loss) = {:.3g}, wanted {:.3g}, K = {} ({})", name_of(result.outcome),
+                                result.iterations, result.loss_rms, result.threshold, result.loop.cutoff, solver_reason);
+  } else if (result.newton_step > options.step_tolerance * (1.0 + length(result.loop))) {
+    result.outcome = Outcome::stalled;
+    result.detail = fmt::format("sqrt(loss) = {:.3g} is under its threshold, but the Newton step is still {:.3g}: the loss is flat in "
+                                "more than one direction here", result.loss_rms, result.newton_step);
+  }
+}
+
+Result period_lost(Result result) {
+  result.outcome = Outcome::period_not_positive;
+  result.detail = fmt::format("the period became {:.6g}", result.loop.period);
+  return result;
+}
+
+Result correct_by_tao(const systems::System& system, const loop::Loop& guess, const loss::Unknowns& unknowns, const loss::Slice& slice,
+                      const Options& options, const std::optional<Eigen::VectorXd>& normal) {
+  const auto order = options.curvature == loss::Curvature::full ? loss::Linearization::Order::second : loss::Linearization::Order::jacobian;
+  Result result;
+  Objective objective(system, guess, unknowns, slice, order);
+  const TaoRun run = run_tao(objective, options);
+  result.iterations = run.iterations;
+  result.loop = objective.loop_at(run.x);
+  if (!(result.loop.period > 0.0)) return period_lost(result);
+  const loss::Linearization& lin = objective.at(run.x);
+  result.loss_rms = std::sqrt(lin.loss());
+  result.threshold = acceptance_threshold(result.loop, lin, options.tolerance);
+  if (run.stop == Stop::threshold) {
+    const Polished polished = polish(system, result.loop, unknowns, slice, normal, is_second_order(options.method));
+    result.loop = polished.loop;
+    result.loss_rms = polished.loss_rms;
+    result.newton_step = polished.newton_step;
+    if (normal) result.flat_direction = polished.flat_direction;
+  }
+  judge(result, run.stop, fmt::format("TAO: {}", run.tao_reason), options);
+  return result;
+}
+
+Result correct_by_newton_krylov(const systems::System& system, const loop::Loop& guess, const loss::Unknowns& unknowns,
+                                const loss::Slice& slice, const Options& options, bool want_flat_direction) {
+  NewtonKrylovRun run = run_newton_krylov(system, guess, unknowns, slice, options, want_flat_direction);
+  Result result;
+  result.loop = std::move(run.loop);
+  result.iterations = run.iterations;
+  result.inner_iterations = run.inner_iterations;
+  result.newton_step = run.newton_step;
+  result.flat_direction = std::move(run.flat_direction);
+  if (!(result.loop.period > 0.0)) return period_lost(result);
+  const loss::Linearization lin(system, result.loop, loss::Linearization::Order::jacobian);
+  result.loss_rms = std::sqrt(lin.loss());
+  result.threshold = acceptance_threshold(result.loop, lin, options.tolerance);
+  const bool kept = result.loss_rms < result.threshold;
+  judge(result, run.stop == Stop::threshold && !kept ? Stop::stagnation : run.stop, "newton-krylov", options);
+  return result;
+}
+
+Result dispatch(const systems::System& system, const loop::Loop& guess, const loss::Unknowns& unknowns, const loss::Slice& slice,
+                const Options& options, const std::optional<Eigen::VectorXd>& normal) {
+  const bool large = unknowns.size() >= options.krylov_from;
+  const bool wanted = options.method == Method::newton_krylov || (options.method == Method::automatic && large);
+  if (!wanted || !newton_krylov_applies(system, unknowns, slice)) {
+    core::require(options.method != Method::newton_krylov, "newton-krylov needs a square problem: one condition without, or two with a "
+                                                           "phase condition and a conservative system, and a free period");
+    return correct_by_tao(system, guess, unknowns, slice, options, normal);
+  }
+  if (options.method == Method::newton_krylov) return correct_by_newton_krylov(system, guess, unknowns, slice, options, normal.has_value());
+  try {
+    return correct_by_newton_krylov(system, guess, unknowns, slice, options, normal.has_value());
+  } catch (const core::NotFiniteError&) {
+    throw;
+  } catch (const core::NumericalError&) {
+    return correct_by_tao(system, guess, unknowns, slice, options, normal);
+  }
+}
+
+}  // namespace
+
 Result correct(const systems::System& system, const loop::Loop& guess, const loss::Unknowns& unknowns, const loss::Slice& slice,
                const Options& options, const std::optional<Eigen::VectorXd>& normal) {
   core::require(slice.unknowns() == unknowns.size(), "the slice belongs to other unknowns");
@@ -97,37 +181,8 @@ Result correct(const systems::System& system, const loop::Loop& guess, const los
     result.detail = fmt::format("the guess has the period {:.6g}", guess.period);
     return result;
   }
-  const auto order = options.curvature == loss::Curvature::full ? loss::Linearization::Order::second : loss::Linearization::Order::jacobian;
   try {
-    Objective objective(system, guess, unknowns, slice, order);
-    const TaoRun run = run_tao(objective, options);
-    result.iterations = run.iterations;
-    result.loop = objective.loop_at(run.x);
-    if (!(result.loop.period > 0.0)) {
-      result.outcome = Outcome::period_not_positive;
-      result.detail = fmt::format("the period became {:.6g}", result.loop.period);
-      return result;
-    }
-    const loss::Linearization& lin = objective.at(run.x);
-    result.loss_rms = std::sqrt(lin.loss());
-    result.threshold = acceptance_threshold(result.loop, lin, options.tolerance);
-    result.outcome = outcome_of(run, result.loop, result.threshold, options);
-    if (result.outcome != Outcome::converged) {
-      result.detail = fmt::format("{} after {} iterations at sqrt(loss) = {:.3g}, wanted {:.3g}, K = {} (TAO: {})",
-                                  name_of(result.outcome), run.iterations, result.loss_rms, result.threshold, result.loop.cutoff,
-                                  run.tao_reason);
-      return result;
-    }
-    const Polished polished = polish(system, result.loop, unknowns, slice, normal, is_second_order(options.method));
-    result.loop = polished.loop;
-    result.loss_rms = polished.loss_rms;
-    result.newton_step = polished.newton_step;
-    if (normal) result.flat_direction = polished.flat_direction;
-    if (result.newton_step > options.step_tolerance * (1.0 + length(result.loop))) {
-      result.outcome = Outcome::stalled;
-      result.detail = fmt::format("sqrt(loss) = {:.3g} is under its threshold, but the Newton step is still {:.3g}: the loss is flat "
-                                  "in more than one direction here", result.loss_rms, result.newton_step);
-    }
+    return dispatch(system, guess, unknowns, slice, options, normal);
   } catch (const core::NotFiniteError& error) {
     result.outcome = Outcome::not_finite;
     result.detail = error.what();

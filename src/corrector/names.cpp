@@ -16,7 +16,9 @@ struct MethodName {
   bool second_order;
 };
 
-constexpr std::array<MethodName, 6> methods{{
+constexpr std::array<MethodName, 8> methods{{
+    {Method::automatic, "automatic", true},
+    {Method::newton_krylov, "newton-krylov", true},
     {Method::brgn, "brgn", true},
     {Method::nls, "nls", true},
     {Method::ntr, "ntr", true},

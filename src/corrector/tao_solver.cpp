@@ -120,6 +120,8 @@ PetscErrorCode convergence_test(Tao tao, void* raw) {
 
 TaoType type_of(Method method) {
   switch (method) {
+    case Method::automatic:
+    case Method::newton_krylov: break;
     case Method::brgn: return TAOBRGN;
     case Method::nls: return TAONLS;
     case Method::ntr: return TAONTR;
@@ -186,7 +188,7 @@ TaoRun run_tao(Objective& objective, const Options& options) {
       core::check(TaoSetHessian(tao.get(), matrix.get(), matrix.get(), hessian, &context), "TaoSetHessian");
     }
   }
-  if (options.method == Method::nls) solve_directly(tao.get(), KSPPREONLY);
+  if (options.method == Method::nls || options.method == Method::automatic) solve_directly(tao.get(), KSPPREONLY);
   if (options.method == Method::ntr) solve_directly(tao.get(), KSPSTCG);
   core::check(TaoSetFromOptions(tao.get()), "TaoSetFromOptions");
   if (options.method == Method::brgn) {

@@ -43,7 +43,7 @@ FourierGrid::~FourierGrid() {
 }
 
 const FourierGrid& FourierGrid::of_size(int nodes) {
-  core::require(nodes >= 2 && nodes % 2 == 0, "a Fourier grid needs an even number of at least two nodes");
+  core::require(nodes >= 2, "a Fourier grid needs at least two nodes");
   static std::map<int, std::unique_ptr<FourierGrid>> grids;
   std::unique_ptr<FourierGrid>& grid = grids[nodes];
   if (!grid) grid.reset(new FourierGrid(nodes));
@@ -62,7 +62,7 @@ void FourierGrid::synthesize(int cutoff, int dimension, const double* modes, dou
   const auto n = static_cast<std::size_t>(_nodes);
   const auto d = static_cast<std::size_t>(dimension);
   for (std::size_t i = 0; i < d; ++i) {
-    std::fill_n(&_plans->complex[0][0], n + 2, 0.0);
+    std::fill_n(&_plans->complex[0][0], 2 * (n / 2 + 1), 0.0);
     _plans->complex[0][0] = modes[i];
     for (int k = 1; k <= cutoff; ++k) {
       const auto kk = static_cast<std::size_t>(k);
@@ -79,7 +79,7 @@ void FourierGrid::synthesize_derivative(int cutoff, int dimension, const double*
   const auto n = static_cast<std::size_t>(_nodes);
   const auto d = static_cast<std::size_t>(dimension);
   for (std::size_t i = 0; i < d; ++i) {
-    std::fill_n(&_plans->complex[0][0], n + 2, 0.0);
+    std::fill_n(&_plans->complex[0][0], 2 * (n / 2 + 1), 0.0);
     for (int k = 1; k <= cutoff; ++k) {
       const auto kk = static_cast<std::size_t>(k);
       _plans->complex[kk][0] = 0.5 * k * modes[2 * kk * d + i];

@@ -66,7 +66,8 @@ int period_of_pattern(const Isotropy& isotropy) {
 Subspace Subspace::unrestricted(int dimension, int cutoff) { return {dimension, cutoff, Isotropy{}}; }
 
 Subspace::Subspace(int dimension, int cutoff, const Isotropy& isotropy, std::span<const int> signs)
-    : _dimension(dimension), _cutoff(cutoff) {
+    : _dimension(dimension), _cutoff(cutoff), _isotropy(isotropy), _signs(signs.begin(), signs.end()) {
+  if (_signs.empty()) _signs.assign(isotropy.size(), 1);
   core::require(dimension >= 1 && cutoff >= 1, "a subspace needs at least one coordinate and one harmonic");
   core::require(signs.empty() || signs.size() == isotropy.size(), "a sign a generator of the isotropy is needed");
   for (const SymmetryElement& g : isotropy)
@@ -87,6 +88,13 @@ Subspace::Subspace(int dimension, int cutoff, const Isotropy& isotropy, std::spa
     }
     append_harmonic(k, found->second);
   }
+}
+
+Subspace Subspace::image() const {
+  std::vector<int> signs = _signs;
+  for (std::size_t n = 0; n < signs.size(); ++n)
+    if (_isotropy[n].reversing) signs[n] = -signs[n];
+  return {_dimension, _cutoff, _isotropy, signs};
 }
 
 void Subspace::append_harmonic(int k, const Eigen::MatrixXd& basis) {

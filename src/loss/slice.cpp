@@ -18,7 +18,7 @@ Eigen::VectorXd rank_two_partner(const Matrix& h, const Eigen::VectorXd& v) {
 }  // namespace
 
 Slice::Slice(int unknowns, const Eigen::MatrixXd& conditions)
-    : _unknowns(unknowns), _conditions(static_cast<int>(conditions.cols())) {
+    : _unknowns(unknowns), _conditions(static_cast<int>(conditions.cols())), _given(conditions) {
   core::require(conditions.cols() == 0 || conditions.rows() == unknowns, "conditions need one entry an unknown");
   core::require(_conditions < unknowns, "more conditions than unknowns");
   for (int c = 0; c < _conditions; ++c) {

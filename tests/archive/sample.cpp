@@ -111,14 +111,14 @@ Header sample_header(int pairs, bool symplectic) {
 
 Records sample_records(const Header& header) {
   Records records;
-  records.families = {family("0003.0001", "Ästhetik \"B\", 1", "0003", 0), family("0003", "Out-Phase", "", -1),
+  records.families = {family("0003.0001", "Ästhetik \"B\", 1", "0003", 1), family("0003", "Out-Phase", "", -1),
                       family("0001", "In-Phase", "", -1), family("0002", "Up-Down", "", -1),
-                      family("0001.0002", "ID1", "0001", 1)};
+                      family("0001.0002", "ID1", "0001", 0)};
   records.families[0].multiplicity = 2;
   records.families[0].end_family_key = "0001.0002";
   records.families[0].end_crossing = 2;
   records.families[3].end_reason = "no first orbit could be found – the Newton iteration stalled";
-  records.crossings = {crossing("0003", 1.5, "branch-point"), crossing("0001", 2.5, "period-doubling"),
+  records.crossings = {crossing("0001", 2.5, "period-doubling"), crossing("0003", 1.5, "branch-point"),
                        crossing("0001", 0.5, "fold-energy")};
   add_orbits(records, header, "0003", -4, 4);
   add_orbits(records, header, "0001", 0, 11);

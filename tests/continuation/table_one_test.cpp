@@ -42,7 +42,8 @@ class TableOne : public testing::TestWithParam<Row> {};
 TEST_P(TableOne, RefinedPeriodBeatsThePaper) {
   const auto& [mode, paper, expected] = GetParam();
   const auto system = systems::make_system("double_pendulum");
-  const SweepResult result = sweep(*system, mode.point, {.period_from = mode.period() - 0.2, .period_to = mode.period() + 0.2});
+  const double grid_start = std::round(mode.period() * 10.0) / 10.0 - 0.2;
+  const SweepResult result = sweep(*system, mode.point, {.period_from = grid_start, .period_to = grid_start + 0.4});
   ASSERT_EQ(result.modes.size(), 1u);
   const NormalMode& found = result.modes[0];
   const double refined = deviation(*system, mode.point, found.direction, found.period);

@@ -135,12 +135,12 @@ TEST(Loop, MeasuresAgreeWithQuadrature) {
 }
 
 TEST(Loop, TailLooksAtTheLastEighth) {
-  Loop loop = constant_loop(std::vector<double>{9.0, 9.0}, 1.0, 40);
-  loop.cosine(35, 0) = 5.0;
+  Loop loop = constant_loop(std::vector<double>{9.0, 9.0}, 1.0, 42);
+  loop.cosine(37, 0) = 5.0;
   EXPECT_EQ(tail(loop), 0.0);
-  loop.cosine(36, 0) = 3.0;
-  loop.sine(36, 1) = 4.0;
-  loop.sine(40, 1) = 1.0;
+  loop.cosine(38, 0) = 3.0;
+  loop.sine(38, 1) = 4.0;
+  loop.sine(42, 1) = 1.0;
   EXPECT_DOUBLE_EQ(tail(loop), 5.0);
 }
 

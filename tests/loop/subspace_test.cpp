@@ -197,6 +197,35 @@ TEST(Subspace, PositiveSignsAreTheSubspaceItself) {
   EXPECT_EQ(basis_matrix(Subspace(4, 5, isotropy, std::vector<int>{1, 1})), basis_matrix(Subspace(4, 5, isotropy)));
 }
 
+// dz/ds of loops with g z = z has g w = w for equivariances, g w = -w for reversors.
+TEST(Subspace, ImageHoldsTheDerivativesOfItsLoops) {
+  for (const Sample& s : samples()) {
+    const Subspace subspace(4, 7, s.isotropy);
+    const Subspace image = subspace.image();
+    const Eigen::MatrixXd b = basis_matrix(image);
+    for (const SymmetryElement& g : s.isotropy)
+      EXPECT_LT((action_matrix(g, 4, 7) * b - (g.reversing ? -1.0 : 1.0) * b).norm(), 1e-12) << s.name;
+    const Loop loop = test::random_loop_in(subspace, constant_loop(std::vector<double>(4, 0.0), 1.0, 7), 35);
+    Loop slope = loop;
+    for (int i = 0; i < 4; ++i) slope.cosine(0, i) = 0.0;
+    for (int k = 1; k <= 7; ++k)
+      for (int i = 0; i < 4; ++i) {
+        slope.cosine(k, i) = k * loop.sine(k, i);
+        slope.sine(k, i) = -k * loop.cosine(k, i);
+      }
+    const Eigen::Map<const Eigen::VectorXd> modes(slope.modes.data(), 4 * 15);
+    ASSERT_GT(modes.norm(), 0.1) << s.name;
+    EXPECT_LT((b * (b.transpose() * modes) - modes).norm(), 1e-13 * modes.norm()) << s.name;
+    EXPECT_EQ(basis_matrix(image.image()), basis_matrix(subspace)) << s.name;
+  }
+}
+
+TEST(Subspace, ImageOfASectorFlipsItsSignsToo) {
+  const Isotropy isotropy{element_of(pendulum(), "S", 1, 2), element_of(pendulum(), "R")};
+  const Subspace image = Subspace(4, 5, isotropy, std::vector<int>{-1, -1}).image();
+  EXPECT_EQ(basis_matrix(image), basis_matrix(Subspace(4, 5, isotropy, std::vector<int>{-1, 1})));
+}
+
 TEST(Subspace, CoordinatesAndModesAreTwoViewsOfOneVector) {
   const Subspace subspace(4, 7, {element_of(galaxy(), "C", 1, 3), element_of(galaxy(), "RS")});
   const Eigen::MatrixXd b = basis_matrix(subspace);

@@ -52,6 +52,7 @@ TEST(Slice, BasisIsOrthonormalAndOrthogonalToTheConditions) {
   for (const Eigen::MatrixXd& c : condition_sets()) {
     const Slice slice(12, c);
     ASSERT_EQ(slice.free(), 12 - c.cols());
+    EXPECT_EQ(slice.conditions(), c);
     const Eigen::MatrixXd q = basis_of(slice);
     EXPECT_LT((q.transpose() * q - Eigen::MatrixXd::Identity(q.cols(), q.cols())).norm(), 1e-14);
     for (Eigen::Index n = 0; n < c.cols(); ++n) EXPECT_LT((q.transpose() * c.col(n)).norm(), 1e-14 * c.col(n).norm());

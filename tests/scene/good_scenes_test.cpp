@@ -101,7 +101,7 @@ TEST(GoodScene, EveryKeyButSystemAndStartsHasItsDefault) {
   EXPECT_EQ(s.continuation.tolerance, 1e-10);
   EXPECT_EQ(s.continuation.cutoff_from, 8);
   EXPECT_EQ(s.continuation.cutoff_to, 4096);
-  EXPECT_EQ(s.continuation.corrector, "nls");
+  EXPECT_EQ(s.continuation.corrector, "automatic");
   EXPECT_EQ(s.survey.depth, 0);
   EXPECT_EQ(s.survey.subharmonics, 1);
   EXPECT_EQ(s.survey.spectrum, scene::Spectrum::events);

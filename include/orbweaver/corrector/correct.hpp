@@ -14,8 +14,10 @@
 
 namespace orbweaver::corrector {
 
-/// The optimisers, all of them TAO types.
+/// The solvers: TAO types but for the first two.
 enum class Method {
+  automatic,           ///< newton-krylov for large problems where it applies, nls otherwise
+  newton_krylov,       ///< Newton on the projected residual, matrix-free, GMRES with the box scheme (not a TAO type)
   brgn,                ///< regularised Gauss-Newton on the assembled Jacobian
   nls,                 ///< Newton with line search on the assembled Hessian
   ntr,                 ///< Newton with trust region on the assembled Hessian
@@ -24,7 +26,7 @@ enum class Method {
   rprop_extrapolated,  ///< the same with the paper's line search along the direction of the last epochs
 };
 
-/// Name as in a scene ("brgn", "nls", "ntr", "lmvm", "rprop", "rprop-extrapolated") and back.
+/// Name as in a scene ("automatic", "newton-krylov", "brgn", "nls", "ntr", "lmvm", "rprop", "rprop-extrapolated") and back.
 /// `method_of` throws core::InputError naming the known ones.
 [[nodiscard]] std::string_view name_of(Method method);
 [[nodiscard]] Method method_of(std::string_view name);
@@ -45,7 +47,8 @@ enum class Outcome {
 
 /// Every TAO option can be set under the prefix `corrector_`, e.g. -corrector_tao_monitor.
 struct Options {
-  Method method = Method::nls;
+  Method method = Method::automatic;
+  int krylov_from = 150;          ///< automatic: unknowns from which newton-krylov is used (measured: docs/performance.md)
   double tolerance = 1e-10;       ///< on sqrt(loss), times min(1, rms |dz/dt|)
   double step_tolerance = 1e-6;   ///< the last Newton step, relative to 1 + |loop|
   double tail_tolerance = 1e-3;   ///< under_resolved needs a tail above this times the threshold
@@ -58,6 +61,7 @@ struct Result {
   std::string detail;        ///< a sentence for outcomes other than converged
   loop::Loop loop;           ///< the best loop found
   int iterations = 0;
+  int inner_iterations = 0;  ///< of GMRES, over all Newton steps (newton-krylov)
   double loss_rms = 0.0;     ///< sqrt(loss) of `loop`
   double threshold = 0.0;    ///< what loss_rms had to go under
   double newton_step = 0.0;  ///< length of the last Newton step (second-order: already applied)

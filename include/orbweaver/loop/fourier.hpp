@@ -10,7 +10,7 @@ namespace orbweaver::loop {
 /// for the process (FFTW_ESTIMATE only, so that results repeat). Not thread-safe; one instance a process and size.
 class FourierGrid {
  public:
-  /// The grid with `nodes` nodes. Throws MisuseError for nodes < 2 or odd.
+  /// The grid with `nodes` nodes, even or odd. Throws MisuseError for nodes < 2.
   [[nodiscard]] static const FourierGrid& of_size(int nodes);
   /// The even number of nodes N >= 2 (2 cutoff + 1), with small factors, on which the loss is a true integral.
   [[nodiscard]] static int nodes_for(int cutoff);

@@ -28,6 +28,9 @@ class Subspace {
   /// Throws MisuseError if sizes disagree.
   Subspace(int dimension, int cutoff, const Isotropy& isotropy, std::span<const int> signs = {});
 
+  /// Where residuals z' - f(z) of loops in this subspace lie: the same symmetries, the signs of reversors flipped.
+  [[nodiscard]] Subspace image() const;
+
   [[nodiscard]] int size() const { return static_cast<int>(_begin.size()) - 1; }
   [[nodiscard]] int dimension() const { return _dimension; }
   [[nodiscard]] int cutoff() const { return _cutoff; }
@@ -48,6 +51,8 @@ class Subspace {
   void append_harmonic(int k, const Eigen::MatrixXd& basis);
   int _dimension = 0;
   int _cutoff = 0;
+  Isotropy _isotropy;
+  std::vector<int> _signs;
   std::vector<Entry> _entries;
   std::vector<std::size_t> _begin{0};
 };

@@ -17,6 +17,8 @@ class Slice {
   /// `conditions`: unknowns x count, independent columns (count may be 0). Throws MisuseError if they are dependent.
   Slice(int unknowns, const Eigen::MatrixXd& conditions);
 
+  /// The conditions as given: unknowns x count.
+  [[nodiscard]] const Eigen::MatrixXd& conditions() const { return _given; }
   [[nodiscard]] int unknowns() const { return _unknowns; }
   [[nodiscard]] int free() const { return _unknowns - _conditions; }
 
@@ -34,6 +36,7 @@ class Slice {
  private:
   int _unknowns;
   int _conditions;
+  Eigen::MatrixXd _given;
   std::vector<Eigen::VectorXd> _reflectors;  // unit vectors v of I - 2 v v'
 };
 

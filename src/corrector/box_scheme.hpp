@@ -1,0 +1,43 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <Eigen/Dense>
+
+namespace orbweaver::corrector {
+
+/// The staggered box scheme of a linearised loop problem on N nodes of a full period,
+///
+///   (y_(j+1) - y_j) / h - B_j (y_j + y_(j+1)) / 2 + C_j p = b_j,   j = 0 .. N-1,  y_N = y_0,
+///   sum_j R_j . y_j + S p = a,
+///
+/// with small dense blocks B_j (d x d) and as many border unknowns p as border rows. Factored by orthogonal elimination
+/// along the loop, which stays bounded however unstable the orbit is: O(N d^3) once, O(N d^2) a solve.
+class BoxScheme {
+ public:
+  struct Matrices {
+    int dimension = 0;
+    int nodes = 0;
+    double spacing = 0.0;           ///< h
+    std::vector<double> blocks;     ///< B: entry (i, l) of node j at [(i d + l) N + j]
+    Eigen::MatrixXd columns;        ///< C: (d N) x borders, entry i of node j at row i N + j
+    Eigen::MatrixXd rows;           ///< R: borders x (d N), same order
+    Eigen::MatrixXd corner;         ///< S: borders x borders
+  };
+
+  virtual ~BoxScheme() = default;
+  BoxScheme() = default;
+  BoxScheme(const BoxScheme&) = delete;
+  BoxScheme& operator=(const BoxScheme&) = delete;
+  BoxScheme(BoxScheme&&) = delete;
+  BoxScheme& operator=(BoxScheme&&) = delete;
+
+  /// Overwrites the right-hand side (b component-major, then a) with the solution (y, then p).
+  virtual void solve(Eigen::VectorXd& right_side) const = 0;
+};
+
+/// Factors. Throws core::NumericalError if the condensed system is singular.
+[[nodiscard]] std::unique_ptr<BoxScheme> factor_box_scheme(const BoxScheme::Matrices& matrices);
+
+}  // namespace orbweaver::corrector

@@ -1,0 +1,57 @@
+#include "naming.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "orbweaver/systems/system.hpp"
+
+namespace {
+
+using namespace orbweaver;
+constexpr double pi = std::numbers::pi;
+
+std::string named(const scene::Scene& scene, const std::vector<double>& point, int mode, int index = 0) {
+  return survey::base_name(scene, systems::describe_system("double_pendulum"), point, index, mode);
+}
+
+scene::Scene scene_with_names() {
+  scene::Scene scene;
+  scene.fixed_points.names = {{{0.0, 0.0}, {"Slow", "Fast"}}, {{0.0, pi}, {"Down-Up"}}, {{pi}, {"By th1 alone"}}};
+  return scene;
+}
+
+TEST(Naming, TakesTheScenesNamesInOrder) {
+  const scene::Scene scene = scene_with_names();
+  EXPECT_EQ(named(scene, {0.0, 0.0, 0.0, 0.0}, 0), "Slow");
+  EXPECT_EQ(named(scene, {0.0, 0.0, 0.0, 0.0}, 1), "Fast");
+  EXPECT_EQ(named(scene, {0.0, pi, 0.0, 0.0}, 0), "Down-Up");
+}
+
+TEST(Naming, AnglesCountModuloATurn) {
+  const scene::Scene scene = scene_with_names();
+  EXPECT_EQ(named(scene, {2.0 * pi - 1e-9, -4.0 * pi, 0.0, 0.0}, 0), "Slow");
+  EXPECT_EQ(named(scene, {0.0, -pi, 0.0, 0.0}, 0), "Down-Up");
+  EXPECT_EQ(named(scene, {1e-5, 0.0, 0.0, 0.0}, 0), "Equilibrium 1, mode 1");
+}
+
+TEST(Naming, VelocitiesDoNotWrap) {
+  scene::Scene scene;
+  scene.fixed_points.names = {{{0.0, 0.0, 2.0 * pi}, {"Spinning"}}};
+  EXPECT_EQ(named(scene, {0.0, 0.0, 0.0, 0.0}, 0), "Equilibrium 1, mode 1");
+  EXPECT_EQ(named(scene, {0.0, 0.0, 2.0 * pi, 0.0}, 0), "Spinning");
+}
+
+TEST(Naming, CoordinatesThatAreNotGivenDoNotMatter) { EXPECT_EQ(named(scene_with_names(), {pi, 1.0, 2.0, 3.0}, 0), "By th1 alone"); }
+
+TEST(Naming, CountsWhereTheSceneGivesNoName) {
+  EXPECT_EQ(named(scene_with_names(), {0.0, 0.0, 0.0, 0.0}, 2, 4), "Equilibrium 5, mode 3");
+  EXPECT_EQ(named(scene::Scene{}, {0.0, 0.0, 0.0, 0.0}, 0, 1), "Equilibrium 2, mode 1");
+}
+
+TEST(Naming, PointsAreTextInDegreesForAngles) {
+  EXPECT_EQ(survey::point_text(systems::describe_system("double_pendulum"), {pi, -1e-15, 0.5, 0.0}),
+            "th1 = 180 deg, th2 = 0 deg, w1 = 0.5, w2 = 0");
+}
+
+}  // namespace
