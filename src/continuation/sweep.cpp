@@ -85,7 +85,8 @@ NormalMode normal_mode(const systems::System& system, std::span<const double> fi
 
 std::string why_rejected(int k, const LinearModes::Root& root) {
   if (k > 1) return fmt::format("{} times around the oscillation with T = {:.12g}", k, root.period / k);
-  return fmt::format("{} oscillations share this period: telling their families apart needs the bifurcation layer, which is not built yet",
+  return fmt::format("{} oscillations share this period: telling their families apart needs the bifurcation layer, "
+                     "which is not built yet",
                      root.multiplicity);
 }
 

@@ -1,6 +1,7 @@
 #include "executor.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 #include <fmt/format.h>
@@ -81,23 +82,25 @@ queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
 queue::TaskOutcome Executor::follow(const BranchWork& work, queue::TaskContext& context) {
   BranchOutcome outcome;
   outcome.key = work.key;
-  const continuation::Ending ending = continuation::trace(
-      _system, start_of(work, _system->description()), branch_options(_scene), [&](const continuation::Orbit& orbit) {
-        const auto [from, to] = std::minmax({orbit.loop.period, outcome.orbits == 0 ? orbit.loop.period : outcome.period_from,
-                                             outcome.orbits == 0 ? orbit.loop.period : outcome.period_to});
-        const auto [low, high] = std::minmax({orbit.energy, outcome.orbits == 0 ? orbit.energy : outcome.energy_from,
-                                              outcome.orbits == 0 ? orbit.energy : outcome.energy_to});
-        outcome.period_from = from;
-        outcome.period_to = to;
-        outcome.energy_from = low;
-        outcome.energy_to = high;
-        outcome.last_period = orbit.loop.period;
-        outcome.last_energy = orbit.energy;
-        outcome.last_cutoff = orbit.loop.cutoff;
-        ++outcome.orbits;
-        _rows.orbits.push_back(record(work.key, orbit));
-        return context.report({orbit.step + 1, 1, {orbit.loop.period, orbit.energy, static_cast<double>(orbit.loop.cutoff)}});
-      });
+  const auto keep = [&](const continuation::Orbit& orbit) {
+    _rows.orbits.push_back(record(work.key, orbit));
+    const bool first = outcome.orbits == 0;
+    outcome.period_from = first ? orbit.loop.period : std::min(outcome.period_from, orbit.loop.period);
+    outcome.period_to = first ? orbit.loop.period : std::max(outcome.period_to, orbit.loop.period);
+    outcome.energy_from = first ? orbit.energy : std::min(outcome.energy_from, orbit.energy);
+    outcome.energy_to = first ? orbit.energy : std::max(outcome.energy_to, orbit.energy);
+    outcome.last_period = orbit.loop.period;
+    outcome.last_energy = orbit.energy;
+    outcome.last_cutoff = orbit.loop.cutoff;
+    ++outcome.orbits;
+    return context.report({orbit.step + 1, 1, {orbit.loop.period, orbit.energy, static_cast<double>(orbit.loop.cutoff)}});
+  };
+  continuation::Ending ending;
+  try {
+    ending = continuation::trace(_system, start_of(work, _system->description()), branch_options(_scene), keep);
+  } catch (const std::exception& error) {  // caught here, not by the queue, so that the summary still counts the orbits kept
+    ending = {continuation::EndReason::failure, error.what()};
+  }
   outcome.end_reason = ending.text();
   queue::TaskOutcome done;
   done.failed = ending.failed();

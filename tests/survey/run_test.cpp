@@ -1,0 +1,127 @@
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "archive/sample.hpp"
+#include "orbweaver/archive/reader.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/survey/survey.hpp"
+#include "survey/scenes.hpp"
+
+namespace {
+
+using namespace orbweaver;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+survey::Summary run(const core::Communicator& comm, const scene::Scene& scene, const std::filesystem::path& folder) {
+  const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  return survey::run_survey(comm, scene, system, folder, survey::Display::none);
+}
+
+std::vector<std::string> files_in(const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path().filename());
+  return names;
+}
+
+std::string own_folder(const core::Communicator& comm, const std::string& name) {
+  return name + std::to_string(comm.size());
+}
+
+TEST(RunSurvey, SummaryArchiveAndFolderAgree) {
+  const core::Communicator comm;
+  const auto folder = test::fresh_folder(own_folder(comm, "whole"), comm.get());
+  if (comm.is_root()) {
+    std::filesystem::create_directory(folder / "segments");
+    std::ofstream(folder / "segments" / "segment-000001.h5") << "left over from a run that was killed";
+  }
+  const survey::Summary summary = run(comm, test::quick_scene({"limits.period=9"}), folder);
+  EXPECT_EQ(summary.failures, 0U);
+  EXPECT_FALSE(summary.stopped_early);
+  if (!comm.is_root()) return;
+
+  EXPECT_THAT(files_in(folder), ElementsAre("atlas.h5"));
+  EXPECT_EQ(summary.atlas, folder / "atlas.h5");
+  EXPECT_EQ(summary.peak_memory_mib.size(), static_cast<std::size_t>(comm.size()));
+  for (const double mib : summary.peak_memory_mib) EXPECT_GT(mib, 1.0);
+  EXPECT_GT(summary.seconds, 0.0);
+  EXPECT_TRUE(summary.failed_tasks.empty());
+  EXPECT_THAT(summary.remarks, ::testing::Contains(HasSubstr("no small oscillations around th1 = 180 deg, th2 = 180 deg")));
+
+  const archive::Archive atlas(summary.atlas);
+  EXPECT_EQ(atlas.orbits().rows(), static_cast<std::size_t>(summary.orbits));
+  ASSERT_EQ(summary.families.size(), 4U);
+  EXPECT_THAT(atlas.families().texts("name"), ElementsAre("In-Phase", "Out-Phase", "Down-Up", "Up-Down"));
+  const auto& periods = atlas.orbits().reals("period");
+  const auto& energies = atlas.orbits().reals("energy");
+  for (std::size_t n = 0; n < 4; ++n) {
+    const survey::FamilySummary& family = summary.families[n];
+    const auto first = static_cast<std::size_t>(atlas.families().integers("first_orbit")[n]);
+    const auto last = first + static_cast<std::size_t>(family.orbits) - 1;
+    EXPECT_FALSE(family.failed);
+    EXPECT_EQ(family.name, atlas.families().texts("name")[n]);
+    EXPECT_EQ(family.isotropy, atlas.families().texts("isotropy")[n]);
+    EXPECT_EQ(family.orbits, atlas.families().integers("orbit_count")[n]);
+    EXPECT_EQ(family.end_reason, "period limit (T = 9)");
+    EXPECT_EQ(family.end_reason, atlas.families().texts("end_reason")[n]);
+    EXPECT_EQ(family.period_from, periods[first]);
+    EXPECT_EQ(family.period_to, periods[last]);
+    EXPECT_EQ(family.period_to, 9.0);
+    EXPECT_EQ(family.energy_from, energies[first]);
+    EXPECT_EQ(family.energy_to, energies[last]);
+  }
+  EXPECT_NEAR(summary.families[0].energy_to, -0.764030789928, 1e-11);  // in-phase at T = 9
+}
+
+TEST(RunSurvey, ManySmallFlushesGiveTheArchiveOfOneRankAndOneFlush) {
+  const core::Communicator comm;
+  scene::Scene scene = test::quick_scene({"limits.period=8.5"});
+  const auto pieces = test::fresh_folder(own_folder(comm, "pieces"), comm.get());
+  scene.output.flush_orbits = 3;  // in the struct alone: the archive stores the text
+  (void)run(comm, scene, pieces);
+  if (!comm.is_root()) return;
+  const core::Communicator alone(MPI_COMM_SELF);
+  const auto whole = test::fresh_folder(own_folder(comm, "whole_alone"));
+  scene.output.flush_orbits = 100000;
+  scene.output.flush_seconds = 1e6;
+  (void)run(alone, scene, whole);
+  EXPECT_EQ(test::dataset_bytes(pieces / "atlas.h5"), test::dataset_bytes(whole / "atlas.h5"));
+  EXPECT_GT(archive::Archive(pieces / "atlas.h5").orbits().rows(), 30U);
+}
+
+TEST(RunSurvey, AFolderThatCannotBeMadeIsAnEnvironmentErrorOnEveryRank) {
+  const core::Communicator comm;
+  const auto folder = test::fresh_folder(own_folder(comm, "blocked"), comm.get());
+  if (comm.is_root()) std::ofstream(folder / "file") << "text";
+  const scene::Scene scene = test::quick_scene({"limits.period=8.5"});
+  try {
+    (void)run(comm, scene, folder / "file" / "inside");
+    FAIL() << "no exception";
+  } catch (const core::EnvironmentError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("cannot create the folder " + (folder / "file" / "inside").string()));
+  }
+}
+
+TEST(RunSurvey, FollowsNoMoreFamiliesThanAllowed) {
+  const core::Communicator comm;
+  const auto folder = test::fresh_folder(own_folder(comm, "limited"), comm.get());
+  const survey::Summary summary = run(comm, test::quick_scene({"limits.steps=2", "limits.families=3"}), folder);
+  if (!comm.is_root()) return;
+  ASSERT_EQ(summary.families.size(), 3U);
+  EXPECT_EQ(summary.families[2].name, "Down-Up");
+  EXPECT_EQ(summary.families[2].end_reason, "step limit (2 steps)");
+  EXPECT_THAT(summary.remarks, ::testing::Contains("4 families found, 3 followed (limits.families)"));
+}
+
+TEST(RunSurvey, ASceneWithNothingToFindGivesAnEmptyArchive) {
+  const core::Communicator comm;
+  const auto folder = test::fresh_folder(own_folder(comm, "nothing"), comm.get());
+  const survey::Summary summary = run(comm, test::quick_scene({"starts.fixed_points.grid=[[180],[180]]"}), folder);
+  EXPECT_EQ(summary.failures, 0U);
+  if (!comm.is_root()) return;
+  EXPECT_TRUE(summary.families.empty());
+  EXPECT_EQ(archive::Archive(folder / "atlas.h5").families().rows(), 0U);
+}
+
+}  // namespace
