@@ -1,0 +1,157 @@
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "continuation/families.hpp"
+
+namespace orbweaver::continuation {
+namespace {
+
+constexpr double half_degree = 0.5 * std::numbers::pi / 180.0;
+
+double state_distance(const loop::Loop& a, const loop::Loop& b) {
+  const std::vector<double> z = loop::state_at(a, 0.0);
+  const std::vector<double> w = loop::state_at(b, 0.0);
+  double square = 0.0;
+  for (std::size_t i = 0; i < z.size(); ++i) square += (z[i] - w[i]) * (z[i] - w[i]);
+  return std::sqrt(square);
+}
+
+loop::Loop moved_along(const loop::Loop& loop, const Frontier& frontier, double length) {
+  loop::Loop out = loop;
+  for (std::size_t n = 0; n < out.modes.size(); ++n) out.modes[n] += length * frontier.tangent_modes[n];
+  out.period += length * frontier.tangent_period;
+  return out;
+}
+
+/// What of a - b lies along the tangent.
+double along_tangent(const loop::Loop& a, const loop::Loop& b, const Frontier& frontier) {
+  double sum = (a.period - b.period) * frontier.tangent_period;
+  const loop::Loop padded = loop::with_cutoff(b, a.cutoff);
+  for (std::size_t n = 0; n < frontier.tangent_modes.size(); ++n) sum += (a.modes[n] - padded.modes[n]) * frontier.tangent_modes[n];
+  return sum;
+}
+
+// The prediction moves z(s = 0) by exactly half a degree; the corrector's change is orthogonal to the tangent.
+TEST(FixedStep, PredictsHalfADegree) {
+  for (const test::PendulumMode& mode : {test::in_phase(), test::up_down()}) {
+    Branch branch(test::pendulum(), test::start_of(mode), {.fixed_step = half_degree, .step_limit = 30});
+    ASSERT_TRUE(branch.advance().has_value());
+    while (true) {
+      const Frontier before = branch.frontier();
+      const std::optional<Orbit> orbit = branch.advance();
+      if (!orbit) break;
+      const loop::Loop& here = before.orbit.loop;
+      const double length = half_degree / state_distance(here, moved_along(here, before, 1.0));
+      const loop::Loop predicted = moved_along(here, before, length);
+      EXPECT_NEAR(state_distance(here, predicted), half_degree, 1e-12);
+      const double change = state_distance(predicted, orbit->loop);
+      EXPECT_LT(change, 0.02 * half_degree) << orbit->step;
+      EXPECT_NEAR(state_distance(here, orbit->loop), half_degree, change + 1e-12) << orbit->step;
+      EXPECT_NEAR(along_tangent(orbit->loop, predicted, before), 0.0, 1e-12) << orbit->step;
+    }
+    EXPECT_EQ(branch.ending()->reason, EndReason::step_limit);
+  }
+}
+
+TEST(FixedStep, ReachesTheSameOrbitsAsAdaptiveSteps) {
+  const test::Trace fixed = test::trace_of(test::down_up(), {.fixed_step = half_degree, .period_limit = 5.5});
+  const test::Trace adaptive = test::trace_of(test::down_up(), {.period_limit = 5.5});
+  EXPECT_EQ(fixed.ending.reason, EndReason::period_limit);
+  EXPECT_GT(fixed.orbits.size(), 5 * adaptive.orbits.size());
+  EXPECT_NEAR(fixed.last().energy, adaptive.last().energy, 1e-11);
+}
+
+struct TinyStart {
+  test::PendulumMode mode;
+  double amplitude;
+};
+
+class TinyStarts : public testing::TestWithParam<TinyStart> {};
+
+TEST_P(TinyStarts, GrowOntoTheFamily) {
+  const auto& [mode, amplitude] = GetParam();
+  const double limit = 1.005 * mode.period();
+  const test::Trace trace = test::trace_of(mode, {.start_amplitude = amplitude, .period_limit = limit});
+  ASSERT_EQ(trace.ending.reason, EndReason::period_limit) << trace.ending.text();
+  const std::vector<double> z = loop::state_at(trace.orbits.front().loop, 0.0);
+  EXPECT_NEAR(std::hypot(z[0] - mode.point[0], z[1] - mode.point[1]), amplitude, 1e-3 * amplitude);
+  EXPECT_EQ(trace.last().loop.period, limit);
+  const corrector::Result reference = test::orbit_at(test::family_to_twelve(mode), limit);
+  ASSERT_TRUE(reference.converged()) << reference.detail;
+  EXPECT_NEAR(trace.last().energy, energy_of(*test::pendulum(), reference.loop), 1e-11);
+  EXPECT_LT(loop::mean_distance(trace.last().loop, reference.loop), 1e-9);
+  EXPECT_LT(trace.orbits.size(), 45u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Continuation, TinyStarts,
+                         testing::Values(TinyStart{test::in_phase(), 1e-4}, TinyStart{test::in_phase(), 1e-8}, TinyStart{test::down_up(), 1e-4},
+                                         TinyStart{test::down_up(), 1e-8}),
+                         [](const auto& tested) {
+                           std::string name = tested.param.mode.name + (tested.param.amplitude < 1e-6 ? "1em8" : "1em4");
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+// From far too many harmonics the cutoff falls to what small loops need, and rises again with the amplitude.
+TEST(Resolution, GoesDownAndUp) {
+  const test::Trace trace = test::trace_of(test::pendulum(), test::start_of(test::in_phase(), 112), {.period_limit = 9.0});
+  EXPECT_EQ(trace.ending.reason, EndReason::period_limit);
+  EXPECT_EQ(trace.orbits.front().loop.cutoff, 112);
+  int lowest = 112;
+  for (const Orbit& orbit : trace.orbits) lowest = std::min(lowest, orbit.loop.cutoff);
+  EXPECT_LE(lowest, 31);
+  EXPECT_GE(trace.last().loop.cutoff, 87);
+  EXPECT_NEAR(trace.last().energy, -0.764030789928, 1e-11);
+}
+
+TEST(Resolution, NeverBelowTheScenesLeast) {
+  const test::Trace trace = test::trace_of(test::in_phase(), {.cutoff_from = 40, .step_limit = 6});
+  for (const Orbit& orbit : trace.orbits) EXPECT_GE(orbit.loop.cutoff, 40);
+}
+
+TEST(Frontiers, AreConsistent) {
+  Branch branch(test::pendulum(), test::start_of(test::in_phase()), {.period_limit = 9.0});
+  loop::Loop first;
+  std::optional<Orbit> before;
+  while (const std::optional<Orbit> orbit = branch.advance()) {
+    const Frontier& frontier = branch.frontier();
+    if (orbit->step == 0) first = orbit->loop;
+    EXPECT_EQ(frontier.first.modes, first.modes);
+    EXPECT_EQ(frontier.orbit.step, orbit->step);
+    EXPECT_EQ(frontier.orbit.energy, orbit->energy);
+    EXPECT_EQ(frontier.orbit.loop.period, orbit->loop.period);
+    EXPECT_LT(loop::mean_distance(frontier.orbit.loop, orbit->loop), 1e-13);
+    ASSERT_EQ(frontier.tangent_modes.size(), frontier.orbit.loop.modes.size());
+    double square = frontier.tangent_period * frontier.tangent_period;
+    for (const double entry : frontier.tangent_modes) square += entry * entry;
+    EXPECT_NEAR(square, 1.0, 1e-12);
+    EXPECT_GT(frontier.next_length, 0.0);
+    if (before) {
+      EXPECT_NEAR(frontier.last_increment, arclength_between(before->loop, orbit->loop), 1e-12);
+      EXPECT_NEAR(orbit->arclength, before->arclength + frontier.last_increment, 1e-14 * orbit->arclength);
+    }
+    before = orbit;
+  }
+  ASSERT_TRUE(branch.ending().has_value());
+  EXPECT_FALSE(branch.advance().has_value()) << "an ended branch stays ended";
+}
+
+// The tangent is the derivative of the family: centred differences of the orbits at T +- h.
+TEST(Frontiers, TangentPointsAlongTheFamily) {
+  Branch branch(test::pendulum(), test::start_of(test::down_up()), {.period_limit = 8.0});
+  while (branch.advance() && branch.frontier().orbit.loop.period < 6.5) {}
+  const Frontier& frontier = branch.frontier();
+  const loop::Loop& here = frontier.orbit.loop;
+  const loop::Isotropy isotropy = test::pendulum_isotropy(*test::pendulum());
+  const double h = 1e-3;
+  const loop::Loop above = loop::with_cutoff(orbit_at_period(*test::pendulum(), here, isotropy, here.period + h, {}).loop, here.cutoff);
+  const loop::Loop below = loop::with_cutoff(orbit_at_period(*test::pendulum(), here, isotropy, here.period - h, {}).loop, here.cutoff);
+  for (std::size_t n = 0; n < here.modes.size(); ++n)
+    EXPECT_NEAR((above.modes[n] - below.modes[n]) / (2.0 * h), frontier.tangent_modes[n] / frontier.tangent_period, 1e-5) << n;
+}
+
+}  // namespace
+}  // namespace orbweaver::continuation
