@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/check.hpp"
+#include "orbweaver/core/log.hpp"
 #include "orbweaver/core/error.hpp"
 
 namespace orbweaver::drivers {
@@ -50,7 +51,7 @@ int report_failure(const std::exception_ptr& error) {
   } catch (const ReportedElsewhere&) {
     return failure.status;
   } catch (...) {
-    fmt::print(stderr, "orbweaver: {}\n", failure.message);
+    core::write_line(stderr, fmt::format("orbweaver: {}", failure.message));
   }
   return failure.status;
 }
@@ -82,7 +83,7 @@ int run_on_ranks(const core::Communicator& comm, const std::function<int()>& bod
   } catch (...) {
     if (comm.size() == 1) throw;
     const Failure failure = describe_failure(std::current_exception());
-    fmt::print(stderr, "orbweaver: rank {}: {}\n", comm.rank(), failure.message);
+    core::write_line(stderr, fmt::format("orbweaver: rank {}: {}", comm.rank(), failure.message));
     std::fflush(nullptr);
     MPI_Abort(comm.get(), failure.status);
     return failure.status;

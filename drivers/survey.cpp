@@ -1,8 +1,8 @@
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "command.hpp"
 #include "common_options.hpp"
@@ -12,6 +12,7 @@
 #include "orbweaver/core/session.hpp"
 #include "orbweaver/survey/standing.hpp"
 #include "orbweaver/survey/survey.hpp"
+#include "terminal.hpp"
 
 namespace orbweaver::drivers {
 
@@ -22,11 +23,13 @@ struct Options {
   LogOptions log;
   std::filesystem::path directory;
   bool resume = false;
+  std::string progress = "auto";
 };
 
-survey::Display display_for(const LogOptions& log) {
-  if (log.quiet) return survey::Display::none;
-  return isatty(STDERR_FILENO) != 0 ? survey::Display::live : survey::Display::lines;
+survey::Display display_for(const Options& options) {
+  if (options.log.quiet) return survey::Display::none;
+  if (options.progress == "auto") return stderr_reaches_terminal() ? survey::Display::live : survey::Display::lines;
+  return options.progress == "live" ? survey::Display::live : survey::Display::lines;
 }
 
 core::ExitStatus status_of(const survey::Summary& summary) {
@@ -53,7 +56,7 @@ int run(const Options& options, const Invocation& invocation) {
     if (comm.is_root())
       for (const std::string& sentence : scene::not_built_yet(scene)) core::log_warning(fmt::format("not built yet: {}", sentence));
     const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
-    const survey::Summary summary = survey::run_survey(comm, scene, system, options.directory, display_for(options.log));
+    const survey::Summary summary = survey::run_survey(comm, scene, system, options.directory, display_for(options));
     if (comm.is_root()) fmt::print("{}", survey::to_text(summary));
     return static_cast<int>(status_of(summary));
   });
@@ -67,6 +70,9 @@ Command make_survey_command(CLI::App& program) {
   add_scene_options(*parser, options->scene);
   parser->add_option("-o,--output", options->directory, "Folder for the archive, atlas.h5")->required();
   parser->add_flag("--resume", options->resume, "Accept a folder that already holds this survey");
+  parser->add_option("--progress", options->progress, "live: a line a family, redrawn; lines: a plain line now and then")
+      ->check(CLI::IsMember({"auto", "live", "lines"}))
+      ->capture_default_str();
   add_log_options(*parser, options->log);
   return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
 }

@@ -12,6 +12,19 @@
 
 namespace orbweaver::continuation {
 
+namespace {
+
+// True if the oscillation of one loop is the other's upside down: the step jumped across a fixed point, where the family
+// ends (beyond it lie the same orbits half a period later).
+bool inverted(const loop::Loop& from, const loop::Loop& to) {
+  double product = 0.0;
+  for (int k = 1; k <= std::min(from.cutoff, to.cutoff); ++k)
+    for (int i = 0; i < from.dimension; ++i) product += from.cosine(k, i) * to.cosine(k, i) + from.sine(k, i) * to.sine(k, i);
+  return product < 0.0;
+}
+
+}  // namespace
+
 struct Branch::Implementation {
   std::shared_ptr<const systems::System> system;
   Start start;
@@ -150,7 +163,7 @@ struct Branch::Implementation {
         continue;
       }
       const bool turned_too_far = attempt.turning > 3.0 * options.turning_angle && length > 1e3 * least;
-      if (attempt.result.converged() && !turned_too_far) {
+      if (attempt.result.converged() && !turned_too_far && !inverted(here(), attempt.result.loop)) {
         frontier.next_length = next_step_length(length, attempt.result.iterations, attempt.turning, options.turning_angle);
         return accept_within_limits(attempt, length);
       }

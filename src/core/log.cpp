@@ -41,6 +41,12 @@ void start_logging(LogLevel level, int rank, int ranks) {
   log.set_pattern(ranks > 1 ? fmt::format("orbweaver[{}]: %v", rank) : std::string("orbweaver: %v"));
 }
 
+void write_line(std::FILE* stream, std::string_view line) noexcept {
+  std::fwrite(line.data(), 1, line.size(), stream);
+  std::fputc('\n', stream);
+  std::fflush(stream);
+}
+
 void log_debug(std::string_view message) { logger().debug(message); }
 void log_info(std::string_view message) { logger().info(message); }
 void log_warning(std::string_view message) { logger().warn(message); }

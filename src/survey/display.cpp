@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "orbweaver/core/log.hpp"
 #include "orbweaver/survey/work.hpp"
 
 namespace orbweaver::survey {
@@ -72,16 +73,20 @@ void ProgressDisplay::tick(const queue::TaskCounts&) {
 
 void ProgressDisplay::print_line(FamilyState& family) {
   family.printed = family.orbits;
-  fmt::print(stderr, "{}\n", line_of(family));
+  core::write_line(stderr, line_of(family));
 }
 
 void ProgressDisplay::redraw() {
+  if (_families.empty()) return;
   std::string text;
   if (_drawn > 0) text = fmt::format("\x1b[{}A", _drawn);
-  for (const auto& [key, family] : _families) text += fmt::format("\x1b[2K{}\n", line_of(family));
+  const char* separator = "";
+  for (const auto& [key, family] : _families) {
+    text += fmt::format("{}\x1b[2K{}", separator, line_of(family));
+    separator = "\n";
+  }
   _drawn = static_cast<int>(_families.size());
-  fmt::print(stderr, "{}", text);
-  std::fflush(stderr);
+  core::write_line(stderr, text);
 }
 
 }  // namespace orbweaver::survey

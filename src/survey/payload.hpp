@@ -1,9 +1,9 @@
 #pragma once
 
+#include <exception>
 #include <sstream>
 #include <string>
 
-#include <boost/archive/archive_exception.hpp>
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
 #include <boost/serialization/string.hpp>
@@ -43,8 +43,12 @@ template <class T>
                                                "build of Orbweaver", T::payload_name, payload_version, name, version));
     T value;
     archive >> value;
+    if (stream.peek() != std::istringstream::traits_type::eof())
+      throw core::EnvironmentError(fmt::format("a {} of {} bytes has more bytes than its own", T::payload_name, bytes.size()));
     return value;
-  } catch (const boost::archive::archive_exception& error) {
+  } catch (const core::EnvironmentError&) {
+    throw;
+  } catch (const std::exception& error) {  // foreign bytes may also ask Boost for texts of impossible length
     throw core::EnvironmentError(fmt::format("a {} of {} bytes cannot be read: {}", T::payload_name, bytes.size(), error.what()));
   }
 }

@@ -15,6 +15,7 @@
 #include "orbweaver/continuation/fixed_points.hpp"
 #include "orbweaver/core/check.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/log.hpp"
 #include "orbweaver/queue/run.hpp"
 #include "orbweaver/survey/version.hpp"
 #include "segment_flusher.hpp"
@@ -71,6 +72,8 @@ std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::S
   std::vector<queue::Task> tasks;
   for (const std::vector<double>& point : continuation::find_fixed_points(system, scene.fixed_points.grid))
     tasks.push_back(task_of(SweepWork{static_cast<int>(tasks.size()), point}));
+  core::log_info(fmt::format("{} equilibria; sweeping the period from {:g} to {:g} at each", tasks.size(), scene.sweep.period_from,
+                             scene.sweep.period_to));
   if (tasks.empty())
     summary.remarks.push_back("Newton's method found no equilibrium from the scene's grid: nothing to survey");
   return tasks;
@@ -180,11 +183,14 @@ Summary run_survey(const core::Communicator& comm, const scene::Scene& scene, co
   options.flush_seconds = scene.output.flush_seconds;
   options.flush_rows = scene.output.flush_orbits;
 
+  const auto tasks_of_root = [&](auto&& make) { return comm.is_root() ? make() : std::vector<queue::Task>{}; };
   Recorder sweeps(progress);
-  const queue::RunSummary swept = queue::run(comm, options, sweep_tasks(scene, *system, summary), executor, sweeps, flusher);
+  const queue::RunSummary swept =
+      queue::run(comm, options, tasks_of_root([&] { return sweep_tasks(scene, *system, summary); }), executor, sweeps, flusher);
   Recorder branches(progress);
   const queue::RunSummary followed =
-      queue::run(comm, options, branch_tasks(scene, system->description(), sweeps, summary), executor, branches, flusher);
+      queue::run(comm, options, tasks_of_root([&] { return branch_tasks(scene, system->description(), sweeps, summary); }), executor,
+                 branches, flusher);
 
   archive::Records tables;
   gather_families(system->description(), branches, summary, tables);

@@ -5,6 +5,7 @@
 
 #include "archive/sample.hpp"
 #include "orbweaver/archive/consolidate.hpp"
+#include "orbweaver/archive/h5_handle.hpp"
 #include "orbweaver/archive/reader.hpp"
 #include "orbweaver/archive/segment.hpp"
 
@@ -140,6 +141,24 @@ TEST(RoundTrip, AnEmptyAtlasIsValid) {
   EXPECT_TRUE(none.header().winding_names.empty());
   consolidate(MPI_COMM_SELF, {}, folder / "no_segments.h5", header, {});
   EXPECT_EQ(Archive(folder / "no_segments.h5").orbits().rows(), 0u);
+}
+
+herr_t expect_no_time(hid_t, const char* name, const H5O_info_t* info, void*) {
+  EXPECT_EQ(info->ctime, 0) << name;
+  EXPECT_EQ(info->mtime, 0) << name;
+  return 0;
+}
+
+TEST(RoundTrip, TextsAreFixedUtf8AndNothingCarriesATime) {
+  const Header header = sample_header();
+  const auto path = test::write_sample_atlas(test::fresh_folder("plain"), header, sample_records(header));
+  const H5Handle file(check_h5(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "H5Fopen"), H5Fclose);
+  const H5Handle names(check_h5(H5Dopen2(file.get(), "families/name", H5P_DEFAULT), "H5Dopen2"), H5Dclose);
+  const H5Handle type(check_h5(H5Dget_type(names.get()), "H5Dget_type"), H5Tclose);
+  EXPECT_EQ(H5Tget_cset(type.get()), H5T_CSET_UTF8);
+  EXPECT_EQ(H5Tis_variable_str(type.get()), 0);
+  EXPECT_EQ(H5Tget_size(type.get()), std::string("Ästhetik \"B\", 1").size());
+  check_h5(H5Ovisit(file.get(), H5_INDEX_NAME, H5_ITER_INC, expect_no_time, nullptr), "H5Ovisit");
 }
 
 TEST(RoundTrip, ASegmentSaysWhatItHolds) {

@@ -73,7 +73,7 @@ class TinyStarts : public testing::TestWithParam<TinyStart> {};
 
 TEST_P(TinyStarts, GrowOntoTheFamily) {
   const auto& [mode, amplitude] = GetParam();
-  const double limit = 1.005 * mode.period();
+  const double limit = 1.01 * mode.period();
   const test::Trace trace = test::trace_of(mode, {.start_amplitude = amplitude, .period_limit = limit});
   ASSERT_EQ(trace.ending.reason, EndReason::period_limit) << trace.ending.text();
   const std::vector<double> z = loop::state_at(trace.orbits.front().loop, 0.0);

@@ -10,7 +10,8 @@
 namespace orbweaver::corrector {
 namespace {
 
-constexpr std::array all_methods = {Method::brgn, Method::nls, Method::ntr, Method::lmvm, Method::rprop, Method::rprop_extrapolated};
+constexpr std::array all_methods = {Method::automatic, Method::newton_krylov, Method::brgn,  Method::nls,
+                                    Method::ntr,       Method::lmvm,          Method::rprop, Method::rprop_extrapolated};
 
 std::string test_name(const testing::TestParamInfo<Method>& tested) {
   std::string name(name_of(tested.param));
@@ -120,7 +121,7 @@ TEST_P(NewtonOrder, ErrorsSquare) {
   EXPECT_LT(far.distance(next.loop, orbit.loop), 10.0 * errors[last] * errors[last] + 1e-14);
 }
 
-INSTANTIATE_TEST_SUITE_P(Corrector, NewtonOrder, testing::Values(Method::brgn, Method::nls, Method::ntr), test_name);
+INSTANTIATE_TEST_SUITE_P(Corrector, NewtonOrder, testing::Values(Method::newton_krylov, Method::brgn, Method::nls, Method::ntr), test_name);
 
 TEST(Corrector, ExtrapolationSavesRpropIterations) {
   int plain = 0;

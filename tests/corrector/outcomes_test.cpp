@@ -17,7 +17,8 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr std::array all_methods = {Method::brgn, Method::nls, Method::ntr, Method::lmvm, Method::rprop, Method::rprop_extrapolated};
+constexpr std::array all_methods = {Method::automatic, Method::newton_krylov, Method::brgn,  Method::nls,
+                                    Method::ntr,       Method::lmvm,          Method::rprop, Method::rprop_extrapolated};
 
 /// q = cos s, p = -sin s with a wrong period, amplitude held.
 struct CircleGuess {
@@ -58,7 +59,7 @@ void expect_outcome(const Result& result, Outcome wanted) {
 
 TEST(Outcomes, UnderResolvedWithTooFewHarmonics) {
   const test::Problem problem(test::in_phase(), 0.6, 10);  // needs K = 40
-  for (const Method method : {Method::brgn, Method::nls, Method::ntr}) {
+  for (const Method method : {Method::newton_krylov, Method::brgn, Method::nls, Method::ntr}) {
     const Result result = problem.correct(problem.guess, {.method = method});
     expect_outcome(result, Outcome::under_resolved);
     EXPECT_THAT(result.detail, HasSubstr("K = 10"));
@@ -98,7 +99,7 @@ TEST_P(EveryMethodFails, StalledWhereThereIsNoOrbit) {
   const test::Oscillator damped(0.3);
   const Result result = CircleGuess(damped, 1.2).correct({.method = GetParam(), .max_iterations = is_second_order(GetParam()) ? 0 : 500});
   expect_outcome(result, is_second_order(GetParam()) ? Outcome::stalled : Outcome::iteration_limit);
-  EXPECT_NEAR(result.loss_rms, 0.211, 0.001);
+  EXPECT_NEAR(result.loss_rms, 0.211, 0.002);
 }
 
 INSTANTIATE_TEST_SUITE_P(Outcomes, EveryMethodFails, testing::ValuesIn(all_methods), [](const auto& tested) {

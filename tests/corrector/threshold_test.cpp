@@ -60,7 +60,7 @@ class TinyAmplitude : public testing::TestWithParam<Tiny> {};
 TEST_P(TinyAmplitude, ConvergesToTheNormalMode) {
   const auto& [mode, amplitude, period_error, shape_error] = GetParam();
   const test::Problem problem(mode, amplitude, 10);
-  for (const Method method : {Method::brgn, Method::nls, Method::ntr}) {
+  for (const Method method : {Method::newton_krylov, Method::brgn, Method::nls, Method::ntr}) {
     loop::Loop guess = problem.guess;
     guess.cosine(1, 1) *= 1.01;
     guess.period *= 1.001;

@@ -52,10 +52,11 @@ class SpoiltPendulum final : public systems::System {
   Spoil _spoil;
 };
 
-// Up to T = 8.5 only the Up-Down family takes the outer rod into this sector.
-bool in_sector(double th2) {
+// Up to T = 8.5 only the Up-Down family takes the outer rod into this sector. Single nodes are left alone: the certificate's
+// integrator tries steps that leave the orbit.
+bool is_spoilt(std::size_t nodes, double th2) {
   const double angle = std::abs(std::remainder(th2, 2.0 * std::numbers::pi));
-  return angle > 1.5 && angle < 2.2;
+  return nodes > 1 && angle > 1.5 && angle < 2.2;
 }
 
 class Failures : public ::testing::Test {
@@ -126,15 +127,15 @@ class Failures : public ::testing::Test {
 };
 
 TEST_F(Failures, AFamilyThatMeetsNotANumberFailsAlone) {
-  const survey::Summary summary = run("nan", [](std::size_t, double, double th2, double& f) {
-    if (in_sector(th2)) f = std::numeric_limits<double>::quiet_NaN();
+  const survey::Summary summary = run("nan", [](std::size_t nodes, double, double th2, double& f) {
+    if (is_spoilt(nodes, th2)) f = std::numeric_limits<double>::quiet_NaN();
   });
   expect_up_down_alone_failed(summary, AllOf(StartsWith("failure ("), HasSubstr("finite")));
 }
 
 TEST_F(Failures, AFamilyWhoseFieldThrowsFailsAlone) {
-  const survey::Summary summary = run("throws", [](std::size_t, double, double th2, double&) {
-    if (in_sector(th2)) throw std::runtime_error("the table of forces ends here");
+  const survey::Summary summary = run("throws", [](std::size_t nodes, double, double th2, double&) {
+    if (is_spoilt(nodes, th2)) throw std::runtime_error("the table of forces ends here");
   });
   expect_up_down_alone_failed(summary, StartsWith("failure (the table of forces ends here)"));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdio>
 #include <string_view>
 
 namespace orbweaver::core {
@@ -15,5 +16,8 @@ void log_debug(std::string_view message);
 void log_info(std::string_view message);
 void log_warning(std::string_view message);
 void log_error(std::string_view message);
+
+/// Writes a line and flushes; a stream that cannot be written (a closed terminal) is no reason to end a run.
+void write_line(std::FILE* stream, std::string_view line) noexcept;
 
 }  // namespace orbweaver::core

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <complex>
+#include <vector>
+
+#include "orbweaver/loop/isotropy.hpp"
+#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::spectrum {
+
+/// How finely the variational equations are integrated.
+struct FloquetOptions {
+  int least_segments = 48;        ///< Runge-Kutta steps a period, at least
+  double tolerance = 1e-11;       ///< on the relative truncation error of all steps together; above it they are halved
+  int refinements = 3;            ///< how often they may be halved
+};
+
+/// The linear stability of one orbit. Multipliers that belong to the flow and to the conserved energy are taken out by
+/// restricting the linearised flow to the kernel of dH modulo f, not by closeness to 1.
+///
+/// Symplectic systems: `full` and `fundamental` hold the stability indices k = mu + 1/mu, one a pair of nontrivial
+/// multipliers. Others: the multipliers themselves but for the flow's own; where energy is conserved one of them is
+/// exactly 1. Largest modulus first, then largest imaginary part.
+///
+/// The fundamental map of an orbit with z(t + T/p) = g z(t), p as large as its isotropy allows, is P = g^-1 M(T/p), M
+/// being the transition matrix of the linearised flow. Without such a symmetry p = 1 and P is the monodromy matrix.
+struct Stability {
+  std::vector<std::complex<double>> full;         ///< of the full period
+  std::vector<double> full_error;                 ///< bound on the absolute error of each
+  int fundamental_order = 1;                      ///< p
+  std::vector<std::complex<double>> fundamental;  ///< of P
+  std::vector<double> fundamental_error;          ///< bound on the absolute error of each
+
+  /// The largest of `full_error`, relative to 1 + the modulus of its entry.
+  [[nodiscard]] double relative_error() const;
+};
+
+/// Stability of an accepted orbit, at a cost proportional to the number of its harmonics.
+///
+/// Transition matrices over short segments, each started at the loop's own state (Dormand and Prince's order 8 from
+/// Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, section II.5), only over T/p, and over half of
+/// that where `isotropy` has a reversor; the index of a single pair is the trace of their product, others come from
+/// orthogonal iteration on the product, so that large and small multipliers keep their digits. The error bound adds the
+/// truncation (from doubled steps), the rounding, and the orbit's own error: the response to one Newton step of
+/// multiple shooting, at (nearly) fixed period where the system is conservative.
+///
+/// Throws MisuseError if the loop is not valid, not of the system's dimension, or constant; NotFiniteError if the field
+/// or a product is not finite.
+[[nodiscard]] Stability floquet(const systems::System& system, const loop::Loop& loop, const loop::Isotropy& isotropy,
+                                const FloquetOptions& options = {});
+
+}  // namespace orbweaver::spectrum

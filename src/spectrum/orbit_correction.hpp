@@ -1,0 +1,21 @@
+#pragma once
+
+#include <Eigen/Dense>
+
+#include "floquet_chain.hpp"
+#include "floquet_group.hpp"
+
+namespace orbweaver::spectrum {
+
+/// One Newton step of multiple shooting from a loop to the orbit near it.
+struct OrbitCorrection {
+  Eigen::MatrixXd states;  ///< dimension x (segments + 1): change of the state at each t_m
+  double step = 0.0;       ///< change of the segments' length h
+};
+
+/// The least correction, without shift of phase. Conservative systems: at almost the same period (a change counts a
+/// thousandfold), and the equation that the conserved energy makes redundant left out. By orthogonal elimination from
+/// segment to segment (Wright 1992, doi:10.1137/0913044), stable for any growth around the orbit.
+[[nodiscard]] OrbitCorrection orbit_correction(const Chain& chain, const FundamentalGroup& group, bool conservative);
+
+}  // namespace orbweaver::spectrum

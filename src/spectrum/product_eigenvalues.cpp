@@ -1,0 +1,165 @@
+#include "product_eigenvalues.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace orbweaver::spectrum {
+
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double joined_norm = 100.0;
+constexpr int most_sweeps = 40;
+constexpr double parted = 1e-14;
+
+std::vector<Eigen::MatrixXd> joined(const std::vector<Eigen::MatrixXd>& factors) {
+  const std::vector<int> first = joined_groups(factors, joined_norm);
+  std::vector<Eigen::MatrixXd> groups;
+  for (std::size_t n = 0; n < first.size(); ++n) {
+    const std::size_t end = n + 1 < first.size() ? static_cast<std::size_t>(first[n + 1]) : factors.size();
+    Eigen::MatrixXd product = factors[static_cast<std::size_t>(first[n])];
+    for (std::size_t m = static_cast<std::size_t>(first[n]) + 1; m < end; ++m) product = factors[m] * product;
+    groups.push_back(product);
+  }
+  return groups;
+}
+
+/// An orthogonal matrix in general position, always the same.
+Eigen::MatrixXd start_frame(Eigen::Index r) {
+  Eigen::MatrixXd matrix(r, r);
+  for (Eigen::Index i = 0; i < r; ++i)
+    for (Eigen::Index j = 0; j < r; ++j) matrix(i, j) = std::cos(1.0 + 2.0 * static_cast<double>(i * r + j) + 0.7 * static_cast<double>(j * j));
+  return Eigen::HouseholderQR<Eigen::MatrixXd>(matrix).householderQ();
+}
+
+/// After `sweep`, product * frame = next * (triangles multiplied, first acts first).
+struct Iteration {
+  Eigen::MatrixXd frame;
+  Eigen::MatrixXd next;
+  std::vector<Eigen::MatrixXd> triangles;
+
+  void sweep(const std::vector<Eigen::MatrixXd>& groups) {
+    triangles.resize(groups.size());
+    Eigen::MatrixXd basis = frame;
+    for (std::size_t n = 0; n < groups.size(); ++n) {
+      const Eigen::HouseholderQR<Eigen::MatrixXd> factor(groups[n] * basis);
+      triangles[n] = factor.matrixQR().triangularView<Eigen::Upper>();
+      basis = factor.householderQ();
+    }
+    next = basis;
+  }
+};
+
+/// Ends of the diagonal blocks into which frame' * next falls.
+std::vector<Eigen::Index> block_ends(const Eigen::MatrixXd& turn) {
+  const Eigen::Index r = turn.rows();
+  std::vector<Eigen::Index> ends;
+  for (Eigen::Index cut = 1; cut < r; ++cut)
+    if (turn.bottomLeftCorner(r - cut, cut).norm() < parted) ends.push_back(cut);
+  ends.push_back(r);
+  return ends;
+}
+
+Iteration iterate(const std::vector<Eigen::MatrixXd>& groups) {
+  Iteration iteration;
+  iteration.frame = start_frame(groups.front().rows());
+  iteration.sweep(groups);
+  for (int n = 0; n < most_sweeps; ++n) {
+    const bool all_parted = static_cast<Eigen::Index>(block_ends(iteration.frame.transpose() * iteration.next).size()) ==
+                            iteration.frame.rows();
+    if (n > 1 && all_parted) break;
+    iteration.frame = iteration.next;
+    iteration.sweep(groups);
+  }
+  return iteration;
+}
+
+Eigen::MatrixXd diagonal_block(const Iteration& iteration, Eigen::Index begin, Eigen::Index end) {
+  const Eigen::Index size = end - begin;
+  Eigen::MatrixXd block = Eigen::MatrixXd::Identity(size, size);
+  for (const Eigen::MatrixXd& triangle : iteration.triangles)
+    block = triangle.block(begin, begin, size, size).triangularView<Eigen::Upper>() * block;
+  return (iteration.frame.transpose() * iteration.next).block(begin, begin, size, size) * block;
+}
+
+bool before(const Complex& a, const Complex& b) {
+  const double difference = std::abs(a) - std::abs(b);
+  if (std::abs(difference) > 1e-10 * (std::abs(a) + std::abs(b))) return difference > 0.0;
+  if (a.imag() != b.imag()) return a.imag() > b.imag();
+  return a.real() > b.real();
+}
+
+std::vector<Complex> eigenvalues_of(const Eigen::MatrixXd& block) {
+  const Eigen::VectorXcd values = Eigen::EigenSolver<Eigen::MatrixXd>(block, false).eigenvalues();
+  std::vector<Complex> result(values.data(), values.data() + values.size());
+  std::sort(result.begin(), result.end(), before);
+  return result;
+}
+
+/// k of a block whose multipliers come in pairs mu, 1/mu: B + B^-1 has each k twice, so that their means keep the digits
+/// that the eigenvalues of B lose where two of them meet.
+std::vector<Complex> paired_indices(const Eigen::MatrixXd& block) {
+  std::vector<Complex> doubles = eigenvalues_of(block + block.inverse());
+  std::vector<Complex> indices;
+  while (doubles.size() > 1) {
+    std::size_t nearest = 1;
+    for (std::size_t n = 2; n < doubles.size(); ++n)
+      if (std::abs(doubles[n] - doubles[0]) < std::abs(doubles[nearest] - doubles[0])) nearest = n;
+    indices.push_back(0.5 * (doubles[0] + doubles[nearest]));
+    doubles.erase(doubles.begin() + static_cast<std::ptrdiff_t>(nearest));
+    doubles.erase(doubles.begin());
+  }
+  return indices;
+}
+
+}  // namespace
+
+std::vector<int> joined_groups(const std::vector<Eigen::MatrixXd>& factors, double bound) {
+  std::vector<int> first;
+  Eigen::MatrixXd product;
+  Eigen::MatrixXd next;
+  for (std::size_t n = 0; n < factors.size(); ++n) {
+    if (n > 0) next.noalias() = factors[n].lazyProduct(product);
+    if (n == 0 || !(next.norm() <= bound)) {
+      first.push_back(static_cast<int>(n));
+      product = factors[n];
+    } else {
+      product.swap(next);
+    }
+  }
+  return first;
+}
+
+std::vector<Complex> product_eigenvalues(const std::vector<Eigen::MatrixXd>& factors, bool symplectic) {
+  if (factors.empty() || factors.front().rows() == 0) return {};
+  const Iteration iteration = iterate(joined(factors));
+  const Eigen::Index r = iteration.frame.rows();
+  const std::vector<Eigen::Index> ends = block_ends(iteration.frame.transpose() * iteration.next);
+  std::vector<Complex> result;
+  // A symplectic product has a block over the middle that is closed under mu -> 1/mu; those above it hold the larger
+  // of each pair.
+  Eigen::Index middle = r;
+  if (symplectic) {
+    middle = r / 2;
+    for (Eigen::Index begin = 0; const Eigen::Index end : ends) {
+      if (begin < r / 2 && end > r / 2) middle = std::min(begin, r - end);
+      begin = end;
+    }
+    while (middle > 0 && std::find(ends.begin(), ends.end(), middle) == ends.end()) --middle;
+  }
+  for (Eigen::Index begin = 0; const Eigen::Index end : ends) {
+    if (end > middle) break;
+    for (const Complex& mu : eigenvalues_of(diagonal_block(iteration, begin, end)))
+      result.push_back(symplectic ? mu + 1.0 / mu : mu);
+    begin = end;
+  }
+  if (symplectic && 2 * middle < r) {
+    const std::vector<Complex> inner = paired_indices(diagonal_block(iteration, middle, r - middle));
+    result.insert(result.end(), inner.begin(), inner.end());
+  }
+  std::sort(result.begin(), result.end(), before);
+  return result;
+}
+
+}  // namespace orbweaver::spectrum
