@@ -10,6 +10,7 @@
 
 #include "command.hpp"
 #include "common_options.hpp"
+#include "failure.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/system.hpp"
 
@@ -167,6 +168,7 @@ int check(const SceneOptions& options, const Invocation& invocation) {
   print_limits(scene);
   print_outputs(scene, system);
   print_not_built(scene);
+  print_result("");  // throws if what was printed cannot be written
   return 0;
 }
 

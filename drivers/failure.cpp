@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/check.hpp"
-#include "orbweaver/core/log.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/log.hpp"
 
 namespace orbweaver::drivers {
 
@@ -54,6 +54,13 @@ int report_failure(const std::exception_ptr& error) {
     core::write_line(stderr, fmt::format("orbweaver: {}", failure.message));
   }
   return failure.status;
+}
+
+void print_result(const std::string& text) {
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  if (written) return;
+  std::clearerr(stdout);
+  throw core::EnvironmentError("cannot write to the standard output: is the disk full, or the output closed?");
 }
 
 void agree(const core::Communicator& comm, const std::function<void()>& stage) {

@@ -31,6 +31,9 @@ class ReportedElsewhere : public std::exception {
 /// Prints `orbweaver: <message>` to stderr (nothing for ReportedElsewhere) and returns the exit status.
 int report_failure(const std::exception_ptr& error);
 
+/// Writes a command's result to the standard output; throws EnvironmentError if it cannot be written.
+void print_result(const std::string& text);
+
 /// Collective over `comm`. Runs `stage` on every rank. If it throws on any, all throw before anyone enters the next
 /// collective: the lowest failing rank what main reports as the original error, the others ReportedElsewhere with the
 /// same status. `stage` itself must not be collective: it is for reading and validating input.

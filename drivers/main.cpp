@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include <fcntl.h>
 #include <CLI/CLI.hpp>
 
 #include "command.hpp"
@@ -36,6 +37,12 @@ Invocation take_petsc_options(std::vector<std::string>& words) {
   return invocation;
 }
 
+/// A closed stdin, stdout or stderr becomes /dev/null, so that no file of ours gets its number.
+void open_standard_streams() {
+  for (int fd = 0; fd <= 2; ++fd)
+    if (fcntl(fd, F_GETFD) == -1) static_cast<void>(open("/dev/null", fd == 0 ? O_RDONLY : O_WRONLY));
+}
+
 int run(std::vector<std::string> words) {
   CLI::App program("Orbweaver maps how the periodic orbits of a dynamical system hang together.", "orbweaver");
   program.set_version_flag("--version", "orbweaver " ORBWEAVER_VERSION);
@@ -57,6 +64,7 @@ int run(std::vector<std::string> words) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  open_standard_streams();
   orbweaver::core::prefer_fitting_blas_kernels(argv);
   try {
     return run({argv + 1, argv + argc});

@@ -1,3 +1,4 @@
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -7,6 +8,7 @@
 #include "command.hpp"
 #include "common_options.hpp"
 #include "failure.hpp"
+#include "orbweaver/core/check.hpp"
 #include "orbweaver/core/communicator.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/session.hpp"
@@ -37,40 +39,71 @@ core::ExitStatus status_of(const survey::Summary& summary) {
   return summary.failures > 0 ? core::ExitStatus::goal_missed : core::ExitStatus::done;
 }
 
+// run_survey throws InputError and EnvironmentError on all ranks alike; one of them reports.
+template <class Body>
+auto alike_on_all_ranks(const core::Communicator& comm, Body&& body) {
+  try {
+    return body();
+  } catch (const core::InputError&) {
+    agree(comm, [] { throw; });
+  } catch (const core::EnvironmentError&) {
+    agree(comm, [] { throw; });
+  }
+  throw core::MisuseError("an error that all ranks share was reported by none");
+}
+
+int survey_on(const core::Communicator& comm, const Options& options) {
+  scene::Scene scene;
+  survey::Standing standing = survey::Standing::none;
+  agree(comm, [&] { scene = options.scene.load(); });
+  agree(comm, [&] {
+    if (!comm.is_root()) return;  // folders need not look alike from every machine
+    standing = survey::standing_of(options.directory, scene);
+    survey::require_startable(standing, options.directory, options.resume);
+  });
+  core::check_mpi(MPI_Bcast(&standing, sizeof standing, MPI_BYTE, 0, comm.get()), "MPI_Bcast");
+  if (standing == survey::Standing::finished || standing == survey::Standing::finished_with_failures) {
+    const bool failed = standing == survey::Standing::finished_with_failures;
+    if (comm.is_root())
+      print_result(fmt::format("{} holds this survey, finished{}: nothing to do\n", options.directory.string(),
+                               failed ? ", with failures (orbweaver show says which)" : ""));
+    return static_cast<int>(failed ? core::ExitStatus::goal_missed : core::ExitStatus::done);
+  }
+  if (comm.is_root())
+    for (const std::string& sentence : scene::not_built_yet(scene))
+      core::log_warning(fmt::format("not built yet: {}", sentence));
+  const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  const survey::Summary summary = alike_on_all_ranks(
+      comm, [&] { return survey::run_survey(comm, scene, system, options.directory, display_for(options)); });
+  agree(comm, [&] {
+    if (comm.is_root()) print_result(survey::to_text(summary));
+  });
+  return static_cast<int>(status_of(summary));
+}
+
 int run(const Options& options, const Invocation& invocation) {
   const core::Session session(invocation.petsc_options);
   const core::Communicator comm;
   core::start_logging(options.log.level(), comm.rank(), comm.size());
-  return run_on_ranks(comm, [&] {
-    scene::Scene scene;
-    survey::Standing standing = survey::Standing::none;
-    agree(comm, [&] {
-      scene = options.scene.load();
-      standing = survey::standing_of(options.directory, scene);
-      survey::require_startable(standing, options.directory, options.resume);
-    });
-    if (standing == survey::Standing::finished) {
-      if (comm.is_root()) fmt::print("{} holds this survey, finished: nothing to do\n", options.directory.string());
-      return 0;
-    }
-    if (comm.is_root())
-      for (const std::string& sentence : scene::not_built_yet(scene)) core::log_warning(fmt::format("not built yet: {}", sentence));
-    const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
-    const survey::Summary summary = survey::run_survey(comm, scene, system, options.directory, display_for(options));
-    if (comm.is_root()) fmt::print("{}", survey::to_text(summary));
-    return static_cast<int>(status_of(summary));
-  });
+  try {
+    return run_on_ranks(comm, [&] { return survey_on(comm, options); });
+  } catch (
+      ...) {  // reported before MPI ends: mpirun kills a job when its first rank exits, maybe before another has printed
+    return report_failure(std::current_exception());
+  }
 }
 
 }  // namespace
 
 Command make_survey_command(CLI::App& program) {
   const auto options = std::make_shared<Options>();
-  CLI::App* parser = program.add_subcommand("survey", "Find, follow and archive the families of a scene (under mpirun or alone)");
+  CLI::App* parser =
+      program.add_subcommand("survey", "Find, follow and archive the families of a scene (under mpirun or alone)");
   add_scene_options(*parser, options->scene);
   parser->add_option("-o,--output", options->directory, "Folder for the archive, atlas.h5")->required();
   parser->add_flag("--resume", options->resume, "Accept a folder that already holds this survey");
-  parser->add_option("--progress", options->progress, "live: a line a family, redrawn; lines: a plain line now and then")
+  parser
+      ->add_option("--progress", options->progress, "live: a line a family, redrawn; lines: a plain line now and then")
       ->check(CLI::IsMember({"auto", "live", "lines"}))
       ->capture_default_str();
   add_log_options(*parser, options->log);

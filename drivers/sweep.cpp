@@ -6,6 +6,8 @@
 
 #include "command.hpp"
 #include "common_options.hpp"
+#include "failure.hpp"
+#include "orbweaver/core/communicator.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/session.hpp"
 #include "orbweaver/survey/sweep_report.hpp"
@@ -24,15 +26,19 @@ void write_file(const std::filesystem::path& path, const std::string& text) {
   std::ofstream file(path);
   file << text;
   file.close();
-  if (!file) throw core::EnvironmentError(fmt::format("cannot write {}: give --csv a file in a folder where you may write", path.string()));
+  if (!file)
+    throw core::EnvironmentError(
+        fmt::format("cannot write {}: give --csv a file in a folder where you may write", path.string()));
 }
 
 int run(const Options& options, const Invocation& invocation) {
   const scene::Scene scene = options.scene.load();
   const core::Session session(invocation.petsc_options);
+  const core::Communicator comm;
+  if (!comm.is_root()) return 0;  // not distributed: under mpirun rank 0 does it
   const auto reports = survey::sweep_report(scene);
-  fmt::print("{}", survey::to_text(reports));
-  if (options.table) fmt::print("\n{}", survey::eigenvalue_table(reports));
+  print_result(survey::to_text(reports));
+  if (options.table) print_result("\n" + survey::eigenvalue_table(reports));
   if (!options.csv.empty()) write_file(options.csv, survey::eigenvalue_csv(reports));
   return 0;
 }
@@ -41,7 +47,8 @@ int run(const Options& options, const Invocation& invocation) {
 
 Command make_sweep_command(CLI::App& program) {
   const auto options = std::make_shared<Options>();
-  CLI::App* parser = program.add_subcommand("sweep", "Smallest eigenvalues against the period at the scene's fixed points");
+  CLI::App* parser =
+      program.add_subcommand("sweep", "Smallest eigenvalues against the period at the scene's fixed points");
   add_scene_options(*parser, options->scene);
   parser->add_flag("--table", options->table, "Print the smallest eigenvalue at every period of the sweep");
   parser->add_option("--csv", options->csv, "Write that table to a CSV file");

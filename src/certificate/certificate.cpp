@@ -59,6 +59,16 @@ double energy_drift_of(const systems::System& system, const std::vector<State>& 
   return largest;
 }
 
+// NaN where the orbit is so unstable that the integration leaves the region where the system is defined.
+double single_shot_of(const systems::System& system, const std::vector<State>& states, double period,
+                      double tolerance) {
+  try {
+    return distance(integrate(system, states.front(), period, tolerance), states.back());
+  } catch (const core::NumericalError&) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
 }  // namespace
 
 Certificate certify(const systems::System& system, const loop::Loop& loop, const Options& options) {
@@ -68,7 +78,7 @@ Certificate certify(const systems::System& system, const loop::Loop& loop, const
   const std::vector<State> states = states_at_segment_ends(loop, options.segments);
   Certificate certificate;
   certificate.closure = closure_of(system, loop, states, options);
-  certificate.single_shot = distance(integrate(system, states.front(), loop.period, options.tolerance), states.back());
+  certificate.single_shot = single_shot_of(system, states, loop.period, options.tolerance);
   certificate.energy_drift = energy_drift_of(system, states);
   return certificate;
 }

@@ -61,7 +61,8 @@ Attempt correct_along(const systems::System& system, const loop::Loop& base, con
   normal.normalize();
   const Eigen::VectorXd move = length * normal;
   Attempt attempt;
-  const loop::Loop guess = unknowns.moved(base, std::span<const double>(move.data(), static_cast<std::size_t>(move.size())));
+  const loop::Loop guess =
+      unknowns.moved(base, std::span<const double>(move.data(), static_cast<std::size_t>(move.size())));
   if (!(guess.period > 0.0)) {
     attempt.result.outcome = corrector::Outcome::period_not_positive;
     attempt.result.detail = fmt::format("the predicted period is {:.6g}", guess.period);
@@ -69,7 +70,8 @@ Attempt correct_along(const systems::System& system, const loop::Loop& base, con
   }
   const Eigen::MatrixXd conditions = conditions_at(guess, unknowns, normal);
   normal = without_shift(conditions);
-  attempt.result = corrector::correct(system, guess, unknowns, loss::Slice(unknowns.size(), conditions), options, normal);
+  attempt.result =
+      corrector::correct(system, guess, unknowns, loss::Slice(unknowns.size(), conditions), options, normal);
   if (!attempt.result.converged()) return attempt;
   const Eigen::VectorXd& tangent = attempt.result.flat_direction.value();
   attempt.turning = std::acos(std::clamp(tangent.dot(normal), -1.0, 1.0));
@@ -80,10 +82,8 @@ Attempt correct_along(const systems::System& system, const loop::Loop& base, con
 }
 
 double tail_limit(const loop::Loop& loop, const Options& options) {
-  double mean_square = 0.0;
-  for (int i = 0; i < loop.dimension; ++i) mean_square += loop.cosine(0, i) * loop.cosine(0, i);
-  // Every harmonic carries rounding of the size of the mean: no cutoff takes a tail below that.
-  const double rounding = std::numeric_limits<double>::epsilon() * std::sqrt(mean_square);
+  // Every harmonic carries rounding of the size of the loop: no cutoff takes a tail below that.
+  const double rounding = std::numeric_limits<double>::epsilon() * loop::rms_size(loop);
   return std::max(options.tail_tolerance * std::min(1.0, loop::rms_amplitude(loop)), rounding);
 }
 

@@ -19,6 +19,8 @@ std::string_view name_of(EndReason reason) {
   return "unknown";
 }
 
-std::string Ending::text() const { return detail.empty() ? std::string(name_of(reason)) : fmt::format("{} ({})", name_of(reason), detail); }
+std::string Ending::text() const {
+  return detail.empty() ? std::string(name_of(reason)) : fmt::format("{} ({})", name_of(reason), detail);
+}
 
 }  // namespace orbweaver::continuation

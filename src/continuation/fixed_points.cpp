@@ -5,9 +5,9 @@
 #include <numbers>
 #include <optional>
 
-#include <Eigen/Dense>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <Eigen/Dense>
 
 #include "orbweaver/core/error.hpp"
 
@@ -16,7 +16,9 @@ namespace orbweaver::continuation {
 namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
-constexpr double same_point = 1e-8;
+constexpr double same_point = 1e-7;
+constexpr double longest_step =
+    1.0;  // of Newton, so that it does not leave the neighbourhood of its start for far away
 
 void reduce_angles(const systems::System& system, Eigen::VectorXd& z) {
   for (const int i : system.description().angles) {
@@ -30,25 +32,28 @@ std::optional<Eigen::VectorXd> newton(const systems::System& system, Eigen::Vect
   Eigen::VectorXd f(d);
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> a(d, d);
   const std::vector<double> start(z.begin(), z.end());
-  for (int iteration = 0; iteration < 50; ++iteration) {
+  for (int iteration = 0; iteration < 100; ++iteration) {
     system.field_jacobian(1, z.data(), f.data(), a.data());
     if (!f.allFinite() || !a.allFinite()) {
       if (iteration > 0) return std::nullopt;
       throw core::NotFiniteError(fmt::format("the vector field of {} is not finite at the grid point ({:.6g})",
                                              system.description().name, fmt::join(start, ", ")));
     }
-    const Eigen::VectorXd step = a.completeOrthogonalDecomposition().solve(f);
+    Eigen::VectorXd step = a.completeOrthogonalDecomposition().solve(f);
+    if (step.norm() > longest_step) step *= longest_step / step.norm();
     z -= step;
+    reduce_angles(system, z);
     if (step.norm() < 1e-15 * (1.0 + z.norm())) break;
   }
   system.field(1, z.data(), f.data());
-  if (!(f.norm() < 1e-12 * (1.0 + a.norm() * (1.0 + z.norm())))) return std::nullopt;
+  if (!(f.norm() < 1e-12 * (1.0 + a.norm()))) return std::nullopt;
   return z;
 }
 
 }  // namespace
 
-std::vector<std::vector<double>> find_fixed_points(const systems::System& system, const std::vector<std::vector<double>>& grid) {
+std::vector<std::vector<double>> find_fixed_points(const systems::System& system,
+                                                   const std::vector<std::vector<double>>& grid) {
   const auto d = static_cast<std::size_t>(system.dimension());
   core::require(grid.size() <= d, "more grid lists than coordinates");
   std::size_t starts = 1;
@@ -64,8 +69,9 @@ std::vector<std::vector<double>> find_fixed_points(const systems::System& system
     }
     std::optional<Eigen::VectorXd> point = newton(system, std::move(z));
     if (!point) continue;
-    reduce_angles(system, *point);
-    const bool known = std::any_of(found.begin(), found.end(), [&](const Eigen::VectorXd& w) { return (w - *point).norm() < same_point; });
+    const bool known = std::any_of(found.begin(), found.end(), [&](const Eigen::VectorXd& w) {
+      return (w - *point).norm() < same_point * (1.0 + w.norm());
+    });
     if (!known) found.push_back(*point);
   }
   std::vector<std::vector<double>> points;

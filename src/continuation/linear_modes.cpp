@@ -66,16 +66,34 @@ Eigen::VectorXcd LinearModes::softest(int k, double period) const {
   return singular_vectors(matrix(k, period)).matrixV().rightCols(1);
 }
 
-std::optional<LinearModes::Root> LinearModes::root(int k, double low, double near, double high) const {
+std::vector<LinearModes::Root> LinearModes::roots(int k, double low, double near, double high, int depth) const {
+  constexpr int deepest = 4;
+  constexpr int parts = 40;
   // Singular values of M move no faster than |dM/dT| = 2 pi k / T^2: only those within reach of 0 in the bracket can vanish.
   const double reach = 2.0 * std::numbers::pi * k / (low * low) * (high - low);
-  const Eigen::VectorXd sigma = singular_vectors(matrix(k, near)).singularValues();
-  for (Eigen::Index borders = (sigma.array() <= reach).count(); borders >= 1; --borders)
-    if (auto found = bordered_root(k, low, near, high, borders)) return found;
-  return std::nullopt;
+  const auto smallest_at = [&](double period) { return singular_vectors(matrix(k, period)).singularValues(); };
+  const Eigen::VectorXd sigma = smallest_at(near);
+  const Eigen::Index vanishing = (sigma.array() <= reach).count();
+  if (vanishing < 1) return {};
+  if (const auto together = bordered_root(k, low, near, high, vanishing)) return {*together};
+  std::vector<Root> found;
+  if (vanishing > 1 && depth < deepest) {
+    std::vector<double> dips;
+    for (int n = 0; n <= parts; ++n) dips.push_back(smallest_at(low + (high - low) * n / parts).minCoeff());
+    for (int n = 1; n < parts; ++n) {
+      const auto i = static_cast<std::size_t>(n);
+      if (!(dips[i] < dips[i - 1] && dips[i] <= dips[i + 1])) continue;
+      const auto at = [&](int m) { return low + (high - low) * m / parts; };
+      for (const Root& root : roots(k, at(n - 1), at(n), at(n + 1), depth + 1)) found.push_back(root);
+    }
+  }
+  for (Eigen::Index borders = vanishing - 1; borders >= 1 && found.empty(); --borders)
+    if (const auto fewer = bordered_root(k, low, near, high, borders)) found.push_back(*fewer);
+  return found;
 }
 
-std::optional<LinearModes::Root> LinearModes::bordered_root(int k, double low, double near, double high, Eigen::Index borders) const {
+std::optional<LinearModes::Root> LinearModes::bordered_root(int k, double low, double near, double high,
+                                                            Eigen::Index borders) const {
   const Border border(matrix(k, near), borders);
   const double h = 1e-4 * (high - low);
   const Eigen::MatrixXcd slope = (border.value(matrix(k, near + h)) - border.value(matrix(k, near - h))) / (2.0 * h);
@@ -87,8 +105,8 @@ std::optional<LinearModes::Root> LinearModes::bordered_root(int k, double low, d
   const double at_high = signed_distance(high);
   if (!(at_low * at_high < 0.0)) return std::nullopt;
   std::uintmax_t evaluations = 100;
-  const auto [left, right] =
-      boost::math::tools::toms748_solve(signed_distance, low, high, at_low, at_high, boost::math::tools::eps_tolerance<double>(52), evaluations);
+  const auto [left, right] = boost::math::tools::toms748_solve(
+      signed_distance, low, high, at_low, at_high, boost::math::tools::eps_tolerance<double>(52), evaluations);
   const double period = std::abs(signed_distance(left)) < std::abs(signed_distance(right)) ? left : right;
   const auto svd = singular_vectors(matrix(k, period));
   const Eigen::Index first = svd.singularValues().size() - borders;

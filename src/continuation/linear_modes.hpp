@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include <Eigen/Dense>
 
@@ -22,9 +23,10 @@ class LinearModes {
     Eigen::MatrixXcd kernel;  ///< one vector a column
   };
 
-  /// The root of harmonic k in [low, high], seen as a dip at `near`: zero of the signed function Re tr(g g'^-1), where g(T) is
-  /// the block that borders M (docs/mathematics.md, "Sweep"). None where the function has no sign change or M stays regular.
-  [[nodiscard]] std::optional<Root> root(int k, double low, double near, double high) const;
+  /// The roots of harmonic k in [low, high], seen as a dip at `near`: zeros of the signed function Re tr(g g'^-1), where g(T)
+  /// is the block that borders M (docs/mathematics.md, "Sweep"). Empty where the function has no sign change or M stays
+  /// regular. Where several singular values are small but do not vanish together the bracket is divided.
+  [[nodiscard]] std::vector<Root> roots(int k, double low, double near, double high, int depth = 0) const;
 
   /// The right singular vector of the smallest singular value of M(T) at harmonic k.
   [[nodiscard]] Eigen::VectorXcd softest(int k, double period) const;
@@ -34,7 +36,8 @@ class LinearModes {
 
  private:
   [[nodiscard]] Eigen::MatrixXcd matrix(int k, double period) const;
-  [[nodiscard]] std::optional<Root> bordered_root(int k, double low, double near, double high, Eigen::Index borders) const;
+  [[nodiscard]] std::optional<Root> bordered_root(int k, double low, double near, double high,
+                                                  Eigen::Index borders) const;
   Eigen::MatrixXd _a;
 };
 

@@ -48,7 +48,8 @@ double off_branch_eigenvalue(const systems::System& system, const loop::Loop& lo
       excluded.col(excluded.cols() - 1) = direction.normalized();
     };
     Eigen::VectorXd tangent = Eigen::VectorXd::Zero(size);
-    unknowns.subspace.project(tangent_modes, std::span(tangent.data(), static_cast<std::size_t>(unknowns.subspace.size())));
+    unknowns.subspace.project(tangent_modes,
+                              std::span(tangent.data(), static_cast<std::size_t>(unknowns.subspace.size())));
     if (unknowns.period) tangent(size - 1) = tangent_period;
     exclude(tangent);
     std::vector<double> shift = unknowns.time_shift_direction(loop);

@@ -7,7 +7,9 @@
 
 namespace orbweaver::continuation {
 
-double energy_of(const systems::System& system, const loop::Loop& loop) { return system.energy(loop::state_at(loop, 0.0)); }
+double energy_of(const systems::System& system, const loop::Loop& loop) {
+  return system.energy(loop::state_at(loop, 0.0));
+}
 
 double action_of(const systems::System& system, const loop::Loop& loop) {
   const int nodes = loop::FourierGrid::nodes_for(loop.cutoff);

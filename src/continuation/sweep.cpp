@@ -85,9 +85,10 @@ NormalMode normal_mode(const systems::System& system, std::span<const double> fi
 
 std::string why_rejected(int k, const LinearModes::Root& root) {
   if (k > 1) return fmt::format("{} times around the oscillation with T = {:.12g}", k, root.period / k);
-  return fmt::format("{} oscillations share this period: telling their families apart needs the bifurcation layer, "
-                     "which is not built yet",
-                     root.multiplicity);
+  return fmt::format(
+      "{} oscillations share this period: telling their families apart needs the bifurcation layer, "
+      "which is not built yet",
+      root.multiplicity);
 }
 
 }  // namespace
@@ -99,36 +100,46 @@ SweepResult sweep(const systems::System& system, std::span<const double> fixed_p
   result.fixed_point.assign(fixed_point.begin(), fixed_point.end());
   const LinearModes linear(system, fixed_point);
 
-  const auto last = static_cast<int>(std::floor((options.period_to - options.period_from) / options.step * (1.0 + 1e-12)));
-  std::vector<int> harmonics;
-  for (int n = 0; n <= last; ++n) {
-    const Sample s = sample(system, fixed_point, options.period_from + n * options.step, options.cutoff);
-    result.table.push_back(s.point);
-    harmonics.push_back(s.harmonic);
-  }
-  std::vector<double> last_found(static_cast<std::size_t>(options.cutoff) + 1, 0.0);
-  for (std::size_t n = 1; n + 1 < result.table.size(); ++n) {
-    const SweepPoint& here = result.table[n];
-    if (!(here.eigenvalue < result.table[n - 1].eigenvalue && here.eigenvalue <= result.table[n + 1].eigenvalue)) continue;
+  const auto last =
+      static_cast<int>(std::floor((options.period_to - options.period_from) / options.step * (1.0 + 1e-12)));
+  // One sample beyond each end, so that a dip at an end is seen; only roots within the range count.
+  const int first = options.period_from > options.step ? -1 : 0;
+  std::vector<Sample> samples;
+  for (int n = first; n <= last + 1; ++n)
+    samples.push_back(sample(system, fixed_point, options.period_from + n * options.step, options.cutoff));
+  for (int n = 0; n <= last; ++n) result.table.push_back(samples[static_cast<std::size_t>(n - first)].point);
+
+  std::vector<std::vector<double>> known(static_cast<std::size_t>(options.cutoff) + 1);
+  for (std::size_t n = 1; n + 1 < samples.size(); ++n) {
+    const SweepPoint& here = samples[n].point;
+    const double low = samples[n - 1].point.period;
+    const double high = samples[n + 1].point.period;
+    if (!(here.eigenvalue < samples[n - 1].point.eigenvalue && here.eigenvalue <= samples[n + 1].point.eigenvalue))
+      continue;
     bool reaches_zero = false;
     // All harmonics, not only the softest one: dips that lie closer together than a step show as one.
-    for (int k = 1; k <= options.cutoff; ++k) {
-      const auto root = linear.root(k, result.table[n - 1].period, here.period, result.table[n + 1].period);
-      if (!root) continue;
-      reaches_zero = true;
-      double& known = last_found[static_cast<std::size_t>(k)];
-      if (std::abs(root->period - known) < 1e-9 * root->period) continue;
-      known = root->period;
-      if (k == 1 && root->multiplicity == 1)
-        result.modes.push_back(normal_mode(system, fixed_point, linear, *root, here.period, options.cutoff));
-      else
-        result.rejected.push_back({root->period, why_rejected(k, *root)});
-    }
+    for (int k = 1; k <= options.cutoff; ++k)
+      for (const LinearModes::Root& root : linear.roots(k, low, here.period, high)) {
+        reaches_zero = true;
+        std::vector<double>& found = known[static_cast<std::size_t>(k)];
+        const auto is_same = [&](double period) { return std::abs(root.period - period) < 1e-9 * period; };
+        const bool outside =
+            root.period < options.period_from * (1.0 - 1e-12) || root.period > options.period_to * (1.0 + 1e-12);
+        if (outside || std::any_of(found.begin(), found.end(), is_same)) continue;
+        found.push_back(root.period);
+        if (k == 1 && root.multiplicity == 1)
+          result.modes.push_back(normal_mode(system, fixed_point, linear, root, here.period, options.cutoff));
+        else
+          result.rejected.push_back({root.period, why_rejected(k, root)});
+      }
     // Harmonic 0 is the mean of the loop: it does not depend on T, its minima are rounding.
-    if (!reaches_zero && harmonics[n] > 0)
-      result.rejected.push_back({here.period, "a dip that does not reach zero: no small oscillation with this period"});
+    if (!reaches_zero && samples[n].harmonic > 0)
+      result.rejected.push_back(
+          {here.period,
+           "a dip that does not reach zero, or zeros too close together to tell apart: no family starts here"});
   }
-  std::stable_sort(result.modes.begin(), result.modes.end(), [](const NormalMode& a, const NormalMode& b) { return a.period > b.period; });
+  std::stable_sort(result.modes.begin(), result.modes.end(),
+                   [](const NormalMode& a, const NormalMode& b) { return a.period > b.period; });
   return result;
 }
 

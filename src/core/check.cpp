@@ -14,8 +14,9 @@ void throw_petsc_error(PetscErrorCode code, const char* call, std::source_locati
   char* specific = nullptr;
   PetscErrorMessage(code, &text, &specific);
   const std::string detail = (specific != nullptr && *specific != '\0') ? fmt::format(" ({})", specific) : "";
-  throw EnvironmentError(fmt::format("{} failed: {}{} [PETSc error {}, {}:{}]", call, text != nullptr ? text : "unknown error",
-                                     detail, static_cast<int>(code), where.file_name(), where.line()));
+  throw EnvironmentError(fmt::format("{} failed: {}{} [PETSc error {}, {}:{}]", call,
+                                     text != nullptr ? text : "unknown error", detail, static_cast<int>(code),
+                                     where.file_name(), where.line()));
 }
 
 void throw_mpi_error(int code, const char* call, std::source_location where) {
@@ -23,8 +24,8 @@ void throw_mpi_error(int code, const char* call, std::source_location where) {
   int length = 0;
   MPI_Error_string(code, text.data(), &length);
   throw EnvironmentError(fmt::format("{} failed: {} [MPI error {}, {}:{}]", call,
-                                     std::string(text.data(), static_cast<std::size_t>(length)), code, where.file_name(),
-                                     where.line()));
+                                     std::string(text.data(), static_cast<std::size_t>(length)), code,
+                                     where.file_name(), where.line()));
 }
 
 }  // namespace orbweaver::core::detail

@@ -73,8 +73,7 @@ class Elimination : public BoxScheme {
   [[nodiscard]] Block half_block(const Matrices& m, int j) const {
     Block b(_d, _d);
     for (int i = 0; i < _d; ++i)
-      for (int l = 0; l < _d; ++l)
-        b(i, l) = 0.5 * m.blocks[static_cast<std::size_t>((i * _d + l) * _nodes + j)];
+      for (int l = 0; l < _d; ++l) b(i, l) = 0.5 * m.blocks[static_cast<std::size_t>((i * _d + l) * _nodes + j)];
     return b;
   }
   [[nodiscard]] Wide node_columns(const Matrices& m, int j) const {
@@ -103,7 +102,8 @@ class Elimination : public BoxScheme {
       stacked.topRows(_d) = _next;
       stacked.bottomRows(_d) = -identity - half;
       const Eigen::HouseholderQR<decltype(stacked)> qr(stacked);
-      using Square = Eigen::Matrix<double, D == Eigen::Dynamic ? Eigen::Dynamic : 2 * D, D == Eigen::Dynamic ? Eigen::Dynamic : 2 * D>;
+      using Square = Eigen::Matrix<double, D == Eigen::Dynamic ? Eigen::Dynamic : 2 * D,
+                                   D == Eigen::Dynamic ? Eigen::Dynamic : 2 * D>;
       const Square q = qr.householderQ() * Square::Identity(2 * _d, 2 * _d);
       const Block r = qr.matrixQR().topRows(_d).template triangularView<Eigen::Upper>();
       const auto solve_r = r.template triangularView<Eigen::Upper>();

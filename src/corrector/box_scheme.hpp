@@ -19,11 +19,11 @@ class BoxScheme {
   struct Matrices {
     int dimension = 0;
     int nodes = 0;
-    double spacing = 0.0;           ///< h
-    std::vector<double> blocks;     ///< B: entry (i, l) of node j at [(i d + l) N + j]
-    Eigen::MatrixXd columns;        ///< C: (d N) x borders, entry i of node j at row i N + j
-    Eigen::MatrixXd rows;           ///< R: borders x (d N), same order
-    Eigen::MatrixXd corner;         ///< S: borders x borders
+    double spacing = 0.0;        ///< h
+    std::vector<double> blocks;  ///< B: entry (i, l) of node j at [(i d + l) N + j]
+    Eigen::MatrixXd columns;     ///< C: (d N) x borders, entry i of node j at row i N + j
+    Eigen::MatrixXd rows;        ///< R: borders x (d N), same order
+    Eigen::MatrixXd corner;      ///< S: borders x borders
   };
 
   virtual ~BoxScheme() = default;

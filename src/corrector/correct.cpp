@@ -39,15 +39,16 @@ struct Polished {
 };
 
 // One more Newton step from the factored Hessian: shows that the step is small, and takes the orbit to rounding level.
-Polished polish(const systems::System& system, const loop::Loop& found, const loss::Unknowns& unknowns, const loss::Slice& slice,
-                const std::optional<Eigen::VectorXd>& normal, bool apply_step) {
+Polished polish(const systems::System& system, const loop::Loop& found, const loss::Unknowns& unknowns,
+                const loss::Slice& slice, const std::optional<Eigen::VectorXd>& normal, bool apply_step) {
   const loss::Linearization lin(system, found, loss::Linearization::Order::jacobian);
   const spectrum::SlicedHessian hessian(lin, unknowns, slice);
   const Eigen::VectorXd step = hessian.newton_step();
   Polished out{found, std::sqrt(lin.loss()), step.norm(), {}};
   if (normal) out.flat_direction = hessian.flat_direction(*normal);
   if (!apply_step) return out;
-  const loop::Loop moved = unknowns.moved(found, std::span<const double>(step.data(), static_cast<std::size_t>(step.size())));
+  const loop::Loop moved =
+      unknowns.moved(found, std::span<const double>(step.data(), static_cast<std::size_t>(step.size())));
   if (!(moved.period > 0.0)) return out;
   const loss::Linearization after(system, moved, loss::Linearization::Order::residual);
   if (std::sqrt(after.loss()) <= out.loss_rms) {
@@ -57,20 +58,23 @@ Polished polish(const systems::System& system, const loop::Loop& found, const lo
   return out;
 }
 
-bool tail_is_heavy(const loop::Loop& loop, double threshold, const Options& options) {
-  const double rate = 2.0 * M_PI / loop.period;
-  return rate * loop.cutoff * loop::tail(loop) > options.tail_tolerance * threshold;
+// The residual that the truncation leaves is about rate K tail: only where that explains the loss do more harmonics help.
+bool tail_explains(const loop::Loop& loop, double loss_rms, double threshold, const Options& options) {
+  const double truncation = 2.0 * M_PI / loop.period * loop.cutoff * loop::tail(loop);
+  return truncation > options.tail_tolerance * threshold && truncation > 1e-2 * loss_rms;
 }
 
-Outcome outcome_of(Stop stop, const loop::Loop& loop, double threshold, const Options& options) {
+Outcome outcome_of(Stop stop, const loop::Loop& loop, double loss_rms, double threshold, const Options& options) {
   switch (stop) {
     case Stop::threshold: return Outcome::converged;
     case Stop::iterations:
     case Stop::stagnation:
     case Stop::tao:
-      if (is_second_order(options.method) && tail_is_heavy(loop, threshold, options)) return Outcome::under_resolved;
-      return stop == Stop::iterations ? Outcome::iteration_limit
-             : stop == Stop::stagnation ? Outcome::stalled : Outcome::solver_failed;
+      if (is_second_order(options.method) && tail_explains(loop, loss_rms, threshold, options))
+        return Outcome::under_resolved;
+      return stop == Stop::iterations   ? Outcome::iteration_limit
+             : stop == Stop::stagnation ? Outcome::stalled
+                                        : Outcome::solver_failed;
     case Stop::none: break;
   }
   return Outcome::solver_failed;
@@ -92,14 +96,17 @@ namespace {
 
 // Sets outcome and detail of a result whose loop, loss, threshold and Newton step are known.
 void judge(Result& result, Stop stop, const std::string& solver_reason, const Options& options) {
-  result.outcome = outcome_of(stop, result.loop, result.threshold, options);
+  result.outcome = outcome_of(stop, result.loop, result.loss_rms, result.threshold, options);
   if (result.outcome != Outcome::converged) {
-    result.detail = fmt::format("{} after {} iterations at sqrt(loss) = {:.3g}, wanted {:.3g}, K = {} ({})", name_of(result.outcome),
-                                result.iterations, result.loss_rms, result.threshold, result.loop.cutoff, solver_reason);
+    result.detail = fmt::format("{} after {} iterations at sqrt(loss) = {:.3g}, wanted {:.3g}, K = {} ({})",
+                                name_of(result.outcome), result.iterations, result.loss_rms, result.threshold,
+                                result.loop.cutoff, solver_reason);
   } else if (result.newton_step > options.step_tolerance * (1.0 + length(result.loop))) {
     result.outcome = Outcome::stalled;
-    result.detail = fmt::format("sqrt(loss) = {:.3g} is under its threshold, but the Newton step is still {:.3g}: the loss is flat in "
-                                "more than one direction here", result.loss_rms, result.newton_step);
+    result.detail = fmt::format(
+        "sqrt(loss) = {:.3g} is under its threshold, but the Newton step is still {:.3g}: the loss is flat in "
+        "more than one direction here",
+        result.loss_rms, result.newton_step);
   }
 }
 
@@ -109,9 +116,10 @@ Result period_lost(Result result) {
   return result;
 }
 
-Result correct_by_tao(const systems::System& system, const loop::Loop& guess, const loss::Unknowns& unknowns, const loss::Slice& slice,
-                      const Options& options, const std::optional<Eigen::VectorXd>& normal) {
-  const auto order = options.curvature == loss::Curvature::full ? loss::Linearization::Order::second : loss::Linearization::Order::jacobian;
+Result correct_by_tao(const systems::System& system, const loop::Loop& guess, const loss::Unknowns& unknowns,
+                      const loss::Slice& slice, const Options& options, const std::optional<Eigen::VectorXd>& normal) {
+  const auto order = options.curvature == loss::Curvature::full ? loss::Linearization::Order::second
+                                                                : loss::Linearization::Order::jacobian;
   Result result;
   Objective objective(system, guess, unknowns, slice, order);
   const TaoRun run = run_tao(objective, options);
@@ -150,29 +158,36 @@ Result correct_by_newton_krylov(const systems::System& system, const loop::Loop&
   return result;
 }
 
-Result dispatch(const systems::System& system, const loop::Loop& guess, const loss::Unknowns& unknowns, const loss::Slice& slice,
-                const Options& options, const std::optional<Eigen::VectorXd>& normal) {
+// Above this an assembled Hessian takes more than 128 MiB.
+constexpr int largest_dense = 4000;
+
+Result dispatch(const systems::System& system, const loop::Loop& guess, const loss::Unknowns& unknowns,
+                const loss::Slice& slice, const Options& options, const std::optional<Eigen::VectorXd>& normal) {
   const bool large = unknowns.size() >= options.krylov_from;
   const bool wanted = options.method == Method::newton_krylov || (options.method == Method::automatic && large);
   if (!wanted || !newton_krylov_applies(system, unknowns, slice)) {
-    core::require(options.method != Method::newton_krylov, "newton-krylov needs a square problem: one condition without, or two with a "
-                                                           "phase condition and a conservative system, and a free period");
+    if (options.method == Method::newton_krylov)
+      throw core::InputError(
+          "corrector newton-krylov needs a square problem (a free period, and a conservative system where a phase "
+          "condition is held): use `automatic`");
     return correct_by_tao(system, guess, unknowns, slice, options, normal);
   }
-  if (options.method == Method::newton_krylov) return correct_by_newton_krylov(system, guess, unknowns, slice, options, normal.has_value());
+  if (options.method == Method::newton_krylov)
+    return correct_by_newton_krylov(system, guess, unknowns, slice, options, normal.has_value());
   try {
     return correct_by_newton_krylov(system, guess, unknowns, slice, options, normal.has_value());
   } catch (const core::NotFiniteError&) {
     throw;
   } catch (const core::NumericalError&) {
+    if (unknowns.size() > largest_dense) throw;
     return correct_by_tao(system, guess, unknowns, slice, options, normal);
   }
 }
 
 }  // namespace
 
-Result correct(const systems::System& system, const loop::Loop& guess, const loss::Unknowns& unknowns, const loss::Slice& slice,
-               const Options& options, const std::optional<Eigen::VectorXd>& normal) {
+Result correct(const systems::System& system, const loop::Loop& guess, const loss::Unknowns& unknowns,
+               const loss::Slice& slice, const Options& options, const std::optional<Eigen::VectorXd>& normal) {
   core::require(slice.unknowns() == unknowns.size(), "the slice belongs to other unknowns");
   Result result;
   result.loop = guess;

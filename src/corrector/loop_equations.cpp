@@ -25,7 +25,8 @@ std::vector<double> states_at(const loop::FourierGrid& grid, const loop::Loop& l
   std::vector<double> z(n * static_cast<std::size_t>(loop.dimension));
   grid.synthesize(loop.cutoff, loop.dimension, shifted.modes.data(), z.data());
   for (std::size_t i = 0; i < static_cast<std::size_t>(loop.dimension); ++i)
-    for (std::size_t j = 0; j < n; ++j) z[i * n + j] += loop.winding[i] * 2.0 * std::numbers::pi * static_cast<double>(j) / grid.nodes();
+    for (std::size_t j = 0; j < n; ++j)
+      z[i * n + j] += loop.winding[i] * 2.0 * std::numbers::pi * static_cast<double>(j) / grid.nodes();
   return z;
 }
 
@@ -59,11 +60,13 @@ LoopEquations::LoopEquations(const systems::System& system, const loop::Loop& lo
       _linearization(system, loop, loss::Linearization::Order::jacobian) {
   if (_unfoldings == 0) return;
   const loop::FourierGrid& grid = _linearization.grid();
-  _unfolding_column = project_nodal(energy_gradients(system, static_cast<std::size_t>(grid.nodes()), states_at(grid, loop, 0.0)));
+  _unfolding_column =
+      project_nodal(energy_gradients(system, static_cast<std::size_t>(grid.nodes()), states_at(grid, loop, 0.0)));
 }
 
 Eigen::VectorXd LoopEquations::project_nodal(const std::vector<double>& nodal) const {
-  std::vector<double> modes((2 * static_cast<std::size_t>(_linearization.cutoff()) + 1) * static_cast<std::size_t>(_linearization.dimension()));
+  std::vector<double> modes((2 * static_cast<std::size_t>(_linearization.cutoff()) + 1) *
+                            static_cast<std::size_t>(_linearization.dimension()));
   _linearization.grid().analyze(_linearization.cutoff(), _linearization.dimension(), nodal.data(), modes.data());
   Eigen::VectorXd out(_image.size());
   _image.project(modes, std::span(out.data(), static_cast<std::size_t>(out.size())));
@@ -125,7 +128,8 @@ void LoopEquations::factor(const systems::System& system, const loop::Loop& loop
   for (Eigen::Index r = 0; r < borders; ++r) {
     std::vector<double> modes((2 * static_cast<std::size_t>(loop.cutoff) + 1) * d, 0.0);
     const Eigen::VectorXd condition = _slice.conditions().col(r);
-    _unknowns.subspace.add_to(std::span<const double>(condition.data(), static_cast<std::size_t>(_unknowns.subspace.size())), modes);
+    _unknowns.subspace.add_to(
+        std::span<const double>(condition.data(), static_cast<std::size_t>(_unknowns.subspace.size())), modes);
     for (std::size_t q = d; q < modes.size(); ++q) modes[q] *= 2.0;
     filter(modes, loop.dimension, 0.5 * h, false);
     grid.synthesize(loop.cutoff, loop.dimension, modes.data(), nodal.data());

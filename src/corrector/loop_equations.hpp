@@ -17,11 +17,12 @@ namespace orbweaver::corrector {
 /// slice's conditions; unknowns are those of the loss and, where a phase condition is held, an unfolding multiple of grad H.
 class LoopEquations {
  public:
-  LoopEquations(const systems::System& system, const loop::Loop& loop, const loss::Unknowns& unknowns, const loop::Subspace& image,
-                const loss::Slice& slice);
+  LoopEquations(const systems::System& system, const loop::Loop& loop, const loss::Unknowns& unknowns,
+                const loop::Subspace& image, const loss::Slice& slice);
 
   /// Number of unfolding columns that make the system square (may be negative or > 1: then it cannot be).
-  [[nodiscard]] static int unfoldings(const loss::Unknowns& unknowns, const loop::Subspace& image, const loss::Slice& slice) {
+  [[nodiscard]] static int unfoldings(const loss::Unknowns& unknowns, const loop::Subspace& image,
+                                      const loss::Slice& slice) {
     return image.size() + static_cast<int>(slice.conditions().cols()) - unknowns.size();
   }
 

@@ -17,8 +17,13 @@ namespace {
 
 constexpr int restart = 60;
 constexpr int most_inner = 180;
-constexpr double tight = 1e-13;   // for the flat direction
-constexpr double loose = 1e-8;    // Newton steps: their own error is squared away by the next
+// Relative residuals: asked for, and still accepted where rounding stops GMRES earlier.
+struct Accuracy {
+  double wanted;
+  double accepted;
+};
+constexpr Accuracy of_steps{1e-8, 1e-5};  // a step's error is squared away by the next
+constexpr Accuracy of_flat_direction{1e-13, 1e-8};
 
 struct Context {
   const LoopEquations* equations = nullptr;
@@ -44,7 +49,8 @@ class InnerSolver {
  public:
   explicit InnerSolver(int size) : _right_side(loss::create_vector(size)), _solution(loss::create_vector(size)) {
     core::check(MatCreateShell(PETSC_COMM_SELF, size, size, size, size, &_context, _matrix.put()), "MatCreateShell");
-    core::check(MatShellSetOperation(_matrix.get(), MATOP_MULT, reinterpret_cast<void (*)()>(multiply)), "MatShellSetOperation");
+    core::check(MatShellSetOperation(_matrix.get(), MATOP_MULT, reinterpret_cast<void (*)()>(multiply)),
+                "MatShellSetOperation");
     core::check(KSPCreate(PETSC_COMM_SELF, _ksp.put()), "KSPCreate");
     core::check(KSPSetOptionsPrefix(_ksp.get(), "corrector_inner_"), "KSPSetOptionsPrefix");
     core::check(KSPSetOperators(_ksp.get(), _matrix.get(), _matrix.get()), "KSPSetOperators");
@@ -59,11 +65,11 @@ class InnerSolver {
     core::check(KSPSetFromOptions(_ksp.get()), "KSPSetFromOptions");
   }
 
-  /// Throws NumericalError unless the residual falls by `tolerance`.
-  Eigen::VectorXd solve(const LoopEquations& equations, const Eigen::VectorXd& right_side, double tolerance) {
+  /// Throws NumericalError unless the residual falls to what is accepted.
+  Eigen::VectorXd solve(const LoopEquations& equations, const Eigen::VectorXd& right_side, Accuracy accuracy) {
     _context.equations = &equations;
     loss::assign(_right_side.get(), right_side);
-    core::check(KSPSetTolerances(_ksp.get(), tolerance, 1e-300, PETSC_DEFAULT, most_inner), "KSPSetTolerances");
+    core::check(KSPSetTolerances(_ksp.get(), accuracy.wanted, 1e-300, PETSC_DEFAULT, most_inner), "KSPSetTolerances");
     const PetscErrorCode code = KSPSolve(_ksp.get(), _right_side.get(), _solution.get());
     _context.guard.rethrow();
     core::check(code, "KSPSolve");
@@ -73,8 +79,9 @@ class InnerSolver {
     core::check(KSPGetResidualNorm(_ksp.get(), &residual), "KSPGetResidualNorm");
     _iterations += static_cast<int>(iterations);
     Eigen::VectorXd x = loss::to_eigen(_solution.get());
-    if (!x.allFinite() || !(residual <= 1e-4 * right_side.norm() + 1e-300))
-      throw core::NumericalError("GMRES on the loop equations does not converge: the orbit is near a point where they are singular");
+    if (!x.allFinite() || !(residual <= accuracy.accepted * right_side.norm() + 1e-300))
+      throw core::NumericalError(
+          "GMRES on the loop equations does not converge: the orbit is near a point where they are singular");
     return x;
   }
 
@@ -99,8 +106,9 @@ bool newton_krylov_applies(const systems::System& system, const loss::Unknowns& 
   return square_without || square_with;
 }
 
-NewtonKrylovRun run_newton_krylov(const systems::System& system, const loop::Loop& guess, const loss::Unknowns& unknowns,
-                                  const loss::Slice& slice, const Options& options, bool want_flat_direction) {
+NewtonKrylovRun run_newton_krylov(const systems::System& system, const loop::Loop& guess,
+                                  const loss::Unknowns& unknowns, const loss::Slice& slice, const Options& options,
+                                  bool want_flat_direction) {
   const loop::Subspace image = unknowns.subspace.image();
   const int most = options.max_iterations > 0 ? options.max_iterations : 30;
   NewtonKrylovRun run;
@@ -119,10 +127,11 @@ NewtonKrylovRun run_newton_krylov(const systems::System& system, const loop::Loo
     if (run.stop != Stop::none) break;
     equations.factor(system, run.loop);
     // Once under the threshold one more step shows that it is small and takes the orbit to rounding level.
-    const Eigen::VectorXd step = inner.solve(equations, -equations.residual(), loose).head(unknowns.size());
-    const loop::Loop moved = unknowns.moved(run.loop, std::span<const double>(step.data(), static_cast<std::size_t>(step.size())));
+    const Eigen::VectorXd step = inner.solve(equations, -equations.residual(), of_steps).head(unknowns.size());
+    const loop::Loop moved =
+        unknowns.moved(run.loop, std::span<const double>(step.data(), static_cast<std::size_t>(step.size())));
     run.newton_step = step.norm();
-    if (!(moved.period > 0.0)) {
+    if (!(moved.period > 0.0) || !std::isfinite(moved.period)) {
       run.loop = moved;
       return run;
     }
@@ -135,7 +144,7 @@ NewtonKrylovRun run_newton_krylov(const systems::System& system, const loop::Loo
     if (want_flat_direction) {
       Eigen::VectorXd unit = Eigen::VectorXd::Zero(equations.size());
       unit(image.size()) = 1.0;
-      run.flat_direction = inner.solve(equations, unit, tight).head(unknowns.size()).normalized();
+      run.flat_direction = inner.solve(equations, unit, of_flat_direction).head(unknowns.size()).normalized();
     }
   }
   run.inner_iterations = inner.iterations();

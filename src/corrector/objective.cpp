@@ -1,5 +1,7 @@
 #include "objective.hpp"
 
+#include <cmath>
+
 #include "orbweaver/loss/dense.hpp"
 #include "orbweaver/loss/matrices.hpp"
 
@@ -8,6 +10,12 @@ namespace orbweaver::corrector {
 loop::Loop Objective::loop_at(const Eigen::VectorXd& x) const {
   const Eigen::VectorXd u = _slice.expand(x);
   return _unknowns.moved(_base, std::span<const double>(u.data(), static_cast<std::size_t>(u.size())));
+}
+
+bool Objective::defined_at(const Eigen::VectorXd& x) const {
+  if (!x.allFinite()) return false;
+  const double period = loop_at(x).period;
+  return std::isfinite(period) && period > 0.0;
 }
 
 const loss::Linearization& Objective::at(const Eigen::VectorXd& x) {

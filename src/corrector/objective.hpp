@@ -16,13 +16,13 @@ namespace orbweaver::corrector {
 /// value, gradient and Hessian of the same point.
 class Objective {
  public:
-  Objective(const systems::System& system, const loop::Loop& base, const loss::Unknowns& unknowns, const loss::Slice& slice,
-            loss::Linearization::Order order)
+  Objective(const systems::System& system, const loop::Loop& base, const loss::Unknowns& unknowns,
+            const loss::Slice& slice, loss::Linearization::Order order)
       : _system(system), _base(base), _unknowns(unknowns), _slice(slice), _order(order) {}
 
   [[nodiscard]] loop::Loop loop_at(const Eigen::VectorXd& x) const;
-  /// False where the period is not positive, so that nothing can be evaluated.
-  [[nodiscard]] bool defined_at(const Eigen::VectorXd& x) const { return loop_at(x).period > 0.0; }
+  /// False where the loop is not finite or its period not positive, so that nothing can be evaluated.
+  [[nodiscard]] bool defined_at(const Eigen::VectorXd& x) const;
   [[nodiscard]] const loss::Linearization& at(const Eigen::VectorXd& x);
   [[nodiscard]] Eigen::VectorXd gradient(const Eigen::VectorXd& x);
   /// The Hessian on the slice into `out` (free x free).

@@ -17,8 +17,8 @@ constexpr double shrink = 0.5;
 constexpr double first_step = 1e-3;
 constexpr double largest_step = 1.0;
 constexpr double smallest_step = 1e-18;
-constexpr int epoch = 50;             // iterations between extrapolations
-constexpr int most_doublings = 40;    // of the extrapolated distance
+constexpr int epoch = 50;           // iterations between extrapolations
+constexpr int most_doublings = 40;  // of the extrapolated distance
 
 struct Rprop {
   bool extrapolate = false;

@@ -114,7 +114,8 @@ PetscErrorCode convergence_test(Tao tao, void* raw) {
       core::check(TaoSetConvergedReason(tao, TAO_CONTINUE_ITERATING), "TaoSetConvergedReason");
       return;
     }
-    core::check(TaoSetConvergedReason(tao, c.stop == Stop::threshold ? TAO_CONVERGED_USER : TAO_DIVERGED_USER), "TaoSetConvergedReason");
+    core::check(TaoSetConvergedReason(tao, c.stop == Stop::threshold ? TAO_CONVERGED_USER : TAO_DIVERGED_USER),
+                "TaoSetConvergedReason");
   });
 }
 
@@ -153,7 +154,8 @@ TaoRun run_tao(Objective& objective, const Options& options) {
   register_rprop();
   const int size = objective.slice().free();
   const bool second_order = is_second_order(options.method);
-  Context context{objective, options, options.max_iterations > 0 ? options.max_iterations : (second_order ? 30 : 200000)};
+  Context context{objective, options,
+                  options.max_iterations > 0 ? options.max_iterations : (second_order ? 30 : 200000)};
 
   const core::Handle<Vec> x = loss::create_vector(size);
   core::Handle<Mat> matrix;
@@ -170,7 +172,8 @@ TaoRun run_tao(Objective& objective, const Options& options) {
   core::check(TaoSetSolution(tao.get(), x.get()), "TaoSetSolution");
   core::check(TaoSetTolerances(tao.get(), 0.0, 0.0, 0.0), "TaoSetTolerances");
   core::check(TaoSetMaximumIterations(tao.get(), context.max_iterations), "TaoSetMaximumIterations");
-  core::check(TaoSetMaximumFunctionEvaluations(tao.get(), 100 * context.max_iterations), "TaoSetMaximumFunctionEvaluations");
+  core::check(TaoSetMaximumFunctionEvaluations(tao.get(), 100 * context.max_iterations),
+              "TaoSetMaximumFunctionEvaluations");
   Tao tested = tao.get();
   if (options.method == Method::brgn) {
     residual_vector = loss::create_vector(objective.rows());
@@ -182,7 +185,8 @@ TaoRun run_tao(Objective& objective, const Options& options) {
     core::check(TaoSetTolerances(tested, 0.0, 0.0, 0.0), "TaoSetTolerances");
     core::check(TaoSetMaximumIterations(tested, context.max_iterations), "TaoSetMaximumIterations");
   } else {
-    core::check(TaoSetObjectiveAndGradient(tao.get(), nullptr, objective_and_gradient, &context), "TaoSetObjectiveAndGradient");
+    core::check(TaoSetObjectiveAndGradient(tao.get(), nullptr, objective_and_gradient, &context),
+                "TaoSetObjectiveAndGradient");
     if (second_order) {
       matrix = loss::create_dense(size, size);
       core::check(TaoSetHessian(tao.get(), matrix.get(), matrix.get(), hessian, &context), "TaoSetHessian");
@@ -202,7 +206,8 @@ TaoRun run_tao(Objective& objective, const Options& options) {
   const PetscErrorCode code = TaoSolve(tao.get());
   context.guard.rethrow();
   if (code == PETSC_ERR_MAT_CH_ZRPVT || code == PETSC_ERR_MAT_LU_ZRPVT)
-    throw core::NumericalError("the Hessian on the slice has a pivot that is not positive: the loss is flat in more than one direction");
+    throw core::NumericalError(
+        "the Hessian on the slice has a pivot that is not positive: the loss is flat in more than one direction");
   core::check(code, "TaoSolve");
 
   TaoRun run;

@@ -1,9 +1,9 @@
 #include "orbweaver/loop/isotropy.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -19,7 +19,7 @@ namespace {
 void apply_matrix(const Eigen::MatrixXd& matrix, Loop& loop) {
   const auto rows = static_cast<Eigen::Index>(2 * loop.cutoff + 1);
   Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> modes(loop.modes.data(), rows,
-                                                                                            loop.dimension);
+                                                                                           loop.dimension);
   modes = (modes * matrix.transpose()).eval();
   Eigen::Map<Eigen::VectorXd> winding(loop.winding.data(), loop.dimension);
   winding = (matrix * winding).eval();
@@ -44,8 +44,9 @@ void reduce_angles_to(const Loop& target, const std::vector<int>& angles, Loop& 
 // Enough harmonics to see every pattern of shifts with denominators up to 12.
 constexpr int pattern_cutoff = 12;
 
-std::optional<SymmetryElement> match(const systems::Symmetry& declared, bool reversing, const systems::Description& system,
-                                     const Loop& loop, double tolerance, int max_denominator) {
+std::optional<SymmetryElement> match(const systems::Symmetry& declared, bool reversing,
+                                     const systems::Description& system, const Loop& loop, double tolerance,
+                                     int max_denominator) {
   for (int q = 1; q <= max_denominator; ++q)
     for (int p = 0; p < q; ++p) {
       if (std::gcd(p, q) != 1) continue;
@@ -86,7 +87,9 @@ double symmetry_defect(const Loop& loop, const SymmetryElement& element, const s
 
 Isotropy find_isotropy(const systems::Description& system, const Loop& loop, double tolerance, int max_denominator) {
   Isotropy isotropy;
-  const auto size_with = [&loop](const Isotropy& generators) { return Subspace(loop.dimension, pattern_cutoff, generators).size(); };
+  const auto size_with = [&loop](const Isotropy& generators) {
+    return Subspace(loop.dimension, pattern_cutoff, generators).size();
+  };
   const auto consider = [&](const systems::Symmetry& declared, bool reversing) {
     const auto element = match(declared, reversing, system, loop, tolerance, max_denominator);
     if (!element) return;
@@ -100,8 +103,8 @@ Isotropy find_isotropy(const systems::Description& system, const Loop& loop, dou
   return isotropy;
 }
 
-std::optional<SymmetryElement> find_map(const systems::Description& system, const Loop& from, const Loop& to, double tolerance,
-                                        int max_denominator) {
+std::optional<SymmetryElement> find_map(const systems::Description& system, const Loop& from, const Loop& to,
+                                        double tolerance, int max_denominator) {
   const auto fits = [&](const SymmetryElement& element) {
     Loop image = transformed(from, element);
     if (image.winding != to.winding) return false;

@@ -48,9 +48,11 @@ void validate(const Loop& loop) {
   core::require(loop.dimension >= 1, "a loop needs at least one coordinate");
   core::require(loop.cutoff >= 1, "a loop needs a cutoff of at least one harmonic");
   core::require(std::isfinite(loop.period) && loop.period > 0.0, "the period of a loop must be positive and finite");
-  core::require(loop.modes.size() == (2 * static_cast<std::size_t>(loop.cutoff) + 1) * static_cast<std::size_t>(loop.dimension),
-                "a loop needs (2 cutoff + 1) x dimension modes");
-  core::require(loop.winding.size() == static_cast<std::size_t>(loop.dimension), "a loop needs a winding number a coordinate");
+  core::require(
+      loop.modes.size() == (2 * static_cast<std::size_t>(loop.cutoff) + 1) * static_cast<std::size_t>(loop.dimension),
+      "a loop needs (2 cutoff + 1) x dimension modes");
+  core::require(loop.winding.size() == static_cast<std::size_t>(loop.dimension),
+                "a loop needs a winding number a coordinate");
   core::require(std::all_of(loop.modes.begin(), loop.modes.end(), [](double v) { return std::isfinite(v); }),
                 "a loop's modes must be finite");
 }
@@ -66,7 +68,8 @@ std::vector<double> state_at(const Loop& loop, double time) {
   for (int k = loop.cutoff; k >= 1; --k) {
     const double c = std::cos(k * reduced);
     const double sn = std::sin(k * reduced);
-    for (int i = 0; i < loop.dimension; ++i) z[static_cast<std::size_t>(i)] += loop.cosine(k, i) * c + loop.sine(k, i) * sn;
+    for (int i = 0; i < loop.dimension; ++i)
+      z[static_cast<std::size_t>(i)] += loop.cosine(k, i) * c + loop.sine(k, i) * sn;
   }
   return z;
 }
@@ -121,6 +124,11 @@ double rms_amplitude(const Loop& loop) {
   double sum = 0.0;
   for (int k = loop.cutoff; k >= 1; --k) sum += 0.5 * harmonic_norm_squared(loop, k);
   return std::sqrt(sum);
+}
+
+double rms_size(const Loop& loop) {
+  const double amplitude = rms_amplitude(loop);
+  return std::sqrt(squared_norm(row(loop, 0)) + amplitude * amplitude);
 }
 
 double tail(const Loop& loop) {

@@ -37,7 +37,8 @@ Eigen::MatrixXd harmonic_action(const SymmetryElement& g, int k) {
 Eigen::MatrixXd fixed_space(const std::vector<Eigen::MatrixXd>& conditions, Eigen::Index size) {
   if (conditions.empty()) return Eigen::MatrixXd::Identity(size, size);
   Eigen::MatrixXd stacked(size * static_cast<Eigen::Index>(conditions.size()), size);
-  for (std::size_t c = 0; c < conditions.size(); ++c) stacked.middleRows(static_cast<Eigen::Index>(c) * size, size) = conditions[c];
+  for (std::size_t c = 0; c < conditions.size(); ++c)
+    stacked.middleRows(static_cast<Eigen::Index>(c) * size, size) = conditions[c];
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(stacked, Eigen::ComputeFullV);
   const double cut = 1e-10 * std::max(1.0, svd.singularValues().size() > 0 ? svd.singularValues()(0) : 1.0);
   const Eigen::Index rank = (svd.singularValues().array() > cut).count();
@@ -115,7 +116,8 @@ void Subspace::add_to(std::span<const double> coordinates, std::span<double> mod
                 "the modes and the subspace have different sizes");
   for (int n = 0; n < size(); ++n)
     for (const Entry& e : basis(n))
-      modes[static_cast<std::size_t>(e.row * _dimension + e.coordinate)] += e.weight * coordinates[static_cast<std::size_t>(n)];
+      modes[static_cast<std::size_t>(e.row * _dimension + e.coordinate)] +=
+          e.weight * coordinates[static_cast<std::size_t>(n)];
 }
 
 void Subspace::project(std::span<const double> modes, std::span<double> coordinates) const {
@@ -124,7 +126,8 @@ void Subspace::project(std::span<const double> modes, std::span<double> coordina
                 "the modes and the subspace have different sizes");
   for (int n = 0; n < size(); ++n) {
     double sum = 0.0;
-    for (const Entry& e : basis(n)) sum += e.weight * modes[static_cast<std::size_t>(e.row * _dimension + e.coordinate)];
+    for (const Entry& e : basis(n))
+      sum += e.weight * modes[static_cast<std::size_t>(e.row * _dimension + e.coordinate)];
     coordinates[static_cast<std::size_t>(n)] = sum;
   }
 }

@@ -57,22 +57,24 @@ Linearization::Linearization(const systems::System& system, const loop::Loop& lo
   }
 }
 
-void Linearization::check_finite(const systems::System& system, std::span<const double> values, const char* what) const {
+void Linearization::check_finite(const systems::System& system, std::span<const double> values,
+                                 const char* what) const {
   const auto bad = std::find_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); });
   if (bad == values.end()) return;
   const auto n = static_cast<std::size_t>(_nodes);
   const std::size_t node = static_cast<std::size_t>(bad - values.begin()) % n;
   std::vector<double> state(static_cast<std::size_t>(_dimension));
   for (std::size_t i = 0; i < state.size(); ++i) state[i] = _z[i * n + node];
-  throw core::NotFiniteError(
-      fmt::format("the {} of {} is not finite ({}) at t = {:.6g} of a loop with T = {:.6g}, state ({:.6g}); the loop left the "
-                  "region where the system is defined: start from another guess or take smaller steps",
-                  what, system.description().name, *bad, _period * static_cast<double>(node) / _nodes, _period,
-                  fmt::join(state, ", ")));
+  throw core::NotFiniteError(fmt::format(
+      "the {} of {} is not finite ({}) at t = {:.6g} of a loop with T = {:.6g}, state ({:.6g}); the loop left the "
+      "region where the system is defined: start from another guess or take smaller steps",
+      what, system.description().name, *bad, _period * static_cast<double>(node) / _nodes, _period,
+      fmt::join(state, ", ")));
 }
 
 void Linearization::require_order(Order order) const {
-  core::require(static_cast<int>(_order) >= static_cast<int>(order), "this linearization was made with too low an order");
+  core::require(static_cast<int>(_order) >= static_cast<int>(order),
+                "this linearization was made with too low an order");
 }
 
 std::vector<double> Linearization::residual() const {
@@ -141,7 +143,8 @@ std::vector<double> Linearization::project_adjoint(const Unknowns& unknowns, con
   return out;
 }
 
-std::vector<double> Linearization::apply_jacobian_transposed(const Unknowns& unknowns, std::span<const double> y) const {
+std::vector<double> Linearization::apply_jacobian_transposed(const Unknowns& unknowns,
+                                                             std::span<const double> y) const {
   require_order(Order::jacobian);
   core::require(static_cast<int>(y.size()) == rows(), "one value a residual is needed");
   const auto n = static_cast<std::size_t>(_nodes);

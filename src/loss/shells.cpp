@@ -25,26 +25,32 @@ PetscErrorCode apply(Mat matrix, Vec x, Vec y, Product&& product) {
   const auto& context = *static_cast<const Context*>(raw);
   try {
     const Eigen::VectorXd in = to_eigen(x);
-    const std::vector<double> out = product(context, std::span<const double>(in.data(), static_cast<std::size_t>(in.size())));
+    const std::vector<double> out =
+        product(context, std::span<const double>(in.data(), static_cast<std::size_t>(in.size())));
     assign(y, ConstVectorMap(out.data(), static_cast<Eigen::Index>(out.size())));
     return 0;
   } catch (const std::exception& error) {
-    return PetscError(PETSC_COMM_SELF, __LINE__, "loss::apply", __FILE__, PETSC_ERR_USER, PETSC_ERROR_INITIAL, "%s", error.what());
+    return PetscError(PETSC_COMM_SELF, __LINE__, "loss::apply", __FILE__, PETSC_ERR_USER, PETSC_ERROR_INITIAL, "%s",
+                      error.what());
   }
 }
 
 PetscErrorCode multiply_jacobian(Mat matrix, Vec x, Vec y) {
-  return apply(matrix, x, y, [](const Context& c, std::span<const double> v) { return c.linearization->apply_jacobian(*c.unknowns, v); });
+  return apply(matrix, x, y, [](const Context& c, std::span<const double> v) {
+    return c.linearization->apply_jacobian(*c.unknowns, v);
+  });
 }
 
 PetscErrorCode multiply_jacobian_transposed(Mat matrix, Vec x, Vec y) {
-  return apply(matrix, x, y,
-               [](const Context& c, std::span<const double> v) { return c.linearization->apply_jacobian_transposed(*c.unknowns, v); });
+  return apply(matrix, x, y, [](const Context& c, std::span<const double> v) {
+    return c.linearization->apply_jacobian_transposed(*c.unknowns, v);
+  });
 }
 
 PetscErrorCode multiply_hessian(Mat matrix, Vec x, Vec y) {
-  return apply(matrix, x, y,
-               [](const Context& c, std::span<const double> v) { return c.linearization->apply_hessian(*c.unknowns, v, c.curvature); });
+  return apply(matrix, x, y, [](const Context& c, std::span<const double> v) {
+    return c.linearization->apply_hessian(*c.unknowns, v, c.curvature);
+  });
 }
 
 PetscErrorCode destroy_context(Mat matrix) {
@@ -57,19 +63,23 @@ PetscErrorCode destroy_context(Mat matrix) {
 core::Handle<Mat> create_shell(int rows, int columns, Context context) {
   auto owned = std::make_unique<Context>(std::move(context));
   core::Handle<Mat> matrix;
-  core::check(MatCreateShell(PETSC_COMM_SELF, rows, columns, rows, columns, owned.get(), matrix.put()), "MatCreateShell");
-  core::check(MatShellSetOperation(matrix.get(), MATOP_DESTROY, reinterpret_cast<void (*)()>(destroy_context)), "MatShellSetOperation");
+  core::check(MatCreateShell(PETSC_COMM_SELF, rows, columns, rows, columns, owned.get(), matrix.put()),
+              "MatCreateShell");
+  core::check(MatShellSetOperation(matrix.get(), MATOP_DESTROY, reinterpret_cast<void (*)()>(destroy_context)),
+              "MatShellSetOperation");
   static_cast<void>(owned.release());
   return matrix;
 }
 
 void set_operation(const core::Handle<Mat>& matrix, MatOperation operation, PetscErrorCode (*function)(Mat, Vec, Vec)) {
-  core::check(MatShellSetOperation(matrix.get(), operation, reinterpret_cast<void (*)()>(function)), "MatShellSetOperation");
+  core::check(MatShellSetOperation(matrix.get(), operation, reinterpret_cast<void (*)()>(function)),
+              "MatShellSetOperation");
 }
 
 }  // namespace
 
-core::Handle<Mat> shell_jacobian(std::shared_ptr<const Linearization> linearization, std::shared_ptr<const Unknowns> unknowns) {
+core::Handle<Mat> shell_jacobian(std::shared_ptr<const Linearization> linearization,
+                                 std::shared_ptr<const Unknowns> unknowns) {
   const int rows = linearization->rows();
   const int columns = unknowns->size();
   core::Handle<Mat> matrix = create_shell(rows, columns, {std::move(linearization), std::move(unknowns)});
@@ -78,8 +88,8 @@ core::Handle<Mat> shell_jacobian(std::shared_ptr<const Linearization> linearizat
   return matrix;
 }
 
-core::Handle<Mat> shell_hessian(std::shared_ptr<const Linearization> linearization, std::shared_ptr<const Unknowns> unknowns,
-                                Curvature curvature) {
+core::Handle<Mat> shell_hessian(std::shared_ptr<const Linearization> linearization,
+                                std::shared_ptr<const Unknowns> unknowns, Curvature curvature) {
   const int size = unknowns->size();
   core::Handle<Mat> matrix = create_shell(size, size, {std::move(linearization), std::move(unknowns), curvature});
   set_operation(matrix, MATOP_MULT, multiply_hessian);

@@ -4,6 +4,7 @@
 
 #include "alone.hpp"
 #include "coordinator.hpp"
+#include "orbweaver/core/check.hpp"
 #include "orbweaver/core/error.hpp"
 #include "worker.hpp"
 
@@ -26,8 +27,11 @@ RunSummary run(const core::Communicator& comm, const Options& options, std::vect
                Observer& observer, Flusher& flusher) {
   require_valid(options);
   if (comm.size() == 1) return Alone(options, executor, observer, flusher).run(std::move(initial));
-  if (comm.is_root()) return Coordinator(comm, options, observer, flusher).run(std::move(initial));
-  return Worker(comm, options, executor, flusher).run();
+  RunSummary summary = comm.is_root() ? Coordinator(comm, options, observer, flusher).run(std::move(initial))
+                                      : Worker(comm, options, executor, flusher).run();
+  // A worker must not say hello to a next run before rank 0 has heard every goodbye of this one: it would be dropped.
+  core::check_mpi(MPI_Barrier(comm.get()), "MPI_Barrier");
+  return summary;
 }
 
 }  // namespace orbweaver::queue

@@ -67,6 +67,8 @@ std::string read_file(const std::filesystem::path& file) {
 
 }  // namespace
 
+constexpr std::size_t longest_scene = 60000;
+
 Scene parse(const std::string& text, const std::string& origin, const std::vector<std::string>& overrides) {
   std::vector<Override> changes;
   for (const std::string& words : overrides) changes.push_back(parse_override(words));
@@ -80,6 +82,11 @@ Scene parse(const std::string& text, const std::string& origin, const std::vecto
   const YAML::Node root = apply_overrides(document, source.overrides());
   Scene scene = read_scene(Field(source, root, "", 1));
   scene.text = overrides.empty() ? text : emit(root);
+  if (scene.text.size() > longest_scene)
+    throw core::InputError(
+        fmt::format("{}: a scene of {} bytes does not fit into the archive, which keeps its text: expected at most {}; "
+                    "shorten its comments",
+                    origin, scene.text.size(), longest_scene));
   return scene;
 }
 

@@ -36,7 +36,8 @@ Eigenpairs smallest_eigenpairs(const core::Handle<Mat>& matrix, const EigenOptio
   core::require(options.count >= 1 && options.count <= size, "between one and all eigenpairs can be asked for");
   double norm = 0.0;
   core::check(MatNorm(matrix.get(), NORM_FROBENIUS, &norm), "MatNorm");
-  if (!std::isfinite(norm)) throw core::NotFiniteError("the matrix whose smallest eigenvalues are wanted is not finite");
+  if (!std::isfinite(norm))
+    throw core::NotFiniteError("the matrix whose smallest eigenvalues are wanted is not finite");
 
   core::Handle<EPS> eps;
   core::check(EPSCreate(PETSC_COMM_SELF, eps.put()), "EPSCreate");
@@ -63,8 +64,8 @@ Eigenpairs smallest_eigenpairs(const core::Handle<Mat>& matrix, const EigenOptio
   PetscInt converged = 0;
   core::check(EPSGetConverged(eps.get(), &converged), "EPSGetConverged");
   if (converged < options.count)
-    throw core::NumericalError(fmt::format("only {} of {} smallest eigenpairs of a {} x {} Hessian converged", converged,
-                                           options.count, size, size));
+    throw core::NumericalError(fmt::format("only {} of {} smallest eigenpairs of a {} x {} Hessian converged",
+                                           converged, options.count, size, size));
 
   Eigenpairs pairs;
   pairs.vectors.resize(size, options.count);

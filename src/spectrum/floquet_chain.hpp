@@ -6,26 +6,36 @@
 
 #include "floquet_group.hpp"
 #include "orbweaver/loop/loop.hpp"
-#include "orbweaver/spectrum/floquet.hpp"
 #include "orbweaver/systems/system.hpp"
+#include "variational_step.hpp"
 
 namespace orbweaver::spectrum {
 
 /// The linearised flow along T/p of an orbit, cut into equal segments t_m = m h, m = 0 .. segments.
 struct Chain {
-  double step = 0.0;                         ///< h
-  Eigen::MatrixXd states;                    ///< dimension x (segments + 1)
-  Eigen::MatrixXd fields;                    ///< f there
-  std::vector<Eigen::MatrixXd> jacobians;    ///< f_z there
-  std::vector<Eigen::MatrixXd> transitions;  ///< from t_m to t_(m+1), from the loop's own state at t_m
-  Eigen::MatrixXd defects;                   ///< dimension x segments: state reached minus the loop's
-  std::vector<double> truncation;            ///< relative error of each transition matrix, estimated
+  double step = 0.0;            ///< h
+  Eigen::MatrixXd states;       ///< dimension x (segments + 1)
+  Eigen::MatrixXd fields;       ///< f there
+  Eigen::MatrixXd jacobians;    ///< f_z there (matrix_table.hpp)
+  Eigen::MatrixXd transitions;  ///< from t_m to t_(m+1), one end on the loop (matrix_table.hpp)
+  Eigen::MatrixXd defects;      ///< dimension x segments: state reached from t_m minus the loop's at t_(m+1)
+  std::vector<bool> mirrored;   ///< given by the reversor: the segment ends on the loop and starts off it
+  Eigen::MatrixXd offsets;      ///< dimension x segments: how far off the loop it ends, or starts where mirrored
 
-  [[nodiscard]] int segments() const { return static_cast<int>(transitions.size()); }
+  [[nodiscard]] Eigen::Index segments() const { return states.cols() - 1; }
+  [[nodiscard]] Eigen::Index dimension() const { return states.rows(); }
 };
 
-/// Steps are halved until the truncation errors together are below the tolerance or the refinements are used up.
-[[nodiscard]] Chain make_chain(const systems::System& system, const loop::Loop& loop, const FundamentalGroup& group,
-                               const FloquetOptions& options);
+/// f and its Jacobian at the chain's states.
+void evaluate_field(const systems::System& system, Chain& chain);
+
+/// The chain with at least `at_least` segments a period: as many as suit the loop's resolution, the rates of its
+/// linearised flow and its symmetries, even on T/p. Segments that a reversor gives are not integrated.
+/// Throws core::NotFiniteError if the Jacobian is not finite on the loop.
+[[nodiscard]] Chain make_chain(const systems::System& system, VariationalStep& stepper, const loop::Loop& loop,
+                               const FundamentalGroup& group, int at_least);
+
+/// The same with steps twice as long.
+[[nodiscard]] Chain with_double_steps(VariationalStep& stepper, const Chain& chain, const FundamentalGroup& group);
 
 }  // namespace orbweaver::spectrum

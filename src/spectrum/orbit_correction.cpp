@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "product_eigenvalues.hpp"
+#include "matrix_table.hpp"
 
 namespace orbweaver::spectrum {
 
@@ -11,26 +11,79 @@ namespace {
 constexpr double joined_norm = 30.0;
 constexpr double period_weight = 1e-3;
 
-/// x_(m+1) = A x_m + forcing (1, change of h), over one or more segments.
+using Forcing = Eigen::Matrix<double, Eigen::Dynamic, 2>;
+
+/// Segments begin .. end - 1 in one: x_end = transition x_begin + forcing (1, change of h).
 struct Link {
+  Eigen::Index begin;
+  Eigen::Index end;
   Eigen::MatrixXd transition;
-  Eigen::MatrixXd forcing;  ///< dimension x 2
+  Forcing forcing;
 };
 
-Link link_of(const Chain& chain, int m) {
-  Link link{chain.transitions[static_cast<std::size_t>(m)], Eigen::MatrixXd(chain.states.rows(), 2)};
-  link.forcing.col(0) = chain.defects.col(m);
-  link.forcing.col(1) = chain.fields.col(m + 1);
-  return link;
+template <int D>
+std::vector<Link> links_of(const Chain& chain) {
+  using Square = Eigen::Matrix<double, D, D>;
+  using Pair = Eigen::Matrix<double, D, 2>;
+  const Eigen::Index d = chain.dimension();
+  std::vector<Link> links;
+  Square product;
+  Square next(d, d);
+  Pair forcing;
+  Pair own(d, 2);
+  Eigen::Index begin = 0;
+  for (Eigen::Index m = 0; m < chain.segments(); ++m) {
+    const auto transition = matrix_in<D>(chain.transitions, m, d);
+    own.col(0) = chain.defects.col(m);
+    own.col(1) = chain.fields.col(m + 1);
+    if (m > begin) next.noalias() = transition * product;
+    if (m > begin && next.norm() > joined_norm) {
+      links.push_back({begin, m, product, forcing});
+      begin = m;
+    }
+    if (m == begin) {
+      product = transition;
+      forcing = own;
+    } else {
+      product = next;
+      own.noalias() += transition * forcing;
+      forcing = own;
+    }
+  }
+  links.push_back({begin, chain.segments(), product, forcing});
+  return links;
 }
 
-/// One eliminated state: triangle x_n = known - around x_0 - next x_(n+1), known in terms of (1, change of h).
+/// One eliminated state: triangle x_n = known (1, change of h) - around x_0 - next x_(n+1).
 struct Eliminated {
   Eigen::MatrixXd triangle;
   Eigen::MatrixXd around;
   Eigen::MatrixXd next;
-  Eigen::MatrixXd known;
+  Forcing known;
 };
+
+/// What is left in the end: around x_0 + last x_n = known (1, change of h).
+struct Remaining {
+  Eigen::MatrixXd around;
+  Eigen::MatrixXd last;
+  Forcing known;
+};
+
+Eliminated eliminate(const Link& link, Remaining& rows) {
+  const Eigen::Index d = link.transition.rows();
+  Eigen::MatrixXd column(2 * d, d);
+  column << rows.last, -link.transition;
+  Eigen::MatrixXd others = Eigen::MatrixXd::Zero(2 * d, 2 * d + 2);
+  others.topLeftCorner(d, d) = rows.around;
+  others.block(d, d, d, d).setIdentity();
+  others.topRightCorner(d, 2) = rows.known;
+  others.bottomRightCorner(d, 2) = link.forcing;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> factor(column);
+  others.applyOnTheLeft(factor.householderQ().adjoint());
+  rows = {others.bottomLeftCorner(d, d), others.block(d, d, d, d), others.bottomRightCorner(d, 2)};
+  return {factor.matrixQR().topRows(d), others.topLeftCorner(d, d), others.block(0, d, d, d),
+          others.topRightCorner(d, 2)};
+}
 
 /// The least solution of matrix x = right, rank given.
 Eigen::VectorXd least_solution(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right, Eigen::Index rank) {
@@ -43,70 +96,90 @@ Eigen::VectorXd least_solution(const Eigen::MatrixXd& matrix, const Eigen::Vecto
   return solution;
 }
 
-}  // namespace
+template <int D>
+void fill_between(const Chain& chain, const std::vector<Link>& links, OrbitCorrection& correction) {
+  for (const Link& link : links)
+    for (Eigen::Index m = link.begin; m + 1 < link.end; ++m)
+      correction.states.col(m + 1) =
+          matrix_in<D>(chain.transitions, m, chain.dimension()).lazyProduct(correction.states.col(m)) +
+          chain.defects.col(m) + chain.fields.col(m + 1) * correction.step;
+}
 
-OrbitCorrection orbit_correction(const Chain& chain, const FundamentalGroup& group, bool conservative) {
-  const Eigen::Index d = chain.states.rows();
-  const int segments = chain.segments();
-  const std::vector<int> first = joined_groups(chain.transitions, joined_norm);
-  Eigen::MatrixXd around;                                 // rows left over: around x_0 + last x_n = known
-  Eigen::MatrixXd last = Eigen::MatrixXd::Identity(d, d);
-  Eigen::MatrixXd known;
+template <int D>
+OrbitCorrection correction_of(const Chain& chain, const FundamentalGroup& group, bool conservative) {
+  const Eigen::Index d = chain.dimension();
+  const std::vector<Link> links = links_of<D>(chain);
+  Remaining rows{-links.front().transition, Eigen::MatrixXd::Identity(d, d), links.front().forcing};
   std::vector<Eliminated> eliminated;
-  for (std::size_t n = 0; n < first.size(); ++n) {
-    Link link = link_of(chain, first[n]);
-    const int end = n + 1 < first.size() ? first[n + 1] : segments;
-    for (int m = first[n] + 1; m < end; ++m) {
-      const Link next = link_of(chain, m);
-      link.forcing = next.transition.lazyProduct(link.forcing).eval() + next.forcing;
-      link.transition = next.transition.lazyProduct(link.transition).eval();
-    }
-    if (n == 0) {
-      around = -link.transition;
-      known = link.forcing;
-      continue;
-    }
-    Eigen::MatrixXd column(2 * d, d);
-    column << last, -link.transition;
-    Eigen::MatrixXd rest = Eigen::MatrixXd::Zero(2 * d, 2 * d + 2);
-    rest.topLeftCorner(d, d) = around;
-    rest.block(d, d, d, d).setIdentity();
-    rest.topRightCorner(d, 2) = known;
-    rest.bottomRightCorner(d, 2) = link.forcing;
-    const Eigen::HouseholderQR<Eigen::MatrixXd> factor(column);
-    rest.applyOnTheLeft(factor.householderQ().adjoint());
-    eliminated.push_back({factor.matrixQR().topRows(d), rest.topLeftCorner(d, d), rest.block(0, d, d, d),
-                          rest.topRightCorner(d, 2)});
-    around = rest.bottomLeftCorner(d, d);
-    last = rest.block(d, d, d, d);
-    known = rest.bottomRightCorner(d, 2);
-  }
-  const double steps = static_cast<double>(segments) * group.order;
+  for (std::size_t n = 1; n < links.size(); ++n) eliminated.push_back(eliminate(links[n], rows));
+
+  const double steps = static_cast<double>(chain.segments() * group.order);
   const double weight = conservative ? period_weight : 1.0;
   Eigen::MatrixXd closing(d, d + 1);
-  closing << around + last * group.generator, -known.col(1) * (weight / steps);
-  const Eigen::VectorXd solution = least_solution(closing, known.col(0), conservative ? d - 1 : d);
+  closing << rows.around + rows.last * group.generator, -rows.known.col(1) * (weight / steps);
+  const Eigen::VectorXd solution = least_solution(closing, rows.known.col(0), conservative ? d - 1 : d);
 
   OrbitCorrection correction;
   correction.step = solution[d] * weight / steps;
-  correction.states.resize(d, segments + 1);
+  correction.states.resize(d, chain.states.cols());
   correction.states.col(0) = solution.head(d);
-  correction.states.col(segments) = group.generator * solution.head(d);
+  correction.states.col(chain.segments()) = group.generator * solution.head(d);
   const Eigen::Vector2d forced(1.0, correction.step);
-  for (std::size_t n = first.size(); n-- > 1;) {
-    const int end = n + 1 < first.size() ? first[n + 1] : segments;
-    const Eliminated& rows = eliminated[n - 1];
-    const Eigen::VectorXd right =
-        rows.known * forced - rows.around * correction.states.col(0) - rows.next * correction.states.col(end);
-    correction.states.col(first[n]) = rows.triangle.triangularView<Eigen::Upper>().solve(right);
+  for (std::size_t n = links.size(); n-- > 1;) {
+    const Eliminated& known = eliminated[n - 1];
+    const Eigen::VectorXd right = known.known * forced - known.around * correction.states.col(0) -
+                                  known.next * correction.states.col(links[n].end);
+    correction.states.col(links[n].begin) = known.triangle.triangularView<Eigen::Upper>().solve(right);
   }
-  for (std::size_t n = 0; n < first.size(); ++n) {
-    const int end = n + 1 < first.size() ? first[n + 1] : segments;
-    for (int m = first[n]; m + 1 < end; ++m)
-      correction.states.col(m + 1) = chain.transitions[static_cast<std::size_t>(m)] * correction.states.col(m) +
-                                     chain.defects.col(m) + chain.fields.col(m + 1) * correction.step;
-  }
+  fill_between<D>(chain, links, correction);
   return correction;
+}
+
+/// `off`: where the segments leave the loop, `factor` times their offsets from it.
+template <int D>
+void change_transitions(const Chain& chain, const OrbitCorrection& correction, double factor, const Chain& off,
+                        Chain& changed) {
+  const Eigen::Index d = chain.dimension();
+  const double half = 0.5 * chain.step;
+  Eigen::Matrix<double, D, D> before(d, d);
+  Eigen::Matrix<double, D, D> after(d, d);
+  for (Eigen::Index m = 0; m < chain.segments(); ++m) {
+    const bool mirrored = chain.mirrored[static_cast<std::size_t>(m)];
+    const auto transition = matrix_in<D>(chain.transitions, m, d);
+    const auto begin = mirrored ? matrix_in<D>(off.jacobians, m, d) : matrix_in<D>(chain.jacobians, m, d);
+    const auto end = mirrored ? matrix_in<D>(chain.jacobians, m + 1, d) : matrix_in<D>(off.jacobians, m, d);
+    before = half * (matrix_in<D>(changed.jacobians, m, d) - begin);
+    after = half * (matrix_in<D>(changed.jacobians, m + 1, d) - end) + (factor * correction.step) * end;
+    auto result = matrix_in<D>(changed.transitions, m, d);
+    result = transition;
+    result.noalias() += transition * before;
+    result.noalias() += after * transition;
+  }
+}
+
+}  // namespace
+
+OrbitCorrection orbit_correction(const Chain& chain, const FundamentalGroup& group, bool conservative) {
+  if (chain.dimension() == 4) return correction_of<4>(chain, group, conservative);
+  return correction_of<Eigen::Dynamic>(chain, group, conservative);
+}
+
+Chain corrected(const systems::System& system, const Chain& chain, const OrbitCorrection& correction, double factor) {
+  Chain changed;
+  changed.step = chain.step + factor * correction.step;
+  changed.states = chain.states + factor * correction.states;
+  evaluate_field(system, changed);
+  Chain off;
+  off.states = factor * chain.offsets;
+  for (Eigen::Index m = 0; m < chain.segments(); ++m)
+    off.states.col(m) += chain.states.col(chain.mirrored[static_cast<std::size_t>(m)] ? m : m + 1);
+  evaluate_field(system, off);
+  changed.transitions.resize(chain.transitions.rows(), chain.transitions.cols());
+  if (chain.dimension() == 4)
+    change_transitions<4>(chain, correction, factor, off, changed);
+  else
+    change_transitions<Eigen::Dynamic>(chain, correction, factor, off, changed);
+  return changed;
 }
 
 }  // namespace orbweaver::spectrum

@@ -4,6 +4,7 @@
 
 #include "floquet_chain.hpp"
 #include "floquet_group.hpp"
+#include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::spectrum {
 
@@ -15,7 +16,11 @@ struct OrbitCorrection {
 
 /// The least correction, without shift of phase. Conservative systems: at almost the same period (a change counts a
 /// thousandfold), and the equation that the conserved energy makes redundant left out. By orthogonal elimination from
-/// segment to segment (Wright 1992, doi:10.1137/0913044), stable for any growth around the orbit.
+/// one group of segments to the next (Wright 1992, doi:10.1137/0913044), stable for any growth around the orbit.
 [[nodiscard]] OrbitCorrection orbit_correction(const Chain& chain, const FundamentalGroup& group, bool conservative);
+
+/// The chain along the loop with `factor` times the correction added, to first order in that and second order in h.
+[[nodiscard]] Chain corrected(const systems::System& system, const Chain& chain, const OrbitCorrection& correction,
+                              double factor);
 
 }  // namespace orbweaver::spectrum

@@ -13,14 +13,16 @@ constexpr double joined_norm = 100.0;
 constexpr int most_sweeps = 40;
 constexpr double parted = 1e-14;
 
+/// Neighbouring factors multiplied while the norm stays below `joined_norm`, so that no digits are lost.
 std::vector<Eigen::MatrixXd> joined(const std::vector<Eigen::MatrixXd>& factors) {
-  const std::vector<int> first = joined_groups(factors, joined_norm);
-  std::vector<Eigen::MatrixXd> groups;
-  for (std::size_t n = 0; n < first.size(); ++n) {
-    const std::size_t end = n + 1 < first.size() ? static_cast<std::size_t>(first[n + 1]) : factors.size();
-    Eigen::MatrixXd product = factors[static_cast<std::size_t>(first[n])];
-    for (std::size_t m = static_cast<std::size_t>(first[n]) + 1; m < end; ++m) product = factors[m] * product;
-    groups.push_back(product);
+  std::vector<Eigen::MatrixXd> groups{factors.front()};
+  Eigen::MatrixXd next;
+  for (std::size_t n = 1; n < factors.size(); ++n) {
+    next.noalias() = factors[n].lazyProduct(groups.back());
+    if (next.norm() <= joined_norm)
+      groups.back().swap(next);
+    else
+      groups.push_back(factors[n]);
   }
   return groups;
 }
@@ -29,7 +31,8 @@ std::vector<Eigen::MatrixXd> joined(const std::vector<Eigen::MatrixXd>& factors)
 Eigen::MatrixXd start_frame(Eigen::Index r) {
   Eigen::MatrixXd matrix(r, r);
   for (Eigen::Index i = 0; i < r; ++i)
-    for (Eigen::Index j = 0; j < r; ++j) matrix(i, j) = std::cos(1.0 + 2.0 * static_cast<double>(i * r + j) + 0.7 * static_cast<double>(j * j));
+    for (Eigen::Index j = 0; j < r; ++j)
+      matrix(i, j) = std::cos(1.0 + 2.0 * static_cast<double>(i * r + j) + 0.7 * static_cast<double>(j * j));
   return Eigen::HouseholderQR<Eigen::MatrixXd>(matrix).householderQ();
 }
 
@@ -66,8 +69,9 @@ Iteration iterate(const std::vector<Eigen::MatrixXd>& groups) {
   iteration.frame = start_frame(groups.front().rows());
   iteration.sweep(groups);
   for (int n = 0; n < most_sweeps; ++n) {
-    const bool all_parted = static_cast<Eigen::Index>(block_ends(iteration.frame.transpose() * iteration.next).size()) ==
-                            iteration.frame.rows();
+    const bool all_parted =
+        static_cast<Eigen::Index>(block_ends(iteration.frame.transpose() * iteration.next).size()) ==
+        iteration.frame.rows();
     if (n > 1 && all_parted) break;
     iteration.frame = iteration.next;
     iteration.sweep(groups);
@@ -114,22 +118,6 @@ std::vector<Complex> paired_indices(const Eigen::MatrixXd& block) {
 }
 
 }  // namespace
-
-std::vector<int> joined_groups(const std::vector<Eigen::MatrixXd>& factors, double bound) {
-  std::vector<int> first;
-  Eigen::MatrixXd product;
-  Eigen::MatrixXd next;
-  for (std::size_t n = 0; n < factors.size(); ++n) {
-    if (n > 0) next.noalias() = factors[n].lazyProduct(product);
-    if (n == 0 || !(next.norm() <= bound)) {
-      first.push_back(static_cast<int>(n));
-      product = factors[n];
-    } else {
-      product.swap(next);
-    }
-  }
-  return first;
-}
 
 std::vector<Complex> product_eigenvalues(const std::vector<Eigen::MatrixXd>& factors, bool symplectic) {
   if (factors.empty() || factors.front().rows() == 0) return {};

@@ -7,10 +7,6 @@
 
 namespace orbweaver::spectrum {
 
-/// Joins neighbouring factors of a product (first factor acts first) while the norm of what is joined stays below
-/// `bound`. Returns the first factor of each group; groups are never empty.
-[[nodiscard]] std::vector<int> joined_groups(const std::vector<Eigen::MatrixXd>& factors, double bound);
-
 /// Eigenvalues of the product A_(n-1) ... A_0 of square matrices, each with digits of its own however far apart their
 /// moduli are: orthogonal iteration around the cycle, the eigenvalues that it does not part by modulus solved together
 /// (after Bojanczyk, Golub and Van Dooren 1992, doi:10.1117/12.130915, without its shifts). `symplectic`: the product is

@@ -15,12 +15,14 @@ SingularTriplets smallest_singular_triplets(const core::Handle<Mat>& matrix, int
   loss::with_dense_array(matrix, [&](loss::DenseMap map) { j = map; });
   core::require(j.rows() >= j.cols(), "singular triplets need at least as many rows as columns");
   core::require(count >= 1 && count <= j.cols(), "between one and all singular triplets can be asked for");
-  if (!j.allFinite()) throw core::NotFiniteError("the Jacobian whose smallest singular values are wanted is not finite");
+  if (!j.allFinite())
+    throw core::NotFiniteError("the Jacobian whose smallest singular values are wanted is not finite");
 
   const int n = static_cast<int>(j.cols());
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(j);
   core::Handle<Mat> triangle = loss::create_dense(n, n);
-  loss::with_dense_array(triangle, [&](loss::DenseMap r) { r = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>(); });
+  loss::with_dense_array(triangle,
+                         [&](loss::DenseMap r) { r = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>(); });
 
   core::Handle<SVD> svd;
   core::check(SVDCreate(PETSC_COMM_SELF, svd.put()), "SVDCreate");
@@ -34,8 +36,8 @@ SingularTriplets smallest_singular_triplets(const core::Handle<Mat>& matrix, int
   PetscInt converged = 0;
   core::check(SVDGetConverged(svd.get(), &converged), "SVDGetConverged");
   if (converged < count)
-    throw core::NumericalError(fmt::format("only {} of {} smallest singular triplets of a {} x {} Jacobian converged", converged,
-                                           count, j.rows(), n));
+    throw core::NumericalError(fmt::format("only {} of {} smallest singular triplets of a {} x {} Jacobian converged",
+                                           converged, count, j.rows(), n));
 
   SingularTriplets out;
   out.right.resize(n, count);

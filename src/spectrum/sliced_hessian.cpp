@@ -11,7 +11,8 @@
 
 namespace orbweaver::spectrum {
 
-SlicedHessian::SlicedHessian(const loss::Linearization& linearization, const loss::Unknowns& unknowns, const loss::Slice& slice)
+SlicedHessian::SlicedHessian(const loss::Linearization& linearization, const loss::Unknowns& unknowns,
+                             const loss::Slice& slice)
     : _slice(slice), _hessian(loss::assemble_hessian(linearization, unknowns, loss::Curvature::gauss_newton)) {
   const std::vector<double> gradient = linearization.gradient(unknowns);
   _gradient = loss::ConstVectorMap(gradient.data(), static_cast<Eigen::Index>(gradient.size()));
@@ -21,16 +22,20 @@ SlicedHessian::SlicedHessian(const loss::Linearization& linearization, const los
 void SlicedHessian::factor(const core::Handle<Mat>& reduced) {
   double norm = 0.0;
   core::check(MatNorm(reduced.get(), NORM_INFINITY, &norm), "MatNorm");
+  if (!(norm > 0.0) || !std::isfinite(norm))
+    throw core::NumericalError("the Hessian on the slice is zero or not finite");
   for (_shift = 0.0; _shift <= 1e-9 * norm; _shift = std::max(10.0 * _shift, 1e-15 * norm)) {
     core::check(MatDuplicate(reduced.get(), MAT_COPY_VALUES, _factor.put()), "MatDuplicate");
     if (_shift > 0.0) core::check(MatShift(_factor.get(), _shift), "MatShift");
     core::check(MatSetOption(_factor.get(), MAT_SPD, PETSC_TRUE), "MatSetOption");
-    if (MatCholeskyFactor(_factor.get(), nullptr, nullptr) == 0) return;
+    const PetscErrorCode code = MatCholeskyFactor(_factor.get(), nullptr, nullptr);
+    if (code == 0) return;
+    if (code != PETSC_ERR_MAT_CH_ZRPVT) core::check(code, "MatCholeskyFactor");
   }
-  throw core::NumericalError(
-      fmt::format("the Hessian on the slice cannot be factored even with 1e-9 |H| = {:.1e} added: the loop is not near a "
-                  "regular point of a family",
-                  1e-9 * norm));
+  throw core::NumericalError(fmt::format(
+      "the Hessian on the slice cannot be factored even with 1e-9 |H| = {:.1e} added: the loop is not near a "
+      "regular point of a family",
+      1e-9 * norm));
 }
 
 Eigen::VectorXd SlicedHessian::solve(const Eigen::VectorXd& right_side) const {

@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <vector>
 
-#include <Eigen/Dense>
 #include <petscvec.h>
 #include <slepcbv.h>
+#include <Eigen/Dense>
 
 #include "orbweaver/core/handle.hpp"
 

@@ -26,10 +26,10 @@ class VariationalStep {
   void slope(std::size_t stage);
   const systems::System& _system;
   std::size_t _dimension;
-  std::size_t _size;             ///< numbers a stage: (dimension + dimension^2) x lanes
+  std::size_t _size;  ///< numbers a stage: (dimension + dimension^2) x lanes
   std::vector<double> _start;
   std::vector<double> _values;
-  std::vector<double> _slopes;   ///< stages x _size
+  std::vector<double> _slopes;  ///< stages x _size
   std::vector<double> _jacobian;
 };
 

@@ -12,13 +12,14 @@ namespace orbweaver::survey {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+constexpr std::size_t narrowest_terminal = 79;  // a line that wraps would spoil the redrawing
 constexpr auto time_between_lines = std::chrono::seconds(5);
 
 std::string line_of(const FamilyState& f) {
   const double seconds = std::chrono::duration<double>(f.changed - f.began).count();
-  const std::string rate = seconds > 0.0 ? fmt::format("{:7.1f} orbits/s", static_cast<double>(f.orbits) / seconds) : "";
-  return fmt::format("{:<14} {:>6} orbits  T = {:9.5f}  E = {:12.8f}  K = {:<5} {:>16}  {}", f.name, f.orbits, f.period, f.energy, f.cutoff,
-                     rate, f.running ? "" : f.end);
+  const std::string rate = seconds > 0.0 ? fmt::format("{:.1f} orbits/s", static_cast<double>(f.orbits) / seconds) : "";
+  return fmt::format("{:<12} {:>5} orbits  T = {:<9.5f} E = {:<12.8f} K = {:<5} {}", f.name, f.orbits, f.period,
+                     f.energy, f.cutoff, f.running ? rate : f.end);
 }
 
 }  // namespace
@@ -82,7 +83,7 @@ void ProgressDisplay::redraw() {
   if (_drawn > 0) text = fmt::format("\x1b[{}A", _drawn);
   const char* separator = "";
   for (const auto& [key, family] : _families) {
-    text += fmt::format("{}\x1b[2K{}", separator, line_of(family));
+    text += fmt::format("{}\x1b[2K{}", separator, line_of(family).substr(0, narrowest_terminal));
     separator = "\n";
   }
   _drawn = static_cast<int>(_families.size());

@@ -15,8 +15,8 @@ namespace orbweaver::survey {
 namespace {
 
 // Both directions of a start are one family where a symmetry or a time shift maps loops on one side to those on the other.
-bool directions_are_images(const systems::Description& system, std::span<const double> point, const continuation::NormalMode& mode,
-                           int cutoff) {
+bool directions_are_images(const systems::Description& system, std::span<const double> point,
+                           const continuation::NormalMode& mode, int cutoff) {
   loop::Loop plus = loop::constant_loop(point, mode.period, cutoff);
   loop::Loop minus = plus;
   for (std::size_t n = 0; n < plus.modes.size(); ++n) {
@@ -58,7 +58,6 @@ queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
   options.period_from = _scene.sweep.period_from;
   options.period_to = _scene.sweep.period_to;
   options.step = _scene.sweep.step;
-  options.cutoff = loop::allowed_cutoff_at_least(_scene.continuation.cutoff_from);
   const continuation::SweepResult result = continuation::sweep(*_system, work.point, options);
   SweepOutcome outcome;
   outcome.index = work.index;
@@ -93,12 +92,14 @@ queue::TaskOutcome Executor::follow(const BranchWork& work, queue::TaskContext& 
     outcome.last_energy = orbit.energy;
     outcome.last_cutoff = orbit.loop.cutoff;
     ++outcome.orbits;
-    return context.report({orbit.step + 1, 1, {orbit.loop.period, orbit.energy, static_cast<double>(orbit.loop.cutoff)}});
+    return context.report(
+        {orbit.step + 1, 1, {orbit.loop.period, orbit.energy, static_cast<double>(orbit.loop.cutoff)}});
   };
   continuation::Ending ending;
   try {
     ending = continuation::trace(_system, start_of(work, _system->description()), branch_options(_scene), keep);
-  } catch (const std::exception& error) {  // caught here, not by the queue, so that the summary still counts the orbits kept
+  } catch (
+      const std::exception& error) {  // caught here, not by the queue, so that the summary still counts the orbits kept
     ending = {continuation::EndReason::failure, error.what()};
   }
   outcome.end_reason = ending.text();

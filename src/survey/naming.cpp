@@ -25,8 +25,8 @@ bool is_at(const systems::Description& system, const std::vector<double>& point,
 
 }  // namespace
 
-std::string base_name(const scene::Scene& scene, const systems::Description& system, const std::vector<double>& point, int index,
-                      int mode) {
+std::string base_name(const scene::Scene& scene, const systems::Description& system, const std::vector<double>& point,
+                      int index, int mode) {
   for (const scene::FixedPoints::Names& entry : scene.fixed_points.names)
     if (is_at(system, point, entry.point) && static_cast<std::size_t>(mode) < entry.names.size())
       return entry.names[static_cast<std::size_t>(mode)];
@@ -37,8 +37,8 @@ std::string point_text(const systems::Description& system, const std::vector<dou
   std::string text;
   for (std::size_t i = 0; i < point.size(); ++i) {
     const double value = is_angle(system, i) ? point[i] * 180.0 / std::numbers::pi : point[i];
-    text += fmt::format("{}{} = {:.6g}{}", i == 0 ? "" : ", ", system.state_names[i], std::abs(value) < 1e-9 ? 0.0 : value,
-                        is_angle(system, i) ? " deg" : "");
+    text += fmt::format("{}{} = {:.6g}{}", i == 0 ? "" : ", ", system.state_names[i],
+                        std::abs(value) < 1e-9 ? 0.0 : value, is_angle(system, i) ? " deg" : "");
   }
   return text;
 }

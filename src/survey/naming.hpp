@@ -10,8 +10,8 @@ namespace orbweaver::survey {
 
 /// The name of the `mode`-th family (longest period first) of small oscillations around `point`: the scene's, if it
 /// names the equilibrium (angles modulo 2 pi), else "Equilibrium 2, mode 1".
-[[nodiscard]] std::string base_name(const scene::Scene& scene, const systems::Description& system, const std::vector<double>& point,
-                                    int index, int mode);
+[[nodiscard]] std::string base_name(const scene::Scene& scene, const systems::Description& system,
+                                    const std::vector<double>& point, int index, int mode);
 
 /// "(0, 180)" in degrees for angles: an equilibrium for people.
 [[nodiscard]] std::string point_text(const systems::Description& system, const std::vector<double>& point);

@@ -4,11 +4,11 @@
 #include <sstream>
 #include <string>
 
+#include <fmt/format.h>
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
 #include <boost/serialization/string.hpp>
 #include <boost/serialization/vector.hpp>
-#include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
 
@@ -39,17 +39,21 @@ template <class T>
     int version = 0;
     archive >> name >> version;
     if (name != T::payload_name || version != payload_version)
-      throw core::EnvironmentError(fmt::format("expected a {} of version {}, got a {} of version {}: all ranks must run the same "
-                                               "build of Orbweaver", T::payload_name, payload_version, name, version));
+      throw core::EnvironmentError(
+          fmt::format("expected a {} of version {}, got a {} of version {}: all ranks must run the same "
+                      "build of Orbweaver",
+                      T::payload_name, payload_version, name, version));
     T value;
     archive >> value;
     if (stream.peek() != std::istringstream::traits_type::eof())
-      throw core::EnvironmentError(fmt::format("a {} of {} bytes has more bytes than its own", T::payload_name, bytes.size()));
+      throw core::EnvironmentError(
+          fmt::format("a {} of {} bytes has more bytes than its own", T::payload_name, bytes.size()));
     return value;
   } catch (const core::EnvironmentError&) {
     throw;
   } catch (const std::exception& error) {  // foreign bytes may also ask Boost for texts of impossible length
-    throw core::EnvironmentError(fmt::format("a {} of {} bytes cannot be read: {}", T::payload_name, bytes.size(), error.what()));
+    throw core::EnvironmentError(
+        fmt::format("a {} of {} bytes cannot be read: {}", T::payload_name, bytes.size(), error.what()));
   }
 }
 

@@ -9,8 +9,8 @@
 
 namespace orbweaver::survey {
 
-SegmentFlusher::SegmentFlusher(const core::Communicator& comm, std::filesystem::path folder, const archive::Header& header,
-                               archive::Records& rows)
+SegmentFlusher::SegmentFlusher(const core::Communicator& comm, std::filesystem::path folder,
+                               const archive::Header& header, archive::Records& rows)
     : _comm(comm), _folder(std::move(folder)), _header(header), _rows(rows) {}
 
 void SegmentFlusher::flush(int) {

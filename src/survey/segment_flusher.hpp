@@ -12,7 +12,8 @@ namespace orbweaver::survey {
 /// Writes the rows that the ranks hold into the next segment, all ranks together, and forgets them.
 class SegmentFlusher : public queue::Flusher {
  public:
-  SegmentFlusher(const core::Communicator& comm, std::filesystem::path folder, const archive::Header& header, archive::Records& rows);
+  SegmentFlusher(const core::Communicator& comm, std::filesystem::path folder, const archive::Header& header,
+                 archive::Records& rows);
 
   void flush(int number) override;
   /// The segments written so far, the same list on every rank.

@@ -32,7 +32,9 @@ class Recorder : public queue::Observer {
   explicit Recorder(queue::Observer& display) : _display(display) {}
 
   void started(const queue::Task& task, int rank) override { _display.started(task, rank); }
-  void progress(const queue::Task& task, const queue::Progress& p, int rank) override { _display.progress(task, p, rank); }
+  void progress(const queue::Task& task, const queue::Progress& p, int rank) override {
+    _display.progress(task, p, rank);
+  }
   void finished(const queue::Task& task, const queue::TaskOutcome& outcome) override {
     _ended.insert_or_assign(task.key, std::pair(task, outcome));
     _display.finished(task, outcome);
@@ -44,12 +46,21 @@ class Recorder : public queue::Observer {
   void tick(const queue::TaskCounts& counts) override { _display.tick(counts); }
 
   /// Tasks with their outcomes in order of keys.
-  [[nodiscard]] const std::map<std::string, std::pair<queue::Task, queue::TaskOutcome>>& ended() const { return _ended; }
+  [[nodiscard]] const std::map<std::string, std::pair<queue::Task, queue::TaskOutcome>>& ended() const {
+    return _ended;
+  }
 
  private:
   queue::Observer& _display;
   std::map<std::string, std::pair<queue::Task, queue::TaskOutcome>> _ended;
 };
+
+// The archive's text columns hold 4096 bytes.
+std::string limited(std::string text) {
+  constexpr std::size_t longest = 2000;
+  if (text.size() > longest) text = text.substr(0, longest) + " ...";
+  return text;
+}
 
 double peak_memory_mib() {
   rusage usage{};
@@ -68,30 +79,30 @@ archive::Header header_of(const scene::Scene& scene, const systems::Description&
   return header;
 }
 
-std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::System& system, Summary& summary) {
+std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::System& system) {
   std::vector<queue::Task> tasks;
   for (const std::vector<double>& point : continuation::find_fixed_points(system, scene.fixed_points.grid))
     tasks.push_back(task_of(SweepWork{static_cast<int>(tasks.size()), point}));
-  core::log_info(fmt::format("{} equilibria; sweeping the period from {:g} to {:g} at each", tasks.size(), scene.sweep.period_from,
-                             scene.sweep.period_to));
+  core::log_info(fmt::format("{} equilibria; sweeping the period from {:g} to {:g} at each", tasks.size(),
+                             scene.sweep.period_from, scene.sweep.period_to));
   if (tasks.empty())
-    summary.remarks.push_back("Newton's method found no equilibrium from the scene's grid: nothing to survey");
+    throw core::InputError(
+        "Newton's method finds no equilibrium from starts.fixed_points.grid: give start values nearer to one");
   return tasks;
 }
 
 // Families in the order of their keys: equilibria sorted, longest period first; no more than the scene allows.
-std::vector<queue::Task> branch_tasks(const scene::Scene& scene, const systems::Description& system, const Recorder& sweeps, Summary& summary) {
+std::vector<queue::Task> branch_tasks(const scene::Scene& scene, const systems::Description& system,
+                                      const Recorder& sweeps, Summary& summary) {
   std::vector<queue::Task> tasks;
   for (const auto& [key, ended] : sweeps.ended()) {
     const auto& [task, outcome] = ended;
-    if (outcome.failed) {
-      summary.failed_tasks.push_back(fmt::format("{}: {}", key, outcome.reason));
-      continue;
-    }
+    if (outcome.failed) continue;  // gather_failed_sweeps
     const SweepOutcome found = unpack_sweep_outcome(outcome.payload);
-    if (found.modes.empty())
-      summary.remarks.push_back(fmt::format("no small oscillations around {} for T in [{:g}, {:g}]", point_text(system, found.point),
-                                            scene.sweep.period_from, scene.sweep.period_to));
+    if (found.modes.empty() && found.rejected.empty())
+      summary.remarks.push_back(fmt::format("no small oscillations around {} for T in [{:g}, {:g}]",
+                                            point_text(system, found.point), scene.sweep.period_from,
+                                            scene.sweep.period_to));
     for (const std::string& reason : found.rejected)
       summary.remarks.push_back(fmt::format("dip passed over at {}: {}", point_text(system, found.point), reason));
     for (std::size_t n = 0; n < found.modes.size(); ++n) {
@@ -101,7 +112,7 @@ std::vector<queue::Task> branch_tasks(const scene::Scene& scene, const systems::
         tasks.push_back(task_of(BranchWork{branch_key, name, found.point, found.modes[n], 1}));
       } else {
         tasks.push_back(task_of(BranchWork{branch_key + "+", name, found.point, found.modes[n], 1}));
-        tasks.push_back(task_of(BranchWork{branch_key + "-", name, found.point, found.modes[n], -1}));
+        tasks.push_back(task_of(BranchWork{branch_key + "-", name + " (other side)", found.point, found.modes[n], -1}));
       }
     }
   }
@@ -113,7 +124,26 @@ std::vector<queue::Task> branch_tasks(const scene::Scene& scene, const systems::
   return tasks;
 }
 
-void gather_families(const systems::Description& system, const Recorder& branches, Summary& summary, archive::Records& tables) {
+// An equilibrium whose sweep failed is a family without orbits, so that the archive says so.
+void gather_failed_sweeps(const systems::Description& system, const Recorder& sweeps, Summary& summary,
+                          archive::Records& tables) {
+  for (const auto& [key, ended] : sweeps.ended()) {
+    const auto& [task, outcome] = ended;
+    if (!outcome.failed) continue;
+    const SweepWork work = unpack_sweep_work(task.payload);
+    archive::FamilyRecord record;
+    record.key = fmt::format("{:04}", work.index);
+    record.name = fmt::format("Equilibrium {}", work.index + 1);
+    record.end_reason =
+        limited(fmt::format("failure (the sweep at {}: {})", point_text(system, work.point), outcome.reason));
+    summary.families.push_back({record.key, record.name, "", 0, 0.0, 0.0, 0.0, 0.0, record.end_reason, true});
+    summary.failed_tasks.push_back(fmt::format("{}: {}", key, outcome.reason));
+    tables.families.push_back(std::move(record));
+  }
+}
+
+void gather_families(const systems::Description& system, const Recorder& branches, Summary& summary,
+                     archive::Records& tables) {
   for (const auto& [key, ended] : branches.ended()) {
     const auto& [task, outcome] = ended;
     const BranchWork work = unpack_branch_work(task.payload);
@@ -132,6 +162,7 @@ void gather_families(const systems::Description& system, const Recorder& branche
       family.energy_to = branch.energy_to;
       family.end_reason = branch.end_reason;
     }
+    family.end_reason = limited(family.end_reason);
     if (family.failed) summary.failed_tasks.push_back(fmt::format("{} ({}): {}", key, family.name, outcome.reason));
     summary.orbits += family.orbits;
     archive::FamilyRecord record;
@@ -144,31 +175,40 @@ void gather_families(const systems::Description& system, const Recorder& branche
   }
 }
 
+// Segments of a survey that is begun anew; nothing else in the folder is touched.
+void remove_segments(const std::filesystem::path& folder) {
+  std::error_code ignored;  // what stays behind is overwritten or does no harm
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+    if (entry.path().filename().string().starts_with("segment-")) std::filesystem::remove(entry.path(), ignored);
+}
+
 void make_folder(const core::Communicator& comm, const std::filesystem::path& folder) {
   std::string problem;
   if (comm.is_root()) {
     std::error_code error;
-    std::filesystem::remove_all(folder, error);
     std::filesystem::create_directories(folder, error);
     if (error) problem = error.message();
+    remove_segments(folder);
   }
   int failed = problem.empty() ? 0 : 1;
   core::check_mpi(MPI_Bcast(&failed, 1, MPI_INT, 0, comm.get()), "MPI_Bcast");
   if (failed != 0)
-    throw core::EnvironmentError(fmt::format("cannot create the folder {}{}{}: give -o a place where you may write", folder.string(),
-                                             problem.empty() ? "" : ": ", problem));
+    throw core::EnvironmentError(fmt::format("cannot create the folder {}{}{}: give -o a place where you may write",
+                                             folder.string(), problem.empty() ? "" : ": ", problem));
 }
 
 void gather_memory(const core::Communicator& comm, Summary& summary) {
   const double mine = peak_memory_mib();
   summary.peak_memory_mib.resize(static_cast<std::size_t>(comm.size()));
-  core::check_mpi(MPI_Gather(&mine, 1, MPI_DOUBLE, summary.peak_memory_mib.data(), 1, MPI_DOUBLE, 0, comm.get()), "MPI_Gather");
+  core::check_mpi(MPI_Gather(&mine, 1, MPI_DOUBLE, summary.peak_memory_mib.data(), 1, MPI_DOUBLE, 0, comm.get()),
+                  "MPI_Gather");
 }
 
 }  // namespace
 
-Summary run_survey(const core::Communicator& comm, const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
-                   const std::filesystem::path& directory, Display display) {
+Summary run_survey(const core::Communicator& comm, const scene::Scene& scene,
+                   const std::shared_ptr<const systems::System>& system, const std::filesystem::path& directory,
+                   Display display) {
   const auto began = Clock::now();
   Summary summary;
   const archive::Header header = header_of(scene, system->description());
@@ -183,22 +223,24 @@ Summary run_survey(const core::Communicator& comm, const scene::Scene& scene, co
   options.flush_seconds = scene.output.flush_seconds;
   options.flush_rows = scene.output.flush_orbits;
 
-  const auto tasks_of_root = [&](auto&& make) { return comm.is_root() ? make() : std::vector<queue::Task>{}; };
   Recorder sweeps(progress);
-  const queue::RunSummary swept =
-      queue::run(comm, options, tasks_of_root([&] { return sweep_tasks(scene, *system, summary); }), executor, sweeps, flusher);
+  // On every rank, so that a field that is not finite on the grid is the same error everywhere.
+  const queue::RunSummary swept = queue::run(comm, options, sweep_tasks(scene, *system), executor, sweeps, flusher);
   Recorder branches(progress);
-  const queue::RunSummary followed =
-      queue::run(comm, options, tasks_of_root([&] { return branch_tasks(scene, system->description(), sweeps, summary); }), executor,
-                 branches, flusher);
+  const queue::RunSummary followed = queue::run(
+      comm, options, branch_tasks(scene, system->description(), sweeps, summary), executor, branches, flusher);
 
   archive::Records tables;
+  gather_failed_sweeps(system->description(), sweeps, summary, tables);
   gather_families(system->description(), branches, summary, tables);
+  std::sort(summary.families.begin(), summary.families.end(),
+            [](const FamilySummary& a, const FamilySummary& b) { return a.key < b.key; });
   summary.atlas = directory / "atlas.h5";
   archive::consolidate(comm.get(), flusher.segments(), summary.atlas, header, tables);
   if (comm.is_root()) {
-    std::error_code ignored;  // segments that stay behind do no harm
-    std::filesystem::remove_all(segments, ignored);
+    remove_segments(segments);
+    std::error_code ignored;  // not empty: somebody else's files
+    std::filesystem::remove(segments, ignored);
   }
   gather_memory(comm, summary);
   summary.failures = swept.failed + followed.failed;

@@ -18,10 +18,12 @@ constexpr double degree = std::numbers::pi / 180.0;
 constexpr double table_step = 0.5 * degree;  // the paper's
 
 // How far the flow returns beside its start after a small step along a direction of unit length at s = 0, in degrees.
-double deviation_degrees(const systems::System& system, const std::vector<double>& point, const std::vector<double>& direction, double period) {
+double deviation_degrees(const systems::System& system, const std::vector<double>& point,
+                         const std::vector<double>& direction, double period) {
   std::vector<double> start = point;
   const std::size_t d = point.size();
-  for (std::size_t i = 0; i < d; ++i) start[i] += table_step * direction[d + i];  // a_1: the only cosine of a normal mode
+  for (std::size_t i = 0; i < d; ++i)
+    start[i] += table_step * direction[d + i];  // a_1: the only cosine of a normal mode
   const std::vector<double> end = certificate::integrate(system, start, period, 1e-13);
   double sum = 0.0;
   for (std::size_t i = 0; i < d; ++i) sum += (end[i] - start[i]) * (end[i] - start[i]);
@@ -37,14 +39,15 @@ std::vector<EquilibriumReport> sweep_report(const scene::Scene& scene) {
   options.period_from = scene.sweep.period_from;
   options.period_to = scene.sweep.period_to;
   options.step = scene.sweep.step;
-  options.cutoff = loop::allowed_cutoff_at_least(scene.continuation.cutoff_from);
   std::vector<EquilibriumReport> reports;
   for (const std::vector<double>& point : continuation::find_fixed_points(*system, scene.fixed_points.grid)) {
     EquilibriumReport report{point, point_text(description, point), continuation::sweep(*system, point, options), {}};
     for (const continuation::NormalMode& mode : report.sweep.modes)
-      report.modes.push_back({base_name(scene, description, point, static_cast<int>(reports.size()), static_cast<int>(report.modes.size())),
-                              mode.period, mode.grid_period, deviation_degrees(*system, point, mode.direction, mode.period),
-                              deviation_degrees(*system, point, mode.grid_direction, mode.grid_period), loop::to_text(mode.isotropy)});
+      report.modes.push_back(
+          {base_name(scene, description, point, static_cast<int>(reports.size()),
+                     static_cast<int>(report.modes.size())),
+           mode.period, mode.grid_period, deviation_degrees(*system, point, mode.direction, mode.period),
+           deviation_degrees(*system, point, mode.grid_direction, mode.grid_period), loop::to_text(mode.isotropy)});
     reports.push_back(std::move(report));
   }
   return reports;
@@ -54,18 +57,22 @@ std::string to_text(const std::vector<EquilibriumReport>& reports) {
   std::size_t width = 6;
   for (const EquilibriumReport& r : reports)
     for (const ModeRow& m : r.modes) width = std::max(width, m.name.size());
-  std::string text = "Normal modes; deviation: how far the flow returns from its start, in degrees, after a step of 0.5 degrees along the mode\n";
+  std::string text =
+      "Normal modes; deviation: how far the flow returns from its start, in degrees, after a step of 0.5 degrees along "
+      "the mode\n";
   for (const EquilibriumReport& r : reports) {
     text += fmt::format("\n{}\n", r.text);
     if (r.modes.empty())
-      text += fmt::format("  no small oscillations for T in [{:g}, {:g}]\n", r.sweep.table.front().period, r.sweep.table.back().period);
+      text += fmt::format("  no small oscillations for T in [{:g}, {:g}]\n", r.sweep.table.front().period,
+                          r.sweep.table.back().period);
     else
-      text += fmt::format("  {:<{}}  {:>18}  {:>9}  {:>11}  {:>8}  {:>11}  {}\n", "family", width, "period", "deviation", "grid period", "",
-                          "deviation", "isotropy");
+      text += fmt::format("  {:<{}}  {:>18}  {:>9}  {:>11}  {:>8}  {:>11}  {}\n", "family", width, "period",
+                          "deviation", "grid period", "", "deviation", "isotropy");
     for (const ModeRow& m : r.modes)
-      text += fmt::format("  {:<{}}  {:>18.15g}  {:>9.2e}  {:>11.6g}  {:>8}  {:>11.2e}  {}\n", m.name, width, m.period, m.deviation,
-                          m.grid_period, "", m.grid_deviation, m.isotropy);
-    for (const continuation::RejectedDip& dip : r.sweep.rejected) text += fmt::format("  dip at T = {:.9g}: {}\n", dip.period, dip.reason);
+      text += fmt::format("  {:<{}}  {:>18.15g}  {:>9.2e}  {:>11.6g}  {:>8}  {:>11.2e}  {}\n", m.name, width, m.period,
+                          m.deviation, m.grid_period, "", m.grid_deviation, m.isotropy);
+    for (const continuation::RejectedDip& dip : r.sweep.rejected)
+      text += fmt::format("  dip at T = {:.9g}: {}\n", dip.period, dip.reason);
   }
   return text;
 }

@@ -9,27 +9,29 @@ namespace boost::serialization {
 
 template <class Archive>
 void serialize(Archive& archive, orbweaver::survey::SweepWork& w, unsigned) {
-  archive & w.index & w.point;
+  archive& w.index& w.point;
 }
 
 template <class Archive>
 void serialize(Archive& archive, orbweaver::survey::FoundMode& m, unsigned) {
-  archive & m.period & m.direction & m.cutoff & m.isotropy & m.reversing & m.shift_numerators & m.shift_denominators & m.one_direction;
+  archive& m.period& m.direction& m.cutoff& m.isotropy& m.reversing& m.shift_numerators& m.shift_denominators& m
+      .one_direction;
 }
 
 template <class Archive>
 void serialize(Archive& archive, orbweaver::survey::SweepOutcome& o, unsigned) {
-  archive & o.index & o.point & o.modes & o.rejected;
+  archive& o.index& o.point& o.modes& o.rejected;
 }
 
 template <class Archive>
 void serialize(Archive& archive, orbweaver::survey::BranchWork& w, unsigned) {
-  archive & w.key & w.name & w.point & w.start & w.sign;
+  archive& w.key& w.name& w.point& w.start& w.sign;
 }
 
 template <class Archive>
 void serialize(Archive& archive, orbweaver::survey::BranchOutcome& o, unsigned) {
-  archive & o.key & o.orbits & o.period_from & o.period_to & o.energy_from & o.energy_to & o.last_period & o.last_energy & o.last_cutoff & o.end_reason;
+  archive& o.key& o.orbits& o.period_from& o.period_to& o.energy_from& o.energy_to& o.last_period& o.last_energy& o
+      .last_cutoff& o.end_reason;
 }
 
 }  // namespace boost::serialization
@@ -44,12 +46,15 @@ constexpr int branch_priority = 1;
 const Eigen::MatrixXd& declared_matrix(const systems::Description& system, const std::string& name, bool reversing) {
   for (const systems::Symmetry& s : reversing ? system.reversors : system.equivariances)
     if (s.name == name) return s.matrix;
-  throw core::EnvironmentError(fmt::format("a task names the symmetry `{}`, which {} does not declare", name, system.name));
+  throw core::EnvironmentError(
+      fmt::format("a task names the symmetry `{}`, which {} does not declare", name, system.name));
 }
 
 }  // namespace
 
-queue::Task task_of(const SweepWork& work) { return {fmt::format("sweep.{:04}", work.index), sweep_priority, sweep_kind, pack(work)}; }
+queue::Task task_of(const SweepWork& work) {
+  return {fmt::format("sweep.{:04}", work.index), sweep_priority, sweep_kind, pack(work)};
+}
 queue::Task task_of(const BranchWork& work) { return {work.key, branch_priority, branch_kind, pack(work)}; }
 
 std::string pack(const SweepWork& work) { return to_payload(work); }

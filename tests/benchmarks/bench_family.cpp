@@ -25,7 +25,8 @@ void trace_family(benchmark::State& state, corrector::Method method, double peri
   }
   state.counters["orbits"] = orbits;
   state.counters["K_end"] = cutoff;
-  state.counters["per_orbit"] = benchmark::Counter(orbits, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["per_orbit"] =
+      benchmark::Counter(orbits, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 void family_to_T30(benchmark::State& s) { trace_family(s, corrector::Method::automatic, 30.0); }

@@ -24,7 +24,8 @@ Problem problem_at(int k) {
 
 void assemble_hessian(benchmark::State& state) {
   const Problem p = problem_at(static_cast<int>(state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(loss::assemble_hessian(p.linearization, p.unknowns, loss::Curvature::gauss_newton));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(loss::assemble_hessian(p.linearization, p.unknowns, loss::Curvature::gauss_newton));
   state.counters["unknowns"] = p.unknowns.size();
 }
 

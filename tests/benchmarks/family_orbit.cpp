@@ -28,10 +28,11 @@ const FamilyOrbit& family_orbit(Family family, double period) {
   continuation::Options options;
   options.period_limit = period;
   FamilyOrbit orbit{begin.system, {}, begin.start.isotropy};
-  const continuation::Ending ending = continuation::trace(begin.system, begin.start, options, [&](const continuation::Orbit& o) {
-    orbit.loop = o.loop;
-    return true;
-  });
+  const continuation::Ending ending =
+      continuation::trace(begin.system, begin.start, options, [&](const continuation::Orbit& o) {
+        orbit.loop = o.loop;
+        return true;
+      });
   if (ending.reason != continuation::EndReason::period_limit) std::abort();
   return known.emplace(key, std::move(orbit)).first->second;
 }

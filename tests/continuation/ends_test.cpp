@@ -20,7 +20,8 @@ Start downwards(const test::Trace& family, double period) {
   const corrector::Result upper = test::orbit_at(family, period);
   const corrector::Result lower = test::orbit_at(family, period - 0.02);
   EXPECT_TRUE(upper.converged() && lower.converged());
-  Start start{upper.loop, std::vector<double>(upper.loop.modes.size(), 0.0), test::pendulum_isotropy(*test::pendulum())};
+  Start start{upper.loop, std::vector<double>(upper.loop.modes.size(), 0.0),
+              test::pendulum_isotropy(*test::pendulum())};
   const loop::Loop shorter = loop::with_cutoff(lower.loop, upper.loop.cutoff);
   for (std::size_t n = 0; n < start.direction.size(); ++n) start.direction[n] = shorter.modes[n] - upper.loop.modes[n];
   return start;
@@ -53,9 +54,9 @@ TEST(Ends, PeriodLimitIsHitExactly) {
 TEST(Ends, StepLimit) {
   const test::Trace trace = test::trace_of(test::in_phase(), {.step_limit = 4});
   EXPECT_EQ(trace.ending.reason, EndReason::step_limit);
-  EXPECT_EQ(trace.ending.text(), "step limit (4 steps)");
-  EXPECT_EQ(trace.orbits.size(), 5u);
-  EXPECT_EQ(trace.last().step, 4);
+  EXPECT_EQ(trace.ending.text(), "step limit (4 orbits)");
+  EXPECT_EQ(trace.orbits.size(), 4u);
+  EXPECT_EQ(trace.last().step, 3);
 }
 
 TEST(Ends, CutoffLimit) {
@@ -78,7 +79,8 @@ TEST(Ends, PeriodDivergenceWhereTheCutoffEndsASettledFamily) {
 
 TEST(Ends, StoppedByTheObserver) {
   int seen = 0;
-  const Ending ending = trace(test::pendulum(), test::start_of(test::in_phase()), {}, [&](const Orbit&) { return ++seen < 3; });
+  const Ending ending =
+      trace(test::pendulum(), test::start_of(test::in_phase()), {}, [&](const Orbit&) { return ++seen < 3; });
   EXPECT_EQ(ending.reason, EndReason::stopped);
   EXPECT_EQ(seen, 3);
   EXPECT_THAT(ending.text(), HasSubstr("stopped (T = 8.2"));
@@ -106,6 +108,7 @@ TEST(Ends, FailureKeepsItsReason) {
   const test::Trace trace = test::trace_of(walled, circles(*walled), {});
   EXPECT_EQ(trace.ending.reason, EndReason::failure) << trace.ending.text();
   EXPECT_TRUE(trace.ending.failed());
+  EXPECT_THAT(trace.ending.text(), HasSubstr("failure (the corrector fails at T = 6.28319 even with step"));
   EXPECT_THAT(trace.ending.text(), HasSubstr("the vector field of test_oscillator is not finite"));
   EXPECT_GT(trace.orbits.size(), 5u);
   EXPECT_NEAR(loop::state_at(trace.last().loop, 0.0)[0], 0.5, 1e-6);

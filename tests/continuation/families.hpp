@@ -49,7 +49,11 @@ inline Trace trace_of(const PendulumMode& mode, const continuation::Options& opt
 /// The family from its equilibrium to T = 12 with adaptive steps, traced once a process.
 inline const Trace& family_to_twelve(const PendulumMode& mode) {
   static std::map<std::string, Trace> traced;
-  if (traced.count(mode.name) == 0) traced[mode.name] = trace_of(mode, {.period_limit = 12.0});
+  if (traced.count(mode.name) == 0) {
+    continuation::Options options;
+    options.period_limit = 12.0;
+    traced[mode.name] = trace_of(mode, options);
+  }
   return traced[mode.name];
 }
 

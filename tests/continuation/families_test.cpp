@@ -120,7 +120,7 @@ struct Known {
   test::PendulumMode mode;
   double period;
   double energy;
-  double first;   ///< angles at rest; NaN: not known
+  double first;  ///< angles at rest; NaN: not known
   double second;
 };
 
@@ -135,8 +135,12 @@ TEST_P(KnownOrbits, AtExactPeriods) {
   EXPECT_EQ(orbit.loop.period, period);
   EXPECT_NEAR(energy_of(*test::pendulum(), orbit.loop), energy, 1e-11);
   const std::vector<double> z = loop::state_at(orbit.loop, 0.0);
-  if (!std::isnan(first)) EXPECT_NEAR(z[0], first, 1e-11);
-  if (!std::isnan(second)) EXPECT_NEAR(z[1], second, 1e-11);
+  if (!std::isnan(first)) {
+    EXPECT_NEAR(z[0], first, 1e-11);
+  }
+  if (!std::isnan(second)) {
+    EXPECT_NEAR(z[1], second, 1e-11);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -156,12 +160,23 @@ TEST(Families, StepCountsAndCutoffsAtTwelve) {
     int steps;
     int cutoff;
   };
-  for (const Pinned& pinned : {Pinned{test::in_phase(), 15, 202}, Pinned{test::out_phase(), 19, 787}, Pinned{test::down_up(), 16, 112},
-                               Pinned{test::up_down(), 16, 157}}) {
+  for (const Pinned& pinned : {Pinned{test::in_phase(), 15, 202}, Pinned{test::out_phase(), 19, 787},
+                               Pinned{test::down_up(), 16, 112}, Pinned{test::up_down(), 16, 157}}) {
     const test::Trace& family = test::family_to_twelve(pinned.mode);
     EXPECT_EQ(family.last().step, pinned.steps) << pinned.mode.name;
     EXPECT_EQ(family.last().loop.cutoff, pinned.cutoff) << pinned.mode.name;
-    for (const Orbit& orbit : family.orbits) EXPECT_LE(orbit.iterations, 6) << pinned.mode.name << " step " << orbit.step;
+    for (const Orbit& orbit : family.orbits)
+      EXPECT_LE(orbit.iterations, 6) << pinned.mode.name << " step " << orbit.step;
+  }
+}
+
+TEST(Families, DoNotDependOnTheCorrector) {
+  const double energy = test::trace_of(test::in_phase(), {.period_limit = 8.4}).last().energy;
+  for (const corrector::Method method :
+       {corrector::Method::newton_krylov, corrector::Method::brgn, corrector::Method::nls, corrector::Method::ntr}) {
+    const test::Trace trace = test::trace_of(test::in_phase(), {.corrector = {.method = method}, .period_limit = 8.4});
+    EXPECT_EQ(trace.ending.reason, EndReason::period_limit) << name_of(method) << ": " << trace.ending.text();
+    EXPECT_NEAR(trace.last().energy, energy, 1e-11) << name_of(method);
   }
 }
 

@@ -27,14 +27,16 @@ void expect_the_four_equilibria(const std::vector<std::vector<double>>& points) 
 
 TEST(FixedPoints, OfTheDoublePendulumFromTheScenesGrid) {
   const double degree = pi / 180.0;
-  expect_the_four_equilibria(find_fixed_points(*systems::make_system("double_pendulum"), {{0.0, 180.0 * degree}, {0.0, 180.0 * degree}}));
+  expect_the_four_equilibria(
+      find_fixed_points(*systems::make_system("double_pendulum"), {{0.0, 180.0 * degree}, {0.0, 180.0 * degree}}));
 }
 
 TEST(FixedPoints, FromOffsetGuesses) {
   const auto system = systems::make_system("double_pendulum", {{"m1", 2.0}, {"l2", 0.7}, {"g", 9.81}});
   expect_the_four_equilibria(find_fixed_points(*system, {{0.2, pi - 0.1}, {-0.15, pi + 0.2}}));
   // Velocities and whole turns lead to the same four.
-  expect_the_four_equilibria(find_fixed_points(*system, {{2 * pi + 0.1, -pi + 0.1}, {0.1, 3 * pi - 0.1, -2 * pi}, {0.05}, {-0.05, 0.1}}));
+  expect_the_four_equilibria(
+      find_fixed_points(*system, {{2 * pi + 0.1, -pi + 0.1}, {0.1, 3 * pi - 0.1, -2 * pi}, {0.05}, {-0.05, 0.1}}));
 }
 
 TEST(FixedPoints, OfHenonHeiles) {
@@ -43,7 +45,8 @@ TEST(FixedPoints, OfHenonHeiles) {
   const double x = std::sqrt(3.0) / 2.0;
   const double wanted[4][2] = {{-x, -0.5}, {0.0, 0.0}, {0.0, 1.0}, {x, -0.5}};
   for (const auto& w : wanted) {
-    const bool found = std::any_of(points.begin(), points.end(), [&](const auto& p) { return std::hypot(p[0] - w[0], p[1] - w[1]) < 1e-13; });
+    const bool found = std::any_of(points.begin(), points.end(),
+                                   [&](const auto& p) { return std::hypot(p[0] - w[0], p[1] - w[1]) < 1e-13; });
     EXPECT_TRUE(found) << w[0] << " " << w[1];
   }
 }

@@ -23,7 +23,9 @@ struct OnFamily {
   [[nodiscard]] double off_branch_eigenvalue(const loop::Isotropy& isotropy) const {
     return continuation::off_branch_eigenvalue(*test::pendulum(), loop, isotropy, tangent_modes, tangent_period);
   }
-  [[nodiscard]] double off_branch_eigenvalue() const { return off_branch_eigenvalue(test::pendulum_isotropy(*test::pendulum())); }
+  [[nodiscard]] double off_branch_eigenvalue() const {
+    return off_branch_eigenvalue(test::pendulum_isotropy(*test::pendulum()));
+  }
 };
 
 OnFamily at_period(const test::PendulumMode& mode, double period) {
@@ -35,7 +37,8 @@ OnFamily at_period(const test::PendulumMode& mode, double period) {
   const Eigen::VectorXd flat =
       spectrum::SlicedHessian(linearization, unknowns, loss::Slice(unknowns.size(), normal)).flat_direction(normal);
   OnFamily out{orbit.loop, std::vector<double>(orbit.loop.modes.size(), 0.0), flat(flat.size() - 1)};
-  unknowns.subspace.add_to(std::span(flat.data(), static_cast<std::size_t>(unknowns.subspace.size())), out.tangent_modes);
+  unknowns.subspace.add_to(std::span(flat.data(), static_cast<std::size_t>(unknowns.subspace.size())),
+                           out.tangent_modes);
   return out;
 }
 
@@ -48,7 +51,8 @@ double by_dense_projection(const OnFamily& orbit) {
   const Eigen::MatrixXd h = 2.0 * j.transpose() * j;
   Eigen::MatrixXd flat(unknowns.size(), 2);
   std::vector<double> tangent(static_cast<std::size_t>(unknowns.size()));
-  unknowns.subspace.project(orbit.tangent_modes, std::span(tangent).first(static_cast<std::size_t>(unknowns.subspace.size())));
+  unknowns.subspace.project(orbit.tangent_modes,
+                            std::span(tangent).first(static_cast<std::size_t>(unknowns.subspace.size())));
   tangent.back() = orbit.tangent_period;
   const std::vector<double> shift = unknowns.time_shift_direction(orbit.loop);
   for (int n = 0; n < unknowns.size(); ++n) {
@@ -57,8 +61,10 @@ double by_dense_projection(const OnFamily& orbit) {
   }
   EXPECT_LT((h * flat.col(0)).norm(), 1e-9 * flat.col(0).norm());
   EXPECT_LT((h * flat.col(1)).norm(), 1e-9 * flat.col(1).norm());
-  const Eigen::MatrixXd basis = Eigen::HouseholderQR<Eigen::MatrixXd>(flat).householderQ() * Eigen::MatrixXd::Identity(unknowns.size(), 2);
-  const Eigen::MatrixXd projector = Eigen::MatrixXd::Identity(unknowns.size(), unknowns.size()) - basis * basis.transpose();
+  const Eigen::MatrixXd basis =
+      Eigen::HouseholderQR<Eigen::MatrixXd>(flat).householderQ() * Eigen::MatrixXd::Identity(unknowns.size(), 2);
+  const Eigen::MatrixXd projector =
+      Eigen::MatrixXd::Identity(unknowns.size(), unknowns.size()) - basis * basis.transpose();
   const Eigen::MatrixXd projected = projector * h * projector + h.norm() * basis * basis.transpose();
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(projected, Eigen::EigenvaluesOnly).eigenvalues()(0);
 }
@@ -83,13 +89,13 @@ TEST(OffBranchEigenvalue, DoesNotDependOnHowItIsSplit) {
   EXPECT_NEAR(orbit.off_branch_eigenvalue(one), split, 1e-6 * split);
 }
 
-
 // At a crossing a second direction is flat: the eigenvalue, quadratic in the distance, falls to rounding.
 TEST(OffBranchEigenvalue, VanishesWhereAnotherFamilyCrossesInPhase) {
   const double period = 10.416773281973249;
   const double at_crossing = at_period(test::in_phase(), period).off_branch_eigenvalue();
   double beside[2];
-  for (int side = 0; side < 2; ++side) beside[side] = at_period(test::in_phase(), period + (side == 0 ? -0.05 : 0.05)).off_branch_eigenvalue();
+  for (int side = 0; side < 2; ++side)
+    beside[side] = at_period(test::in_phase(), period + (side == 0 ? -0.05 : 0.05)).off_branch_eigenvalue();
   EXPECT_LT(std::abs(at_crossing), 1e-6 * std::min(beside[0], beside[1])) << beside[0] << " " << beside[1];
   const double further = at_period(test::in_phase(), period + 0.1).off_branch_eigenvalue();
   EXPECT_NEAR(further / beside[1], 4.0, 0.5);
@@ -108,7 +114,8 @@ TEST(OffBranchEigenvalue, DipsWhereAnotherFamilyCrossesOutPhase) {
     (lower_half ? high : low) = lower_half ? b : a;
   }
   EXPECT_NEAR(0.5 * (low + high), 6.1476, 1e-3);
-  EXPECT_LT(value(0.5 * (low + high)), 1e-6 * std::min(left, right)) << left << " " << right << " at " << 0.5 * (low + high);
+  EXPECT_LT(value(0.5 * (low + high)), 1e-6 * std::min(left, right))
+      << left << " " << right << " at " << 0.5 * (low + high);
 }
 
 TEST(OffBranchEigenvalue, IsStoredWithEveryOrbitIfAsked) {

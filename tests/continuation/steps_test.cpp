@@ -30,7 +30,8 @@ loop::Loop moved_along(const loop::Loop& loop, const Frontier& frontier, double 
 double along_tangent(const loop::Loop& a, const loop::Loop& b, const Frontier& frontier) {
   double sum = (a.period - b.period) * frontier.tangent_period;
   const loop::Loop padded = loop::with_cutoff(b, a.cutoff);
-  for (std::size_t n = 0; n < frontier.tangent_modes.size(); ++n) sum += (a.modes[n] - padded.modes[n]) * frontier.tangent_modes[n];
+  for (std::size_t n = 0; n < frontier.tangent_modes.size(); ++n)
+    sum += (a.modes[n] - padded.modes[n]) * frontier.tangent_modes[n];
   return sum;
 }
 
@@ -87,17 +88,19 @@ TEST_P(TinyStarts, GrowOntoTheFamily) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Continuation, TinyStarts,
-                         testing::Values(TinyStart{test::in_phase(), 1e-4}, TinyStart{test::in_phase(), 1e-8}, TinyStart{test::down_up(), 1e-4},
-                                         TinyStart{test::down_up(), 1e-8}),
+                         testing::Values(TinyStart{test::in_phase(), 1e-4}, TinyStart{test::in_phase(), 1e-8},
+                                         TinyStart{test::down_up(), 1e-4}, TinyStart{test::down_up(), 1e-8}),
                          [](const auto& tested) {
-                           std::string name = tested.param.mode.name + (tested.param.amplitude < 1e-6 ? "1em8" : "1em4");
+                           std::string name =
+                               tested.param.mode.name + (tested.param.amplitude < 1e-6 ? "1em8" : "1em4");
                            std::erase(name, '-');
                            return name;
                          });
 
 // From far too many harmonics the cutoff falls to what small loops need, and rises again with the amplitude.
 TEST(Resolution, GoesDownAndUp) {
-  const test::Trace trace = test::trace_of(test::pendulum(), test::start_of(test::in_phase(), 112), {.period_limit = 9.0});
+  const test::Trace trace =
+      test::trace_of(test::pendulum(), test::start_of(test::in_phase(), 112), {.period_limit = 9.0});
   EXPECT_EQ(trace.ending.reason, EndReason::period_limit);
   EXPECT_EQ(trace.orbits.front().loop.cutoff, 112);
   int lowest = 112;
@@ -142,15 +145,20 @@ TEST(Frontiers, AreConsistent) {
 // The tangent is the derivative of the family: centred differences of the orbits at T +- h.
 TEST(Frontiers, TangentPointsAlongTheFamily) {
   Branch branch(test::pendulum(), test::start_of(test::down_up()), {.period_limit = 8.0});
-  while (branch.advance() && branch.frontier().orbit.loop.period < 6.5) {}
+  while (branch.advance() && branch.frontier().orbit.loop.period < 6.5) {
+  }
   const Frontier& frontier = branch.frontier();
   const loop::Loop& here = frontier.orbit.loop;
   const loop::Isotropy isotropy = test::pendulum_isotropy(*test::pendulum());
   const double h = 1e-3;
-  const loop::Loop above = loop::with_cutoff(orbit_at_period(*test::pendulum(), here, isotropy, here.period + h, {}).loop, here.cutoff);
-  const loop::Loop below = loop::with_cutoff(orbit_at_period(*test::pendulum(), here, isotropy, here.period - h, {}).loop, here.cutoff);
+  const loop::Loop above =
+      loop::with_cutoff(orbit_at_period(*test::pendulum(), here, isotropy, here.period + h, {}).loop, here.cutoff);
+  const loop::Loop below =
+      loop::with_cutoff(orbit_at_period(*test::pendulum(), here, isotropy, here.period - h, {}).loop, here.cutoff);
   for (std::size_t n = 0; n < here.modes.size(); ++n)
-    EXPECT_NEAR((above.modes[n] - below.modes[n]) / (2.0 * h), frontier.tangent_modes[n] / frontier.tangent_period, 1e-5) << n;
+    EXPECT_NEAR((above.modes[n] - below.modes[n]) / (2.0 * h), frontier.tangent_modes[n] / frontier.tangent_period,
+                1e-5)
+        << n;
 }
 
 }  // namespace

@@ -107,7 +107,8 @@ TEST(Sweep, ModesOfEachEquilibrium) {
   ASSERT_EQ(down.modes.size(), 2u);
   EXPECT_GT(down.modes[0].period, down.modes[1].period) << "longest period first";
   const double out = test::out_phase().period();
-  expect_rejected(down, {{2 * out, "2 times around the oscillation with T = 3.40"}, {3 * out, "3 times around the oscillation with T = 3.40"}});
+  expect_rejected(down, {{2 * out, "2 times around the oscillation with T = 3.40"},
+                         {3 * out, "3 times around the oscillation with T = 3.40"}});
   const double saddle = test::down_up().period();
   for (const test::PendulumMode& mode : {test::down_up(), test::up_down()}) {
     const SweepResult& result = paper_sweep(mode.point);
@@ -124,8 +125,9 @@ TEST(Sweep, ModesOfEachEquilibrium) {
 }
 
 TEST(Sweep, OtherMassesAndLengths) {
-  const std::vector<std::map<std::string, double>> choices = {{{"m1", 1.0}, {"m2", 3.0}, {"l1", 1.0}, {"l2", 0.5}, {"g", 1.0}},
-                                                              {{"m1", 2.5}, {"m2", 0.4}, {"l1", 0.8}, {"l2", 1.3}, {"g", 2.0}}};
+  const std::vector<std::map<std::string, double>> choices = {
+      {{"m1", 1.0}, {"m2", 3.0}, {"l1", 1.0}, {"l2", 0.5}, {"g", 1.0}},
+      {{"m1", 2.5}, {"m2", 0.4}, {"l1", 0.8}, {"l2", 1.3}, {"g", 2.0}}};
   for (const auto& parameters : choices) {
     const auto system = systems::make_system("double_pendulum", parameters);
     const auto points = find_fixed_points(*system, {{0.0, pi}, {0.0, pi}});
@@ -149,7 +151,8 @@ TEST(Sweep, OtherMassesAndLengths) {
 // The slow mode (T = 7.464672...) lies 0.0147 below four times the fast one: with steps of 0.02 the two dips show as one.
 TEST(Sweep, ADipBehindAMultipleIsFound) {
   const auto system = systems::make_system("double_pendulum", {{"m2", 3.0}, {"l2", 0.5}});
-  const SweepResult result = sweep(*system, std::vector<double>(4, 0.0), {.period_from = 7.0, .period_to = 8.0, .step = 0.02});
+  const SweepResult result =
+      sweep(*system, std::vector<double>(4, 0.0), {.period_from = 7.0, .period_to = 8.0, .step = 0.02});
   ASSERT_EQ(result.modes.size(), 1u);
   EXPECT_NEAR(result.modes[0].period, 7.46467226254, 1e-10);
   expect_rejected(result, {{4 * 1.86983807304, "4 times around the oscillation with T = 1.869838"}});

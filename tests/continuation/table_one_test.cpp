@@ -23,8 +23,8 @@ double degrees_between(const std::vector<double>& a, const std::vector<double>& 
 }
 
 /// A step of some degrees of phase space along a direction, integrated for a period: how far it ends from its start.
-double deviation(const systems::System& system, const std::vector<double>& point, const std::vector<double>& direction, double period,
-                 double degrees = 0.5) {
+double deviation(const systems::System& system, const std::vector<double>& point, const std::vector<double>& direction,
+                 double period, double degrees = 0.5) {
   loop::Loop loop = loop::constant_loop(point, period, 10);
   for (std::size_t n = 0; n < direction.size(); ++n) loop.modes[n] += degrees * degree * direction[n];
   const std::vector<double> start = loop::state_at(loop, 0.0);
@@ -50,8 +50,8 @@ TEST_P(TableOne, RefinedPeriodBeatsThePaper) {
   const NormalMode& found = result.modes[0];
   const double refined = deviation(*system, mode.point, found.direction, found.period);
   const double on_grid = deviation(*system, mode.point, found.grid_direction, found.grid_period);
-  std::cout << fmt::format("{:10} refined {:.3e}, on the grid (T = {:.2f}) {:.3e}, paper {:.3e} degrees\n", mode.name, refined,
-                           found.grid_period, on_grid, paper);
+  std::cout << fmt::format("{:10} refined {:.3e}, on the grid (T = {:.2f}) {:.3e}, paper {:.3e} degrees\n", mode.name,
+                           refined, found.grid_period, on_grid, paper);
   RecordProperty("refined_degrees", fmt::format("{:.6e}", refined));
   RecordProperty("grid_degrees", fmt::format("{:.6e}", on_grid));
   RecordProperty("paper_degrees", fmt::format("{:.6e}", paper));
@@ -64,8 +64,10 @@ TEST_P(TableOne, RefinedPeriodBeatsThePaper) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Paper, TableOne,
-                         testing::Values(Row{test::in_phase(), 1.76e-4, 5.657e-6}, Row{test::out_phase(), 1.02e-3, 2.728e-4},
-                                         Row{test::down_up(), 0.0982, 3.923e-4}, Row{test::up_down(), 0.0976, 1.061e-3}),
+                         testing::Values(Row{test::in_phase(), 1.76e-4, 5.657e-6},
+                                         Row{test::out_phase(), 1.02e-3, 2.728e-4},
+                                         Row{test::down_up(), 0.0982, 3.923e-4},
+                                         Row{test::up_down(), 0.0976, 1.061e-3}),
                          [](const auto& tested) {
                            std::string name = tested.param.mode.name;
                            std::erase(name, '-');

@@ -20,7 +20,8 @@ inline Eigen::VectorXd to_vector(const std::vector<double>& values) {
 /// A pendulum loop to correct, in the symmetric subspace, held orthogonal to its own growth.
 struct Problem {
   Problem(const PendulumMode& mode, double amplitude, int cutoff)
-      : guess(linear_loop(mode, amplitude, cutoff)), unknowns{loop::Subspace(4, cutoff, pendulum_isotropy(*system)), true} {
+      : guess(linear_loop(mode, amplitude, cutoff)),
+        unknowns{loop::Subspace(4, cutoff, pendulum_isotropy(*system)), true} {
     const loop::Loop base = loop::constant_loop(mode.point, guess.period, cutoff);
     normal = to_vector(unknowns.difference(base, guess)).normalized();
   }
@@ -33,8 +34,8 @@ struct Problem {
     std::uniform_real_distribution<double> uniform(-share, share);
     std::vector<double> u(static_cast<std::size_t>(unknowns.size()));
     for (int n = 0; n < unknowns.subspace.size(); ++n)
-      u[static_cast<std::size_t>(n)] = uniform(random) * loop::rms_amplitude(guess) *
-                                      std::pow(0.5, unknowns.subspace.harmonic(n) - 1);
+      u[static_cast<std::size_t>(n)] =
+          uniform(random) * loop::rms_amplitude(guess) * std::pow(0.5, unknowns.subspace.harmonic(n) - 1);
     u.back() = uniform(random) * guess.period;
     Eigen::VectorXd in_slice = to_vector(u);
     in_slice -= normal.dot(in_slice) * normal;

@@ -10,8 +10,9 @@
 namespace orbweaver::corrector {
 namespace {
 
-constexpr std::array all_methods = {Method::automatic, Method::newton_krylov, Method::brgn,  Method::nls,
-                                    Method::ntr,       Method::lmvm,          Method::rprop, Method::rprop_extrapolated};
+constexpr std::array all_methods = {
+    Method::automatic, Method::newton_krylov, Method::brgn,  Method::nls,
+    Method::ntr,       Method::lmvm,          Method::rprop, Method::rprop_extrapolated};
 
 std::string test_name(const testing::TestParamInfo<Method>& tested) {
   std::string name(name_of(tested.param));
@@ -82,7 +83,8 @@ TEST_P(EveryMethod, GivesTheFlatDirectionIfAsked) {
   ASSERT_TRUE(with.flat_direction.has_value());
   EXPECT_NEAR(with.flat_direction->norm(), 1.0, 1e-14);
   EXPECT_GT(with.flat_direction->dot(problem().normal), 0.9);
-  const Result without = correct(*problem().system, problem().guess, problem().unknowns, problem().slice(), {.method = GetParam()});
+  const Result without =
+      correct(*problem().system, problem().guess, problem().unknowns, problem().slice(), {.method = GetParam()});
   EXPECT_FALSE(without.flat_direction.has_value());
 }
 
@@ -91,7 +93,8 @@ INSTANTIATE_TEST_SUITE_P(Corrector, EveryMethod, testing::ValuesIn(all_methods),
 // The full Hessian is indefinite away from the orbit: a closer guess, the same orbit.
 TEST(Corrector, FullCurvatureFindsTheSameOrbit) {
   for (const Method method : {Method::nls, Method::ntr}) {
-    const Result result = problem().correct(problem().noisy(0.01, 21), {.method = method, .curvature = loss::Curvature::full});
+    const Result result =
+        problem().correct(problem().noisy(0.01, 21), {.method = method, .curvature = loss::Curvature::full});
     ASSERT_TRUE(result.converged()) << name_of(method) << ": " << result.detail;
     EXPECT_LT(problem().distance(result.loop, reference()), 1e-12) << name_of(method);
   }
@@ -117,11 +120,13 @@ TEST_P(NewtonOrder, ErrorsSquare) {
   ASSERT_GE(last, 3u);
   const double order = std::log(errors[last] / errors[last - 1]) / std::log(errors[last - 1] / errors[last - 2]);
   EXPECT_GT(order, 1.8) << errors[last - 2] << " " << errors[last - 1] << " " << errors[last];
-  const Result next = far.correct(guess, {.method = GetParam(), .tolerance = 1e-16, .max_iterations = static_cast<int>(last) + 1});
+  const Result next =
+      far.correct(guess, {.method = GetParam(), .tolerance = 1e-16, .max_iterations = static_cast<int>(last) + 1});
   EXPECT_LT(far.distance(next.loop, orbit.loop), 10.0 * errors[last] * errors[last] + 1e-14);
 }
 
-INSTANTIATE_TEST_SUITE_P(Corrector, NewtonOrder, testing::Values(Method::newton_krylov, Method::brgn, Method::nls, Method::ntr), test_name);
+INSTANTIATE_TEST_SUITE_P(Corrector, NewtonOrder,
+                         testing::Values(Method::newton_krylov, Method::brgn, Method::nls, Method::ntr), test_name);
 
 TEST(Corrector, ExtrapolationSavesRpropIterations) {
   int plain = 0;

@@ -13,7 +13,8 @@ namespace {
 /// An in-phase loop corrected in the subspace of some of its symmetries; the time shift is held where the subspace has it.
 struct InSubspace {
   InSubspace(const std::string& symmetries, double amplitude, int cutoff)
-      : guess(test::linear_loop(test::in_phase(), amplitude, cutoff)), unknowns{loop::Subspace(4, cutoff, chosen(symmetries)), true} {
+      : guess(test::linear_loop(test::in_phase(), amplitude, cutoff)),
+        unknowns{loop::Subspace(4, cutoff, chosen(symmetries)), true} {
     const loop::Loop base = loop::constant_loop(std::vector<double>(4, 0.0), guess.period, cutoff);
     const Eigen::VectorXd normal = test::to_vector(unknowns.difference(base, guess)).normalized();
     const Eigen::VectorXd shift = test::to_vector(unknowns.time_shift_direction(guess));
@@ -33,7 +34,8 @@ struct InSubspace {
   }
 
   [[nodiscard]] Result correct(const Options& options) const {
-    return corrector::correct(*system, guess, unknowns, loss::Slice(unknowns.size(), conditions), options, Eigen::VectorXd(conditions.col(0)));
+    return corrector::correct(*system, guess, unknowns, loss::Slice(unknowns.size(), conditions), options,
+                              Eigen::VectorXd(conditions.col(0)));
   }
 
   std::shared_ptr<const systems::System> system = systems::make_system("double_pendulum");
@@ -88,7 +90,7 @@ TEST(NewtonKrylov, RefusesAProblemThatIsNotSquare) {
   InSubspace problem("SR", 0.3, 22);
   problem.unknowns.period = false;
   problem.conditions.conservativeResize(problem.unknowns.size(), Eigen::NoChange);
-  EXPECT_THROW(static_cast<void>(problem.correct({.method = Method::newton_krylov})), core::MisuseError);
+  EXPECT_THROW(static_cast<void>(problem.correct({.method = Method::newton_krylov})), core::InputError);
 }
 
 }  // namespace

@@ -10,7 +10,8 @@ namespace orbweaver::test {
 /// q' = p, p' = -q - damping p, reversible for damping 0; the field is NaN where q > wall.
 class Oscillator final : public systems::System {
  public:
-  explicit Oscillator(double damping, double wall = std::numeric_limits<double>::infinity()) : _damping(damping), _wall(wall) {
+  explicit Oscillator(double damping, double wall = std::numeric_limits<double>::infinity())
+      : _damping(damping), _wall(wall) {
     _description.name = "test_oscillator";
     _description.state_names = {"q", "p"};
     _description.equivariances = {{"S", -Eigen::Matrix2d::Identity()}};

@@ -17,13 +17,17 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr std::array all_methods = {Method::automatic, Method::newton_krylov, Method::brgn,  Method::nls,
-                                    Method::ntr,       Method::lmvm,          Method::rprop, Method::rprop_extrapolated};
+constexpr std::array all_methods = {
+    Method::automatic, Method::newton_krylov, Method::brgn,  Method::nls,
+    Method::ntr,       Method::lmvm,          Method::rprop, Method::rprop_extrapolated};
 
 /// q = cos s, p = -sin s with a wrong period, amplitude held.
 struct CircleGuess {
   CircleGuess(const systems::System& of, double period_in_turns)
-      : system(of), guess(circle(period_in_turns)), unknowns{loop::Subspace(2, 10, isotropy()), true}, normal(amplitude()) {}
+      : system(of),
+        guess(circle(period_in_turns)),
+        unknowns{loop::Subspace(2, 10, isotropy()), true},
+        normal(amplitude()) {}
 
   static loop::Loop circle(double period_in_turns) {
     loop::Loop loop = loop::constant_loop(std::vector<double>{0.0, 0.0}, 1.0, 10);
@@ -97,7 +101,8 @@ TEST_P(EveryMethodFails, IterationLimit) {
 // With damping no loop of amplitude 1 is an orbit: the loss has a minimum above zero, and more harmonics do not help.
 TEST_P(EveryMethodFails, StalledWhereThereIsNoOrbit) {
   const test::Oscillator damped(0.3);
-  const Result result = CircleGuess(damped, 1.2).correct({.method = GetParam(), .max_iterations = is_second_order(GetParam()) ? 0 : 500});
+  const Result result =
+      CircleGuess(damped, 1.2).correct({.method = GetParam(), .max_iterations = is_second_order(GetParam()) ? 0 : 500});
   expect_outcome(result, is_second_order(GetParam()) ? Outcome::stalled : Outcome::iteration_limit);
   EXPECT_NEAR(result.loss_rms, 0.211, 0.002);
 }
@@ -132,7 +137,8 @@ TEST(Outcomes, StalledWithALargeNewtonStep) {
 TEST(Outcomes, MisuseThrows) {
   const test::Problem problem(test::in_phase(), 0.3, 22);
   const loss::Slice other(problem.unknowns.size() + 1, Eigen::VectorXd::Ones(problem.unknowns.size() + 1));
-  EXPECT_THROW(static_cast<void>(correct(*problem.system, problem.guess, problem.unknowns, other, {})), core::MisuseError);
+  EXPECT_THROW(static_cast<void>(correct(*problem.system, problem.guess, problem.unknowns, other, {})),
+               core::MisuseError);
   EXPECT_THROW(static_cast<void>(problem.correct(loop::with_cutoff(problem.guess, 10))), core::MisuseError);
 }
 

@@ -72,11 +72,12 @@ TEST_P(TinyAmplitude, ConvergesToTheNormalMode) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Corrector, TinyAmplitude,
-                         testing::Values(Tiny{test::in_phase(), 1e-4, 1e-8, 1e-7}, Tiny{test::in_phase(), 1e-8, 1e-13, 1e-12},
-                                         Tiny{test::out_phase(), 1e-4, 1e-7, 1e-7}, Tiny{test::out_phase(), 1e-8, 1e-13, 1e-12},
-                                         Tiny{test::down_up(), 1e-4, 1e-8, 1e-7}, Tiny{test::down_up(), 1e-8, 2e-6, 1e-5},
-                                         Tiny{test::up_down(), 1e-4, 1e-7, 1e-7}, Tiny{test::up_down(), 1e-8, 2e-6, 1e-5}));
+INSTANTIATE_TEST_SUITE_P(
+    Corrector, TinyAmplitude,
+    testing::Values(Tiny{test::in_phase(), 1e-4, 1e-8, 1e-7}, Tiny{test::in_phase(), 1e-8, 1e-13, 1e-12},
+                    Tiny{test::out_phase(), 1e-4, 1e-7, 1e-7}, Tiny{test::out_phase(), 1e-8, 1e-13, 1e-12},
+                    Tiny{test::down_up(), 1e-4, 1e-8, 1e-7}, Tiny{test::down_up(), 1e-8, 2e-6, 1e-5},
+                    Tiny{test::up_down(), 1e-4, 1e-7, 1e-7}, Tiny{test::up_down(), 1e-8, 2e-6, 1e-5}));
 
 }  // namespace
 }  // namespace orbweaver::corrector

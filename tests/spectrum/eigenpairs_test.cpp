@@ -62,9 +62,10 @@ TEST_P(KnownSpectrum, SmallestPairs) {
       const double residual = (h * v - value * v).norm();
       EXPECT_LT(residual, 1e-10 * h.norm()) << "eigenvalue " << n;
       EXPECT_NEAR(pairs.residuals[static_cast<std::size_t>(n)], residual, rounding) << "eigenvalue " << n;
-      EXPECT_GT(v(std::distance(v.begin(), std::max_element(v.begin(), v.end(), [](double a, double b) {
-                  return std::abs(a) < std::abs(b);
-                }))), 0.0);
+      EXPECT_GT(
+          v(std::distance(v.begin(), std::max_element(v.begin(), v.end(),
+                                                      [](double a, double b) { return std::abs(a) < std::abs(b); }))),
+          0.0);
     }
     EXPECT_LT((pairs.vectors.transpose() * pairs.vectors - Eigen::MatrixXd::Identity(4, 4)).norm(), 1e-11);
   }

@@ -21,8 +21,12 @@ struct PendulumMode {
   [[nodiscard]] double period() const { return 2.0 * std::numbers::pi / frequency; }
 };
 
-inline PendulumMode in_phase() { return {"In-Phase", {0, 0, 0, 0}, std::sqrt(2.0 - std::numbers::sqrt2), std::numbers::sqrt2}; }
-inline PendulumMode out_phase() { return {"Out-Phase", {0, 0, 0, 0}, std::sqrt(2.0 + std::numbers::sqrt2), -std::numbers::sqrt2}; }
+inline PendulumMode in_phase() {
+  return {"In-Phase", {0, 0, 0, 0}, std::sqrt(2.0 - std::numbers::sqrt2), std::numbers::sqrt2};
+}
+inline PendulumMode out_phase() {
+  return {"Out-Phase", {0, 0, 0, 0}, std::sqrt(2.0 + std::numbers::sqrt2), -std::numbers::sqrt2};
+}
 inline PendulumMode down_up() {
   return {"Down-Up", {0, std::numbers::pi, 0, 0}, std::sqrt(std::numbers::sqrt2), 2.0 - std::numbers::sqrt2};
 }

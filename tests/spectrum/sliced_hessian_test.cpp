@@ -38,8 +38,8 @@ struct InPhase {
     const loss::Linearization linearization = linearize(loop);
     const Eigen::MatrixXd j = test::to_dense(slice.reduce_columns(loss::assemble_jacobian(linearization, unknowns)));
     const std::vector<double> r = linearization.residual();
-    const Eigen::VectorXd x =
-        j.colPivHouseholderQr().solve(-Eigen::Map<const Eigen::VectorXd>(r.data(), static_cast<Eigen::Index>(r.size())));
+    const Eigen::VectorXd x = j.colPivHouseholderQr().solve(
+        -Eigen::Map<const Eigen::VectorXd>(r.data(), static_cast<Eigen::Index>(r.size())));
     return slice.expand(x);
   }
   [[nodiscard]] loop::Loop orbit() const {
@@ -119,7 +119,8 @@ TEST(SlicedHessian, FactorsASingularHessianWithAShiftThatItReports) {
   const loss::Linearization linearization = problem.linearize(problem.orbit());
   const auto whole = loss::assemble_hessian(linearization, problem.unknowns, loss::Curvature::gauss_newton);
   const double norm = test::to_dense(whole).cwiseAbs().rowwise().sum().maxCoeff();
-  const SlicedHessian hessian(linearization, problem.unknowns, loss::Slice(problem.unknowns.size(), Eigen::MatrixXd(problem.unknowns.size(), 0)));
+  const SlicedHessian hessian(linearization, problem.unknowns,
+                              loss::Slice(problem.unknowns.size(), Eigen::MatrixXd(problem.unknowns.size(), 0)));
   EXPECT_GE(hessian.shift(), 0.0);
   EXPECT_LE(hessian.shift(), 1e-12 * norm);
   EXPECT_TRUE(hessian.newton_step().allFinite());

@@ -36,11 +36,14 @@ class SpoiltPendulum final : public systems::System {
     _whole->field_jacobian(nodes, z, f, jacobian);
     spoil(nodes, z, f);
   }
-  void second_derivatives(std::size_t nodes, const double* z, const double* weights, double* contracted) const override {
+  void second_derivatives(std::size_t nodes, const double* z, const double* weights,
+                          double* contracted) const override {
     _whole->second_derivatives(nodes, z, weights, contracted);
   }
   [[nodiscard]] double energy(std::span<const double> z) const override { return _whole->energy(z); }
-  void energy_gradient(std::span<const double> z, std::span<double> gradient) const override { _whole->energy_gradient(z, gradient); }
+  void energy_gradient(std::span<const double> z, std::span<double> gradient) const override {
+    _whole->energy_gradient(z, gradient);
+  }
   [[nodiscard]] double action_density(std::span<const double> z) const override { return _whole->action_density(z); }
 
  private:
@@ -52,8 +55,8 @@ class SpoiltPendulum final : public systems::System {
   Spoil _spoil;
 };
 
-// Up to T = 8.5 only the Up-Down family takes the outer rod into this sector. Single nodes are left alone: the certificate's
-// integrator tries steps that leave the orbit.
+// Up to T = 8.5 only the Up-Down family takes the outer rod into this sector. Single nodes are left alone: the
+// certificate's integrator tries steps that leave the orbit.
 bool is_spoilt(std::size_t nodes, double th2) {
   const double angle = std::abs(std::remainder(th2, 2.0 * std::numbers::pi));
   return nodes > 1 && angle > 1.5 && angle < 2.2;
@@ -65,7 +68,8 @@ class Failures : public ::testing::Test {
     shared = std::make_unique<core::Communicator>();
     scene = std::make_unique<scene::Scene>(test::quick_scene({"limits.period=8.5"}));
     const auto folder = test::fresh_folder(own("clean"), shared->get());
-    clean_summary = survey::run_survey(*shared, *scene, systems::make_system("double_pendulum"), folder, survey::Display::none);
+    clean_summary =
+        survey::run_survey(*shared, *scene, systems::make_system("double_pendulum"), folder, survey::Display::none);
     if (shared->is_root()) clean = std::make_unique<archive::Archive>(clean_summary.atlas);
   }
   static void TearDownTestSuite() {
@@ -76,7 +80,8 @@ class Failures : public ::testing::Test {
 
   static survey::Summary run(const std::string& name, SpoiltPendulum::Spoil spoil) {
     const auto folder = test::fresh_folder(own(name), shared->get());
-    return survey::run_survey(*shared, *scene, std::make_shared<SpoiltPendulum>(std::move(spoil)), folder, survey::Display::none);
+    return survey::run_survey(*shared, *scene, std::make_shared<SpoiltPendulum>(std::move(spoil)), folder,
+                              survey::Display::none);
   }
 
   /// The orbits of a family have the same numbers as in the clean survey, as far as `count`.
@@ -91,7 +96,8 @@ class Failures : public ::testing::Test {
   }
 
   /// Up-Down failed with some orbits, the other families are those of the clean survey, and summary and archive agree.
-  static void expect_up_down_alone_failed(const survey::Summary& summary, const ::testing::Matcher<std::string>& reason) {
+  static void expect_up_down_alone_failed(const survey::Summary& summary,
+                                          const ::testing::Matcher<std::string>& reason) {
     EXPECT_EQ(summary.failures, 1U);
     if (!shared->is_root()) return;
     ASSERT_EQ(summary.families.size(), 4U);
@@ -148,8 +154,13 @@ TEST_F(Failures, ASweepThatThrowsCostsItsFamiliesOnly) {
   EXPECT_EQ(summary.failures, 1U);
   if (!shared->is_root()) return;
   EXPECT_THAT(summary.failed_tasks, ElementsAre("sweep.0002: no forces here"));
-  ASSERT_EQ(summary.families.size(), 3U);
+  ASSERT_EQ(summary.families.size(), 4U);
   const archive::Archive atlas(summary.atlas);
+  EXPECT_THAT(atlas.families().texts("name"), ElementsAre("In-Phase", "Out-Phase", "Down-Up", "Equilibrium 3"));
+  EXPECT_THAT(atlas.families().texts("end_reason")[3],
+              AllOf(StartsWith("failure (the sweep at th1 = 180 deg, th2 = 0 deg"), HasSubstr("no forces here")));
+  EXPECT_TRUE(summary.families[3].failed);
+  EXPECT_EQ(summary.families[3].end_reason, atlas.families().texts("end_reason")[3]);
   for (std::size_t n = 0; n < 3; ++n) {
     EXPECT_FALSE(summary.families[n].failed);
     expect_rows_of_the_clean_survey(atlas, n, static_cast<std::size_t>(summary.families[n].orbits));

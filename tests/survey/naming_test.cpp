@@ -42,7 +42,9 @@ TEST(Naming, VelocitiesDoNotWrap) {
   EXPECT_EQ(named(scene, {0.0, 0.0, 2.0 * pi, 0.0}, 0), "Spinning");
 }
 
-TEST(Naming, CoordinatesThatAreNotGivenDoNotMatter) { EXPECT_EQ(named(scene_with_names(), {pi, 1.0, 2.0, 3.0}, 0), "By th1 alone"); }
+TEST(Naming, CoordinatesThatAreNotGivenDoNotMatter) {
+  EXPECT_EQ(named(scene_with_names(), {pi, 1.0, 2.0, 3.0}, 0), "By th1 alone");
+}
 
 TEST(Naming, CountsWhereTheSceneGivesNoName) {
   EXPECT_EQ(named(scene_with_names(), {0.0, 0.0, 0.0, 0.0}, 2, 4), "Equilibrium 5, mode 3");

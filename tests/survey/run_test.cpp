@@ -47,7 +47,8 @@ TEST(RunSurvey, SummaryArchiveAndFolderAgree) {
   for (const double mib : summary.peak_memory_mib) EXPECT_GT(mib, 1.0);
   EXPECT_GT(summary.seconds, 0.0);
   EXPECT_TRUE(summary.failed_tasks.empty());
-  EXPECT_THAT(summary.remarks, ::testing::Contains(HasSubstr("no small oscillations around th1 = 180 deg, th2 = 180 deg")));
+  EXPECT_THAT(summary.remarks,
+              ::testing::Contains(HasSubstr("no small oscillations around th1 = 180 deg, th2 = 180 deg")));
 
   const archive::Archive atlas(summary.atlas);
   EXPECT_EQ(atlas.orbits().rows(), static_cast<std::size_t>(summary.orbits));
@@ -72,6 +73,8 @@ TEST(RunSurvey, SummaryArchiveAndFolderAgree) {
     EXPECT_EQ(family.energy_to, energies[last]);
   }
   EXPECT_NEAR(summary.families[0].energy_to, -0.764030789928, 1e-11);  // in-phase at T = 9
+  const auto last = static_cast<std::size_t>(summary.families[0].orbits) - 1;
+  EXPECT_NEAR(atlas.orbits().reals("state")[4 * last], 1.360312422366, 1e-11);
 }
 
 TEST(RunSurvey, ManySmallFlushesGiveTheArchiveOfOneRankAndOneFlush) {
@@ -110,7 +113,7 @@ TEST(RunSurvey, FollowsNoMoreFamiliesThanAllowed) {
   if (!comm.is_root()) return;
   ASSERT_EQ(summary.families.size(), 3U);
   EXPECT_EQ(summary.families[2].name, "Down-Up");
-  EXPECT_EQ(summary.families[2].end_reason, "step limit (2 steps)");
+  EXPECT_EQ(summary.families[2].end_reason, "step limit (2 orbits)");
   EXPECT_THAT(summary.remarks, ::testing::Contains("4 families found, 3 followed (limits.families)"));
 }
 

@@ -21,10 +21,12 @@ scene::Scene sample_scene() {
   return scene;
 }
 
-std::filesystem::path folder_with_atlas(const std::string& name) {
+std::filesystem::path folder_with_atlas(const std::string& name, const std::string& an_end = "period limit (T = 30)") {
   const std::filesystem::path folder = test::fresh_folder(name);
   const auto header = test::sample_header();
-  std::filesystem::rename(test::write_sample_atlas(test::fresh_folder(name + ".made"), header, test::sample_records(header)),
+  archive::Records records = test::sample_records(header);
+  records.families[2].end_reason = an_end;
+  std::filesystem::rename(test::write_sample_atlas(test::fresh_folder(name + ".made"), header, records),
                           folder / "atlas.h5");
   return folder;
 }
@@ -70,6 +72,11 @@ TEST(Standing, AnArchiveOfThisSceneIsFinished) {
   EXPECT_EQ(survey::standing_of(folder, sample_scene()), Standing::finished);
 }
 
+TEST(Standing, AFamilyThatFailedIsRemembered) {
+  const auto folder = folder_with_atlas("failed", "failure (a NaN at node 3)");
+  EXPECT_EQ(survey::standing_of(folder, sample_scene()), Standing::finished_with_failures);
+}
+
 TEST(Standing, AnArchiveOfAnotherSceneIsRefused) {
   const auto folder = folder_with_atlas("other_scene");
   scene::Scene other = sample_scene();
@@ -92,10 +99,14 @@ TEST(Startable, NothingThereIsFine) {
 }
 
 TEST(Startable, ASurveyThereNeedsResume) {
-  EXPECT_THAT(refusal(Standing::finished), AllOf(HasSubstr("some/folder already holds a finished survey"), HasSubstr("nothing was changed"),
-                                                 HasSubstr("--resume to accept it as it is")));
-  EXPECT_THAT(refusal(Standing::unfinished), AllOf(HasSubstr("an unfinished survey"), HasSubstr("--resume to begin it anew")));
+  EXPECT_THAT(refusal(Standing::finished),
+              AllOf(HasSubstr("some/folder already holds a finished survey"), HasSubstr("nothing was changed"),
+                    HasSubstr("--resume to accept it as it is")));
+  EXPECT_THAT(refusal(Standing::finished_with_failures), HasSubstr("a finished survey"));
+  EXPECT_THAT(refusal(Standing::unfinished),
+              AllOf(HasSubstr("an unfinished survey"), HasSubstr("--resume to begin it anew")));
   EXPECT_NO_THROW(survey::require_startable(Standing::finished, "some/folder", true));
+  EXPECT_NO_THROW(survey::require_startable(Standing::finished_with_failures, "some/folder", true));
   EXPECT_NO_THROW(survey::require_startable(Standing::unfinished, "some/folder", true));
 }
 

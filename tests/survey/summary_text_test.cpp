@@ -11,8 +11,9 @@ using ::testing::Not;
 
 survey::Summary sample_summary() {
   survey::Summary summary;
-  summary.families = {{"0000.0000", "In-Phase", "S@1/2 R@0", 35, 8.2094, 30.0, -2.9999, 2.99906644, "period limit (T = 30)", false},
-                      {"0001.0000", "A name of great length", "", 2, 5.25, 5.5, 1.0, 1.25, "failure (a NaN at node 3)", true}};
+  summary.families = {
+      {"0000.0000", "In-Phase", "S@1/2 R@0", 35, 8.2094, 30.0, -2.9999, 2.99906644, "period limit (T = 30)", false},
+      {"0001.0000", "A name of great length", "", 2, 5.25, 5.5, 1.0, 1.25, "failure (a NaN at node 3)", true}};
   summary.remarks = {"no small oscillations around the top"};
   summary.failed_tasks = {"0001.0000 (A name of great length): failure (a NaN at node 3)"};
   summary.failures = 1;
@@ -25,9 +26,9 @@ survey::Summary sample_summary() {
 
 TEST(SummaryText, SaysEverythingThatItKnows) {
   const std::string text = survey::to_text(sample_summary());
-  EXPECT_THAT(text, AllOf(HasSubstr("In-Phase"), HasSubstr("A name of great length"), HasSubstr("8.209400 .. 30.000000"),
-                          HasSubstr("-2.99990000 ..  2.99906644"), HasSubstr("period limit (T = 30)"),
-                          HasSubstr("failure (a NaN at node 3)")));
+  EXPECT_THAT(text, AllOf(HasSubstr("In-Phase"), HasSubstr("A name of great length"),
+                          HasSubstr("8.209400 .. 30.000000"), HasSubstr("-2.99990000 ..  2.99906644"),
+                          HasSubstr("period limit (T = 30)"), HasSubstr("failure (a NaN at node 3)")));
   EXPECT_THAT(text, AllOf(HasSubstr("note: no small oscillations around the top\n"),
                           HasSubstr("failed: 0001.0000 (A name of great length): failure (a NaN at node 3)\n"),
                           HasSubstr("2 families, 37 orbits, 1 failed, 12.35 s; peak memory per rank: 48 417 MiB\n"),

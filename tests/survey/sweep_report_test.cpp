@@ -13,7 +13,8 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 const std::vector<survey::EquilibriumReport>& reports() {
-  static const auto made = survey::sweep_report(scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/double_pendulum.yaml"));
+  static const auto made =
+      survey::sweep_report(scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/double_pendulum.yaml"));
   return made;
 }
 
@@ -30,10 +31,10 @@ void expect_close(double value, double expected, double relative, const std::str
 
 struct TableRow {
   const char* name;
-  double period;           // exact
-  double grid_period;      // the nearest on the paper's grid
-  double paper;            // degrees: Table I of the paper
-  double deviation;        // degrees: the same at the exact period
+  double period;       // exact
+  double grid_period;  // the nearest on the paper's grid
+  double paper;        // degrees: Table I of the paper
+  double deviation;    // degrees: the same at the exact period
 };
 
 const TableRow table_one[] = {
@@ -59,13 +60,15 @@ TEST(SweepReport, HasEveryEquilibriumAndNoOscillationAtTheTop) {
   EXPECT_EQ(reports()[0].modes.size(), 2U);
   EXPECT_EQ(reports()[3].modes.size(), 0U);
   const std::string text = survey::to_text(reports());
-  EXPECT_THAT(text, HasSubstr("\nth1 = 180 deg, th2 = 180 deg, w1 = 0, w2 = 0\n  no small oscillations for T in [1, 12]\n"));
+  EXPECT_THAT(text,
+              HasSubstr("\nth1 = 180 deg, th2 = 180 deg, w1 = 0, w2 = 0\n  no small oscillations for T in [1, 12]\n"));
   EXPECT_EQ(text.find("no small oscillations"), text.rfind("no small oscillations"));
 }
 
 TEST(SweepReport, TextNamesModesAndTheDipsPassedOver) {
   EXPECT_THAT(survey::to_text(reports()),
-              AllOf(HasSubstr("In-Phase"), HasSubstr("Out-Phase"), HasSubstr("Down-Up"), HasSubstr("Up-Down"), HasSubstr("8.209377223816"),
+              AllOf(HasSubstr("In-Phase"), HasSubstr("Out-Phase"), HasSubstr("Down-Up"), HasSubstr("Up-Down"),
+                    HasSubstr("8.209377223816"),
                     HasSubstr("dip at T = 6.80087077: 2 times around the oscillation with T = 3.4004353847"),
                     HasSubstr("dip at T = 10.567016: 2 times around")));
 }
@@ -94,7 +97,9 @@ TEST(SweepReport, CsvKeepsEveryDigit) {
 
 TEST(SweepReport, EigenvaluesDipWhereFamiliesStart) {
   const auto& table = reports()[0].sweep.table;
-  const auto at = [&](double period) { return table[static_cast<std::size_t>(std::lround((period - 1.0) / 0.01))].eigenvalue; };
+  const auto at = [&](double period) {
+    return table[static_cast<std::size_t>(std::lround((period - 1.0) / 0.01))].eigenvalue;
+  };
   EXPECT_LT(at(8.21), 1e-3 * at(8.0));
   EXPECT_LT(at(3.40), 1e-3 * at(3.2));
 }

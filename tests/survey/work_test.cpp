@@ -32,7 +32,9 @@ FoundMode sample_mode() {
 SweepWork sample_sweep_work() { return {3, {0.0, 3.141592653589793}}; }
 SweepOutcome sample_sweep_outcome() { return {2, {1.5}, {sample_mode(), {}}, {"T = 6.8: twice around", ""}}; }
 BranchWork sample_branch_work() { return {"0001.0002-", "Naïve", {1.0, 2.0}, sample_mode(), -1}; }
-BranchOutcome sample_branch_outcome() { return {"0001.0000", 35, 3.4, 30.0, -2.9, 2.9, 30.0, 2.5, 562, "period limit (T = 30)"}; }
+BranchOutcome sample_branch_outcome() {
+  return {"0001.0000", 35, 3.4, 30.0, -2.9, 2.9, 30.0, 2.5, 562, "period limit (T = 30)"};
+}
 
 void expect_equal(const FoundMode& a, const FoundMode& b) {
   EXPECT_EQ(a.period, b.period);
@@ -101,8 +103,8 @@ TEST(Payload, EqualWorkHasEqualBytes) { EXPECT_EQ(pack(sample_branch_work()), pa
 
 TEST(Payload, AnotherKindIsRefusedByName) {
   const std::string text = environment_error_of([] { (void)unpack_branch_work(pack(sample_sweep_outcome())); });
-  EXPECT_THAT(text, AllOf(HasSubstr("expected a branch work of version 1"), HasSubstr("got a sweep outcome of version 1"),
-                          HasSubstr("same build")));
+  EXPECT_THAT(text, AllOf(HasSubstr("expected a branch work of version 1"),
+                          HasSubstr("got a sweep outcome of version 1"), HasSubstr("same build")));
 }
 
 TEST(Payload, AnotherVersionIsRefused) {
@@ -132,8 +134,9 @@ TEST(Payload, MoreBytesThanItsOwnAreRefused) {
 }
 
 TEST(Payload, ForeignBytesAreRefused) {
-  for (const std::string& bytes : {std::string("not a payload at all, but a sentence of some length"), std::string(64, '\0'),
-                                   std::string(64, '\xff'), std::string("\x16\0\0\0\0\0\0\0serialization::archives", 31)})
+  for (const std::string& bytes :
+       {std::string("not a payload at all, but a sentence of some length"), std::string(64, '\0'),
+        std::string(64, '\xff'), std::string("\x16\0\0\0\0\0\0\0serialization::archives", 31)})
     EXPECT_THAT(environment_error_of([&] { (void)unpack_sweep_outcome(bytes); }), HasSubstr("sweep outcome of"));
 }
 

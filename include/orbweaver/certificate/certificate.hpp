@@ -13,8 +13,9 @@ struct Options {
 /// What an independent integrator says of one loop. Distances are Euclidean in the coordinates of phase space; an angle
 /// that turns n times is expected to have grown by 2 pi n after a period.
 struct Certificate {
-  double closure = 0.0;       ///< largest |z(t_m+1) - Phi(z(t_m))| over the segments, z being the loop
-  double single_shot = 0.0;   ///< |z(T) - Phi_T(z(0))|: once around without help; grows with the largest multiplier
+  double closure = 0.0;  ///< largest |z(t_m+1) - Phi(z(t_m))| over the segments, z being the loop
+  double single_shot =
+      0.0;  ///< |z(T) - Phi_T(z(0))|: once around without help; grows with the largest multiplier; NaN if that fails
   double energy_drift = 0.0;  ///< largest |H(z(t_m)) - H(z(0))|; NaN for a system that conserves no energy
 };
 

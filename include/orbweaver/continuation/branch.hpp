@@ -17,20 +17,20 @@ namespace orbweaver::continuation {
 
 /// How to step along a branch and where to stop.
 struct Options {
-  corrector::Options corrector;
+  corrector::Options corrector{};
   int cutoff_from = 8;
   int cutoff_to = 4096;
-  std::optional<double> fixed_step;     ///< |dz(s = 0)| of every step, radians (paper: 0.5 degrees); none = adaptive
-  double start_amplitude = 8.7e-3;      ///< |dz(s = 0)| of the first orbit, radians
-  double tail_tolerance = 1e-12;        ///< last harmonics, relative to min(1, rms amplitude): above it K is raised
-  double largest_step = 1.0;            ///< in the coefficients' own length (a_0, a_k, b_k and T)
-  double smallest_step = 1e-9;          ///< relative to 1 + amplitude; below it the branch has failed
-  double turning_angle = 0.25;          ///< wanted angle between neighbouring tangents, radians
+  std::optional<double> fixed_step{};  ///< |dz(s = 0)| of every step, radians (paper: 0.5 degrees); none = adaptive
+  double start_amplitude = 8.7e-3;     ///< |dz(s = 0)| of the first orbit, radians
+  double tail_tolerance = 1e-12;       ///< last harmonics, relative to min(1, rms amplitude): above it K is raised
+  double largest_step = 1.0;           ///< in the coefficients' own length (a_0, a_k, b_k and T)
+  double smallest_step = 1e-9;         ///< times (1 + amplitude) min(1, amplitude); below it the branch has failed
+  double turning_angle = 0.25;         ///< wanted angle between neighbouring tangents, radians
   double period_limit = std::numeric_limits<double>::infinity();
   double energy_from = -std::numeric_limits<double>::infinity();
   double energy_to = std::numeric_limits<double>::infinity();
-  int step_limit = 5000;
-  bool off_branch_spectrum = false;     ///< the paper's minimum off-branch eigenvalue at every orbit
+  int step_limit = 5000;             ///< orbits of the branch
+  bool off_branch_spectrum = false;  ///< the paper's minimum off-branch eigenvalue at every orbit
 };
 
 /// A place to start from: a known loop (a fixed point as a constant loop, or an orbit) and a direction in which loops
@@ -43,15 +43,16 @@ struct Start {
 
 /// Everything a step depends on: a step is a pure function of it and of the options.
 struct Frontier {
-  Orbit orbit;                         ///< the last one; `loop` may have another cutoff than when it was accepted
-  std::vector<double> tangent_modes;   ///< flat direction there, in the modes of orbit.loop
+  Orbit orbit;                        ///< the last one; `loop` may have another cutoff than when it was accepted
+  std::vector<double> tangent_modes;  ///< flat direction there, in the modes of orbit.loop
   double tangent_period = 0.0;
-  double next_length = 0.0;            ///< step to try next, in unknowns
-  double last_increment = 0.0;         ///< arclength of the last step
-  loop::Loop first;                    ///< loop of orbit 0
+  double next_length = 0.0;     ///< step to try next, in unknowns
+  double last_increment = 0.0;  ///< arclength of the last step
+  loop::Loop first;             ///< loop of orbit 0
   double first_energy = 0.0;
-  double earlier_energy = 0.0;         ///< energy when the period was about a tenth smaller
+  double earlier_energy = 0.0;  ///< energy when the period was about a tenth smaller
   double earlier_period = 0.0;
+  bool on_energy_limit = false;  ///< `orbit` is the last one, at the scene's energy limit
 };
 
 /// One family, traced orbit by orbit in the subspace of its isotropy (paper, section III B).
@@ -85,7 +86,7 @@ using Observer = std::function<bool(const Orbit&)>;
                            const Observer& observer);
 
 /// The orbit of the family through `near` that has exactly the period `period`, starting the correction from `near`.
-[[nodiscard]] corrector::Result orbit_at_period(const systems::System& system, const loop::Loop& near, const loop::Isotropy& isotropy,
-                                                double period, const Options& options);
+[[nodiscard]] corrector::Result orbit_at_period(const systems::System& system, const loop::Loop& near,
+                                                const loop::Isotropy& isotropy, double period, const Options& options);
 
 }  // namespace orbweaver::continuation

@@ -7,8 +7,8 @@ namespace orbweaver::continuation {
 
 /// Why a branch ended (docs/mathematics.md, "Ends").
 enum class EndReason {
-  period_limit,       ///< the scene's limit; the last orbit has exactly that period
-  energy_limit,       ///< the scene's limit; the last orbit has exactly that energy
+  period_limit,  ///< the scene's limit; the last orbit has exactly that period
+  energy_limit,  ///< the scene's limit; the last orbit has exactly that energy
   step_limit,
   cutoff_limit,       ///< the next orbit needs more harmonics than the scene allows
   period_divergence,  ///< T grows without bound at settled energy, and double precision or the cutoff ends it

@@ -12,7 +12,8 @@ namespace orbweaver::continuation {
 /// direction excluded: the paper's off-branch eigenvalue (section III C), in the unscaled coefficients. The Hessian falls
 /// apart into the sectors of the isotropy (perturbations that keep or flip the sign under each generator), which are
 /// solved one by one; where a generator is not an involution the whole space is taken.
-[[nodiscard]] double off_branch_eigenvalue(const systems::System& system, const loop::Loop& loop, const loop::Isotropy& isotropy,
-                                           std::span<const double> tangent_modes, double tangent_period);
+[[nodiscard]] double off_branch_eigenvalue(const systems::System& system, const loop::Loop& loop,
+                                           const loop::Isotropy& isotropy, std::span<const double> tangent_modes,
+                                           double tangent_period);
 
 }  // namespace orbweaver::continuation

@@ -10,10 +10,10 @@ namespace orbweaver::continuation {
 /// One accepted orbit of a family with what was measured on it.
 struct Orbit {
   loop::Loop loop;
-  int step = 0;              ///< 0 for the first orbit of the branch
-  double arclength = 0.0;    ///< from the first orbit: sum of sqrt(mean |dz|^2 + (dT/T)^2)
+  int step = 0;            ///< 0 for the first orbit of the branch
+  double arclength = 0.0;  ///< from the first orbit: sum of sqrt(mean |dz|^2 + (dT/T)^2)
   double energy = 0.0;
-  double action = 0.0;       ///< closed integral of p dq
+  double action = 0.0;  ///< closed integral of p dq
   double loss_rms = 0.0;
   double tail = 0.0;
   int iterations = 0;

@@ -26,12 +26,12 @@ struct SweepPoint {
 
 /// A family of small oscillations that starts at the fixed point.
 struct NormalMode {
-  double period = 0.0;              ///< refined to rounding
-  double grid_period = 0.0;         ///< the swept period where the dip was seen
-  double residual = 0.0;            ///< smallest singular value of the linearised problem at `period`
-  std::vector<double> direction;    ///< modes of a loop with cutoff `SweepOptions::cutoff`, |dz(s = 0)| = 1
+  double period = 0.0;                 ///< refined to rounding
+  double grid_period = 0.0;            ///< the swept period where the dip was seen
+  double residual = 0.0;               ///< smallest singular value of the linearised problem at `period`
+  std::vector<double> direction;       ///< modes of a loop with cutoff `SweepOptions::cutoff`, |dz(s = 0)| = 1
   std::vector<double> grid_direction;  ///< the same from the eigenvector at `grid_period`
-  loop::Isotropy isotropy;          ///< of the small oscillations
+  loop::Isotropy isotropy;             ///< of the small oscillations
 };
 
 /// A dip of the eigenvalue that starts no family, and why.
@@ -43,13 +43,14 @@ struct RejectedDip {
 struct SweepResult {
   std::vector<double> fixed_point;
   std::vector<SweepPoint> table;
-  std::vector<NormalMode> modes;         ///< longest period first
-  std::vector<RejectedDip> rejected;     ///< period multiples, near misses, degenerate kernels
+  std::vector<NormalMode> modes;      ///< longest period first
+  std::vector<RejectedDip> rejected;  ///< period multiples, near misses, degenerate kernels
 };
 
 /// Sweeps the period at a fixed point (paper, section III A): the smallest eigenvalue of the Hessian against T, each of
 /// its local minima refined to a root of a signed bordered function of the linearised problem at the dip's harmonic.
 /// Throws MisuseError for an empty or reversed range, a step that is not positive, or a state of another dimension.
-[[nodiscard]] SweepResult sweep(const systems::System& system, std::span<const double> fixed_point, const SweepOptions& options);
+[[nodiscard]] SweepResult sweep(const systems::System& system, std::span<const double> fixed_point,
+                                const SweepOptions& options);
 
 }  // namespace orbweaver::continuation

@@ -57,8 +57,7 @@ class MisuseError : public std::logic_error {
 };
 
 /// Throws MisuseError with `message` unless `condition` holds.
-inline void require(bool condition, const char* message,
-                    std::source_location where = std::source_location::current()) {
+inline void require(bool condition, const char* message, std::source_location where = std::source_location::current()) {
   if (!condition) throw MisuseError(message, where);
 }
 

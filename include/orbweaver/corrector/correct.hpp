@@ -34,37 +34,37 @@ enum class Method {
 
 /// How a correction ended.
 enum class Outcome {
-  converged,         ///< an orbit: sqrt(loss) under the threshold and the Newton step small
-  under_resolved,    ///< at a minimum above the threshold, with weight in the last harmonics: raise the cutoff
-  stalled,           ///< no further progress, resolution is not the reason
+  converged,       ///< an orbit: sqrt(loss) under the threshold and the Newton step small
+  under_resolved,  ///< at a minimum above the threshold, with weight in the last harmonics: raise the cutoff
+  stalled,         ///< no further progress, resolution is not the reason
   iteration_limit,
   period_not_positive,
-  not_finite,        ///< the field or its derivatives gave NaN or infinity
-  singular,          ///< the Hessian on the slice could not be factored
-  solver_failed,     ///< TAO gave up; `detail` has its reason
+  not_finite,     ///< the field or its derivatives gave NaN or infinity
+  singular,       ///< the Hessian on the slice could not be factored
+  solver_failed,  ///< TAO gave up; `detail` has its reason
 };
 [[nodiscard]] std::string_view name_of(Outcome outcome);
 
 /// Every TAO option can be set under the prefix `corrector_`, e.g. -corrector_tao_monitor.
 struct Options {
   Method method = Method::automatic;
-  int krylov_from = 150;          ///< automatic: unknowns from which newton-krylov is used (measured: docs/performance.md)
-  double tolerance = 1e-10;       ///< on sqrt(loss), times min(1, rms |dz/dt|)
-  double step_tolerance = 1e-6;   ///< the last Newton step, relative to 1 + |loop|
-  double tail_tolerance = 1e-3;   ///< under_resolved needs a tail above this times the threshold
-  int max_iterations = 0;         ///< 0: 30 for second-order methods, 200,000 for first-order ones
+  int krylov_from = 150;     ///< automatic: unknowns from which newton-krylov is used (measured: docs/performance.md)
+  double tolerance = 1e-10;  ///< on sqrt(loss), times min(1, rms |dz/dt|)
+  double step_tolerance = 1e-6;  ///< the last Newton step, relative to 1 + |loop|
+  double tail_tolerance = 1e-3;  ///< under_resolved needs a tail above this times the threshold
+  int max_iterations = 0;        ///< 0: 30 for second-order methods, 200,000 for first-order ones
   loss::Curvature curvature = loss::Curvature::gauss_newton;  ///< Hessian for nls and ntr
 };
 
 struct Result {
   Outcome outcome = Outcome::solver_failed;
-  std::string detail;        ///< a sentence for outcomes other than converged
-  loop::Loop loop;           ///< the best loop found
+  std::string detail;  ///< a sentence for outcomes other than converged
+  loop::Loop loop;     ///< the best loop found
   int iterations = 0;
-  int inner_iterations = 0;  ///< of GMRES, over all Newton steps (newton-krylov)
-  double loss_rms = 0.0;     ///< sqrt(loss) of `loop`
-  double threshold = 0.0;    ///< what loss_rms had to go under
-  double newton_step = 0.0;  ///< length of the last Newton step (second-order: already applied)
+  int inner_iterations = 0;                       ///< of GMRES, over all Newton steps (newton-krylov)
+  double loss_rms = 0.0;                          ///< sqrt(loss) of `loop`
+  double threshold = 0.0;                         ///< what loss_rms had to go under
+  double newton_step = 0.0;                       ///< length of the last Newton step (second-order: already applied)
   std::optional<Eigen::VectorXd> flat_direction;  ///< of the Hessian through the slice's first condition, if asked for
 
   [[nodiscard]] bool converged() const { return outcome == Outcome::converged; }
@@ -72,7 +72,8 @@ struct Result {
 
 /// The threshold for sqrt(loss) at a loop: tolerance * min(1, rms |dz/dt|), never below the rounding error of the
 /// residual itself, 4 eps |z| |df/dz| (which matters only for amplitudes under about 1e-5 around a point away from 0).
-[[nodiscard]] double acceptance_threshold(const loop::Loop& loop, const loss::Linearization& linearization, double tolerance);
+[[nodiscard]] double acceptance_threshold(const loop::Loop& loop, const loss::Linearization& linearization,
+                                          double tolerance);
 
 /// Optimises the loss over `guess` + slice. `normal`: the slice's condition (the tangent) if the flat direction through it
 /// is wanted at the end. Never throws for a numerical outcome. Throws MisuseError for sizes that disagree, and

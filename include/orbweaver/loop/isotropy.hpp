@@ -41,7 +41,7 @@ using Isotropy = std::vector<SymmetryElement>;
 
 /// A declared symmetry of `system` (or the identity, named "1") with a time shift p/q, q <= `max_denominator`, that maps
 /// `from` to `to` within `tolerance` (mean distance, angles modulo 2 pi); none if there is none.
-[[nodiscard]] std::optional<SymmetryElement> find_map(const systems::Description& system, const Loop& from, const Loop& to,
-                                                      double tolerance, int max_denominator = 4);
+[[nodiscard]] std::optional<SymmetryElement> find_map(const systems::Description& system, const Loop& from,
+                                                      const Loop& to, double tolerance, int max_denominator = 4);
 
 }  // namespace orbweaver::loop

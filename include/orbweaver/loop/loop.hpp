@@ -9,10 +9,11 @@ namespace orbweaver::loop {
 /// (paper, section II D; winding numbers n added for angles that turn over).
 struct Loop {
   int dimension = 0;
-  int cutoff = 0;          ///< K, the highest harmonic
-  double period = 0.0;     ///< T
+  int cutoff = 0;             ///< K, the highest harmonic
+  double period = 0.0;        ///< T
   std::vector<double> modes;  ///< (2K + 1) x dimension, rows a_0, a_1, b_1, a_2, b_2, ...
-  std::vector<double> winding;  ///< n of each coordinate (size dimension, whole numbers; 0 but for angles that turn over)
+  std::vector<double>
+      winding;  ///< n of each coordinate (size dimension, whole numbers; 0 but for angles that turn over)
 
   [[nodiscard]] double& cosine(int k, int i) { return modes[index(k == 0 ? 0 : 2 * k - 1, i)]; }
   [[nodiscard]] double cosine(int k, int i) const { return modes[index(k == 0 ? 0 : 2 * k - 1, i)]; }
@@ -49,6 +50,9 @@ void validate(const Loop& loop);
 
 /// sqrt of the mean over a period of |z - a_0|^2 (winding left out): how far the loop is from a constant one.
 [[nodiscard]] double rms_amplitude(const Loop& loop);
+
+/// sqrt of the mean over a period of |z|^2 (winding left out): the scale of rounding errors in the modes.
+[[nodiscard]] double rms_size(const Loop& loop);
 
 /// The largest modulus among the last eighth of the harmonics (at least two), relative to nothing: what the truncation
 /// at `cutoff` leaves out is of this size.

@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include <Eigen/Dense>
 #include <petscmat.h>
+#include <Eigen/Dense>
 
 #include "orbweaver/core/check.hpp"
 #include "orbweaver/core/handle.hpp"

@@ -48,11 +48,13 @@ class Linearization {
   /// J v (dimension x nodes). Needs order >= jacobian, as everything below.
   [[nodiscard]] std::vector<double> apply_jacobian(const Unknowns& unknowns, std::span<const double> v) const;
   /// J' y, one entry an unknown.
-  [[nodiscard]] std::vector<double> apply_jacobian_transposed(const Unknowns& unknowns, std::span<const double> y) const;
+  [[nodiscard]] std::vector<double> apply_jacobian_transposed(const Unknowns& unknowns,
+                                                              std::span<const double> y) const;
   /// Gradient of the loss: 2 J' R.
   [[nodiscard]] std::vector<double> gradient(const Unknowns& unknowns) const;
   /// H v. Curvature::full needs order second.
-  [[nodiscard]] std::vector<double> apply_hessian(const Unknowns& unknowns, std::span<const double> v, Curvature curvature) const;
+  [[nodiscard]] std::vector<double> apply_hessian(const Unknowns& unknowns, std::span<const double> v,
+                                                  Curvature curvature) const;
 
   // Nodal data for the assembly of matrices (loss/matrices.hpp).
   [[nodiscard]] double rate() const { return _rate; }      ///< 2 pi / T
@@ -64,7 +66,9 @@ class Linearization {
   [[nodiscard]] const double* contracted(int i, int l) const { return _s.data() + offset(i * _dimension + l); }
 
  private:
-  [[nodiscard]] std::size_t offset(int i) const { return static_cast<std::size_t>(i) * static_cast<std::size_t>(_nodes); }
+  [[nodiscard]] std::size_t offset(int i) const {
+    return static_cast<std::size_t>(i) * static_cast<std::size_t>(_nodes);
+  }
   void check_finite(const systems::System& system, std::span<const double> values, const char* what) const;
   [[nodiscard]] std::vector<double> perturbation(const Unknowns& unknowns, std::span<const double> v) const;
   [[nodiscard]] std::vector<double> project_adjoint(const Unknowns& unknowns, const std::vector<double>& with_slope,

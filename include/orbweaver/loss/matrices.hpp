@@ -16,7 +16,8 @@ namespace orbweaver::loss {
 
 /// H as a dense symmetric PETSc matrix, unknowns x unknowns. Sums over nodes of products of two modes are sums and
 /// differences of Fourier sums of the nodal d x d blocks, so that the cost is O(d^2 N log N + unknowns^2), whatever N.
-[[nodiscard]] core::Handle<Mat> assemble_hessian(const Linearization& linearization, const Unknowns& unknowns, Curvature curvature);
+[[nodiscard]] core::Handle<Mat> assemble_hessian(const Linearization& linearization, const Unknowns& unknowns,
+                                                 Curvature curvature);
 
 /// J and H as MATSHELL: products in O(N log N), nothing stored but the nodal blocks. The matrices keep what they need.
 [[nodiscard]] core::Handle<Mat> shell_jacobian(std::shared_ptr<const Linearization> linearization,

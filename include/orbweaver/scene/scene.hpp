@@ -40,7 +40,8 @@ struct Continuation {
   double tolerance = 1e-10;
   int cutoff_from = 8;
   int cutoff_to = 4096;
-  std::string corrector = "automatic";  ///< automatic | newton-krylov | brgn | nls | ntr | lmvm | rprop | rprop-extrapolated
+  std::string corrector =
+      "automatic";  ///< automatic | newton-krylov | brgn | nls | ntr | lmvm | rprop | rprop-extrapolated
 };
 
 enum class Spectrum { all, events };

@@ -11,9 +11,9 @@ namespace orbweaver::spectrum {
 
 /// How finely the variational equations are integrated.
 struct FloquetOptions {
-  int least_segments = 48;        ///< Runge-Kutta steps a period, at least
-  double tolerance = 1e-11;       ///< on the relative truncation error of all steps together; above it they are halved
-  int refinements = 3;            ///< how often they may be halved
+  int least_segments = 48;   ///< Runge-Kutta steps a period, at least
+  double tolerance = 1e-11;  ///< on the relative truncation error; above it the steps are halved
+  int refinements = 3;       ///< how often the steps may be halved
 };
 
 /// The linear stability of one orbit. Multipliers that belong to the flow and to the conserved energy are taken out by

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include <Eigen/Dense>
 #include <petscmat.h>
+#include <Eigen/Dense>
 
 #include "orbweaver/core/handle.hpp"
 

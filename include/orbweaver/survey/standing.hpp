@@ -8,9 +8,10 @@ namespace orbweaver::survey {
 
 /// What a folder holds of a survey.
 enum class Standing {
-  none,        ///< nothing: absent, empty, or no survey in it
-  unfinished,  ///< segments of a survey that did not reach its archive
-  finished,    ///< an archive of this very scene
+  none,                    ///< nothing: absent, empty, or no survey in it
+  unfinished,              ///< segments of a survey that did not reach its archive
+  finished,                ///< an archive of this very scene
+  finished_with_failures,  ///< the same, with a family that failed
 };
 
 /// Looks into `directory`. Throws InputError if an archive there is unreadable or of another scene. Not collective.

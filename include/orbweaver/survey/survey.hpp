@@ -27,14 +27,14 @@ struct FamilySummary {
 
 /// What a survey came to; complete on rank 0, `failures` and `stopped_early` on all ranks.
 struct Summary {
-  std::vector<FamilySummary> families;      ///< in order of their keys
-  std::vector<std::string> remarks;         ///< equilibria without oscillations, rejected dips, limits that cut
-  std::vector<std::string> failed_tasks;    ///< key and reason
+  std::vector<FamilySummary> families;    ///< in order of their keys
+  std::vector<std::string> remarks;       ///< equilibria without oscillations, rejected dips, limits that cut
+  std::vector<std::string> failed_tasks;  ///< key and reason
   std::size_t failures = 0;
   bool stopped_early = false;
   long orbits = 0;
   double seconds = 0.0;
-  std::vector<double> peak_memory_mib;      ///< one a rank
+  std::vector<double> peak_memory_mib;  ///< one a rank
   std::filesystem::path atlas;
 };
 
@@ -47,8 +47,8 @@ enum class Display { none, lines, live };
 /// `system` is the scene's system (systems::make_system). Throws InputError or EnvironmentError, on all ranks alike, if the
 /// scene cannot be begun or a flush fails.
 [[nodiscard]] Summary run_survey(const core::Communicator& comm, const scene::Scene& scene,
-                                 const std::shared_ptr<const systems::System>& system, const std::filesystem::path& directory,
-                                 Display display);
+                                 const std::shared_ptr<const systems::System>& system,
+                                 const std::filesystem::path& directory, Display display);
 
 /// The summary as a table for people.
 [[nodiscard]] std::string to_text(const Summary& summary);

@@ -11,17 +11,17 @@ namespace orbweaver::survey {
 /// A normal mode with how well a step along it closes (paper, Table I).
 struct ModeRow {
   std::string name;
-  double period = 0.0;            ///< refined
-  double grid_period = 0.0;       ///< of the sweep's grid, as in the paper
-  double deviation = 0.0;         ///< degrees: |Phi_T(z) - z| after a step of 0.5 degrees, refined period and direction
-  double grid_deviation = 0.0;    ///< degrees: the same with the period and eigenvector of the grid
+  double period = 0.0;          ///< refined
+  double grid_period = 0.0;     ///< of the sweep's grid, as in the paper
+  double deviation = 0.0;       ///< degrees: |Phi_T(z) - z| after a step of 0.5 degrees, refined period and direction
+  double grid_deviation = 0.0;  ///< degrees: the same with the period and eigenvector of the grid
   std::string isotropy;
 };
 
 /// The sweep at one equilibrium.
 struct EquilibriumReport {
   std::vector<double> point;
-  std::string text;               ///< "th1 = 0 deg, ..."
+  std::string text;  ///< "th1 = 0 deg, ..."
   continuation::SweepResult sweep;
   std::vector<ModeRow> modes;
 };

@@ -16,28 +16,28 @@ inline constexpr const char* branch_kind = "branch";
 /// Look for small oscillations around one equilibrium.
 struct SweepWork {
   static constexpr const char* payload_name = "sweep work";
-  int index = 0;               ///< of the equilibrium, in sorted order
+  int index = 0;  ///< of the equilibrium, in sorted order
   std::vector<double> point;
 };
 
 /// A family found by a sweep: where and how it starts.
 struct FoundMode {
   double period = 0.0;
-  std::vector<double> direction;          ///< modes of a loop with cutoff `cutoff`
+  std::vector<double> direction;  ///< modes of a loop with cutoff `cutoff`
   int cutoff = 0;
-  std::vector<std::string> isotropy;      ///< generators: names,
-  std::vector<int> reversing;             ///< whether each reverses time,
-  std::vector<int> shift_numerators;      ///< and its shift
+  std::vector<std::string> isotropy;  ///< generators: names,
+  std::vector<int> reversing;         ///< whether each reverses time,
+  std::vector<int> shift_numerators;  ///< and its shift
   std::vector<int> shift_denominators;
-  bool one_direction = true;              ///< a symmetry maps one direction of the start onto the other
+  bool one_direction = true;  ///< a symmetry maps one direction of the start onto the other
 };
 
 struct SweepOutcome {
   static constexpr const char* payload_name = "sweep outcome";
   int index = 0;
   std::vector<double> point;
-  std::vector<FoundMode> modes;           ///< longest period first
-  std::vector<std::string> rejected;      ///< a sentence a dip
+  std::vector<FoundMode> modes;       ///< longest period first
+  std::vector<std::string> rejected;  ///< a sentence a dip
 };
 
 /// Follow one family from its start to its end.
@@ -47,7 +47,7 @@ struct BranchWork {
   std::string name;
   std::vector<double> point;
   FoundMode start;
-  int sign = 1;                           ///< along or against the start's direction
+  int sign = 1;  ///< along or against the start's direction
 };
 
 struct BranchOutcome {

@@ -10,12 +10,12 @@ namespace orbweaver::systems {
 /// A named real parameter of a system and the values it may take.
 struct Parameter {
   std::string name;
-  double standard = 0.0;  ///< value when the scene does not give one
-  double lower = 0.0;     ///< least allowed value
-  double upper = 0.0;     ///< greatest allowed value
+  double standard = 0.0;    ///< value when the scene does not give one
+  double lower = 0.0;       ///< least allowed value
+  double upper = 0.0;       ///< greatest allowed value
   bool lower_open = false;  ///< true: `lower` itself is refused (a mass must be > 0)
-  std::string unit;       ///< "kg", "m", "1"
-  std::string meaning;    ///< one phrase
+  std::string unit;         ///< "kg", "m", "1"
+  std::string meaning;      ///< one phrase
 };
 
 /// Something a scene may add to the ideal system (friction, a drive, ...), with the parameters it brings.
@@ -33,10 +33,10 @@ struct Symmetry {
 
 /// What a system says of itself. Everything that other layers do depends on this and on the field alone.
 struct Description {
-  std::string name;                      ///< as in a scene: "double_pendulum"
-  std::string title;                     ///< as a person would write it
-  std::vector<std::string> state_names;  ///< one a coordinate; its size is the dimension
-  std::vector<int> angles;               ///< indices of the coordinates that live on a circle of 2 pi and may wind
+  std::string name;                        ///< as in a scene: "double_pendulum"
+  std::string title;                       ///< as a person would write it
+  std::vector<std::string> state_names;    ///< one a coordinate; its size is the dimension
+  std::vector<int> angles;                 ///< indices of the coordinates that live on a circle of 2 pi and may wind
   std::vector<std::string> winding_names;  ///< one an angle
   std::vector<Parameter> parameters;
   std::vector<Effect> effects;

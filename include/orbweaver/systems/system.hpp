@@ -33,7 +33,8 @@ class System {
   virtual void field_jacobian(std::size_t nodes, const double* z, double* f, double* jacobian) const = 0;
   /// Second derivatives contracted with `weights` (dimension x nodes): entry (l, m) = sum_i weights_i d2f_i/dz_l dz_m of
   /// node j at [(l * dimension + m) * nodes + j], symmetric.
-  virtual void second_derivatives(std::size_t nodes, const double* z, const double* weights, double* contracted) const = 0;
+  virtual void second_derivatives(std::size_t nodes, const double* z, const double* weights,
+                                  double* contracted) const = 0;
 
   /// Conserved energy at one state (size dimension); NaN where the system has none.
   [[nodiscard]] virtual double energy(std::span<const double> z) const = 0;

@@ -1,0 +1,192 @@
+#include "orbweaver/spectrum/floquet.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "floquet_chain.hpp"
+#include "floquet_group.hpp"
+#include "floquet_indices.hpp"
+#include "matrix_table.hpp"
+#include "orbit_correction.hpp"
+#include "orbweaver/core/error.hpp"
+#include "transverse_flow.hpp"
+
+namespace orbweaver::spectrum {
+
+namespace {
+
+using Complex = std::complex<double>;
+using Values = std::vector<Complex>;
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+/// Truncation error as a share of what doubling the step changes: 1/255 for an order of 8; steps as long as ours were
+/// seen to gain only a factor of 100.
+constexpr double truncation_share = 1.0 / 32.0;
+/// The Newton step that stands for the orbit's own error is itself uncertain.
+constexpr double orbit_safety = 3.0;
+
+/// Distance from each value to the nearest of `others`, times a factor, added to `errors`.
+void add_distances(const Values& values, const Values& others, double factor, std::vector<double>& errors) {
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Complex& other : others) nearest = std::min(nearest, std::abs(values[n] - other));
+    errors[n] += factor * nearest;
+  }
+}
+
+void add_distances(const FloquetIndices& indices, const FloquetIndices& others, double factor, Stability& stability) {
+  add_distances(indices.full, others.full, factor, stability.full_error);
+  add_distances(indices.fundamental, others.fundamental, factor, stability.fundamental_error);
+}
+
+/// Relative rounding error of one factor: the step's arithmetic, and the direction of f where the orbit is slow.
+double rounding_of(const Chain& chain, Eigen::Index m) {
+  const double rate = chain.jacobians.col(m).norm();
+  const double terms = rate * (1.0 + chain.states.col(m).norm());
+  return epsilon * (8.0 + std::min(1.0, chain.step * rate) * terms / chain.fields.col(m).norm());
+}
+
+/// Bound on the rounding error of the trace of a product of 2 x 2 matrices.
+double rounding_of_trace(const Chain& chain, const TransverseFlow& flow) {
+  const Eigen::Index n = flow.factors.cols();
+  Eigen::MatrixXd after(4, n);  // products of the factors behind each one
+  matrix_in<2>(after, n - 1, 2).setIdentity();
+  for (Eigen::Index m = n - 1; m-- > 0;)
+    matrix_in<2>(after, m, 2).noalias() = matrix_in<2>(after, m + 1, 2) * matrix_in<2>(flow.factors, m + 1, 2);
+  Eigen::Matrix2d before = Eigen::Matrix2d::Identity();
+  double error = 0.0;
+  for (Eigen::Index m = 0; m < n; ++m) {
+    const double others = (before * matrix_in<2>(after, m, 2)).norm();
+    error += rounding_of(chain, m) * flow.factors.col(m).norm() * others;
+    before = (matrix_in<2>(flow.factors, m, 2) * before).eval();
+    error += epsilon * before.norm() * after.col(m).norm();
+  }
+  return error;
+}
+
+/// Rounding where there is no trace to read: the largest response to four sets of errors of that size. They are
+/// enlarged sixteenfold and the response divided by four, which covers an eigenvalue about to split, whose response
+/// grows with the root only.
+void add_rounding_probes(const systems::Description& system, const Chain& chain, const TransverseFlow& flow, int order,
+                         const FloquetIndices& indices, Stability& stability) {
+  constexpr int probes = 4;
+  constexpr double enlarged = 16.0;
+  constexpr double divided = 0.25;
+  unsigned state = 12345;
+  const auto random = [&state] {
+    state = state * 1664525u + 1013904223u;
+    return static_cast<double>(state >> 8) / 8388608.0 - 1.0;
+  };
+  for (int probe = 0; probe < probes; ++probe) {
+    TransverseFlow changed = flow;
+    for (Eigen::Index m = 0; m < flow.factors.cols(); ++m) {
+      const double scale = enlarged * rounding_of(chain, m) * flow.factors.col(m).norm();
+      for (Eigen::Index n = 0; n < flow.factors.rows(); ++n) changed.factors(n, m) += scale * random();
+    }
+    add_distances(indices, floquet_indices(system, changed, order), divided, stability);
+  }
+}
+
+/// The values' response to the orbit's own error, on a scale where differences keep their digits.
+void add_orbit_error(const systems::System& system, const Chain& chain, const FundamentalGroup& group,
+                     const FloquetIndices& indices, Stability& stability) {
+  constexpr double visible = 1e-7;
+  const OrbitCorrection correction = orbit_correction(chain, group, system.description().conservative);
+  const double size = std::max(correction.states.cwiseAbs().maxCoeff(), std::abs(correction.step));
+  if (size == 0.0) return;
+  const double factor = std::max(1.0, visible / size);
+  const TransverseFlow flow = transverse_flow(system, corrected(system, chain, correction, factor), group);
+  add_distances(indices, floquet_indices(system.description(), flow, group.order), orbit_safety / factor, stability);
+}
+
+void check_finite(const Values& values, const loop::Loop& loop) {
+  for (const Complex& value : values)
+    if (!std::isfinite(value.real()) || !std::isfinite(value.imag()))
+      throw core::NotFiniteError(
+          fmt::format("Floquet multipliers of a loop of period {} with cutoff {}: expected finite "
+                      "values, got {} + {}i; they lie beyond double precision's range",
+                      loop.period, loop.cutoff, value.real(), value.imag()));
+}
+
+double largest_relative(const Values& values, const std::vector<double>& errors) {
+  double largest = 0.0;
+  for (std::size_t n = 0; n < values.size(); ++n) largest = std::max(largest, errors[n] / (1.0 + std::abs(values[n])));
+  return largest;
+}
+
+Stability without_errors(const FloquetIndices& indices, int order) {
+  Stability stability;
+  stability.full = indices.full;
+  stability.fundamental = indices.fundamental;
+  stability.fundamental_order = order;
+  stability.full_error.assign(indices.full.size(), 0.0);
+  stability.fundamental_error.assign(indices.fundamental.size(), 0.0);
+  return stability;
+}
+
+/// The indices with their truncation error as far as known, and what they were computed from.
+struct Integrated {
+  Chain chain;
+  TransverseFlow flow;
+  FloquetIndices indices;
+  Stability stability;
+};
+
+Integrated integrated(const systems::System& system, const loop::Loop& loop, const FundamentalGroup& group,
+                      const FloquetOptions& options) {
+  const systems::Description& description = system.description();
+  VariationalStep stepper(system);
+  Integrated result;
+  result.chain = make_chain(system, stepper, loop, group, options.least_segments);
+  result.flow = transverse_flow(system, result.chain, group);
+  result.indices = floquet_indices(description, result.flow, group.order);
+  const Chain doubled = with_double_steps(stepper, result.chain, group);
+  FloquetIndices coarse = floquet_indices(description, transverse_flow(system, doubled, group), group.order);
+  for (int refinement = 0;; ++refinement) {
+    check_finite(result.indices.full, loop);
+    result.stability = without_errors(result.indices, group.order);
+    add_distances(result.indices, coarse, truncation_share, result.stability);
+    const double error = largest_relative(result.stability.fundamental, result.stability.fundamental_error);
+    if (error <= options.tolerance || refinement >= options.refinements) return result;
+    coarse = result.indices;
+    const auto around = static_cast<int>(result.chain.segments()) * group.order;
+    result.chain = make_chain(system, stepper, loop, group, 2 * around);
+    result.flow = transverse_flow(system, result.chain, group);
+    result.indices = floquet_indices(description, result.flow, group.order);
+  }
+}
+
+}  // namespace
+
+double Stability::relative_error() const { return largest_relative(full, full_error); }
+
+Stability floquet(const systems::System& system, const loop::Loop& loop, const loop::Isotropy& isotropy,
+                  const FloquetOptions& options) {
+  loop::validate(loop);
+  core::require(loop.dimension == system.dimension(), "Floquet multipliers: the loop is not of the system's dimension");
+  core::require(loop::rms_speed(loop) > 0.0, "Floquet multipliers need an orbit that moves; this loop is constant");
+  const systems::Description& description = system.description();
+  const FundamentalGroup group = fundamental_group(system, loop, isotropy);
+  if (loop.dimension == (description.conservative ? 2 : 1)) return without_errors({}, group.order);
+  auto [chain, flow, indices, stability] = integrated(system, loop, group, options);
+  add_orbit_error(system, chain, group, indices, stability);
+  if (is_single_pair(description, flow)) {
+    stability.fundamental_error[0] += rounding_of_trace(chain, flow);
+    stability.full_error[0] =
+        repeated_index_error(stability.fundamental[0].real(), stability.fundamental_error[0], group.order);
+  } else {
+    add_rounding_probes(description, chain, flow, group.order, indices, stability);
+  }
+  if (description.conservative && !description.symplectic) {
+    stability.full.emplace_back(1.0);
+    stability.full_error.push_back(0.0);
+    stability.fundamental.emplace_back(1.0);
+    stability.fundamental_error.push_back(0.0);
+  }
+  return stability;
+}
+
+}  // namespace orbweaver::spectrum

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Dense>
+
+#include "floquet_chain.hpp"
+#include "floquet_group.hpp"
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::spectrum {
+
+/// The linearised flow on what is left after the directions of the flow and of the conserved energy: the kernel of dH
+/// modulo f (without conserved energy: everything modulo f), in an orthonormal basis at each t_m.
+struct TransverseFlow {
+  Eigen::MatrixXd factors;  ///< segment by segment (matrix_table.hpp); the last one ends with g^-1, in the first basis
+  Eigen::MatrixXd around;   ///< g^p in the first basis
+
+  [[nodiscard]] Eigen::Index dimension() const { return around.rows(); }
+};
+
+/// Throws core::NumericalError if f vanishes at one of the chain's states.
+[[nodiscard]] TransverseFlow transverse_flow(const systems::System& system, const Chain& chain,
+                                             const FundamentalGroup& group);
+
+}  // namespace orbweaver::spectrum

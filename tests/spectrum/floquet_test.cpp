@@ -1,0 +1,389 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <map>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "floquet_chain.hpp"
+#include "matrix_table.hpp"
+#include "orbweaver/continuation/branch.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/spectrum/floquet.hpp"
+#include "spectrum/pendulum_loops.hpp"
+#include "spectrum/point_systems.hpp"
+#include "transverse_flow.hpp"
+
+namespace {
+
+using namespace orbweaver;
+using spectrum::floquet;
+using spectrum::Stability;
+
+constexpr double pi = std::numbers::pi;
+
+/// q_0 = cos t, p_0 = -sin t, all else zero: an orbit of `Oscillators` with stiffness_0 = 1.
+loop::Loop first_oscillation(int dimension, int cutoff = 3) {
+  loop::Loop loop = loop::constant_loop(std::vector<double>(static_cast<std::size_t>(dimension), 0.0), 2 * pi, cutoff);
+  loop.cosine(1, 0) = 1.0;
+  loop.sine(1, 1) = -1.0;
+  return loop;
+}
+
+loop::Isotropy isotropy_of(const systems::System& system, const loop::Loop& loop) {
+  return loop::find_isotropy(system.description(), loop, 1e-9);
+}
+
+void expect_value(std::complex<double> value, double error, std::complex<double> truth, double relative) {
+  EXPECT_LE(std::abs(value - truth), relative * std::abs(truth)) << value << " instead of " << truth;
+  EXPECT_LE(std::abs(value - truth), error) << value << " instead of " << truth;
+  EXPECT_LE(error, 1e-9 * (1.0 + std::abs(truth))) << "the bound says nothing";
+}
+
+// --- by pencil ---
+
+TEST(Floquet, HarmonicOscillatorHasNoIndex) {
+  const auto system = systems::make_system("harmonic_oscillator");
+  const loop::Loop loop = first_oscillation(2);
+  const Stability stability = floquet(*system, loop, isotropy_of(*system, loop));
+  EXPECT_TRUE(stability.full.empty());
+  EXPECT_TRUE(stability.fundamental.empty());
+  EXPECT_EQ(stability.fundamental_order, 2);
+  EXPECT_EQ(stability.relative_error(), 0.0);
+}
+
+TEST(Floquet, SecondOscillatorTurnsByItsFrequency) {
+  for (const double omega : {0.3, 1.7, 9.4}) {
+    const test::Oscillators system({1.0, omega * omega});
+    const loop::Loop loop = first_oscillation(4);
+    const Stability whole = floquet(system, loop, {});
+    ASSERT_EQ(whole.full.size(), 1u);
+    EXPECT_EQ(whole.fundamental_order, 1);
+    expect_value(whole.full[0], whole.full_error[0], 2.0 * std::cos(2 * pi * omega), 1e-11);
+    const Stability half = floquet(system, loop, isotropy_of(system, loop));
+    EXPECT_EQ(half.fundamental_order, 2);
+    expect_value(half.full[0], half.full_error[0], 2.0 * std::cos(2 * pi * omega), 1e-11);
+    expect_value(half.fundamental[0], half.fundamental_error[0], -2.0 * std::cos(pi * omega), 1e-11);
+  }
+}
+
+TEST(Floquet, LargeAndSmallIndicesKeepTheirDigitsSideBySide) {
+  const double growth = 6.2;
+  const double omega = 0.37;
+  const test::Oscillators system({1.0, -growth * growth, omega * omega, -0.04});
+  const loop::Loop loop = first_oscillation(8);
+  for (const loop::Isotropy& isotropy : {loop::Isotropy{}, isotropy_of(system, loop)}) {
+    const Stability stability = floquet(system, loop, isotropy);
+    ASSERT_EQ(stability.full.size(), 3u);
+    expect_value(stability.full[0], stability.full_error[0], 2.0 * std::cosh(2 * pi * growth), 1e-10);
+    expect_value(stability.full[1], stability.full_error[1], 2.0 * std::cosh(2 * pi * 0.2), 1e-11);
+    expect_value(stability.full[2], stability.full_error[2], 2.0 * std::cos(2 * pi * omega), 1e-11);
+    EXPECT_GT(std::abs(stability.full[0]), 1e16);
+  }
+}
+
+TEST(Floquet, EqualPairsOfTheHalfMapHaveIndicesOfTheirOwn) {
+  const double omega = 0.37;
+  const test::Oscillators system({1.0, omega * omega, omega * omega});
+  const loop::Loop loop = first_oscillation(6);
+  const Stability stability = floquet(system, loop, isotropy_of(system, loop));
+  ASSERT_EQ(stability.fundamental.size(), 2u);
+  for (std::size_t n = 0; n < 2; ++n) {
+    expect_value(stability.fundamental[n], stability.fundamental_error[n], -2.0 * std::cos(pi * omega), 1e-11);
+    expect_value(stability.full[n], stability.full_error[n], 2.0 * std::cos(2 * pi * omega), 1e-11);
+  }
+}
+
+TEST(Floquet, HopfCycleContractsAsItsNormalForm) {
+  const double growth = 0.3;
+  const double decay = 6.0;
+  const test::HopfCycle system(growth, decay);
+  loop::Loop loop = loop::constant_loop(std::vector<double>(3, 0.0), 2 * pi, 3);
+  loop.cosine(1, 0) = std::sqrt(growth);
+  loop.sine(1, 1) = std::sqrt(growth);
+  const loop::Isotropy isotropy = isotropy_of(system, loop);
+  ASSERT_EQ(loop::to_text(isotropy), "S@1/2");
+  for (const bool symmetric : {false, true}) {
+    const Stability stability = floquet(system, loop, symmetric ? isotropy : loop::Isotropy{});
+    ASSERT_EQ(stability.full.size(), 2u);
+    expect_value(stability.full[0], stability.full_error[0], std::exp(-4 * pi * growth), 1e-11);
+    expect_value(stability.full[1], stability.full_error[1], std::exp(-2 * pi * decay), 1e-10);
+    if (symmetric)
+      expect_value(stability.fundamental[0], stability.fundamental_error[0], std::exp(-2 * pi * growth), 1e-11);
+    EXPECT_EQ(stability.fundamental_order, symmetric ? 2 : 1);
+  }
+}
+
+TEST(Floquet, ConservedEnergyWithoutSymplecticFormGivesAnExactOne) {
+  const test::SymmetricTop system(0.8);
+  loop::Loop loop = loop::constant_loop(std::vector<double>{0.0, 0.0, 1.25}, 2 * pi, 3);
+  loop.cosine(1, 0) = 0.4;
+  loop.sine(1, 1) = 0.4;
+  const Stability stability = floquet(system, loop, {});
+  ASSERT_EQ(stability.full.size(), 2u);
+  expect_value(stability.full[0], stability.full_error[0], 1.0, 1e-12);
+  EXPECT_EQ(stability.full[1], 1.0);
+}
+
+// --- the double pendulum ---
+
+/// Index of the half map, from the quarter period in quadruple precision: Newton's method for the brake point, then the
+/// variational equations over T/2, both by extrapolation of order 28.
+struct Reference {
+  double period;
+  double half;
+};
+
+const test::PendulumMode in_phase = test::in_phase();
+const test::PendulumMode out_phase = test::out_phase();
+
+const std::vector<std::pair<test::PendulumMode, std::vector<Reference>>>& references() {
+  static const std::vector<std::pair<test::PendulumMode, std::vector<Reference>>> values{
+      {in_phase,
+       {{10, 0.42291741949564062723},
+        {12, 22.51995452980667673},
+        {15, 487.8659911195891725},
+        {20, 51448.89227678537374},
+        {25, 5204249.2959117992849},
+        {30, 527226838.35986035954}}},
+      {out_phase,
+       {{10, 21.005000473163432573},
+        {12, 34.121066340644482443},
+        {15, 109.94097026761256372},
+        {20, 1656.1746453733551512},
+        {25, 102226.39487676922241},
+        {30, 9910171.6656704076902}}}};
+  return values;
+}
+
+std::shared_ptr<const systems::System> pendulum() {
+  static const std::shared_ptr<const systems::System> system = systems::make_system("double_pendulum");
+  return system;
+}
+
+std::vector<continuation::Orbit> orbits_of(const std::shared_ptr<const systems::System>& system,
+                                           const continuation::Start& start, const continuation::Options& options) {
+  std::vector<continuation::Orbit> orbits;
+  (void)continuation::trace(system, start, options, [&](const continuation::Orbit& orbit) {
+    orbits.push_back(orbit);
+    return true;
+  });
+  return orbits;
+}
+
+std::vector<continuation::Orbit> family_to_thirty(const test::PendulumMode& mode) {
+  continuation::Start start;
+  start.base = loop::constant_loop(mode.point, mode.period(), 10);
+  start.direction = test::linear_loop(mode, 1.0, 10).modes;
+  std::fill_n(start.direction.begin(), 4, 0.0);
+  start.isotropy = test::pendulum_isotropy(*pendulum());
+  continuation::Options options;
+  options.period_limit = 30.5;
+  return orbits_of(pendulum(), start, options);
+}
+
+loop::Loop orbit_at(const std::vector<continuation::Orbit>& family, double period) {
+  const auto nearest = std::min_element(family.begin(), family.end(), [&](const auto& a, const auto& b) {
+    return std::abs(a.loop.period - period) < std::abs(b.loop.period - period);
+  });
+  return continuation::orbit_at_period(*pendulum(), nearest->loop, test::pendulum_isotropy(*pendulum()), period, {})
+      .loop;
+}
+
+/// Each orbit with its true index, once a process.
+const std::vector<std::pair<loop::Loop, Reference>>& pendulum_orbits() {
+  static const std::vector<std::pair<loop::Loop, Reference>> orbits = [] {
+    std::vector<std::pair<loop::Loop, Reference>> found;
+    for (const auto& [mode, values] : references()) {
+      const std::vector<continuation::Orbit> family = family_to_thirty(mode);
+      for (const Reference& reference : values) found.emplace_back(orbit_at(family, reference.period), reference);
+    }
+    return found;
+  }();
+  return orbits;
+}
+
+double full_of(double half) { return half * half - 2.0; }
+
+TEST(PendulumIndex, HoldsItsDigitsUpToTenToTheEighteen) {
+  const loop::Isotropy symmetric = test::pendulum_isotropy(*pendulum());
+  ASSERT_EQ(loop::to_text(symmetric), "S@1/2 R@0");
+  double largest = 0.0;
+  for (const auto& [loop, reference] : pendulum_orbits()) {
+    const double goal = reference.period <= 15 ? 1e-11 : 1e-10;
+    const loop::Isotropy parts[] = {symmetric, {symmetric[0]}, {symmetric[1]}, {}};
+    for (const loop::Isotropy& isotropy : parts) {
+      SCOPED_TRACE(testing::Message() << "T = " << reference.period << ", isotropy " << loop::to_text(isotropy));
+      const Stability stability = floquet(*pendulum(), loop, isotropy);
+      ASSERT_EQ(stability.full.size(), 1u);
+      expect_value(stability.full[0], stability.full_error[0], full_of(reference.half), goal);
+      const bool halved = !isotropy.empty() && !isotropy[0].reversing;
+      ASSERT_EQ(stability.fundamental_order, halved ? 2 : 1);
+      expect_value(stability.fundamental[0], stability.fundamental_error[0],
+                   halved ? reference.half : full_of(reference.half), goal);
+      largest = std::max(largest, std::abs(stability.full[0]));
+    }
+  }
+  EXPECT_GT(largest, 2.7e17);
+}
+
+TEST(PendulumIndex, FullIsTheSquareOfHalfLessTwo) {
+  for (const auto& [loop, reference] : pendulum_orbits()) {
+    const loop::Isotropy isotropy = test::pendulum_isotropy(*pendulum());
+    const double half = floquet(*pendulum(), loop, isotropy).fundamental[0].real();
+    const double full = floquet(*pendulum(), loop, {}).full[0].real();
+    EXPECT_NEAR(full_of(half) / full, 1.0, 1e-11) << "T = " << reference.period;
+  }
+}
+
+TEST(PendulumIndex, BoundCoversWhatTheLoopItselfHasWrong) {
+  const loop::Isotropy isotropy = test::pendulum_isotropy(*pendulum());
+  for (const auto& [loop, reference] : pendulum_orbits()) {
+    for (const double share : {0.5, 0.7}) {
+      const loop::Loop rough = loop::with_cutoff(loop, static_cast<int>(share * loop.cutoff));
+      const Stability stability = floquet(*pendulum(), rough, isotropy);
+      const double truth = full_of(reference.half);
+      EXPECT_LE(std::abs(stability.full[0] - truth), stability.full_error[0])
+          << "T = " << reference.period << ", cutoff " << rough.cutoff << ", relative error "
+          << std::abs(stability.full[0] / truth - 1.0);
+      EXPECT_LE(stability.relative_error(), 0.1);
+    }
+  }
+}
+
+TEST(PendulumIndex, FundamentalMapIsSymplectic) {
+  const auto system = pendulum();
+  for (const auto& [loop, reference] : pendulum_orbits()) {
+    const spectrum::FundamentalGroup group =
+        spectrum::fundamental_group(*system, loop, test::pendulum_isotropy(*system));
+    spectrum::VariationalStep stepper(*system);
+    const spectrum::Chain chain = spectrum::make_chain(*system, stepper, loop, group, 48);
+    const spectrum::TransverseFlow flow = spectrum::transverse_flow(*system, chain, group);
+    double area = 1.0;
+    double volume = group.inverse.determinant();
+    for (Eigen::Index m = 0; m < chain.segments(); ++m) {
+      area *= spectrum::matrix_in<2>(flow.factors, m, 2).determinant();
+      volume *= spectrum::matrix_in<4>(chain.transitions, m, 4).determinant();
+    }
+    EXPECT_NEAR(area, 1.0, 1e-10) << "T = " << reference.period;
+    EXPECT_NEAR(volume, 1.0, 1e-10) << "T = " << reference.period;
+  }
+}
+
+// --- Henon and Heiles ---
+
+using Long = long double;
+
+/// x, y, px, py and the transition matrix row by row.
+using HenonState = std::array<Long, 20>;
+
+HenonState henon_slope(const HenonState& s) {
+  HenonState k{};
+  k[0] = s[2];
+  k[1] = s[3];
+  k[2] = -s[0] - 2 * s[0] * s[1];
+  k[3] = s[1] * s[1] - s[0] * s[0] - s[1];
+  for (std::size_t b = 0; b < 4; ++b) {
+    k[4 + b] = s[12 + b];
+    k[8 + b] = s[16 + b];
+    k[12 + b] = -(1 + 2 * s[1]) * s[4 + b] - 2 * s[0] * s[8 + b];
+    k[16 + b] = -2 * s[0] * s[4 + b] + (2 * s[1] - 1) * s[8 + b];
+  }
+  return k;
+}
+
+HenonState plus(const HenonState& a, Long h, const HenonState& b) {
+  HenonState sum{};
+  for (std::size_t n = 0; n < sum.size(); ++n) sum[n] = a[n] + h * b[n];
+  return sum;
+}
+
+/// The classical Runge-Kutta method in long double.
+HenonState henon_flow(HenonState s, Long time, int steps) {
+  const Long h = time / steps;
+  for (int n = 0; n < steps; ++n) {
+    const HenonState a = henon_slope(s);
+    const HenonState b = henon_slope(plus(s, h / 2, a));
+    const HenonState c = henon_slope(plus(s, h / 2, b));
+    const HenonState d = henon_slope(plus(s, h, c));
+    for (std::size_t i = 0; i < s.size(); ++i) s[i] += h / 6 * (a[i] + 2 * b[i] + 2 * c[i] + d[i]);
+  }
+  return s;
+}
+
+/// k by direct integration, once around: the trace less the two trivial multipliers.
+double henon_index(const loop::Loop& loop) {
+  const std::vector<double> start = loop::state_at(loop, 0.0);
+  HenonState s{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    s[i] = static_cast<Long>(start[i]);
+    s[4 + 5 * i] = 1;
+  }
+  s = henon_flow(s, static_cast<Long>(loop.period), 40000);
+  return static_cast<double>(s[4] + s[9] + s[14] + s[19] - 2);
+}
+
+/// The straight orbits along the mirror axis x = 0.
+std::vector<loop::Loop> henon_orbits(const std::shared_ptr<const systems::System>& system) {
+  continuation::Start start;
+  start.base = loop::constant_loop(std::vector<double>(4, 0.0), 2 * pi, 8);
+  loop::Loop direction = start.base;
+  direction.cosine(1, 1) = 1.0;
+  direction.sine(1, 3) = -1.0;
+  start.direction = direction.modes;
+  loop::Loop small = start.base;
+  for (std::size_t n = 0; n < small.modes.size(); ++n) small.modes[n] += 1e-3 * start.direction[n];
+  for (const loop::SymmetryElement& element : loop::find_isotropy(system->description(), small, 1e-9))
+    if (element.name == "S" || element.name == "R")
+      if (element.shift_numerator == 0) start.isotropy.push_back(element);
+  std::vector<loop::Loop> loops;
+  continuation::Options options;
+  options.energy_to = 0.15;
+  for (const continuation::Orbit& orbit : orbits_of(system, start, options))
+    if (orbit.energy > 0.01) loops.push_back(orbit.loop);
+  return loops;
+}
+
+TEST(HenonHeilesIndex, AgreesWithDirectIntegration) {
+  const auto system = systems::make_system("henon_heiles");
+  const std::vector<loop::Loop> loops = henon_orbits(system);
+  ASSERT_GE(loops.size(), 3u);
+  double spread = 0.0;
+  for (const loop::Loop& loop : loops) {
+    const loop::Isotropy isotropy = isotropy_of(*system, loop);
+    const Stability stability = floquet(*system, loop, isotropy);
+    const double truth = henon_index(loop);
+    SCOPED_TRACE(testing::Message() << "T = " << loop.period << ", isotropy " << loop::to_text(isotropy));
+    ASSERT_EQ(stability.full.size(), 1u);
+    EXPECT_NEAR(stability.full[0].real(), truth, 1e-9);
+    EXPECT_LE(std::abs(stability.full[0] - truth), stability.full_error[0]);
+    EXPECT_LE(stability.full_error[0], 1e-8);
+    spread = std::max(spread, std::abs(truth - 2.0));
+  }
+  EXPECT_GT(spread, 0.1) << "the orbits should not all be nearly parabolic";
+}
+
+// --- contract ---
+
+TEST(Floquet, SameInputGivesSameBits) {
+  const auto& [loop, reference] = pendulum_orbits().front();
+  const Stability first = floquet(*pendulum(), loop, {});
+  const Stability second = floquet(*pendulum(), loop, {});
+  EXPECT_EQ(first.full, second.full);
+  EXPECT_EQ(first.full_error, second.full_error);
+}
+
+TEST(Floquet, RefusesWhatIsNoOrbit) {
+  const auto system = pendulum();
+  const std::vector<double> point(4, 0.0);
+  EXPECT_THROW((void)floquet(*system, loop::constant_loop(point, 1.0, 3), {}), core::MisuseError);
+  EXPECT_THROW((void)floquet(*system, first_oscillation(2), {}), core::MisuseError);
+}
+
+}  // namespace

@@ -1,0 +1,51 @@
+# Runs COMMAND (words joined by `|`) and fails unless it ends with STATUS, every text of OUT is in its stdout and every
+# text of ERR in its stderr (texts joined by `|`). Optional:
+#   FRESH    a folder that is removed beforehand
+#   LEFTOVER a file that is made beforehand (after FRESH)
+#   SAME     a file whose bytes must not change
+#   HAS      a path that must exist afterwards
+#   GONE     a path that must not exist afterwards
+string(REPLACE "|" ";" COMMAND "${COMMAND}")
+string(REPLACE "|" ";" OUT "${OUT}")
+string(REPLACE "|" ";" ERR "${ERR}")
+
+if(FRESH)
+  file(REMOVE_RECURSE "${FRESH}")
+endif()
+if(LEFTOVER)
+  file(WRITE "${LEFTOVER}" "left over")
+endif()
+if(SAME)
+  file(SHA256 "${SAME}" before)
+endif()
+
+execute_process(COMMAND ${COMMAND} RESULT_VARIABLE status OUTPUT_VARIABLE out ERROR_VARIABLE err)
+message("${out}${err}")
+
+if(NOT status STREQUAL STATUS)
+  message(FATAL_ERROR "exit status: expected ${STATUS}, got ${status}")
+endif()
+foreach(text IN LISTS OUT)
+  string(FIND "${out}" "${text}" place)
+  if(place EQUAL -1)
+    message(FATAL_ERROR "stdout: expected to find\n${text}\ngot:\n${out}")
+  endif()
+endforeach()
+foreach(text IN LISTS ERR)
+  string(FIND "${err}" "${text}" place)
+  if(place EQUAL -1)
+    message(FATAL_ERROR "stderr: expected to find\n${text}\ngot:\n${err}")
+  endif()
+endforeach()
+if(SAME)
+  file(SHA256 "${SAME}" after)
+  if(NOT after STREQUAL before)
+    message(FATAL_ERROR "${SAME} has changed")
+  endif()
+endif()
+if(HAS AND NOT EXISTS "${HAS}")
+  message(FATAL_ERROR "${HAS} is missing")
+endif()
+if(GONE AND EXISTS "${GONE}")
+  message(FATAL_ERROR "${GONE} is still there")
+endif()
