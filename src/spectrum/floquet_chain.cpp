@@ -14,8 +14,8 @@ namespace orbweaver::spectrum {
 
 namespace {
 
-/// Segments a harmonic: leaves a relative error of about 1e-13 in the index of the double pendulum's orbits, and doubled
-/// steps still follow the method's order.
+/// Segments a harmonic: leaves a relative error of 1e-14 to 2e-12 in the index of the double pendulum's orbits, and
+/// doubled steps still follow the method's order.
 constexpr double segments_a_harmonic = 2.0;
 /// Largest h times the growth or turning rate of the linearised flow.
 constexpr double largest_turn = 0.3;

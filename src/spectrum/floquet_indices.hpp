@@ -14,7 +14,8 @@ struct FloquetIndices {
   std::vector<std::complex<double>> fundamental;  ///< of the fundamental map
 };
 
-/// True where g^p is plus or minus the unit map of a plane: the index is a trace, the full one its Chebyshev polynomial.
+/// True where g^p is plus or minus the unit map of a plane: the index is a trace, the full one its Chebyshev
+/// polynomial.
 [[nodiscard]] bool is_single_pair(const systems::Description& system, const TransverseFlow& flow);
 
 /// The trace for a single pair, orthogonal iteration otherwise.

@@ -16,7 +16,8 @@ struct OrbitCorrection {
 
 /// The least correction, without shift of phase. Conservative systems: at almost the same period (a change counts a
 /// thousandfold), and the equation that the conserved energy makes redundant left out. By orthogonal elimination from
-/// one group of segments to the next (Wright 1992, doi:10.1137/0913044), stable for any growth around the orbit.
+/// one group of segments to the next (Wright, Stable parallel algorithms for two-point boundary value problems, 1992),
+/// stable for any growth around the orbit.
 [[nodiscard]] OrbitCorrection orbit_correction(const Chain& chain, const FundamentalGroup& group, bool conservative);
 
 /// The chain along the loop with `factor` times the correction added, to first order in that and second order in h.

@@ -101,8 +101,8 @@ std::vector<Complex> eigenvalues_of(const Eigen::MatrixXd& block) {
   return result;
 }
 
-/// k of a block whose multipliers come in pairs mu, 1/mu: B + B^-1 has each k twice, so that their means keep the digits
-/// that the eigenvalues of B lose where two of them meet.
+/// k of a block whose multipliers come in pairs mu, 1/mu: B + B^-1 has each k twice, so that their means keep the
+/// digits that the eigenvalues of B lose where two of them meet.
 std::vector<Complex> paired_indices(const Eigen::MatrixXd& block) {
   std::vector<Complex> doubles = eigenvalues_of(block + block.inverse());
   std::vector<Complex> indices;

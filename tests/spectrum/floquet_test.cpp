@@ -12,7 +12,9 @@
 #include <gtest/gtest.h>
 
 #include "floquet_chain.hpp"
+#include "floquet_indices.hpp"
 #include "matrix_table.hpp"
+#include "orbit_correction.hpp"
 #include "orbweaver/continuation/branch.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
@@ -255,6 +257,32 @@ TEST(PendulumIndex, BoundCoversWhatTheLoopItselfHasWrong) {
       EXPECT_LE(stability.relative_error(), 0.1);
     }
   }
+}
+
+TEST(PendulumIndex, NewtonStepOfARoughLoopLeadsToTheOrbit) {
+  const auto system = pendulum();
+  const loop::Isotropy symmetric = test::pendulum_isotropy(*system);
+  double largest = 0.0;
+  for (const auto& [loop, reference] : pendulum_orbits()) {
+    const loop::Loop rough = loop::with_cutoff(loop, loop.cutoff / 2);
+    for (const loop::Isotropy& isotropy : {symmetric, loop::Isotropy{symmetric[0]}}) {
+      const spectrum::FundamentalGroup group = spectrum::fundamental_group(*system, rough, isotropy);
+      spectrum::VariationalStep stepper(*system);
+      const spectrum::Chain chain = spectrum::make_chain(*system, stepper, rough, group, 8 * rough.cutoff);
+      const auto index = [&](const spectrum::Chain& along) {
+        const spectrum::TransverseFlow flow = spectrum::transverse_flow(*system, along, group);
+        return spectrum::floquet_indices(system->description(), flow, group.order).fundamental[0].real();
+      };
+      const spectrum::OrbitCorrection correction = spectrum::orbit_correction(chain, group, true);
+      const double factor = 1e-7 / correction.states.cwiseAbs().maxCoeff();
+      const double before = index(chain);
+      const double after = before + (index(spectrum::corrected(*system, chain, correction, factor)) - before) / factor;
+      EXPECT_LE(std::abs(after - reference.half), 0.02 * std::abs(before - reference.half) + 2e-11 * reference.half)
+          << "T = " << reference.period << ", isotropy " << loop::to_text(isotropy);
+      largest = std::max(largest, std::abs(before / reference.half - 1.0));
+    }
+  }
+  EXPECT_GT(largest, 1e-8) << "nothing to correct";
 }
 
 TEST(PendulumIndex, FundamentalMapIsSymplectic) {

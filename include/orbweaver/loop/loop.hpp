@@ -3,17 +3,20 @@
 #include <span>
 #include <vector>
 
+#include "orbweaver/loop/time_map.hpp"
+
 namespace orbweaver::loop {
 
-/// A closed curve in phase space with a period: z(s) = n s + a_0 + sum_k a_k cos ks + b_k sin ks, s = 2 pi t / T
-/// (paper, section II D; winding numbers n added for angles that turn over).
+/// A closed curve in phase space with a period: z(s) = n s + a_0 + sum_k a_k cos ks + b_k sin ks, t = T phi(s)
+/// (paper, section II D, where s = 2 pi t / T; winding numbers n added for angles that turn over).
 struct Loop {
   int dimension = 0;
   int cutoff = 0;             ///< K, the highest harmonic
   double period = 0.0;        ///< T
   std::vector<double> modes;  ///< (2K + 1) x dimension, rows a_0, a_1, b_1, a_2, b_2, ...
   std::vector<double>
-      winding;  ///< n of each coordinate (size dimension, whole numbers; 0 but for angles that turn over)
+      winding;       ///< n of each coordinate (size dimension, whole numbers; 0 but for angles that turn over)
+  TimeMap time_map;  ///< phi: how s runs with time
 
   [[nodiscard]] double& cosine(int k, int i) { return modes[index(k == 0 ? 0 : 2 * k - 1, i)]; }
   [[nodiscard]] double cosine(int k, int i) const { return modes[index(k == 0 ? 0 : 2 * k - 1, i)]; }

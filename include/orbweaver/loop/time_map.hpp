@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+namespace orbweaver::loop {
+
+/// How the loop parameter s runs with time, t = T phi(s) (docs/mathematics.md, "Time map"): more of s, and so more of
+/// the harmonics' resolution, where the orbit moves fast. The identity by default.
+///
+///   2 pi phi(s) = s + atan2((kappa - 1) sin s cos s, cos^2 s + kappa sin^2 s) + sum_k (c_k sin ks + d_k (1 - cos ks)) / k
+///
+/// The first part is psi with tan psi = kappa tan s: a symmetric pulse at s = pi/2 and 3 pi/2 for kappa > 1, invariant
+/// under s -> -s and s -> s + pi.
+struct TimeMap {
+  double kappa = 1.0;                ///< > 0; 1 = no pulse
+  std::vector<double> coefficients;  ///< c_1, d_1, c_2, d_2, ...; empty = none
+
+  [[nodiscard]] bool is_identity() const;
+  /// 2 pi phi(s), for any real s: grows by 2 pi a turn.
+  [[nodiscard]] double phase(double s) const;
+  /// 2 pi phi'(s) > 0, with mean 1.
+  [[nodiscard]] double density(double s) const;
+  /// The s with phase(s) = `phase` (Newton, bracketed; to rounding).
+  [[nodiscard]] double inverse(double phase) const;
+
+  friend bool operator==(const TimeMap&, const TimeMap&) = default;
+};
+
+/// As stored in the archive: kappa, c_1, d_1, ...; empty for the identity.
+[[nodiscard]] std::vector<double> to_numbers(const TimeMap& map);
+/// Throws MisuseError for kappa <= 0, an even count, numbers that are not finite, or a density that is not positive.
+[[nodiscard]] TimeMap time_map_of(const std::vector<double>& numbers);
+
+}  // namespace orbweaver::loop
