@@ -5,11 +5,11 @@
 
 #include <petscksp.h>
 
-#include "loop_equations.hpp"
 #include "orbweaver/core/callback.hpp"
 #include "orbweaver/core/check.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loss/dense.hpp"
+#include "orbweaver/loss/loop_equations.hpp"
 
 namespace orbweaver::corrector {
 
@@ -26,7 +26,7 @@ constexpr Accuracy of_steps{1e-8, 1e-5};  // a step's error is squared away by t
 constexpr Accuracy of_flat_direction{1e-13, 1e-8};
 
 struct Context {
-  const LoopEquations* equations = nullptr;
+  const loss::LoopEquations* equations = nullptr;
   core::CallbackGuard guard{};
 };
 
@@ -66,7 +66,7 @@ class InnerSolver {
   }
 
   /// Throws NumericalError unless the residual falls to what is accepted.
-  Eigen::VectorXd solve(const LoopEquations& equations, const Eigen::VectorXd& right_side, Accuracy accuracy) {
+  Eigen::VectorXd solve(const loss::LoopEquations& equations, const Eigen::VectorXd& right_side, Accuracy accuracy) {
     _context.equations = &equations;
     loss::assign(_right_side.get(), right_side);
     core::check(KSPSetTolerances(_ksp.get(), accuracy.wanted, 1e-300, PETSC_DEFAULT, most_inner), "KSPSetTolerances");
@@ -100,7 +100,7 @@ class InnerSolver {
 
 bool newton_krylov_applies(const systems::System& system, const loss::Unknowns& unknowns, const loss::Slice& slice) {
   if (!unknowns.period || slice.conditions().cols() < 1) return false;
-  const int unfoldings = LoopEquations::unfoldings(unknowns, unknowns.subspace.image(), slice);
+  const int unfoldings = loss::LoopEquations::unfoldings(unknowns, unknowns.subspace.image(), slice);
   const bool square_without = unfoldings == 0 && slice.conditions().cols() == 1;
   const bool square_with = unfoldings == 1 && slice.conditions().cols() == 2 && system.description().conservative;
   return square_without || square_with;
@@ -113,11 +113,11 @@ NewtonKrylovRun run_newton_krylov(const systems::System& system, const loop::Loo
   const int most = options.max_iterations > 0 ? options.max_iterations : 30;
   NewtonKrylovRun run;
   run.loop = guess;
-  InnerSolver inner(unknowns.size() + LoopEquations::unfoldings(unknowns, image, slice));
+  InnerSolver inner(unknowns.size() + loss::LoopEquations::unfoldings(unknowns, image, slice));
   double last_loss = std::numeric_limits<double>::infinity();
   int without_progress = 0;
   while (run.stop == Stop::none) {
-    LoopEquations equations(system, run.loop, unknowns, image, slice);
+    loss::LoopEquations equations(system, run.loop, unknowns, image, slice);
     const double threshold = acceptance_threshold(run.loop, equations.linearization(), options.tolerance);
     without_progress = equations.loss() < 0.25 * last_loss ? 0 : without_progress + 1;
     last_loss = equations.loss();

@@ -1,9 +1,11 @@
-#include "loop_equations.hpp"
+#include "orbweaver/loss/loop_equations.hpp"
 
 #include <cmath>
 #include <numbers>
 
-namespace orbweaver::corrector {
+#include "box_scheme.hpp"
+
+namespace orbweaver::loss {
 
 namespace {
 
@@ -51,18 +53,20 @@ void filter(std::vector<double>& modes, int dimension, double half_cell, bool sh
 
 }  // namespace
 
-LoopEquations::LoopEquations(const systems::System& system, const loop::Loop& loop, const loss::Unknowns& unknowns,
-                             const loop::Subspace& image, const loss::Slice& slice)
+LoopEquations::LoopEquations(const systems::System& system, const loop::Loop& loop, const Unknowns& unknowns,
+                             const loop::Subspace& image, const Slice& slice)
     : _unknowns(unknowns),
       _image(image),
       _slice(slice),
       _unfoldings(unfoldings(unknowns, image, slice)),
-      _linearization(system, loop, loss::Linearization::Order::jacobian) {
+      _linearization(system, loop, Linearization::Order::jacobian) {
   if (_unfoldings == 0) return;
   const loop::FourierGrid& grid = _linearization.grid();
   _unfolding_column =
       project_nodal(energy_gradients(system, static_cast<std::size_t>(grid.nodes()), states_at(grid, loop, 0.0)));
 }
+
+LoopEquations::~LoopEquations() = default;
 
 Eigen::VectorXd LoopEquations::project_nodal(const std::vector<double>& nodal) const {
   std::vector<double> modes((2 * static_cast<std::size_t>(_linearization.cutoff()) + 1) *
@@ -160,4 +164,4 @@ Eigen::VectorXd LoopEquations::precondition(const Eigen::VectorXd& r) const {
   return out;
 }
 
-}  // namespace orbweaver::corrector
+}  // namespace orbweaver::loss

@@ -4,7 +4,7 @@
 
 #include "orbweaver/core/error.hpp"
 
-namespace orbweaver::corrector {
+namespace orbweaver::loss {
 
 namespace {
 
@@ -168,4 +168,4 @@ std::unique_ptr<BoxScheme> factor_box_scheme(const BoxScheme::Matrices& m) {
   }
 }
 
-}  // namespace orbweaver::corrector
+}  // namespace orbweaver::loss

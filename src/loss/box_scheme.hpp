@@ -5,7 +5,7 @@
 
 #include <Eigen/Dense>
 
-namespace orbweaver::corrector {
+namespace orbweaver::loss {
 
 /// The staggered box scheme of a linearised loop problem on N nodes of a full period,
 ///
@@ -40,4 +40,4 @@ class BoxScheme {
 /// Factors. Throws core::NumericalError if the condensed system is singular.
 [[nodiscard]] std::unique_ptr<BoxScheme> factor_box_scheme(const BoxScheme::Matrices& matrices);
 
-}  // namespace orbweaver::corrector
+}  // namespace orbweaver::loss
