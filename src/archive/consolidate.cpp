@@ -4,6 +4,7 @@
 
 #include "agree.hpp"
 #include "check_records.hpp"
+#include "orbweaver/core/log_stage.hpp"
 #include "parallel_file.hpp"
 #include "root_tables.hpp"
 #include "row_reader.hpp"
@@ -195,6 +196,7 @@ void check_input(MPI_Comm comm, const Header& header, const Records& tables) {
 
 void consolidate(MPI_Comm comm, const std::vector<std::filesystem::path>& segments, const std::filesystem::path& output,
                  const Header& header, const Records& tables, const ConsolidateOptions& options) {
+  const core::LogStage stage(core::Stage::archive);
   const bool is_root = rank_of(comm) == 0;
   check_input(comm, header, tables);
   Order given;

@@ -6,6 +6,7 @@
 
 #include "agree.hpp"
 #include "check_records.hpp"
+#include "orbweaver/core/log_stage.hpp"
 #include "parallel_file.hpp"
 #include "segment_file.hpp"
 
@@ -157,6 +158,7 @@ void check_input(MPI_Comm comm, const Header& header, const Records& mine) {
 }  // namespace
 
 void write_segment(MPI_Comm comm, const std::filesystem::path& path, const Header& header, const Records& mine) {
+  const core::LogStage stage(core::Stage::archive);
   check_input(comm, header, mine);
   const Share orbit_rows = share_of(comm, mine.orbits.size());
   const Share section_rows = share_of(comm, mine.sections.size());

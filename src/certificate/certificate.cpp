@@ -10,6 +10,7 @@
 
 #include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/log_stage.hpp"
 
 namespace orbweaver::certificate {
 
@@ -72,6 +73,7 @@ double single_shot_of(const systems::System& system, const std::vector<State>& s
 }  // namespace
 
 Certificate certify(const systems::System& system, const loop::Loop& loop, const Options& options) {
+  const core::LogStage stage(core::Stage::certificate);
   loop::validate(loop);
   core::require(loop.dimension == system.dimension(), "the loop and the system must have the same dimension");
   core::require(options.segments >= 1, "a certificate needs at least one segment");

@@ -8,6 +8,7 @@
 #include "attempt.hpp"
 #include "orbweaver/continuation/off_branch.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/log_stage.hpp"
 #include "step_control.hpp"
 
 namespace orbweaver::continuation {
@@ -303,7 +304,10 @@ Branch::~Branch() = default;
 Branch::Branch(Branch&&) noexcept = default;
 Branch& Branch::operator=(Branch&&) noexcept = default;
 
-std::optional<Orbit> Branch::advance() { return _implementation->advance(); }
+std::optional<Orbit> Branch::advance() {
+  const core::LogStage stage(core::Stage::continuation);
+  return _implementation->advance();
+}
 const std::optional<Ending>& Branch::ending() const { return _implementation->ending; }
 const Frontier& Branch::frontier() const { return _implementation->frontier; }
 

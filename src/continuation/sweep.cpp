@@ -9,6 +9,7 @@
 
 #include "linear_modes.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/log_stage.hpp"
 #include "orbweaver/loss/linearization.hpp"
 #include "orbweaver/loss/matrices.hpp"
 #include "orbweaver/spectrum/eigenpairs.hpp"
@@ -94,6 +95,7 @@ std::string why_rejected(int k, const LinearModes::Root& root) {
 }  // namespace
 
 SweepResult sweep(const systems::System& system, std::span<const double> fixed_point, const SweepOptions& options) {
+  const core::LogStage stage(core::Stage::sweep);
   core::require(options.step > 0.0 && options.period_from > 0.0 && options.period_to > options.period_from,
                 "a sweep needs 0 < period_from < period_to and a positive step");
   SweepResult result;

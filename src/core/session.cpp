@@ -3,6 +3,7 @@
 #include <slepcsys.h>
 
 #include "orbweaver/core/check.hpp"
+#include "orbweaver/core/log_stage.hpp"
 
 namespace orbweaver::core {
 
@@ -40,9 +41,11 @@ Session::Session(const std::vector<std::string>& petsc_options) {
   a.data = a.pointers.data();
   check(SlepcInitialize(&a.count, &a.data, nullptr, nullptr), "SlepcInitialize");
   check(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr), "PetscPushErrorHandler");
+  register_log_stages();
 }
 
 Session::~Session() {
+  forget_log_stages();
   PetscPopErrorHandler();
   SlepcFinalize();
   if (_owns_mpi) MPI_Finalize();

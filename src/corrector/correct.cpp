@@ -8,6 +8,7 @@
 #include "newton_krylov.hpp"
 #include "objective.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/log_stage.hpp"
 #include "orbweaver/spectrum/sliced_hessian.hpp"
 #include "tao_solver.hpp"
 
@@ -188,6 +189,7 @@ Result dispatch(const systems::System& system, const loop::Loop& guess, const lo
 
 Result correct(const systems::System& system, const loop::Loop& guess, const loss::Unknowns& unknowns,
                const loss::Slice& slice, const Options& options, const std::optional<Eigen::VectorXd>& normal) {
+  const core::LogStage stage(core::Stage::corrector);
   core::require(slice.unknowns() == unknowns.size(), "the slice belongs to other unknowns");
   Result result;
   result.loop = guess;

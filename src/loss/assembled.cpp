@@ -4,6 +4,7 @@
 
 #include "orbweaver/core/check.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/log_stage.hpp"
 #include "orbweaver/loss/dense.hpp"
 #include "orbweaver/loss/matrices.hpp"
 
@@ -179,6 +180,7 @@ class HessianAssembly {
 }  // namespace
 
 core::Handle<Mat> assemble_jacobian(const Linearization& lin, const Unknowns& unknowns) {
+  const core::LogEvent event(core::Event::assembly);
   core::require(lin.order() != Linearization::Order::residual, "a Jacobian needs a linearization of order jacobian");
   require_same_size(lin, unknowns);
   const int nodes = lin.nodes();
@@ -221,6 +223,7 @@ core::Handle<Mat> assemble_jacobian(const Linearization& lin, const Unknowns& un
 }
 
 core::Handle<Mat> assemble_hessian(const Linearization& lin, const Unknowns& unknowns, Curvature curvature) {
+  const core::LogEvent event(core::Event::assembly);
   core::require(lin.order() != Linearization::Order::residual, "a Hessian needs a linearization of order jacobian");
   core::require(curvature == Curvature::gauss_newton || lin.order() == Linearization::Order::second,
                 "the full curvature needs a linearization of order second");

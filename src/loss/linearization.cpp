@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/log_stage.hpp"
 
 namespace orbweaver::loss {
 
@@ -19,6 +20,7 @@ Linearization::Linearization(const systems::System& system, const loop::Loop& lo
       _period(loop.period),
       _rate(2.0 * std::numbers::pi / loop.period),
       _grid(&loop::FourierGrid::of_size(_nodes)) {
+  const core::LogEvent event(order == Order::residual ? core::Event::residual : core::Event::jacobian);
   loop::validate(loop);
   core::require(system.dimension() == loop.dimension, "the loop's dimension is not the system's");
   const auto n = static_cast<std::size_t>(_nodes);
@@ -36,10 +38,14 @@ Linearization::Linearization(const systems::System& system, const loop::Loop& lo
   }
   std::vector<double> f(d * n);
   if (order == Order::residual) {
+    const core::LogEvent field(core::Event::field);
     system.field(n, _z.data(), f.data());
   } else {
     _a.resize(d * d * n);
-    system.field_jacobian(n, _z.data(), f.data(), _a.data());
+    {
+      const core::LogEvent field(core::Event::field);
+      system.field_jacobian(n, _z.data(), f.data(), _a.data());
+    }
     check_finite(system, _a, "Jacobian");
   }
   check_finite(system, f, "vector field");

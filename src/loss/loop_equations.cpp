@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "box_scheme.hpp"
+#include "orbweaver/core/log_stage.hpp"
 
 namespace orbweaver::loss {
 
@@ -97,6 +98,7 @@ Eigen::VectorXd LoopEquations::apply(const Eigen::VectorXd& x) const {
 }
 
 void LoopEquations::factor(const systems::System& system, const loop::Loop& loop) {
+  const core::LogEvent event(core::Event::factor);
   const int nodes = 2 * loop.cutoff + 1;
   const loop::FourierGrid& grid = loop::FourierGrid::of_size(nodes);
   const auto n = static_cast<std::size_t>(nodes);
@@ -143,6 +145,7 @@ void LoopEquations::factor(const systems::System& system, const loop::Loop& loop
 }
 
 Eigen::VectorXd LoopEquations::precondition(const Eigen::VectorXd& r) const {
+  const core::LogEvent event(core::Event::precondition);
   const int cutoff = _linearization.cutoff();
   const int dimension = _linearization.dimension();
   const int nodes = 2 * cutoff + 1;

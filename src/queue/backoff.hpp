@@ -4,6 +4,7 @@
 #include <chrono>
 #include <thread>
 
+#include "orbweaver/core/log_stage.hpp"
 #include "orbweaver/queue/run.hpp"
 
 namespace orbweaver::queue {
@@ -16,6 +17,7 @@ class Backoff {
       : _shortest(options.shortest_sleep), _longest(options.longest_sleep), _next(_shortest) {}
 
   void wait() {
+    const core::LogStage stage(core::Stage::queue_wait);
     std::this_thread::sleep_for(_next);
     _next = std::min(_next + (_next + std::chrono::microseconds(3)) / 4, _longest);
   }

@@ -7,6 +7,7 @@
 
 #include "orbweaver/core/check.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/log_stage.hpp"
 #include "orbweaver/loss/dense.hpp"
 #include "start_vector.hpp"
 
@@ -31,6 +32,7 @@ void shift_and_invert(EPS eps, double shift) {
 }  // namespace
 
 Eigenpairs smallest_eigenpairs(const core::Handle<Mat>& matrix, const EigenOptions& options) {
+  const core::LogStage stage(core::Stage::spectrum);
   PetscInt size = 0;
   core::check(MatGetSize(matrix.get(), &size, nullptr), "MatGetSize");
   core::require(options.count >= 1 && options.count <= size, "between one and all eigenpairs can be asked for");

@@ -12,6 +12,7 @@
 #include "matrix_table.hpp"
 #include "orbit_correction.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/log_stage.hpp"
 #include "transverse_flow.hpp"
 
 namespace orbweaver::spectrum {
@@ -165,6 +166,8 @@ double Stability::relative_error() const { return largest_relative(full, full_er
 
 Stability floquet(const systems::System& system, const loop::Loop& loop, const loop::Isotropy& isotropy,
                   const FloquetOptions& options) {
+  const core::LogStage stage(core::Stage::spectrum);
+  const core::LogEvent event(core::Event::multipliers);
   loop::validate(loop);
   core::require(loop.dimension == system.dimension(), "Floquet multipliers: the loop is not of the system's dimension");
   core::require(loop::rms_speed(loop) > 0.0, "Floquet multipliers need an orbit that moves; this loop is constant");

@@ -5,12 +5,14 @@
 
 #include "orbweaver/core/check.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/log_stage.hpp"
 #include "orbweaver/loss/dense.hpp"
 #include "start_vector.hpp"
 
 namespace orbweaver::spectrum {
 
 SingularTriplets smallest_singular_triplets(const core::Handle<Mat>& matrix, int count) {
+  const core::LogStage stage(core::Stage::spectrum);
   Eigen::MatrixXd j;
   loss::with_dense_array(matrix, [&](loss::DenseMap map) { j = map; });
   core::require(j.rows() >= j.cols(), "singular triplets need at least as many rows as columns");
