@@ -81,6 +81,11 @@ TEST(RunSurvey, ManySmallFlushesGiveTheArchiveOfOneRankAndOneFlush) {
   const core::Communicator comm;
   scene::Scene scene = test::quick_scene({"limits.period=8.5"});
   const auto pieces = test::fresh_folder(own_folder(comm, "pieces"), comm.get());
+  const auto foreign = pieces / "segments" / "notes.txt";
+  if (comm.is_root()) {
+    std::filesystem::create_directory(pieces / "segments");
+    std::ofstream(foreign) << "not ours";
+  }
   scene.output.flush_orbits = 3;  // in the struct alone: the archive stores the text
   (void)run(comm, scene, pieces);
   if (!comm.is_root()) return;
@@ -91,6 +96,8 @@ TEST(RunSurvey, ManySmallFlushesGiveTheArchiveOfOneRankAndOneFlush) {
   (void)run(alone, scene, whole);
   EXPECT_EQ(test::dataset_bytes(pieces / "atlas.h5"), test::dataset_bytes(whole / "atlas.h5"));
   EXPECT_GT(archive::Archive(pieces / "atlas.h5").orbits().rows(), 30U);
+  EXPECT_THAT(files_in(pieces / "segments"), ElementsAre("notes.txt"));
+  EXPECT_EQ(std::filesystem::file_size(foreign), 8U);
 }
 
 TEST(RunSurvey, AFolderThatCannotBeMadeIsAnEnvironmentErrorOnEveryRank) {
