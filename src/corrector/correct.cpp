@@ -61,6 +61,8 @@ Polished polish(const systems::System& system, const loop::Loop& found, const lo
 
 // The residual that the truncation leaves is about rate K tail: only where that explains the loss do more harmonics help.
 bool tail_explains(const loop::Loop& loop, double loss_rms, double threshold, const Options& options) {
+  // A tail of the size of the modes' own rounding says nothing of the resolution.
+  if (loop::tail(loop) <= std::numeric_limits<double>::epsilon() * loop::rms_size(loop)) return false;
   const double truncation = 2.0 * M_PI / loop.period * loop.cutoff * loop::tail(loop);
   return truncation > options.tail_tolerance * threshold && truncation > 1e-2 * loss_rms;
 }
@@ -102,6 +104,8 @@ void judge(Result& result, Stop stop, const std::string& solver_reason, const Op
     result.detail = fmt::format("{} after {} iterations at sqrt(loss) = {:.3g}, wanted {:.3g}, K = {} ({})",
                                 name_of(result.outcome), result.iterations, result.loss_rms, result.threshold,
                                 result.loop.cutoff, solver_reason);
+    if (result.loss_rms < 10.0 * std::numeric_limits<double>::epsilon() * loop::rms_speed(result.loop))
+      result.detail += "; the loss is all rounding: the tolerance is out of reach";
   } else if (result.newton_step > options.step_tolerance * (1.0 + length(result.loop))) {
     result.outcome = Outcome::stalled;
     result.detail = fmt::format(

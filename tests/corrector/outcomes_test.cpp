@@ -71,6 +71,17 @@ TEST(Outcomes, UnderResolvedWithTooFewHarmonics) {
   }
 }
 
+TEST(Outcomes, ATailOfRoundingAsksForNoHarmonics) {
+  const test::Problem problem(test::in_phase(), 0.6, 87);  // resolved at K = 40
+  for (const Method method : {Method::newton_krylov, Method::nls}) {
+    const Result result = problem.correct(problem.guess, {.method = method, .tolerance = 1e-18});
+    expect_outcome(result, Outcome::stalled);
+    EXPECT_THAT(result.detail, HasSubstr("the tolerance is out of reach"));
+  }
+  const test::Problem coarse(test::in_phase(), 0.6, 10);
+  EXPECT_THAT(coarse.correct(coarse.guess, {.method = Method::nls}).detail, testing::Not(HasSubstr("out of reach")));
+}
+
 class EveryMethodFails : public testing::TestWithParam<Method> {};
 
 TEST_P(EveryMethodFails, NotFinite) {
