@@ -18,8 +18,8 @@ constexpr auto time_between_lines = std::chrono::seconds(5);
 std::string line_of(const FamilyState& f) {
   const double seconds = std::chrono::duration<double>(f.changed - f.began).count();
   const std::string rate = seconds > 0.0 ? fmt::format("{:.1f} orbits/s", static_cast<double>(f.orbits) / seconds) : "";
-  return fmt::format("{:<12} {:>5} orbits  T = {:<9.5f} E = {:<12.8f} K = {:<5} {}", f.name, f.orbits, f.period,
-                     f.energy, f.cutoff, f.running ? rate : f.end);
+  return fmt::format("{:<10} {:>5} orbits  T {:<8.4f} E {:<10.6f} K {:<4} {}", f.name, f.orbits, f.period, f.energy,
+                     f.cutoff, f.running ? rate : f.end);
 }
 
 }  // namespace
