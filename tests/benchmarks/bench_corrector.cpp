@@ -1,5 +1,11 @@
 // One correction against the cutoff K: an orbit padded to K, pushed off by a smooth perturbation, corrected at its period.
 #include <benchmark/benchmark.h>
+#include <malloc.h>
+
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <string>
 
 #include "family_orbit.hpp"
 #include "orbweaver/corrector/correct.hpp"
@@ -7,6 +13,21 @@
 namespace orbweaver::benchmarks {
 
 namespace {
+
+// What one correction needs above what the process holds, MiB: the peak of its resident memory (Linux).
+double peak_memory_of(const std::function<void()>& work) {
+  const auto resident = [](const char* field) {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+      if (line.starts_with(field)) return std::stod(line.substr(std::string(field).size())) / 1024.0;
+    return std::numeric_limits<double>::quiet_NaN();
+  };
+  malloc_trim(0);
+  std::ofstream("/proc/self/clear_refs") << "5";  // the peak is counted from here
+  const double before = resident("VmRSS:");
+  work();
+  return resident("VmHWM:") - before;
+}
 
 void correct_at(benchmark::State& state, corrector::Method method, bool symmetric, double period) {
   const FamilyOrbit& orbit = family_orbit(Family::in_phase, period);
@@ -33,6 +54,8 @@ void correct_at(benchmark::State& state, corrector::Method method, bool symmetri
     benchmark::DoNotOptimize(result);
   }
   if (!result.converged()) state.SkipWithError(result.detail.c_str());
+  state.counters["MiB"] =
+      peak_memory_of([&] { result = corrector::correct(*orbit.system, guess, unknowns, slice, options); });
   state.counters["K"] = cutoff;
   state.counters["unknowns"] = unknowns.size();
   state.counters["newton"] = result.iterations + 1;
@@ -40,6 +63,10 @@ void correct_at(benchmark::State& state, corrector::Method method, bool symmetri
   state.SetComplexityN(cutoff);
 }
 
+// A short orbit, which few harmonics resolve, so that the same one can be solved at every K.
+void newton_krylov_symmetric_short(benchmark::State& s) { correct_at(s, corrector::Method::newton_krylov, true, 8.25); }
+void newton_krylov_full_short(benchmark::State& s) { correct_at(s, corrector::Method::newton_krylov, false, 8.25); }
+void default_symmetric_short(benchmark::State& s) { correct_at(s, corrector::Method::automatic, true, 8.25); }
 void newton_krylov_symmetric(benchmark::State& s) { correct_at(s, corrector::Method::newton_krylov, true, 12.0); }
 void newton_krylov_full(benchmark::State& s) { correct_at(s, corrector::Method::newton_krylov, false, 12.0); }
 void newton_krylov_full_T20(benchmark::State& s) { correct_at(s, corrector::Method::newton_krylov, false, 20.0); }
@@ -47,6 +74,9 @@ void newton_krylov_full_T30(benchmark::State& s) { correct_at(s, corrector::Meth
 void nls_symmetric(benchmark::State& s) { correct_at(s, corrector::Method::nls, true, 12.0); }
 void nls_full(benchmark::State& s) { correct_at(s, corrector::Method::nls, false, 12.0); }
 
+BENCHMARK(newton_krylov_symmetric_short)->RangeMultiplier(2)->Range(16, 8192)->Unit(benchmark::kMillisecond);
+BENCHMARK(newton_krylov_full_short)->RangeMultiplier(2)->Range(16, 8192)->Unit(benchmark::kMillisecond);
+BENCHMARK(default_symmetric_short)->RangeMultiplier(2)->Range(16, 8192)->Unit(benchmark::kMillisecond);
 BENCHMARK(newton_krylov_symmetric)->RangeMultiplier(2)->Range(256, 8192)->Unit(benchmark::kMillisecond);
 BENCHMARK(newton_krylov_full)->RangeMultiplier(2)->Range(256, 8192)->Unit(benchmark::kMillisecond);
 BENCHMARK(newton_krylov_full_T20)->RangeMultiplier(4)->Range(512, 8192)->Unit(benchmark::kMillisecond);
