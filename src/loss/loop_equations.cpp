@@ -11,13 +11,8 @@ namespace orbweaver::loss {
 namespace {
 
 std::vector<double> energy_gradients(const systems::System& system, std::size_t nodes, const std::vector<double>& z) {
-  const auto d = static_cast<std::size_t>(system.dimension());
-  std::vector<double> out(d * nodes), state(d), gradient(d);
-  for (std::size_t j = 0; j < nodes; ++j) {
-    for (std::size_t i = 0; i < d; ++i) state[i] = z[i * nodes + j];
-    system.energy_gradient(state, gradient);
-    for (std::size_t i = 0; i < d; ++i) out[i * nodes + j] = gradient[i];
-  }
+  std::vector<double> out(z.size());
+  system.energy_gradients(nodes, z.data(), out.data());
   return out;
 }
 

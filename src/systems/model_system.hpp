@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -9,7 +10,7 @@
 
 namespace orbweaver::systems {
 
-/// Adapts a model to the System interface, with derivatives by AD. A model has
+/// Adapts a model to the System interface, with derivatives by AD, over nodes in SIMD lanes. A model has
 ///   static constexpr int dimension;
 ///   static Description describe();
 ///   explicit Model(const std::map<std::string, double>& parameters);   // every parameter, checked
@@ -25,34 +26,36 @@ class ModelSystem final : public ComplexSystem {
   [[nodiscard]] const std::map<std::string, double>& parameters() const override { return _parameters; }
 
   void field(std::size_t nodes, const double* z, double* f) const override {
-    State state;
-    State value;
-    for (std::size_t j = 0; j < nodes; ++j) {
-      gather(nodes, j, z, state);
-      _model.template field<double>(state.data(), value.data());
-      scatter(nodes, j, value, f);
-    }
+    for_each_group(nodes, [=, this](std::size_t j, std::size_t count) {
+      State value;
+      _model.template field<ad::Lanes>(load(nodes, j, count, z).data(), value.data());
+      store(nodes, j, count, value, f);
+    });
   }
 
   void field_jacobian(std::size_t nodes, const double* z, double* f, double* jacobian) const override {
-    State state;
-    for (std::size_t j = 0; j < nodes; ++j) {
-      gather(nodes, j, z, state);
-      const auto result = ad::field_jacobian<Model::dimension>(_field, state.data());
-      scatter(nodes, j, result.value, f);
-      scatter(nodes, j, result.jacobian, jacobian);
-    }
+    for_each_group(nodes, [=, this](std::size_t j, std::size_t count) {
+      const auto result = ad::field_jacobian<Model::dimension>(_field, load(nodes, j, count, z).data());
+      store(nodes, j, count, result.value, f);
+      store(nodes, j, count, result.jacobian, jacobian);
+    });
   }
 
   void second_derivatives(std::size_t nodes, const double* z, const double* weights,
                           double* contracted) const override {
-    State state;
-    State weight;
-    for (std::size_t j = 0; j < nodes; ++j) {
-      gather(nodes, j, z, state);
-      gather(nodes, j, weights, weight);
-      scatter(nodes, j, ad::second_derivatives<Model::dimension>(_field, state.data(), weight.data()), contracted);
-    }
+    for_each_group(nodes, [=, this](std::size_t j, std::size_t count) {
+      const State state = load(nodes, j, count, z);
+      const State weight = load(nodes, j, count, weights);
+      store(nodes, j, count, ad::second_derivatives<Model::dimension>(_field, state.data(), weight.data()), contracted);
+    });
+  }
+
+  void energy_gradients(std::size_t nodes, const double* z, double* gradients) const override {
+    const auto energy_of = [this]<class S>(const S* state) { return _model.template energy<S>(state); };
+    for_each_group(nodes, [=](std::size_t j, std::size_t count) {
+      const auto result = ad::value_gradient<Model::dimension>(energy_of, load(nodes, j, count, z).data());
+      store(nodes, j, count, result.gradient, gradients);
+    });
   }
 
   [[nodiscard]] double energy(std::span<const double> z) const override {
@@ -60,9 +63,7 @@ class ModelSystem final : public ComplexSystem {
   }
 
   void energy_gradient(std::span<const double> z, std::span<double> gradient) const override {
-    const auto energy_of = [this]<class S>(const S* state) { return _model.template energy<S>(state); };
-    const auto result = ad::value_gradient<Model::dimension>(energy_of, z.data());
-    for (std::size_t i = 0; i < size; ++i) gradient[i] = result.gradient[i];
+    energy_gradients(1, z.data(), gradient.data());
   }
 
   [[nodiscard]] double action_density(std::span<const double> z) const override {
@@ -77,7 +78,7 @@ class ModelSystem final : public ComplexSystem {
 
  private:
   static constexpr auto size = static_cast<std::size_t>(Model::dimension);
-  using State = std::array<double, size>;
+  using State = std::array<ad::Lanes, size>;
 
   struct Field {
     const Model& model;
@@ -87,13 +88,28 @@ class ModelSystem final : public ComplexSystem {
     }
   };
 
-  static void gather(std::size_t nodes, std::size_t j, const double* nodal, State& state) {
-    for (std::size_t i = 0; i < size; ++i) state[i] = nodal[i * nodes + j];
+  // One body serves full groups and the last one, so that a node's bits do not depend on where it stands.
+  template <class Evaluate>
+  [[gnu::flatten, gnu::noinline]] static void for_each_group(std::size_t nodes, const Evaluate& evaluate) {
+    for (std::size_t j = 0; j < nodes; j += ad::Lanes::width) evaluate(j, std::min(ad::Lanes::width, nodes - j));
+  }
+
+  static State load(std::size_t nodes, std::size_t j, std::size_t count, const double* nodal) {
+    State state;
+    if (count == ad::Lanes::width) [[likely]]
+      for (std::size_t i = 0; i < size; ++i) state[i] = ad::Lanes::load(nodal + i * nodes + j);
+    else
+      for (std::size_t i = 0; i < size; ++i) state[i] = ad::Lanes::load(nodal + i * nodes + j, count);
+    return state;
   }
 
   template <std::size_t Rows>
-  static void scatter(std::size_t nodes, std::size_t j, const std::array<double, Rows>& values, double* nodal) {
-    for (std::size_t i = 0; i < Rows; ++i) nodal[i * nodes + j] = values[i];
+  static void store(std::size_t nodes, std::size_t j, std::size_t count, const std::array<ad::Lanes, Rows>& values,
+                    double* nodal) {
+    if (count == ad::Lanes::width) [[likely]]
+      for (std::size_t i = 0; i < Rows; ++i) values[i].store(nodal + i * nodes + j);
+    else
+      for (std::size_t i = 0; i < Rows; ++i) values[i].store(nodal + i * nodes + j, count);
   }
 
   Model _model;

@@ -2,6 +2,7 @@
 // new line.
 #include <cmath>
 #include <complex>
+#include <limits>
 
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
@@ -192,6 +193,61 @@ TEST_P(Identities, NodalArraysAreComponentMajor) {
       EXPECT_EQ(entries[entry * nodes + j], one_jacobian[entry]);
       EXPECT_EQ(contracted[entry * nodes + j], one_contracted[entry]);
     }
+  }
+}
+
+// Every nodal function at every number of nodes and at every place, against the same state alone.
+TEST_P(Identities, NodesDoNotSeeEachOther) {
+  constexpr std::size_t most = 19;
+  const auto system = random_system();
+  const std::size_t d = dimension;
+  const auto evaluate = [&](std::size_t nodes, const std::vector<double>& z, const std::vector<double>& weights) {
+    std::vector<double> out((3 * d + 2 * d * d) * nodes);
+    system->field(nodes, z.data(), out.data());
+    system->energy_gradients(nodes, z.data(), &out[d * nodes]);
+    system->field_jacobian(nodes, z.data(), &out[2 * d * nodes], &out[3 * d * nodes]);
+    system->second_derivatives(nodes, z.data(), weights.data(), &out[(3 * d + d * d) * nodes]);
+    return out;
+  };
+  const auto state = random_state();
+  const auto weight = random_state();
+  const auto alone = evaluate(1, state, weight);
+  std::vector<double> gradient(d);
+  system->energy_gradient(state, gradient);
+  for (std::size_t i = 0; i < d; ++i) EXPECT_EQ(alone[d + i], gradient[i]);
+  for (std::size_t nodes = 1; nodes <= most; ++nodes) {
+    for (std::size_t place = 0; place < nodes; ++place) {
+      // The others: far out, where sines go another way, or not a number.
+      auto z = random_numbers(d * nodes, generator);
+      auto weights = random_numbers(d * nodes, generator);
+      for (std::size_t j = 0; j < nodes; ++j)
+        for (std::size_t i = 0; i < d; ++i) {
+          if (j % 3 == 1) z[i * nodes + j] *= 1e7;
+          if (j % 3 == 2) z[i * nodes + j] = std::numeric_limits<double>::quiet_NaN();
+        }
+      for (std::size_t i = 0; i < d; ++i) {
+        z[i * nodes + place] = state[i];
+        weights[i * nodes + place] = weight[i];
+      }
+      const auto together = evaluate(nodes, z, weights);
+      for (std::size_t row = 0; row < alone.size(); ++row)
+        ASSERT_EQ(together[row * nodes + place], alone[row]) << "row " << row << " at " << place << " of " << nodes;
+    }
+  }
+}
+
+TEST_P(Identities, FieldAgreesWithComplexFieldFarOut) {
+  for (const double scale : {1.0, 1e2, 1e5}) {
+    const auto system = random_system();
+    const auto& complex_system = dynamic_cast<const ComplexSystem&>(*system);
+    auto z = random_state();
+    for (double& coordinate : z) coordinate *= scale;
+    const std::vector<Complex> at(z.begin(), z.end());
+    std::vector<Complex> expected(dimension);
+    complex_system.complex_field(at.data(), expected.data());
+    const Eigen::VectorXd f = field(*system, vector(z));
+    for (std::size_t i = 0; i < dimension; ++i)
+      EXPECT_NEAR(f[static_cast<Eigen::Index>(i)], expected[i].real(), 1e-14 * (1.0 + f.norm()));
   }
 }
 

@@ -13,8 +13,9 @@ namespace orbweaver::systems {
 
 /// An autonomous vector field dz/dt = f(z) with its parameters and effects bound. Immutable; safe to share in a process.
 ///
-/// Nodal arrays are component-major: coordinate i of node j stands at [i * nodes + j]. Functions do not check for NaN:
-/// the loss does, and says at which node.
+/// Nodal arrays are component-major: coordinate i of node j stands at [i * nodes + j]. Registered systems evaluate
+/// several nodes at once; a node's bits depend neither on the other nodes nor on its place among them. Functions do not
+/// check for NaN: the loss does, and says at which node.
 class System {
  public:
   virtual ~System() = default;
@@ -40,6 +41,8 @@ class System {
   [[nodiscard]] virtual double energy(std::span<const double> z) const = 0;
   /// Its gradient at one state; `gradient` has size dimension.
   virtual void energy_gradient(std::span<const double> z, std::span<double> gradient) const = 0;
+  /// The same at each node; `gradients`: dimension x nodes.
+  virtual void energy_gradients(std::size_t nodes, const double* z, double* gradients) const;
   /// p . dq/dt at one state, whose time integral over a period is the action; NaN where the system has none.
   [[nodiscard]] virtual double action_density(std::span<const double> z) const = 0;
 };

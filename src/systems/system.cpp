@@ -1,0 +1,16 @@
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::systems {
+
+void System::energy_gradients(std::size_t nodes, const double* z, double* gradients) const {
+  const auto d = static_cast<std::size_t>(dimension());
+  std::vector<double> state(d);
+  std::vector<double> gradient(d);
+  for (std::size_t j = 0; j < nodes; ++j) {
+    for (std::size_t i = 0; i < d; ++i) state[i] = z[i * nodes + j];
+    energy_gradient(state, gradient);
+    for (std::size_t i = 0; i < d; ++i) gradients[i * nodes + j] = gradient[i];
+  }
+}
+
+}  // namespace orbweaver::systems
