@@ -3,8 +3,6 @@
 #include <cmath>
 #include <vector>
 
-#include "orbweaver/loop/fourier.hpp"
-
 namespace orbweaver::continuation {
 
 double energy_of(const systems::System& system, const loop::Loop& loop) {
@@ -12,19 +10,15 @@ double energy_of(const systems::System& system, const loop::Loop& loop) {
 }
 
 double action_of(const systems::System& system, const loop::Loop& loop) {
-  const int nodes = loop::FourierGrid::nodes_for(loop.cutoff);
-  const auto n = static_cast<std::size_t>(nodes);
-  const auto d = static_cast<std::size_t>(loop.dimension);
-  std::vector<double> nodal(d * n);
-  loop::FourierGrid::of_size(nodes).synthesize(loop.cutoff, loop.dimension, loop.modes.data(), nodal.data());
-  std::vector<double> state(d);
+  const loop::Samples samples = loop::samples_of(loop);
+  const auto n = static_cast<std::size_t>(samples.nodes);
+  std::vector<double> state(static_cast<std::size_t>(loop.dimension));
   double sum = 0.0;
   for (std::size_t j = 0; j < n; ++j) {
-    for (std::size_t i = 0; i < d; ++i)
-      state[i] = nodal[i * n + j] + loop.winding[i] * 2.0 * M_PI * static_cast<double>(j) / nodes;
-    sum += system.action_density(state);
+    for (std::size_t i = 0; i < state.size(); ++i) state[i] = samples.states[i * n + j];
+    sum += samples.weights[j] * system.action_density(state);
   }
-  return loop.period * sum / nodes;
+  return loop.period * sum;
 }
 
 double arclength_between(const loop::Loop& from, const loop::Loop& to) {

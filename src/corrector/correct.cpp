@@ -21,7 +21,7 @@ double rms_field_jacobian(const loss::Linearization& lin) {
   for (int i = 0; i < lin.dimension(); ++i)
     for (int l = 0; l < lin.dimension(); ++l) {
       const double* a = lin.field_jacobian(i, l);
-      for (int j = 0; j < lin.nodes(); ++j) sum += a[j] * a[j];
+      for (int j = 0; j < lin.nodes(); ++j) sum += lin.density()[j] * a[j] * a[j];
     }
   return std::sqrt(sum / lin.nodes());
 }
@@ -87,7 +87,7 @@ Outcome outcome_of(Stop stop, const loop::Loop& loop, double loss_rms, double th
 
 double acceptance_threshold(const loop::Loop& loop, const loss::Linearization& linearization, double tolerance) {
   double mean_square = 0.0;
-  for (int i = 0; i < loop.dimension; ++i) mean_square += loop.cosine(0, i) * loop.cosine(0, i);
+  for (const double v : loop::mean_state(loop)) mean_square += v * v;
   const double size = std::sqrt(mean_square);
   const double rounding = linearization.order() == loss::Linearization::Order::residual
                               ? 0.0

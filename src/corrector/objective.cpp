@@ -40,6 +40,6 @@ core::Handle<Mat> Objective::jacobian(const Eigen::VectorXd& x) {
   return _slice.reduce_columns(loss::assemble_jacobian(at(x), _unknowns));
 }
 
-int Objective::rows() const { return _base.dimension * loop::FourierGrid::nodes_for(_base.cutoff); }
+int Objective::rows() const { return _base.dimension * loop::nodes_for(_base); }
 
 }  // namespace orbweaver::corrector

@@ -52,7 +52,11 @@ const FourierGrid& FourierGrid::of_size(int nodes) {
 
 int FourierGrid::nodes_for(int cutoff) {
   core::require(cutoff >= 1, "a loop needs a cutoff of at least one harmonic");
-  int nodes = 2 * (2 * cutoff + 1);
+  return nodes_at_least(2 * (2 * cutoff + 1));
+}
+
+int FourierGrid::nodes_at_least(int least) {
+  int nodes = std::max(2, least + least % 2);
   while (!has_small_factors(nodes)) nodes += 2;
   return nodes;
 }

@@ -30,6 +30,7 @@ Loop reversed(const Loop& loop) {
   for (int k = 1; k <= loop.cutoff; ++k)
     for (int i = 0; i < loop.dimension; ++i) out.sine(k, i) = -loop.sine(k, i);
   for (double& n : out.winding) n = -n;
+  out.time_map = loop.time_map.reversed();
   return out;
 }
 

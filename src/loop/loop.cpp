@@ -13,19 +13,11 @@ namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
 
-double squared_norm(std::span<const double> values) {
-  double sum = 0.0;
-  for (const double v : values) sum += v * v;
-  return sum;
-}
-
-std::span<const double> row(const Loop& loop, int r) {
-  const auto d = static_cast<std::size_t>(loop.dimension);
-  return {loop.modes.data() + static_cast<std::size_t>(r) * d, d};
-}
-
 double harmonic_norm_squared(const Loop& loop, int k) {
-  return squared_norm(row(loop, 2 * k - 1)) + squared_norm(row(loop, 2 * k));
+  double sum = 0.0;
+  for (int i = 0; i < loop.dimension; ++i)
+    sum += loop.cosine(k, i) * loop.cosine(k, i) + loop.sine(k, i) * loop.sine(k, i);
+  return sum;
 }
 
 }  // namespace
@@ -55,19 +47,25 @@ void validate(const Loop& loop) {
                 "a loop needs a winding number a coordinate");
   core::require(std::all_of(loop.modes.begin(), loop.modes.end(), [](double v) { return std::isfinite(v); }),
                 "a loop's modes must be finite");
+  const TimeMap& map = loop.time_map;
+  core::require(
+      map.kappa > 0.0 && std::isfinite(map.kappa) && map.coefficients.size() % 2 == 0 &&
+          std::all_of(map.coefficients.begin(), map.coefficients.end(), [](double c) { return std::isfinite(c); }),
+      "a loop's time map needs a positive kappa and pairs of finite coefficients");
 }
 
 std::vector<double> state_at(const Loop& loop, double time) {
+  // Reduced by whole turns before it is multiplied by k, so that large times keep their digits.
   const double turns = time / loop.period;
-  const double s = two_pi * turns;
-  // The phase is reduced by whole turns before it is multiplied by k, so that large times keep their digits.
-  const double reduced = two_pi * (turns - std::floor(turns));
+  const double whole = std::floor(turns);
+  const double phase = two_pi * (turns - whole);
+  const double s = loop.time_map.is_identity() ? phase : loop.time_map.inverse(phase);
   const auto d = static_cast<std::size_t>(loop.dimension);
   std::vector<double> z(d);
-  for (std::size_t i = 0; i < d; ++i) z[i] = loop.winding[i] * s + loop.modes[i];
+  for (std::size_t i = 0; i < d; ++i) z[i] = loop.winding[i] * (two_pi * whole + s) + loop.modes[i];
   for (int k = loop.cutoff; k >= 1; --k) {
-    const double c = std::cos(k * reduced);
-    const double sn = std::sin(k * reduced);
+    const double c = std::cos(k * s);
+    const double sn = std::sin(k * s);
     for (int i = 0; i < loop.dimension; ++i)
       z[static_cast<std::size_t>(i)] += loop.cosine(k, i) * c + loop.sine(k, i) * sn;
   }
@@ -82,53 +80,27 @@ Loop with_cutoff(const Loop& loop, int cutoff) {
   return out;
 }
 
-Loop time_shifted(const Loop& loop, double fraction) {
+Loop parameter_shifted(const Loop& loop, double turns) {
   Loop out = loop;
-  const double whole_turns = fraction - std::floor(fraction);
+  const double part = turns - std::floor(turns);
   for (int i = 0; i < loop.dimension; ++i) {
-    out.cosine(0, i) += loop.winding[static_cast<std::size_t>(i)] * two_pi * fraction;
+    out.cosine(0, i) += loop.winding[static_cast<std::size_t>(i)] * two_pi * turns;
     for (int k = 1; k <= loop.cutoff; ++k) {
-      const double turns = k * whole_turns;
-      const double angle = two_pi * (turns - std::floor(turns));
+      const double shift = k * part;
+      const double angle = two_pi * (shift - std::floor(shift));
       const double c = std::cos(angle);
       const double s = std::sin(angle);
       out.cosine(k, i) = loop.cosine(k, i) * c + loop.sine(k, i) * s;
       out.sine(k, i) = loop.sine(k, i) * c - loop.cosine(k, i) * s;
     }
   }
+  out.time_map = loop.time_map.shifted(two_pi * part);
   return out;
 }
 
-double mean_distance(const Loop& a, const Loop& b) {
-  core::require(a.dimension == b.dimension, "loops of different dimension have no distance");
-  core::require(a.winding == b.winding, "loops that wind differently have no distance");
-  const std::size_t shared = std::min(a.modes.size(), b.modes.size());
-  const std::vector<double>& longer = a.modes.size() > b.modes.size() ? a.modes : b.modes;
-  const auto d = static_cast<std::size_t>(a.dimension);
-  double sum = 0.0;
-  for (std::size_t n = 0; n < longer.size(); ++n) {
-    const double difference = n < shared ? a.modes[n] - b.modes[n] : longer[n];
-    sum += (n < d ? 1.0 : 0.5) * difference * difference;
-  }
-  return std::sqrt(sum);
-}
-
-double rms_speed(const Loop& loop) {
-  const double rate = two_pi / loop.period;
-  double sum = 0.0;
-  for (int k = loop.cutoff; k >= 1; --k) sum += 0.5 * k * k * harmonic_norm_squared(loop, k);
-  return rate * std::sqrt(sum + squared_norm(loop.winding));
-}
-
-double rms_amplitude(const Loop& loop) {
-  double sum = 0.0;
-  for (int k = loop.cutoff; k >= 1; --k) sum += 0.5 * harmonic_norm_squared(loop, k);
-  return std::sqrt(sum);
-}
-
-double rms_size(const Loop& loop) {
-  const double amplitude = rms_amplitude(loop);
-  return std::sqrt(squared_norm(row(loop, 0)) + amplitude * amplitude);
+Loop time_shifted(const Loop& loop, double fraction) {
+  if (loop.time_map.is_invariant_under_shift(fraction)) return parameter_shifted(loop, fraction);
+  return parameter_shifted(loop, loop.time_map.inverse(two_pi * fraction) / two_pi);
 }
 
 double tail(const Loop& loop) {

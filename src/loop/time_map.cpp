@@ -5,12 +5,38 @@
 #include <numbers>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/fourier.hpp"
 
 namespace orbweaver::loop {
 
 namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
+constexpr double whole = 1e-12;  // turns that differ from a whole number by less are rounding
+
+// cos ks and sin ks, from k to k + 1 by one turn.
+struct Wave {
+  double cosine;
+  double sine;
+  void turn(double c, double s) {
+    const double next = cosine * c - sine * s;
+    sine = sine * c + cosine * s;
+    cosine = next;
+  }
+};
+
+double pulse_density(double kappa, double cosine, double sine) {
+  return kappa / (cosine * cosine + kappa * kappa * sine * sine);
+}
+
+bool is_whole(double turns) { return std::abs(turns - std::round(turns)) < whole; }
+
+// Harmonics 2, 4, ... of the pulse's density are 2 q, 2 q^2, ...; below rounding from this harmonic on.
+double pulse_ratio(double kappa) { return (kappa - 1.0) / (kappa + 1.0); }
+int pulse_harmonics(double kappa) {
+  const double q = std::abs(pulse_ratio(kappa));
+  return q == 0.0 ? 0 : 2 * static_cast<int>(std::ceil(std::log(1e-17) / std::log(q)));
+}
 
 }  // namespace
 
@@ -21,10 +47,13 @@ bool TimeMap::is_identity() const {
 double TimeMap::phase(double s) const {
   const double sine = std::sin(s);
   const double cosine = std::cos(s);
-  double out = s + std::atan2((kappa - 1.0) * sine * cosine, cosine * cosine + kappa * sine * sine);
+  double out = s;
+  if (kappa != 1.0) out += std::atan2((kappa - 1.0) * sine * cosine, cosine * cosine + kappa * sine * sine);
+  Wave wave{cosine, sine};
   for (std::size_t n = 0; 2 * n + 1 < coefficients.size(); ++n) {
-    const double k = static_cast<double>(n + 1);
-    out += (coefficients[2 * n] * std::sin(k * s) + coefficients[2 * n + 1] * (1.0 - std::cos(k * s))) / k;
+    const double sum = coefficients[2 * n] * wave.sine + coefficients[2 * n + 1] * (1.0 - wave.cosine);
+    out += sum / static_cast<double>(n + 1);
+    wave.turn(cosine, sine);
   }
   return out;
 }
@@ -32,10 +61,11 @@ double TimeMap::phase(double s) const {
 double TimeMap::density(double s) const {
   const double sine = std::sin(s);
   const double cosine = std::cos(s);
-  double out = kappa / (cosine * cosine + kappa * kappa * sine * sine);
+  double out = kappa == 1.0 ? 1.0 : pulse_density(kappa, cosine, sine);
+  Wave wave{cosine, sine};
   for (std::size_t n = 0; 2 * n + 1 < coefficients.size(); ++n) {
-    const double k = static_cast<double>(n + 1);
-    out += coefficients[2 * n] * std::cos(k * s) + coefficients[2 * n + 1] * std::sin(k * s);
+    out += coefficients[2 * n] * wave.cosine + coefficients[2 * n + 1] * wave.sine;
+    wave.turn(cosine, sine);
   }
   return out;
 }
@@ -60,6 +90,64 @@ double TimeMap::inverse(double phase_wanted) const {
     s = next;
   }
   return s + two_pi * turns;
+}
+
+bool TimeMap::is_invariant_under_shift(double turns) const {
+  if (kappa != 1.0 && !is_whole(2.0 * turns)) return false;
+  for (std::size_t n = 0; n < coefficients.size(); ++n)
+    if (coefficients[n] != 0.0 && !is_whole(static_cast<double>(n / 2 + 1) * turns)) return false;
+  return true;
+}
+
+TimeMap TimeMap::shifted(double shift) const {
+  if (is_invariant_under_shift(shift / two_pi)) return *this;
+  TimeMap out = *this;
+  if (kappa != 1.0 && !is_whole(2.0 * shift / two_pi)) {
+    const auto harmonics = static_cast<std::size_t>(pulse_harmonics(kappa));
+    out.kappa = 1.0;
+    out.coefficients.resize(std::max(coefficients.size(), 2 * harmonics), 0.0);
+    double power = 2.0;
+    for (std::size_t k = 2; k <= harmonics; k += 2) {
+      power *= pulse_ratio(kappa);
+      out.coefficients[2 * (k - 1)] += power;
+    }
+  }
+  for (std::size_t n = 0; 2 * n + 1 < out.coefficients.size(); ++n) {
+    const double turns = static_cast<double>(n + 1) * (shift / two_pi);
+    const double angle = two_pi * (turns - std::floor(turns));
+    const double c = out.coefficients[2 * n];
+    const double d = out.coefficients[2 * n + 1];
+    out.coefficients[2 * n] = c * std::cos(angle) + d * std::sin(angle);
+    out.coefficients[2 * n + 1] = d * std::cos(angle) - c * std::sin(angle);
+  }
+  return out;
+}
+
+TimeMap TimeMap::reversed() const {
+  TimeMap out = *this;
+  for (std::size_t n = 1; n < out.coefficients.size(); n += 2) out.coefficients[n] = -out.coefficients[n];
+  return out;
+}
+
+std::vector<double> densities(const TimeMap& map, int nodes) {
+  std::vector<double> out(static_cast<std::size_t>(nodes), 1.0);
+  if (!map.coefficients.empty()) {
+    const auto highest = static_cast<int>(map.coefficients.size() / 2);
+    core::require(2 * highest < nodes, "too few nodes for this time map");
+    std::vector<double> modes{1.0};
+    modes.insert(modes.end(), map.coefficients.begin(), map.coefficients.end());
+    FourierGrid::of_size(nodes).synthesize(highest, 1, modes.data(), out.data());
+  }
+  if (map.kappa != 1.0)
+    for (std::size_t j = 0; j < out.size(); ++j) {
+      const double s = two_pi * static_cast<double>(j) / nodes;
+      out[j] += pulse_density(map.kappa, std::cos(s), std::sin(s)) - 1.0;
+    }
+  return out;
+}
+
+int nodes_to_resolve(const TimeMap& map) {
+  return std::max(pulse_harmonics(map.kappa), static_cast<int>(map.coefficients.size()) + 2);
 }
 
 std::vector<double> to_numbers(const TimeMap& map) {

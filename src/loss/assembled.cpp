@@ -90,6 +90,11 @@ class HessianAssembly {
   HessianAssembly(const Linearization& lin, const Unknowns& unknowns, Curvature curvature)
       : _lin(lin), _unknowns(unknowns), _curvature(curvature), _d(lin.dimension()) {
     const int highest = 2 * lin.cutoff();
+    if (!lin.evenly_in_time()) {
+      std::vector<double> inverse(static_cast<std::size_t>(lin.nodes()));
+      for (std::size_t j = 0; j < inverse.size(); ++j) inverse[j] = 1.0 / lin.density()[j];
+      _u = Sums(lin.grid(), inverse.data(), highest);
+    }
     for (int i = 0; i < _d; ++i)
       for (int l = 0; l < _d; ++l) {
         _a.emplace_back(lin.grid(), lin.field_jacobian(i, l), highest);
@@ -116,7 +121,7 @@ class HessianAssembly {
   }
 
  private:
-  // (A'A)_il, less sum_m r_m d2f_m/dz_i dz_l where the full curvature is wanted.
+  // (A'A)_il, less sum_m r_m d2f_m/dz_i dz_l where the full curvature is wanted, times the density w.
   [[nodiscard]] std::vector<double> value_block(int i, int l) const {
     const auto nodes = static_cast<std::size_t>(_lin.nodes());
     std::vector<double> block(nodes, 0.0);
@@ -129,11 +134,13 @@ class HessianAssembly {
       const double* second = _lin.contracted(i, l);
       for (std::size_t j = 0; j < nodes; ++j) block[j] -= second[j];
     }
+    if (!_lin.evenly_in_time())
+      for (std::size_t j = 0; j < nodes; ++j) block[j] *= _lin.density()[j];
     return block;
   }
 
   // The lower triangle's share of all products of a coefficient of `columns` (P, coordinate i) with one of `rows` (Q, l):
-  //   (2/N) sum_j [ rate^2 P'Q' delta_il - rate P' A_il Q - rate P A_li Q' + P M_il Q ].
+  //   (2/N) sum_j [ rate^2 P'Q' delta_il / w - rate P' A_il Q - rate P A_li Q' + w P M_il Q ].
   template <bool PSine, bool QSine>
   void add_pair(const Group& columns, const Group& rows, DenseMap h) const {
     const int i = columns.coordinate;
@@ -145,6 +152,7 @@ class HessianAssembly {
     const double *mc = m.c(), *ms = m.s(), *ac = a.c(), *as = a.s(), *bc = b.c(), *bs = b.s();
     const double rate = _lin.rate();
     const double scale = 2.0 / _lin.nodes();
+    const bool mapped = !_lin.evenly_in_time();
     for (const Term& p : columns.terms) {
       const double p_slope = rate * slope_factor({p.k, PSine});
       double* column = &h(0, p.unknown);
@@ -154,7 +162,11 @@ class HessianAssembly {
         double sum = product_sum<PSine, QSine>(mc, ms, p.k, q.k);
         sum -= p_slope * product_sum<!PSine, QSine>(ac, as, p.k, q.k);
         sum -= q_slope * product_sum<PSine, !QSine>(bc, bs, p.k, q.k);
-        if (PSine == QSine && i == l && p.k == q.k) sum += 0.5 * _lin.nodes() * p_slope * q_slope;
+        if (mapped) {
+          if (i == l) sum += p_slope * q_slope * product_sum<!PSine, !QSine>(_u.c(), _u.s(), p.k, q.k);
+        } else if (PSine == QSine && i == l && p.k == q.k) {
+          sum += 0.5 * _lin.nodes() * p_slope * q_slope;
+        }
         column[q.unknown] += scale * p.weight * q.weight * sum;
       }
     }
@@ -175,6 +187,7 @@ class HessianAssembly {
   int _d;
   std::vector<Sums> _a;
   std::vector<Sums> _m;
+  Sums _u;  // of 1/w, where w is not 1
 };
 
 }  // namespace
@@ -185,10 +198,11 @@ core::Handle<Mat> assemble_jacobian(const Linearization& lin, const Unknowns& un
   require_same_size(lin, unknowns);
   const int nodes = lin.nodes();
   const int d = lin.dimension();
-  const double scale = 1.0 / std::sqrt(static_cast<double>(nodes));
   std::vector<double> cosine(static_cast<std::size_t>(nodes));
   std::vector<double> sine(cosine.size());
+  std::vector<double> scale(cosine.size());
   for (int j = 0; j < nodes; ++j) {
+    scale[static_cast<std::size_t>(j)] = std::sqrt(lin.density()[j] / nodes);
     cosine[static_cast<std::size_t>(j)] = std::cos(2.0 * std::numbers::pi * j / nodes);
     sine[static_cast<std::size_t>(j)] = std::sin(2.0 * std::numbers::pi * j / nodes);
   }
@@ -198,7 +212,6 @@ core::Handle<Mat> assemble_jacobian(const Linearization& lin, const Unknowns& un
     for (int n = 0; n < unknowns.subspace.size(); ++n)
       for (const auto& e : unknowns.subspace.basis(n)) {
         const Wave w = wave_of_row(e.row);
-        const double weight = scale * e.weight;
         for (int i = 0; i < d; ++i) {
           const double* a = lin.field_jacobian(i, e.coordinate);
           double* out = &j_matrix(static_cast<Eigen::Index>(i) * nodes, n);
@@ -207,7 +220,8 @@ core::Handle<Mat> assemble_jacobian(const Linearization& lin, const Unknowns& un
           const double* other = w.sine ? cosine.data() : sine.data();
           int at = 0;
           for (int j = 0; j < nodes; ++j) {
-            out[j] += weight * (slope * other[at] - a[j] * value[at]);
+            out[j] += e.weight * scale[static_cast<std::size_t>(j)] *
+                      (slope / lin.density()[j] * other[at] - a[j] * value[at]);
             at += w.k;
             if (at >= nodes) at -= nodes;
           }
@@ -217,7 +231,7 @@ core::Handle<Mat> assemble_jacobian(const Linearization& lin, const Unknowns& un
     for (int i = 0; i < d; ++i)
       for (int j = 0; j < nodes; ++j)
         j_matrix(static_cast<Eigen::Index>(i) * nodes + j, unknowns.size() - 1) =
-            -scale * lin.rate() / lin.period() * lin.slope(i)[j];
+            -scale[static_cast<std::size_t>(j)] * lin.rate() / lin.period() * lin.slope(i)[j];
   });
   return matrix;
 }

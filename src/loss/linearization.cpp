@@ -12,19 +12,34 @@
 
 namespace orbweaver::loss {
 
+namespace {
+
+int valid_nodes_for(const loop::Loop& loop) {
+  loop::validate(loop);
+  return loop::nodes_for(loop);
+}
+
+}  // namespace
+
 Linearization::Linearization(const systems::System& system, const loop::Loop& loop, Order order)
-    : _nodes(loop::FourierGrid::nodes_for(loop.cutoff)),
+    : _nodes(valid_nodes_for(loop)),
       _dimension(loop.dimension),
       _cutoff(loop.cutoff),
       _order(order),
       _period(loop.period),
       _rate(2.0 * std::numbers::pi / loop.period),
-      _grid(&loop::FourierGrid::of_size(_nodes)) {
+      _grid(&loop::FourierGrid::of_size(_nodes)),
+      _evenly(loop.time_map.is_identity()),
+      _density(loop::densities(loop.time_map, _nodes)),
+      _scale(_density.size()) {
   const core::LogEvent event(order == Order::residual ? core::Event::residual : core::Event::jacobian);
-  loop::validate(loop);
   core::require(system.dimension() == loop.dimension, "the loop's dimension is not the system's");
   const auto n = static_cast<std::size_t>(_nodes);
   const auto d = static_cast<std::size_t>(_dimension);
+  for (std::size_t j = 0; j < n; ++j) {
+    core::require(_density[j] > 0.0, "the loop's time map must run forward everywhere");
+    _scale[j] = std::sqrt(_density[j] / _nodes);
+  }
   _z.resize(d * n);
   _slope.resize(d * n);
   _grid->synthesize(_cutoff, _dimension, loop.modes.data(), _z.data());
@@ -36,6 +51,9 @@ Linearization::Linearization(const systems::System& system, const loop::Loop& lo
       _slope[i * n + j] += loop.winding[i];
     }
   }
+  if (!_evenly)
+    for (std::size_t i = 0; i < d; ++i)
+      for (std::size_t j = 0; j < n; ++j) _slope[i * n + j] /= _density[j];
   std::vector<double> f(d * n);
   if (order == Order::residual) {
     const core::LogEvent field(core::Event::field);
@@ -50,11 +68,10 @@ Linearization::Linearization(const systems::System& system, const loop::Loop& lo
   }
   check_finite(system, f, "vector field");
   _r.resize(d * n);
+  for (std::size_t m = 0; m < d * n; ++m) _r[m] = _rate * _slope[m] - f[m];
   double sum = 0.0;
-  for (std::size_t m = 0; m < d * n; ++m) {
-    _r[m] = _rate * _slope[m] - f[m];
-    sum += _r[m] * _r[m];
-  }
+  for (std::size_t i = 0; i < d; ++i)
+    for (std::size_t j = 0; j < n; ++j) sum += _density[j] * _r[i * n + j] * _r[i * n + j];
   _loss = sum / _nodes;
   if (order == Order::second) {
     _s.resize(d * d * n);
@@ -85,8 +102,7 @@ void Linearization::require_order(Order order) const {
 
 std::vector<double> Linearization::residual() const {
   std::vector<double> out = _r;
-  const double scale = 1.0 / std::sqrt(static_cast<double>(_nodes));
-  for (double& value : out) value *= scale;
+  for (std::size_t m = 0; m < out.size(); ++m) out[m] *= _scale[m % _scale.size()];
   return out;
 }
 
@@ -106,18 +122,17 @@ std::vector<double> Linearization::apply_jacobian(const Unknowns& unknowns, std:
   std::vector<double> out(d * n);
   _grid->synthesize(_cutoff, _dimension, modes.data(), dz.data());
   _grid->synthesize_derivative(_cutoff, _dimension, modes.data(), out.data());
-  const double scale = 1.0 / std::sqrt(static_cast<double>(_nodes));
   const double dt = unknowns.period ? -_rate / _period * v.back() : 0.0;
   for (std::size_t i = 0; i < d; ++i) {
     double* row = out.data() + i * n;
     const double* slope_i = _slope.data() + i * n;
-    for (std::size_t j = 0; j < n; ++j) row[j] = _rate * row[j] + dt * slope_i[j];
+    for (std::size_t j = 0; j < n; ++j) row[j] = _rate * row[j] / _density[j] + dt * slope_i[j];
     for (std::size_t l = 0; l < d; ++l) {
       const double* a = _a.data() + (i * d + l) * n;
       const double* z = dz.data() + l * n;
       for (std::size_t j = 0; j < n; ++j) row[j] -= a[j] * z[j];
     }
-    for (std::size_t j = 0; j < n; ++j) row[j] *= scale;
+    for (std::size_t j = 0; j < n; ++j) row[j] *= _scale[j];
   }
   return out;
 }
@@ -155,21 +170,23 @@ std::vector<double> Linearization::apply_jacobian_transposed(const Unknowns& unk
   core::require(static_cast<int>(y.size()) == rows(), "one value a residual is needed");
   const auto n = static_cast<std::size_t>(_nodes);
   const auto d = static_cast<std::size_t>(_dimension);
-  const double scale = 1.0 / std::sqrt(static_cast<double>(_nodes));
   std::vector<double> with_slope(d * n);
   std::vector<double> with_value(d * n, 0.0);
+  std::vector<double> scaled(n);
   double along_slope = 0.0;
-  for (std::size_t m = 0; m < d * n; ++m) {
-    with_slope[m] = scale * _rate * y[m];
-    along_slope += y[m] * _slope[m];
-  }
-  for (std::size_t i = 0; i < d; ++i)
+  for (std::size_t i = 0; i < d; ++i) {
+    for (std::size_t j = 0; j < n; ++j) {
+      scaled[j] = _scale[j] * y[i * n + j];
+      with_slope[i * n + j] = _rate * scaled[j] / _density[j];
+      along_slope += scaled[j] * _slope[i * n + j];
+    }
     for (std::size_t l = 0; l < d; ++l) {
       const double* a = _a.data() + (i * d + l) * n;
-      for (std::size_t j = 0; j < n; ++j) with_value[l * n + j] -= scale * a[j] * y[i * n + j];
+      for (std::size_t j = 0; j < n; ++j) with_value[l * n + j] -= a[j] * scaled[j];
     }
+  }
   std::vector<double> out = project_adjoint(unknowns, with_slope, with_value);
-  if (unknowns.period) out.back() = -scale * _rate / _period * along_slope;
+  if (unknowns.period) out.back() = -_rate / _period * along_slope;
   return out;
 }
 
@@ -197,14 +214,17 @@ std::vector<double> Linearization::apply_hessian(const Unknowns& unknowns, std::
     std::vector<double> with_slope(d * n);
     std::vector<double> with_value(d * n, 0.0);
     double period_entry = 0.0;
-    for (std::size_t m = 0; m < d * n; ++m) {
-      with_slope[m] = cross * dt * _r[m];
-      period_entry += _r[m] * (cross * dslope[m] + 2.0 * _rate / (_period * _period) * mean * dt * _slope[m]);
-    }
+    const double bend = 2.0 * _rate / (_period * _period) * mean * dt;
+    for (std::size_t i = 0; i < d; ++i)
+      for (std::size_t j = 0; j < n; ++j) {  // the weight of a node and the 1 / w of dz' cancel
+        const std::size_t m = i * n + j;
+        with_slope[m] = cross * dt * _r[m];
+        period_entry += _r[m] * (cross * dslope[m] + bend * _density[j] * _slope[m]);
+      }
     for (std::size_t l = 0; l < d; ++l)
       for (std::size_t m = 0; m < d; ++m) {
         const double* s = _s.data() + (l * d + m) * n;
-        for (std::size_t j = 0; j < n; ++j) with_value[l * n + j] -= mean * s[j] * dz[m * n + j];
+        for (std::size_t j = 0; j < n; ++j) with_value[l * n + j] -= mean * _density[j] * s[j] * dz[m * n + j];
       }
     const std::vector<double> second = project_adjoint(unknowns, with_slope, with_value);
     for (std::size_t m = 0; m < out.size(); ++m) out[m] += second[m];

@@ -1,6 +1,7 @@
 #include "orbweaver/loss/unknowns.hpp"
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/fourier.hpp"
 
 namespace orbweaver::loss {
 
@@ -8,6 +9,17 @@ namespace {
 
 std::span<const double> coordinates_of(const Unknowns& unknowns, std::span<const double> u) {
   return u.first(static_cast<std::size_t>(unknowns.subspace.size()));
+}
+
+// The modes of z/w for the density w of the loop's time map, as far as the cutoff goes.
+void divide_by_density(loop::Loop& loop) {
+  const int nodes = loop::nodes_for(loop);
+  const loop::FourierGrid& grid = loop::FourierGrid::of_size(nodes);
+  const std::vector<double> density = loop::densities(loop.time_map, nodes);
+  std::vector<double> nodal(static_cast<std::size_t>(loop.dimension) * density.size());
+  grid.synthesize(loop.cutoff, loop.dimension, loop.modes.data(), nodal.data());
+  for (std::size_t m = 0; m < nodal.size(); ++m) nodal[m] /= density[m % density.size()];
+  grid.analyze(loop.cutoff, loop.dimension, nodal.data(), loop.modes.data());
 }
 
 }  // namespace
@@ -23,6 +35,7 @@ loop::Loop Unknowns::moved(const loop::Loop& base, std::span<const double> u) co
 
 std::vector<double> Unknowns::difference(const loop::Loop& from, const loop::Loop& to) const {
   core::require(from.modes.size() == to.modes.size(), "the loops have different sizes");
+  core::require(from.time_map == to.time_map, "the loops have different time maps: bring one to the other's first");
   std::vector<double> modes(from.modes.size());
   for (std::size_t n = 0; n < modes.size(); ++n) modes[n] = to.modes[n] - from.modes[n];
   std::vector<double> u(static_cast<std::size_t>(size()));
@@ -40,6 +53,7 @@ std::vector<double> Unknowns::time_shift_direction(const loop::Loop& loop) const
       derivative.sine(k, i) = -k * loop.cosine(k, i);
     }
   }
+  if (!loop.time_map.is_identity()) divide_by_density(derivative);
   std::vector<double> u(static_cast<std::size_t>(size()), 0.0);
   subspace.project(derivative.modes, std::span(u).first(static_cast<std::size_t>(subspace.size())));
   return u;

@@ -31,6 +31,11 @@ loop::Isotropy of_pendulum() {
   return {element_of(pendulum, "S", 1, 2), element_of(pendulum, "R")};
 }
 
+Case mapped(Case sample, const loop::TimeMap& map) {
+  sample.loop.time_map = map;
+  return sample;
+}
+
 loop::Isotropy of_rotation() { return {element_of(systems::describe_system("henon_heiles"), "C", 1, 3)}; }
 
 }  // namespace
@@ -44,7 +49,13 @@ std::vector<std::string> case_names() {
           "pendulum_winding_period",
           "henon_free",
           "henon_rotation_period",
-          "oscillator_period"};
+          "oscillator_period",
+          "pendulum_pulse_period",
+          "pendulum_map_period",
+          "pendulum_symmetric_pulse_period",
+          "pendulum_symmetric_map",
+          "henon_rotation_map_period",
+          "oscillator_map_period"};
 }
 
 std::vector<std::string> all_case_names() {
@@ -72,6 +83,15 @@ Case make_case(const std::string& name) {
     return symmetric_case("double_pendulum", of_pendulum(), origin, false, {1, -1});
   if (name == "pendulum_breaking_both")
     return symmetric_case("double_pendulum", of_pendulum(), origin, false, {-1, -1});
+  if (name == "pendulum_pulse_period")
+    return mapped(free_case("double_pendulum", 5, true, {1.0, 0.0, 0.0, 0.0}), {2.5, {}});
+  if (name == "pendulum_map_period") return mapped(make_case("pendulum_free_period"), {0.7, {0.2, -0.3, 0.1, 0.1}});
+  if (name == "pendulum_symmetric_pulse_period") return mapped(make_case("pendulum_symmetric_period"), {1.8, {}});
+  if (name == "pendulum_symmetric_map")
+    return mapped(make_case("pendulum_symmetric"), {1.5, {0.0, 0.0, 0.3, 0.0, 0.0, 0.0, -0.1, 0.0}});
+  if (name == "henon_rotation_map_period")
+    return mapped(make_case("henon_rotation_period"), {1.0, {0.0, 0.0, 0.0, 0.0, 0.3, -0.2}});
+  if (name == "oscillator_map_period") return mapped(make_case("oscillator_period"), {0.5, {0.0, 0.2}});
   throw std::invalid_argument("no case " + name);
 }
 

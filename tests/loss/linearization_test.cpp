@@ -22,7 +22,8 @@ std::vector<double> residual_at(const systems::System& system, const loop::Loop&
   const test::Direct z = test::direct_sum(loop, s);
   std::vector<double> f(z.state.size());
   system.field(1, z.state.data(), f.data());
-  for (std::size_t i = 0; i < f.size(); ++i) f[i] = two_pi / loop.period * z.slope[i] - f[i];
+  const double density = loop.time_map.density(s);
+  for (std::size_t i = 0; i < f.size(); ++i) f[i] = two_pi / loop.period * z.slope[i] / density - f[i];
   return f;
 }
 
@@ -40,10 +41,11 @@ TEST(Linearization, ResidualIsItsDefinitionAtTheNodes) {
     const auto n = static_cast<std::size_t>(here.nodes());
     ASSERT_EQ(residual.size(), static_cast<std::size_t>(here.rows()));
     for (std::size_t j = 0; j < n; ++j) {
-      const std::vector<double> expected =
-          residual_at(*sample.system, sample.loop, two_pi * static_cast<double>(j) / here.nodes());
+      const double s = two_pi * static_cast<double>(j) / here.nodes();
+      const std::vector<double> expected = residual_at(*sample.system, sample.loop, s);
+      const double weight = sample.loop.time_map.density(s) / static_cast<double>(n);
       for (std::size_t i = 0; i < expected.size(); ++i)
-        EXPECT_NEAR(residual[i * n + j] * std::sqrt(static_cast<double>(n)), expected[i], 1e-12) << name;
+        EXPECT_NEAR(residual[i * n + j] / std::sqrt(weight), expected[i], 1e-12) << name;
     }
   }
 }

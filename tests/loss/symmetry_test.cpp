@@ -19,6 +19,7 @@ struct Sample {
   std::string system;
   Isotropy isotropy;
   std::vector<double> mean;
+  loop::TimeMap map{};
 };
 
 std::vector<Sample> samples() {
@@ -30,12 +31,16 @@ std::vector<Sample> samples() {
           {"double_pendulum", {element_of(pendulum, "S", 1, 2), element_of(pendulum, "R")}, inverted},
           {"double_pendulum", {element_of(pendulum, "RS", 1, 2)}, origin},
           {"double_pendulum", {element_of(pendulum, "R")}, {0.4, -1.0, 0.0, 0.0}},
+          {"double_pendulum", {element_of(pendulum, "S", 1, 2), element_of(pendulum, "R")}, origin, {1.8, {}}},
           {"henon_heiles", {element_of(galaxy, "C", 1, 3)}, origin},
+          {"henon_heiles", {element_of(galaxy, "C", 1, 3)}, origin, {1.0, {0.0, 0.0, 0.0, 0.0, 0.3, -0.2}}},
           {"henon_heiles", {element_of(galaxy, "SC"), element_of(galaxy, "R", 1, 2)}, origin}};
 }
 
 loop::Loop symmetric_loop(const Sample& s) {
-  return test::random_loop_in(Subspace(4, 6, s.isotropy), loop::constant_loop(s.mean, 3.3, 6), 71);
+  loop::Loop out = test::random_loop_in(Subspace(4, 6, s.isotropy), loop::constant_loop(s.mean, 3.3, 6), 71);
+  out.time_map = s.map;
+  return out;
 }
 
 // The residual as a loop with the modes of its trigonometric interpolant.

@@ -23,7 +23,7 @@ struct Orbit {
 /// Energy of a loop: that of its state at s = 0 (NaN for systems without one).
 [[nodiscard]] double energy_of(const systems::System& system, const loop::Loop& loop);
 
-/// Action over one period: T times the mean of p . dq/dt over the loss's nodes (spectrally accurate).
+/// Action over one period: T times the mean over time of p . dq/dt, on the loss's nodes (spectrally accurate).
 [[nodiscard]] double action_of(const systems::System& system, const loop::Loop& loop);
 
 /// sqrt(mean |dz|^2 + (dT/T)^2) between neighbours: the archive's arclength.

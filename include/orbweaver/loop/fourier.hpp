@@ -14,6 +14,8 @@ class FourierGrid {
   [[nodiscard]] static const FourierGrid& of_size(int nodes);
   /// The even number of nodes N >= 2 (2 cutoff + 1), with small factors, on which the loss is a true integral.
   [[nodiscard]] static int nodes_for(int cutoff);
+  /// The smallest even number of nodes >= `least` with small factors.
+  [[nodiscard]] static int nodes_at_least(int least);
 
   FourierGrid(const FourierGrid&) = delete;
   FourierGrid& operator=(const FourierGrid&) = delete;

@@ -33,7 +33,8 @@ struct Loop {
 /// Throws MisuseError for an empty point, cutoff < 1 or a period that is not positive and finite.
 [[nodiscard]] Loop constant_loop(std::span<const double> point, double period, int cutoff);
 
-/// Throws MisuseError unless sizes agree, cutoff >= 1, the period is positive and finite and every mode is finite.
+/// Throws MisuseError unless sizes agree, cutoff >= 1, the period is positive and finite, every mode is finite and the
+/// time map consists of finite numbers with kappa > 0.
 void validate(const Loop& loop);
 
 /// z(t) at one time (any real t; size dimension). The one place where a loop is evaluated at a time.
@@ -42,20 +43,44 @@ void validate(const Loop& loop);
 /// The same loop with `cutoff` harmonics: padded with zeros or truncated.
 [[nodiscard]] Loop with_cutoff(const Loop& loop, int cutoff);
 
-/// The same orbit started `fraction` of a period later: z(s + 2 pi fraction).
+/// The same loop under another time map, with `cutoff` harmonics: evaluated at the times of the new nodes and transformed.
+/// What does not fit into `cutoff` harmonics is cut off (see `tail` of the result). Cost O(nodes x cutoff).
+[[nodiscard]] Loop with_time_map(const Loop& loop, const TimeMap& map, int cutoff);
+
+/// The same curve with s counted from `turns` of s (not of time) later: z(s + 2 pi turns), the time map moved along.
+[[nodiscard]] Loop parameter_shifted(const Loop& loop, double turns);
+
+/// The same orbit started `fraction` of a period later. The time map stays where it is invariant under that shift (as
+/// under half a period for kappa), and moves along with the curve otherwise.
 [[nodiscard]] Loop time_shifted(const Loop& loop, double fraction);
 
-/// sqrt of the mean over a period of |z - w|^2 (Parseval); cutoffs may differ, dimensions and windings must agree.
+/// Even number of nodes on which means over time of functions of the state are accurate: FourierGrid::nodes_for(cutoff),
+/// or more where the time map's density has higher harmonics (nodes_to_resolve).
+[[nodiscard]] int nodes_for(const Loop& loop);
+
+/// States at nodes equidistant in s: mean over time of g = sum_j weights_j g(z_j).
+struct Samples {
+  int nodes = 0;
+  std::vector<double> weights;  ///< density_j / nodes
+  std::vector<double> states;   ///< dimension x nodes, component-major, windings included
+};
+[[nodiscard]] Samples samples_of(const Loop& loop);
+
+/// sqrt of the mean over a period of |z(t) - w(t)|^2, periods scaled to one; cutoffs and time maps may differ, dimensions
+/// and windings must agree. By Parseval's equation where both maps are the identity.
 [[nodiscard]] double mean_distance(const Loop& a, const Loop& b);
 
 /// sqrt of the mean over a period of |dz/dt|^2.
 [[nodiscard]] double rms_speed(const Loop& loop);
 
-/// sqrt of the mean over a period of |z - a_0|^2 (winding left out): how far the loop is from a constant one.
+/// sqrt of the mean over a period of |z - mean z|^2 (less the winding, n 2 pi t/T): how far the loop is from a constant one.
 [[nodiscard]] double rms_amplitude(const Loop& loop);
 
-/// sqrt of the mean over a period of |z|^2 (winding left out): the scale of rounding errors in the modes.
+/// sqrt of the mean over a period of |z|^2 (less the winding): the scale of rounding errors in the modes.
 [[nodiscard]] double rms_size(const Loop& loop);
+
+/// The mean over a period of z (less the winding): a_0 where the time map is the identity.
+[[nodiscard]] std::vector<double> mean_state(const Loop& loop);
 
 /// The largest modulus among the last eighth of the harmonics (at least two), relative to nothing: what the truncation
 /// at `cutoff` leaves out is of this size.

@@ -23,8 +23,23 @@ struct TimeMap {
   /// The s with phase(s) = `phase` (Newton, bracketed; to rounding).
   [[nodiscard]] double inverse(double phase) const;
 
+  /// True if phase(s + 2 pi turns) = phase(s) + 2 pi turns for all s: only every q-th coefficient for turns = p/q, and
+  /// half turns where kappa is not 1.
+  [[nodiscard]] bool is_invariant_under_shift(double turns) const;
+  /// The map of the same curve with s counted from s = `shift` on: phase(s + shift) - phase(shift). Where kappa does not
+  /// allow the shift, its pulse is written as coefficients, to rounding.
+  [[nodiscard]] TimeMap shifted(double shift) const;
+  /// The map of the curve run backwards: -phase(-s).
+  [[nodiscard]] TimeMap reversed() const;
+
   friend bool operator==(const TimeMap&, const TimeMap&) = default;
 };
+
+/// The densities at the nodes s_j = 2 pi j / nodes: the weights of means over time, mean g = (1/nodes) sum_j density_j g_j.
+[[nodiscard]] std::vector<double> densities(const TimeMap& map, int nodes);
+
+/// Nodes beyond which the density's harmonics are below rounding: what means over time need besides the integrand's own.
+[[nodiscard]] int nodes_to_resolve(const TimeMap& map);
 
 /// As stored in the archive: kappa, c_1, d_1, ...; empty for the identity.
 [[nodiscard]] std::vector<double> to_numbers(const TimeMap& map);

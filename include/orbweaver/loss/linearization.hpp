@@ -20,9 +20,10 @@ enum class Curvature {
 /// The loss of one loop and its derivatives, kept as nodal values on N equidistant points
 /// (docs/mathematics.md, "Loss"; paper, section II A and B):
 ///
-///   r_j = (2 pi / T) z'(s_j) - f(z(s_j)),   R = r / sqrt(N),   loss = |R|^2 = mean |r|^2.
+///   r_j = (2 pi / T) z'(s_j) / w_j - f(z(s_j)),   R_j = sqrt(w_j / N) r_j,   loss = |R|^2 = mean over time of |r|^2,
 ///
-/// N >= 2 (2K + 1), so that the mean is the integral and not only zero at nodes. Every operation costs O(N log N).
+/// w_j = 2 pi phi'(s_j), the density of the loop's time map (1 without one). N = loop::nodes_for(loop) >= 2 (2K + 1), so
+/// that the mean is the integral and not only zero at nodes. Every operation costs O(N log N).
 class Linearization {
  public:
   enum class Order {
@@ -40,7 +41,7 @@ class Linearization {
   [[nodiscard]] int rows() const { return _nodes * _dimension; }
   [[nodiscard]] Order order() const { return _order; }
   [[nodiscard]] int cutoff() const { return _cutoff; }
-  /// mean |r|^2.
+  /// Mean over time of |r|^2.
   [[nodiscard]] double loss() const { return _loss; }
   /// R, dimension x nodes, component-major.
   [[nodiscard]] std::vector<double> residual() const;
@@ -61,7 +62,9 @@ class Linearization {
   [[nodiscard]] double period() const { return _period; }  ///< T
   [[nodiscard]] const loop::FourierGrid& grid() const { return *_grid; }
   [[nodiscard]] const double* raw_residual(int i) const { return _r.data() + offset(i); }
-  [[nodiscard]] const double* slope(int i) const { return _slope.data() + offset(i); }  ///< dz_i/ds
+  [[nodiscard]] const double* density() const { return _density.data(); }               ///< w: 2 pi dphi/ds
+  [[nodiscard]] const double* slope(int i) const { return _slope.data() + offset(i); }  ///< z_i'/w: dz_i/d(2 pi t/T)
+  [[nodiscard]] bool evenly_in_time() const { return _evenly; }                         ///< w = 1 at all nodes
   [[nodiscard]] const double* field_jacobian(int i, int l) const { return _a.data() + offset(i * _dimension + l); }
   [[nodiscard]] const double* contracted(int i, int l) const { return _s.data() + offset(i * _dimension + l); }
 
@@ -83,6 +86,9 @@ class Linearization {
   double _rate;
   double _loss = 0.0;
   const loop::FourierGrid* _grid;
+  bool _evenly;
+  std::vector<double> _density;
+  std::vector<double> _scale;  // sqrt(w / N)
   std::vector<double> _z;
   std::vector<double> _slope;
   std::vector<double> _r;

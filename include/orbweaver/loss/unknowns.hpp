@@ -17,9 +17,9 @@ struct Unknowns {
   [[nodiscard]] int size() const { return subspace.size() + (period ? 1 : 0); }
   /// base + u; the period of the result may be anything finite, also <= 0 (the loss refuses that).
   [[nodiscard]] loop::Loop moved(const loop::Loop& base, std::span<const double> u) const;
-  /// The orthogonal projection of `to` - `from` onto the unknowns (same cutoff as the subspace).
+  /// The orthogonal projection of `to` - `from` onto the unknowns (same cutoff as the subspace, same time map).
   [[nodiscard]] std::vector<double> difference(const loop::Loop& from, const loop::Loop& to) const;
-  /// d/ds of the loop as a vector of unknowns: the direction of a time shift (period entry 0).
+  /// dz/d(2 pi t/T) = z'/(2 pi phi') of the loop as a vector of unknowns: the direction of a time shift (period entry 0).
   [[nodiscard]] std::vector<double> time_shift_direction(const loop::Loop& loop) const;
 };
 

@@ -1,0 +1,127 @@
+#include "orbweaver/loop/time_map.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "loop/samples.hpp"
+#include "orbweaver/core/error.hpp"
+
+namespace orbweaver::loop {
+namespace {
+
+using test::two_pi;
+
+std::vector<TimeMap> maps() {
+  return {{}, {1.7, {}}, {0.3, {}}, {8.0, {}}, {1.0, {0.4, -0.2, 0.0, 0.1}}, {2.5, {0.05, 0.1, -0.1, 0.0, 0.02, 0.03}}};
+}
+
+// psi + ... with tan psi = kappa tan s, the branch taken from s.
+double phase_by_definition(const TimeMap& map, double s) {
+  const double turns = std::round(s / two_pi);
+  double out = std::atan2(map.kappa * std::sin(s), std::cos(s)) + two_pi * turns;
+  for (std::size_t k = 1; 2 * k <= map.coefficients.size(); ++k) {
+    const double x = static_cast<double>(k);
+    out += (map.coefficients[2 * k - 2] * std::sin(x * s) + map.coefficients[2 * k - 1] * (1 - std::cos(x * s))) / x;
+  }
+  return out;
+}
+
+TEST(TimeMap, IdentityByDefault) {
+  const TimeMap map;
+  EXPECT_TRUE(map.is_identity());
+  for (const double s : {0.0, 1.3, -2.0, 9.9}) {
+    EXPECT_EQ(map.phase(s), s);
+    EXPECT_EQ(map.density(s), 1.0);
+    EXPECT_NEAR(map.inverse(s), s, 1e-15 * std::abs(s));
+  }
+  EXPECT_TRUE((TimeMap{1.0, {0.0, 0.0}}).is_identity());
+  EXPECT_FALSE((TimeMap{1.1, {}}).is_identity());
+  EXPECT_FALSE((TimeMap{1.0, {0.0, 0.1}}).is_identity());
+}
+
+TEST(TimeMap, PhaseIsItsDefinition) {
+  for (const TimeMap& map : maps())
+    for (const double s : {0.0, 0.1, 1.5, 1.6, 3.0, 3.2, 4.7, 6.2, -0.4, 7.0})
+      EXPECT_NEAR(map.phase(s), phase_by_definition(map, s), 4e-15) << map.kappa << " at " << s;
+}
+
+TEST(TimeMap, DensityIsPositiveTheSlopeOfThePhaseAndOneInTheMean) {
+  for (const TimeMap& map : maps()) {
+    double sum = 0.0;
+    const int nodes = 1000;
+    const std::vector<double> at_nodes = densities(map, nodes);
+    for (int j = 0; j < nodes; ++j) {
+      const double s = two_pi * j / nodes;
+      EXPECT_GT(map.density(s), 0.0);
+      EXPECT_NEAR(at_nodes[static_cast<std::size_t>(j)], map.density(s), 1e-13);
+      sum += map.density(s);
+    }
+    EXPECT_NEAR(sum / nodes, 1.0, 1e-14);
+    for (const double s : {0.1, 1.5, 3.0, 4.7}) {
+      const double h = 1e-5;
+      EXPECT_NEAR((map.phase(s + h) - map.phase(s - h)) / (2.0 * h), map.density(s), 1e-7);
+    }
+    EXPECT_NEAR(map.phase(two_pi), two_pi, 1e-14);
+    EXPECT_EQ(map.phase(0.0), 0.0);
+  }
+}
+
+TEST(TimeMap, InverseUndoesPhase) {
+  for (const TimeMap& map : maps())
+    for (const double s : {0.0, 1e-9, 0.4, 1.57, 1.58, 3.1, 3.2, 4.0, 6.28, -0.3, -40.0, 100.0})
+      EXPECT_NEAR(map.inverse(map.phase(s)), s, 2e-15 * (1.0 + std::abs(s)) / std::min(1.0, map.density(s)))
+          << map.kappa << " at " << s;
+}
+
+TEST(TimeMap, ShiftedAndReversedFollowTheCurve) {
+  for (const TimeMap& map : maps())
+    for (const double shift : {0.5, -1.0, two_pi / 4, two_pi / 2, two_pi / 3}) {
+      const TimeMap moved = map.shifted(shift);
+      for (const double s : {0.0, 0.3, 2.0, 5.0}) {
+        EXPECT_NEAR(moved.phase(s), map.phase(s + shift) - map.phase(shift), 2e-14) << map.kappa << ", " << shift;
+        EXPECT_NEAR(map.reversed().phase(s), -map.phase(-s), 1e-15);
+      }
+    }
+}
+
+TEST(TimeMap, KnowsItsInvariance) {
+  const TimeMap pulse{3.0, {}};
+  const TimeMap third{1.0, {0.0, 0.0, 0.0, 0.0, 0.2, 0.1}};
+  for (const double turns : {0.0, 0.5, 1.0, -0.5, 1.5}) EXPECT_TRUE(pulse.is_invariant_under_shift(turns)) << turns;
+  for (const double turns : {0.25, 1.0 / 3.0, 0.51}) EXPECT_FALSE(pulse.is_invariant_under_shift(turns)) << turns;
+  for (const double turns : {1.0 / 3.0, 2.0 / 3.0, 1.0}) EXPECT_TRUE(third.is_invariant_under_shift(turns)) << turns;
+  EXPECT_FALSE(third.is_invariant_under_shift(0.5));
+  EXPECT_EQ(pulse.shifted(two_pi / 2), pulse);
+  EXPECT_EQ(third.shifted(two_pi / 3), third);
+  EXPECT_EQ(pulse.reversed(), pulse);
+  EXPECT_NE(third.reversed(), third);
+}
+
+TEST(TimeMap, IsResolvedByItsNodes) {
+  for (const TimeMap& map : maps()) {
+    const int nodes = nodes_to_resolve(map) + nodes_to_resolve(map) % 2 + 2;
+    double sum = 0.0;
+    for (const double w : densities(map, nodes)) sum += w;
+    EXPECT_NEAR(sum / nodes, 1.0, 4e-15) << map.kappa;
+  }
+}
+
+TEST(TimeMap, NumbersMakeTheRoundTrip) {
+  EXPECT_TRUE(to_numbers({}).empty());
+  EXPECT_TRUE(time_map_of({}).is_identity());
+  for (const TimeMap& map : maps()) EXPECT_EQ(time_map_of(to_numbers(map)), map);
+  EXPECT_EQ(to_numbers({2.0, {0.1, 0.2}}), (std::vector<double>{2.0, 0.1, 0.2}));
+}
+
+TEST(TimeMapMisuse, BadNumbersAreRefused) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const std::vector<double>& bad :
+       {std::vector<double>{0.0}, {-1.0}, {nan}, {1.0, 0.1}, {1.0, 0.1, nan}, {1.0, 1.1, 0.0}, {1.0, 0.0, -1.1}})
+    EXPECT_THROW(static_cast<void>(time_map_of(bad)), core::MisuseError) << ::testing::PrintToString(bad);
+  EXPECT_THROW(static_cast<void>(densities({1.0, {0.1, 0.1, 0.1, 0.1}}, 4)), core::MisuseError);
+}
+
+}  // namespace
+}  // namespace orbweaver::loop
