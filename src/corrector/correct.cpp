@@ -21,7 +21,7 @@ double rms_field_jacobian(const loss::Linearization& lin) {
   for (int i = 0; i < lin.dimension(); ++i)
     for (int l = 0; l < lin.dimension(); ++l) {
       const double* a = lin.field_jacobian(i, l);
-      for (int j = 0; j < lin.nodes(); ++j) sum += lin.density()[j] * a[j] * a[j];
+      for (std::size_t j = 0; j < lin.density().size(); ++j) sum += lin.density()[j] * a[j] * a[j];
     }
   return std::sqrt(sum / lin.nodes());
 }

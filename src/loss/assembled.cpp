@@ -201,8 +201,9 @@ core::Handle<Mat> assemble_jacobian(const Linearization& lin, const Unknowns& un
   std::vector<double> cosine(static_cast<std::size_t>(nodes));
   std::vector<double> sine(cosine.size());
   std::vector<double> scale(cosine.size());
+  const double* density = lin.density().data();
   for (int j = 0; j < nodes; ++j) {
-    scale[static_cast<std::size_t>(j)] = std::sqrt(lin.density()[j] / nodes);
+    scale[static_cast<std::size_t>(j)] = std::sqrt(density[j] / nodes);
     cosine[static_cast<std::size_t>(j)] = std::cos(2.0 * std::numbers::pi * j / nodes);
     sine[static_cast<std::size_t>(j)] = std::sin(2.0 * std::numbers::pi * j / nodes);
   }
@@ -220,8 +221,8 @@ core::Handle<Mat> assemble_jacobian(const Linearization& lin, const Unknowns& un
           const double* other = w.sine ? cosine.data() : sine.data();
           int at = 0;
           for (int j = 0; j < nodes; ++j) {
-            out[j] += e.weight * scale[static_cast<std::size_t>(j)] *
-                      (slope / lin.density()[j] * other[at] - a[j] * value[at]);
+            out[j] +=
+                e.weight * scale[static_cast<std::size_t>(j)] * (slope / density[j] * other[at] - a[j] * value[at]);
             at += w.k;
             if (at >= nodes) at -= nodes;
           }

@@ -16,10 +16,17 @@ std::vector<double> energy_gradients(const systems::System& system, std::size_t 
   return out;
 }
 
+// Nodal values (component-major) times one number a node.
+void multiply_by(const std::vector<double>& density, std::vector<double>& nodal) {
+  for (std::size_t m = 0; m < nodal.size(); ++m) nodal[m] *= density[m % density.size()];
+}
+
 // z(s + offset) at the grid's nodes, winding included.
 std::vector<double> states_at(const loop::FourierGrid& grid, const loop::Loop& loop, double offset) {
   const auto n = static_cast<std::size_t>(grid.nodes());
-  const loop::Loop shifted = loop::time_shifted(loop, offset / (2.0 * std::numbers::pi));
+  loop::Loop curve = loop;
+  curve.time_map = {};
+  const loop::Loop shifted = loop::parameter_shifted(curve, offset / (2.0 * std::numbers::pi));
   std::vector<double> z(n * static_cast<std::size_t>(loop.dimension));
   grid.synthesize(loop.cutoff, loop.dimension, shifted.modes.data(), z.data());
   for (std::size_t i = 0; i < static_cast<std::size_t>(loop.dimension); ++i)
@@ -58,8 +65,10 @@ LoopEquations::LoopEquations(const systems::System& system, const loop::Loop& lo
       _linearization(system, loop, Linearization::Order::jacobian) {
   if (_unfoldings == 0) return;
   const loop::FourierGrid& grid = _linearization.grid();
-  _unfolding_column =
-      project_nodal(energy_gradients(system, static_cast<std::size_t>(grid.nodes()), states_at(grid, loop, 0.0)));
+  std::vector<double> gradients =
+      energy_gradients(system, static_cast<std::size_t>(grid.nodes()), states_at(grid, loop, 0.0));
+  multiply_by(_linearization.density(), gradients);
+  _unfolding_column = project_nodal(gradients);
 }
 
 LoopEquations::~LoopEquations() = default;
@@ -76,15 +85,19 @@ Eigen::VectorXd LoopEquations::project_nodal(const std::vector<double>& nodal) c
 Eigen::VectorXd LoopEquations::residual() const {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(size());
   const double* r = _linearization.raw_residual(0);
-  out.head(_image.size()) = project_nodal(std::vector<double>(r, r + _linearization.rows()));
+  std::vector<double> nodal(r, r + _linearization.rows());
+  multiply_by(_linearization.density(), nodal);
+  out.head(_image.size()) = project_nodal(nodal);
   return out;
 }
 
 Eigen::VectorXd LoopEquations::apply(const Eigen::VectorXd& x) const {
   const auto count = static_cast<std::size_t>(_unknowns.size());
   std::vector<double> nodal = _linearization.apply_jacobian(_unknowns, std::span<const double>(x.data(), count));
-  const double scale = std::sqrt(static_cast<double>(_linearization.nodes()));
-  for (double& v : nodal) v *= scale;
+  // Rows of the Jacobian of the loss are dr sqrt(w / N); those here are w dr.
+  std::vector<double> scale = _linearization.density();
+  for (double& w : scale) w = std::sqrt(w * _linearization.nodes());
+  multiply_by(scale, nodal);
   Eigen::VectorXd out(size());
   out.head(_image.size()) = project_nodal(nodal);
   if (_unfoldings > 0) out.head(_image.size()) -= x(_unknowns.size()) * _unfolding_column;
@@ -108,6 +121,13 @@ void LoopEquations::factor(const systems::System& system, const loop::Loop& loop
   m.blocks.resize(d * d * n);
   std::vector<double> f(d * n);
   system.field_jacobian(n, z.data(), f.data(), m.blocks.data());
+  std::vector<double> density;
+  if (!loop.time_map.is_identity()) {
+    density.resize(n);
+    for (std::size_t j = 0; j < n; ++j) density[j] = loop.time_map.density(h * (static_cast<double>(j) + 0.5));
+    multiply_by(density, f);
+    multiply_by(density, m.blocks);
+  }
 
   const auto borders = static_cast<Eigen::Index>(_slice.conditions().cols());
   m.columns = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(d * n), borders);
@@ -115,13 +135,14 @@ void LoopEquations::factor(const systems::System& system, const loop::Loop& loop
   m.corner = Eigen::MatrixXd::Zero(borders, borders);
   Eigen::Index column = 0;
   if (_unknowns.period) {
-    // d/dT of the residual is -(rate / T) z', and z' rate = f at an orbit.
+    // d/dT of w r is -(rate / T) z', and z' rate = w f at an orbit.
     for (std::size_t q = 0; q < d * n; ++q) m.columns(static_cast<Eigen::Index>(q), column) = -f[q] / loop.period;
     m.corner.col(column) = _slice.conditions().row(_unknowns.size() - 1).transpose();
     ++column;
   }
   if (_unfoldings > 0) {
-    const std::vector<double> gradient = energy_gradients(system, n, z);
+    std::vector<double> gradient = energy_gradients(system, n, z);
+    if (!density.empty()) multiply_by(density, gradient);
     for (std::size_t q = 0; q < d * n; ++q) m.columns(static_cast<Eigen::Index>(q), column) = -gradient[q];
   }
   // c . u in coefficients is the mean over nodes of a loop with twice c's harmonics; y enters through the filter of z = F(y).

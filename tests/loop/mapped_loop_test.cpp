@@ -1,5 +1,6 @@
 // A loop under a time map against the same orbit under the identity, and against its definition: z at t = T phi(s).
 #include <cmath>
+#include <functional>
 
 #include <gtest/gtest.h>
 
@@ -74,6 +75,38 @@ TEST(MappedLoop, MeasuresAreThoseOfTheOrbit) {
     EXPECT_LT(mean_distance(mapped, twice), 1e-13);
     EXPECT_NEAR(mean_distance(other_mapped, twice), mean_distance(even, other), 1e-12);
   }
+}
+
+// sqrt of the mean over time of the square of g(s), by its definition on many nodes.
+double rms_over_time(const TimeMap& map, const std::function<double(double)>& square) {
+  constexpr int nodes = 8000;
+  double sum = 0.0;
+  for (int j = 0; j < nodes; ++j) sum += map.density(two_pi * j / nodes) * square(two_pi * j / nodes);
+  return std::sqrt(sum / nodes);
+}
+
+// The pulse has many more harmonics than the loop.
+TEST(MappedLoop, SharpPulseIsResolved) {
+  Loop loop = test::random_loop(3, 4, 37);
+  Loop other = test::random_loop(3, 4, 38);
+  loop.time_map = other.time_map = {12.0, {}};
+  const auto gap = [&](double s) {
+    return std::pow(test::distance(test::direct_sum(loop, s).state, test::direct_sum(other, s).state), 2);
+  };
+  EXPECT_NEAR(mean_distance(loop, other), rms_over_time(loop.time_map, gap), 1e-13);
+}
+
+TEST(MappedLoop, DistanceOfLoopsUnderVeryDifferentMaps) {
+  const Loop even = test::random_loop(3, 3, 39);
+  Loop sharp = test::random_loop(3, 3, 40);
+  sharp.time_map = {1.0, {0.9, 0.0}};
+  const auto gap = [&](double s) {
+    return std::pow(
+        test::distance(test::direct_sum(sharp, s).state, test::direct_sum(even, sharp.time_map.phase(s)).state), 2);
+  };
+  const double expected = rms_over_time(sharp.time_map, gap);
+  EXPECT_NEAR(mean_distance(even, sharp), expected, 1e-13);
+  EXPECT_NEAR(mean_distance(sharp, even), expected, 1e-13);
 }
 
 TEST(MappedLoop, SamplesGiveMeansOverTime) {

@@ -62,7 +62,7 @@ class Linearization {
   [[nodiscard]] double period() const { return _period; }  ///< T
   [[nodiscard]] const loop::FourierGrid& grid() const { return *_grid; }
   [[nodiscard]] const double* raw_residual(int i) const { return _r.data() + offset(i); }
-  [[nodiscard]] const double* density() const { return _density.data(); }               ///< w: 2 pi dphi/ds
+  [[nodiscard]] const std::vector<double>& density() const { return _density; }         ///< w: 2 pi dphi/ds
   [[nodiscard]] const double* slope(int i) const { return _slope.data() + offset(i); }  ///< z_i'/w: dz_i/d(2 pi t/T)
   [[nodiscard]] bool evenly_in_time() const { return _evenly; }                         ///< w = 1 at all nodes
   [[nodiscard]] const double* field_jacobian(int i, int l) const { return _a.data() + offset(i * _dimension + l); }

@@ -16,6 +16,8 @@ class BoxScheme;
 
 /// The square system of Newton's method at one loop: residual projected onto the modes of its symmetry type, and the
 /// slice's conditions; unknowns are those of the loss and, where a phase condition is held, an unfolding multiple of grad H.
+/// Under a time map the residual is taken as w r = (2 pi/T) z' - w f, w the density: the box scheme's cells then differ
+/// only by their factor w of the field.
 class LoopEquations {
  public:
   LoopEquations(const systems::System& system, const loop::Loop& loop, const Unknowns& unknowns,
