@@ -56,10 +56,10 @@ def build(folder: Path, work: Path) -> dict[str, Path]:
 
 
 def timed(command: list[str], environment: dict[str, str], folder: str | None = None, stdin=subprocess.DEVNULL,
-          stdout=subprocess.DEVNULL) -> Run:
+          stdout=subprocess.DEVNULL, stderr=None) -> Run:
     """Runs a process to its end; throws RuntimeError if it fails."""
     process = subprocess.Popen(command, env={**os.environ, "OMP_NUM_THREADS": "1", **environment}, cwd=folder, stdin=stdin,
-                               stdout=stdout)
+                               stdout=stdout, stderr=stderr)
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode != 0:
@@ -86,7 +86,8 @@ def trace(programs: dict[str, Path], mode: str, family: str, ntst: int, ncol: in
             path = Path(folder) / f"c.{name}"
             path.write_text(constants)
             with path.open() as stdin:
-                run = timed([str(programs[mode])], {"ORBWEAVER_FAMILY": str(number)}, folder, stdin)
+                run = timed([str(programs[mode])], {"ORBWEAVER_FAMILY": str(number)}, folder, stdin,
+                            stderr=subprocess.DEVNULL)  # underflows, noted by gfortran at every end
             total.user += run.user
             total.system += run.system
         rows = [line.split() for line in (Path(folder) / "b.po").read_text().splitlines()]

@@ -10,6 +10,7 @@ Medians over the repetitions, each run in a fresh process. Three notions of time
 
 import argparse
 import sys
+from functools import cache
 from pathlib import Path
 from statistics import median
 
@@ -30,31 +31,32 @@ def orbweaver(program: str, options: list[str], work: Path) -> tuple[dict[str, f
     return {k: float(v) for k, v in (word.split("=") for word in output.read_text().split())}, run
 
 
-def longest_steps(program: str, options: list[str], orbits: int, work: Path) -> dict[str, list[str]]:
-    """For each family, the options with which it has about `orbits` orbits."""
-    steps = {}
-    for family in auto_side.FAMILIES:
-        given = ["--family", family, *options]
-        found, _ = orbweaver(program, [*given, "--aim", str(orbits)], work)
-        steps[family] = [*given, "--longest", str(found["longest"])]
-    return steps
+@cache
+def longest_step(program: str, family: str, full: bool, orbits: int, work: Path) -> str:
+    """The bound on the steps with which a family has about `orbits` orbits."""
+    options = ["--family", family, "--aim", str(orbits), *(["--full"] if full else [])]
+    return str(orbweaver(program, options, work)[0]["longest"])
+
+
+def options_of(program: str, family: str, options: list[str], orbits: int, work: Path) -> list[str]:
+    return ["--family", family, *options, "--longest", longest_step(program, family, "--full" in options, orbits, work)]
 
 
 def measure(program, programs, work, repetitions, orbits, case):
     """Medians for each family: (AUTO's run, its start, Orbweaver's trace, its process, orbits), in seconds."""
     _, options, mode, ntst, ncol = case
-    steps = longest_steps(program, options, orbits, work)
     results = {}
     for family in auto_side.FAMILIES:
+        given = options_of(program, family, options, orbits, work)
         theirs, starts, ours, processes = [], [], [], []
         for _ in range(repetitions):
             auto = auto_side.trace(programs, mode, family, ntst, ncol)
             starts.append(auto_side.trace(programs, mode, family, ntst, ncol, most=1).user)
             theirs.append(auto.user)
-            printed, process = orbweaver(program, steps[family], work)
+            printed, process = orbweaver(program, given, work)
             ours.append(1e-6 * printed["cold"])
             processes.append(process.user)
-        warm, _ = orbweaver(program, [*steps[family], "--repetitions", str(repetitions + 1)], work)
+        warm, _ = orbweaver(program, [*given, "--repetitions", str(repetitions + 1)], work)
         results[family] = (median(theirs), median(starts), median(ours), median(processes), auto.orbits,
                            int(printed["orbits"]), 1e-6 * warm["warm"])
     return results
@@ -76,8 +78,8 @@ def print_errors(program, work, orbits) -> None:
     print("\nlargest distance of Orbweaver's orbits to the true ones (nearest orbit of the family, whole loop)")
     print(f"{'':<10} {'family':<7} {'T < 10':>8} {'10-15':>8} {'15-20':>8} {'20-30':>8}")
     for name, options in (("symmetric", []), ("full", ["--full"])):
-        for family, given in longest_steps(program, options, orbits, work).items():
-            e, _ = orbweaver(program, [*given, "--check"], work)
+        for family in auto_side.FAMILIES:
+            e, _ = orbweaver(program, [*options_of(program, family, options, orbits, work), "--check"], work)
             print(f"{name:<10} {family:<7} {e['error_T10']:>8.1e} {e['error_T15']:>8.1e} {e['error_T20']:>8.1e} "
                   f"{e['error_T30']:>8.1e}", flush=True)
 
