@@ -37,8 +37,9 @@ OrbitError error_of(const systems::System& system, const loop::Loop& orbit, cons
     const std::vector<double> u = unknowns.difference(produced, to);
     return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size())));
   };
-  loop::Loop nearby = loop::with_cutoff(neighbour, cutoff);
-  nearby.time_map = produced.time_map;
+  const loop::Loop nearby = neighbour.time_map == produced.time_map
+                                ? loop::with_cutoff(neighbour, cutoff)
+                                : loop::with_time_map(neighbour, produced.time_map, cutoff);
   Eigen::VectorXd normal = difference(nearby).normalized();
 
   corrector::Result solved;
@@ -58,6 +59,10 @@ OrbitError error_of(const systems::System& system, const loop::Loop& orbit, cons
   Eigen::MatrixXd neutral(off.size(), 2);
   neutral.col(0) = at_nodes(grid, produced, along);
   grid.synthesize_derivative(cutoff, orbit.dimension, solved.loop.modes.data(), neutral.col(1).data());
+  const std::vector<double> density = loop::densities(produced.time_map, grid.nodes());  // dz/dt = z'(s) / density
+  for (int i = 0; i < orbit.dimension; ++i)
+    for (int j = 0; j < grid.nodes(); ++j)
+      neutral(static_cast<Eigen::Index>(i) * grid.nodes() + j, 1) /= density[static_cast<std::size_t>(j)];
   neutral.colwise().normalize();
   const Eigen::VectorXd rest = off - neutral * neutral.householderQr().solve(off);
   return {rest.cwiseAbs().maxCoeff(), solved.newton_step};
