@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 #include <vector>
 
+#include "orbweaver/core/error.hpp"
 #include "orbweaver/loss/linearization.hpp"
+#include "orbweaver/loss/loop_equations.hpp"
 #include "orbweaver/loss/matrices.hpp"
 #include "orbweaver/loss/slice.hpp"
 #include "orbweaver/spectrum/eigenpairs.hpp"
@@ -13,53 +16,114 @@ namespace orbweaver::continuation {
 
 namespace {
 
+// What is perturbed, and what is known to be flat there.
+struct Sector {
+  loss::Unknowns unknowns;
+  std::vector<int> signs;
+  loss::Slice slice;
+};
+
+// The complement of the family's tangent and of the time shift, as far as the unknowns contain them.
+loss::Slice complement(const loss::Unknowns& unknowns, const loop::Loop& loop, std::span<const double> tangent_modes,
+                       double tangent_period) {
+  const int size = unknowns.size();
+  Eigen::MatrixXd excluded(size, 0);
+  const auto exclude = [&](Eigen::VectorXd direction) {
+    for (Eigen::Index c = 0; c < excluded.cols(); ++c) direction -= excluded.col(c).dot(direction) * excluded.col(c);
+    if (direction.norm() < 1e-8) return;
+    excluded.conservativeResize(Eigen::NoChange, excluded.cols() + 1);
+    excluded.col(excluded.cols() - 1) = direction.normalized();
+  };
+  Eigen::VectorXd tangent = Eigen::VectorXd::Zero(size);
+  unknowns.subspace.project(tangent_modes,
+                            std::span(tangent.data(), static_cast<std::size_t>(unknowns.subspace.size())));
+  if (unknowns.period) tangent(size - 1) = tangent_period;
+  exclude(tangent);
+  const std::vector<double> shift = unknowns.time_shift_direction(loop);
+  const double amplitude = loop::rms_amplitude(loop);
+  if (amplitude > 0.0) exclude(Eigen::Map<const Eigen::VectorXd>(shift.data(), size) / amplitude);
+  return {size, excluded};
+}
+
 // All sign patterns of the generators, or the unrestricted space where they do not split the modes completely.
-std::vector<loop::Subspace> sectors_of(const loop::Loop& loop, const loop::Isotropy& isotropy) {
-  std::vector<loop::Subspace> sectors;
-  const loop::Subspace whole = loop::Subspace::unrestricted(loop.dimension, loop.cutoff);
+std::vector<Sector> sectors_of(const loop::Loop& loop, const loop::Isotropy& isotropy,
+                               std::span<const double> tangent_modes, double tangent_period) {
+  std::vector<Sector> sectors;
+  const auto add = [&](loop::Subspace subspace, std::vector<int> signs, bool period) {
+    loss::Unknowns unknowns{std::move(subspace), period};
+    loss::Slice slice = complement(unknowns, loop, tangent_modes, tangent_period);
+    if (slice.free() > 0) sectors.push_back({std::move(unknowns), std::move(signs), std::move(slice)});
+  };
   int covered = 0;
-  for (unsigned pattern = 0; pattern < (1u << isotropy.size()); ++pattern) {
-    std::vector<int> signs;
-    for (std::size_t n = 0; n < isotropy.size(); ++n) signs.push_back(((pattern >> n) & 1u) == 0u ? 1 : -1);
-    loop::Subspace sector(loop.dimension, loop.cutoff, isotropy, signs);
-    covered += sector.size();
-    if (sector.size() > 0) sectors.push_back(std::move(sector));
+  if (!isotropy.empty())
+    for (unsigned pattern = 0; pattern < (1u << isotropy.size()); ++pattern) {
+      std::vector<int> signs;
+      for (std::size_t n = 0; n < isotropy.size(); ++n) signs.push_back(((pattern >> n) & 1u) == 0u ? 1 : -1);
+      loop::Subspace sector(loop.dimension, loop.cutoff, isotropy, signs);
+      covered += sector.size();
+      // The first pattern has all signs positive: the only one that a change of T belongs to.
+      if (sector.size() > 0) add(std::move(sector), std::move(signs), pattern == 0);
+    }
+  loop::Subspace whole = loop::Subspace::unrestricted(loop.dimension, loop.cutoff);
+  if (covered != whole.size()) {
+    sectors.clear();
+    add(std::move(whole), {}, true);
   }
-  if (covered != whole.size()) return {whole};
   return sectors;
+}
+
+double matrix_free_eigenvalue(const systems::System& system, const loop::Loop& loop, const Sector& whole) {
+  try {
+    return spectrum::smallest_eigenpairs(system, loop, whole.unknowns, whole.slice, {.count = 1}).values.front();
+  } catch (const core::NumericalError&) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
 }
 
 }  // namespace
 
+std::vector<OffBranchTriplet> off_branch_triplets(const systems::System& system, const loop::Loop& loop,
+                                                  const loop::Isotropy& isotropy, std::span<const double> tangent_modes,
+                                                  double tangent_period, const spectrum::TripletOptions& options) {
+  std::vector<OffBranchTriplet> all;
+  for (const Sector& sector : sectors_of(loop, isotropy, tangent_modes, tangent_period)) {
+    spectrum::TripletOptions here = options;
+    here.count = std::min(options.count, sector.slice.free());
+    const spectrum::SingularTriplets found =
+        spectrum::smallest_singular_triplets(system, loop, sector.unknowns, sector.slice, here);
+    for (std::size_t n = 0; n < found.values.size(); ++n) {
+      OffBranchTriplet t;
+      t.singular_value = found.values[n];
+      t.modes.assign(loop.modes.size(), 0.0);
+      const Eigen::VectorXd v = found.right.col(static_cast<Eigen::Index>(n));
+      sector.unknowns.subspace.add_to(std::span(v.data(), static_cast<std::size_t>(sector.unknowns.subspace.size())),
+                                      t.modes);
+      if (sector.unknowns.period) t.period = v(v.size() - 1);
+      t.signs = sector.signs;
+      t.residual = found.residuals[n];
+      t.left_residual = found.left_residuals[n];
+      all.push_back(std::move(t));
+    }
+  }
+  std::stable_sort(all.begin(), all.end(), [](const OffBranchTriplet& a, const OffBranchTriplet& b) {
+    return a.singular_value < b.singular_value;
+  });
+  if (all.size() > static_cast<std::size_t>(options.count)) all.resize(static_cast<std::size_t>(options.count));
+  return all;
+}
+
 double off_branch_eigenvalue(const systems::System& system, const loop::Loop& loop, const loop::Isotropy& isotropy,
-                             std::span<const double> tangent_modes, double tangent_period) {
+                             std::span<const double> tangent_modes, double tangent_period, int krylov_from) {
+  if (static_cast<int>(loop.modes.size()) >= krylov_from) {
+    const Sector whole = sectors_of(loop, {}, tangent_modes, tangent_period).front();
+    if (loss::LoopEquations::are_square(system, whole.unknowns, whole.unknowns.subspace.image(), whole.slice))
+      return matrix_free_eigenvalue(system, loop, whole);
+  }
   const loss::Linearization linearization(system, loop, loss::Linearization::Order::jacobian);
   double smallest = std::numeric_limits<double>::infinity();
-  bool trivial_sector = true;  // the first pattern has all signs positive: the only one that a change of T belongs to
-  for (loop::Subspace& sector : sectors_of(loop, isotropy)) {
-    loss::Unknowns unknowns{std::move(sector), trivial_sector};
-    trivial_sector = false;
-    const int size = unknowns.size();
-    Eigen::MatrixXd excluded(size, 0);
-    const auto exclude = [&](Eigen::VectorXd direction) {
-      for (Eigen::Index c = 0; c < excluded.cols(); ++c) direction -= excluded.col(c).dot(direction) * excluded.col(c);
-      if (direction.norm() < 1e-8) return;
-      excluded.conservativeResize(Eigen::NoChange, excluded.cols() + 1);
-      excluded.col(excluded.cols() - 1) = direction.normalized();
-    };
-    Eigen::VectorXd tangent = Eigen::VectorXd::Zero(size);
-    unknowns.subspace.project(tangent_modes,
-                              std::span(tangent.data(), static_cast<std::size_t>(unknowns.subspace.size())));
-    if (unknowns.period) tangent(size - 1) = tangent_period;
-    exclude(tangent);
-    std::vector<double> shift = unknowns.time_shift_direction(loop);
-    const Eigen::VectorXd shift_direction = Eigen::Map<Eigen::VectorXd>(shift.data(), size);
-    const double amplitude = loop::rms_amplitude(loop);
-    if (amplitude > 0.0) exclude(shift_direction / amplitude);
-    const loss::Slice slice(size, excluded);
-    if (slice.free() < 1) continue;
-    const core::Handle<Mat> reduced =
-        slice.reduce_symmetric(loss::assemble_hessian(linearization, unknowns, loss::Curvature::gauss_newton));
+  for (const Sector& sector : sectors_of(loop, isotropy, tangent_modes, tangent_period)) {
+    const core::Handle<Mat> reduced = sector.slice.reduce_symmetric(
+        loss::assemble_hessian(linearization, sector.unknowns, loss::Curvature::gauss_newton));
     smallest = std::min(smallest, spectrum::smallest_eigenpairs(reduced, {.count = 1}).values.front());
   }
   return smallest;

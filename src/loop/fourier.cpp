@@ -107,15 +107,14 @@ void FourierGrid::sums(const double* g, int highest, double* cosines, double* si
 void FourierGrid::analyze(int cutoff, int dimension, const double* nodal, double* modes) const {
   core::require(2 * cutoff < _nodes, "too few nodes for this cutoff");
   const auto d = static_cast<std::size_t>(dimension);
-  const auto highest = static_cast<std::size_t>(cutoff);
-  std::vector<double> cosines(highest + 1);
-  std::vector<double> sines(highest + 1);
+  const auto n = static_cast<std::size_t>(_nodes);
   for (std::size_t i = 0; i < d; ++i) {
-    sums(nodal + i * static_cast<std::size_t>(_nodes), cutoff, cosines.data(), sines.data());
-    modes[i] = cosines[0] / _nodes;
-    for (std::size_t k = 1; k <= highest; ++k) {
-      modes[(2 * k - 1) * d + i] = 2.0 * cosines[k] / _nodes;
-      modes[2 * k * d + i] = 2.0 * sines[k] / _nodes;
+    std::copy_n(nodal + i * n, n, _plans->real);
+    fftw_execute(_plans->forward);
+    modes[i] = _plans->complex[0][0] / _nodes;
+    for (std::size_t k = 1; k <= static_cast<std::size_t>(cutoff); ++k) {
+      modes[(2 * k - 1) * d + i] = 2.0 * _plans->complex[k][0] / _nodes;
+      modes[2 * k * d + i] = -2.0 * _plans->complex[k][1] / _nodes;
     }
   }
 }

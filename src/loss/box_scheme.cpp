@@ -13,35 +13,36 @@ template <int D>
 class Elimination : public BoxScheme {
  public:
   explicit Elimination(const Matrices& m)
-      : _d(m.dimension), _nodes(m.nodes), _borders(m.columns.cols()), _steps(static_cast<std::size_t>(m.nodes)) {
+      : _d(m.dimension),
+        _nodes(m.nodes),
+        _borders(m.columns.cols()),
+        _steps(static_cast<std::size_t>(m.nodes)),
+        _solved(static_cast<std::size_t>(m.nodes), Vector(m.dimension)) {
     eliminate(m);
     condense(m);
   }
 
   void solve(Eigen::VectorXd& x) const override {
-    const Eigen::Index d = _d;
-    std::vector<Vector> g(static_cast<std::size_t>(_nodes));
     Vector carried = node(x, 0);
-    Eigen::VectorXd border = x.tail(_borders);
+    Border border = x.tail(_borders);
     for (int j = 1; j < _nodes; ++j) {
-      const Step& s = _steps[static_cast<std::size_t>(j)];
+      const Step& s = step(j);
       const Vector here = node(x, j);
-      Vector& solved = g[static_cast<std::size_t>(j)];
+      Vector& solved = _solved[static_cast<std::size_t>(j)];
       solved = s.invert_carried.lazyProduct(carried) + s.invert_here.lazyProduct(here);
       carried = (s.keep_carried.lazyProduct(carried) + s.keep_here.lazyProduct(here)).eval();
       border -= s.border_weight.lazyProduct(solved);
     }
-    Eigen::VectorXd small(d + _borders);
-    small.head(d) = carried;
-    small.tail(_borders) = border;
+    Eigen::VectorXd small(_d + _borders);
+    small << carried, border;
     small = _condensed.solve(small);
-    const Vector first = small.head(d);
-    const Eigen::VectorXd p = small.tail(_borders);
+    const Vector first = small.head(_d);
+    const Border p = small.tail(_borders);
     Vector right = first;
     set_node(x, 0, first);
     for (int j = _nodes - 1; j >= 1; --j) {
-      const Step& s = _steps[static_cast<std::size_t>(j)];
-      Vector y = g[static_cast<std::size_t>(j)] - s.to_first.lazyProduct(first) - s.to_next.lazyProduct(right);
+      const Step& s = step(j);
+      Vector y = _solved[static_cast<std::size_t>(j)] - s.to_first.lazyProduct(first) - s.to_next.lazyProduct(right);
       y -= s.to_border.lazyProduct(p);
       set_node(x, j, y);
       right = y;
@@ -49,11 +50,41 @@ class Elimination : public BoxScheme {
     x.tail(_borders) = p;
   }
 
+  // `solve` backwards, each of its assignments transposed.
+  void solve_transposed(Eigen::VectorXd& x) const override {
+    Vector first = node(x, 0);
+    Border p = x.tail(_borders);
+    Vector right = Vector::Zero(_d);
+    for (int j = 1; j < _nodes; ++j) {
+      const Step& s = step(j);
+      Vector& y = _solved[static_cast<std::size_t>(j)];
+      y = node(x, j) + right;
+      first -= s.to_first.transpose().lazyProduct(y);
+      p -= s.to_border.transpose().lazyProduct(y);
+      right = -s.to_next.transpose().lazyProduct(y);
+    }
+    Eigen::VectorXd small(_d + _borders);
+    small << first + right, p;
+    small = _condensed.transpose().solve(small);
+    Vector carried = small.head(_d);
+    const Border border = small.tail(_borders);
+    for (int j = _nodes - 1; j >= 1; --j) {
+      const Step& s = step(j);
+      const Vector solved = _solved[static_cast<std::size_t>(j)] - s.border_weight.transpose().lazyProduct(border);
+      set_node(x, j, s.invert_here.transpose().lazyProduct(solved) + s.keep_here.transpose().lazyProduct(carried));
+      carried =
+          (s.invert_carried.transpose().lazyProduct(solved) + s.keep_carried.transpose().lazyProduct(carried)).eval();
+    }
+    set_node(x, 0, carried);
+    x.tail(_borders) = border;
+  }
+
  private:
   using Block = Eigen::Matrix<double, D, D>;
   using Vector = Eigen::Matrix<double, D, 1>;
-  using Wide = Eigen::Matrix<double, D, Eigen::Dynamic>;
-  using Tall = Eigen::Matrix<double, Eigen::Dynamic, D>;
+  using Border = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_borders, 1>;
+  using Wide = Eigen::Matrix<double, D, Eigen::Dynamic, 0, D, most_borders>;
+  using Tall = Eigen::Matrix<double, Eigen::Dynamic, D, 0, most_borders, D>;
 
   // y_j = invert (carried, here) - to_first y_0 - to_next y_(j+1) - to_border p, and what is carried on to node j + 1.
   struct Step {
@@ -62,6 +93,7 @@ class Elimination : public BoxScheme {
     Tall border_weight;  // of y_j in the border rows, after earlier nodes were eliminated
   };
 
+  [[nodiscard]] const Step& step(int j) const { return _steps[static_cast<std::size_t>(j)]; }
   [[nodiscard]] Vector node(const Eigen::VectorXd& x, int j) const {
     Vector v(_d);
     for (int i = 0; i < _d; ++i) v(i) = x(static_cast<Eigen::Index>(i) * _nodes + j);
@@ -150,6 +182,7 @@ class Elimination : public BoxScheme {
   int _nodes;
   Eigen::Index _borders;
   std::vector<Step> _steps;
+  mutable std::vector<Vector> _solved;  // scratch of the solves: g_j in a sweep forwards
   Block _first, _next;
   Wide _border;
   Eigen::PartialPivLU<Eigen::MatrixXd> _condensed;
@@ -160,6 +193,7 @@ class Elimination : public BoxScheme {
 std::unique_ptr<BoxScheme> factor_box_scheme(const BoxScheme::Matrices& m) {
   core::require(m.dimension >= 1 && m.nodes >= 3, "a box scheme needs at least one coordinate and three nodes");
   core::require(m.rows.rows() == m.columns.cols(), "a box scheme needs as many border rows as columns");
+  core::require(m.rows.rows() <= BoxScheme::most_borders, "a box scheme has at most four borders");
   switch (m.dimension) {
     case 2: return std::make_unique<Elimination<2>>(m);
     case 4: return std::make_unique<Elimination<4>>(m);

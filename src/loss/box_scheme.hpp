@@ -13,9 +13,12 @@ namespace orbweaver::loss {
 ///   sum_j R_j . y_j + S p = a,
 ///
 /// with small dense blocks B_j (d x d) and as many border unknowns p as border rows. Factored by orthogonal elimination
-/// along the loop, which stays bounded however unstable the orbit is: O(N d^3) once, O(N d^2) a solve.
+/// along the loop, which stays bounded however unstable the orbit is: O(N d^3) once, O(N d^2) a solve. Solves share
+/// scratch space: one at a time.
 class BoxScheme {
  public:
+  static constexpr int most_borders = 4;
+
   struct Matrices {
     int dimension = 0;
     int nodes = 0;
@@ -35,9 +38,11 @@ class BoxScheme {
 
   /// Overwrites the right-hand side (b component-major, then a) with the solution (y, then p).
   virtual void solve(Eigen::VectorXd& right_side) const = 0;
+  /// The same with the transposed matrix: the right-hand side is one of (y, p), the solution one of (b, a).
+  virtual void solve_transposed(Eigen::VectorXd& right_side) const = 0;
 };
 
-/// Factors. Throws core::NumericalError if the condensed system is singular.
+/// Factors. Throws core::NumericalError if the condensed system is singular, MisuseError for more than `most_borders`.
 [[nodiscard]] std::unique_ptr<BoxScheme> factor_box_scheme(const BoxScheme::Matrices& matrices);
 
 }  // namespace orbweaver::loss

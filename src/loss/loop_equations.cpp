@@ -1,10 +1,13 @@
 #include "orbweaver/loss/loop_equations.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "box_scheme.hpp"
 #include "orbweaver/core/log_stage.hpp"
+#include "orbweaver/loss/dense.hpp"
 
 namespace orbweaver::loss {
 
@@ -18,7 +21,9 @@ std::vector<double> energy_gradients(const systems::System& system, std::size_t 
 
 // Nodal values (component-major) times one number a node.
 void multiply_by(const std::vector<double>& density, std::vector<double>& nodal) {
-  for (std::size_t m = 0; m < nodal.size(); ++m) nodal[m] *= density[m % density.size()];
+  const std::size_t n = density.size();
+  for (std::size_t row = 0; row < nodal.size() / n; ++row)
+    for (std::size_t j = 0; j < n; ++j) nodal[row * n + j] *= density[j];
 }
 
 // z(s + offset) at the grid's nodes, winding included.
@@ -35,24 +40,51 @@ std::vector<double> states_at(const loop::FourierGrid& grid, const loop::Loop& l
   return z;
 }
 
-// Multiplies harmonic k by sin(x)/x e^{ix shift}, x = k h / 2, of real modes.
-void filter(std::vector<double>& modes, int dimension, double half_cell, bool shift) {
-  const auto d = static_cast<std::size_t>(dimension);
-  const std::size_t cutoff = (modes.size() / d - 1) / 2;
-  for (std::size_t k = 1; k <= cutoff; ++k) {
-    const double x = static_cast<double>(k) * half_cell;
-    const double factor = shift ? 1.0 : std::sin(x) / x;
-    const double c = shift ? std::cos(x) : 1.0;
-    const double s = shift ? std::sin(x) : 0.0;
+// Harmonic k of real modes times sin(x)/x, x = k half_cell.
+void smooth(std::vector<double>& modes, std::size_t d, double half_cell) {
+  for (std::size_t row = 1; row < modes.size() / d; ++row) {
+    const double x = static_cast<double>((row + 1) / 2) * half_cell;
+    const double factor = std::sin(x) / x;
+    for (std::size_t i = 0; i < d; ++i) modes[row * d + i] *= factor;
+  }
+}
+
+// Modes of z(s + offset).
+void shift(std::vector<double>& modes, std::size_t d, double offset) {
+  for (std::size_t k = 1; k <= (modes.size() / d - 1) / 2; ++k) {
+    const double c = std::cos(static_cast<double>(k) * offset);
+    const double s = std::sin(static_cast<double>(k) * offset);
     for (std::size_t i = 0; i < d; ++i) {
       double& a = modes[(2 * k - 1) * d + i];
       double& b = modes[2 * k * d + i];
-      const double a_new = factor * (a * c + b * s);
-      b = factor * (b * c - a * s);
+      const double a_new = a * c + b * s;
+      b = b * c - a * s;
       a = a_new;
     }
   }
 }
+
+// What takes the transpose of the synthesis to the analysis on n nodes, or back: 1/n for the mean, 2/n for harmonics.
+void scale(std::vector<double>& modes, std::size_t d, double mean, double harmonics) {
+  for (std::size_t m = 0; m < d; ++m) modes[m] *= mean;
+  for (std::size_t m = d; m < modes.size(); ++m) modes[m] *= harmonics;
+}
+
+// Adds the derivative with respect to s, times `factor`.
+void add_derivative(const std::vector<double>& modes, std::size_t d, double factor, std::vector<double>& out) {
+  for (std::size_t k = 1; k <= (modes.size() / d - 1) / 2; ++k) {
+    const double weight = factor * static_cast<double>(k);
+    for (std::size_t i = 0; i < d; ++i) {
+      out[(2 * k - 1) * d + i] += weight * modes[2 * k * d + i];
+      out[2 * k * d + i] -= weight * modes[(2 * k - 1) * d + i];
+    }
+  }
+}
+
+std::span<const double> view(const LoopEquations::In& x, int size) {
+  return {x.data(), static_cast<std::size_t>(size)};
+}
+std::span<double> view(LoopEquations::Out& x, int size) { return {x.data(), static_cast<std::size_t>(size)}; }
 
 }  // namespace
 
@@ -62,47 +94,128 @@ LoopEquations::LoopEquations(const systems::System& system, const loop::Loop& lo
       _image(image),
       _slice(slice),
       _unfoldings(unfoldings(unknowns, image, slice)),
-      _linearization(system, loop, Linearization::Order::jacobian) {
-  if (_unfoldings == 0) return;
+      _linearization(system, loop, Linearization::Order::jacobian),
+      _modes(loop.modes.size()),
+      _other_modes(loop.modes.size()),
+      _nodal(static_cast<std::size_t>(_linearization.rows())),
+      _other_nodal(_nodal.size()),
+      _boxed(static_cast<Eigen::Index>(loop.modes.size()) + slice.conditions().cols()) {
+  const auto d = static_cast<std::size_t>(loop.dimension);
+  _slope_modes.assign(loop.modes.size(), 0.0);
+  std::copy(loop.winding.begin(), loop.winding.end(), _slope_modes.begin());
+  add_derivative(loop.modes, d, 1.0, _slope_modes);
+  if (_unfoldings <= 0) return;
   const loop::FourierGrid& grid = _linearization.grid();
-  std::vector<double> gradients =
-      energy_gradients(system, static_cast<std::size_t>(grid.nodes()), states_at(grid, loop, 0.0));
-  multiply_by(_linearization.density(), gradients);
-  _unfolding_column = project_nodal(gradients);
+  _nodal = energy_gradients(system, static_cast<std::size_t>(grid.nodes()), states_at(grid, loop, 0.0));
+  weigh();
+  _unfolding_column.resize(image.size());
+  project_nodal(_unfolding_column);
 }
 
 LoopEquations::~LoopEquations() = default;
 
-Eigen::VectorXd LoopEquations::project_nodal(const std::vector<double>& nodal) const {
-  std::vector<double> modes((2 * static_cast<std::size_t>(_linearization.cutoff()) + 1) *
-                            static_cast<std::size_t>(_linearization.dimension()));
-  _linearization.grid().analyze(_linearization.cutoff(), _linearization.dimension(), nodal.data(), modes.data());
-  Eigen::VectorXd out(_image.size());
-  _image.project(modes, std::span(out.data(), static_cast<std::size_t>(out.size())));
-  return out;
+bool LoopEquations::are_square(const systems::System& system, const Unknowns& unknowns, const loop::Subspace& image,
+                               const Slice& slice) {
+  const int more = unfoldings(unknowns, image, slice);
+  return image.size() == unknowns.subspace.size() && (more == 0 || (more == 1 && system.description().conservative));
+}
+
+// _nodal times the density of the time map.
+void LoopEquations::weigh() const {
+  if (!_linearization.evenly_in_time()) multiply_by(_linearization.density(), _nodal);
+}
+
+// Of _nodal, onto the modes of the image.
+void LoopEquations::project_nodal(Out out) const {
+  _linearization.grid().analyze(_linearization.cutoff(), _linearization.dimension(), _nodal.data(), _modes.data());
+  _image.project(_modes, view(out, _image.size()));
 }
 
 Eigen::VectorXd LoopEquations::residual() const {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(size());
-  const double* r = _linearization.raw_residual(0);
-  std::vector<double> nodal(r, r + _linearization.rows());
-  multiply_by(_linearization.density(), nodal);
-  out.head(_image.size()) = project_nodal(nodal);
+  std::copy_n(_linearization.raw_residual(0), _nodal.size(), _nodal.begin());
+  weigh();
+  project_nodal(out.head(_image.size()));
   return out;
 }
 
-Eigen::VectorXd LoopEquations::apply(const Eigen::VectorXd& x) const {
-  const auto count = static_cast<std::size_t>(_unknowns.size());
-  std::vector<double> nodal = _linearization.apply_jacobian(_unknowns, std::span<const double>(x.data(), count));
-  // Rows of the Jacobian of the loss are dr sqrt(w / N); those here are w dr.
-  std::vector<double> scale = _linearization.density();
-  for (double& w : scale) w = std::sqrt(w * _linearization.nodes());
-  multiply_by(scale, nodal);
-  Eigen::VectorXd out(size());
-  out.head(_image.size()) = project_nodal(nodal);
+// P w J u: the derivative among the modes, where harmonics do not mix, the rest on the grid of the loss.
+void LoopEquations::apply(const In& x, Out out) const {
+  const int cutoff = _linearization.cutoff();
+  const int dimension = _linearization.dimension();
+  const auto d = static_cast<std::size_t>(dimension);
+  const auto n = static_cast<std::size_t>(_linearization.nodes());
+  const double rate = _linearization.rate();
+  std::fill(_other_modes.begin(), _other_modes.end(), 0.0);
+  _unknowns.subspace.add_to(view(x, _unknowns.subspace.size()), _other_modes);
+  _linearization.grid().synthesize(cutoff, dimension, _other_modes.data(), _other_nodal.data());
+  std::fill(_nodal.begin(), _nodal.end(), 0.0);
+  for (std::size_t i = 0; i < d; ++i)
+    for (std::size_t l = 0; l < d; ++l) {
+      const double* a = _linearization.field_jacobian(static_cast<int>(i), static_cast<int>(l));
+      for (std::size_t j = 0; j < n; ++j) _nodal[i * n + j] -= a[j] * _other_nodal[l * n + j];
+    }
+  weigh();
+  _linearization.grid().analyze(cutoff, dimension, _nodal.data(), _modes.data());
+  add_derivative(_other_modes, d, rate, _modes);
+  if (_unknowns.period) {
+    const double dt = -rate / _linearization.period() * x(_unknowns.size() - 1);
+    for (std::size_t m = 0; m < _modes.size(); ++m) _modes[m] += dt * _slope_modes[m];
+  }
+  _image.project(_modes, view(out, _image.size()));
   if (_unfoldings > 0) out.head(_image.size()) -= x(_unknowns.size()) * _unfolding_column;
-  out.tail(_slice.conditions().cols()) = _slice.conditions().transpose() * x.head(_unknowns.size());
-  return out;
+  out.tail(_slice.conditions().cols()).noalias() = _slice.conditions().transpose() * x.head(_unknowns.size());
+}
+
+// The steps of `apply` backwards. The transpose of the analysis is the synthesis of scaled modes, and the other way round.
+void LoopEquations::apply_transposed(const In& y, Out out) const {
+  const int cutoff = _linearization.cutoff();
+  const int dimension = _linearization.dimension();
+  const auto d = static_cast<std::size_t>(dimension);
+  const auto n = static_cast<std::size_t>(_linearization.nodes());
+  const double rate = _linearization.rate();
+  std::fill(_other_modes.begin(), _other_modes.end(), 0.0);
+  _image.add_to(view(y, _image.size()), _other_modes);
+  std::copy(_other_modes.begin(), _other_modes.end(), _modes.begin());
+  scale(_modes, d, 1.0, 2.0);
+  _linearization.grid().synthesize(cutoff, dimension, _modes.data(), _other_nodal.data());
+  std::fill(_nodal.begin(), _nodal.end(), 0.0);
+  for (std::size_t i = 0; i < d; ++i)
+    for (std::size_t l = 0; l < d; ++l) {
+      const double* a = _linearization.field_jacobian(static_cast<int>(i), static_cast<int>(l));
+      for (std::size_t j = 0; j < n; ++j) _nodal[l * n + j] -= a[j] * _other_nodal[i * n + j];
+    }
+  weigh();
+  _linearization.grid().analyze(cutoff, dimension, _nodal.data(), _modes.data());
+  scale(_modes, d, 1.0, 0.5);
+  add_derivative(_other_modes, d, -rate, _modes);
+  _unknowns.subspace.project(_modes, view(out, _unknowns.subspace.size()));
+  if (_unknowns.period) {
+    double along_slope = 0.0;
+    for (std::size_t m = 0; m < _slope_modes.size(); ++m) along_slope += _slope_modes[m] * _other_modes[m];
+    out(_unknowns.size() - 1) = -rate / _linearization.period() * along_slope;
+  }
+  out.head(_unknowns.size()).noalias() += _slice.conditions() * y.tail(_slice.conditions().cols());
+  if (_unfoldings > 0) out(_unknowns.size()) = -_unfolding_column.dot(y.head(_image.size()));
+}
+
+void LoopEquations::project_rows(const In& rows, Out out) const {
+  const auto n = static_cast<std::size_t>(_linearization.nodes());
+  for (std::size_t m = 0; m < _nodal.size(); ++m)
+    _nodal[m] =
+        std::sqrt(_linearization.density()[m % n] * _linearization.nodes()) * rows(static_cast<Eigen::Index>(m));
+  project_nodal(out);
+}
+
+void LoopEquations::project_rows_transposed(const In& y, Out rows) const {
+  const auto n = static_cast<std::size_t>(_linearization.nodes());
+  const double nodes = _linearization.nodes();
+  std::fill(_modes.begin(), _modes.end(), 0.0);
+  _image.add_to(view(y, _image.size()), _modes);
+  scale(_modes, static_cast<std::size_t>(_linearization.dimension()), 1.0 / nodes, 2.0 / nodes);
+  _linearization.grid().synthesize(_linearization.cutoff(), _linearization.dimension(), _modes.data(), rows.data());
+  for (std::size_t m = 0; m < _nodal.size(); ++m)
+    rows(static_cast<Eigen::Index>(m)) *= std::sqrt(_linearization.density()[m % n] * nodes);
 }
 
 void LoopEquations::factor(const systems::System& system, const loop::Loop& loop) {
@@ -153,34 +266,55 @@ void LoopEquations::factor(const systems::System& system, const loop::Loop& loop
     _unknowns.subspace.add_to(
         std::span<const double>(condition.data(), static_cast<std::size_t>(_unknowns.subspace.size())), modes);
     for (std::size_t q = d; q < modes.size(); ++q) modes[q] *= 2.0;
-    filter(modes, loop.dimension, 0.5 * h, false);
+    smooth(modes, d, 0.5 * h);
     grid.synthesize(loop.cutoff, loop.dimension, modes.data(), nodal.data());
     for (std::size_t q = 0; q < d * n; ++q) m.rows(r, static_cast<Eigen::Index>(q)) = nodal[q] / nodes;
   }
   _box = factor_box_scheme(m);
 }
 
-Eigen::VectorXd LoopEquations::precondition(const Eigen::VectorXd& r) const {
+void LoopEquations::precondition(const In& r, Out out) const {
   const core::LogEvent event(core::Event::precondition);
   const int cutoff = _linearization.cutoff();
   const int dimension = _linearization.dimension();
+  const auto d = static_cast<std::size_t>(dimension);
   const int nodes = 2 * cutoff + 1;
-  const loop::FourierGrid& grid = loop::FourierGrid::of_size(nodes);
   const double half_cell = std::numbers::pi / nodes;
+  const loop::FourierGrid& grid = loop::FourierGrid::of_size(nodes);
   const auto borders = _slice.conditions().cols();
-  std::vector<double> modes(static_cast<std::size_t>(nodes) * static_cast<std::size_t>(dimension), 0.0);
-  _image.add_to(std::span<const double>(r.data(), static_cast<std::size_t>(_image.size())), modes);
-  filter(modes, dimension, half_cell, true);
-  Eigen::VectorXd x(static_cast<Eigen::Index>(modes.size()) + borders);
-  grid.synthesize(cutoff, dimension, modes.data(), x.data());
-  x.tail(borders) = r.tail(borders);
-  _box->solve(x);
-  grid.analyze(cutoff, dimension, x.data(), modes.data());
-  filter(modes, dimension, half_cell, false);
-  Eigen::VectorXd out(size());
-  _unknowns.subspace.project(modes, std::span(out.data(), static_cast<std::size_t>(_unknowns.subspace.size())));
-  out.tail(borders) = x.tail(borders);
-  return out;
+  std::fill(_modes.begin(), _modes.end(), 0.0);
+  _image.add_to(view(r, _image.size()), _modes);
+  shift(_modes, d, half_cell);
+  grid.synthesize(cutoff, dimension, _modes.data(), _boxed.data());
+  _boxed.tail(borders) = r.tail(borders);
+  _box->solve(_boxed);
+  grid.analyze(cutoff, dimension, _boxed.data(), _modes.data());
+  smooth(_modes, d, half_cell);
+  _unknowns.subspace.project(_modes, view(out, _unknowns.subspace.size()));
+  out.tail(borders) = _boxed.tail(borders);
+}
+
+void LoopEquations::precondition_transposed(const In& u, Out out) const {
+  const core::LogEvent event(core::Event::precondition);
+  const int cutoff = _linearization.cutoff();
+  const int dimension = _linearization.dimension();
+  const auto d = static_cast<std::size_t>(dimension);
+  const int nodes = 2 * cutoff + 1;
+  const double half_cell = std::numbers::pi / nodes;
+  const loop::FourierGrid& grid = loop::FourierGrid::of_size(nodes);
+  const auto borders = _slice.conditions().cols();
+  std::fill(_modes.begin(), _modes.end(), 0.0);
+  _unknowns.subspace.add_to(view(u, _unknowns.subspace.size()), _modes);
+  smooth(_modes, d, half_cell);
+  scale(_modes, d, 1.0 / nodes, 2.0 / nodes);
+  grid.synthesize(cutoff, dimension, _modes.data(), _boxed.data());
+  _boxed.tail(borders) = u.tail(borders);
+  _box->solve_transposed(_boxed);
+  grid.analyze(cutoff, dimension, _boxed.data(), _modes.data());
+  scale(_modes, d, nodes, 0.5 * nodes);
+  shift(_modes, d, -half_cell);
+  _image.project(_modes, view(out, _image.size()));
+  out.tail(borders) = _boxed.tail(borders);
 }
 
 }  // namespace orbweaver::loss

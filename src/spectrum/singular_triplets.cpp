@@ -59,6 +59,7 @@ SingularTriplets smallest_singular_triplets(const core::Handle<Mat>& matrix, int
     out.right.col(m) = fixed;
     out.left.col(m) = left;
     out.residuals.push_back((j * fixed - sigma * left).norm());
+    out.left_residuals.push_back((j.transpose() * left - sigma * fixed).norm());
   }
   return out;
 }

@@ -1,33 +1,13 @@
 // One correction against the cutoff K: an orbit padded to K, pushed off by a smooth perturbation, corrected at its period.
 #include <benchmark/benchmark.h>
-#include <malloc.h>
-
-#include <fstream>
-#include <functional>
-#include <limits>
-#include <string>
 
 #include "family_orbit.hpp"
+#include "memory.hpp"
 #include "orbweaver/corrector/correct.hpp"
 
 namespace orbweaver::benchmarks {
 
 namespace {
-
-// What one correction needs above what the process holds, MiB: the peak of its resident memory (Linux).
-double peak_memory_of(const std::function<void()>& work) {
-  const auto resident = [](const char* field) {
-    std::ifstream status("/proc/self/status");
-    for (std::string line; std::getline(status, line);)
-      if (line.starts_with(field)) return std::stod(line.substr(std::string(field).size())) / 1024.0;
-    return std::numeric_limits<double>::quiet_NaN();
-  };
-  malloc_trim(0);
-  std::ofstream("/proc/self/clear_refs") << "5";  // the peak is counted from here
-  const double before = resident("VmRSS:");
-  work();
-  return resident("VmHWM:") - before;
-}
 
 void correct_at(benchmark::State& state, corrector::Method method, bool symmetric, double period) {
   const FamilyOrbit& orbit = family_orbit(Family::in_phase, period);

@@ -23,6 +23,14 @@ struct OnFamily {
   [[nodiscard]] double off_branch_eigenvalue(const loop::Isotropy& isotropy) const {
     return continuation::off_branch_eigenvalue(*test::pendulum(), loop, isotropy, tangent_modes, tangent_period);
   }
+  [[nodiscard]] double off_branch_eigenvalue(int krylov_from) const {
+    return continuation::off_branch_eigenvalue(*test::pendulum(), loop, test::pendulum_isotropy(*test::pendulum()),
+                                               tangent_modes, tangent_period, krylov_from);
+  }
+  [[nodiscard]] std::vector<OffBranchTriplet> triplets(const spectrum::TripletOptions& options, bool split) const {
+    const loop::Isotropy isotropy = split ? test::pendulum_isotropy(*test::pendulum()) : loop::Isotropy{};
+    return off_branch_triplets(*test::pendulum(), loop, isotropy, tangent_modes, tangent_period, options);
+  }
   [[nodiscard]] double off_branch_eigenvalue() const {
     return off_branch_eigenvalue(test::pendulum_isotropy(*test::pendulum()));
   }
@@ -87,6 +95,75 @@ TEST(OffBranchEigenvalue, DoesNotDependOnHowItIsSplit) {
   loop::Isotropy one = test::pendulum_isotropy(*test::pendulum());
   one.pop_back();
   EXPECT_NEAR(orbit.off_branch_eigenvalue(one), split, 1e-6 * split);
+}
+
+constexpr int always_dense = 1 << 30;
+
+TEST(OffBranchEigenvalue, IsTheSameMatrixFree) {
+  for (const test::PendulumMode& mode : test::pendulum_modes()) {
+    const OnFamily orbit = at_period(mode, 1.2 * mode.period());
+    const double dense = orbit.off_branch_eigenvalue(always_dense);
+    EXPECT_NEAR(orbit.off_branch_eigenvalue(1), dense, 1e-7 * dense) << mode.name;
+    EXPECT_NE(orbit.off_branch_eigenvalue(1), dense) << mode.name << ": both by the same way";
+  }
+}
+
+TEST(OffBranchTriplets, AreTheSameDenseMatrixFreeSplitAndWhole) {
+  for (const test::PendulumMode& mode : test::pendulum_modes()) {
+    const OnFamily orbit = at_period(mode, 1.03 * mode.period());
+    const std::vector<OffBranchTriplet> dense = orbit.triplets({.count = 2, .krylov_from = always_dense}, false);
+    const std::vector<OffBranchTriplet> split = orbit.triplets({.count = 2, .krylov_from = 1}, true);
+    const std::vector<OffBranchTriplet> whole = orbit.triplets({.count = 2, .krylov_from = 1}, false);
+    ASSERT_TRUE(dense.size() == 2 && split.size() == 2 && whole.size() == 2);
+    const double eigenvalue = orbit.off_branch_eigenvalue(always_dense);
+    EXPECT_NEAR(2.0 * std::pow(dense[0].singular_value, 2), eigenvalue, 1e-7 * eigenvalue) << mode.name;
+    for (std::size_t n = 0; n < 2; ++n) {
+      const double sigma = dense[n].singular_value;
+      EXPECT_NEAR(split[n].singular_value, sigma, 1e-7 * sigma) << mode.name << n;
+      EXPECT_NEAR(whole[n].singular_value, sigma, 1e-7 * sigma) << mode.name << n;
+      EXPECT_LT(whole[n].residual + whole[n].left_residual, 1e-5 * sigma) << mode.name << n;
+      EXPECT_TRUE(whole[n].signs.empty());
+    }
+  }
+}
+
+// v is orthogonal to what is known to be flat, of unit length, in the sector that its signs name, and |J v| = sigma.
+TEST(OffBranchTriplets, AreDirections) {
+  const OnFamily orbit = at_period(test::in_phase(), 9.0);
+  const loss::Linearization linearization(*test::pendulum(), orbit.loop, loss::Linearization::Order::jacobian);
+  const loss::Unknowns all{loop::Subspace::unrestricted(4, orbit.loop.cutoff), true};
+  const auto whole = [&](std::span<const double> modes, double period) {
+    Eigen::VectorXd out(all.size());
+    all.subspace.project(modes, std::span(out.data(), modes.size()));
+    out(out.size() - 1) = period;
+    return out;
+  };
+  const Eigen::VectorXd tangent = whole(orbit.tangent_modes, orbit.tangent_period).normalized();
+  const std::vector<double> shift = all.time_shift_direction(orbit.loop);
+  for (const OffBranchTriplet& t : orbit.triplets({.count = 6}, true)) {
+    const Eigen::VectorXd v = whole(t.modes, t.period);
+    EXPECT_NEAR(v.norm(), 1.0, 1e-12);
+    EXPECT_LT(std::abs(v.dot(tangent)), 1e-12);
+    EXPECT_LT(std::abs(v.dot(Eigen::Map<const Eigen::VectorXd>(shift.data(), v.size()))), 1e-12);
+    const std::vector<double> jv =
+        linearization.apply_jacobian(all, std::span(v.data(), static_cast<std::size_t>(v.size())));
+    EXPECT_NEAR(Eigen::Map<const Eigen::VectorXd>(jv.data(), linearization.rows()).norm(), t.singular_value,
+                1e-7 * t.singular_value);
+    ASSERT_EQ(t.signs.size(), 2u);
+    const loop::Subspace sector(4, orbit.loop.cutoff, test::pendulum_isotropy(*test::pendulum()), t.signs);
+    Eigen::VectorXd inside(sector.size());
+    sector.project(t.modes, std::span(inside.data(), static_cast<std::size_t>(inside.size())));
+    EXPECT_NEAR(inside.squaredNorm() + t.period * t.period, 1.0, 1e-12);
+  }
+}
+
+TEST(OffBranchTriplets, BreakASymmetryWhereAFamilyOfTheSamePeriodCrosses) {
+  const OnFamily orbit = at_period(test::in_phase(), 10.416773281973249);
+  const std::vector<OffBranchTriplet> found = orbit.triplets({.count = 2}, true);
+  EXPECT_LT(found[0].singular_value, 1e-10);
+  EXPECT_GT(found[1].singular_value, 1e-3);
+  EXPECT_EQ(found[0].signs, (std::vector<int>{1, -1}));
+  EXPECT_EQ(found[0].period, 0.0);
 }
 
 // At a crossing a second direction is flat: the eigenvalue, quadratic in the distance, falls to rounding.

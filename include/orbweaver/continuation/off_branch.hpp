@@ -1,19 +1,40 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "orbweaver/loop/isotropy.hpp"
 #include "orbweaver/loop/loop.hpp"
+#include "orbweaver/spectrum/singular_triplets.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::continuation {
 
-/// The smallest eigenvalue of H over all perturbations of the loop and its period, the time shift and the family's own
-/// direction excluded: the paper's off-branch eigenvalue (section III C), in the unscaled coefficients. The Hessian falls
-/// apart into the sectors of the isotropy (perturbations that keep or flip the sign under each generator), which are
-/// solved one by one; where a generator is not an involution the whole space is taken.
+/// A direction in which an orbit is nearly flat besides its time shift and its family: J v = sigma u.
+struct OffBranchTriplet {
+  double singular_value = 0.0;  ///< sigma; the paper's off-branch eigenvalue is 2 sigma^2
+  std::vector<double> modes;    ///< v: unscaled coefficients, (2K + 1) x dimension
+  double period = 0.0;          ///< v: change of T; |v| = 1
+  std::vector<int> signs;       ///< under each generator of the isotropy: +1 kept, -1 broken; empty: not split
+  double residual = 0.0;        ///< |J v - sigma u|
+  double left_residual = 0.0;   ///< |J' u - sigma v|, both on the slice
+};
+
+/// The `options.count` smallest, over all perturbations of the loop and its period, the time shift and the family's own
+/// direction excluded, smallest first. J falls apart into the sectors of the isotropy (perturbations that keep or flip the
+/// sign under each generator), which are solved one by one; where a generator is not an involution, or without any, the
+/// whole space is taken. Matrix-free where that is faster. Throws what spectrum::smallest_singular_triplets does.
+[[nodiscard]] std::vector<OffBranchTriplet> off_branch_triplets(const systems::System& system, const loop::Loop& loop,
+                                                                const loop::Isotropy& isotropy,
+                                                                std::span<const double> tangent_modes,
+                                                                double tangent_period,
+                                                                const spectrum::TripletOptions& options);
+
+/// The smallest eigenvalue of H over the same perturbations: the paper's off-branch eigenvalue (section III C). With
+/// `krylov_from` coefficients or more the whole space is solved at once and matrix-free, which is then faster than sector
+/// by sector (docs/performance.md); NaN where that does not converge.
 [[nodiscard]] double off_branch_eigenvalue(const systems::System& system, const loop::Loop& loop,
                                            const loop::Isotropy& isotropy, std::span<const double> tangent_modes,
-                                           double tangent_period);
+                                           double tangent_period, int krylov_from = 700);
 
 }  // namespace orbweaver::continuation

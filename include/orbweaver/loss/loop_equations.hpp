@@ -33,29 +33,53 @@ class LoopEquations {
     return image.size() + static_cast<int>(slice.conditions().cols()) - unknowns.size();
   }
 
+  /// Whether there are as many equations as unknowns, an unfolding included where the system conserves an energy.
+  [[nodiscard]] static bool are_square(const systems::System& system, const Unknowns& unknowns,
+                                       const loop::Subspace& image, const Slice& slice);
+
   [[nodiscard]] int size() const { return _unknowns.size() + _unfoldings; }
   [[nodiscard]] double loss() const { return _linearization.loss(); }
   [[nodiscard]] const Linearization& linearization() const { return _linearization; }
 
+  [[nodiscard]] const Unknowns& unknowns() const { return _unknowns; }
+  [[nodiscard]] const loop::Subspace& image() const { return _image; }
+  [[nodiscard]] const Slice& slice() const { return _slice; }
+
   /// Projected residual, zeros for the conditions (they hold exactly along the iteration).
   [[nodiscard]] Eigen::VectorXd residual() const;
-  /// The Jacobian times a vector of unknowns.
-  [[nodiscard]] Eigen::VectorXd apply(const Eigen::VectorXd& x) const;
-  /// An approximate inverse from the box scheme on 2K + 1 nodes.
-  [[nodiscard]] Eigen::VectorXd precondition(const Eigen::VectorXd& r) const;
-  /// Builds and factors the box scheme (before the first precondition).
+
+  // Products with square matrices of this `size`, in O(K log K). They share scratch space: one at a time.
+  using In = Eigen::Ref<const Eigen::VectorXd>;
+  using Out = Eigen::Ref<Eigen::VectorXd>;
+  /// The Jacobian A times a vector: unknowns and unfolding to projected residual and conditions.
+  void apply(const In& x, Out out) const;
+  /// A' times a vector.
+  void apply_transposed(const In& y, Out out) const;
+  /// P of A = (P w J; conditions): from the rows of the loss's Jacobian (dimension x nodes) to the image's modes.
+  void project_rows(const In& rows, Out out) const;
+  /// P' y.
+  void project_rows_transposed(const In& y, Out rows) const;
+  /// Builds and factors the box scheme on 2K + 1 nodes (before the first precondition).
   void factor(const systems::System& system, const loop::Loop& loop);
+  /// An approximate inverse of A from the box scheme.
+  void precondition(const In& r, Out out) const;
+  /// Its transpose.
+  void precondition_transposed(const In& u, Out out) const;
 
  private:
-  [[nodiscard]] Eigen::VectorXd project_nodal(const std::vector<double>& nodal) const;
+  void weigh() const;
+  void project_nodal(Out out) const;
 
   const Unknowns& _unknowns;
   const loop::Subspace& _image;
   const Slice& _slice;
   int _unfoldings;
   Linearization _linearization;
+  std::vector<double> _slope_modes;   // of z'
   Eigen::VectorXd _unfolding_column;  // projected grad H
   std::unique_ptr<BoxScheme> _box;
+  mutable std::vector<double> _modes, _other_modes, _nodal, _other_nodal;
+  mutable Eigen::VectorXd _boxed;
 };
 
 }  // namespace orbweaver::loss
