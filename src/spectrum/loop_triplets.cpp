@@ -71,27 +71,26 @@ PetscErrorCode multiply(Mat matrix, Vec x, Vec y) {
   });
 }
 
+// The transposed inverse: SLEPc wants at least as many rows as columns.
 core::Handle<Mat> shell_of(Inverse& inverse) {
-  const int rows = inverse.unknowns();
-  const int columns = inverse.rows();
+  const int rows = inverse.rows();
+  const int columns = inverse.unknowns();
   core::Handle<Mat> matrix;
   core::check(MatCreateShell(PETSC_COMM_SELF, rows, columns, rows, columns, &inverse, matrix.put()), "MatCreateShell");
-  core::check(MatShellSetOperation(matrix.get(), MATOP_MULT, reinterpret_cast<void (*)()>(multiply<false>)),
+  core::check(MatShellSetOperation(matrix.get(), MATOP_MULT, reinterpret_cast<void (*)()>(multiply<true>)),
               "MatShellSetOperation");
-  core::check(MatShellSetOperation(matrix.get(), MATOP_MULT_TRANSPOSE, reinterpret_cast<void (*)()>(multiply<true>)),
+  core::check(MatShellSetOperation(matrix.get(), MATOP_MULT_TRANSPOSE, reinterpret_cast<void (*)()>(multiply<false>)),
               "MatShellSetOperation");
   return matrix;
 }
 
-// Smooth, as the vectors that are sought, and without symmetry.
-core::Handle<Vec> smooth_start(const Inverse& inverse) {
-  const loop::Subspace& image = inverse.equations.image();
-  Eigen::VectorXd values = loss::to_eigen(start_vector(image.size()).get());
-  for (int n = 0; n < image.size(); ++n) values(n) /= std::pow(1.0 + image.harmonic(n), 2);
-  Eigen::VectorXd rows(inverse.rows());
-  inverse.equations.project_rows_transposed(values, rows);
-  core::Handle<Vec> start = loss::create_vector(inverse.rows());
-  loss::assign(start.get(), rows);
+// Smooth, as the vectors that are sought, without symmetry, and in the slice.
+core::Handle<Vec> smooth_start(const loss::LoopEquations& equations) {
+  const loss::Unknowns& unknowns = equations.unknowns();
+  core::Handle<Vec> start = start_vector(unknowns.size());
+  Eigen::VectorXd values = loss::to_eigen(start.get());
+  for (int n = 0; n < unknowns.subspace.size(); ++n) values(n) /= std::pow(1.0 + unknowns.subspace.harmonic(n), 2);
+  loss::assign(start.get(), equations.slice().expand(equations.slice().reduce(values)));
   return start;
 }
 
@@ -134,7 +133,7 @@ std::vector<Triplet> largest_of(Inverse& inverse, int count, double tolerance) {
   core::check(SVDSetDimensions(svd.get(), count, std::min(basis_size(count), inverse.unknowns()), PETSC_DEFAULT),
               "SVDSetDimensions");
   core::check(SVDSetTolerances(svd.get(), tolerance, PETSC_DEFAULT), "SVDSetTolerances");
-  const core::Handle<Vec> start = smooth_start(inverse);
+  const core::Handle<Vec> start = smooth_start(inverse.equations);
   Vec raw = start.get();
   core::check(SVDSetInitialSpaces(svd.get(), 1, &raw, 0, nullptr), "SVDSetInitialSpaces");
   BV basis[2] = {nullptr, nullptr};
@@ -153,7 +152,7 @@ std::vector<Triplet> largest_of(Inverse& inverse, int count, double tolerance) {
   const core::Handle<Vec> left = loss::create_vector(inverse.rows());
   for (int n = 0; n < std::min(count, static_cast<int>(converged)); ++n) {
     PetscReal value = 0.0;
-    core::check(SVDGetSingularTriplet(svd.get(), n, &value, right.get(), left.get()), "SVDGetSingularTriplet");
+    core::check(SVDGetSingularTriplet(svd.get(), n, &value, left.get(), right.get()), "SVDGetSingularTriplet");
     out.push_back(triplet_of(inverse.equations, loss::to_eigen(right.get()), loss::to_eigen(left.get())));
   }
   return out;
@@ -172,13 +171,18 @@ void search(Inverse& inverse, std::vector<Triplet>& found, int count, double tol
   const auto good = [&](const Triplet& t) { return std::max(t.residual, t.left_residual) <= acceptable(t); };
   std::string failure = "Krylov iterations did not converge";
   for (Triplet& t : largest_of(inverse, count, tolerance)) {
-    // Where a value is much smaller than the others, rounding in the solves drowns them: the next search is without it.
-    if (!good(t)) t = triplet_of(inverse.equations, t.right, inverse.apply_transposed(t.right));
+    // Tiny values leave the solves little but their own vectors, and Lanczos vectors mix: inverse iteration cleans them.
+    if (std::max(t.residual, t.left_residual) > share_of_value * t.value) {
+      const Eigen::VectorXd right = inverse.apply(inverse.apply_transposed(t.right).normalized()).normalized();
+      t = triplet_of(inverse.equations, right, inverse.apply_transposed(right));
+    }
     if (!good(t)) {
       failure = fmt::format("the next one ({:.3e}) has the residuals {:.1e} and {:.1e}, more than {:.1e}", t.value,
                             t.residual, t.left_residual, acceptable(t));
       break;
     }
+    append_column(inverse.right, t.right);
+    append_column(inverse.left, t.left);
     found.push_back(std::move(t));
   }
   if (found.size() == before)
@@ -186,10 +190,6 @@ void search(Inverse& inverse, std::vector<Triplet>& found, int count, double tol
         fmt::format("after {} of a loop's smallest singular triplets: {}; the loop is far from an orbit, or its cutoff "
                     "too small",
                     before, failure));
-  for (std::size_t n = before; n < found.size(); ++n) {
-    append_column(inverse.right, found[n].right);
-    append_column(inverse.left, found[n].left);
-  }
 }
 
 std::vector<std::size_t> order_of(const std::vector<Triplet>& found) {
