@@ -130,18 +130,18 @@ void step_with_triplets(benchmark::State& state, Family family, double period) {
   state.counters["newton"] = iterations;
 }
 
-void off_branch_full_T8(benchmark::State& s) { off_branch(s, 8.2, false); }
+void off_branch_full_short(benchmark::State& s) { off_branch(s, 8.25, false); }
 void off_branch_full(benchmark::State& s) { off_branch(s, 12.0, false); }
-void off_branch_sectors_T8(benchmark::State& s) { off_branch(s, 8.2, true); }
+void off_branch_sectors_short(benchmark::State& s) { off_branch(s, 8.25, true); }
 void off_branch_sectors(benchmark::State& s) { off_branch(s, 12.0, true); }
 void step_with_triplets_T12(benchmark::State& s) { step_with_triplets(s, Family::in_phase, 12.0); }
 void step_with_triplets_T20(benchmark::State& s) { step_with_triplets(s, Family::in_phase, 20.0); }
 void step_with_triplets_T30(benchmark::State& s) { step_with_triplets(s, Family::in_phase, 30.0); }
 void step_with_triplets_out_phase_T25(benchmark::State& s) { step_with_triplets(s, Family::out_phase, 25.0); }
 
-BENCHMARK(off_branch_full_T8)->RangeMultiplier(2)->Range(32, 256)->Unit(benchmark::kMillisecond);
+BENCHMARK(off_branch_full_short)->RangeMultiplier(2)->Range(32, 256)->Unit(benchmark::kMillisecond);
 BENCHMARK(off_branch_full)->RangeMultiplier(2)->Range(256, 8192)->Unit(benchmark::kMillisecond);
-BENCHMARK(off_branch_sectors_T8)->RangeMultiplier(2)->Range(32, 256)->Unit(benchmark::kMillisecond);
+BENCHMARK(off_branch_sectors_short)->RangeMultiplier(2)->Range(32, 256)->Unit(benchmark::kMillisecond);
 BENCHMARK(off_branch_sectors)->RangeMultiplier(2)->Range(256, 8192)->Unit(benchmark::kMillisecond);
 BENCHMARK(step_with_triplets_T12)->Arg(1012)->Unit(benchmark::kMillisecond);
 BENCHMARK(step_with_triplets_T20)->Arg(1012)->Unit(benchmark::kMillisecond);
