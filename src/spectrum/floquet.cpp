@@ -23,9 +23,9 @@ using Complex = std::complex<double>;
 using Values = std::vector<Complex>;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-/// Truncation error as a share of what doubling the step changes: 1/255 for an order of 8; steps as long as ours were
-/// seen to gain only a factor of 100.
-constexpr double truncation_share = 1.0 / 32.0;
+/// Truncation error as a share of the embedded methods' estimate, which is of a lower order. On the pendulum's families
+/// it was a fortieth to a thousandth.
+constexpr double truncation_share = 0.1;
 /// The Newton step that stands for the orbit's own error is itself uncertain.
 constexpr double orbit_safety = 3.0;
 
@@ -47,32 +47,39 @@ void add_distances(const FloquetIndices& indices, const FloquetIndices& others, 
 double rounding_of(const Chain& chain, Eigen::Index m) {
   const double rate = chain.jacobians.col(m).norm();
   const double terms = rate * (1.0 + chain.states.col(m).norm());
-  return epsilon * (8.0 + std::min(1.0, chain.step * rate) * terms / chain.fields.col(m).norm());
+  return epsilon * (8.0 + std::min(1.0, chain.steps[m] * rate) * terms / chain.fields.col(m).norm());
 }
 
-/// Bound on the rounding error of the trace of a product of 2 x 2 matrices.
-double rounding_of_trace(const Chain& chain, const TransverseFlow& flow) {
+struct TraceError {
+  double truncation = 0.0;
+  double rounding = 0.0;
+};
+
+/// Bounds on what the factors' errors do to the trace of their product, for 2 x 2 matrices.
+TraceError error_of_trace(const Chain& chain, const TransverseFlow& flow) {
   const Eigen::Index n = flow.factors.cols();
   Eigen::MatrixXd after(4, n);  // products of the factors behind each one
   matrix_in<2>(after, n - 1, 2).setIdentity();
   for (Eigen::Index m = n - 1; m-- > 0;)
     matrix_in<2>(after, m, 2).noalias() = matrix_in<2>(after, m + 1, 2) * matrix_in<2>(flow.factors, m + 1, 2);
   Eigen::Matrix2d before = Eigen::Matrix2d::Identity();
-  double error = 0.0;
+  TraceError error;
   for (Eigen::Index m = 0; m < n; ++m) {
-    const double others = (before * matrix_in<2>(after, m, 2)).norm();
-    error += rounding_of(chain, m) * flow.factors.col(m).norm() * others;
+    const Eigen::Matrix2d others = before * matrix_in<2>(after, m, 2);
+    error.truncation += truncation_share * std::abs((others * matrix_in<2>(flow.errors, m, 2)).trace());
+    error.rounding += rounding_of(chain, m) * flow.factors.col(m).norm() * others.norm();
     before = (matrix_in<2>(flow.factors, m, 2) * before).eval();
-    error += epsilon * before.norm() * after.col(m).norm();
+    error.rounding += epsilon * before.norm() * after.col(m).norm();
   }
   return error;
 }
 
-/// Rounding where there is no trace to read: the largest response to four sets of errors of that size. They are
-/// enlarged sixteenfold and the response divided by four, which covers an eigenvalue about to split, whose response
-/// grows with the root only.
-void add_rounding_probes(const systems::Description& system, const Chain& chain, const TransverseFlow& flow, int order,
-                         const FloquetIndices& indices, Stability& stability) {
+/// Where there is no trace to read: the largest response to four sets of such errors, `change(m, random)` being that of
+/// factor m. They are enlarged sixteenfold and the response divided by four, which covers an eigenvalue about to
+/// split, whose response grows with the root only.
+template <class Change>
+void add_probes(const systems::Description& system, const TransverseFlow& flow, int order,
+                const FloquetIndices& indices, const Change& change, Stability& stability) {
   constexpr int probes = 4;
   constexpr double enlarged = 16.0;
   constexpr double divided = 0.25;
@@ -83,12 +90,35 @@ void add_rounding_probes(const systems::Description& system, const Chain& chain,
   };
   for (int probe = 0; probe < probes; ++probe) {
     TransverseFlow changed = flow;
-    for (Eigen::Index m = 0; m < flow.factors.cols(); ++m) {
-      const double scale = enlarged * rounding_of(chain, m) * flow.factors.col(m).norm();
-      for (Eigen::Index n = 0; n < flow.factors.rows(); ++n) changed.factors(n, m) += scale * random();
-    }
+    for (Eigen::Index m = 0; m < flow.factors.cols(); ++m) changed.factors.col(m) += enlarged * change(m, random);
     add_distances(indices, floquet_indices(system, changed, order), divided, stability);
   }
+}
+
+/// Bounds what the chain's truncation errors do to the indices; returns the rounding's share if it comes with it.
+TraceError add_truncation(const systems::Description& system, const Chain& chain, const TransverseFlow& flow, int order,
+                          const FloquetIndices& indices, Stability& stability) {
+  if (is_single_pair(system, flow)) {
+    const TraceError error = error_of_trace(chain, flow);
+    stability.fundamental_error[0] += error.truncation;
+    return error;
+  }
+  const auto change = [&](Eigen::Index m, const auto& random) -> Eigen::VectorXd {
+    return std::copysign(truncation_share, random()) * flow.errors.col(m);
+  };
+  add_probes(system, flow, order, indices, change, stability);
+  return {};
+}
+
+void add_rounding_probes(const systems::Description& system, const Chain& chain, const TransverseFlow& flow, int order,
+                         const FloquetIndices& indices, Stability& stability) {
+  const auto change = [&](Eigen::Index m, const auto& random) {
+    const double scale = rounding_of(chain, m) * flow.factors.col(m).norm();
+    Eigen::VectorXd changes(flow.factors.rows());
+    for (double& entry : changes) entry = scale * random();
+    return changes;
+  };
+  add_probes(system, flow, order, indices, change, stability);
 }
 
 /// The values' response to the orbit's own error, on a scale where differences keep their digits.
@@ -96,7 +126,7 @@ void add_orbit_error(const systems::System& system, const Chain& chain, const Fu
                      const FloquetIndices& indices, Stability& stability) {
   constexpr double visible = 1e-7;
   const OrbitCorrection correction = orbit_correction(chain, group, system.description().conservative);
-  const double size = std::max(correction.states.cwiseAbs().maxCoeff(), std::abs(correction.step));
+  const double size = std::max(correction.states.cwiseAbs().maxCoeff(), std::abs(correction.stretch));
   if (size == 0.0) return;
   const double factor = std::max(1.0, visible / size);
   const TransverseFlow flow = transverse_flow(system, corrected(system, chain, correction, factor), group);
@@ -133,6 +163,7 @@ struct Integrated {
   Chain chain;
   TransverseFlow flow;
   FloquetIndices indices;
+  TraceError trace;
   Stability stability;
 };
 
@@ -141,22 +172,18 @@ Integrated integrated(const systems::System& system, const loop::Loop& loop, con
   const systems::Description& description = system.description();
   VariationalStep stepper(system);
   Integrated result;
-  result.chain = make_chain(system, stepper, loop, group, options.least_segments);
-  result.flow = transverse_flow(system, result.chain, group);
-  result.indices = floquet_indices(description, result.flow, group.order);
-  const Chain doubled = with_double_steps(stepper, result.chain, group);
-  FloquetIndices coarse = floquet_indices(description, transverse_flow(system, doubled, group), group.order);
+  int least = options.least_segments;
   for (int refinement = 0;; ++refinement) {
-    check_finite(result.indices.full, loop);
-    result.stability = without_errors(result.indices, group.order);
-    add_distances(result.indices, coarse, truncation_share, result.stability);
-    const double error = largest_relative(result.stability.fundamental, result.stability.fundamental_error);
-    if (error <= options.tolerance || refinement >= options.refinements) return result;
-    coarse = result.indices;
-    const auto around = static_cast<int>(result.chain.segments()) * group.order;
-    result.chain = make_chain(system, stepper, loop, group, 2 * around);
+    result.chain = make_chain(system, stepper, loop, group, least);
     result.flow = transverse_flow(system, result.chain, group);
     result.indices = floquet_indices(description, result.flow, group.order);
+    check_finite(result.indices.full, loop);
+    result.stability = without_errors(result.indices, group.order);
+    result.trace =
+        add_truncation(description, result.chain, result.flow, group.order, result.indices, result.stability);
+    const double error = largest_relative(result.stability.fundamental, result.stability.fundamental_error);
+    if (error <= options.tolerance || refinement >= options.refinements) return result;
+    least = 2 * static_cast<int>(result.chain.segments()) * group.order;
   }
 }
 
@@ -174,10 +201,10 @@ Stability floquet(const systems::System& system, const loop::Loop& loop, const l
   const systems::Description& description = system.description();
   const FundamentalGroup group = fundamental_group(system, loop, isotropy);
   if (loop.dimension == (description.conservative ? 2 : 1)) return without_errors({}, group.order);
-  auto [chain, flow, indices, stability] = integrated(system, loop, group, options);
+  auto [chain, flow, indices, trace, stability] = integrated(system, loop, group, options);
   add_orbit_error(system, chain, group, indices, stability);
   if (is_single_pair(description, flow)) {
-    stability.fundamental_error[0] += rounding_of_trace(chain, flow);
+    stability.fundamental_error[0] += trace.rounding;
     stability.full_error[0] =
         repeated_index_error(stability.fundamental[0].real(), stability.fundamental_error[0], group.order);
   } else {

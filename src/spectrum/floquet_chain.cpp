@@ -14,20 +14,19 @@ namespace orbweaver::spectrum {
 
 namespace {
 
-/// Segments a harmonic: leaves a relative error of 1e-14 to 2e-12 in the index of the double pendulum's orbits, and
-/// doubled steps still follow the method's order.
-constexpr double segments_a_harmonic = 2.0;
+/// Segments a harmonic: leaves a relative error of 1e-12 to 1e-11 in the index of the double pendulum's orbits.
+constexpr double segments_a_harmonic = 1.6;
 /// Largest h times the growth or turning rate of the linearised flow.
 constexpr double largest_turn = 0.3;
 
-/// Few numbers of segments are used, so that few Fourier plans are made: multiples of 24, by 2, 3, or 4 to 7 times a
+/// Few numbers of segments are used, so that few Fourier plans are made: multiples of 24, by 2 to 7, or 8 to 15 times a
 /// power of 2.
 int allowed_segments(double at_least, int factor) {
   const int multiple = 2 * std::lcm(12, factor);
   for (int n = 2;; ++n) {
     int leading = n;
-    while (leading > 7 && leading % 2 == 0) leading /= 2;
-    if (leading <= 7 && multiple * n >= at_least) return multiple * n;
+    while (leading > 15 && leading % 2 == 0) leading /= 2;
+    if (leading <= 15 && multiple * n >= at_least) return multiple * n;
   }
 }
 
@@ -41,8 +40,17 @@ Chain nodes_of(const systems::System& system, const loop::Loop& loop, const Fund
   RowMajor nodal(d, grid);
   loop::FourierGrid::of_size(grid).synthesize(loop.cutoff, loop.dimension, loop.modes.data(), nodal.data());
   Chain chain;
-  chain.step = loop.period / around;
-  chain.states.resize(d, around / group.order + 1);
+  const int segments = around / group.order;
+  chain.steps = Eigen::VectorXd::Constant(segments, loop.period / around);
+  if (!loop.time_map.is_identity()) {
+    const double node = 2 * std::numbers::pi / around;
+    const double rate = loop.period / (2 * std::numbers::pi);
+    for (Eigen::Index m = 0; m < segments; ++m) {
+      const auto s = static_cast<double>(m);
+      chain.steps[m] = rate * (loop.time_map.phase((s + 1) * node) - loop.time_map.phase(s * node));
+    }
+  }
+  chain.states.resize(d, segments + 1);
   for (Eigen::Index j = 0; j < chain.states.cols(); ++j)
     for (Eigen::Index i = 0; i < d; ++i)
       chain.states(i, j) = nodal(i, j * stride % grid) + loop.winding[static_cast<std::size_t>(i)] * 2 *
@@ -51,14 +59,18 @@ Chain nodes_of(const systems::System& system, const loop::Loop& loop, const Fund
   return chain;
 }
 
-/// An estimate of the largest modulus of the Jacobians' eigenvalues, insensitive to the units of the coordinates.
-double largest_rate(const Chain& chain) {
+/// An estimate of the largest step times modulus of the Jacobian's eigenvalues, insensitive to the units of the
+/// coordinates.
+template <int D>
+double largest_turn_of(const Chain& chain) {
   double largest = 0.0;
-  Eigen::MatrixXd square;
-  for (Eigen::Index j = 0; j < chain.jacobians.cols(); ++j) {
-    const auto a = matrix_in<Eigen::Dynamic>(chain.jacobians, j, chain.dimension());
-    square.noalias() = a.lazyProduct(a);
-    const double fourth = square.lazyProduct(square).squaredNorm();
+  Eigen::Matrix<double, D, D> power;
+  for (Eigen::Index j = 0; j < chain.segments(); ++j) {
+    const auto a = matrix_in<D>(chain.jacobians, j, chain.dimension());
+    power.noalias() = a.lazyProduct(a);
+    power = power.lazyProduct(power).eval();
+    const double step = chain.steps[j] * chain.steps[j] * chain.steps[j] * chain.steps[j];
+    const double fourth = step * step * power.squaredNorm();
     if (!(fourth <= largest)) largest = fourth;
   }
   return std::pow(largest, 0.125);
@@ -70,12 +82,15 @@ void integrate(VariationalStep& stepper, const Chain& chain, const std::vector<E
   constexpr std::size_t lanes = VariationalStep::lanes;
   const Eigen::Index d = chain.dimension();
   std::vector<double> starts(static_cast<std::size_t>(d) * lanes);
+  double lengths[lanes];
   for (std::size_t first = 0; first < nodes.size(); first += lanes) {
     const std::size_t used = std::min(lanes, nodes.size() - first);
-    for (std::size_t lane = 0; lane < lanes; ++lane)
-      for (Eigen::Index i = 0; i < d; ++i)
-        starts[static_cast<std::size_t>(i) * lanes + lane] = chain.states(i, nodes[first + std::min(lane, used - 1)]);
-    stepper.run(starts.data(), chain.step);
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      const Eigen::Index node = nodes[first + std::min(lane, used - 1)];
+      lengths[lane] = chain.steps[node];
+      for (Eigen::Index i = 0; i < d; ++i) starts[static_cast<std::size_t>(i) * lanes + lane] = chain.states(i, node);
+    }
+    stepper.run(starts.data(), lengths);
     for (std::size_t lane = 0; lane < used; ++lane) take(nodes[first + lane], static_cast<Eigen::Index>(lane));
   }
 }
@@ -113,6 +128,7 @@ void take_transitions(VariationalStep& stepper, const FundamentalGroup& group, C
   const Eigen::Index d = chain.dimension();
   const Eigen::Index segments = chain.segments();
   chain.transitions.resize(d * d, segments);
+  chain.truncations.resize(d * d, segments);
   chain.defects.resize(d, segments);
   chain.offsets.resize(d, segments);
   chain.mirrored.assign(static_cast<std::size_t>(segments), false);
@@ -126,9 +142,13 @@ void take_transitions(VariationalStep& stepper, const FundamentalGroup& group, C
   constexpr auto lanes = static_cast<Eigen::Index>(VariationalStep::lanes);
   integrate(stepper, chain, own, [&](Eigen::Index m, Eigen::Index lane) {
     auto transition = matrix_in<D>(chain.transitions, m, d);
+    auto truncation = matrix_in<D>(chain.truncations, m, d);
     for (Eigen::Index i = 0; i < d; ++i) {
       chain.defects(i, m) = stepper.states()[i * lanes + lane] - chain.states(i, m + 1);
-      for (Eigen::Index l = 0; l < d; ++l) transition(i, l) = stepper.transitions()[(i * d + l) * lanes + lane];
+      for (Eigen::Index l = 0; l < d; ++l) {
+        transition(i, l) = stepper.transitions()[(i * d + l) * lanes + lane];
+        truncation(i, l) = stepper.truncations()[(i * d + l) * lanes + lane];
+      }
     }
     chain.offsets.col(m) = chain.defects.col(m);
     const Mirror mirror = mirrors[static_cast<std::size_t>(m)];
@@ -136,6 +156,8 @@ void take_transitions(VariationalStep& stepper, const FundamentalGroup& group, C
     const auto turns = static_cast<std::size_t>(mirror.turns);
     const Eigen::Matrix<double, D, D> back = carriers.forward[turns] * transition.inverse();
     matrix_in<D>(chain.transitions, mirror.segment, d) = back * carriers.backward[turns];
+    const Eigen::Matrix<double, D, D> changed = back * truncation * carriers.backward[turns];
+    matrix_in<D>(chain.truncations, mirror.segment, d) = -changed * matrix_in<D>(chain.transitions, mirror.segment, d);
     chain.defects.col(mirror.segment).noalias() = -back * chain.defects.col(m);
     chain.offsets.col(mirror.segment).noalias() = carriers.forward[turns] * chain.defects.col(m);
     chain.mirrored[static_cast<std::size_t>(mirror.segment)] = true;
@@ -159,6 +181,10 @@ void evaluate_field(const systems::System& system, Chain& chain) {
   RowMajor a(d * d, count);
   system.field_jacobian(static_cast<std::size_t>(count), z.data(), f.data(), a.data());
   chain.fields = f;
+  if (system.description().conservative) {
+    system.energy_gradients(static_cast<std::size_t>(count), z.data(), f.data());
+    chain.gradients = f;
+  }
   chain.jacobians.resize(d * d, count);
   for (Eigen::Index i = 0; i < d; ++i)
     for (Eigen::Index l = 0; l < d; ++l) chain.jacobians.row(l * d + i) = a.row(i * d + l);
@@ -169,7 +195,9 @@ Chain make_chain(const systems::System& system, VariationalStep& stepper, const 
   const double resolution = std::max<double>(at_least, segments_a_harmonic * loop.cutoff);
   const int around = allowed_segments(resolution, group.grid_factor);
   Chain chain = nodes_of(system, loop, group, around);
-  const double turns = loop.period * largest_rate(chain) / largest_turn;
+  const double turns = around *
+                       (loop.dimension == 4 ? largest_turn_of<4>(chain) : largest_turn_of<Eigen::Dynamic>(chain)) /
+                       largest_turn;
   if (!std::isfinite(turns))
     throw core::NotFiniteError(
         "Floquet multipliers: the field's Jacobian is not finite on the orbit; expected finite "
@@ -178,18 +206,6 @@ Chain make_chain(const systems::System& system, VariationalStep& stepper, const 
   if (finer > around) chain = nodes_of(system, loop, group, finer);
   take_transitions(stepper, group, chain);
   return chain;
-}
-
-Chain with_double_steps(VariationalStep& stepper, const Chain& chain, const FundamentalGroup& group) {
-  const Eigen::Index nodes = chain.segments() / 2 + 1;
-  const auto every_other = Eigen::seqN(0, nodes, 2);
-  Chain coarse;
-  coarse.step = 2 * chain.step;
-  coarse.states = chain.states(Eigen::all, every_other);
-  coarse.fields = chain.fields(Eigen::all, every_other);
-  coarse.jacobians = chain.jacobians(Eigen::all, every_other);
-  take_transitions(stepper, group, coarse);
-  return coarse;
 }
 
 }  // namespace orbweaver::spectrum

@@ -11,13 +11,15 @@
 
 namespace orbweaver::spectrum {
 
-/// The linearised flow along T/p of an orbit, cut into equal segments t_m = m h, m = 0 .. segments.
+/// The linearised flow along T/p of an orbit, cut into segments t_m .. t_(m+1), m = 0 .. segments - 1, equal in s.
 struct Chain {
-  double step = 0.0;            ///< h
+  Eigen::VectorXd steps;        ///< lengths t_(m+1) - t_m
   Eigen::MatrixXd states;       ///< dimension x (segments + 1)
   Eigen::MatrixXd fields;       ///< f there
+  Eigen::MatrixXd gradients;    ///< of the energy there; empty where there is none
   Eigen::MatrixXd jacobians;    ///< f_z there (matrix_table.hpp)
   Eigen::MatrixXd transitions;  ///< from t_m to t_(m+1), one end on the loop (matrix_table.hpp)
+  Eigen::MatrixXd truncations;  ///< estimates of their truncation errors (matrix_table.hpp), far too large
   Eigen::MatrixXd defects;      ///< dimension x segments: state reached from t_m minus the loop's at t_(m+1)
   std::vector<bool> mirrored;   ///< given by the reversor: the segment ends on the loop and starts off it
   Eigen::MatrixXd offsets;      ///< dimension x segments: how far off the loop it ends, or starts where mirrored
@@ -26,7 +28,7 @@ struct Chain {
   [[nodiscard]] Eigen::Index dimension() const { return states.rows(); }
 };
 
-/// f and its Jacobian at the chain's states.
+/// f, its Jacobian and the energy's gradient at the chain's states.
 void evaluate_field(const systems::System& system, Chain& chain);
 
 /// The chain with at least `at_least` segments a period: as many as suit the loop's resolution, the rates of its
@@ -34,8 +36,5 @@ void evaluate_field(const systems::System& system, Chain& chain);
 /// Throws core::NotFiniteError if the Jacobian is not finite on the loop.
 [[nodiscard]] Chain make_chain(const systems::System& system, VariationalStep& stepper, const loop::Loop& loop,
                                const FundamentalGroup& group, int at_least);
-
-/// The same with steps twice as long.
-[[nodiscard]] Chain with_double_steps(VariationalStep& stepper, const Chain& chain, const FundamentalGroup& group);
 
 }  // namespace orbweaver::spectrum

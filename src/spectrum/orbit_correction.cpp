@@ -13,7 +13,7 @@ constexpr double period_weight = 1e-3;
 
 using Forcing = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 
-/// Segments begin .. end - 1 in one: x_end = transition x_begin + forcing (1, change of h).
+/// Segments begin .. end - 1 in one: x_end = transition x_begin + forcing (1, relative change of all h).
 struct Link {
   Eigen::Index begin;
   Eigen::Index end;
@@ -35,7 +35,7 @@ std::vector<Link> links_of(const Chain& chain) {
   for (Eigen::Index m = 0; m < chain.segments(); ++m) {
     const auto transition = matrix_in<D>(chain.transitions, m, d);
     own.col(0) = chain.defects.col(m);
-    own.col(1) = chain.fields.col(m + 1);
+    own.col(1) = chain.fields.col(m + 1) * chain.steps[m];
     if (m > begin) next.noalias() = transition * product;
     if (m > begin && next.norm() > joined_norm) {
       links.push_back({begin, m, product, forcing});
@@ -54,7 +54,7 @@ std::vector<Link> links_of(const Chain& chain) {
   return links;
 }
 
-/// One eliminated state: triangle x_n = known (1, change of h) - around x_0 - next x_(n+1).
+/// One eliminated state: triangle x_n = known (1, relative change of all h) - around x_0 - next x_(n+1).
 struct Eliminated {
   Eigen::MatrixXd triangle;
   Eigen::MatrixXd around;
@@ -62,7 +62,7 @@ struct Eliminated {
   Forcing known;
 };
 
-/// What is left in the end: around x_0 + last x_n = known (1, change of h).
+/// What is left in the end: around x_0 + last x_n = known (1, relative change of all h).
 struct Remaining {
   Eigen::MatrixXd around;
   Eigen::MatrixXd last;
@@ -102,7 +102,7 @@ void fill_between(const Chain& chain, const std::vector<Link>& links, OrbitCorre
     for (Eigen::Index m = link.begin; m + 1 < link.end; ++m)
       correction.states.col(m + 1) =
           matrix_in<D>(chain.transitions, m, chain.dimension()).lazyProduct(correction.states.col(m)) +
-          chain.defects.col(m) + chain.fields.col(m + 1) * correction.step;
+          chain.defects.col(m) + chain.fields.col(m + 1) * (chain.steps[m] * correction.stretch);
 }
 
 template <int D>
@@ -113,18 +113,18 @@ OrbitCorrection correction_of(const Chain& chain, const FundamentalGroup& group,
   std::vector<Eliminated> eliminated;
   for (std::size_t n = 1; n < links.size(); ++n) eliminated.push_back(eliminate(links[n], rows));
 
-  const double steps = static_cast<double>(chain.segments() * group.order);
-  const double weight = conservative ? period_weight : 1.0;
+  // The last unknown is the change of the period, over `weight`.
+  const double weight = (conservative ? period_weight : 1.0) / (chain.steps.sum() * group.order);
   Eigen::MatrixXd closing(d, d + 1);
-  closing << rows.around + rows.last * group.generator, -rows.known.col(1) * (weight / steps);
+  closing << rows.around + rows.last * group.generator, -rows.known.col(1) * weight;
   const Eigen::VectorXd solution = least_solution(closing, rows.known.col(0), conservative ? d - 1 : d);
 
   OrbitCorrection correction;
-  correction.step = solution[d] * weight / steps;
+  correction.stretch = solution[d] * weight;
   correction.states.resize(d, chain.states.cols());
   correction.states.col(0) = solution.head(d);
   correction.states.col(chain.segments()) = group.generator * solution.head(d);
-  const Eigen::Vector2d forced(1.0, correction.step);
+  const Eigen::Vector2d forced(1.0, correction.stretch);
   for (std::size_t n = links.size(); n-- > 1;) {
     const Eliminated& known = eliminated[n - 1];
     const Eigen::VectorXd right = known.known * forced - known.around * correction.states.col(0) -
@@ -140,7 +140,6 @@ template <int D>
 void change_transitions(const Chain& chain, const OrbitCorrection& correction, double factor, const Chain& off,
                         Chain& changed) {
   const Eigen::Index d = chain.dimension();
-  const double half = 0.5 * chain.step;
   Eigen::Matrix<double, D, D> before(d, d);
   Eigen::Matrix<double, D, D> after(d, d);
   for (Eigen::Index m = 0; m < chain.segments(); ++m) {
@@ -148,8 +147,10 @@ void change_transitions(const Chain& chain, const OrbitCorrection& correction, d
     const auto transition = matrix_in<D>(chain.transitions, m, d);
     const auto begin = mirrored ? matrix_in<D>(off.jacobians, m, d) : matrix_in<D>(chain.jacobians, m, d);
     const auto end = mirrored ? matrix_in<D>(chain.jacobians, m + 1, d) : matrix_in<D>(off.jacobians, m, d);
+    const double half = 0.5 * chain.steps[m];
     before = half * (matrix_in<D>(changed.jacobians, m, d) - begin);
-    after = half * (matrix_in<D>(changed.jacobians, m + 1, d) - end) + (factor * correction.step) * end;
+    after =
+        half * (matrix_in<D>(changed.jacobians, m + 1, d) - end) + (factor * correction.stretch * chain.steps[m]) * end;
     auto result = matrix_in<D>(changed.transitions, m, d);
     result = transition;
     result.noalias() += transition * before;
@@ -166,7 +167,7 @@ OrbitCorrection orbit_correction(const Chain& chain, const FundamentalGroup& gro
 
 Chain corrected(const systems::System& system, const Chain& chain, const OrbitCorrection& correction, double factor) {
   Chain changed;
-  changed.step = chain.step + factor * correction.step;
+  changed.steps = chain.steps * (1.0 + factor * correction.stretch);
   changed.states = chain.states + factor * correction.states;
   evaluate_field(system, changed);
   Chain off;

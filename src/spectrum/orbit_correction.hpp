@@ -11,7 +11,7 @@ namespace orbweaver::spectrum {
 /// One Newton step of multiple shooting from a loop to the orbit near it.
 struct OrbitCorrection {
   Eigen::MatrixXd states;  ///< dimension x (segments + 1): change of the state at each t_m
-  double step = 0.0;       ///< change of the segments' length h
+  double stretch = 0.0;    ///< relative change of the segments' lengths
 };
 
 /// The least correction, without shift of phase. Conservative systems: at almost the same period (a change counts a

@@ -1,6 +1,10 @@
 #include "transverse_flow.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include "matrix_table.hpp"
+#include "orbweaver/ad/lanes.hpp"
 #include "orbweaver/core/error.hpp"
 
 namespace orbweaver::spectrum {
@@ -26,21 +30,22 @@ Vector<D> reflector(const Vector<D>& vector, Eigen::Index begin) {
   return v / v.norm();
 }
 
+[[noreturn]] void refuse_standstill() {
+  throw core::NumericalError(
+      "Floquet multipliers: expected an orbit that moves, but the field vanishes at a state of "
+      "the loop; it has collapsed onto an equilibrium");
+}
+
 /// Orthonormal basis of the vectors orthogonal to f and, for C = 2, to the gradient of the energy.
 template <int D, int C>
-Eigen::Matrix<double, D, rest(D, C)> basis_at(const systems::System& system, const Chain& chain, Eigen::Index m) {
+Eigen::Matrix<double, D, rest(D, C)> basis_at(const Chain& chain, Eigen::Index m) {
   const Eigen::Index d = chain.dimension();
   Vector<D> taken = chain.fields.col(m).normalized();
-  if (!(taken.squaredNorm() > 0.5))
-    throw core::NumericalError(
-        "Floquet multipliers: expected an orbit that moves, but the field vanishes at a state of "
-        "the loop; it has collapsed onto an equilibrium");
+  if (!(taken.squaredNorm() > 0.5)) refuse_standstill();
   Vector<D> reflectors[C];
   reflectors[0] = reflector<D>(taken, 0);
   if constexpr (C == 2) {
-    const auto size = static_cast<std::size_t>(d);
-    system.energy_gradient({chain.states.col(m).data(), size}, {taken.data(), size});
-    taken.normalize();
+    taken = chain.gradients.col(m).normalized();
     taken -= reflectors[0] * (2.0 * reflectors[0].dot(taken));
     reflectors[1] = reflector<D>(taken, 1);
   }
@@ -53,26 +58,92 @@ Eigen::Matrix<double, D, rest(D, C)> basis_at(const systems::System& system, con
   return basis;
 }
 
+using ad::Lanes;
+using Lanes4 = std::array<Lanes, 4>;
+
+Lanes dot(const Lanes4& a, const Lanes4& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]; }
+
+/// vector - reflector (2 reflector . vector / |reflector|^2), `twice` being 2 / |reflector|^2.
+void reflect(const Lanes4& reflector, Lanes twice, Lanes4& vector) {
+  const Lanes share = twice * dot(reflector, vector);
+  for (std::size_t i = 0; i < 4; ++i) vector[i] -= share * reflector[i];
+}
+
+/// Adds the length of the vector to its entry `first`, away from zero; returns 2 / |.|^2 of the result.
+Lanes make_reflector(Lanes4& vector, std::size_t first) {
+  const Lanes length = sqrt(dot(vector, vector));
+  vector[first] = vector[first] + Lanes(vector[first].packed < 0.0 ? -length.packed : length.packed);
+  return 2.0 / (dot(vector, vector) + 1e-300);
+}
+
+/// The same bases for four dimensions and C = 2, several nodes at a time: column m holds that of t_m.
+Eigen::Matrix<double, 8, Eigen::Dynamic> bases_of_four(const Chain& chain) {
+  constexpr auto width = static_cast<Eigen::Index>(Lanes::width);
+  const Eigen::Index nodes = chain.states.cols();
+  Eigen::Matrix<double, 8, Eigen::Dynamic> bases(8, nodes);
+  for (Eigen::Index begin = 0; begin < nodes; begin += width) {
+    Lanes4 field;
+    Lanes4 gradient;
+    for (Eigen::Index lane = 0; lane < width; ++lane) {
+      const Eigen::Index m = std::min(begin + lane, nodes - 1);
+      if (!(chain.fields.col(m).squaredNorm() > 0.0)) refuse_standstill();
+      for (std::size_t i = 0; i < 4; ++i) {
+        field[i].packed[lane] = chain.fields(static_cast<Eigen::Index>(i), m);
+        gradient[i].packed[lane] = chain.gradients(static_cast<Eigen::Index>(i), m);
+      }
+    }
+    const Lanes twice_0 = make_reflector(field, 0);
+    reflect(field, twice_0, gradient);
+    gradient[0] = 0.0;
+    const Lanes twice_1 = make_reflector(gradient, 1);
+    for (std::size_t n = 0; n < 2; ++n) {
+      Lanes4 basis{0.0, 0.0, 0.0, 0.0};
+      basis[2 + n] = 1.0;
+      reflect(gradient, twice_1, basis);
+      reflect(field, twice_0, basis);
+      for (std::size_t i = 0; i < 4; ++i)
+        for (Eigen::Index lane = 0; lane < std::min(width, nodes - begin); ++lane)
+          bases(static_cast<Eigen::Index>(4 * n + i), begin + lane) = basis[i].packed[lane];
+    }
+  }
+  return bases;
+}
+
 template <int D, int C>
-TransverseFlow reduced(const systems::System& system, const Chain& chain, const FundamentalGroup& group) {
+TransverseFlow reduced(const Chain& chain, const FundamentalGroup& group) {
   using Basis = Eigen::Matrix<double, D, rest(D, C)>;
   const Eigen::Index d = chain.dimension();
   const Eigen::Index segments = chain.segments();
-  const Basis first = basis_at<D, C>(system, chain, 0);
+  Eigen::Matrix<double, 8, Eigen::Dynamic> bases;
+  if constexpr (D == 4 && C == 2) bases = bases_of_four(chain);
+  const auto basis_of = [&](Eigen::Index m) -> Basis {
+    if constexpr (D == 4 && C == 2)
+      return Eigen::Map<const Basis>(bases.col(m).data());
+    else
+      return basis_at<D, C>(chain, m);
+  };
+  const Basis first = basis_of(0);
   const Eigen::Matrix<double, D, D> inverse = group.inverse;
   TransverseFlow flow;
   flow.factors.resize((d - C) * (d - C), segments);
+  const bool estimated = chain.truncations.cols() > 0;
+  if (estimated) flow.errors.resize(flow.factors.rows(), segments);
   Basis basis = first;
+  Basis next = first;
   Basis image;
   for (Eigen::Index m = 0; m < segments; ++m) {
+    const bool last = m + 1 == segments;
+    if (last)
+      next.noalias() = inverse.transpose() * first;
+    else
+      next = basis_of(m + 1);
     image.noalias() = matrix_in<D>(chain.transitions, m, d) * basis;
-    if (m + 1 < segments) {
-      basis = basis_at<D, C>(system, chain, m + 1);
-    } else {
-      image = (inverse * image).eval();
-      basis = first;
+    matrix_in<rest(D, C)>(flow.factors, m, d - C).noalias() = next.transpose() * image;
+    if (estimated) {
+      image.noalias() = matrix_in<D>(chain.truncations, m, d) * basis;
+      matrix_in<rest(D, C)>(flow.errors, m, d - C).noalias() = next.transpose() * image;
     }
-    matrix_in<rest(D, C)>(flow.factors, m, d - C).noalias() = basis.transpose() * image;
+    basis = next;
   }
   const Eigen::MatrixXd frame = first;
   flow.around = frame.transpose() * group.around * frame;
@@ -82,9 +153,9 @@ TransverseFlow reduced(const systems::System& system, const Chain& chain, const 
 }  // namespace
 
 TransverseFlow transverse_flow(const systems::System& system, const Chain& chain, const FundamentalGroup& group) {
-  if (!system.description().conservative) return reduced<Eigen::Dynamic, 1>(system, chain, group);
-  if (chain.dimension() == 4) return reduced<4, 2>(system, chain, group);
-  return reduced<Eigen::Dynamic, 2>(system, chain, group);
+  if (!system.description().conservative) return reduced<Eigen::Dynamic, 1>(chain, group);
+  if (chain.dimension() == 4) return reduced<4, 2>(chain, group);
+  return reduced<Eigen::Dynamic, 2>(chain, group);
 }
 
 }  // namespace orbweaver::spectrum

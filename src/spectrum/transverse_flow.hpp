@@ -12,6 +12,7 @@ namespace orbweaver::spectrum {
 /// modulo f (without conserved energy: everything modulo f), in an orthonormal basis at each t_m.
 struct TransverseFlow {
   Eigen::MatrixXd factors;  ///< segment by segment (matrix_table.hpp); the last one ends with g^-1, in the first basis
+  Eigen::MatrixXd errors;   ///< the chain's truncation estimates in the same bases; empty if it has none
   Eigen::MatrixXd around;   ///< g^p in the first basis
 
   [[nodiscard]] Eigen::Index dimension() const { return around.rows(); }

@@ -1,12 +1,20 @@
 #include "variational_step.hpp"
 
 #include <algorithm>
+#include <array>
+#include <iterator>
+#include <utility>
+
+#include "orbweaver/ad/lanes.hpp"
 
 namespace orbweaver::spectrum {
 
 namespace {
 
+using ad::Lanes;
+
 constexpr std::size_t stages = 12;
+constexpr std::size_t w = VariationalStep::lanes;
 
 /// Stage `row` (the last one: the result) takes h * weight of the slope at stage `column`.
 struct Entry {
@@ -39,23 +47,64 @@ constexpr Entry tableau[] = {
     {12, 11, 0.044710615727772587413},
 };
 
-/// y += factor * x.
-void add(std::size_t size, double factor, const double* x, double* y) {
-  for (std::size_t n = 0; n < size; ++n) y[n] += factor * x[n];
+/// Result of order 8 less that of order 5, and weights of the slopes in the result of order 3.
+constexpr Entry fifth[] = {
+    {0, 0, 0.01312004499419488073250102996},  {0, 5, -1.225156446376204440720569753},
+    {0, 6, -0.4957589496572501915214079952},  {0, 7, 1.664377182454986536961530415},
+    {0, 8, -0.3503288487499736816886487290},  {0, 9, 0.3341791187130174790297318841},
+    {0, 10, 0.08192320648511571246570742613}, {0, 11, -0.02235530786388629525884427845},
+};
+constexpr Entry third[] = {
+    {0, 0, 0.244094488188976377952755905512},
+    {0, 8, 0.733846688281611857341361741547},
+    {0, 11, 0.0220588235294117647058823529412},
+};
+
+constexpr std::size_t row_begin(std::size_t row) {
+  std::size_t n = 0;
+  while (n < std::size(tableau) && tableau[n].row < row) ++n;
+  return n;
 }
 
-/// product = a b for dimension x dimension matrices in lanes.
-void multiply(std::size_t d, const double* a, const double* b, double* product) {
-  constexpr std::size_t w = VariationalStep::lanes;
-  for (std::size_t i = 0; i < d; ++i) {
-    for (std::size_t l = 0; l < d; ++l) {
-      double sum[w] = {};
-      for (std::size_t m = 0; m < d; ++m) {
-        const double* left = a + (i * d + m) * w;
-        const double* right = b + (m * d + l) * w;
-        for (std::size_t lane = 0; lane < w; ++lane) sum[lane] += left[lane] * right[lane];
+/// weight_0 slope_0 + weight_1 slope_1 + ... over `Count` of the `entries` from `Begin` on, unrolled.
+template <const auto& entries, std::size_t Begin, std::size_t Count>
+Lanes sum_of(const double* slopes, std::size_t size) {
+  return [&]<std::size_t... n>(std::index_sequence<n...>) {
+    return ((Lanes::load(slopes + entries[Begin + n].column * size) * entries[Begin + n].weight) + ...);
+  }
+  (std::make_index_sequence<Count>{});
+}
+
+/// values = start + lengths * (slopes weighted by the tableau's row).
+template <std::size_t Row>
+void combine_row(std::size_t size, const double* start, const double* lengths, const double* slopes, double* values) {
+  constexpr std::size_t begin = row_begin(Row);
+  constexpr std::size_t count = row_begin(Row + 1) - begin;
+  for (std::size_t n = 0; n < size; n += w)
+    for (std::size_t g = 0; g < w; g += Lanes::width)
+      (Lanes::load(start + n + g) + Lanes::load(lengths + g) * sum_of<tableau, begin, count>(slopes + n + g, size))
+          .store(values + n + g);
+}
+
+using CombineRow = void (*)(std::size_t, const double*, const double*, const double*, double*);
+template <std::size_t... rows>
+constexpr std::array<CombineRow, stages> combine_rows(std::index_sequence<rows...>) {
+  return {&combine_row<rows + 1>...};
+}
+constexpr std::array<CombineRow, stages> combine = combine_rows(std::make_index_sequence<stages>{});
+
+/// product = a b for matrices in lanes, of D x D (0: of size d).
+template <std::size_t D>
+void multiply(std::size_t dynamic, const double* a, const double* b, double* product) {
+  const std::size_t d = D == 0 ? dynamic : D;
+  for (std::size_t g = 0; g < w; g += Lanes::width) {
+    for (std::size_t i = 0; i < d; ++i) {
+      for (std::size_t l = 0; l < d; ++l) {
+        Lanes sum = Lanes::load(a + i * d * w + g) * Lanes::load(b + l * w + g);
+        for (std::size_t m = 1; m < d; ++m)
+          sum += Lanes::load(a + (i * d + m) * w + g) * Lanes::load(b + (m * d + l) * w + g);
+        sum.store(product + (i * d + l) * w + g);
       }
-      std::copy_n(sum, w, product + (i * d + l) * w);
     }
   }
 }
@@ -69,29 +118,55 @@ VariationalStep::VariationalStep(const systems::System& system)
       _start(_size),
       _values(_size),
       _slopes(stages * _size),
-      _jacobian(_dimension * _dimension * lanes) {
+      _jacobian(_dimension * _dimension * lanes),
+      _truncations(_dimension * _dimension * lanes) {
   for (std::size_t i = 0; i < _dimension; ++i)
     std::fill_n(_start.begin() + static_cast<std::ptrdiff_t>((_dimension + i * _dimension + i) * lanes), lanes, 1.0);
 }
 
 void VariationalStep::slope(std::size_t stage) {
   double* slopes = _slopes.data() + stage * _size;
+  double* transition_slopes = slopes + _dimension * lanes;
+  if (stage == 0) {  // Y is the unit matrix
+    _system.field_jacobian(lanes, _values.data(), slopes, transition_slopes);
+    return;
+  }
   _system.field_jacobian(lanes, _values.data(), slopes, _jacobian.data());
-  multiply(_dimension, _jacobian.data(), transitions(), slopes + _dimension * lanes);
+  if (_dimension == 4)
+    multiply<4>(4, _jacobian.data(), transitions(), transition_slopes);
+  else
+    multiply<0>(_dimension, _jacobian.data(), transitions(), transition_slopes);
 }
 
-void VariationalStep::run(const double* starts, double h) {
-  std::copy_n(starts, _dimension * lanes, _start.begin());
-  std::size_t row = 0;
-  std::copy(_start.begin(), _start.end(), _values.begin());
-  for (const Entry& entry : tableau) {
-    if (entry.row != row) {
-      slope(row);
-      row = entry.row;
-      std::copy(_start.begin(), _start.end(), _values.begin());
+void VariationalStep::estimate(const double* lengths) {
+  const std::size_t states = _dimension * lanes;
+  for (std::size_t g = 0; g < w; g += Lanes::width) {
+    const Lanes h = Lanes::load(lengths + g);
+    Lanes squares_5(0.0);
+    Lanes squares_3(0.0);
+    for (std::size_t n = g; n < _truncations.size(); n += w) {
+      const double* slopes = _slopes.data() + states + n;
+      const Lanes error = h * sum_of<fifth, 0, std::size(fifth)>(slopes, _size);
+      const Lanes other = Lanes::load(&_values[states + n]) - Lanes::load(&_start[states + n]) -
+                          h * sum_of<third, 0, std::size(third)>(slopes, _size);
+      squares_5 += error * error;
+      squares_3 += other * other;
+      error.store(&_truncations[n]);
     }
-    add(_size, h * entry.weight, _slopes.data() + entry.column * _size, _values.data());
+    const Lanes share = sqrt(squares_5 / (squares_5 + 0.01 * squares_3 + 1e-300));
+    for (std::size_t n = g; n < _truncations.size(); n += w)
+      (share * Lanes::load(&_truncations[n])).store(&_truncations[n]);
   }
+}
+
+void VariationalStep::run(const double* starts, const double* lengths) {
+  std::copy_n(starts, _dimension * lanes, _start.begin());
+  std::copy(_start.begin(), _start.end(), _values.begin());
+  for (std::size_t row = 0; row < stages; ++row) {
+    slope(row);
+    combine[row](_size, _start.data(), lengths, _slopes.data(), _values.data());
+  }
+  estimate(lengths);
 }
 
 }  // namespace orbweaver::spectrum

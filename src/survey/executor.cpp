@@ -9,6 +9,7 @@
 #include "orbweaver/certificate/certificate.hpp"
 #include "orbweaver/continuation/sweep.hpp"
 #include "orbweaver/core/error.hpp"
+#include "stability_columns.hpp"
 
 namespace orbweaver::survey {
 
@@ -81,8 +82,9 @@ queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
 queue::TaskOutcome Executor::follow(const BranchWork& work, queue::TaskContext& context) {
   BranchOutcome outcome;
   outcome.key = work.key;
+  const continuation::Start start = start_of(work, _system->description());
   const auto keep = [&](const continuation::Orbit& orbit) {
-    _rows.orbits.push_back(record(work.key, orbit));
+    _rows.orbits.push_back(record(work.key, orbit, start.isotropy));
     const bool first = outcome.orbits == 0;
     outcome.period_from = first ? orbit.loop.period : std::min(outcome.period_from, orbit.loop.period);
     outcome.period_to = first ? orbit.loop.period : std::max(outcome.period_to, orbit.loop.period);
@@ -97,7 +99,7 @@ queue::TaskOutcome Executor::follow(const BranchWork& work, queue::TaskContext& 
   };
   continuation::Ending ending;
   try {
-    ending = continuation::trace(_system, start_of(work, _system->description()), branch_options(_scene), keep);
+    ending = continuation::trace(_system, start, branch_options(_scene), keep);
   } catch (
       const std::exception& error) {  // caught here, not by the queue, so that the summary still counts the orbits kept
     ending = {continuation::EndReason::failure, error.what()};
@@ -110,7 +112,8 @@ queue::TaskOutcome Executor::follow(const BranchWork& work, queue::TaskContext& 
   return done;
 }
 
-archive::OrbitRecord Executor::record(const std::string& key, const continuation::Orbit& orbit) const {
+archive::OrbitRecord Executor::record(const std::string& key, const continuation::Orbit& orbit,
+                                      const loop::Isotropy& isotropy) const {
   archive::OrbitRecord row;
   row.family_key = key;
   row.step = orbit.step;
@@ -126,8 +129,7 @@ archive::OrbitRecord Executor::record(const std::string& key, const continuation
   row.modes = orbit.loop.modes;
   const systems::Description& system = _system->description();
   for (const int angle : system.angles) row.winding.push_back(orbit.loop.winding[static_cast<std::size_t>(angle)]);
-  row.stability.assign(static_cast<std::size_t>(system.pairs()) * (system.symplectic ? 1 : 2), archive::not_computed);
-  row.fundamental_stability = row.stability;
+  set_stability(*_system, orbit.loop, isotropy, row);
   const certificate::Certificate certificate = certificate::certify(*_system, orbit.loop);
   row.closure = certificate.closure;
   row.single_shot = certificate.single_shot;

@@ -12,7 +12,7 @@ namespace orbweaver::spectrum {
 /// How finely the variational equations are integrated.
 struct FloquetOptions {
   int least_segments = 48;   ///< Runge-Kutta steps a period, at least
-  double tolerance = 1e-11;  ///< on the relative truncation error; above it the steps are halved
+  double tolerance = 3e-10;  ///< on the bound of the relative truncation error; above it the steps are halved
   int refinements = 3;       ///< how often the steps may be halved
 };
 
@@ -38,11 +38,11 @@ struct Stability {
 
 /// Stability of an accepted orbit, at a cost proportional to the number of its harmonics.
 ///
-/// Transition matrices over short segments, each started at the loop's own state (Dormand and Prince's order 8 from
+/// Transition matrices over short segments equal in s, each started at the loop's own state (Dormand and Prince's order 8 from
 /// Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, section II.5), only over T/p, and over half
 /// of that where `isotropy` has a reversor; the index of a single pair is the trace of their product, others come from
 /// orthogonal iteration on the product, so that large and small multipliers keep their digits. The error bound adds the
-/// truncation (from doubled steps), the rounding, and the orbit's own error: the response to one Newton step of
+/// truncation (a tenth of what the embedded methods of lower order differ), the rounding, and the orbit's own error: the response to one Newton step of
 /// multiple shooting, at (nearly) fixed period where the system is conservative.
 ///
 /// Throws MisuseError if the loop is not valid, not of the system's dimension, or constant; NotFiniteError if the field

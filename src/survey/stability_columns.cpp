@@ -1,0 +1,45 @@
+#include "stability_columns.hpp"
+
+#include <algorithm>
+#include <complex>
+#include <vector>
+
+#include "orbweaver/archive/schema.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/spectrum/floquet.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+std::vector<double> columns_of(const std::vector<std::complex<double>>& values, bool complex) {
+  std::vector<double> columns;
+  for (const std::complex<double>& value : values) {
+    columns.push_back(value.real());
+    if (complex) columns.push_back(value.imag());
+  }
+  return columns;
+}
+
+}  // namespace
+
+void set_stability(const systems::System& system, const loop::Loop& loop, const loop::Isotropy& isotropy,
+                   archive::OrbitRecord& row) {
+  archive::Header header;
+  header.pairs = system.description().pairs();
+  header.symplectic = system.description().symplectic;
+  row.stability.assign(archive::stability_width(header), archive::not_computed);
+  row.fundamental_stability = row.stability;
+  row.stability_error = archive::not_computed;
+  try {
+    const spectrum::Stability stability = spectrum::floquet(system, loop, isotropy);
+    const bool complex = archive::has_complex_stability(header);
+    row.stability = columns_of(stability.full, complex);
+    row.fundamental_stability = columns_of(stability.fundamental, complex);
+    if (!stability.full_error.empty())
+      row.stability_error = *std::max_element(stability.full_error.begin(), stability.full_error.end());
+  } catch (const core::NumericalError&) {
+  }
+}
+
+}  // namespace orbweaver::survey
