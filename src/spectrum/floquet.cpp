@@ -133,6 +133,12 @@ void add_orbit_error(const systems::System& system, const Chain& chain, const Fu
   add_distances(indices, floquet_indices(system.description(), flow, group.order), orbit_safety / factor, stability);
 }
 
+bool moves(const loop::Loop& loop) {
+  const auto nonzero = [](double v) { return v != 0.0; };
+  return std::any_of(loop.modes.begin() + loop.dimension, loop.modes.end(), nonzero) ||
+         std::any_of(loop.winding.begin(), loop.winding.end(), nonzero);
+}
+
 void check_finite(const Values& values, const loop::Loop& loop) {
   for (const Complex& value : values)
     if (!std::isfinite(value.real()) || !std::isfinite(value.imag()))
@@ -197,7 +203,7 @@ Stability floquet(const systems::System& system, const loop::Loop& loop, const l
   const core::LogEvent event(core::Event::multipliers);
   loop::validate(loop);
   core::require(loop.dimension == system.dimension(), "Floquet multipliers: the loop is not of the system's dimension");
-  core::require(loop::rms_speed(loop) > 0.0, "Floquet multipliers need an orbit that moves; this loop is constant");
+  core::require(moves(loop), "Floquet multipliers need an orbit that moves; this loop is constant");
   const systems::Description& description = system.description();
   const FundamentalGroup group = fundamental_group(system, loop, isotropy);
   if (loop.dimension == (description.conservative ? 2 : 1)) return without_errors({}, group.order);

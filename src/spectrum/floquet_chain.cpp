@@ -43,11 +43,12 @@ Chain nodes_of(const systems::System& system, const loop::Loop& loop, const Fund
   const int segments = around / group.order;
   chain.steps = Eigen::VectorXd::Constant(segments, loop.period / around);
   if (!loop.time_map.is_identity()) {
-    const double node = 2 * std::numbers::pi / around;
     const double rate = loop.period / (2 * std::numbers::pi);
+    double before = loop.time_map.phase(0.0);
     for (Eigen::Index m = 0; m < segments; ++m) {
-      const auto s = static_cast<double>(m);
-      chain.steps[m] = rate * (loop.time_map.phase((s + 1) * node) - loop.time_map.phase(s * node));
+      const double after = loop.time_map.phase(2 * std::numbers::pi * static_cast<double>(m + 1) / around);
+      chain.steps[m] = rate * (after - before);
+      before = after;
     }
   }
   chain.states.resize(d, segments + 1);

@@ -1,5 +1,7 @@
 #include "floquet_group.hpp"
 
+#include <cmath>
+#include <numbers>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -26,6 +28,16 @@ bool keeps_energy(const systems::System& system, const std::vector<double>& stat
   system.energy_gradient(state, {here.data(), d});
   system.energy_gradient({image.data(), d}, {there.data(), d});
   return (matrix.transpose() * there - here).norm() < 1e-6 * here.norm();
+}
+
+/// Whether nodes equidistant in s stay such nodes under the element: the time map must share its symmetry.
+bool keeps_nodes(const loop::TimeMap& map, const loop::SymmetryElement& element) {
+  if (map.is_identity()) return true;
+  const double shift = 2.0 * std::numbers::pi * element.shift_numerator / element.shift_denominator;
+  const double sign = element.reversing ? -1.0 : 1.0;
+  for (double s = 0.3; s < 6.0; s += 0.9)
+    if (std::abs(map.phase(shift + sign * s) - shift - sign * map.phase(s)) > same) return false;
+  return true;
 }
 
 int sum_modulo(int a, int b, int modulus) { return ((a + b) % modulus + modulus) % modulus; }
@@ -70,6 +82,7 @@ FundamentalGroup fundamental_group(const systems::System& system, const loop::Lo
   std::vector<const loop::SymmetryElement*> shifts;
   int denominator = 1;
   for (const loop::SymmetryElement& element : isotropy) {
+    if (!keeps_nodes(loop.time_map, element)) continue;
     if (element.reversing) {
       if (!result.reversor) result.reversor = element;
     } else if (keeps_energy(system, state, element.matrix)) {

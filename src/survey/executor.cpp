@@ -82,7 +82,7 @@ queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
 queue::TaskOutcome Executor::follow(const BranchWork& work, queue::TaskContext& context) {
   BranchOutcome outcome;
   outcome.key = work.key;
-  const continuation::Start start = start_of(work, _system->description());
+  continuation::Start start;
   const auto keep = [&](const continuation::Orbit& orbit) {
     _rows.orbits.push_back(record(work.key, orbit, start.isotropy));
     const bool first = outcome.orbits == 0;
@@ -99,6 +99,7 @@ queue::TaskOutcome Executor::follow(const BranchWork& work, queue::TaskContext& 
   };
   continuation::Ending ending;
   try {
+    start = start_of(work, _system->description());
     ending = continuation::trace(_system, start, branch_options(_scene), keep);
   } catch (
       const std::exception& error) {  // caught here, not by the queue, so that the summary still counts the orbits kept

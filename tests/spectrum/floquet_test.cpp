@@ -235,6 +235,26 @@ TEST(PendulumIndex, HoldsItsDigitsUpToTenToTheEighteen) {
   EXPECT_GT(largest, 2.7e17);
 }
 
+TEST(PendulumIndex, IsTheSameUnderATimeMap) {
+  const loop::Isotropy symmetric = test::pendulum_isotropy(*pendulum());
+  const loop::TimeMap pulse{2.0, {}};
+  const loop::TimeMap lopsided{1.0, {0.12, -0.08, 0.0, 0.05}};
+  for (const auto& [loop, reference] : pendulum_orbits()) {
+    const double goal = reference.period <= 15 ? 1e-10 : 1e-9;
+    for (const loop::TimeMap& map : {pulse, lopsided}) {
+      const loop::Loop mapped = loop::with_time_map(loop, map, loop::next_cutoff(loop.cutoff));
+      for (const loop::Isotropy& isotropy : {symmetric, loop::Isotropy{}}) {
+        SCOPED_TRACE(testing::Message() << "T = " << reference.period << ", kappa " << map.kappa << ", isotropy "
+                                        << loop::to_text(isotropy));
+        const Stability stability = floquet(*pendulum(), mapped, isotropy);
+        ASSERT_EQ(stability.full.size(), 1u);
+        expect_value(stability.full[0], stability.full_error[0], full_of(reference.half), goal);
+        EXPECT_EQ(stability.fundamental_order, map == pulse && !isotropy.empty() ? 2 : 1);
+      }
+    }
+  }
+}
+
 TEST(PendulumIndex, FullIsTheSquareOfHalfLessTwo) {
   for (const auto& [loop, reference] : pendulum_orbits()) {
     const loop::Isotropy isotropy = test::pendulum_isotropy(*pendulum());

@@ -101,8 +101,7 @@ class Oscillators final : public PointSystem {
   static systems::Description describe(std::size_t count) {
     std::vector<std::string> names;
     for (std::size_t n = 0; n < count; ++n) {
-      names.push_back("q" + std::to_string(n));
-      names.push_back("p" + std::to_string(n));
+      for (const char* letter : {"q", "p"}) names.emplace_back(letter).append(std::to_string(n));
     }
     systems::Description description = description_of(names);
     const auto d = static_cast<Eigen::Index>(2 * count);

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "archive/sample.hpp"
@@ -75,6 +76,30 @@ TEST(RunSurvey, SummaryArchiveAndFolderAgree) {
   EXPECT_NEAR(summary.families[0].energy_to, -0.764030789928, 1e-11);  // in-phase at T = 9
   const auto last = static_cast<std::size_t>(summary.families[0].orbits) - 1;
   EXPECT_NEAR(atlas.orbits().reals("state")[4 * last], 1.360312422366, 1e-11);
+}
+
+TEST(RunSurvey, StabilityColumnsHoldTheIndexAndABoundOfItsError) {
+  const core::Communicator comm;
+  const auto folder = test::fresh_folder(own_folder(comm, "stability"), comm.get());
+  const survey::Summary summary =
+      run(comm, test::quick_scene({"limits.period=10", "starts.sweep.period=[8,9]"}), folder);
+  if (!comm.is_root()) return;
+  const archive::Archive atlas(summary.atlas);
+  const auto& full = atlas.orbits().reals("stability");
+  const auto& half = atlas.orbits().reals("fundamental_stability");
+  const auto& error = atlas.orbits().reals("stability_error");
+  ASSERT_EQ(full.size(), atlas.orbits().rows());
+  ASSERT_GT(full.size(), 5U);
+  for (std::size_t row = 0; row < full.size(); ++row) {
+    EXPECT_NEAR(full[row], half[row] * half[row] - 2.0, 1e-14 * (4.0 + std::abs(full[row])));
+    EXPECT_GE(error[row], 0.0);
+    EXPECT_LE(error[row], 1e-9 * (1.0 + std::abs(full[row])));
+  }
+  // In-phase at T = 10, from the quarter period in quadruple precision (tests/spectrum/floquet_test.cpp).
+  const double reference = 0.42291741949564062723;
+  EXPECT_EQ(atlas.orbits().reals("period").back(), 10.0);
+  EXPECT_NEAR(full.back(), reference * reference - 2.0, error.back());
+  EXPECT_NEAR(half.back(), reference, 1e-10);
 }
 
 TEST(RunSurvey, ManySmallFlushesGiveTheArchiveOfOneRankAndOneFlush) {

@@ -12,7 +12,7 @@ namespace orbweaver::spectrum {
 /// How finely the variational equations are integrated.
 struct FloquetOptions {
   int least_segments = 48;   ///< Runge-Kutta steps a period, at least
-  double tolerance = 3e-10;  ///< on the bound of the relative truncation error; above it the steps are halved
+  double tolerance = 5e-10;  ///< on the bound of the relative truncation error; above it the steps are halved
   int refinements = 3;       ///< how often the steps may be halved
 };
 
