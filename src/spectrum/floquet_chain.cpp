@@ -16,8 +16,9 @@ namespace {
 
 /// Segments a harmonic: leaves a relative error of 1e-12 to 1e-11 in the index of the double pendulum's orbits.
 constexpr double segments_a_harmonic = 1.6;
-/// Largest h times the growth or turning rate of the linearised flow.
-constexpr double largest_turn = 0.3;
+/// Largest sum over segments of (h |A|)^8, |A| being the growth or turning rate of the linearised flow: leaves 1e-11 on
+/// a linear oscillator that turns nine times.
+constexpr double largest_sum = 5e-4;
 
 /// Few numbers of segments are used, so that few Fourier plans are made: multiples of 24, by 2 to 7, or 8 to 15 times a
 /// power of 2.
@@ -60,21 +61,20 @@ Chain nodes_of(const systems::System& system, const loop::Loop& loop, const Fund
   return chain;
 }
 
-/// An estimate of the largest step times modulus of the Jacobian's eigenvalues, insensitive to the units of the
+/// Sum over segments of (h |A|)^8, |A| = |A^4|^(1/4) for the Jacobian A, which is insensitive to the units of the
 /// coordinates.
 template <int D>
-double largest_turn_of(const Chain& chain) {
-  double largest = 0.0;
+double sum_of_rates(const Chain& chain) {
+  double sum = 0.0;
   Eigen::Matrix<double, D, D> power;
   for (Eigen::Index j = 0; j < chain.segments(); ++j) {
     const auto a = matrix_in<D>(chain.jacobians, j, chain.dimension());
     power.noalias() = a.lazyProduct(a);
     power = power.lazyProduct(power).eval();
     const double step = chain.steps[j] * chain.steps[j] * chain.steps[j] * chain.steps[j];
-    const double fourth = step * step * power.squaredNorm();
-    if (!(fourth <= largest)) largest = fourth;
+    sum += step * step * power.squaredNorm();
   }
-  return std::pow(largest, 0.125);
+  return sum;
 }
 
 /// Integrates from the states at the given nodes and hands each result to `take(node, lane)`.
@@ -196,14 +196,13 @@ Chain make_chain(const systems::System& system, VariationalStep& stepper, const 
   const double resolution = std::max<double>(at_least, segments_a_harmonic * loop.cutoff);
   const int around = allowed_segments(resolution, group.grid_factor);
   Chain chain = nodes_of(system, loop, group, around);
-  const double turns = around *
-                       (loop.dimension == 4 ? largest_turn_of<4>(chain) : largest_turn_of<Eigen::Dynamic>(chain)) /
-                       largest_turn;
-  if (!std::isfinite(turns))
+  const double sum = group.order * (loop.dimension == 4 ? sum_of_rates<4>(chain) : sum_of_rates<Eigen::Dynamic>(chain));
+  const double wanted = around * std::pow(sum / largest_sum, 1.0 / 7.0);
+  if (!std::isfinite(wanted))
     throw core::NotFiniteError(
         "Floquet multipliers: the field's Jacobian is not finite on the orbit; expected finite "
         "derivatives at every state of an accepted orbit");
-  const int finer = allowed_segments(turns, group.grid_factor);
+  const int finer = allowed_segments(wanted, group.grid_factor);
   if (finer > around) chain = nodes_of(system, loop, group, finer);
   take_transitions(stepper, group, chain);
   return chain;
