@@ -189,7 +189,8 @@ Integrated integrated(const systems::System& system, const loop::Loop& loop, con
         add_truncation(description, result.chain, result.flow, group.order, result.indices, result.stability);
     const double error = largest_relative(result.stability.fundamental, result.stability.fundamental_error);
     if (error <= options.tolerance || refinement >= options.refinements) return result;
-    least = 2 * static_cast<int>(result.chain.segments()) * group.order;
+    const double finer = std::min(2.0, 1.1 * std::pow(error / options.tolerance, 1.0 / 8.0));
+    least = static_cast<int>(finer * static_cast<double>(result.chain.segments()) * group.order) + 1;
   }
 }
 

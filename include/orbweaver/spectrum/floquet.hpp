@@ -12,8 +12,8 @@ namespace orbweaver::spectrum {
 /// How finely the variational equations are integrated.
 struct FloquetOptions {
   int least_segments = 48;   ///< Runge-Kutta steps a period, at least
-  double tolerance = 5e-10;  ///< on the bound of the relative truncation error; above it the steps are halved
-  int refinements = 3;       ///< how often the steps may be halved
+  double tolerance = 5e-10;  ///< on the bound of the relative truncation error; above it the steps are refined
+  int refinements = 3;       ///< how often, by at most a half each time
 };
 
 /// The linear stability of one orbit. Multipliers that belong to the flow and to the conserved energy are taken out by
