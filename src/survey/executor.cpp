@@ -128,6 +128,7 @@ archive::OrbitRecord Executor::record(const std::string& key, const continuation
   row.tail = orbit.tail;
   row.state = loop::state_at(orbit.loop, 0.0);
   row.modes = orbit.loop.modes;
+  row.time_map = loop::to_numbers(orbit.loop.time_map);
   const systems::Description& system = _system->description();
   for (const int angle : system.angles) row.winding.push_back(orbit.loop.winding[static_cast<std::size_t>(angle)]);
   set_stability(*_system, orbit.loop, isotropy, row);

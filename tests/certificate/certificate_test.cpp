@@ -45,6 +45,17 @@ TEST(Certificate, AcceptsAnExactOrbit) {
   EXPECT_LT(certificate.energy_drift, 5e-15);
 }
 
+TEST(Certificate, IsThatOfTheOrbitUnderAnyTimeMap) {
+  for (const loop::TimeMap& map : {loop::TimeMap{2.0, {}}, loop::TimeMap{1.2, {0.2, -0.1}}}) {
+    const loop::Loop mapped = loop::with_time_map(oscillation(2.0 * pi / omega), map, 120);
+    EXPECT_LT(certify(*oscillator(), mapped).closure, 5e-14);
+    EXPECT_LT(certify(*oscillator(), mapped).energy_drift, 5e-14);
+    const double off = certify(*oscillator(), oscillation(3.0)).closure;
+    EXPECT_NEAR(certify(*oscillator(), loop::with_time_map(oscillation(3.0), map, 120)).closure, off, 1e-12);
+    ASSERT_GT(off, 0.01);
+  }
+}
+
 TEST(Certificate, MeasuresHowFarALoopIsFromAnOrbit) {
   constexpr double period = 2.0 * pi / omega * 1.01;
   constexpr int segments = 8;

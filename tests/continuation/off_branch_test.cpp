@@ -97,6 +97,19 @@ TEST(OffBranchEigenvalue, DoesNotDependOnHowItIsSplit) {
   EXPECT_NEAR(orbit.off_branch_eigenvalue(one), split, 1e-6 * split);
 }
 
+// The number is that of the orbit, not of the coefficients that a time map gives it.
+TEST(OffBranchEigenvalue, DoesNotDependOnTheTimeMap) {
+  const OnFamily orbit = at_period(test::in_phase(), 8.5);
+  const double even = orbit.off_branch_eigenvalue();
+  for (const loop::TimeMap& map : {loop::TimeMap{1.5, {}}, loop::TimeMap{1.0, {0.0, 0.0, 0.2, 0.0}}}) {
+    loop::Loop tangent = orbit.loop;
+    tangent.modes = orbit.tangent_modes;
+    const OnFamily mapped{loop::with_time_map(orbit.loop, map, 77), loop::with_time_map(tangent, map, 77).modes,
+                          orbit.tangent_period};
+    EXPECT_NEAR(mapped.off_branch_eigenvalue(), even, 1e-6 * even);
+  }
+}
+
 constexpr int always_dense = 1 << 30;
 
 TEST(OffBranchEigenvalue, IsTheSameMatrixFree) {

@@ -5,6 +5,7 @@
 
 #include "corrector/fixture.hpp"
 #include "orbweaver/loop/fourier.hpp"
+#include "orbweaver/loss/loop_equations.hpp"
 
 namespace orbweaver::corrector {
 namespace {
@@ -87,6 +88,26 @@ TEST(MappedCorrection, TakesEveryNodeOfASharpPulse) {
   const PinnedPeriod problem("SR", {12.0, {}}, 22);
   ASSERT_GT(loop::nodes_for(problem.guess), loop::FourierGrid::nodes_for(22));
   EXPECT_NO_THROW(static_cast<void>(problem.correct(Method::brgn)));
+}
+
+// The inverse that the box scheme gives is as near to the true one under a map, borders included: T and the unfolding.
+TEST(MappedCorrection, BordersOfThePreconditionerFollowTheMap) {
+  for (const loop::TimeMap& map : {loop::TimeMap{}, loop::TimeMap{1.6, {}}, loop::TimeMap{0.6, {}}}) {
+    PinnedPeriod problem("S", map, 102);
+    problem.guess = problem.correct(Method::nls).loop;
+    const loop::Subspace image = problem.unknowns.subspace.image();
+    const loss::Slice slice(problem.unknowns.size(), problem.conditions);
+    loss::LoopEquations equations(*problem.system, problem.guess, problem.unknowns, image, slice);
+    equations.factor(*problem.system, problem.guess);
+    for (const int unknown : {problem.unknowns.size() - 1, problem.unknowns.size()}) {
+      const Eigen::VectorXd unit = Eigen::VectorXd::Unit(equations.size(), unknown);
+      Eigen::VectorXd image_of_unit(equations.size());
+      equations.apply(unit, image_of_unit);
+      Eigen::VectorXd back(equations.size());
+      equations.precondition(image_of_unit, back);
+      EXPECT_LT((back - unit).norm(), 0.02) << map.kappa << ", unknown " << unknown;
+    }
+  }
 }
 
 TEST(MappedThreshold, IsThatOfTheCurve) {

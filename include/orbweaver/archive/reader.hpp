@@ -39,7 +39,7 @@ class Archive {
   /// ... Throws MisuseError if there is no such row, InputError if the file cannot be read.
   [[nodiscard]] std::vector<double> modes(std::size_t orbit) const;
 
-  /// The coefficients of the orbit's time map; empty: the identity.
+  /// The numbers of the orbit's time map (loop::time_map_of; see loop_of for the whole loop); empty: the identity.
   [[nodiscard]] std::vector<double> time_map(std::size_t orbit) const;
 
  private:

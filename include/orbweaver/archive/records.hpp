@@ -43,7 +43,7 @@ struct OrbitRecord {
   double energy_drift = not_computed;
   double tail = not_computed;
   std::vector<double> modes;     ///< (2 cutoff + 1) x dimension
-  std::vector<double> time_map;  ///< empty = identity
+  std::vector<double> time_map;  ///< kappa, c_1, d_1, ... (loop::to_numbers); empty = identity
   std::vector<double> winding;   ///< one an angle, or empty: not computed
 };
 

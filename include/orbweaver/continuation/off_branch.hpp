@@ -21,7 +21,7 @@ struct OffBranchTriplet {
 };
 
 /// The `options.count` smallest, over all perturbations of the loop and its period, the time shift and the family's own
-/// direction excluded, smallest first. J falls apart into the sectors of the isotropy (perturbations that keep or flip the
+/// direction excluded, smallest first, in the loop's own coefficients (those under its time map). J falls apart into the sectors of the isotropy (perturbations that keep or flip the
 /// sign under each generator), which are solved one by one; where a generator is not an involution, or without any, the
 /// whole space is taken. Matrix-free where that is faster. Throws what spectrum::smallest_singular_triplets does.
 [[nodiscard]] std::vector<OffBranchTriplet> off_branch_triplets(const systems::System& system, const loop::Loop& loop,
@@ -32,7 +32,8 @@ struct OffBranchTriplet {
 
 /// The smallest eigenvalue of H over the same perturbations: the paper's off-branch eigenvalue (section III C). With
 /// `krylov_from` coefficients or more the whole space is solved at once and matrix-free, which is then faster than sector
-/// by sector (docs/performance.md); NaN where that does not converge.
+/// by sector (docs/performance.md); NaN where that does not converge. It belongs to the coefficients of the loop with s even
+/// in time: under a time map the loop and its tangent are expanded so first.
 [[nodiscard]] double off_branch_eigenvalue(const systems::System& system, const loop::Loop& loop,
                                            const loop::Isotropy& isotropy, std::span<const double> tangent_modes,
                                            double tangent_period, int krylov_from = 700);

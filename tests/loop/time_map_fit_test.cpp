@@ -1,0 +1,94 @@
+#include "orbweaver/loop/time_map_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include "loop/samples.hpp"
+#include "orbweaver/core/error.hpp"
+
+namespace orbweaver::loop {
+namespace {
+
+constexpr double tolerance = 1e-11;
+constexpr int enough = 300;
+
+// Six harmonics under a map, written without it.
+Loop unmapped(const TimeMap& map, const Isotropy& isotropy = {}) {
+  Loop loop = test::random_loop_in(Subspace(4, 6, isotropy), constant_loop(std::vector<double>(4, 0.0), 3.0, 6), 41);
+  loop.time_map = map;
+  return with_time_map(loop, {}, enough);
+}
+
+Isotropy of_pendulum() {
+  const systems::Description& pendulum = systems::describe_system("double_pendulum");
+  return {test::element_of(pendulum, "S", 1, 2), test::element_of(pendulum, "R")};
+}
+
+TEST(TimeMapFit, CountsHarmonics) {
+  Loop loop = test::random_loop(3, 20, 42, 3.0, 0.5);
+  loop.cosine(13, 1) = 1e-3;
+  EXPECT_EQ(harmonics_above(loop, 9e-4), 13);
+  EXPECT_EQ(harmonics_above(loop, 1e9), 0);
+}
+
+TEST(TimeMapFit, FindsThePulseThatALoopWasMadeUnder) {
+  for (const int j : {-4, 3, 6}) {
+    const double kappa = std::pow(2.0, 0.25 * j);
+    const TimeMapFit fit = fit_kappa(unmapped({kappa, {}}), tolerance);
+    EXPECT_DOUBLE_EQ(fit.map.kappa, kappa);
+    EXPECT_EQ(fit.harmonics, 6);
+  }
+}
+
+TEST(TimeMapFit, SavesHarmonicsOfAsymmetricLoops) {
+  const Loop even = unmapped({1.0, {0.6, 0.3}});
+  const TimeMapFit fit = fit_time_map(even, {}, tolerance);
+  ASSERT_FALSE(fit.map.coefficients.empty());
+  EXPECT_LT(fit.harmonics, 0.4 * harmonics_above(even, tolerance));
+  const Loop mapped = with_time_map(even, fit.map, fit.harmonics + 10);
+  EXPECT_EQ(harmonics_above(mapped, tolerance), fit.harmonics);
+  EXPECT_LT(mean_distance(mapped, even), 30.0 * tolerance);
+}
+
+TEST(TimeMapFit, IsInvariantUnderTheIsotropy) {
+  const Isotropy group = of_pendulum();
+  const Loop even = unmapped({4.0, {}}, group);
+  const TimeMapFit fit = fit_general(even, group, tolerance);
+  EXPECT_TRUE(is_invariant(fit.map, group));
+  EXPECT_LT(fit.harmonics, 0.6 * harmonics_above(even, tolerance));
+  // A loop without symmetries shows that invariance comes from the isotropy asked for.
+  const Loop any = unmapped({1.0, {0.6, 0.3}});
+  EXPECT_FALSE(is_invariant(fit_general(any, {}, tolerance).map, group));
+  EXPECT_TRUE(is_invariant(fit_general(any, group, tolerance).map, group));
+  const systems::Description& pendulum = systems::describe_system("double_pendulum");
+  const Isotropy quarter{test::element_of(pendulum, "R", 1, 4)};
+  EXPECT_TRUE(is_invariant(fit_general(any, quarter, tolerance).map, quarter));
+  EXPECT_TRUE(is_invariant(fit_time_map(even, quarter, tolerance).map, quarter));
+  EXPECT_FALSE(is_invariant({2.0, {}}, quarter));
+  EXPECT_TRUE(is_invariant({2.0, {}}, group));
+}
+
+TEST(TimeMapFit, IsKeptUnlessAnotherPays) {
+  const Loop even = unmapped({4.0, {}});
+  const TimeMapFit fit = fit_time_map(even, {}, tolerance);
+  EXPECT_EQ(fit.map, (TimeMap{4.0, {}}));
+  const Loop mapped = with_time_map(even, {4.5, {}}, 40);
+  EXPECT_EQ(fit_time_map(mapped, {}, tolerance, 0.1).map, mapped.time_map);
+  const Loop best = with_time_map(even, fit.map, 20);
+  EXPECT_EQ(fit_time_map(best, {}, tolerance).map, best.time_map);
+}
+
+TEST(TimeMapFit, DensityStaysPositive) {
+  Loop spike = test::random_loop(2, 4, 43);
+  spike.time_map = {20.0, {}};
+  const Loop even = with_time_map(spike, {}, 1500);
+  for (const int most : {1, 3, 16}) {
+    const TimeMap map = fit_general(even, {}, tolerance, most).map;
+    EXPECT_EQ(map.coefficients.size(), static_cast<std::size_t>(2 * most));
+    for (const double w : densities(map, 1000)) EXPECT_GT(w, 0.019);
+  }
+  EXPECT_TRUE(fit_time_map(constant_loop(std::vector<double>{1.0}, 1.0, 3), {}, tolerance).map.is_identity());
+  EXPECT_THROW(static_cast<void>(fit_general(even, {}, tolerance, 0)), core::MisuseError);
+}
+
+}  // namespace
+}  // namespace orbweaver::loop
