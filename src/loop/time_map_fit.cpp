@@ -98,14 +98,6 @@ void make_invariant(const SymmetryElement& g, int k, double& c, double& d) {
   d = 0.5 * (d + reflected_d);
 }
 
-// Shrinks the coefficients until the density is nowhere below its least value.
-void keep_forward(TimeMap& map) {
-  const std::vector<double> density = densities(map, 64 * static_cast<int>(map.coefficients.size()));
-  const double lowest = *std::min_element(density.begin(), density.end());
-  if (lowest >= least_density) return;
-  for (double& c : map.coefficients) c *= (1.0 - least_density) / (1.0 - lowest);
-}
-
 }  // namespace
 
 int harmonics_above(const Loop& loop, double tolerance) {
@@ -116,6 +108,16 @@ int harmonics_above(const Loop& loop, double tolerance) {
     if (std::sqrt(sum) > tolerance) return k;
   }
   return 0;
+}
+
+TimeMap with_least_density(TimeMap map, double least) {
+  core::require(map.kappa == 1.0 && least < 1.0, "only the coefficients of a time map can be shrunk");
+  if (map.coefficients.empty()) return map;
+  const std::vector<double> density = densities(map, 64 * static_cast<int>(map.coefficients.size()));
+  const double lowest = *std::min_element(density.begin(), density.end());
+  if (lowest < least)
+    for (double& c : map.coefficients) c *= (1.0 - least) / (1.0 - lowest);
+  return map;
 }
 
 TimeMapFit fit_kappa(const Loop& loop, double tolerance) {
@@ -151,8 +153,7 @@ TimeMapFit fit_general(const Loop& loop, const Isotropy& isotropy, double tolera
     map.coefficients.push_back(low_pass * c);
     map.coefficients.push_back(low_pass * d);
   }
-  keep_forward(map);
-  return under(shorter, map, tolerance);
+  return under(shorter, with_least_density(map, least_density), tolerance);
 }
 
 TimeMapFit fit_time_map(const Loop& loop, const Isotropy& isotropy, double tolerance, double pays) {

@@ -17,6 +17,10 @@ struct TimeMapFit {
 /// The pulse, kappa = 2^(j/4) between 1/32 and 32, that needs the fewest harmonics.
 [[nodiscard]] TimeMapFit fit_kappa(const Loop& loop, double tolerance);
 
+/// The map with its coefficients shrunk alike until the density is nowhere below `least` < 1. Throws MisuseError where
+/// kappa is not 1.
+[[nodiscard]] TimeMap with_least_density(TimeMap map, double least);
+
 /// Up to `most` harmonics of density, from the distance of the loop's singularities in complex time as its derivatives of
 /// order 4 to 7 show it: s advances in proportion to (|z^(q)| / q!)^(1/q). Invariant under `isotropy`, density >= 0.02.
 [[nodiscard]] TimeMapFit fit_general(const Loop& loop, const Isotropy& isotropy, double tolerance, int most = 16);
