@@ -104,7 +104,7 @@ Loop time_shifted(const Loop& loop, double fraction) {
 }
 
 double tail(const Loop& loop) {
-  const int first = loop.cutoff - std::max(2, loop.cutoff / 8) + 1;
+  const int first = loop.cutoff - std::max({2, std::min(4, loop.cutoff / 2), loop.cutoff / 32}) + 1;
   double largest = 0.0;
   for (int k = std::max(1, first); k <= loop.cutoff; ++k)
     largest = std::max(largest, std::sqrt(harmonic_norm_squared(loop, k)));

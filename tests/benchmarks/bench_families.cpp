@@ -35,6 +35,7 @@ struct Settings {
   bool full = false;
   bool multipliers = false;
   bool check = false;
+  bool no_time_map = false;
   double bound = std::numeric_limits<double>::infinity();
 };
 
@@ -55,6 +56,7 @@ double cpu_microseconds() {
 continuation::Options options_of(const Settings& s) {
   continuation::Options options;
   options.period_limit = s.period;
+  options.fit_time_map = !s.no_time_map;
   if (s.longest > 0.0) options.largest_step = s.longest;
   if (s.fixed_step > 0.0) options.fixed_step = s.fixed_step;
   return options;
@@ -155,6 +157,7 @@ int main(int argc, char** argv) {
   program.add_option("--repetitions", settings.repetitions, "Traces; the first is the cold one")->capture_default_str();
   program.add_flag("--full", settings.full, "Full loops: no symmetry assumed");
   program.add_flag("--multipliers", settings.multipliers, "Floquet multipliers of every orbit");
+  program.add_flag("--no-time-map", settings.no_time_map, "s runs evenly with time");
   program.add_flag("--check", settings.check, "Distance of every orbit to the true one");
   program.add_option("--bound", settings.bound, "Fail if it is larger for any");
   CLI11_PARSE(program, argc, argv);

@@ -69,12 +69,21 @@ TEST(Ends, CutoffLimit) {
 }
 
 TEST(Ends, PeriodDivergenceWhereTheCutoffEndsASettledFamily) {
-  const test::Trace trace = test::trace_of(test::down_up(), {.cutoff_to = 202});
+  const test::Trace trace = test::trace_of(test::down_up(), {.cutoff_to = 202, .fit_time_map = false});
   EXPECT_EQ(trace.ending.reason, EndReason::period_divergence) << trace.ending.text();
   EXPECT_THAT(trace.ending.text(), HasSubstr("period divergence (T = "));
   EXPECT_THAT(trace.ending.text(), HasSubstr("more than K = 202"));
   EXPECT_GT(trace.last().loop.period, 2.0 * test::down_up().period());
   EXPECT_NEAR(trace.last().energy, 3.0, 0.02);  // that of the up-up equilibrium
+}
+
+// Under its time map the family outlives its energy, which has settled to rounding by T = 80.
+TEST(Ends, PeriodDivergenceFarBeyondWhereTheEnergySettles) {
+  const test::Trace trace = test::trace_of(test::down_up(), {.step_limit = 400});
+  EXPECT_NE(trace.ending.reason, EndReason::failure) << trace.ending.text();
+  EXPECT_GT(trace.last().loop.period, 100.0);
+  EXPECT_NEAR(trace.last().energy, 3.0, 1e-14);
+  for (const Orbit& orbit : trace.orbits) EXPECT_LT(orbit.loss_rms, 1e-10) << "T = " << orbit.loop.period;
 }
 
 TEST(Ends, StoppedByTheObserver) {

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "orbweaver/continuation/branch.hpp"
@@ -46,16 +47,22 @@ inline Trace trace_of(const PendulumMode& mode, const continuation::Options& opt
   return trace_of(pendulum(), start_of(mode), options);
 }
 
-/// The family from its equilibrium to T = 12 with adaptive steps, traced once a process.
-inline const Trace& family_to_twelve(const PendulumMode& mode) {
-  static std::map<std::string, Trace> traced;
-  if (traced.count(mode.name) == 0) {
+/// The family from its equilibrium to T = 12 with adaptive steps, traced once a process; `mapped`: under the time maps
+/// that fit it, as branches are by default.
+inline const Trace& family_to_twelve(const PendulumMode& mode, bool mapped = true) {
+  static std::map<std::pair<std::string, bool>, Trace> traced;
+  const auto key = std::pair(mode.name, mapped);
+  if (traced.count(key) == 0) {
     continuation::Options options;
     options.period_limit = 12.0;
-    traced[mode.name] = trace_of(mode, options);
+    options.fit_time_map = mapped;
+    traced[key] = trace_of(mode, options);
   }
-  return traced[mode.name];
+  return traced[key];
 }
+
+/// The same with loops that run evenly in time.
+inline const Trace& even_family_to_twelve(const PendulumMode& mode) { return family_to_twelve(mode, false); }
 
 /// The orbit of a traced family with exactly this period.
 inline corrector::Result orbit_at(const Trace& family, double period) {

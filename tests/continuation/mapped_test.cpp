@@ -10,7 +10,7 @@ namespace {
 TEST(MappedOrbit, HasTheSameEnergyActionAndArclength) {
   const loop::Isotropy isotropy = test::pendulum_isotropy(*test::pendulum());
   for (const test::PendulumMode& mode : test::pendulum_modes()) {
-    const auto& orbits = test::family_to_twelve(mode).orbits;
+    const auto& orbits = test::even_family_to_twelve(mode).orbits;
     const loop::Loop& a = orbits.at(orbits.size() / 2).loop;
     const loop::Loop& b = orbits.at(orbits.size() / 2 + 1).loop;
     const loop::TimeMap general = loop::fit_general(b, isotropy, 1e-12).map;
@@ -30,7 +30,7 @@ TEST(MappedOrbit, HasTheSameEnergyActionAndArclength) {
 // Fewer harmonics serve: the map that is fitted, against none and against the best pulse.
 TEST(MappedOrbit, NeedsFewerHarmonics) {
   const loop::Isotropy isotropy = test::pendulum_isotropy(*test::pendulum());
-  const loop::Loop& last = test::family_to_twelve(test::out_phase()).last().loop;
+  const loop::Loop& last = test::even_family_to_twelve(test::out_phase()).last().loop;
   const int even = loop::harmonics_above(last, 1e-12);
   const int pulse = loop::fit_kappa(last, 1e-12).harmonics;
   const int general = loop::fit_time_map(last, isotropy, 1e-12).harmonics;

@@ -37,7 +37,7 @@ struct OnFamily {
 };
 
 OnFamily at_period(const test::PendulumMode& mode, double period) {
-  const corrector::Result orbit = test::orbit_at(test::family_to_twelve(mode), period);
+  const corrector::Result orbit = test::orbit_at(test::even_family_to_twelve(mode), period);
   EXPECT_TRUE(orbit.converged()) << orbit.detail;
   const loss::Unknowns unknowns{loop::Subspace(4, orbit.loop.cutoff, test::pendulum_isotropy(*test::pendulum())), true};
   const Eigen::VectorXd normal = Eigen::VectorXd::Unit(unknowns.size(), unknowns.size() - 1);

@@ -134,21 +134,21 @@ TEST(Loop, MeasuresAgreeWithQuadrature) {
   EXPECT_NEAR(rms_amplitude(loop), rms_over_period(amplitude), 1e-13);
 }
 
-TEST(Loop, TailLooksAtTheLastEighth) {
-  Loop loop = constant_loop(std::vector<double>{9.0, 9.0}, 1.0, 42);
-  loop.cosine(37, 0) = 5.0;
+TEST(Loop, TailLooksAtTheLastThirtySecond) {
+  Loop loop = constant_loop(std::vector<double>{9.0, 9.0}, 1.0, 160);
+  loop.cosine(155, 0) = 5.0;
   EXPECT_EQ(tail(loop), 0.0);
-  loop.cosine(38, 0) = 3.0;
-  loop.sine(38, 1) = 4.0;
-  loop.sine(42, 1) = 1.0;
+  loop.cosine(156, 0) = 3.0;
+  loop.sine(156, 1) = 4.0;
+  loop.sine(160, 1) = 1.0;
   EXPECT_DOUBLE_EQ(tail(loop), 5.0);
 }
 
-TEST(Loop, TailOfShortLoopsLooksAtTwoHarmonics) {
+TEST(Loop, TailOfShortLoopsLooksAtFourHarmonicsOrTwo) {
   Loop loop = constant_loop(std::vector<double>{1.0}, 1.0, 8);
-  loop.cosine(6, 0) = 1.0;
+  loop.cosine(4, 0) = 1.0;
   EXPECT_EQ(tail(loop), 0.0);
-  loop.cosine(7, 0) = 0.5;
+  loop.cosine(5, 0) = 0.5;
   EXPECT_EQ(tail(loop), 0.5);
   Loop shortest = constant_loop(std::vector<double>{1.0}, 1.0, 1);
   shortest.sine(1, 0) = -0.25;

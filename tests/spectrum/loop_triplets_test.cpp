@@ -57,9 +57,14 @@ struct Problem {
 };
 
 loop::Loop in_phase_at(double period) {
-  const corrector::Result orbit = test::orbit_at(test::family_to_twelve(test::in_phase()), period);
+  const corrector::Result orbit = test::orbit_at(test::even_family_to_twelve(test::in_phase()), period);
   EXPECT_TRUE(orbit.converged()) << orbit.detail;
-  return orbit.loop;
+  // To rounding, not only to its tolerance: flat directions are as flat as the orbit is exact.
+  const loop::Loop finer = loop::with_cutoff(orbit.loop, loop::next_cutoff(orbit.loop.cutoff));
+  const corrector::Result exact =
+      continuation::orbit_at_period(*test::pendulum(), finer, test::pendulum_isotropy(*test::pendulum()), period, {});
+  EXPECT_TRUE(exact.converged()) << exact.detail;
+  return exact.loop;
 }
 
 const std::vector<std::string> sectors{"++", "+-", "-+", "--"};

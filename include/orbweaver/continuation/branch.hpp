@@ -25,7 +25,10 @@ struct Options {
   double tail_tolerance = 1e-12;       ///< last harmonics, relative to min(1, rms amplitude): above it K is raised
   double largest_step = 1.0;           ///< in the coefficients' own length (a_0, a_k, b_k and T)
   double smallest_step = 1e-9;         ///< times (1 + amplitude) min(1, amplitude); below it the branch has failed
-  double turning_angle = 0.25;         ///< wanted angle between neighbouring tangents, radians
+  double turning_angle = 0.25;         ///< wanted angle between neighbouring tangents, radians (without a predictor)
+  bool fit_time_map = true;            ///< let s run with the orbit's speed where that needs fewer harmonics
+  int predictor_order = 4;             ///< of the polynomial through the last orbits, at most
+  double prediction_error = 3e-3;      ///< wanted largest error of a predicted coordinate, radians
   double period_limit = std::numeric_limits<double>::infinity();
   double energy_from = -std::numeric_limits<double>::infinity();
   double energy_to = std::numeric_limits<double>::infinity();
@@ -41,17 +44,37 @@ struct Start {
   loop::Isotropy isotropy;
 };
 
+/// A point of the branch as the fast way holds it: nodal values on the fundamental domain and the period.
+struct TracePoint {
+  std::vector<double> values;
+  double parameter = 0.0;  ///< along the branch: the predictor's polynomials run in it
+};
+
+/// What the fast way keeps from one step to the next.
+struct TraceState {
+  int cells = 0;  ///< of the fundamental domain
+  loop::TimeMap time_map;
+  std::vector<TracePoint> points;         ///< the last ones, oldest first; the start itself is the very first
+  std::vector<double> factor_point;       ///< where the preconditioner was built; empty = to be built anew
+  std::vector<double> factor_conditions;  ///< and under which conditions
+  bool starting = true;                   ///< `points` begin at the start itself
+};
+
 /// Everything a step depends on: a step is a pure function of it and of the options.
 struct Frontier {
   Orbit orbit;                        ///< the last one; `loop` may have another cutoff than when it was accepted
-  std::vector<double> tangent_modes;  ///< flat direction there, in the modes of orbit.loop
+  std::vector<double> tangent_modes;  ///< unit direction of the branch there, in the modes of orbit.loop
   double tangent_period = 0.0;
   double next_length = 0.0;     ///< step to try next, in unknowns
   double last_increment = 0.0;  ///< arclength of the last step
   loop::Loop first;             ///< loop of orbit 0
   double first_energy = 0.0;
+  double first_amplitude = 0.0;
+  double amplitude = 0.0;       ///< rms distance of the last orbit from its mean
   double earlier_energy = 0.0;  ///< energy when the period was about a tenth smaller
   double earlier_period = 0.0;
+  TraceState trace;              ///< of the fast way; empty otherwise
+  double farthest = 0.0;         ///< largest change of amplitude or relative change of T from orbit 0 so far
   bool on_energy_limit = false;  ///< `orbit` is the last one, at the scene's energy limit
 };
 
@@ -71,10 +94,11 @@ class Branch {
   /// Set once `advance` has returned none.
   [[nodiscard]] const std::optional<Ending>& ending() const;
   /// Where the branch stands (after at least one orbit).
-  [[nodiscard]] const Frontier& frontier() const;
+  [[nodiscard]] const Frontier& frontier();
+
+  struct Implementation;
 
  private:
-  struct Implementation;
   std::unique_ptr<Implementation> _implementation;
 };
 

@@ -82,7 +82,8 @@ struct Samples {
 /// The mean over a period of z (less the winding): a_0 where the time map is the identity.
 [[nodiscard]] std::vector<double> mean_state(const Loop& loop);
 
-/// The largest modulus among the last eighth of the harmonics (at least two), relative to nothing: what the truncation
+/// The largest modulus among the last thirty-second of the harmonics (at least four, two below K = 8; loops with
+/// S@1/2 have only the odd ones), relative to nothing: what the truncation
 /// at `cutoff` leaves out is of this size.
 [[nodiscard]] double tail(const Loop& loop);
 

@@ -1,0 +1,21 @@
+#include "cell_counts.hpp"
+
+namespace orbweaver::continuation::cell_counts {
+
+int at_least(int cells) {
+  // 8, 12, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, ...: steps of an eighth to a quarter.
+  int octave = 16;
+  while (octave * 2 < cells) octave *= 2;
+  const int step = octave / 4 < 4 ? 4 : octave / 4;
+  const int count = (cells + step - 1) / step * step;
+  return count < 8 ? 8 : count;
+}
+
+int next(const loop::FundamentalDomain&, int cells) { return at_least(cells + 1); }
+
+int at_least_for_cutoff(const loop::FundamentalDomain& domain, int cutoff) {
+  const int nodes = 2 * cutoff + 1;
+  return at_least((nodes + domain.copies() - 1) / domain.copies());
+}
+
+}  // namespace orbweaver::continuation::cell_counts

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "orbweaver/corrector/collocation.hpp"
+
+namespace orbweaver::continuation {
+
+struct Resolution {
+  int cells = 0;
+  loop::TimeMap time_map;
+};
+
+/// More cells for an orbit whose last harmonics exceed `tail_limit`, and if `fit_time_map` with a sharper pulse of the time
+/// map where that needs clearly fewer harmonics; none where it would take more than `largest_cutoff`.
+[[nodiscard]] std::optional<Resolution> finer_resolution(const corrector::Collocation& equations,
+                                                         const std::vector<double>& values, double tail_limit,
+                                                         int largest_cutoff, bool fit_time_map);
+
+/// Cells for an orbit whose needed harmonics fill less than two thirds of its own; none otherwise.
+[[nodiscard]] std::optional<int> coarser_cells(const loop::Loop& loop, const loop::FundamentalDomain& domain,
+                                               double tail_limit, int least_cutoff);
+
+}  // namespace orbweaver::continuation
