@@ -63,9 +63,14 @@ FoldedFilters::FoldedFilters(const FundamentalDomain& domain, int cells, int str
     }
     found->coordinates.push_back(i);
   }
+  Waves waves;
+  for (int q = 0; q < 2 * _nodes; ++q) {
+    waves.cosine.push_back(std::cos(std::numbers::pi * q / _nodes));
+    waves.sine.push_back(std::sin(std::numbers::pi * q / _nodes));
+  }
   std::size_t widest = 0;
   for (Kind& kind : _kinds) {
-    fill(kind);
+    fill(kind, waves);
     widest =
         std::max({widest, static_cast<std::size_t>(kind.node.width), static_cast<std::size_t>(kind.analysis.width)});
   }
@@ -74,61 +79,55 @@ FoldedFilters::FoldedFilters(const FundamentalDomain& domain, int cells, int str
 
 namespace {
 
-/// What unit values at node 0 and at its images under the generator give `e` half cells away.
+using Waves = FoldedFilters::Waves;
+
+/// What unit values at node 0 and at its images under the generator give `e` half cells away, |e| <= `reach`.
 class Response {
  public:
   /// `turn`: nodes of 1/order of the loop; `sign`: of the coordinate under the generator.
-  Response(const std::vector<int>& harmonics, int nodes, int order, double sign)
-      : _turn(nodes / order), _sign(sign), _value(size(_turn) + 1, 0.0), _slope(size(_turn) + 1, 0.0) {
-    std::vector<double> cosine(size(2 * nodes));
-    std::vector<double> sine(size(2 * nodes));
-    for (int q = 0; q < 2 * nodes; ++q) {
-      cosine[size(q)] = std::cos(std::numbers::pi * q / nodes);
-      sine[size(q)] = std::sin(std::numbers::pi * q / nodes);
-    }
+  Response(const std::vector<int>& harmonics, const Waves& waves, int nodes, int order, double sign, int reach)
+      : _reach(reach), _value(size(2 * reach + 1)), _slope(size(2 * reach + 1)) {
+    const int turn = nodes / order;
+    std::vector<double> value(size(turn) + 1, 0.0);
+    std::vector<double> slope(size(turn) + 1, 0.0);
     for (const int k : harmonics) {
       const double x = std::numbers::pi * k / nodes;
       const double weight = (k == 0 ? 1.0 : 2.0 * std::sin(x) / x) * order / nodes;
       int q = 0;
-      for (int e = 0; e <= _turn; ++e) {
-        _value[size(e)] += weight * cosine[size(q)];
-        _slope[size(e)] -= weight * k * sine[size(q)];
+      for (int e = 0; e <= turn; ++e) {
+        value[size(e)] += weight * waves.cosine[size(q)];
+        slope[size(e)] -= weight * k * waves.sine[size(q)];
         q += k;
         if (q >= 2 * nodes) q -= 2 * nodes;
       }
     }
+    // Even and odd in e, and periodic up to the sign.
+    int at = -reach;
+    double turned = 1.0;
+    while (at < -turn) at += 2 * turn, turned *= sign;
+    for (int e = -reach; e <= reach; ++e, ++at) {
+      if (at > turn) at -= 2 * turn, turned *= sign;
+      _value[size(e + reach)] = turned * value[size(std::abs(at))];
+      _slope[size(e + reach)] = at < 0 ? -turned * slope[size(-at)] : turned * slope[size(at)];
+    }
   }
-  [[nodiscard]] double value(int e) const {
-    const auto [at, turns] = reduced(e);
-    return (turns ? _sign : 1.0) * _value[size(std::abs(at))];
-  }
-  [[nodiscard]] double slope(int e) const {
-    const auto [at, turns] = reduced(e);
-    return (turns ? _sign : 1.0) * (at < 0 ? -_slope[size(-at)] : _slope[size(at)]);
-  }
+  [[nodiscard]] double value(int e) const { return _value[size(e + _reach)]; }
+  [[nodiscard]] double slope(int e) const { return _slope[size(e + _reach)]; }
 
  private:
   static std::size_t size(int n) { return static_cast<std::size_t>(n); }
-  /// e as at + (an odd or even number of) turns, |at| <= turn half cells.
-  [[nodiscard]] std::pair<int, bool> reduced(int e) const {
-    bool odd = false;
-    while (e > _turn) e -= 2 * _turn, odd = !odd;
-    while (e < -_turn) e += 2 * _turn, odd = !odd;
-    return {e, odd};
-  }
-  int _turn;
-  double _sign;
+  int _reach;
   std::vector<double> _value;
   std::vector<double> _slope;
 };
 
 }  // namespace
 
-void FoldedFilters::fill(Kind& kind) const {
+void FoldedFilters::fill(Kind& kind, const Waves& waves) const {
   const int first = kind.rotation_sign > 0.0 ? 0 : _order / 2;
   std::vector<int> harmonics;  // that the generator allows, Nyquist's left out
   for (int k = first; 2 * k < _nodes; k += _order) harmonics.push_back(k);
-  const Response response(harmonics, _nodes, _order, kind.rotation_sign);
+  const Response response(harmonics, waves, _nodes, _order, kind.rotation_sign, 4 * _cells + 1);
 
   const int columns = _cells + 1;
   const int last = _mirrored ? _cells : _cells - 1;  // node `cells` is an image of node 0 otherwise
@@ -165,10 +164,13 @@ void FoldedFilters::fill(Kind& kind) const {
     const double filter = k == 0 ? 1.0 : std::sin(x) / x;
     const double weight = (k == 0 ? 1.0 : 2.0) * filter * _order / _nodes;
     kind.synthesis_weights.push_back(1.0 / (filter * weight));
+    const std::vector<double>& wave = sine ? waves.sine : waves.cosine;
+    std::size_t q = 0;  // 2 k j half cells around
     for (int j = 0; j <= last; ++j) {
-      const double angle = 2.0 * std::numbers::pi * ((static_cast<long>(k) * j) % _nodes) / _nodes;
       const double copies = _mirrored && j > 0 && j < _cells ? 2.0 : 1.0;
-      kind.analysis.at(static_cast<int>(r), j) = copies * weight * (sine ? std::sin(angle) : std::cos(angle));
+      kind.analysis.at(static_cast<int>(r), j) = copies * weight * wave[q];
+      q += static_cast<std::size_t>(2 * k);
+      if (q >= wave.size()) q -= wave.size();
     }
   }
 }

@@ -11,6 +11,12 @@ namespace orbweaver::loop {
 /// and do not mix them. Coordinates with the same signs share matrices.
 class FoldedFilters {
  public:
+  /// cos and sin of q half cells, q = 0 .. 2 nodes - 1.
+  struct Waves {
+    std::vector<double> cosine;
+    std::vector<double> sine;
+  };
+
   FoldedFilters(const FundamentalDomain& domain, int cells, int stride);
 
   void to_midpoints(const double* y, double* z) const;
@@ -42,7 +48,7 @@ class FoldedFilters {
     std::vector<int> analysed_rows;         // rows of the modes
     std::vector<double> synthesis_weights;  // what takes a row of the analysis back to y
   };
-  void fill(Kind& kind) const;
+  void fill(Kind& kind, const Waves& waves) const;
   void multiply(const Matrix& matrix, const Kind& kind, const double* y) const;
   void apply(Matrix Kind::*matrix, const double* y, double* out, int out_stride) const;
 
