@@ -83,6 +83,7 @@ AndersonSolver::Result AndersonSolver::solve(PreconditionedEquations& equations,
     result.factored = true;
   }
   int since_factor = 0;
+  double recent[4] = {};  // the last sizes, a ring
   for (;; ++since_factor) {
     equations.residual(u.data(), _change.data());
     equations.precondition(_change.data());
@@ -107,6 +108,16 @@ AndersonSolver::Result AndersonSolver::solve(PreconditionedEquations& equations,
         result.converged = true;
         return result;
       }
+    }
+    // As far as the digits go: the changes are small and shrink no more. What they leave is the loss's to judge.
+    recent[since_factor % 4] = size;
+    const bool stagnant =
+        since_factor >= 8 && size<options.stagnation * options.tolerance&& * std::min_element(recent, recent + 4)> 0.3 *
+                                 recent[(since_factor + 1) % 4];
+    if (stagnant) {
+      result.last_change = size;
+      result.converged = true;
+      return result;
     }
     if (diverged || since_factor > (result.factored ? options.fresh_iterations : options.stale_iterations)) {
       if (result.factored) return result;
