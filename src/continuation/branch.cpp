@@ -9,6 +9,7 @@
 #include "branch_implementation.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log_stage.hpp"
+#include "orbweaver/loop/time_map_fit.hpp"
 
 namespace orbweaver::continuation {
 
@@ -84,6 +85,9 @@ Branch::Branch(std::shared_ptr<const systems::System> system, const Start& start
                 "a start's direction needs the size of its base loop's modes");
   core::require(std::any_of(start.direction.begin(), start.direction.end(), [](double v) { return v != 0.0; }),
                 "a start's direction must not be zero");
+  core::require(options.predictor_order >= 1, "a predictor needs a polynomial of degree 1 or more");
+  core::require(loop::is_invariant(start.base.time_map, start.isotropy),
+                "the time map of a start must have the symmetries of its isotropy");
   if (options.corrector.method == corrector::Method::automatic)
     _implementation = make_collocation_branch(system, start, options);
   if (!_implementation) _implementation = make_loop_branch(std::move(system), start, options);

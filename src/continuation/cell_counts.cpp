@@ -11,7 +11,13 @@ int at_least(int cells) {
   return count < 8 ? 8 : count;
 }
 
-int next(const loop::FundamentalDomain&, int cells) { return at_least(cells + 1); }
+int next(int cells) { return at_least(cells + 1); }
+
+int previous(int cells) {
+  int smaller = cells - 4;
+  while (smaller > 8 && at_least(smaller) != smaller) smaller -= 4;
+  return smaller < 8 ? 8 : smaller;
+}
 
 int at_least_for_cutoff(const loop::FundamentalDomain& domain, int cutoff) {
   const int nodes = 2 * cutoff + 1;

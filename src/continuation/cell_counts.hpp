@@ -9,6 +9,7 @@ namespace orbweaver::continuation::cell_counts {
 /// The smallest one whose grid has harmonics up to `cutoff`.
 [[nodiscard]] int at_least_for_cutoff(const loop::FundamentalDomain& domain, int cutoff);
 [[nodiscard]] int at_least(int cells);
-[[nodiscard]] int next(const loop::FundamentalDomain& domain, int cells);
+[[nodiscard]] int next(int cells);
+[[nodiscard]] int previous(int cells);
 
 }  // namespace orbweaver::continuation::cell_counts

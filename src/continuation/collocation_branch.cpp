@@ -39,6 +39,7 @@ class CollocationBranch final : public Branch::Implementation {
     double amplitude = options.start_amplitude;
     int cells = cell_counts::at_least_for_cutoff(
         _points.domain(), std::min(std::max(start.base.cutoff, options.cutoff_from), options.cutoff_to));
+    while (cells > 8 && _points.cutoff_of(cells) > options.cutoff_to) cells = cell_counts::previous(cells);
     _points.set_grid(cells, start.base.time_map);
     while (true) {
       Collocation& e = equations();
@@ -49,14 +50,16 @@ class CollocationBranch final : public Branch::Implementation {
       const std::vector<double> weights = _points.conditions_at(prediction);
       Trial trial = _points.correct(prediction, weights);
       if (trial.converged && !_points.resolved(trial)) {
-        cells = cell_counts::next(_points.domain(), cells);
-        if (e.grid().cutoff() >= options.cutoff_to || _points.cutoff_of(cells) > options.cutoff_to)
+        cells = cell_counts::next(cells);
+        if (_points.cutoff_of(cells) > options.cutoff_to)
           return end(EndReason::cutoff_limit, fmt::format("the first orbit needs more than K = {}", options.cutoff_to));
         _points.set_grid(cells, start.base.time_map);
         continue;
       }
       if (trial.accepted()) {
         state().points = {base};
+        ending = beyond_limits(trial.values[static_cast<std::size_t>(e.period_at())], _points.energy());
+        if (ending) return std::nullopt;
         const double length = e.distance(trial.values.data(), base.values.data());
         frontier.next_length = std::min(4.0 * length, options.largest_step);
         return accept(trial);
@@ -102,14 +105,14 @@ class CollocationBranch final : public Branch::Implementation {
     double length = std::max(length_to_try(), least);
     while (true) {
       Trial trial = try_step(length);
-      if (trial.converged && !_points.resolved(trial)) {
+      const double wanted = options.prediction_error * std::min(1.0, amplitude);
+      const bool jumped = trial.prediction_error > 100.0 * wanted ||
+                          (trial.converged && (_points.inverted(trial, last_point().values) || turned_back(trial)));
+      if (trial.converged && !jumped && !_points.resolved(trial)) {
         if (!refine(trial))
           return end(EndReason::cutoff_limit, fmt::format("the next orbit needs more than K = {}", options.cutoff_to));
         continue;
       }
-      const double wanted = options.prediction_error * std::min(1.0, amplitude);
-      const bool jumped = trial.prediction_error > 100.0 * wanted ||
-                          (trial.converged && (_points.inverted(trial, last_point().values) || turned_back(trial)));
       if (trial.accepted() && !jumped) {
         const double ratio = wanted / std::max(trial.prediction_error, 1e-16);
         const double factor = std::clamp(std::pow(ratio, 1.0 / (trial.order + 1)), 0.3, 1.6);
@@ -118,7 +121,7 @@ class CollocationBranch final : public Branch::Implementation {
       }
       state().factor_point.clear();
       length *= 0.5;
-      if (length < least)
+      if (!(length >= least))
         return end(EndReason::failure,
                    fmt::format("the corrector fails at T = {:.6g} even with step {:.1e}: {}", here().period, length,
                                jumped ? "it leaves the family" : trial.why()));
@@ -192,11 +195,15 @@ class CollocationBranch final : public Branch::Implementation {
       weights[static_cast<std::size_t>(equations().period_at())] = 1.0;
       state().factor_point.clear();
       Trial trial = _points.correct(prediction, weights);
-      if (!trial.accepted())
+      const bool resolved = trial.converged && _points.resolved(trial);
+      if (!trial.converged || (resolved && !trial.accepted()))
         return end(EndReason::failure,
                    fmt::format("no orbit at the period limit T = {:.6g}: {}", options.period_limit, trial.why()));
-      trial.values[static_cast<std::size_t>(equations().period_at())] = options.period_limit;
-      if (_points.resolved(trial)) return accept(trial);
+      if (resolved) {
+        trial.values[static_cast<std::size_t>(equations().period_at())] = options.period_limit;
+        _points.modes().period = options.period_limit;
+        return accept(trial);
+      }
       const std::optional<Resolution> wanted = _points.finer(trial);
       if (!wanted)
         return end(EndReason::cutoff_limit, fmt::format("the orbit at T = {:.6g} needs more than K = {}",
@@ -216,17 +223,18 @@ class CollocationBranch final : public Branch::Implementation {
     double high = length;
     double high_value = energy_beyond - wanted;
     Trial trial;
-    for (int n = 0; n < 60 && (n == 0 || std::abs(high_value) > 1e-13 * (1.0 + std::abs(wanted))); ++n) {
+    bool found = false;
+    for (int n = 0; n < 60 && (!found || std::abs(high_value) > 1e-13 * (1.0 + std::abs(wanted))); ++n) {
       const double middle = (low * high_value - high * low_value) / (high_value - low_value);
       trial = try_step(middle);
-      if (trial.converged && !_points.resolved(trial)) {
+      found = trial.converged && _points.resolved(trial);
+      if (trial.converged && !found) {
         if (!refine(trial))
           return end(EndReason::cutoff_limit, fmt::format("the next orbit needs more than K = {}", options.cutoff_to));
         continue;
       }
-      if (!trial.converged)
-        return end(EndReason::failure,
-                   fmt::format("no orbit at the energy limit E = {:.6g}: {}", wanted, trial.reason));
+      if (!trial.accepted())
+        return end(EndReason::failure, fmt::format("no orbit at the energy limit E = {:.6g}: {}", wanted, trial.why()));
       const double value = _points.energy() - wanted;
       if ((value > 0.0) != (high_value > 0.0)) {
         low = high;
@@ -237,7 +245,7 @@ class CollocationBranch final : public Branch::Implementation {
       high = middle;
       high_value = value;
     }
-    if (!trial.converged || std::abs(high_value) > 1e-10 * (1.0 + std::abs(wanted)))
+    if (!found || std::abs(high_value) > 1e-10 * (1.0 + std::abs(wanted)))
       return end(EndReason::failure,
                  fmt::format("no orbit at the energy limit E = {:.6g}: the bracket ends {:.1e} beside it", wanted,
                              high_value));
@@ -288,7 +296,16 @@ class CollocationBranch final : public Branch::Implementation {
     const std::vector<TracePoint>& points = state().points;
     Prediction prediction = extrapolate(points, options.predictor_order, last_point().parameter);
     e.set_conditions(_points.conditions_at(prediction), last_point().values);
-    const std::vector<double> tangent = corrector::family_direction(e, last_point().values);
+    std::vector<double> tangent = prediction.tangent;
+    try {
+      tangent = corrector::family_direction(e, last_point().values);
+    } catch (const core::NumericalError&) {
+      // Next to a crossing the linear system is singular: the polynomial's own direction stands.
+    }
+    if (!(state().time_map == here().time_map)) {  // after a regrid for an orbit that was not accepted
+      const Collocation before(*system, _points.domain(), own.centre(), own.winding(), state().cells, here().time_map);
+      tangent = before.resampled(e, tangent);
+    }
     frontier.tangent_modes.resize((2 * static_cast<std::size_t>(e.grid().cutoff()) + 1) *
                                   static_cast<std::size_t>(e.dimension()));
     e.grid().to_modes(tangent.data(), frontier.tangent_modes.data());
@@ -308,7 +325,7 @@ class CollocationBranch final : public Branch::Implementation {
 std::unique_ptr<Branch::Implementation> make_collocation_branch(std::shared_ptr<const systems::System> system,
                                                                 const Start& start, const Options& options) {
   loop::FundamentalDomain domain = loop::fundamental_domain(start.isotropy, system->dimension());
-  if (!Collocation::applies(*system, domain)) return nullptr;
+  if (!domain.expresses(start.isotropy) || !Collocation::applies(*system, domain)) return nullptr;
   return std::make_unique<CollocationBranch>(std::move(system), start, options, std::move(domain));
 }
 

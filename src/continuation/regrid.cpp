@@ -29,8 +29,9 @@ std::optional<Resolution> finer_resolution(const corrector::Collocation& equatio
                                            double tail_limit, int largest_cutoff, bool fit_time_map) {
   const loop::FundamentalDomain& domain = equations.grid().domain();
   const auto cutoff_of = [&](int cells) { return (cells * domain.copies() - 1) / 2; };
-  Resolution best{cell_counts::next(domain, equations.cells()), equations.time_map()};
-  if (fit_time_map && domain.order <= 2) {
+  Resolution best{cell_counts::next(equations.cells()), equations.time_map()};
+  const bool tail_decides = loop::tail(equations.to_loop(values.data())) > tail_limit;
+  if (fit_time_map && tail_decides && domain.order <= 2) {
     const int trial_cells = best.cells;
     int fewest = cutoff_of(best.cells);
     for (const double factor : {1.0, 1.2, 1.44}) {
@@ -41,16 +42,18 @@ std::optional<Resolution> finer_resolution(const corrector::Collocation& equatio
       const loop::Loop loop = trial.to_loop(trial.resampled(equations, values).data());
       const int needed = harmonics_needed(loop, tail_limit);
       if (factor == 1.0) {
-        fewest = std::max(needed, cutoff_of(best.cells));
+        fewest = needed;
       } else if (needed < 0.97 * fewest) {
         fewest = needed;
         best.time_map = map;
       }
     }
     // Some room above what is needed now, so that the next steps have enough.
-    best.cells = best.time_map == equations.time_map()
-                     ? best.cells
-                     : std::max(cell_counts::at_least_for_cutoff(domain, fewest * 11 / 10), equations.cells());
+    const int mapped = std::max(cell_counts::at_least_for_cutoff(domain, fewest * 11 / 10), equations.cells());
+    if (!(best.time_map == equations.time_map()) && cutoff_of(mapped) <= largest_cutoff)
+      best.cells = mapped;
+    else
+      best.time_map = equations.time_map();
   }
   if (cutoff_of(best.cells) > largest_cutoff) return std::nullopt;
   return best;

@@ -99,7 +99,7 @@ AndersonSolver::Result AndersonSolver::solve(PreconditionedEquations& equations,
     } else {
       result.finite = true;
     }
-    const bool diverged = !(size < options.divergence);
+    const bool diverged = !result.finite || !(size < options.divergence);
     if (!diverged && since_factor > 0) {
       const double rate = std::clamp(size / result.last_change, 0.05, 1.0);
       if (5.0 * rate * size < options.tolerance || (since_factor > 3 && size < options.rounding)) {

@@ -225,7 +225,7 @@ Collocation::Quality Collocation::quality(const double* u) const {
     }
     // Over the whole loop the mean survives in coordinates that the symmetries leave alone.
     if (!keeps_mean(i)) mean = 0.0;
-    amplitude += square - mean * mean;
+    amplitude += std::max(0.0, square - mean * mean);
     size += square + (2.0 * mean + _centre[at(i)]) * _centre[at(i)];
   }
   // The loop between the points where it was solved.

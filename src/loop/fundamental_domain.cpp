@@ -1,5 +1,8 @@
 #include "orbweaver/loop/fundamental_domain.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace orbweaver::loop {
 
 namespace {
@@ -49,6 +52,19 @@ FundamentalDomain::Ends FundamentalDomain::ends() const {
   out.left.topRows(at_start.rows()) = at_start;
   out.right.bottomRows(at_end.rows()) = at_end;
   return out;
+}
+
+bool FundamentalDomain::expresses(const Isotropy& isotropy) const {
+  return std::all_of(isotropy.begin(), isotropy.end(), [this](const SymmetryElement& element) {
+    if (element.reversing && !reversor) return false;
+    MatrixXd power = element.reversing ? *reversor : MatrixXd::Identity(generator.rows(), generator.cols());
+    for (int n = 0; n < order; ++n) {
+      const double turns = element.shift() - static_cast<double>(n) / order;
+      if (std::abs(turns - std::round(turns)) < 1e-9 && (power - element.matrix).norm() < 1e-9) return true;
+      power = generator * power;
+    }
+    return false;
+  });
 }
 
 bool FundamentalDomain::is_square() const { return ends().left.rows() == generator.rows(); }

@@ -51,6 +51,15 @@ TEST(Ends, PeriodLimitIsHitExactly) {
   }
 }
 
+TEST(Ends, StartsBeyondTheLimitsGiveNoOrbit) {
+  for (const Options& options : {Options{.period_limit = 8.0}, Options{.energy_to = -2.9999999}}) {
+    const test::Trace trace = test::trace_of(test::in_phase(), options);
+    EXPECT_TRUE(trace.orbits.empty());
+    EXPECT_THAT(trace.ending.text(), HasSubstr("begins beyond it, at"));
+    EXPECT_FALSE(trace.ending.failed());
+  }
+}
+
 TEST(Ends, StepLimit) {
   const test::Trace trace = test::trace_of(test::in_phase(), {.step_limit = 4});
   EXPECT_EQ(trace.ending.reason, EndReason::step_limit);
@@ -146,6 +155,10 @@ TEST(Ends, MisuseThrows) {
   start.direction.pop_back();
   EXPECT_THROW(Branch(test::pendulum(), start, {}), core::MisuseError);
   start.direction.assign(start.base.modes.size(), 0.0);
+  EXPECT_THROW(Branch(test::pendulum(), start, {}), core::MisuseError);
+  EXPECT_THROW(Branch(test::pendulum(), test::start_of(test::in_phase()), {.predictor_order = 0}), core::MisuseError);
+  start = test::start_of(test::in_phase());
+  start.base.time_map.coefficients = {0.0, 0.1};  // not even under s -> -s
   EXPECT_THROW(Branch(test::pendulum(), start, {}), core::MisuseError);
   start = test::start_of(test::in_phase());
   start.base.period = 0.0;

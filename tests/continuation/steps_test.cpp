@@ -118,7 +118,7 @@ TEST(Resolution, GoesDownAndUp) {
   int lowest = 112;
   for (const Orbit& orbit : trace.orbits) lowest = std::min(lowest, orbit.loop.cutoff);
   EXPECT_LE(lowest, 31);
-  EXPECT_GE(trace.last().loop.cutoff, 87);
+  EXPECT_GE(trace.last().loop.cutoff, 63);
   EXPECT_NEAR(trace.last().energy, -0.764030789928, 1e-11);
 }
 

@@ -147,6 +147,23 @@ TEST(Domain, ReversorsElsewhereAreNotUsed) {
   EXPECT_EQ(fundamental_domain(isotropy, 4).copies(), 1);
 }
 
+TEST(Domain, KnowsWhatItDoesNotExpress) {
+  for (const bool shift : {true, false})
+    for (const bool reversor : {true, false}) {
+      const Isotropy isotropy = of_pendulum(shift, reversor);
+      EXPECT_TRUE(fundamental_domain(isotropy, 4).expresses(isotropy));
+    }
+  EXPECT_TRUE(fundamental_domain(threefold().isotropy, 4).expresses(threefold().isotropy));
+  Isotropy elsewhere = of_pendulum(true, true);
+  elsewhere[1].shift_numerator = 1;
+  elsewhere[1].shift_denominator = 4;
+  EXPECT_FALSE(fundamental_domain(elsewhere, 4).expresses(elsewhere));
+  Isotropy spatial = of_pendulum(true, false);
+  spatial[0].shift_numerator = 0;
+  spatial[0].shift_denominator = 1;
+  EXPECT_FALSE(fundamental_domain(spatial, 4).expresses(spatial));
+}
+
 TEST(Domain, TakesTheLeastShift) {
   Isotropy isotropy = threefold().isotropy;
   isotropy[0].shift_numerator = 2;  // C moves by two thirds of a period, so C^2 by one third

@@ -57,7 +57,6 @@ struct TraceState {
   std::vector<TracePoint> points;         ///< the last ones, oldest first; the start itself is the very first
   std::vector<double> factor_point;       ///< where the preconditioner was built; empty = to be built anew
   std::vector<double> factor_conditions;  ///< and under which conditions
-  bool starting = true;                   ///< `points` begin at the start itself
 };
 
 /// Everything a step depends on: a step is a pure function of it and of the options.

@@ -25,6 +25,8 @@ struct FundamentalDomain {
   };
   /// z(end) = generator z(0), or z(0) in Fix(R) and z(end) in Fix(generator R).
   [[nodiscard]] Ends ends() const;
+  /// True if every element of `isotropy` is a product of the generator and the reversor: the domain then has all of it.
+  [[nodiscard]] bool expresses(const Isotropy& isotropy) const;
   /// True if there are as many end conditions as coordinates: the domain is then a boundary value problem.
   [[nodiscard]] bool is_square() const;
 };
