@@ -15,6 +15,16 @@ struct FourierGrid::Plans {
   fftw_complex* complex = nullptr;
   fftw_plan forward = nullptr;
   fftw_plan backward = nullptr;
+
+  // Each is made when it is first needed: planning takes a millisecond. FFTW_ESTIMATE leaves the arrays alone.
+  void transform_forward(int nodes) {
+    if (forward == nullptr) forward = fftw_plan_dft_r2c_1d(nodes, real, complex, FFTW_ESTIMATE);
+    fftw_execute(forward);
+  }
+  void transform_backward(int nodes) {
+    if (backward == nullptr) backward = fftw_plan_dft_c2r_1d(nodes, complex, real, FFTW_ESTIMATE);
+    fftw_execute(backward);
+  }
 };
 
 namespace {
@@ -31,13 +41,11 @@ FourierGrid::FourierGrid(int nodes) : _nodes(nodes), _plans(std::make_unique<Pla
   const auto n = static_cast<std::size_t>(nodes);
   _plans->real = fftw_alloc_real(n);
   _plans->complex = fftw_alloc_complex(n / 2 + 1);
-  _plans->forward = fftw_plan_dft_r2c_1d(nodes, _plans->real, _plans->complex, FFTW_ESTIMATE);
-  _plans->backward = fftw_plan_dft_c2r_1d(nodes, _plans->complex, _plans->real, FFTW_ESTIMATE);
 }
 
 FourierGrid::~FourierGrid() {
-  fftw_destroy_plan(_plans->forward);
-  fftw_destroy_plan(_plans->backward);
+  if (_plans->forward != nullptr) fftw_destroy_plan(_plans->forward);
+  if (_plans->backward != nullptr) fftw_destroy_plan(_plans->backward);
   fftw_free(_plans->real);
   fftw_free(_plans->complex);
 }
@@ -73,7 +81,7 @@ void FourierGrid::synthesize(int cutoff, int dimension, const double* modes, dou
       _plans->complex[kk][0] = 0.5 * modes[(2 * kk - 1) * d + i];
       _plans->complex[kk][1] = -0.5 * modes[2 * kk * d + i];
     }
-    fftw_execute(_plans->backward);
+    _plans->transform_backward(_nodes);
     std::copy_n(_plans->real, n, nodal + i * n);
   }
 }
@@ -89,7 +97,7 @@ void FourierGrid::synthesize_derivative(int cutoff, int dimension, const double*
       _plans->complex[kk][0] = 0.5 * k * modes[2 * kk * d + i];
       _plans->complex[kk][1] = 0.5 * k * modes[(2 * kk - 1) * d + i];
     }
-    fftw_execute(_plans->backward);
+    _plans->transform_backward(_nodes);
     std::copy_n(_plans->real, n, nodal + i * n);
   }
 }
@@ -97,7 +105,7 @@ void FourierGrid::synthesize_derivative(int cutoff, int dimension, const double*
 void FourierGrid::sums(const double* g, int highest, double* cosines, double* sines) const {
   core::require(2 * highest <= _nodes, "a grid has no sums beyond half its nodes");
   std::copy_n(g, static_cast<std::size_t>(_nodes), _plans->real);
-  fftw_execute(_plans->forward);
+  _plans->transform_forward(_nodes);
   for (int m = 0; m <= highest; ++m) {
     cosines[m] = _plans->complex[m][0];
     sines[m] = -_plans->complex[m][1];
@@ -110,7 +118,7 @@ void FourierGrid::analyze(int cutoff, int dimension, const double* nodal, double
   const auto n = static_cast<std::size_t>(_nodes);
   for (std::size_t i = 0; i < d; ++i) {
     std::copy_n(nodal + i * n, n, _plans->real);
-    fftw_execute(_plans->forward);
+    _plans->transform_forward(_nodes);
     modes[i] = _plans->complex[0][0] / _nodes;
     for (std::size_t k = 1; k <= static_cast<std::size_t>(cutoff); ++k) {
       modes[(2 * k - 1) * d + i] = 2.0 * _plans->complex[k][0] / _nodes;
