@@ -72,15 +72,6 @@ std::vector<Sector> sectors_of(const loop::Loop& loop, const loop::Isotropy& iso
   return sectors;
 }
 
-// The same orbit with s even in time and as many harmonics as that needs.
-loop::Loop evenly_in_time(const loop::Loop& loop) {
-  const double negligible = std::max(1e-12, 2.0 * loop::tail(loop));
-  loop::Loop even = loop::with_time_map(loop, {}, loop::allowed_cutoff_at_least(loop.cutoff));
-  while (loop::tail(even) > negligible && even.cutoff < 8 * loop.cutoff)
-    even = loop::with_time_map(loop, {}, loop::next_cutoff(even.cutoff));
-  return even;
-}
-
 double matrix_free_eigenvalue(const systems::System& system, const loop::Loop& loop, const Sector& whole) {
   try {
     return spectrum::smallest_eigenpairs(system, loop, whole.unknowns, whole.slice, {.count = 1}).values.front();
@@ -124,7 +115,7 @@ std::vector<OffBranchTriplet> off_branch_triplets(const systems::System& system,
 double off_branch_eigenvalue(const systems::System& system, const loop::Loop& loop, const loop::Isotropy& isotropy,
                              std::span<const double> tangent_modes, double tangent_period, int krylov_from) {
   if (!loop.time_map.is_identity()) {
-    const loop::Loop even = evenly_in_time(loop);
+    const loop::Loop even = loop::evenly_in_time(loop);
     loop::Loop tangent = loop;
     tangent.modes.assign(tangent_modes.begin(), tangent_modes.end());
     std::fill(tangent.winding.begin(), tangent.winding.end(), 0.0);

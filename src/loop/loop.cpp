@@ -80,6 +80,33 @@ Loop with_cutoff(const Loop& loop, int cutoff) {
   return out;
 }
 
+Loop evenly_in_time(const Loop& loop, double negligible) {
+  const double allowed = std::max(negligible, 2.0 * tail(loop));
+  Loop even = with_time_map(loop, {}, allowed_cutoff_at_least(loop.cutoff));
+  while (tail(even) > allowed && even.cutoff < 8 * loop.cutoff)
+    even = with_time_map(loop, {}, next_cutoff(even.cutoff));
+  return even;
+}
+
+Loop repeated(const Loop& loop, int times) {
+  core::require(times >= 1, "a loop is repeated once or more");
+  core::require(loop.time_map.is_identity(), "a loop is repeated with s even in time");
+  Loop out = loop;
+  out.period *= times;
+  for (double& n : out.winding) n *= times;
+  out.cutoff = allowed_cutoff_at_least(times * loop.cutoff);
+  const auto d = static_cast<std::size_t>(loop.dimension);
+  out.modes.assign((2 * static_cast<std::size_t>(out.cutoff) + 1) * d, 0.0);
+  for (int i = 0; i < loop.dimension; ++i) {
+    out.cosine(0, i) = loop.cosine(0, i);
+    for (int k = 1; k <= loop.cutoff; ++k) {
+      out.cosine(times * k, i) = loop.cosine(k, i);
+      out.sine(times * k, i) = loop.sine(k, i);
+    }
+  }
+  return out;
+}
+
 Loop parameter_shifted(const Loop& loop, double turns) {
   Loop out = loop;
   const double part = turns - std::floor(turns);

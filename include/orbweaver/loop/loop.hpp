@@ -47,6 +47,14 @@ void validate(const Loop& loop);
 /// What does not fit into `cutoff` harmonics is cut off (see `tail` of the result). Cost O(nodes x cutoff).
 [[nodiscard]] Loop with_time_map(const Loop& loop, const TimeMap& map, int cutoff);
 
+/// The same loop with s even in time, with as many harmonics as that needs (up to eight times its own): the tail stays
+/// below twice its own or `negligible`, whichever is larger.
+[[nodiscard]] Loop evenly_in_time(const Loop& loop, double negligible = 1e-12);
+
+/// The same orbit gone around `times` times as one loop: harmonic k becomes harmonic times k, the period is multiplied.
+/// Throws MisuseError for times < 1 or a time map that is not the identity.
+[[nodiscard]] Loop repeated(const Loop& loop, int times);
+
 /// The same curve with s counted from `turns` of s (not of time) later: z(s + 2 pi turns), the time map moved along.
 [[nodiscard]] Loop parameter_shifted(const Loop& loop, double turns);
 
