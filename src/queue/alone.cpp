@@ -41,13 +41,14 @@ void Alone::do_all() {
 }
 
 void Alone::do_next() {
-  const Task& task = _ledger.start(0);
-  _key = task.key;
+  const Task* const task = _ledger.start(0);
+  if (task == nullptr) return;
+  _key = task->key;
   _unshown_rows = 0;
   _flush_seconds = 0.0;
   _told_to_stop = false;
   const Stopwatch watch;
-  TaskOutcome outcome = execute_guarded(_executor, task, *this);
+  TaskOutcome outcome = execute_guarded(_executor, *task, *this);
   _load.busy_seconds += watch.seconds() - _flush_seconds;
   ++_load.tasks;
   outcome.stopped = _told_to_stop;

@@ -109,12 +109,13 @@ bool Coordinator::hand_out() {
   if (_stopping || _round.phase() != FlushRound::Phase::none) return false;
   bool any = false;
   while (!_idle.empty() && _ledger.counts().waiting > 0) {
-    const int worker = *_idle.begin();
-    const Task& task = _ledger.start(worker);
-    _task_of[static_cast<std::size_t>(worker)] = task.key;
-    _idle.erase(_idle.begin());
-    _channel.send(worker, Assign{task});
     any = true;
+    const int worker = *_idle.begin();
+    const Task* const task = _ledger.start(worker);
+    if (task == nullptr) break;
+    _task_of[static_cast<std::size_t>(worker)] = task->key;
+    _idle.erase(_idle.begin());
+    _channel.send(worker, Assign{*task});
   }
   return any;
 }

@@ -14,10 +14,25 @@ void Ledger::add(std::vector<Task> tasks) {
   for (Task& task : tasks) _queue.add(std::move(task));
 }
 
-const Task& Ledger::start(int rank) {
-  const Task& task = _queue.start_next();
-  _observer.started(task, rank);
-  return task;
+const Task* Ledger::start(int rank) {
+  while (_queue.counts().waiting > 0) {
+    const Task& task = _queue.start_next();
+    if (_observer.wanted(task)) {
+      _observer.started(task, rank);
+      return &task;
+    }
+    leave_out(std::string(task.key));
+  }
+  return nullptr;
+}
+
+void Ledger::leave_out(const std::string& key) {
+  const Task task = _queue.finish(key);
+  _observer.left_out(task);
+  if (!_keep_outcomes) return;
+  TaskOutcome empty;
+  empty.key = key;
+  _summary.outcomes.push_back(std::move(empty));
 }
 
 void Ledger::report(const std::string& key, const Progress& progress, int rank) {

@@ -16,8 +16,8 @@ class Ledger {
   Ledger(const Options& options, int ranks, Observer& observer);
 
   void add(std::vector<Task> tasks);
-  /// Starts the first waiting task for `rank`.
-  const Task& start(int rank);
+  /// Starts the first waiting task that is wanted for `rank`, and leaves out those before it. Null: none waits now.
+  const Task* start(int rank);
   void report(const std::string& key, const Progress& progress, int rank);
   void settle(TaskOutcome outcome);
   void count_rows(std::int64_t rows) { _summary.rows += rows; }
@@ -36,6 +36,7 @@ class Ledger {
  private:
   void put_back(const TaskOutcome& outcome);
   void end(TaskOutcome& outcome);
+  void leave_out(const std::string& key);
 
   bool _keep_outcomes;
   Observer& _observer;

@@ -71,6 +71,11 @@ TEST_F(BrokenRun, AFlushThatThrowsOnAllRanksIsToldOnce) {
 class ThrowingObserver final : public queue::Observer {
  public:
   explicit ThrowingObserver(std::string where) : _where(std::move(where)) {}
+  bool wanted(const Task&) override {
+    throw_at("wanted");
+    return _where != "left_out";
+  }
+  void left_out(const Task&) override { throw_at("left_out"); }
   void started(const Task&, int) override { throw_at("started"); }
   void progress(const Task&, const queue::Progress&, int) override { throw_at("progress"); }
   void finished(const Task&, const TaskOutcome&) override { throw_at("finished"); }
@@ -85,7 +90,7 @@ class ThrowingObserver final : public queue::Observer {
 };
 
 TEST_F(BrokenRun, AnObserverThatThrowsEndsAllRanks) {
-  for (const std::string where : {"started", "progress", "finished", "flushing", "tick"}) {
+  for (const std::string where : {"wanted", "left_out", "started", "progress", "finished", "flushing", "tick"}) {
     ThrowingObserver observer(where);
     queue::Options options;
     options.progress_seconds = 0.001;

@@ -12,6 +12,11 @@ class Observer {
  public:
   virtual ~Observer() = default;
 
+  /// Asked when `task` is about to be handed out, or to be done here: whether it shall be. When it shall not, the task
+  /// is done, with an empty outcome and without children, and left_out is called instead of started and finished. The
+  /// answer may rest on what has ended so far, which differs between runs (docs/protocol.md).
+  [[nodiscard]] virtual bool wanted(const Task& /*task*/) { return true; }
+  virtual void left_out(const Task& /*task*/) {}
   /// `rank` begins with `task`.
   virtual void started(const Task& /*task*/, int /*rank*/) {}
   /// `progress.rows` counts the rows since the last call for this task; reports in between may have been merged.

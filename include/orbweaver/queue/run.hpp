@@ -42,7 +42,7 @@ struct RankLoad {
 
 /// How a run ended. The numbers are known on all ranks, the lists on rank 0 only.
 struct RunSummary {
-  std::size_t done = 0;
+  std::size_t done = 0;  ///< with those left out
   std::size_t failed = 0;
   std::size_t waiting = 0;     ///< not finished: only after an early stop
   std::size_t stopped = 0;     ///< those of them that were running when the stop came
@@ -61,7 +61,7 @@ struct RunSummary {
 /// the others work. No rank spins while it waits. `initial` and `observer` count on rank 0 only. Nobody else may send
 /// on `comm` meanwhile, except within a collective flush.
 ///
-/// A task that fails is recorded and the run goes on. The run ends with the same EnvironmentError on all ranks when a
+/// A task that the observer does not want counts as done. A task that fails is recorded and the run goes on. The run ends with the same EnvironmentError on all ranks when a
 /// flush or the observer throws, when a key comes twice, or when a message is torn, foreign, or of another version.
 /// Throws MisuseError for options out of range, on every rank alike.
 RunSummary run(const core::Communicator& comm, const Options& options, std::vector<Task> initial, Executor& executor,
