@@ -1,5 +1,6 @@
 #include "orbweaver/loop/isotropy.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -71,12 +72,16 @@ std::string to_text(const Isotropy& isotropy) {
   return text;
 }
 
-Loop transformed(const Loop& loop, const SymmetryElement& element) {
-  core::require(element.matrix.rows() == loop.dimension, "a symmetry of another dimension cannot act on this loop");
-  // w(t) = S^-1 z(t + shift) or R^-1 z(shift - t): for a symmetry of z both give z back.
-  Loop out = element.reversing ? reversed(time_shifted(loop, element.shift())) : time_shifted(loop, element.shift());
-  apply_matrix(element.matrix.inverse(), out);
+Loop transformed(const Loop& loop, const Eigen::MatrixXd& matrix, bool reversing, double shift) {
+  core::require(matrix.rows() == loop.dimension, "a symmetry of another dimension cannot act on this loop");
+  // For a symmetry of z both give z back.
+  Loop out = reversing ? reversed(time_shifted(loop, shift)) : time_shifted(loop, shift);
+  apply_matrix(matrix.inverse(), out);
   return out;
+}
+
+Loop transformed(const Loop& loop, const SymmetryElement& element) {
+  return transformed(loop, element.matrix, element.reversing, element.shift());
 }
 
 double symmetry_defect(const Loop& loop, const SymmetryElement& element, const std::vector<int>& angles) {
@@ -102,6 +107,51 @@ Isotropy find_isotropy(const systems::Description& system, const Loop& loop, dou
   for (const systems::Symmetry& s : system.equivariances) consider(s, false);
   for (const systems::Symmetry& r : system.reversors) consider(r, true);
   return isotropy;
+}
+
+namespace {
+
+// z(t + a) = g z(t) and z(t + b) = h z(t) give z(t + b + a) = g h z(t); z(b - t) = h z(t) gives z(b - t + a) = g h z(t);
+// g reversing: z(a - (t + b)) = g h z(t), so that b counts backwards.
+SymmetryElement product(const SymmetryElement& g, const SymmetryElement& h) {
+  SymmetryElement out{"", g.reversing != h.reversing, g.matrix * h.matrix, 0, 1};
+  const int q = std::lcm(g.shift_denominator, h.shift_denominator);
+  const int a = g.shift_numerator * (q / g.shift_denominator);
+  const int b = h.shift_numerator * (q / h.shift_denominator);
+  const int p = (((g.reversing ? a - b : a + b) % q) + q) % q;
+  const int common = std::gcd(p, q);
+  out.shift_numerator = p / common;
+  out.shift_denominator = q / common;
+  return out;
+}
+
+bool is_same(const SymmetryElement& a, const SymmetryElement& b) {
+  return a.reversing == b.reversing && a.shift_numerator == b.shift_numerator &&
+         a.shift_denominator == b.shift_denominator && a.matrix.isApprox(b.matrix, 1e-9);
+}
+
+std::string name_of(const systems::Description& system, const SymmetryElement& element) {
+  if (!element.reversing && element.matrix.isIdentity(1e-9)) return "1";
+  for (const systems::Symmetry& s : element.reversing ? system.reversors : system.equivariances)
+    if (element.matrix.isApprox(s.matrix, 1e-9)) return s.name;
+  return "";
+}
+
+}  // namespace
+
+Isotropy generated_group(const systems::Description& system, const Isotropy& generators) {
+  const int d = system.dimension();
+  Isotropy group{{"1", false, Eigen::MatrixXd::Identity(d, d), 0, 1}};
+  for (std::size_t n = 0; n < group.size(); ++n)
+    for (const SymmetryElement& generator : generators) {
+      SymmetryElement next = product(generator, group[n]);
+      const auto is_next = [&next](const SymmetryElement& known) { return is_same(known, next); };
+      if (std::any_of(group.begin(), group.end(), is_next)) continue;
+      core::require(group.size() < 1000, "these symmetries generate more than 1000");
+      next.name = name_of(system, next);
+      group.push_back(std::move(next));
+    }
+  return group;
 }
 
 std::optional<SymmetryElement> find_map(const systems::Description& system, const Loop& from, const Loop& to,

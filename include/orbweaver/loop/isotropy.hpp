@@ -30,6 +30,9 @@ using Isotropy = std::vector<SymmetryElement>;
 /// `element` applied to a loop: the loop w with w = g z (for a symmetry of z, w = z up to the lattice).
 [[nodiscard]] Loop transformed(const Loop& loop, const SymmetryElement& element);
 
+/// The same for any time shift, in parts of the period: w(t) = M^-1 z(t + T shift), or M^-1 z(T shift - t) if `reversing`.
+[[nodiscard]] Loop transformed(const Loop& loop, const Eigen::MatrixXd& matrix, bool reversing, double shift);
+
 /// How far `element` is from being a symmetry of the loop: mean distance of z and g z, angles modulo 2 pi.
 [[nodiscard]] double symmetry_defect(const Loop& loop, const SymmetryElement& element, const std::vector<int>& angles);
 
@@ -38,6 +41,10 @@ using Isotropy = std::vector<SymmetryElement>;
 /// the reversor's fixed set for a reversor to be seen at shift 0.
 [[nodiscard]] Isotropy find_isotropy(const systems::Description& system, const Loop& loop, double tolerance,
                                      int max_denominator = 4);
+
+/// All that `generators` generate, with shifts in [0, 1): the identity "1@0" first, declared symmetries under their names,
+/// others under none. Throws MisuseError where that are more than 1000.
+[[nodiscard]] Isotropy generated_group(const systems::Description& system, const Isotropy& generators);
 
 /// A declared symmetry of `system` (or the identity, named "1") with a time shift p/q, q <= `max_denominator`, that maps
 /// `from` to `to` within `tolerance` (mean distance, angles modulo 2 pi); none if there is none.

@@ -1,0 +1,224 @@
+#include "orbweaver/loop/alignment.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "loop/samples.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/time_samples.hpp"
+
+namespace orbweaver::loop {
+namespace {
+
+using test::element_of;
+using test::two_pi;
+
+const double irrational = std::sqrt(2.0) / 7.0;
+
+const systems::Description& pendulum() { return systems::describe_system("double_pendulum"); }
+const systems::Description& galaxy() { return systems::describe_system("henon_heiles"); }
+
+Loop sample() { return test::random_loop(4, 14, 61); }
+
+Loop rotation() {
+  Loop loop = sample();
+  loop.winding = {1.0, -2.0, 0.0, 0.0};
+  return loop;
+}
+
+// `from` must be brought to `to` exactly, by the symmetry `name`; returns the alignment.
+Alignment expect_same(const systems::Description& system, const Loop& from, const Loop& to, const std::string& name) {
+  const Alignment found = align(system, from, to);
+  EXPECT_EQ(found.name, name);
+  EXPECT_LT(found.distance, 1e-12) << name;
+  EXPECT_LT(mean_distance(aligned(from, found), to), 1e-12) << name;
+  return found;
+}
+
+TEST(TimeSamples, AreStatesAtTheirTimes) {
+  Loop loop = rotation();
+  for (const TimeMap& map : {TimeMap{}, TimeMap{1.7, {}}, TimeMap{1.4, {0.05, 0.1, -0.1, 0.0}}}) {
+    loop.time_map = map;
+    const TimeSamples samples = time_samples(loop);
+    ASSERT_EQ(samples.count, 240);
+    EXPECT_EQ(samples.period, loop.period);
+    EXPECT_EQ(samples.winding, loop.winding);
+    for (const int j : {0, 1, 60, 119, 239}) {
+      const std::vector<double> state = state_at(loop, loop.period * j / 240.0);
+      for (std::size_t i = 0; i < 4; ++i)
+        EXPECT_NEAR(samples.states[i * 240 + static_cast<std::size_t>(j)],
+                    state[i] - loop.winding[i] * two_pi * j / 240.0, 1e-13);
+    }
+  }
+}
+
+TEST(TimeSamples, InterpolantIsTheLoopInTime) {
+  EXPECT_LT(mean_distance(interpolant(time_samples(rotation(), 29)), rotation()), 1e-14);
+  const Loop mapped = with_time_map(rotation(), {1.3, {}}, 60);
+  EXPECT_LT(mean_distance(interpolant(time_samples(mapped)), rotation()), 1e-12);
+  EXPECT_LT(mean_distance(resolved_in_time(mapped), rotation()), 1e-12);
+  EXPECT_THROW(static_cast<void>(interpolant(time_samples(sample(), 3))), core::MisuseError);
+}
+
+// Beyond 119 harmonics in time: the interpolant of 240 samples is not enough.
+TEST(TimeSamples, SharpLoopIsResolvedInTime) {
+  const Loop even = test::random_loop(4, 150, 62, 4.0, 0.95);
+  const Loop mapped = with_time_map(even, {1.1, {}}, 300);
+  EXPECT_GT(mean_distance(interpolant(time_samples(mapped)), even), 1e-4);
+  EXPECT_LT(mean_distance(resolved_in_time(mapped), even), 1e-8);
+}
+
+TEST(Alignment, FindsAnyTimeShift) {
+  for (const double shift : {0.0, 0.25, irrational, 0.9999, 1e-7})
+    EXPECT_NEAR(expect_same(pendulum(), sample(), time_shifted(sample(), shift), "1").shift, shift, 1e-14) << shift;
+}
+
+TEST(Alignment, FindsEverySymmetry) {
+  for (const systems::Description* system : {&pendulum(), &galaxy()}) {
+    for (const systems::Symmetry& s : system->equivariances) {
+      const Alignment found =
+          expect_same(*system, sample(), transformed(sample(), s.matrix, false, irrational), s.name);
+      EXPECT_NEAR(found.shift, irrational, 1e-14) << s.name;
+      EXPECT_FALSE(found.reversing);
+    }
+    for (const systems::Symmetry& r : system->reversors) {
+      const Alignment found = expect_same(*system, sample(), transformed(sample(), r.matrix, true, irrational), r.name);
+      EXPECT_NEAR(found.shift, irrational, 1e-14) << r.name;
+      EXPECT_TRUE(found.reversing);
+    }
+  }
+}
+
+// R C is no declared reversor of Henon and Heiles' system, but a symmetry all the same.
+TEST(Alignment, FindsReversorsTimesEquivariances) {
+  const Eigen::MatrixXd rc = element_of(galaxy(), "R").matrix * element_of(galaxy(), "C").matrix;
+  expect_same(galaxy(), sample(), transformed(sample(), rc, true, 0.3), "RC");
+}
+
+TEST(Alignment, ActsModuloTheLatticeOfAngles) {
+  Loop to = transformed(sample(), element_of(pendulum(), "S").matrix, false, irrational);
+  to.cosine(0, 0) += two_pi;
+  to.cosine(0, 1) -= 3.0 * two_pi;
+  const Alignment found = expect_same(pendulum(), sample(), to, "S");
+  EXPECT_EQ(found.turns, (std::vector<double>{1.0, -3.0, 0.0, 0.0}));
+  to.cosine(0, 2) += two_pi;
+  EXPECT_NEAR(align(pendulum(), sample(), to).distance, two_pi, 2.0) << "a velocity has no lattice";
+}
+
+TEST(Alignment, FollowsTheWinding) {
+  expect_same(pendulum(), rotation(), time_shifted(rotation(), irrational), "1");
+  expect_same(pendulum(), rotation(), time_shifted(rotation(), 0.8), "1");
+  for (const char* name : {"R", "RS"})
+    expect_same(pendulum(), rotation(), transformed(rotation(), element_of(pendulum(), name).matrix, true, irrational),
+                name);
+  expect_same(pendulum(), rotation(), transformed(rotation(), element_of(pendulum(), "S").matrix, false, 0.7), "S");
+  EXPECT_EQ(align(pendulum(), rotation(), sample()).distance, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(align(pendulum(), sample(), rotation()).distance, std::numeric_limits<double>::infinity());
+}
+
+TEST(Alignment, LetsTimeMapsAndCutoffsDiffer) {
+  const Loop shifted = time_shifted(rotation(), irrational);
+  const Loop mapped = with_time_map(rotation(), {1.3, {}}, 70);
+  const Loop other = with_time_map(transformed(shifted, element_of(pendulum(), "RS").matrix, true, 0.0),
+                                   {1.2, {0.1, 0.05, 0.0, 0.1}}, 120);
+  expect_same(pendulum(), mapped, shifted, "1");
+  expect_same(pendulum(), mapped, other, "RS");
+  expect_same(pendulum(), other, mapped, "RS");
+  expect_same(pendulum(), with_cutoff(shifted, 31), rotation(), "1");
+}
+
+TEST(Alignment, DistanceIsTheSmallestOverShifts) {
+  Loop to = time_shifted(sample(), irrational);
+  const std::vector<double> noise = test::random_values(to.modes.size(), 63);
+  for (std::size_t n = 0; n < noise.size(); ++n) to.modes[n] += 1e-2 * noise[n];
+  const Alignment found = align(pendulum(), sample(), to);
+  EXPECT_EQ(found.name, "1");
+  EXPECT_NEAR(mean_distance(aligned(sample(), found), to), found.distance, 1e-14);
+  for (const double step : {-1e-4, 1e-4, 1e-2, 0.5}) {
+    Alignment moved = found;
+    moved.shift += step;
+    EXPECT_GT(mean_distance(aligned(sample(), moved), to), found.distance) << step;
+  }
+  // Newton's method ends where the slope is zero: on both sides the distance grows alike.
+  const auto at = [&](double step) {
+    Alignment moved = found;
+    moved.shift += step;
+    return mean_distance(aligned(sample(), moved), to);
+  };
+  EXPECT_NEAR(at(1e-5), at(-1e-5), 1e-6 * (at(1e-5) - found.distance) + 1e-13);
+}
+
+// Two pulses that differ little: a shift of half a period comes close, and is not the answer.
+TEST(Alignment, TakesTheClosestOfSeveralMinima) {
+  Loop loop = test::random_loop(4, 14, 64);
+  for (int k = 1; k <= loop.cutoff; k += 2)
+    for (int i = 0; i < 4; ++i) loop.cosine(k, i) *= 1e-7, loop.sine(k, i) *= 1e-7;
+  for (const double shift : {0.1, 0.6, irrational})
+    EXPECT_NEAR(expect_same(pendulum(), loop, time_shifted(loop, shift), "1").shift, shift, 1e-12);
+}
+
+TEST(Alignment, OfASymmetricOrbitTakesTheFirstSymmetryAndTheSmallestShift) {
+  const Isotropy both{element_of(pendulum(), "S", 1, 2), element_of(pendulum(), "R")};
+  const Loop loop = test::random_loop_in(Subspace(4, 8, both), constant_loop(std::vector<double>(4), 5.0, 8), 65);
+  EXPECT_NEAR(expect_same(pendulum(), loop, loop, "1").shift, 0.0, 1e-14);
+  const Loop mirrored = transformed(loop, element_of(pendulum(), "S").matrix, false, 0.0);
+  EXPECT_NEAR(expect_same(pendulum(), loop, mirrored, "1").shift, 0.5, 1e-14);
+  const Alignment found = align(pendulum(), repeated(loop, 3), time_shifted(repeated(loop, 3), 0.4));
+  EXPECT_NEAR(found.shift, 0.4 - 1.0 / 3.0, 1e-13);
+}
+
+TEST(Alignment, OfConstantLoopsIsTheirDistance) {
+  const Loop a = constant_loop(std::vector<double>{0.1, 0.2, 0.0, 0.0}, 3.0, 4);
+  const Loop b = constant_loop(std::vector<double>{0.1 + two_pi, 0.5, 0.0, 0.0}, 3.0, 4);
+  EXPECT_NEAR(align(pendulum(), a, b).distance, 0.3, 1e-14);
+}
+
+TEST(Alignment, HopelessLoopsAreToldByTheirCoarseDistance) {
+  const Loop mapped = with_time_map(sample(), {1.3, {}}, 60);
+  const Loop other = test::random_loop(4, 14, 66);
+  const double distance = align(pendulum(), mapped, other).distance;
+  EXPECT_GT(distance, 0.1);
+  EXPECT_NEAR(align(pendulum(), mapped, other, 0.1).distance, distance, 1e-9);
+  EXPECT_NEAR(align(pendulum(), mapped, sample(), 0.1).distance, 0.0, 1e-12);
+}
+
+TEST(Alignment, RefusesOtherDimensions) {
+  EXPECT_THROW(static_cast<void>(align(pendulum(), sample(), test::random_loop(2, 5, 1))), core::MisuseError);
+}
+
+TEST(Repetitions, AreCounted) {
+  EXPECT_EQ(repetitions(sample(), 1e-9), 1);
+  for (const int m : {2, 3, 5, 6, 7, 12}) {
+    const Loop loop = time_shifted(repeated(sample(), m), irrational);
+    EXPECT_EQ(repetitions(loop, 1e-9), m);
+    const Loop primitive = without_repetition(loop, m);
+    EXPECT_NEAR(primitive.period, sample().period, 1e-14);
+    expect_same(pendulum(), primitive, sample(), "1");
+  }
+}
+
+TEST(Repetitions, LeaveTheWindingWhole) {
+  Loop loop = repeated(rotation(), 3);
+  EXPECT_EQ(repetitions(loop, 1e-9), 3);
+  EXPECT_EQ(without_repetition(loop, 3).winding, rotation().winding);
+  loop.winding = {2.0, 0.0, 0.0, 0.0};
+  EXPECT_EQ(repetitions(loop, 1e-9), 1) << "a third of it would wind by two thirds";
+  EXPECT_THROW(static_cast<void>(without_repetition(loop, 3)), core::MisuseError);
+}
+
+TEST(Repetitions, HoldToTheTolerance) {
+  Loop loop = repeated(sample(), 2);
+  loop.cosine(3, 1) += 1e-3 * std::sqrt(2.0);
+  EXPECT_EQ(repetitions(loop, 1.01e-3), 2);
+  EXPECT_EQ(repetitions(loop, 0.99e-3), 1);
+}
+
+TEST(Repetitions, AreSeenUnderATimeMap) {
+  const Loop loop = with_time_map(repeated(rotation(), 2), {1.0, {0.2, -0.1}}, 160);
+  EXPECT_EQ(repetitions(loop, 1e-9), 2);
+  expect_same(pendulum(), without_repetition(loop, 2), rotation(), "1");
+}
+
+}  // namespace
+}  // namespace orbweaver::loop
