@@ -84,14 +84,6 @@ NormalMode normal_mode(const systems::System& system, std::span<const double> fi
   return mode;
 }
 
-std::string why_rejected(int k, const LinearModes::Root& root) {
-  if (k > 1) return fmt::format("{} times around the oscillation with T = {:.12g}", k, root.period / k);
-  return fmt::format(
-      "{} oscillations share this period: telling their families apart needs the bifurcation layer, "
-      "which is not built yet",
-      root.multiplicity);
-}
-
 }  // namespace
 
 SweepResult sweep(const systems::System& system, std::span<const double> fixed_point, const SweepOptions& options) {
@@ -131,8 +123,11 @@ SweepResult sweep(const systems::System& system, std::span<const double> fixed_p
         found.push_back(root.period);
         if (k == 1 && root.multiplicity == 1)
           result.modes.push_back(normal_mode(system, fixed_point, linear, root, here.period, options.cutoff));
+        else if (k == 1)
+          result.degenerate.push_back({root.period, here.period, root.residual, root.kernel});
         else
-          result.rejected.push_back({root.period, why_rejected(k, root)});
+          result.rejected.push_back(
+              {root.period, fmt::format("{} times around the oscillation with T = {:.12g}", k, root.period / k)});
       }
     // Harmonic 0 is the mean of the loop: it does not depend on T, its minima are rounding.
     if (!reaches_zero && samples[n].harmonic > 0)

@@ -9,6 +9,7 @@
 #include "orbweaver/certificate/certificate.hpp"
 #include "orbweaver/continuation/sweep.hpp"
 #include "orbweaver/core/error.hpp"
+#include "small_oscillations.hpp"
 #include "stability_columns.hpp"
 
 namespace orbweaver::survey {
@@ -63,7 +64,7 @@ queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
   SweepOutcome outcome;
   outcome.index = work.index;
   outcome.point = work.point;
-  for (const continuation::NormalMode& mode : result.modes) {
+  for (const continuation::NormalMode& mode : small_oscillations(*_system, result, options.cutoff)) {
     FoundMode found;
     found.period = mode.period;
     found.direction = mode.direction;

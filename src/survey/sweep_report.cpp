@@ -9,6 +9,7 @@
 #include "naming.hpp"
 #include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/continuation/fixed_points.hpp"
+#include "small_oscillations.hpp"
 
 namespace orbweaver::survey {
 
@@ -42,7 +43,7 @@ std::vector<EquilibriumReport> sweep_report(const scene::Scene& scene) {
   std::vector<EquilibriumReport> reports;
   for (const std::vector<double>& point : continuation::find_fixed_points(*system, scene.fixed_points.grid)) {
     EquilibriumReport report{point, point_text(description, point), continuation::sweep(*system, point, options), {}};
-    for (const continuation::NormalMode& mode : report.sweep.modes)
+    for (const continuation::NormalMode& mode : small_oscillations(*system, report.sweep, options.cutoff))
       report.modes.push_back(
           {base_name(scene, description, point, static_cast<int>(reports.size()),
                      static_cast<int>(report.modes.size())),

@@ -167,10 +167,20 @@ TEST(Sweep, HarmonicOscillatorWithItsMultiples) {
   expect_rejected(result, {{2 * pi, "2 times around"}, {3 * pi, "3 times around"}});
 }
 
-TEST(Sweep, ResonanceOfHenonHeilesIsDegenerateAndSaidSo) {
-  const SweepResult result = sweep(*systems::make_system("henon_heiles"), std::vector<double>(4, 0.0), {});
+TEST(Sweep, ResonanceOfHenonHeilesIsHandedOutWithItsKernel) {
+  const auto system = systems::make_system("henon_heiles");
+  const std::vector<double> origin(4, 0.0);
+  const SweepResult result = sweep(*system, origin, {});
   EXPECT_TRUE(result.modes.empty());
-  expect_rejected(result, {{2 * pi, "2 oscillations share this period"}});
+  EXPECT_TRUE(result.rejected.empty());
+  ASSERT_EQ(result.degenerate.size(), 1u);
+  const DegenerateMode& mode = result.degenerate.front();
+  EXPECT_NEAR(mode.period, 2 * pi, 1e-13);
+  EXPECT_NEAR(mode.grid_period, 2 * pi, 0.01);
+  ASSERT_EQ(mode.kernel.cols(), 2);
+  EXPECT_LT((mode.kernel.adjoint() * mode.kernel - Eigen::MatrixXcd::Identity(2, 2)).norm(), 1e-13);
+  // Near the origin q'' = -q in both coordinates: p = dq/dt = i q.
+  EXPECT_LT((mode.kernel.bottomRows(2) - std::complex<double>(0, 1) * mode.kernel.topRows(2)).norm(), 1e-12);
 }
 
 TEST(Sweep, RepeatsBitForBit) {

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Dense>
+
 #include "orbweaver/loop/isotropy.hpp"
 #include "orbweaver/loop/loop.hpp"
 #include "orbweaver/systems/system.hpp"
@@ -34,6 +36,15 @@ struct NormalMode {
   loop::Isotropy isotropy;             ///< of the small oscillations
 };
 
+/// Several oscillations Re(v e^{2 pi i t/T}) of one period: which of their combinations families start along, the linear
+/// problem does not say (bifurcation::equilibrium_directions).
+struct DegenerateMode {
+  double period = 0.0;
+  double grid_period = 0.0;
+  double residual = 0.0;    ///< the largest singular value that should vanish
+  Eigen::MatrixXcd kernel;  ///< orthonormal v, one a column
+};
+
 /// A dip of the eigenvalue that starts no family, and why.
 struct RejectedDip {
   double period = 0.0;
@@ -43,8 +54,9 @@ struct RejectedDip {
 struct SweepResult {
   std::vector<double> fixed_point;
   std::vector<SweepPoint> table;
-  std::vector<NormalMode> modes;      ///< longest period first
-  std::vector<RejectedDip> rejected;  ///< period multiples, near misses, degenerate kernels
+  std::vector<NormalMode> modes;  ///< longest period first
+  std::vector<DegenerateMode> degenerate;
+  std::vector<RejectedDip> rejected;  ///< period multiples, near misses
 };
 
 /// Sweeps the period at a fixed point (paper, section III A): the smallest eigenvalue of the Hessian against T, each of

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "orbweaver/corrector/correct.hpp"
+#include "orbweaver/loop/isotropy.hpp"
+#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::bifurcation {
+
+/// One direction in which a family leaves a crossing.
+struct Direction {
+  loop::Loop base;  ///< the crossing's orbit as the born family sees it: m times around, started where the born
+                    ///< orbits' reversor, if they have one, has phase 0
+  std::vector<double> modes;  ///< in the modes of `base`, unit length
+  loop::Isotropy isotropy;    ///< of the born orbits (and of base): generators as loop::find_isotropy gives them
+  bool both_sides = false;    ///< true: -modes leads to other orbits; false: a symmetry or time shift maps the sides
+  double amplitude = 0.0;     ///< 0: exact, any amplitude leads there; else found by a search at this amplitude, below
+                              ///< which the loss hardly tells neighbouring directions apart
+};
+
+struct DirectionOptions {
+  double symmetry_tolerance = 1e-7;  ///< of the base loop's symmetries, as loop::find_isotropy
+  double kernel_tolerance = 1e-4;    ///< how far symmetries may take kernel vectors out of the kernel
+  int seeds = 12;                    ///< of a search in a plane; twice as many for each further dimension
+  corrector::Options corrector{};    ///< of a search
+};
+
+/// The directions in which families leave `base` along its kernel (docs/mathematics.md, "Kernels and directions"), those
+/// with a reversor first, in the system's order of reversors.
+///
+/// base: the crossing's orbit gone around m times (identity time map), or the constant loop at an equilibrium.
+/// isotropy: generators of the crossing's orbit; base must have each of them, whatever its shift.
+/// kernel: orthonormal null vectors, (2K + 1) x dimension each; at an equilibrium of harmonic 1 alone, both phases of each
+/// oscillation. Throws MisuseError for sizes that disagree or vectors that are not orthonormal, NumericalError where the
+/// symmetries do not map the kernel to itself isometrically, or where a search in a plane finds more directions than
+/// can be.
+[[nodiscard]] std::vector<Direction> directions(const systems::System& system, const loop::Loop& base,
+                                                const loop::Isotropy& isotropy,
+                                                const std::vector<std::vector<double>>& kernel,
+                                                const DirectionOptions& options = {});
+
+/// The same at an equilibrium where several oscillations Re(v e^{is}) share one period; `kernel` holds a v a column.
+[[nodiscard]] std::vector<Direction> equilibrium_directions(const systems::System& system,
+                                                            std::span<const double> point, double period,
+                                                            const Eigen::MatrixXcd& kernel, int cutoff,
+                                                            const DirectionOptions& options = {});
+
+/// The orbit at base + amplitude * modes + u, u orthogonal to modes and to the time shift: never the base's own family,
+/// which is orthogonal to modes too. More harmonics are taken where the orbit needs them.
+[[nodiscard]] corrector::Result born_orbit(const systems::System& system, const loop::Loop& base,
+                                           const std::vector<double>& modes, const loop::Isotropy& isotropy,
+                                           double amplitude, const corrector::Options& options = {});
+
+}  // namespace orbweaver::bifurcation

@@ -1,0 +1,226 @@
+#include "orbweaver/bifurcation/directions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "fixed_spaces.hpp"
+#include "orbweaver/core/error.hpp"
+#include "search.hpp"
+#include "symmetry_group.hpp"
+
+namespace orbweaver::bifurcation {
+
+namespace {
+
+constexpr double same_line = 3e-3;  // radians; distinct lines of a finite group are much further apart
+constexpr int largest_kernel = 8;
+
+// What decides which of several images of one direction is reported, and in which order directions are listed.
+struct Rank {
+  int reversor = std::numeric_limits<int>::max();  // place of the first one that is kept
+  double phase = 0.0;                              // its phase
+  std::vector<std::pair<int, double>> kept;        // equivariances: place and shift
+
+  [[nodiscard]] auto tie() const { return std::tie(reversor, phase, kept); }
+};
+
+Rank rank_of(const SymmetryGroup& group, const systems::Description& system, const Eigen::VectorXd& v) {
+  Rank rank;
+  for (const Action& a : group.actions()) {
+    if (!a.maps(v, v)) continue;
+    const std::pair<int, double> here{a.declared, a.element.shift()};
+    if (!a.element.reversing)
+      rank.kept.push_back(here);
+    else if (a.declared < static_cast<int>(system.reversors.size()))
+      std::tie(rank.reversor, rank.phase) = std::min(std::pair{rank.reversor, rank.phase}, here);
+  }
+  std::sort(rank.kept.begin(), rank.kept.end());
+  return rank;
+}
+
+// z(t) of the loop's first coordinate, `fraction` of a period after its start.
+double first_coordinate(const loop::Loop& loop, double fraction) {
+  return loop::state_at(loop, fraction * loop.period).front();
+}
+
+// The first coordinate that moves at s = 0 does so upwards.
+double upward(const loop::Loop& direction) {
+  const std::vector<double> at_start = loop::state_at(direction, 0.0);
+  for (const std::vector<double>* numbers : {&at_start, &direction.modes})
+    for (const double v : *numbers)
+      if (std::abs(v) > 1e-6) return v > 0.0 ? 1.0 : -1.0;
+  return 1.0;
+}
+
+loop::Loop moved(loop::Loop base, const std::vector<double>& modes, double amplitude) {
+  for (std::size_t n = 0; n < modes.size(); ++n) base.modes[n] += amplitude * modes[n];
+  return base;
+}
+
+// One of the born orbits' isotropies: what base and direction have in common.
+loop::Isotropy isotropy_along(const systems::Description& system, const SymmetryGroup& group, const loop::Loop& base,
+                              const std::vector<double>& modes, const DirectionOptions& options) {
+  return loop::find_isotropy(system, moved(base, modes, 0.1), 10.0 * options.symmetry_tolerance, group.denominator());
+}
+
+bool has_other_sides(const SymmetryGroup& group, const Eigen::VectorXd& v) {
+  return !group.constant() &&
+         std::none_of(group.actions().begin(), group.actions().end(), [&](const Action& a) { return a.maps(v, -v); });
+}
+
+// The direction of a fixed line: made exactly symmetric, started where the reversor has phase 0.
+Direction direction_along(const systems::Description& system, const SymmetryGroup& group, const loop::Loop& base,
+                          const Eigen::VectorXd& v, const DirectionOptions& options) {
+  loop::Loop vector = base;
+  std::fill(vector.winding.begin(), vector.winding.end(), 0.0);
+  vector.modes = group.modes_of(v);
+  loop::Loop mean = vector;
+  std::fill(mean.modes.begin(), mean.modes.end(), 0.0);
+  for (const Action& a : group.actions())
+    if (a.maps(v, v)) mean = moved(std::move(mean), loop::transformed(vector, a.element).modes, 1.0);
+
+  const Rank rank = rank_of(group, system, v);
+  double start = 0.0;
+  if (rank.reversor < std::numeric_limits<int>::max()) {
+    // Of the two instants on the fixed set the one with the larger first coordinate.
+    start = 0.5 * rank.phase;
+    if (first_coordinate(base, start + 0.5) > first_coordinate(base, start) + 1e-6) start += 0.5;
+  }
+  Direction out;
+  out.base = loop::time_shifted(base, start);
+  mean = loop::time_shifted(mean, start);
+  double length = 0.0;
+  for (const double c : mean.modes) length += c * c;
+  const double scale = upward(mean) / std::sqrt(length);
+  for (const double c : mean.modes) out.modes.push_back(scale * c);
+  out.isotropy = isotropy_along(system, group, out.base, out.modes, options);
+  out.both_sides = has_other_sides(group, v);
+  return out;
+}
+
+// The lines that a symmetry group fixes; about an equilibrium also the oscillations (planes that time shifts turn) that
+// equivariances alone single out.
+std::vector<Eigen::VectorXd> fixed_lines(const SymmetryGroup& group) {
+  std::vector<Eigen::MatrixXd> matrices;
+  for (const Action& a : group.actions()) matrices.push_back(a.matrix);
+  const std::vector<Eigen::MatrixXd> spaces = fixed_spaces(matrices, group.dimension());
+  std::vector<Eigen::VectorXd> lines;
+  for (const Eigen::MatrixXd& space : spaces)
+    if (space.cols() == 1) lines.emplace_back(space.col(0));
+  if (!group.constant()) return lines;
+  const auto contains = [](const Eigen::MatrixXd& space, const Eigen::VectorXd& v) {
+    return (space.transpose() * v).norm() > 1.0 - 1e-4;
+  };
+  for (const Eigen::MatrixXd& space : spaces)
+    if (space.cols() == 2 && contains(space, group.quarter() * space.col(0)) &&
+        std::none_of(lines.begin(), lines.end(), [&](const Eigen::VectorXd& v) { return contains(space, v); }))
+      lines.emplace_back(space.col(0));
+  return lines;
+}
+
+// One of each set of images, the one of lowest rank.
+std::vector<Eigen::VectorXd> representatives(const SymmetryGroup& group, const systems::Description& system,
+                                             const std::vector<Eigen::VectorXd>& lines) {
+  std::vector<std::pair<Rank, Eigen::VectorXd>> ranked;
+  for (const Eigen::VectorXd& v : lines) ranked.emplace_back(rank_of(group, system, v), v);
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const auto& a, const auto& b) { return a.first.tie() < b.first.tie(); });
+  std::vector<Eigen::VectorXd> out;
+  for (const auto& [rank, v] : ranked)
+    if (std::none_of(out.begin(), out.end(), [&](const auto& other) { return group.image(v, other, same_line) != 0; }))
+      out.push_back(v);
+  return out;
+}
+
+// How many of a plane's symmetries are rotations: q of the sector e^{2 pi i j / q}.
+int rotations(const SymmetryGroup& group) {
+  std::vector<Eigen::MatrixXd> distinct;
+  for (const Action& a : group.actions())
+    if (a.matrix.determinant() > 0.0 && std::none_of(distinct.begin(), distinct.end(), [&](const Eigen::MatrixXd& m) {
+          return (m - a.matrix).norm() < 1e-2;
+        }))
+      distinct.push_back(a.matrix);
+  return static_cast<int>(distinct.size());
+}
+
+// The amplitude from which on terms of order q - 2, which fix the angle, are above 1e-6.
+double search_amplitude(int q, const loop::Loop& base, bool constant) {
+  const double least = q > 4 ? std::pow(1e-6, 1.0 / (q - 2)) : 0.0;
+  return std::clamp(least, 0.01, 0.1) * (constant ? 1.0 : std::min(1.0, loop::rms_amplitude(base)));
+}
+
+std::vector<Direction> searched(const systems::System& system, const SymmetryGroup& group, const loop::Loop& base,
+                                const std::vector<Eigen::VectorXd>& lines, const DirectionOptions& options) {
+  const bool plane = group.dimension() == 2;
+  const int q = plane ? rotations(group) : 1;
+  const double amplitude = search_amplitude(q, base, group.constant());
+  // What every vector of the kernel keeps: that of one without symmetry.
+  const Eigen::VectorXd generic = Eigen::VectorXd::LinSpaced(group.dimension(), 1.0, std::sqrt(2.0)).array().sin();
+  const loop::Isotropy kept =
+      isotropy_along(system.description(), group, base, group.modes_of(generic.normalized()), options);
+  const auto found = search_directions(system, base, group, kept, start_directions(group.dimension(), q, options.seeds),
+                                       amplitude, lines, options.corrector);
+  if (plane && q > 2 && found.size() > 2)
+    throw core::NumericalError(fmt::format(
+        "a search in a kernel of dimension 2 found {} directions modulo its {} rotations, at most 2 can be: "
+        "at amplitude {:.2g} the loss does not tell them apart",
+        found.size(), q, amplitude));
+  std::vector<Direction> out;
+  for (const FoundOrbit& orbit : found)
+    out.push_back({base, group.modes_of(orbit.coordinates),
+                   loop::find_isotropy(system.description(), orbit.loop, 1e-2 * amplitude, group.denominator()),
+                   has_other_sides(group, orbit.coordinates), amplitude});
+  return out;
+}
+
+}  // namespace
+
+std::vector<Direction> directions(const systems::System& system, const loop::Loop& base, const loop::Isotropy& isotropy,
+                                  const std::vector<std::vector<double>>& kernel, const DirectionOptions& options) {
+  loop::validate(base);
+  core::require(base.time_map.is_identity(), "directions need a base loop that runs evenly in time");
+  core::require(!kernel.empty() && kernel.size() <= largest_kernel, "directions need a kernel of dimension 1 to 8");
+  const systems::Description& description = system.description();
+  const SymmetryGroup group(description, base, kernel, options);
+  for (const loop::SymmetryElement& g : isotropy)
+    if (std::none_of(group.actions().begin(), group.actions().end(),
+                     [&](const Action& a) { return a.element.name == g.name; }))
+      throw core::NumericalError(
+          fmt::format("the base loop of a kernel does not have the symmetry {} of its orbit to "
+                      "{:.2g}, with any phase that its other symmetries allow",
+                      g.name, options.symmetry_tolerance));
+  const std::vector<Eigen::VectorXd> lines = representatives(group, description, fixed_lines(group));
+  std::vector<Direction> out;
+  for (const Eigen::VectorXd& v : lines) out.push_back(direction_along(description, group, base, v, options));
+  // A single oscillation, a single vector, and a plane with rotations and reflections have no others.
+  const bool complete = kernel.size() == 1 || (kernel.size() == 2 && group.constant()) ||
+                        (kernel.size() == 2 && !lines.empty() && rotations(group) > 2);
+  if (!complete)
+    for (Direction& d : searched(system, group, base, lines, options)) out.push_back(std::move(d));
+  return out;
+}
+
+std::vector<Direction> equilibrium_directions(const systems::System& system, std::span<const double> point,
+                                              double period, const Eigen::MatrixXcd& kernel, int cutoff,
+                                              const DirectionOptions& options) {
+  const loop::Loop base = loop::constant_loop(point, period, cutoff);
+  core::require(kernel.rows() == base.dimension, "oscillations need the dimension of the equilibrium");
+  std::vector<std::vector<double>> vectors;
+  for (Eigen::Index c = 0; c < kernel.cols(); ++c)
+    for (const std::complex<double> phase : {std::complex<double>(1.0, 0.0), std::complex<double>(0.0, 1.0)}) {
+      loop::Loop v = base;
+      std::fill(v.modes.begin(), v.modes.end(), 0.0);
+      for (int i = 0; i < v.dimension; ++i) {
+        v.cosine(1, i) = (phase * kernel(i, c)).real();
+        v.sine(1, i) = -(phase * kernel(i, c)).imag();
+      }
+      vectors.push_back(v.modes);
+    }
+  return directions(system, base, {}, vectors, options);
+}
+
+}  // namespace orbweaver::bifurcation

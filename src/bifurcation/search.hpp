@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "symmetry_group.hpp"
+
+namespace orbweaver::bifurcation {
+
+/// An orbit off the base loop and the unit kernel coordinates in which it leaves.
+struct FoundOrbit {
+  Eigen::VectorXd coordinates;
+  loop::Loop loop;
+};
+
+/// Orbits near `base` whose part in the kernel has the length `amplitude`, one for each that no symmetry of `group` maps
+/// to another or to one of `known` (to its negative neither): Newton's method from the kernel directions `starts`.
+[[nodiscard]] std::vector<FoundOrbit> search_directions(const systems::System& system, const loop::Loop& base,
+                                                        const SymmetryGroup& group, const loop::Isotropy& isotropy,
+                                                        const std::vector<Eigen::VectorXd>& starts, double amplitude,
+                                                        const std::vector<Eigen::VectorXd>& known,
+                                                        const corrector::Options& options);
+
+/// Unit vectors: evenly over the angles [0, 2 pi / order) of a plane, or from a Halton sequence on a sphere of more
+/// dimensions (twice as many for each).
+[[nodiscard]] std::vector<Eigen::VectorXd> start_directions(int dimension, int order, int count);
+
+}  // namespace orbweaver::bifurcation

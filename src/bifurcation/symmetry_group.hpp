@@ -1,0 +1,48 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "orbweaver/bifurcation/directions.hpp"
+
+namespace orbweaver::bifurcation {
+
+/// A symmetry of the base loop and its orthogonal matrix in the kernel's coordinates.
+struct Action {
+  loop::SymmetryElement element;
+  int declared;  ///< place in the system's equivariances or reversors; -1: the identity; their number: a product
+  Eigen::MatrixXd matrix;
+
+  [[nodiscard]] bool maps(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const;
+};
+
+/// All spatio-temporal symmetries of a loop: declared symmetries and their products with the time shifts that the loop
+/// allows. A constant loop allows every shift: the actions then hold a finite part of these, and comparisons all of them.
+class SymmetryGroup {
+ public:
+  SymmetryGroup(const systems::Description& system, const loop::Loop& base,
+                const std::vector<std::vector<double>>& kernel, const DirectionOptions& options);
+
+  [[nodiscard]] const std::vector<Action>& actions() const { return _actions; }
+  [[nodiscard]] bool constant() const { return _constant; }
+  [[nodiscard]] int dimension() const { return static_cast<int>(_kernel.cols()); }
+  /// The denominator that all shifts share.
+  [[nodiscard]] int denominator() const { return _denominator; }
+  /// The shift by a quarter of the period, for constant loops.
+  [[nodiscard]] const Eigen::MatrixXd& quarter() const { return _quarter; }
+  /// Modes of the kernel vector with these coordinates, and back.
+  [[nodiscard]] std::vector<double> modes_of(const Eigen::VectorXd& coordinates) const;
+  [[nodiscard]] Eigen::VectorXd coordinates_of(std::span<const double> modes) const;
+  /// +1 if a symmetry maps `from` to `to`, -1 if only to -`to`, 0 if neither; unit vectors, as far apart as `tolerance`.
+  [[nodiscard]] int image(const Eigen::VectorXd& from, const Eigen::VectorXd& to, double tolerance) const;
+
+ private:
+  Eigen::MatrixXd _kernel;  // modes x dimension
+  std::vector<Action> _actions;
+  Eigen::MatrixXd _quarter;
+  bool _constant = false;
+  int _denominator = 1;
+};
+
+}  // namespace orbweaver::bifurcation

@@ -1,0 +1,130 @@
+// Directions at crossings whose orbits have reversors: fixed lines.
+#include "orbweaver/bifurcation/directions.hpp"
+
+#include "bifurcation/crossings.hpp"
+#include "orbweaver/certificate/certificate.hpp"
+
+namespace orbweaver::bifurcation {
+namespace {
+
+constexpr double in_phase_doubling = 8.442930704977588;
+constexpr double in_phase_branch_point = 10.416773281973249;
+
+const loop::Isotropy& both() {
+  static const loop::Isotropy isotropy = test::pendulum_isotropy(*test::pendulum());
+  return isotropy;
+}
+
+const test::Crossing& doubling() {
+  static const test::Crossing crossing = [] {
+    const corrector::Result orbit = test::orbit_at(test::even_family_to_twelve(test::in_phase()), in_phase_doubling);
+    return test::crossing_at(*test::pendulum(), orbit.loop, both(), 2, 2);
+  }();
+  return crossing;
+}
+
+/// Part of loop - base along a direction of unit length.
+double along(const Direction& direction, const loop::Loop& loop) {
+  double sum = 0.0;
+  for (std::size_t n = 0; n < direction.modes.size(); ++n)
+    sum += direction.modes[n] * (loop.modes[n] - direction.base.modes[n]);
+  return sum;
+}
+
+/// How far a loop is from every symmetry of this name, whatever its phase.
+double least_defect(const loop::Loop& loop, const std::string& name) {
+  const systems::Description& system = test::pendulum()->description();
+  double least = 1e9;
+  for (const bool reversing : {false, true})
+    for (const systems::Symmetry& s : reversing ? system.reversors : system.equivariances)
+      for (int p = 0; p < 64 && s.name == name; ++p)
+        least = std::min(least, loop::symmetry_defect(loop, {name, reversing, s.matrix, p, 64}, system.angles));
+  return least;
+}
+
+void expect_born(const Direction& direction, double amplitude, const std::string& broken) {
+  const corrector::Result born =
+      born_orbit(*test::pendulum(), direction.base, direction.modes, direction.isotropy, amplitude);
+  ASSERT_TRUE(born.converged()) << born.detail;
+  EXPECT_NEAR(along(direction, born.loop), amplitude, 1e-9 * std::abs(amplitude));
+  EXPECT_GT(least_defect(born.loop, broken), 0.1 * std::abs(amplitude));
+  EXPECT_LT(std::abs(born.loop.period - direction.base.period), 10.0 * amplitude * amplitude + 1e-9);
+  EXPECT_LT(certificate::certify(*test::pendulum(), born.loop).closure, 1e-9);
+  EXPECT_EQ(
+      loop::to_text(loop::find_isotropy(test::pendulum()->description(), born.loop, 1e-2 * std::abs(amplitude), 16)),
+      loop::to_text(direction.isotropy));
+}
+
+TEST(Directions, TwoFamiliesLeaveADoublingPoint) {
+  const std::vector<Direction> found = directions(*test::pendulum(), doubling().base, both(), doubling().kernel);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(loop::to_text(found[0].isotropy), "R@0");
+  EXPECT_EQ(loop::to_text(found[1].isotropy), "RS@0");
+  for (const Direction& direction : found) {
+    EXPECT_FALSE(direction.both_sides);
+    EXPECT_EQ(direction.amplitude, 0.0);
+    double square = 0.0;
+    for (const double v : direction.modes) square += v * v;
+    EXPECT_NEAR(square, 1.0, 1e-12);
+    for (const double amplitude : {1e-3, 1e-6}) expect_born(direction, amplitude, "S");
+  }
+  // A brake orbit is at rest at s = 0; the other starts on the fixed set of RS: angles 0.
+  const std::vector<double> rest = loop::state_at(found[0].base, 0.0);
+  EXPECT_LT(std::hypot(rest[2], rest[3]), 1e-9);
+  const std::vector<double> middle = loop::state_at(found[1].base, 0.0);
+  EXPECT_LT(std::hypot(middle[0], middle[1]), 1e-9);
+}
+
+// Where the orbit starts does not matter: directions are shifted to the reversor's phase 0.
+TEST(Directions, DoNotDependOnWhereTheOrbitStartsNorOnTheBasisOfTheKernel) {
+  const std::vector<Direction> wanted = directions(*test::pendulum(), doubling().base, both(), doubling().kernel);
+  test::Crossing shifted{loop::time_shifted(doubling().base, 3.0 / 8.0), {}};
+  for (const double angle : {0.4, 0.4 + std::numbers::pi / 2}) {
+    loop::Loop v = doubling().base;
+    for (std::size_t n = 0; n < v.modes.size(); ++n)
+      v.modes[n] = std::cos(angle) * doubling().kernel[0][n] + std::sin(angle) * doubling().kernel[1][n];
+    shifted.kernel.push_back(loop::time_shifted(v, 3.0 / 8.0).modes);
+  }
+  const std::vector<Direction> found = directions(*test::pendulum(), shifted.base, both(), shifted.kernel);
+  ASSERT_EQ(found.size(), 2u);
+  for (std::size_t n = 0; n < 2; ++n) {
+    EXPECT_EQ(loop::to_text(found[n].isotropy), loop::to_text(wanted[n].isotropy));
+    const auto born = [](const Direction& d) {
+      return born_orbit(*test::pendulum(), d.base, d.modes, d.isotropy, 1e-2).loop;
+    };
+    EXPECT_TRUE(loop::find_map(test::pendulum()->description(), born(wanted[n]), born(found[n]), 1e-8, 16).has_value());
+    EXPECT_NEAR(born(found[n]).period, born(wanted[n]).period, 1e-10);
+  }
+}
+
+TEST(Directions, OneFamilyOfTheSamePeriodLosesTheReversors) {
+  const corrector::Result orbit = test::orbit_at(test::even_family_to_twelve(test::in_phase()), in_phase_branch_point);
+  const test::Crossing crossing = test::crossing_at(*test::pendulum(), orbit.loop, both(), 1, 1);
+  const std::vector<Direction> found = directions(*test::pendulum(), crossing.base, both(), crossing.kernel);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(loop::to_text(found[0].isotropy), "S@1/2");
+  EXPECT_FALSE(found[0].both_sides);
+  for (const double amplitude : {1e-3, 1e-6}) {
+    expect_born(found[0], amplitude, "R");
+    expect_born(found[0], amplitude, "RS");
+  }
+}
+
+TEST(Directions, RefuseWhatIsNoKernel) {
+  const test::Crossing& d = doubling();
+  const auto call = [&](const loop::Loop& base, std::vector<std::vector<double>> kernel) {
+    return directions(*test::pendulum(), base, both(), kernel);
+  };
+  EXPECT_THROW(static_cast<void>(call(d.base, {})), core::MisuseError);
+  EXPECT_THROW(static_cast<void>(call(d.base, {d.kernel[0], d.kernel[0]})), core::MisuseError);
+  EXPECT_THROW(static_cast<void>(call(d.base, {std::vector<double>(4, 0.5)})), core::MisuseError);
+  // Half of the kernel: the half map leads out of it.
+  EXPECT_THROW(static_cast<void>(call(d.base, {d.kernel[0]})), core::NumericalError);
+  loop::Loop crooked = d.base;
+  crooked.cosine(3, 0) += 1e-3;
+  crooked.sine(3, 1) += 1e-3;
+  EXPECT_THROW(static_cast<void>(call(crooked, d.kernel)), core::NumericalError);
+}
+
+}  // namespace
+}  // namespace orbweaver::bifurcation

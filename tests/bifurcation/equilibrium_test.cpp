@@ -1,0 +1,191 @@
+// Directions at equilibria where several oscillations share a period.
+#include <numbers>
+
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <boost/math/tools/roots.hpp>
+
+#include "bifurcation/crossings.hpp"
+#include "orbweaver/bifurcation/directions.hpp"
+#include "orbweaver/certificate/certificate.hpp"
+#include "spectrum/point_systems.hpp"
+
+namespace orbweaver::bifurcation {
+namespace {
+
+constexpr double two_pi = 2.0 * std::numbers::pi;
+
+std::vector<Direction> directions_at_origin(const systems::System& system) {
+  const std::vector<double> origin(4, 0.0);
+  const continuation::SweepResult swept =
+      continuation::sweep(system, origin, {.period_from = 6.0, .period_to = 6.5, .step = 0.05});
+  EXPECT_EQ(swept.degenerate.size(), 1u);
+  const continuation::DegenerateMode& mode = swept.degenerate.at(0);
+  return equilibrium_directions(system, origin, mode.period, mode.kernel, 10);
+}
+
+std::vector<std::string> isotropies(const std::vector<Direction>& directions) {
+  std::vector<std::string> out;
+  for (const Direction& d : directions) out.push_back(loop::to_text(d.isotropy));
+  return out;
+}
+
+/// T(E) of Henon-Heiles along x = 0: y'' = y^2 - y between the two lower roots of E = y^2 / 2 - y^3 / 3.
+double straight_line_period(double energy) {
+  const auto root = [&](double low, double high) {
+    const auto f = [&](double y) { return energy - y * y / 2 + y * y * y / 3; };
+    const auto [a, b] = boost::math::tools::bisect(f, low, high, boost::math::tools::eps_tolerance<double>(52));
+    return 0.5 * (a + b);
+  };
+  const double low = root(-1.0, 0.0);
+  const double high = root(0.0, 1.0);
+  const double third = 1.5 - low - high;  // the sum of the roots of y^3 - 3 y^2 / 2 + 3 E
+  const auto density = [&](double angle) {
+    const double y = 0.5 * (low + high) + 0.5 * (high - low) * std::sin(angle);
+    return 2.0 / std::sqrt(2.0 / 3.0 * (third - y));
+  };
+  return boost::math::quadrature::gauss_kronrod<double, 31>::integrate(density, -two_pi / 4, two_pi / 4, 8, 1e-14);
+}
+
+TEST(Equilibrium, ThreeFamiliesUpToSymmetryLeaveHenonHeiles) {
+  const auto system = systems::make_system("henon_heiles");
+  const std::vector<Direction> found = directions_at_origin(*system);
+  ASSERT_EQ(isotropies(found), (std::vector<std::string>{"S@0 R@0", "S@1/2 R@0", "C@1/3 RS@0"}));
+
+  std::vector<continuation::Orbit> ends;
+  for (const Direction& direction : found) {
+    EXPECT_FALSE(direction.both_sides);
+    EXPECT_EQ(direction.amplitude, 0.0);
+    continuation::Options options;
+    options.energy_to = 0.1;
+    const test::Trace trace = test::trace_of(system, {direction.base, direction.modes, direction.isotropy}, options);
+    EXPECT_EQ(trace.ending.reason, continuation::EndReason::energy_limit) << trace.ending.text();
+    ends.push_back(trace.last());
+    const loop::Loop& loop = ends.back().loop;
+    EXPECT_NEAR(ends.back().energy, 0.1, 1e-13);
+    const certificate::Certificate certificate = certificate::certify(*system, loop);
+    EXPECT_LT(certificate.closure, 1e-10);
+    EXPECT_LT(certificate.energy_drift, 1e-12);
+    // dW/dE = T, by Simpson's rule in between would need equal steps: the trapezium brackets it.
+    for (std::size_t n = 1; n < trace.orbits.size(); ++n) {
+      const continuation::Orbit& a = trace.orbits[n - 1];
+      const continuation::Orbit& b = trace.orbits[n];
+      const double mean = (b.action - a.action) / (b.energy - a.energy);
+      const double rounding = 1e-14 * b.loop.period / (b.energy - a.energy);
+      EXPECT_GT(mean, std::min(a.loop.period, b.loop.period) - rounding);
+      EXPECT_LT(mean, std::max(a.loop.period, b.loop.period) + rounding);
+    }
+    const loop::Isotropy here = loop::find_isotropy(system->description(), loop, 1e-6, 12);
+    EXPECT_EQ(loop::to_text(here), loop::to_text(direction.isotropy));
+  }
+  EXPECT_NEAR(ends[0].loop.period, straight_line_period(0.1), 1e-11);
+  for (std::size_t a = 0; a < ends.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b) {
+      EXPECT_GT(std::abs(ends[a].loop.period - ends[b].loop.period), 1e-3);
+      EXPECT_FALSE(loop::find_map(system->description(), ends[a].loop, ends[b].loop, 1e-2, 12).has_value());
+    }
+  EXPECT_LT(std::abs(loop::state_at(ends[0].loop, 1.0)[0]), 1e-12);
+  EXPECT_GT(std::abs(loop::state_at(ends[1].loop, 0.0)[0]), 0.1);
+}
+
+/// Two equal oscillators, H = (p^2 + q^2) / 2 + (q1^4 + q2^4) / 4 + coupling q1^2 q2^2 / 2; state q1, q2, p1, p2.
+/// Families from the origin: along an axis (2), along a diagonal (2), and loops (2, one up to reversal).
+class CoupledOscillators final : public test::PointSystem {
+ public:
+  CoupledOscillators(systems::Description description, double coupling)
+      : PointSystem(std::move(description)), _coupling(coupling) {}
+
+  [[nodiscard]] Eigen::VectorXd field_at(const Eigen::VectorXd& z) const override {
+    const Eigen::Vector4d g = gradient_at(z);
+    return Eigen::Vector4d(g(2), g(3), -g(0), -g(1));
+  }
+  [[nodiscard]] Eigen::MatrixXd jacobian_at(const Eigen::VectorXd& z) const override {
+    Eigen::Matrix4d a = Eigen::Matrix4d::Zero();
+    a.topRightCorner<2, 2>().setIdentity();
+    const double cross = -2 * _coupling * z(0) * z(1);
+    a.bottomLeftCorner<2, 2>() << -1 - 3 * z(0) * z(0) - _coupling * z(1) * z(1), cross, cross,
+        -1 - 3 * z(1) * z(1) - _coupling * z(0) * z(0);
+    return a;
+  }
+  [[nodiscard]] Eigen::VectorXd gradient_at(const Eigen::VectorXd& z) const override {
+    return Eigen::Vector4d(z(0) + std::pow(z(0), 3) + _coupling * z(0) * z(1) * z(1),
+                           z(1) + std::pow(z(1), 3) + _coupling * z(1) * z(0) * z(0), z(2), z(3));
+  }
+  [[nodiscard]] double energy(std::span<const double> z) const override {
+    return (z[0] * z[0] + z[1] * z[1] + z[2] * z[2] + z[3] * z[3]) / 2 + (std::pow(z[0], 4) + std::pow(z[1], 4)) / 4 +
+           _coupling * z[0] * z[0] * z[1] * z[1] / 2;
+  }
+
+  enum class Says { all, reversor, nothing };
+  [[nodiscard]] static systems::Description described(Says says) {
+    systems::Description d = test::description_of({"q1", "q2", "p1", "p2"});
+    d.conservative = d.symplectic = true;
+    const Eigen::Matrix4d reverse = Eigen::Vector4d(1, 1, -1, -1).asDiagonal();
+    if (says != Says::nothing) d.reversors = {{"R", reverse}};
+    if (says != Says::all) return d;
+    Eigen::Matrix4d swap = Eigen::Matrix4d::Zero();
+    swap(0, 1) = swap(1, 0) = swap(2, 3) = swap(3, 2) = 1;
+    const Eigen::Matrix4d mirror = Eigen::Vector4d(-1, 1, -1, 1).asDiagonal();
+    d.equivariances = {{"S", mirror}, {"X", swap}};
+    d.reversors.push_back({"RS", reverse * mirror});
+    return d;
+  }
+
+ private:
+  double _coupling;
+};
+
+/// Ratios of the oscillations' complex amplitudes, q2 / q1: 0 or infinity on an axis, +-1 on a diagonal, +-i loops.
+std::vector<std::string> kinds(const std::vector<Direction>& directions) {
+  std::vector<std::string> out;
+  for (const Direction& d : directions) {
+    loop::Loop v = d.base;
+    v.modes = d.modes;
+    const std::complex<double> first(v.cosine(1, 0), -v.sine(1, 0));
+    const std::complex<double> second(v.cosine(1, 1), -v.sine(1, 1));
+    if (std::min(std::abs(first), std::abs(second)) < 0.02)
+      out.emplace_back(std::abs(first) < std::abs(second) ? "second axis" : "first axis");
+    else if (std::abs(second / first - 1.0) < 0.05)
+      out.emplace_back("diagonal");
+    else if (std::abs(second / first + 1.0) < 0.05)
+      out.emplace_back("other diagonal");
+    else if (std::abs(std::abs((second / first).imag()) - 1.0) < 0.05)
+      out.emplace_back((second / first).imag() > 0 ? "loop" : "other loop");
+    else
+      out.emplace_back("?");
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+TEST(Equilibrium, OscillatorsWithTheirSymmetriesDeclared) {
+  const CoupledOscillators system(CoupledOscillators::described(CoupledOscillators::Says::all), 0.3);
+  const std::vector<Direction> found = directions_at_origin(system);
+  EXPECT_EQ(found.size(), 3u);
+  const std::vector<std::string> names = kinds(found);
+  EXPECT_EQ(std::count(names.begin(), names.end(), "?"), 0);
+  for (const Direction& d : found) EXPECT_EQ(d.amplitude, 0.0) << loop::to_text(d.isotropy);
+}
+
+TEST(Equilibrium, OscillatorsWithoutDeclaredSymmetriesAreFoundByASearch) {
+  const CoupledOscillators reversible(CoupledOscillators::described(CoupledOscillators::Says::reversor), 0.3);
+  EXPECT_EQ(kinds(directions_at_origin(reversible)),
+            (std::vector<std::string>{"diagonal", "first axis", "loop", "other diagonal", "second axis"}));
+  const CoupledOscillators bare(CoupledOscillators::described(CoupledOscillators::Says::nothing), 0.3);
+  EXPECT_EQ(
+      kinds(directions_at_origin(bare)),
+      (std::vector<std::string>{"diagonal", "first axis", "loop", "other diagonal", "other loop", "second axis"}));
+}
+
+// A single oscillation has one direction, with or without a reversor.
+TEST(Equilibrium, ASingleOscillation) {
+  const auto system = systems::make_system("harmonic_oscillator");
+  const Eigen::VectorXcd v = Eigen::Vector2cd(std::complex<double>(0, 1), -1.0).normalized();
+  const std::vector<Direction> found = equilibrium_directions(*system, std::vector<double>(2, 0.0), two_pi, v, 4);
+  EXPECT_EQ(isotropies(found), (std::vector<std::string>{"S@1/2 R@0"}));
+  const test::Declaring bare(system, {}, {});
+  EXPECT_EQ(isotropies(equilibrium_directions(bare, std::vector<double>(2, 0.0), two_pi, v, 4)),
+            (std::vector<std::string>{""}));
+}
+
+}  // namespace
+}  // namespace orbweaver::bifurcation

@@ -1,0 +1,130 @@
+// Directions at crossings without reversors, or with those undeclared: found by a search.
+#include <algorithm>
+
+#include "bifurcation/crossings.hpp"
+#include "orbweaver/bifurcation/directions.hpp"
+
+namespace orbweaver::bifurcation {
+namespace {
+
+using test::Crossing;
+
+/// A double pendulum that says only some of its symmetries: "S", "S R" or nothing.
+std::shared_ptr<const systems::System> declaring(const std::shared_ptr<const systems::System>& system, bool mirror) {
+  return std::make_shared<test::Declaring>(
+      system, mirror ? system->description().equivariances : std::vector<systems::Symmetry>{},
+      std::vector<systems::Symmetry>{});
+}
+
+/// The family of the slowest oscillation about the lower equilibrium.
+test::Family slow_family(const std::shared_ptr<const systems::System>& system, double period_limit) {
+  const std::vector<double> origin(4, 0.0);
+  const continuation::NormalMode mode = continuation::sweep(*system, origin, {}).modes.front();
+  return test::family_from(system, {loop::constant_loop(origin, mode.period, 10), mode.direction, mode.isotropy},
+                           period_limit);
+}
+
+const test::Family& in_phase() {
+  static const test::Family family = slow_family(test::pendulum(), 10.3);
+  return family;
+}
+
+/// Where a family of order q of the half map leaves: its orbit m times around.
+Crossing crossing_of(const test::Family& family, double index, int times) {
+  return test::crossing_at(*family.system, family.with_index(index), family.isotropy, times, 2);
+}
+
+/// The largest |part| of the direction along those of `lines`, all started at the same instant.
+std::vector<double> overlaps(const std::vector<double>& modes, const std::vector<std::vector<double>>& lines) {
+  std::vector<double> out;
+  for (const std::vector<double>& line : lines) {
+    double sum = 0.0;
+    for (std::size_t n = 0; n < modes.size(); ++n) sum += modes[n] * line[n];
+    out.push_back(std::abs(sum));
+  }
+  return out;
+}
+
+/// All images of the known directions under the half map and the shifts by a turn of the orbit, in the crossing's own time.
+std::vector<std::vector<double>> images(const Crossing& crossing, const std::vector<Direction>& known, int times) {
+  std::vector<std::vector<double>> out;
+  for (const Direction& direction : known) {
+    loop::Loop v = direction.base;
+    v.modes = direction.modes;
+    // Find the start of the direction's base on the crossing's.
+    for (int p = 0; p < 16 * times; ++p) {
+      const double shift = p / (16.0 * times);
+      if (loop::mean_distance(loop::time_shifted(direction.base, shift), crossing.base) > 1e-6) continue;
+      for (int turn = 0; turn < 2 * times; ++turn)
+        out.push_back(loop::time_shifted(v, shift + turn / (2.0 * times)).modes);
+      break;
+    }
+  }
+  return out;
+}
+
+/// A search without declared reversors finds the directions that the reversors give.
+void expect_same_by_search(const test::Family& family, const Crossing& crossing, int times, bool mirror,
+                           std::size_t count, const std::string& isotropy) {
+  const std::vector<Direction> known = directions(*family.system, crossing.base, family.isotropy, crossing.kernel);
+  const auto fewer = declaring(family.system, mirror);
+  const std::vector<Direction> found = directions(*fewer, crossing.base, {}, crossing.kernel);
+  ASSERT_EQ(found.size(), count);
+  // Modes of vectors shifted by half a turn carry the mirror, which changes a sign only.
+  const std::vector<std::vector<double>> lines = images(crossing, known, times);
+  for (const Direction& direction : found) {
+    EXPECT_GT(direction.amplitude, 0.0);
+    EXPECT_EQ(loop::to_text(direction.isotropy), isotropy);
+    const std::vector<double> parts = overlaps(direction.modes, lines);
+    EXPECT_GT(*std::max_element(parts.begin(), parts.end()), std::cos(0.02));
+    EXPECT_EQ(direction.both_sides, known.front().both_sides);
+  }
+}
+
+TEST(Search, FindsBothFamiliesOfADoublingPoint) {
+  const Crossing crossing = crossing_of(in_phase(), 0.0, 2);
+  EXPECT_NEAR(crossing.base.period, 2 * 8.442930704977588, 1e-8);
+  expect_same_by_search(in_phase(), crossing, 2, true, 2, "");
+}
+
+TEST(Search, FindsTheirImagesTooWhereTheHalfMapIsUnknown) {
+  expect_same_by_search(in_phase(), crossing_of(in_phase(), 0.0, 2), 2, false, 4, "");
+}
+
+// e^{2 pi i / 6}: six rotations, three turns, the angle fixed by terms of order 4 only.
+TEST(Search, FindsBothFamiliesOfOrderSix) {
+  const Crossing crossing = crossing_of(in_phase(), 1.0, 3);
+  const std::vector<Direction> known =
+      directions(*test::pendulum(), crossing.base, in_phase().isotropy, crossing.kernel);
+  ASSERT_EQ(known.size(), 2u);
+  EXPECT_EQ(loop::to_text(known[0].isotropy), "R@0");
+  EXPECT_EQ(loop::to_text(known[1].isotropy), "RS@0");
+  expect_same_by_search(in_phase(), crossing, 3, true, 2, "");
+}
+
+// e^{2 pi i / 5}: one curve, whose sides are different orbits; S and the reversors stay.
+TEST(Search, FindsTheOneFamilyOfOrderFive) {
+  const Crossing crossing = crossing_of(in_phase(), 2.0 * std::cos(2.0 * std::numbers::pi / 5.0), 5);
+  const std::vector<Direction> known =
+      directions(*test::pendulum(), crossing.base, in_phase().isotropy, crossing.kernel);
+  ASSERT_EQ(known.size(), 1u);
+  EXPECT_EQ(loop::to_text(known[0].isotropy), "S@1/2 R@0");
+  EXPECT_TRUE(known[0].both_sides);
+  expect_same_by_search(in_phase(), crossing, 5, true, 1, "S@1/2");
+}
+
+// With m2 = 0.87 the slow family begins at an index below -1 and passes it.
+TEST(Search, FindsTheOneFamilyOfOrderThree) {
+  const auto system = systems::make_system("double_pendulum", {{"m2", 0.87}});
+  const test::Family family = slow_family(system, 10.0);
+  ASSERT_LT(family.index_of(family.orbits.front().loop), -1.0);
+  const Crossing crossing = crossing_of(family, -1.0, 3);
+  const std::vector<Direction> known = directions(*system, crossing.base, family.isotropy, crossing.kernel);
+  ASSERT_EQ(known.size(), 1u);
+  EXPECT_EQ(loop::to_text(known[0].isotropy), "S@1/2 R@0");
+  EXPECT_TRUE(known[0].both_sides);
+  expect_same_by_search(family, crossing, 3, true, 1, "S@1/2");
+}
+
+}  // namespace
+}  // namespace orbweaver::bifurcation
