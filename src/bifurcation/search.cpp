@@ -12,7 +12,9 @@ namespace orbweaver::bifurcation {
 namespace {
 
 constexpr double same_direction = 0.02;  // radians; after the second correction they agree much closer
-constexpr double largest_tilt = 1.0;     // radians between the pinned direction and the one of the orbit found
+constexpr double settled = 1e-3;         // radians between the pinned direction and the one of the orbit found
+constexpr double largest_tilt = 1.0;
+constexpr int most_pins = 8;
 
 // The radical inverse of n in a base: a number in (0, 1).
 double halton(int n, int base) {
@@ -31,7 +33,7 @@ std::optional<Eigen::VectorXd> direction_of(const loop::Loop& base, const Symmet
   const Eigen::VectorXd inside = group.coordinates_of({gap.data(), static_cast<std::size_t>(gap.size())});
   const double length = inside.norm();
   const double outside = std::sqrt(std::max(0.0, gap.squaredNorm() - length * length));
-  if (length > amplitude / std::cos(largest_tilt) || outside > length) return std::nullopt;
+  if (!(length <= amplitude / std::cos(largest_tilt) && outside <= length)) return std::nullopt;
   return inside / length;
 }
 
@@ -44,28 +46,28 @@ std::vector<FoundOrbit> search_directions(const systems::System& system, const l
                                           const corrector::Options& options) {
   std::vector<FoundOrbit> found;
   std::vector<Eigen::VectorXd> taken = known;
-  const auto attempt = [&](const Eigen::VectorXd& coordinates) -> std::optional<FoundOrbit> {
-    const corrector::Result result =
-        born_orbit(system, base, group.modes_of(coordinates), isotropy, amplitude, options);
-    if (!result.converged()) return std::nullopt;
-    const auto direction = direction_of(base, group, result.loop, amplitude);
-    if (!direction) return std::nullopt;
-    return FoundOrbit{*direction, result.loop};
-  };
   const auto is_new = [&](const Eigen::VectorXd& coordinates) {
     return std::none_of(taken.begin(), taken.end(), [&](const Eigen::VectorXd& other) {
       return group.image(coordinates, other, same_direction) != 0;
     });
   };
   for (const Eigen::VectorXd& start : starts) {
-    const auto near = attempt(start);
-    if (!near || !is_new(near->coordinates)) continue;
-    // Once more along the orbit's own direction: now its part in the kernel has the amplitude itself.
-    const auto orbit = attempt(near->coordinates);
-    if (!orbit || (orbit->coordinates - near->coordinates).norm() > same_direction || !is_new(orbit->coordinates))
-      continue;
-    taken.push_back(orbit->coordinates);
-    found.push_back(*orbit);
+    // Newton's method turns away from the direction that it is pinned to, or stalls on the way: it is pinned again to the
+    // one it came to, until that stays. Then the part in the kernel has the amplitude itself.
+    Eigen::VectorXd pinned = start;
+    for (int pins = 0; pins < most_pins; ++pins) {
+      const corrector::Result result = born_orbit(system, base, group.modes_of(pinned), isotropy, amplitude, options);
+      const auto direction = direction_of(base, group, result.loop, amplitude);
+      if (!direction) break;
+      const double tilt = (*direction - pinned).norm();
+      pinned = *direction;
+      if (!result.converged()) continue;
+      if (!is_new(pinned)) break;
+      if (tilt > settled) continue;
+      taken.push_back(pinned);
+      found.push_back({pinned, result.loop});
+      break;
+    }
   }
   return found;
 }
@@ -80,7 +82,7 @@ std::vector<Eigen::VectorXd> start_directions(int dimension, int order, int coun
     return out;
   }
   constexpr int primes[] = {2, 3, 5, 7, 11, 13, 17, 19};
-  for (int n = 1; n <= count << (dimension - 2); ++n) {
+  for (int n = 1; n <= count << (dimension - 1); ++n) {
     Eigen::VectorXd v(dimension);
     for (int i = 0; i < dimension; ++i)
       v(i) = boost::math::quantile(boost::math::normal(), halton(n, primes[static_cast<std::size_t>(i)]));

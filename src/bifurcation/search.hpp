@@ -23,7 +23,7 @@ struct FoundOrbit {
                                                         const corrector::Options& options);
 
 /// Unit vectors: evenly over the angles [0, 2 pi / order) of a plane, or from a Halton sequence on a sphere of more
-/// dimensions (twice as many for each).
+/// dimensions (four times as many in three, doubling with each).
 [[nodiscard]] std::vector<Eigen::VectorXd> start_directions(int dimension, int order, int count);
 
 }  // namespace orbweaver::bifurcation

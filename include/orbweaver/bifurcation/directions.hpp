@@ -26,7 +26,7 @@ struct Direction {
 struct DirectionOptions {
   double symmetry_tolerance = 1e-7;  ///< of the base loop's symmetries, as loop::find_isotropy
   double kernel_tolerance = 1e-4;    ///< how far symmetries may take kernel vectors out of the kernel
-  int seeds = 12;                    ///< of a search in a plane; twice as many for each further dimension
+  int seeds = 12;                    ///< of a search in a plane; 2^(n-1) times as many in n > 2 dimensions
   corrector::Options corrector{};    ///< of a search
 };
 
