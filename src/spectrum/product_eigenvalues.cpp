@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace orbweaver::spectrum {
 
@@ -12,6 +13,8 @@ using Complex = std::complex<double>;
 constexpr double joined_norm = 100.0;
 constexpr int most_sweeps = 40;
 constexpr double parted = 1e-14;
+/// Double eigenvalues that rounding has split take the library's QR iteration over 160 sweeps, where it stops by default.
+constexpr int slow_iterations = 10000;
 
 /// Neighbouring factors multiplied while the norm stays below `joined_norm`, so that no digits are lost.
 std::vector<Eigen::MatrixXd> joined(const std::vector<Eigen::MatrixXd>& factors) {
@@ -95,8 +98,12 @@ bool before(const Complex& a, const Complex& b) {
 }
 
 std::vector<Complex> eigenvalues_of(const Eigen::MatrixXd& block) {
-  const Eigen::VectorXcd values = Eigen::EigenSolver<Eigen::MatrixXd>(block, false).eigenvalues();
-  std::vector<Complex> result(values.data(), values.data() + values.size());
+  Eigen::EigenSolver<Eigen::MatrixXd> solver;
+  solver.setMaxIterations(slow_iterations);
+  solver.compute(block, false);
+  std::vector<Complex> result(static_cast<std::size_t>(block.rows()), std::numeric_limits<double>::quiet_NaN());
+  if (solver.info() != Eigen::Success) return result;
+  std::copy_n(solver.eigenvalues().data(), result.size(), result.begin());
   std::sort(result.begin(), result.end(), before);
   return result;
 }
