@@ -1,0 +1,35 @@
+#pragma once
+
+#include <limits>
+#include <vector>
+
+namespace orbweaver::bifurcation {
+
+/// An extremum of the period or the energy along a family, between two positions.
+struct Fold {
+  enum class Quantity { period, energy } quantity;
+  double from;
+  double to;
+};
+
+/// Finds folds from the orbits of a family one after the other.
+class FoldWatch {
+ public:
+  /// The folds that this orbit shows, between it and up to two earlier ones that differ by more than rounding: differences
+  /// count above 1e-10 times the largest modulus so far. Quantities that are NaN are passed over. Throws MisuseError unless positions increase.
+  [[nodiscard]] std::vector<Fold> advance(double position, double period, double energy);
+
+  /// One quantity's last two orbits that differ.
+  struct Turn {
+    double before = std::numeric_limits<double>::quiet_NaN();  ///< position of the earlier one
+    double position = std::numeric_limits<double>::quiet_NaN();
+    double value = 0.0;
+    double scale = 0.0;  ///< largest modulus so far
+    int direction = 0;   ///< of the last change
+  };
+
+  Turn period;  ///< plain state, for checkpoints
+  Turn energy;
+};
+
+}  // namespace orbweaver::bifurcation

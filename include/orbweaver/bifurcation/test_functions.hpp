@@ -1,0 +1,53 @@
+#pragma once
+
+#include <vector>
+
+#include "orbweaver/bifurcation/sector.hpp"
+#include "orbweaver/spectrum/floquet.hpp"
+#include "orbweaver/systems/description.hpp"
+
+namespace orbweaver::bifurcation {
+
+/// A number and a bound on its absolute error.
+struct Reading {
+  double value;
+  double error;
+
+  /// -1 or 1, or 0 where the value does not exceed its error bound or either is not a number.
+  [[nodiscard]] int sign() const;
+};
+
+/// A continuous function along a family, within [-1, 1], that changes sign where another family may cross.
+struct TestFunction {
+  enum class Kind {
+    sector,  ///< a multiplier passes exp(+-2 pi i j/q)
+    krein,   ///< two pairs of multipliers meet and leave the unit circle, or come back to it (symplectic)
+    torus,   ///< a complex pair passes the unit circle (dissipative)
+  };
+  Kind kind = Kind::sector;
+  Sector sector{};  ///< of Kind::sector
+
+  friend bool operator==(const TestFunction&, const TestFunction&) = default;
+};
+
+/// What can happen to orbits of the system whose fundamental map has this order: all sectors (for dissipative systems q = 1
+/// and 2), then krein (two pairs or more) or torus (two multipliers or more). Empty where no multiplier is nontrivial.
+[[nodiscard]] std::vector<TestFunction> test_functions(const systems::Description& system, int fundamental_order,
+                                                       int subharmonics);
+
+/// The function at an orbit with `stability.fundamental` (stability indices k_i, or multipliers mu_i):
+///   sector     prod_i (k_i - c)/(2 + |k_i|), c = 2 cos(2 pi j/q);  dissipative: prod_i (mu_i -+ 1)/(1 + |mu_i|)
+///   krein      prod_{i<j} (k_i - k_j)^2 / (8 + 2 |k_i|^2 + 2 |k_j|^2): real pairs apart > 0, one complex pair < 0
+///   torus      prod_{i<j} (mu_i mu_j - 1)/(1 + |mu_i mu_j|)
+/// with the error that follows from `fundamental_error`. A conserved energy's multiplier 1 is left out.
+/// Throws MisuseError if the number of multipliers is not the system's.
+[[nodiscard]] Reading evaluate(const TestFunction& function, const systems::Description& system,
+                               const spectrum::Stability& stability);
+
+/// Whether a zero of the function, located at an orbit with this stability, is what the function is for. No continuous
+/// function can tell: krein vanishes as well where two pairs meet off the unit circle (k_i = k_j outside [-2, 2]) and,
+/// touching zero (`tangency`), where two pairs pass one another; torus where mu_i mu_j = 1 with both real.
+[[nodiscard]] bool is_event(const TestFunction& function, const systems::Description& system,
+                            const spectrum::Stability& stability, bool tangency);
+
+}  // namespace orbweaver::bifurcation

@@ -1,0 +1,223 @@
+#include "orbweaver/bifurcation/detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "orbweaver/bifurcation/locate.hpp"
+#include "orbweaver/core/error.hpp"
+
+namespace orbweaver::bifurcation {
+
+namespace {
+
+using Node = DetectorState::Node;
+
+void sort_by_position(std::vector<Bracket>& brackets) {
+  std::stable_sort(brackets.begin(), brackets.end(),
+                   [](const Bracket& a, const Bracket& b) { return a.from < b.from; });
+}
+
+/// The extremum of the parabola through three nodes.
+struct Vertex {
+  double position;
+  double value;
+  double curvature;
+};
+
+Vertex vertex_of(const Node& a, const Node& b, const Node& c) {
+  const double before = b.position - a.position;
+  const double after = c.position - b.position;
+  const double slope_before = (b.reading.value - a.reading.value) / before;
+  const double slope_after = (c.reading.value - b.reading.value) / after;
+  const double half_curvature = (slope_after - slope_before) / (before + after);
+  const double slope = slope_before + half_curvature * before;
+  return {b.position - 0.5 * slope / half_curvature, b.reading.value - 0.25 * slope * slope / half_curvature,
+          2.0 * half_curvature};
+}
+
+void add_sign_changes(std::size_t function, const std::vector<Node>& nodes, std::vector<Bracket>& found) {
+  const Node* before = nullptr;
+  for (const Node& node : nodes) {
+    if (node.reading.sign() == 0) continue;
+    if (before != nullptr && before->reading.sign() != node.reading.sign())
+      found.push_back({function, before->position, node.position, false});
+    before = &node;
+  }
+}
+
+}  // namespace
+
+std::optional<Station> Detector::probed(const Probe& probe, double position) const {
+  std::optional<Station> station = probe(position);
+  core::require(!station || station->readings.size() == _state.watches.size(),
+                "detector: the probe's station has another number of readings");
+  return station;
+}
+
+/// Whether the stations next to n let expect another reading there: linear interpolation between them is off by half as
+/// much as linear extrapolation from one side. The family's second station is compared with its first.
+bool Detector::surprising(const std::vector<Station>& grid, std::size_t n) const {
+  if (n + 1 == grid.size()) return false;
+  for (std::size_t f = 0; f < _state.watches.size(); ++f) {
+    const Reading& here = grid[n].readings[f];
+    const Reading& after = grid[n + 1].readings[f];
+    const double allowed = _options.surprise * std::clamp(_state.watches[f].scale, 0.1, 1.0);
+    if (n == 0) {
+      if (std::abs(after.value - here.value) > 2.0 * allowed + here.error + after.error) return true;
+      continue;
+    }
+    const Reading& before = grid[n - 1].readings[f];
+    const double share = (grid[n].position - grid[n - 1].position) / (grid[n + 1].position - grid[n - 1].position);
+    const double expected = before.value + share * (after.value - before.value);
+    const double error = before.error + here.error + after.error;
+    if (std::abs(here.value - expected) > 0.5 * allowed + error) return true;
+  }
+  return false;
+}
+
+std::vector<Station> Detector::subdivided(const Station& next, const Probe& probe) const {
+  std::vector<Station> grid = _state.stations;
+  const auto known = static_cast<std::ptrdiff_t>(grid.size());
+  grid.push_back(next);
+  bool halved = known > 0;
+  for (int level = 0; halved && level < _options.halvings; ++level) {
+    halved = false;
+    std::vector<Station> finer(grid.begin(), grid.begin() + known);
+    for (auto n = static_cast<std::size_t>(known); n < grid.size(); ++n) {
+      if (surprising(grid, n - 1) || surprising(grid, n)) {
+        if (auto middle = probed(probe, 0.5 * (grid[n - 1].position + grid[n].position))) {
+          finer.push_back(*std::move(middle));
+          halved = true;
+        }
+      }
+      finer.push_back(grid[n]);
+    }
+    grid = std::move(finer);
+  }
+  return {grid.begin() + known, grid.end()};
+}
+
+/// Closes in on the minimum of |value| between two nodes of one sign.
+void Detector::examine(std::size_t function, const Node& left, const Node& right, const Probe& probe,
+                       std::vector<Bracket>& found) {
+  const int sign = left.reading.sign();
+  std::vector<Node> nodes{left, right};
+  bool crossed = false;
+  const auto size = [&](double position) {
+    if (position == right.position) return std::abs(right.reading.value);
+    if (crossed) return 0.0;
+    const std::optional<Station> station = probed(probe, position);
+    if (!station) return std::nan("");
+    const Reading& reading = station->readings[function];
+    nodes.push_back({position, reading});
+    crossed = reading.sign() == -sign;
+    return sign * reading.value;
+  };
+  const double length = right.position - left.position;
+  (void)locate_minimum(size, left.position, right.position, 1e-6 * length, _options.probes);
+  std::sort(nodes.begin(), nodes.end(), [](const Node& a, const Node& b) { return a.position < b.position; });
+  double& examined_to = _state.watches[function].examined_to;
+  if (crossed) {
+    add_sign_changes(function, nodes, found);
+    examined_to = right.position;
+    return;
+  }
+  const auto zero = [&](const Node& node) {
+    return std::abs(node.reading.value) <= std::max(node.reading.error, _options.touch);
+  };
+  const auto least = std::min_element(nodes.begin(), nodes.end(), [](const Node& a, const Node& b) {
+    return std::abs(a.reading.value) < std::abs(b.reading.value);
+  });
+  if (least->position < right.position - 0.01 * length) examined_to = right.position;
+  if (!zero(*least) || !(least->reading.error <= _options.touch_error)) return;
+  auto from = least;
+  auto to = least;
+  while (from != nodes.begin() && zero(*from)) --from;
+  while (to + 1 != nodes.end() && zero(*to)) ++to;
+  found.push_back({function, from->position, to->position, true});
+}
+
+/// Examines the minimum of |value| that the parabola through three nodes has between two of one sign, if it may reach zero.
+void Detector::look_for_minimum(std::size_t function, const Node& a, const Node& b, const Node& c, const Probe& probe,
+                                std::vector<Bracket>& found) {
+  const Vertex vertex = vertex_of(a, b, c);
+  const double examined_to = _state.watches[function].examined_to;
+  if (!(vertex.position > std::max(a.position, examined_to) && vertex.position < c.position)) return;
+  const bool early = vertex.position <= b.position;
+  const Node& left = early ? a : b;
+  const Node& right = early ? b : c;
+  const int sign = b.reading.sign();
+  if (left.reading.sign() != right.reading.sign() || sign * vertex.curvature <= 0.0) return;
+  const auto [least, most] = std::minmax({sign * a.reading.value, sign * b.reading.value, sign * c.reading.value});
+  const double smaller = std::min(std::abs(left.reading.value), std::abs(right.reading.value));
+  if (sign * vertex.value > std::max(most - least, 0.5 * smaller)) return;
+  const bool from_a = a.reading.sign() == sign && a.position >= examined_to;
+  examine(function, from_a ? a : b, c.reading.sign() == sign ? c : b, probe, found);
+}
+
+void Detector::take(std::size_t function, const Node& node, const Probe& probe, std::vector<Bracket>& found) {
+  Watch& watch = _state.watches[function];
+  if (node.reading.sign() == 0) {
+    const double size = std::abs(node.reading.value);
+    if (node.reading.error <= _options.touch_error && (!watch.faint || size < std::abs(watch.faint->reading.value)))
+      watch.faint = node;
+    return;
+  }
+  std::vector<Node>& last = watch.signed_nodes;
+  if (!last.empty()) {
+    if (last.back().reading.sign() != node.reading.sign())
+      found.push_back({function, last.back().position, node.position, false});
+    else if (watch.faint)
+      examine(function, last.back(), node, probe, found);
+  }
+  if (last.size() == 2) {
+    look_for_minimum(function, last[0], last[1], node, probe, found);
+    last.erase(last.begin());
+  }
+  last.push_back(node);
+  watch.faint.reset();
+}
+
+std::vector<Bracket> Detector::advance(const Station& next, const Probe& probe) {
+  if (_state.stations.empty()) _state.watches.resize(next.readings.size());
+  core::require(next.readings.size() == _state.watches.size(), "detector: a station has another number of readings");
+  core::require(_state.stations.empty() || next.position > _state.stations.back().position,
+                "detector: positions must increase");
+  for (std::size_t f = 0; f < next.readings.size(); ++f)
+    if (next.readings[f].sign() != 0)
+      _state.watches[f].scale = std::max(_state.watches[f].scale, std::abs(next.readings[f].value));
+  std::vector<Bracket> found;
+  for (Station& station : subdivided(next, probe)) {
+    for (std::size_t f = 0; f < station.readings.size(); ++f)
+      take(f, {station.position, station.readings[f]}, probe, found);
+    _state.stations.push_back(std::move(station));
+  }
+  if (_state.stations.size() > 2) _state.stations.erase(_state.stations.begin(), _state.stations.end() - 2);
+  sort_by_position(found);
+  return found;
+}
+
+std::vector<Bracket> Detector::finish(const Probe& probe) {
+  std::vector<Bracket> found;
+  std::optional<Station> middle;
+  for (std::size_t f = 0; f < _state.watches.size(); ++f) {
+    const std::vector<Node>& last = _state.watches[f].signed_nodes;
+    if (last.size() < 2 || last[0].reading.sign() != last[1].reading.sign()) continue;
+    const double position = 0.5 * (last[0].position + last[1].position);
+    if (std::abs(last[1].reading.value) > _options.surprise || position <= _state.watches[f].examined_to) continue;
+    if (!middle || middle->position != position) middle = probed(probe, position);
+    if (!middle) continue;
+    const std::vector<Node> nodes{last[0], {position, middle->readings[f]}, last[1]};
+    if (nodes[1].reading.sign() == nodes[0].reading.sign())
+      look_for_minimum(f, nodes[0], nodes[1], nodes[2], probe, found);
+    else if (nodes[1].reading.sign() == 0 && nodes[1].reading.error <= _options.touch_error)
+      examine(f, nodes[0], nodes[2], probe, found);
+    else
+      add_sign_changes(f, nodes, found);
+  }
+  sort_by_position(found);
+  return found;
+}
+
+}  // namespace orbweaver::bifurcation

@@ -1,0 +1,45 @@
+#include "orbweaver/bifurcation/fold_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "orbweaver/core/error.hpp"
+
+namespace orbweaver::bifurcation {
+
+namespace {
+
+constexpr double visible = 1e-10;
+
+/// True if the quantity has turned since `turn.before`.
+bool turned(const FoldWatch::Turn& turn, int direction) { return turn.direction != 0 && direction != turn.direction; }
+
+void take(FoldWatch::Turn& turn, double position, double value, Fold::Quantity quantity, std::vector<Fold>& folds) {
+  if (std::isnan(value)) return;
+  turn.scale = std::max(turn.scale, std::abs(value));
+  if (std::isnan(turn.position)) {
+    turn.position = position;
+    turn.value = value;
+    return;
+  }
+  core::require(position > turn.position, "fold watch: positions must increase");
+  const double change = value - turn.value;
+  if (!(std::abs(change) > visible * turn.scale)) return;
+  const int direction = change > 0.0 ? 1 : -1;
+  if (turned(turn, direction)) folds.push_back({quantity, turn.before, position});
+  turn.before = turn.position;
+  turn.position = position;
+  turn.value = value;
+  turn.direction = direction;
+}
+
+}  // namespace
+
+std::vector<Fold> FoldWatch::advance(double at, double period_there, double energy_there) {
+  std::vector<Fold> folds;
+  take(period, at, period_there, Fold::Quantity::period, folds);
+  take(energy, at, energy_there, Fold::Quantity::energy, folds);
+  return folds;
+}
+
+}  // namespace orbweaver::bifurcation

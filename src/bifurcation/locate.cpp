@@ -1,0 +1,89 @@
+#include "orbweaver/bifurcation/locate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include <boost/math/tools/minima.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
+
+#include "orbweaver/core/error.hpp"
+
+namespace orbweaver::bifurcation {
+
+namespace {
+
+struct NoValue {};
+
+/// Counts evaluations, and leaves the library's algorithm where there is no value.
+struct Counted {
+  const Along& function;
+  int evaluations = 0;
+
+  double operator()(double position) {
+    ++evaluations;
+    const double value = function(position);
+    if (std::isnan(value)) throw NoValue{};
+    return value;
+  }
+};
+
+void check_interval(double from, double to, double tolerance) {
+  core::require(from < to && tolerance > 0.0, "location needs an interval with from < to and a tolerance > 0");
+}
+
+}  // namespace
+
+std::optional<Located> locate_root(const Along& function, double from, double to, double tolerance,
+                                   int max_evaluations) {
+  check_interval(from, to, tolerance);
+  Counted counted{function};
+  try {
+    const double at_from = counted(from);
+    const double at_to = counted(to);
+    if (at_from == 0.0) return Located{from, 0.0, 0.0, counted.evaluations, true};
+    if (at_to == 0.0) return Located{to, 0.0, 0.0, counted.evaluations, true};
+    if (std::signbit(at_from) == std::signbit(at_to)) return std::nullopt;
+    double best = from;
+    double least = std::abs(at_from);
+    const auto watched = [&](double position) {
+      const double value = counted(position);
+      if (std::abs(value) < std::abs(least)) {
+        best = position;
+        least = value;
+      }
+      return value;
+    };
+    if (std::abs(at_to) < std::abs(least)) {
+      best = to;
+      least = at_to;
+    }
+    const auto close = [tolerance](double a, double b) { return std::abs(b - a) <= tolerance; };
+    auto budget = static_cast<std::uintmax_t>(std::max(1, max_evaluations - 2));
+    const auto [a, b] = boost::math::tools::toms748_solve(watched, from, to, at_from, at_to, close, budget);
+    return Located{best, least, b - a, counted.evaluations, close(a, b)};
+  } catch (const NoValue&) {
+    return std::nullopt;
+  }
+}
+
+std::optional<Located> locate_minimum(const Along& function, double from, double to, double tolerance,
+                                      int max_evaluations) {
+  check_interval(from, to, tolerance);
+  Counted counted{function};
+  const double length = to - from;
+  const double share = std::clamp(tolerance / length, 1e-8, 0.5);
+  // The library's tolerance is relative to the position, here a number in [0, 1].
+  const int bits = 1 + static_cast<int>(std::ceil(-std::log2(share)));
+  auto budget = static_cast<std::uintmax_t>(std::max(1, max_evaluations - 1));
+  const std::uintmax_t given = budget;
+  try {
+    const auto [t, value] = boost::math::tools::brent_find_minima(
+        [&](double u) { return counted(u == 1.0 ? to : from + u * length); }, 0.0, 1.0, bits, budget);
+    return Located{t == 1.0 ? to : from + t * length, value, share * length, counted.evaluations, budget < given};
+  } catch (const NoValue&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace orbweaver::bifurcation

@@ -1,0 +1,288 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "orbweaver/bifurcation/detector.hpp"
+#include "orbweaver/core/error.hpp"
+
+namespace {
+
+using namespace orbweaver;
+using namespace orbweaver::bifurcation;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+using Functions = std::vector<std::function<Reading(double)>>;
+
+/// A family whose readings are given functions of the position; counts its probes.
+struct Family {
+  Functions functions;
+  Detector detector{};
+  int probes = 0;
+  double last = -std::numeric_limits<double>::infinity();
+  double earlier = last;
+  double before_that = last;
+
+  [[nodiscard]] Station station(double position) const {
+    Station out{position, {}};
+    for (const auto& function : functions) out.readings.push_back(function(position));
+    return out;
+  }
+  [[nodiscard]] Detector::Probe probe() {
+    return [this](double position) -> std::optional<Station> {
+      ++probes;
+      EXPECT_GT(position, before_that) << "looks back farther than two stations before the last one";
+      EXPECT_LT(position, last);
+      return station(position);
+    };
+  }
+  std::vector<Bracket> advance(double position) {
+    before_that = earlier;
+    earlier = last;
+    last = position;
+    return detector.advance(station(position), probe());
+  }
+  std::vector<Bracket> run(const std::vector<double>& positions) {
+    std::vector<Bracket> all;
+    for (const double position : positions)
+      for (const Bracket& bracket : advance(position)) all.push_back(bracket);
+    for (const Bracket& bracket : detector.finish(probe())) all.push_back(bracket);
+    return all;
+  }
+};
+
+std::vector<double> evenly(double from, double to, int intervals) {
+  std::vector<double> positions;
+  for (int n = 0; n <= intervals; ++n) positions.push_back(from + (to - from) * n / intervals);
+  return positions;
+}
+
+std::function<Reading(double)> exact(std::function<double(double)> value, double error = 1e-12) {
+  return [value = std::move(value), error](double x) { return Reading{value(x), error}; };
+}
+
+/// One bracket a true event, around it, in order; brackets of one function share at most an end.
+struct Event {
+  std::size_t function;
+  double position;
+  bool tangency = false;
+};
+void expect_events(std::vector<Bracket> found, const std::vector<Event>& events) {
+  std::stable_sort(found.begin(), found.end(), [](const Bracket& a, const Bracket& b) {
+    return a.function != b.function ? a.function < b.function : a.from < b.from;
+  });
+  ASSERT_EQ(found.size(), events.size());
+  for (std::size_t n = 0; n < events.size(); ++n) {
+    SCOPED_TRACE(testing::Message() << "event " << n << ": [" << found[n].from << ", " << found[n].to << "]");
+    EXPECT_EQ(found[n].function, events[n].function);
+    EXPECT_LE(found[n].from, events[n].position);
+    EXPECT_GE(found[n].to, events[n].position);
+    EXPECT_EQ(found[n].tangency, events[n].tangency);
+    if (n > 0 && found[n - 1].function == found[n].function) {
+      EXPECT_LE(found[n - 1].to, found[n].from);
+    }
+  }
+}
+
+TEST(Detector, SignChangeIsBracketedByItsStationsAtNoCost) {
+  Family family{{exact([](double x) { return 0.4 - 0.1 * x; })}};
+  std::vector<Bracket> found;
+  for (const double x : {0.0, 0.5, 1.5, 3.0}) EXPECT_TRUE(family.advance(x).empty());
+  found = family.advance(4.5);
+  expect_events(found, {{0, 4.0}});
+  EXPECT_EQ(found[0].from, 3.0);
+  EXPECT_EQ(found[0].to, 4.5);
+  EXPECT_TRUE(family.advance(6.0).empty());
+  EXPECT_TRUE(family.detector.finish(family.probe()).empty());
+  EXPECT_EQ(family.probes, 0);
+}
+
+TEST(Detector, FunctionsAreJudgedOneByOne) {
+  Family family{{exact([](double x) { return 0.05 * (x - 4.2); }), exact([](double x) { return 0.04 * (4.4 - x); }),
+                 exact([](double x) { return 0.03 * (x - 12.0); })}};
+  expect_events(family.run(evenly(0, 10, 10)), {{0, 4.2}, {1, 4.4}});
+}
+
+TEST(Detector, StationsWithoutASignArePassedOver) {
+  const auto value = [](double x) { return 0.02 * (x - 4.2); };
+  for (const Reading& gap : {Reading{nan, 0.0}, Reading{0.1, nan}, Reading{-0.03, 0.5}, Reading{0.0, 0.1}}) {
+    Family family{{[&](double x) { return x > 3.5 && x < 6.5 ? gap : Reading{value(x), 1e-12}; }}};
+    const auto found = family.run(evenly(0, 10, 10));
+    expect_events(found, {{0, 4.2}});
+    EXPECT_EQ(found[0].from, 3.0);
+    EXPECT_EQ(found[0].to, 7.0);
+  }
+}
+
+TEST(Detector, StationsWithoutASignBetweenEqualSignsAreNoEvent) {
+  for (const Reading& gap : {Reading{nan, 0.0}, Reading{0.2, nan}, Reading{-0.03, 0.5}}) {
+    Family family{{[&](double x) { return x > 3.5 && x < 6.5 ? gap : Reading{0.2 + 0.01 * x, 1e-12}; }}};
+    EXPECT_TRUE(family.run(evenly(0, 10, 10)).empty());
+  }
+}
+
+TEST(Detector, FamilyBornWhereAFunctionVanishesHasNoEventThere) {
+  Family family{{exact([](double x) { return 0.01 * x * x; }, 1e-9), exact([](double x) { return -0.002 * x; }, 1e-9),
+                 exact([](double x) { return std::abs(x) < 1e-3 ? -1e-10 : 0.01 * x * x; }, 1e-9)}};
+  EXPECT_TRUE(family.run({0.0, 1e-5, 1e-4, 1e-2, 0.5, 1.0, 2.0, 3.5, 5.0}).empty());
+}
+
+TEST(Detector, NoiseBelowItsBoundIsNoEvent) {
+  unsigned state = 7;
+  const auto noise = [&](double bound) {
+    state = state * 1664525u + 1013904223u;
+    return bound * (static_cast<double>(state >> 8) / 8388608.0 - 1.0);
+  };
+  for (const double bound : {1e-9, 0.02}) {
+    Family around_zero{{[&](double) { return Reading{noise(bound), bound}; }}};
+    EXPECT_TRUE(around_zero.run(evenly(0, 50, 200)).empty());
+    Family around_half{{[&](double x) { return Reading{0.5 + 0.003 * x + noise(bound), bound}; }}};
+    EXPECT_TRUE(around_half.run(evenly(0, 50, 200)).empty());
+    EXPECT_EQ(around_half.probes, 0);
+  }
+}
+
+TEST(Detector, SaturatedReadingsCostNothing) {
+  Family family{{exact([](double x) { return 1.0 - 4.0 / (4.0 + std::exp(3.0 * x)); }, 1e-15)}};
+  EXPECT_TRUE(family.run(evenly(2, 20, 40)).empty());
+  EXPECT_EQ(family.probes, 0);
+}
+
+TEST(Detector, TwoZerosOfOneFunctionInOneStep) {
+  for (const double gap : {0.9, 0.4, 0.05, 1e-3, 1e-5}) {
+    SCOPED_TRACE(testing::Message() << "zeros " << gap << " apart");
+    const double first = 4.52 - 0.5 * gap;
+    const double second = 4.52 + 0.5 * gap;
+    Family family{{exact([=](double x) { return 0.05 * (x - first) * (x - second); }, 1e-15)}};
+    expect_events(family.run({0, 1, 2, 3, 4, 5, 6, 7, 8}), {{0, first}, {0, second}});
+    EXPECT_LE(family.probes, 50);
+  }
+}
+
+TEST(Detector, TwoZerosInTheLastStep) {
+  for (const double end : {4.75, 4.85, 5.0}) {
+    Family family{{exact([](double x) { return 0.05 * (x - 4.45) * (x - 4.65); })}};
+    expect_events(family.run({0, 1, 2, 3, 4, end}), {{0, 4.45}, {0, 4.65}});
+  }
+}
+
+TEST(Detector, ThreeZerosInOneStepShowByTheirSurprise) {
+  const auto bump = [](double x) { return std::clamp(1.0 - 4.0 * std::abs(x), 0.0, 1.0); };
+  Family family{{exact([=](double x) { return 0.1 * (4.3 - x) + 0.6 * bump(x - 4.7); }, 1e-12)}};
+  // Zeros at 4.3, where the bump outweighs the slope, and where it no longer does.
+  const double second = (0.6 * (4.0 * 4.7 - 1.0) - 0.43) / (2.4 - 0.1);
+  const double third = (0.6 * (1.0 + 4.0 * 4.7) + 0.43) / (2.4 + 0.1);
+  expect_events(family.run({0, 1, 2, 3, 4, 4.7, 6, 7}), {{0, 4.3}, {0, second}, {0, third}});
+}
+
+TEST(Detector, CoarseStepIsSubdivided) {
+  const double pi = std::numbers::pi;
+  for (const int steps : {9, 14, 23, 60}) {
+    SCOPED_TRACE(testing::Message() << steps << " steps");
+    Family family{{exact([=](double x) { return std::cos(x); })}};
+    std::vector<Event> events;
+    for (int n = 0; n < 6; ++n) events.push_back({0, (n + 0.5) * pi});
+    expect_events(family.run(evenly(0, 6 * pi, steps)), events);
+    EXPECT_LE(family.probes, 70);
+  }
+}
+
+TEST(Detector, ZerosOfSeveralFunctionsInOneStep) {
+  const auto step_like = [](double at) { return exact([at](double x) { return std::tanh(2.0 * (x - at)); }); };
+  Family family{{step_like(4.1), step_like(4.5), step_like(4.55), exact([](double x) { return 0.1 * (x - 4.52); })}};
+  expect_events(family.run(evenly(0, 9, 9)), {{0, 4.1}, {1, 4.5}, {2, 4.55}, {3, 4.52}});
+}
+
+TEST(Detector, SubdivisionIsBounded) {
+  Family family{{exact([](double x) { return x < std::numbers::e ? -0.5 : 0.5; })}};
+  expect_events(family.run(evenly(0, 10, 10)), {{0, std::numbers::e}});
+  EXPECT_GT(family.probes, 0);
+  EXPECT_LE(family.probes, 3 * 6);
+}
+
+TEST(Detector, TouchingZeroIsATangency) {
+  for (const double sign : {1.0, -1.0})
+    for (const double at : {4.0, 4.1, 4.5, 4.97, 5.0 + 1e-7}) {
+      SCOPED_TRACE(testing::Message() << sign << " at " << at);
+      Family family{{exact([=](double x) { return sign * (1.0 - std::cos(0.7 * (x - at))) / 2.0; }, 1e-10)}};
+      const auto found = family.run({0.2, 1, 2, 3, 4, 5, 6, 7, 8});
+      expect_events(found, {{0, at, true}});
+      EXPECT_LE(found[0].to - found[0].from, 2.0);
+      EXPECT_LE(family.probes, 45);
+    }
+}
+
+TEST(Detector, MinimumAboveZeroIsNoEvent) {
+  for (const double least : {0.3, 0.05, 1e-2, 1e-4, 1e-5}) {
+    Family family{{exact([=](double x) { return least + 0.04 * (x - 4.2) * (x - 4.2); })}};
+    EXPECT_TRUE(family.run({0.5, 1, 2, 3, 4, 5, 6, 7, 8}).empty()) << least;
+    if (least == 0.3) {
+      EXPECT_EQ(family.probes, 0);
+    }
+  }
+}
+
+TEST(Detector, UncertainMinimumShowsNothing) {
+  Family family{{exact([=](double x) { return 0.05 * (x - 4.2) * (x - 4.2); }, 1e-3)}};
+  EXPECT_TRUE(family.run({0.5, 1, 2, 3, 4, 5, 6, 7, 8}).empty());
+}
+
+TEST(Detector, DipBesideACrossingIsSeen) {
+  const double first = 3.3;
+  Family family{{exact([=](double x) { return 0.02 * (x - first) * (x - 4.5) * (x - 4.7); }, 1e-13)}};
+  expect_events(family.run({2, 3, 4, 5, 6, 7}), {{0, first}, {0, 4.5}, {0, 4.7}});
+}
+
+TEST(Detector, MissingProbesLeaveWhatTheStationsShow) {
+  Family family{{exact([](double x) { return std::cos(x); })}};
+  std::vector<Bracket> found;
+  for (const double x : evenly(0, 6, 6))
+    for (const Bracket& bracket : family.detector.advance(family.station(x), [](double) { return std::nullopt; }))
+      found.push_back(bracket);
+  expect_events(found, {{0, 0.5 * std::numbers::pi}, {0, 1.5 * std::numbers::pi}});
+}
+
+TEST(Detector, GoesOnFromItsStateAsIfItHadNotStopped) {
+  const Functions functions{exact([](double x) { return std::cos(x); }),
+                            exact([](double x) { return 0.5 - 0.5 * std::sin(0.6 * x); })};
+  Family whole{functions};
+  const auto positions = evenly(0, 20, 26);
+  const auto expected = whole.run(positions);
+  EXPECT_GE(expected.size(), 8u);
+  for (std::size_t stop = 1; stop < positions.size(); ++stop) {
+    Family first{functions};
+    std::vector<Bracket> found;
+    for (std::size_t n = 0; n < stop; ++n)
+      for (const Bracket& bracket : first.advance(positions[n])) found.push_back(bracket);
+    Family second{functions, Detector(first.detector.state(), {})};
+    second.last = first.last;
+    second.earlier = first.earlier;
+    for (const Bracket& bracket : second.run({positions.begin() + static_cast<std::ptrdiff_t>(stop), positions.end()}))
+      found.push_back(bracket);
+    ASSERT_EQ(found.size(), expected.size()) << "stopped after " << stop;
+    for (std::size_t n = 0; n < found.size(); ++n) {
+      EXPECT_EQ(found[n].function, expected[n].function);
+      EXPECT_EQ(found[n].from, expected[n].from);
+      EXPECT_EQ(found[n].to, expected[n].to);
+      EXPECT_EQ(found[n].tangency, expected[n].tangency);
+    }
+  }
+}
+
+TEST(Detector, MisuseIsRefused) {
+  const auto none = [](double) { return std::nullopt; };
+  Detector detector;
+  (void)detector.advance({1.0, {{0.5, 0.0}}}, none);
+  EXPECT_THROW((void)detector.advance({1.0, {{0.5, 0.0}}}, none), core::MisuseError);
+  EXPECT_THROW((void)detector.advance({2.0, {}}, none), core::MisuseError);
+  const auto wrong = [](double x) { return Station{x, {}}; };
+  EXPECT_THROW((void)detector.advance({2.0, {{-0.9, 0.0}}}, wrong), core::MisuseError);
+}
+
+}  // namespace
