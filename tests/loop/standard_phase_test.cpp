@@ -91,7 +91,10 @@ TEST(ReversorPhase, OfRotationsFollowsTheWinding) {
   const auto phase = reversor_phase(reversor("RS"), pendulum().angles, shifted, 1e-9);
   ASSERT_TRUE(phase.has_value());
   EXPECT_NEAR(*phase, 1.0 - 2.0 * irrational, 1e-12);
-  EXPECT_FALSE(reversor_phase(reversor("R"), pendulum().angles, shifted, 1e-9).has_value());
+  Loop brake = loop_with({element_of(pendulum(), "R")});
+  EXPECT_TRUE(reversor_phase(reversor("R"), pendulum().angles, brake, 1e-9).has_value());
+  brake.winding = {0.0, -1.0, 0.0, 0.0};
+  EXPECT_FALSE(reversor_phase(reversor("R"), pendulum().angles, brake, 1e-9).has_value()) << "turned the other way";
 }
 
 // Whatever quarter the loop starts at, it is brought to rest with the first coordinate at its larger value.

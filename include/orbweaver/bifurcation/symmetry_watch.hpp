@@ -1,0 +1,68 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "orbweaver/loop/isotropy.hpp"
+#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/systems/description.hpp"
+
+namespace orbweaver::bifurcation {
+
+/// A symmetry e that the orbits of a branch lack and that an orbit between two of them may have.
+struct Gained {
+  std::string name;  ///< "1" for the identity
+  bool reversing = false;
+  Eigen::MatrixXd matrix;
+  int shift_numerator = 0;  ///< p and q of z(t + T p/q) = M z(t); a reversor's phase is any number instead
+  int shift_denominator = 1;
+  double phase =
+      0.0;  ///< of a reversor at the first of the two orbits: the phi at which z(T phi - t) is closest to M z(t)
+};
+
+/// "S@1/4", "1@1/3" (three times around a shorter orbit), "R" (at some phase).
+[[nodiscard]] std::string to_text(const Gained& gained);
+
+/// Watches a branch for orbits with more symmetry than its own isotropy: there it meets a more symmetric family, at one of
+/// that family's crossings (docs/mathematics.md, "Arrivals").
+///
+/// Candidates are every declared equivariance and the identity with shifts p/q, q <= `largest_order`, that the own
+/// isotropy does not generate, and, if it has no reversor, the declared reversors at any phase. With c(z) = e z - z, the
+/// broken part, the signed part of an orbit B seen from A is <c(A), c(B)> / <c(A), c(A)>: 1 at A, and of the other sign
+/// beyond an orbit with the symmetry e. Inner products are means over time, of 240 samples: q that do not divide 240 need
+/// orbits that those resolve. Orbits A and B are neighbours of one branch, with its phase convention.
+class SymmetryWatch {
+ public:
+  SymmetryWatch(const systems::Description& system, const loop::Isotropy& own, int largest_order = 12);
+
+  /// All candidates whose broken part turned round between `a` and `b`, or vanishes at `b`, those that generate the most
+  /// together with the own isotropy first. Broken parts below 1e-8 of the loop at `a` are rounding, and pass nothing.
+  [[nodiscard]] std::vector<Gained> all_passed(const loop::Loop& a, const loop::Loop& b) const;
+  /// The first of them.
+  [[nodiscard]] std::optional<Gained> passed(const loop::Loop& a, const loop::Loop& b) const;
+
+  /// The signed part of `at` seen from `a`: its root between two orbits is where `gained` may hold.
+  [[nodiscard]] double signed_part(const Gained& gained, const loop::Loop& a, const loop::Loop& at) const;
+  /// |c(at)| / |c(a)|: small where `gained` holds. At a root of the signed part where the broken part has only turned, it
+  /// is not.
+  [[nodiscard]] double relative_size(const Gained& gained, const loop::Loop& a, const loop::Loop& at) const;
+
+ private:
+  struct Seen;
+  [[nodiscard]] Seen see(const loop::Loop& loop) const;
+  struct Products;
+  [[nodiscard]] Eigen::MatrixXcd broken_part(const Gained& gained, const Eigen::MatrixXd& inverse, const Seen& orbit,
+                                             double shift) const;
+  [[nodiscard]] Products compare(const Gained& gained, const Seen& a, const Seen& b) const;
+  [[nodiscard]] std::size_t generated_with(const Gained& gained) const;
+
+  systems::Description _system;
+  loop::Isotropy _own;
+  std::vector<Gained> _candidates;  // equivariances
+  std::vector<systems::Symmetry> _reversors;
+};
+
+}  // namespace orbweaver::bifurcation

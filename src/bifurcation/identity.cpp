@@ -1,0 +1,179 @@
+#include "orbweaver/bifurcation/identity.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "orbweaver/loop/alignment.hpp"
+#include "orbweaver/loss/slice.hpp"
+#include "orbweaver/loss/unknowns.hpp"
+
+namespace orbweaver::bifurcation {
+
+namespace {
+
+using continuation::Orbit;
+
+constexpr double beyond = 0.3;  // of the chord: how far outside its ends a projection may lie
+constexpr double away = 1.0;    // of the chord: how far from it an orbit between its ends can be
+constexpr int corrections = 4;
+
+bool is_between(double a, double b, double x, double widening) {
+  const double margin = 0.5 * std::abs(b - a) + widening;
+  return x >= std::min(a, b) - margin && x <= std::max(a, b) + margin;
+}
+
+Eigen::VectorXd difference(const loss::Unknowns& unknowns, const loop::Loop& from, const loop::Loop& to) {
+  const std::vector<double> u = unknowns.difference(from, to);
+  return Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size()));
+}
+
+loop::Loop moved(const loss::Unknowns& unknowns, const loop::Loop& base, const Eigen::VectorXd& u) {
+  return unknowns.moved(base, std::span<const double>(u.data(), static_cast<std::size_t>(u.size())));
+}
+
+// The time shift as a unit vector of unknowns; empty where the subspace does not contain it.
+Eigen::VectorXd shift_direction(const loss::Unknowns& unknowns, const loop::Loop& at) {
+  const std::vector<double> u = unknowns.time_shift_direction(at);
+  const Eigen::VectorXd direction = Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size()));
+  if (direction.norm() <= 1e-8 * loop::rms_amplitude(at)) return {};
+  return direction.normalized();
+}
+
+double distance_between(const loop::Loop& a, const loop::Loop& b, double aligned_distance) {
+  return std::hypot(aligned_distance, a.period / b.period - 1.0);
+}
+
+// The family near the chord from a to b, in the modes of one cutoff and one time map.
+class Chord {
+ public:
+  Chord(const systems::System& system, const Orbit& a, const Orbit& b, const loop::Isotropy& isotropy,
+        const IdentityOptions& options)
+      : _system(system), _isotropy(isotropy), _options(options), _a(a.loop), _b(b.loop) {
+    resize(std::max(a.loop.cutoff, b.loop.cutoff));
+  }
+
+  [[nodiscard]] double length() const {
+    return distance_between(_first, _second, loop::mean_distance(_first, _second));
+  }
+  [[nodiscard]] const loop::Loop& first() const { return _first; }
+
+  // Where the projection of `x` lies on the chord through `base`, which need not be `first`.
+  [[nodiscard]] double position_of(const loop::Loop& x, const loop::Loop& base) const {
+    const Eigen::VectorXd direction = chord_at(base);
+    return difference(*_unknowns, base, as_here(x)).dot(direction) / direction.squaredNorm();
+  }
+
+  // The orbit of the family in the hyperplane across the chord through base + position (b - a).
+  [[nodiscard]] corrector::Result correct(loop::Loop base, double position) {
+    while (true) {
+      const loop::Loop guess = moved(*_unknowns, base, position * chord_at(base));
+      const Eigen::VectorXd across = chord_at(guess).normalized();
+      const Eigen::VectorXd shift = shift_direction(*_unknowns, guess);
+      Eigen::MatrixXd conditions(across.size(), shift.size() > 0 ? 2 : 1);
+      conditions.col(0) = across;
+      if (shift.size() > 0) conditions.col(1) = shift;
+      corrector::Result result = corrector::correct(_system, guess, *_unknowns,
+                                                    loss::Slice(_unknowns->size(), conditions), _options.corrector);
+      const int larger = loop::next_cutoff(_first.cutoff);
+      if (result.outcome != corrector::Outcome::under_resolved || larger > _options.cutoff_to) return result;
+      resize(larger);
+      base = loop::with_cutoff(base, larger);
+    }
+  }
+
+  [[nodiscard]] loop::Loop as_here(const loop::Loop& x) const {
+    return loop::with_time_map(x, _first.time_map, _first.cutoff);
+  }
+
+ private:
+  void resize(int cutoff) {
+    _first = loop::with_cutoff(_a, cutoff);
+    _second = loop::with_time_map(_b, _a.time_map, cutoff);
+    _unknowns.emplace(loss::Unknowns{loop::Subspace(_a.dimension, cutoff, _isotropy), true});
+  }
+
+  // b - a without what only shifts the phase.
+  [[nodiscard]] Eigen::VectorXd chord_at(const loop::Loop& at) const {
+    Eigen::VectorXd chord = difference(*_unknowns, _first, _second);
+    const Eigen::VectorXd shift = shift_direction(*_unknowns, at);
+    if (shift.size() > 0) chord -= shift.dot(chord) * shift;
+    return chord;
+  }
+
+  const systems::System& _system;
+  const loop::Isotropy& _isotropy;
+  const IdentityOptions& _options;
+  loop::Loop _a;
+  loop::Loop _b;
+  loop::Loop _first;
+  loop::Loop _second;
+  std::optional<loss::Unknowns> _unknowns;
+};
+
+Comparison apart(double distance, double position, std::string detail) {
+  return {false, distance, position, std::move(detail)};
+}
+
+Comparison compare(const systems::System& system, Chord chord, const loop::Loop& x, const IdentityOptions& options) {
+  const systems::Description& description = system.description();
+  const double length = chord.length();
+  const double tolerance = options.tolerance * (1.0 + loop::rms_size(x));
+  loop::Alignment alignment = loop::align(description, x, chord.first(), 2.0 * length + tolerance);
+  if (alignment.distance > 2.0 * length + tolerance)
+    return apart(alignment.distance, std::nan(""), "far from the neighbours");
+  loop::Loop nearest = chord.first();
+  double position = 0.0;
+  double distance = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < corrections; ++n) {
+    const loop::Loop moved_x = loop::aligned(x, alignment);
+    const double step = chord.position_of(moved_x, nearest);
+    position += step;
+    if (position < -beyond || position > 1.0 + beyond)
+      return apart(alignment.distance, position, "beyond the neighbours");
+    const corrector::Result result = chord.correct(nearest, step);
+    if (!result.converged())
+      return apart(alignment.distance, position,
+                   fmt::format("no orbit beside it: {} {}", corrector::name_of(result.outcome), result.detail));
+    nearest = result.loop;
+    alignment = loop::align(description, x, nearest);
+    const double before = distance;
+    distance = distance_between(x, nearest, alignment.distance);
+    if (distance <= tolerance) return {true, distance, position, "the same orbit"};
+    if (distance > away * length + tolerance) return apart(distance, position, "far from the family");
+    // What is left of a wrong phase shrinks with its square; what separates two families stays.
+    if (distance > 0.3 * before) break;
+  }
+  return apart(distance, position, "another orbit");
+}
+
+}  // namespace
+
+bool may_lie_between(const Orbit& a, const Orbit& b, const Orbit& x, double widening) {
+  const double period = x.loop.period;
+  const auto between = [](double first, double second, double value, double margin) {
+    return std::isnan(value) || std::isnan(first) || std::isnan(second) || is_between(first, second, value, margin);
+  };
+  return between(a.loop.period, b.loop.period, period, widening * period) &&
+         between(a.energy, b.energy, x.energy, widening * std::abs(x.action) / period) &&
+         between(a.action, b.action, x.action, widening * std::abs(x.action));
+}
+
+Comparison same_family(const systems::System& system, const Orbit& a, const Orbit& b, const loop::Isotropy& isotropy,
+                       const Orbit& x, const IdentityOptions& options) {
+  Orbit primitive = x;
+  const int m = loop::repetitions(x.loop, options.tolerance * (1.0 + loop::rms_size(x.loop)));
+  if (m > 1) {
+    primitive.loop = loop::without_repetition(x.loop, m);
+    primitive.action /= m;
+  }
+  if (!may_lie_between(a, b, primitive, options.widening)) {
+    Comparison out;
+    out.detail = "period, energy or action out of range";
+    return out;
+  }
+  return compare(system, Chord(system, a, b, isotropy, options), primitive.loop, options);
+}
+
+}  // namespace orbweaver::bifurcation
