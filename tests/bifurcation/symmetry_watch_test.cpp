@@ -185,6 +185,15 @@ TEST(SymmetryWatch, SeesRotationsArrive) {
   p.v.winding = p.base.winding;
   expect_arrival(p, "1@1/3");
   p.base.winding = {1.0, 0.0, 0.0, 0.0};
+  p.base.cosine(0, 0) = 0.5 * std::numbers::pi;  // so that the mean has S@1/2
+  EXPECT_FALSE(SymmetryWatch(p.system, p.own).passed(p.at(0.2), p.at(-0.1)).has_value());
+}
+
+// S turns a rotation the other way round: no orbit that winds has it.
+TEST(SymmetryWatch, LeavesOutWhatTurnsRotationsRound) {
+  Pitchfork p = loss_of_s();
+  p.base.winding = {1.0, 0.0, 0.0, 0.0};
+  p.base.cosine(0, 0) = 0.5 * std::numbers::pi;  // so that the mean has S@1/2
   EXPECT_FALSE(SymmetryWatch(p.system, p.own).passed(p.at(0.2), p.at(-0.1)).has_value());
 }
 
