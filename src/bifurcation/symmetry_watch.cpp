@@ -31,6 +31,16 @@ Eigen::MatrixXcd coefficients_of(const loop::Loop& loop) {
   return out;
 }
 
+double shift_of(const Gained& gained) { return static_cast<double>(gained.shift_numerator) / gained.shift_denominator; }
+
+// Broken means modulo the lattice of angles: A's within a half turn of 0, B's within a half turn of A's.
+void reduce(const std::vector<int>& angles, Eigen::VectorXd& of_a, Eigen::VectorXd& of_b) {
+  for (const int i : angles) {
+    of_a(i) = std::remainder(of_a(i), two_pi);
+    of_b(i) -= two_pi * std::round((of_b(i) - of_a(i)) / two_pi);
+  }
+}
+
 bool generates(const loop::Isotropy& group, const Gained& gained) {
   return std::any_of(group.begin(), group.end(), [&](const loop::SymmetryElement& e) {
     return !e.reversing && e.shift_numerator == gained.shift_numerator &&
@@ -39,13 +49,6 @@ bool generates(const loop::Isotropy& group, const Gained& gained) {
 }
 
 }  // namespace
-
-// An orbit as the watch sees it: 240 samples, as a loop and as complex coefficients.
-struct SymmetryWatch::Seen {
-  loop::Loop loop;
-  Eigen::MatrixXcd coefficients;
-  double size;
-};
 
 struct SymmetryWatch::Products {
   double first;   // <c(A), c(A)>
@@ -63,21 +66,25 @@ SymmetryWatch::SymmetryWatch(const systems::Description& system, const loop::Iso
     : _system(system), _own(own) {
   core::require(largest_order >= 1, "a symmetry watch needs orders of 1 or more");
   const loop::Isotropy group = loop::generated_group(system, own);
-  const auto consider = [&](const std::string& name, const Eigen::MatrixXd& matrix, int p, int q) {
-    Gained candidate{name, false, matrix, p, q, 0.0};
-    if (!generates(group, candidate)) _candidates.push_back(std::move(candidate));
-  };
   const int d = system.dimension();
-  for (int m = 2; m <= largest_order; ++m) consider("1", Eigen::MatrixXd::Identity(d, d), 1, m);
-  for (const systems::Symmetry& s : system.equivariances)
-    for (int q = 1; q <= largest_order; ++q)
-      for (int p = 0; p < q; ++p)
-        if (std::gcd(p, q) == 1) consider(s.name, s.matrix, p, q);
+  std::vector<systems::Symmetry> symmetries{{"1", Eigen::MatrixXd::Identity(d, d)}};
+  symmetries.insert(symmetries.end(), system.equivariances.begin(), system.equivariances.end());
+  for (const systems::Symmetry& s : symmetries) {
+    const bool is_identity = &s == &symmetries.front();  // 1@p/q generates 1@1/q
+    Shifted shifted{s, {}};
+    for (int q = is_identity ? 2 : 1; q <= largest_order; ++q)
+      for (int p = 0; p < q; ++p) {
+        Gained candidate{s.name, false, s.matrix, p, q, 0.0};
+        const bool is_new = is_identity ? p == 1 : std::gcd(p, q) == 1;
+        if (is_new && !generates(group, candidate)) shifted.candidates.push_back(std::move(candidate));
+      }
+    _equivariances.push_back(std::move(shifted));
+  }
   const auto is_reversing = [](const loop::SymmetryElement& e) { return e.reversing; };
   if (std::none_of(group.begin(), group.end(), is_reversing)) _reversors = system.reversors;
 }
 
-SymmetryWatch::Seen SymmetryWatch::see(const loop::Loop& loop) const {
+SymmetryWatch::Seen SymmetryWatch::see(const loop::Loop& loop) {
   Seen out{loop::interpolant(loop::time_samples(loop)), {}, 0.0};
   out.coefficients = coefficients_of(out.loop);
   out.size = loop::rms_size(out.loop);
@@ -99,7 +106,7 @@ Eigen::MatrixXcd SymmetryWatch::broken_part(const Gained& gained, const Eigen::M
 
 SymmetryWatch::Products SymmetryWatch::compare(const Gained& gained, const Seen& a, const Seen& b) const {
   const Eigen::MatrixXd inverse = gained.matrix.inverse();
-  double shift_of_a = static_cast<double>(gained.shift_numerator) / gained.shift_denominator;
+  double shift_of_a = shift_of(gained);
   double shift_of_b = shift_of_a;
   if (gained.reversing) {  // R^-1 z(T phi - t) = y(t - T phi); the phase of B is the one near that of A
     shift_of_a = -gained.phase;
@@ -108,12 +115,54 @@ SymmetryWatch::Products SymmetryWatch::compare(const Gained& gained, const Seen&
   }
   Eigen::MatrixXcd broken_a = broken_part(gained, inverse, a, shift_of_a);
   Eigen::MatrixXcd broken_b = broken_part(gained, inverse, b, shift_of_b);
-  for (const int i : _system.angles) {
-    broken_a(i, 0) = std::remainder(broken_a(i, 0).real(), two_pi);
-    broken_b(i, 0) -= two_pi * std::round((broken_b(i, 0) - broken_a(i, 0)).real() / two_pi);
-  }
+  Eigen::VectorXd mean_a = broken_a.col(0).real();
+  Eigen::VectorXd mean_b = broken_b.col(0).real();
+  reduce(_system.angles, mean_a, mean_b);
+  broken_a.col(0) = mean_a;
+  broken_b.col(0) = mean_b;
   return {broken_a.squaredNorm(), broken_a.cwiseProduct(broken_b.conjugate()).sum().real(), broken_b.squaredNorm()};
 }
+
+// <c(A), c(B)> of one matrix for all its shifts, from correlations harmonic by harmonic: cheap, but known only to rounding of
+// |A||B|, which decides where nothing is gained.
+class SymmetryWatch::Correlation {
+ public:
+  Correlation(const Eigen::MatrixXd& inverse, const Seen& a, const Seen& b, const std::vector<int>& angles)
+      : _inverse(inverse), _a(a), _b(b), _angles(angles), _sums(a.coefficients.cols()) {
+    const Eigen::MatrixXcd image_a = inverse * a.coefficients;
+    const Eigen::MatrixXcd image_b = inverse * b.coefficients;
+    for (Eigen::Index k = 1; k < _sums.size(); ++k) {
+      _unshifted += image_b.col(k).dot(image_a.col(k)).real() + b.coefficients.col(k).dot(a.coefficients.col(k)).real();
+      _sums(k) = b.coefficients.col(k).dot(image_a.col(k)) + a.coefficients.col(k).dot(image_b.col(k));
+    }
+  }
+
+  [[nodiscard]] double at(double shift) const {
+    const Eigen::VectorXd winding = Eigen::Map<const Eigen::VectorXd>(_a.loop.winding.data(), _a.loop.dimension);
+    const Eigen::VectorXd turn = two_pi * shift * winding;
+    const Eigen::VectorXd mean_a = _a.coefficients.col(0).real();
+    const Eigen::VectorXd mean_b = _b.coefficients.col(0).real();
+    Eigen::VectorXd broken_a = _inverse * (mean_a + turn) - mean_a;
+    Eigen::VectorXd broken_b = _inverse * (mean_b + turn) - mean_b;
+    reduce(_angles, broken_a, broken_b);
+    double mixed = _unshifted + broken_a.dot(broken_b);
+    const std::complex<double> step = std::polar(1.0, two_pi * shift);
+    std::complex<double> wave = 1.0;
+    for (Eigen::Index k = 1; k < _sums.size(); ++k) {
+      wave *= step;
+      mixed -= wave.real() * _sums(k).real() - wave.imag() * _sums(k).imag();
+    }
+    return mixed;
+  }
+
+ private:
+  const Eigen::MatrixXd& _inverse;
+  const Seen& _a;
+  const Seen& _b;
+  const std::vector<int>& _angles;
+  double _unshifted = 0.0;
+  Eigen::VectorXcd _sums;
+};
 
 // Elements of the group that `gained` and the own isotropy generate; a reversor doubles it, whatever its phase.
 std::size_t SymmetryWatch::generated_with(const Gained& gained) const {
@@ -123,9 +172,7 @@ std::size_t SymmetryWatch::generated_with(const Gained& gained) const {
   return loop::generated_group(_system, generators).size();
 }
 
-std::vector<Gained> SymmetryWatch::all_passed(const loop::Loop& a, const loop::Loop& b) const {
-  const Seen from = see(a);
-  const Seen to = see(b);
+std::vector<Gained> SymmetryWatch::all_passed(const Seen& from, const Seen& to) const {
   std::vector<std::pair<std::size_t, Gained>> found;
   const auto consider = [&](const Gained& candidate) {
     const Products products = compare(candidate, from, to);
@@ -137,8 +184,14 @@ std::vector<Gained> SymmetryWatch::all_passed(const loop::Loop& a, const loop::L
     const Eigen::Map<const Eigen::VectorXd> winding(from.loop.winding.data(), from.loop.dimension);
     return (sign * (matrix * winding) - winding).isZero(1e-9);
   };
-  for (const Gained& candidate : _candidates)
-    if (keeps_winding(candidate.matrix, 1.0)) consider(candidate);
+  const double rounding = 1e-13 * (from.size * from.size + to.size * to.size);
+  for (const auto& [symmetry, candidates] : _equivariances) {
+    if (!keeps_winding(symmetry.matrix, 1.0)) continue;
+    const Eigen::MatrixXd inverse = symmetry.matrix.inverse();
+    const Correlation correlation(inverse, from, to, _system.angles);
+    for (const Gained& candidate : candidates)
+      if (correlation.at(shift_of(candidate)) <= rounding) consider(candidate);
+  }
   for (const systems::Symmetry& r : _reversors) {
     if (!keeps_winding(r.matrix, -1.0)) continue;
     const loop::Loop image = loop::transformed(from.loop, r.matrix, true, 0.0);
@@ -154,6 +207,10 @@ std::vector<Gained> SymmetryWatch::all_passed(const loop::Loop& a, const loop::L
 }
 
 std::optional<Gained> SymmetryWatch::passed(const loop::Loop& a, const loop::Loop& b) const {
+  return passed(see(a), see(b));
+}
+
+std::optional<Gained> SymmetryWatch::passed(const Seen& a, const Seen& b) const {
   std::vector<Gained> all = all_passed(a, b);
   if (all.empty()) return std::nullopt;
   return std::move(all.front());

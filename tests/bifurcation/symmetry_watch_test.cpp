@@ -85,7 +85,8 @@ TEST(SymmetryWatch, SeesASubharmonicArrive) { expect_arrival(threefold(), "1@1/3
 TEST(SymmetryWatch, TakesWhatGeneratesMost) {
   expect_arrival(fourfold(), "S@1/4");
   const Pitchfork p = fourfold();
-  const std::vector<Gained> all = SymmetryWatch(p.system, p.own).all_passed(p.at(0.2), p.at(-0.1));
+  const std::vector<Gained> all =
+      SymmetryWatch(p.system, p.own).all_passed(SymmetryWatch::see(p.at(0.2)), SymmetryWatch::see(p.at(-0.1)));
   std::vector<std::string> texts;
   for (const Gained& gained : all) texts.push_back(to_text(gained));
   EXPECT_EQ(texts, (std::vector<std::string>{"S@1/4", "S@3/4", "1@1/2"}));
@@ -160,7 +161,8 @@ TEST(SymmetryWatch, SeesReversorsAtAnyPhase) {
     EXPECT_LT(watch.relative_size(*gained, a, p.base), 1e-12);
     EXPECT_FALSE(watch.passed(a, p.at(0.03)).has_value());
     const SymmetryWatch with_reversor(p.system, r);
-    for (const Gained& other : with_reversor.all_passed(a, p.at(-0.03))) EXPECT_FALSE(other.reversing);
+    for (const Gained& other : with_reversor.all_passed(SymmetryWatch::see(a), SymmetryWatch::see(p.at(-0.03))))
+      EXPECT_FALSE(other.reversing);
   }
 }
 

@@ -38,10 +38,19 @@ class SymmetryWatch {
  public:
   SymmetryWatch(const systems::Description& system, const loop::Isotropy& own, int largest_order = 12);
 
+  /// An orbit as the watch sees it: the harmonics of its 240 samples in time. Worth keeping from one step to the next.
+  struct Seen {
+    loop::Loop loop;
+    Eigen::MatrixXcd coefficients;  ///< dimension x harmonics, sum of |.|^2 = mean of |z|^2 (less the winding)
+    double size = 0.0;
+  };
+  [[nodiscard]] static Seen see(const loop::Loop& loop);
+
   /// All candidates whose broken part turned round between `a` and `b`, or vanishes at `b`, those that generate the most
   /// together with the own isotropy first. Broken parts below 1e-8 of the loop at `a` are rounding, and pass nothing.
-  [[nodiscard]] std::vector<Gained> all_passed(const loop::Loop& a, const loop::Loop& b) const;
+  [[nodiscard]] std::vector<Gained> all_passed(const Seen& a, const Seen& b) const;
   /// The first of them.
+  [[nodiscard]] std::optional<Gained> passed(const Seen& a, const Seen& b) const;
   [[nodiscard]] std::optional<Gained> passed(const loop::Loop& a, const loop::Loop& b) const;
 
   /// The signed part of `at` seen from `a`: its root between two orbits is where `gained` may hold.
@@ -51,9 +60,8 @@ class SymmetryWatch {
   [[nodiscard]] double relative_size(const Gained& gained, const loop::Loop& a, const loop::Loop& at) const;
 
  private:
-  struct Seen;
-  [[nodiscard]] Seen see(const loop::Loop& loop) const;
   struct Products;
+  class Correlation;
   [[nodiscard]] Eigen::MatrixXcd broken_part(const Gained& gained, const Eigen::MatrixXd& inverse, const Seen& orbit,
                                              double shift) const;
   [[nodiscard]] Products compare(const Gained& gained, const Seen& a, const Seen& b) const;
@@ -61,7 +69,11 @@ class SymmetryWatch {
 
   systems::Description _system;
   loop::Isotropy _own;
-  std::vector<Gained> _candidates;  // equivariances
+  struct Shifted {  // one matrix with all its shifts
+    systems::Symmetry symmetry;
+    std::vector<Gained> candidates;
+  };
+  std::vector<Shifted> _equivariances;
   std::vector<systems::Symmetry> _reversors;
 };
 
