@@ -144,6 +144,10 @@ void check_families(const Records& records) {
     const std::string record = fmt::format("family '{}'", family.key);
     check_key(record, family.key);
     expect(keys.insert(family.key).second, record, "another family has the same key");
+    expect(std::count(records.left_out_keys.begin(), records.left_out_keys.end(), family.key) == 0, record,
+           "its key is among those left out too");
+    expect(family.first_step <= family.last_step, record,
+           fmt::format("its steps end at {} before they begin at {}", family.last_step, family.first_step));
     check_text(record, "name", family.name);
     check_text(record, "isotropy", family.isotropy);
     check_text(record, "end_reason", family.end_reason);

@@ -21,7 +21,7 @@ struct Order {
   std::vector<std::string> segments;
   std::string output;
   Header header;
-  std::vector<std::string> keys;
+  Selection selection;
   std::uint64_t block_values = 0;
 };
 
@@ -32,7 +32,9 @@ Order share_order(MPI_Comm comm, Order order) {
   broadcast(comm, texts);
   broadcast(comm, header.state_names);
   broadcast(comm, header.winding_names);
-  broadcast(comm, order.keys);
+  broadcast(comm, order.selection.keys);
+  broadcast(comm, order.selection.left_out);
+  order.selection.steps = gather_rows(comm, order.selection.steps);  // only rank 0 has any
   order.output = texts[0];
   header.orbweaver_version = texts[1];
   header.scene = texts[2];
@@ -201,15 +203,15 @@ void consolidate(MPI_Comm comm, const std::vector<std::filesystem::path>& segmen
   check_input(comm, header, tables);
   Order given;
   if (is_root) {
-    given = {{}, output.string(), header, sorted_keys(tables), options.block_values};
+    given = {{}, output.string(), header, selection_of(tables), options.block_values};
     for (const auto& path : segments) given.segments.push_back(path.string());
   }
   const Order order = share_order(comm, std::move(given));
-  const Numbering numbering = number_rows(comm, order.segments, order.header, order.keys);
+  const Numbering numbering = number_rows(comm, order.segments, order.header, order.selection);
   RootTables root;
   collectively(comm, [&] {
     root = make_root_tables(order.header, is_root ? tables : Records{},
-                            is_root ? order.keys : std::vector<std::string>{}, numbering);
+                            is_root ? order.selection.keys : std::vector<std::string>{}, numbering);
   });
 
   agree_on_text_widths(comm, root.families);

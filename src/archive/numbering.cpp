@@ -1,6 +1,7 @@
 #include "numbering.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -14,9 +15,8 @@ namespace {
 
 class SegmentScan {
  public:
-  SegmentScan(const std::vector<std::string>& segments, const Header& header,
-              const std::vector<std::string>& family_keys)
-      : _segments(segments), _header(header), _keys(family_keys) {}
+  SegmentScan(const std::vector<std::string>& segments, const Header& header, const Selection& selection)
+      : _segments(segments), _header(header), _selection(selection) {}
 
   void read(std::size_t index) {
     const SegmentFile segment(_segments[index]);
@@ -39,11 +39,18 @@ class SegmentScan {
     segment.file().expect(found.scene == _header.scene, "was written for another scene");
   }
 
-  [[nodiscard]] std::int64_t family_of(const SegmentFile& segment, const std::string& key) const {
-    const auto found = std::lower_bound(_keys.begin(), _keys.end(), key);
-    segment.file().expect(found != _keys.end() && *found == key,
+  // Nothing for a row that is left out.
+  [[nodiscard]] std::optional<std::int64_t> family_of(const SegmentFile& segment, const std::string& key,
+                                                      std::int64_t step) const {
+    if (std::binary_search(_selection.left_out.begin(), _selection.left_out.end(), key)) return std::nullopt;
+    const auto& keys = _selection.keys;
+    const auto found = std::lower_bound(keys.begin(), keys.end(), key);
+    segment.file().expect(found != keys.end() && *found == key,
                           fmt::format("has rows of family '{}', which is not among the families handed over", key));
-    return found - _keys.begin();
+    const std::int64_t family = found - keys.begin();
+    const StepRange& steps = _selection.steps[static_cast<std::size_t>(family)];
+    if (step < steps.first || step > steps.last) return std::nullopt;
+    return family;
   }
 
   void read_orbits(const SegmentFile& segment, std::int64_t index) {
@@ -54,8 +61,9 @@ class SegmentScan {
     const auto map_begin = segment.orbit_integers("time_map_begin");
     const auto map_count = segment.orbit_integers("time_map_count");
     for (std::size_t i = 0; i < keys.size(); ++i)
-      orbits.push_back({family_of(segment, keys[i]), steps[i], index, static_cast<std::int64_t>(i), modes_begin[i],
-                        modes_count[i], map_begin[i], map_count[i]});
+      if (const auto family = family_of(segment, keys[i], steps[i]))
+        orbits.push_back({*family, steps[i], index, static_cast<std::int64_t>(i), modes_begin[i], modes_count[i],
+                          map_begin[i], map_count[i]});
   }
 
   void read_sections(const SegmentFile& segment, std::int64_t index) {
@@ -64,12 +72,13 @@ class SegmentScan {
     const auto& steps = table.integers("step");
     const auto& times = table.reals("time");
     for (std::size_t i = 0; i < keys.size(); ++i)
-      sections.push_back({family_of(segment, keys[i]), steps[i], index, static_cast<std::int64_t>(i), -1, times[i]});
+      if (const auto family = family_of(segment, keys[i], steps[i]))
+        sections.push_back({*family, steps[i], index, static_cast<std::int64_t>(i), -1, times[i]});
   }
 
   const std::vector<std::string>& _segments;
   const Header& _header;
-  const std::vector<std::string>& _keys;
+  const Selection& _selection;
 };
 
 template <class Row>
@@ -127,8 +136,8 @@ std::int64_t Numbering::first_orbit(std::int64_t family) const {
 }
 
 Numbering number_rows(MPI_Comm comm, const std::vector<std::string>& segments, const Header& header,
-                      const std::vector<std::string>& family_keys) {
-  SegmentScan scan(segments, header, family_keys);
+                      const Selection& selection) {
+  SegmentScan scan(segments, header, selection);
   collectively(comm, [&] {
     const auto stride = static_cast<std::size_t>(size_of(comm));
     for (auto i = static_cast<std::size_t>(rank_of(comm)); i < segments.size(); i += stride) scan.read(i);
@@ -137,8 +146,8 @@ Numbering number_rows(MPI_Comm comm, const std::vector<std::string>& segments, c
   numbering.orbits = gather_rows(comm, scan.orbits);
   numbering.sections = gather_rows(comm, scan.sections);
   collectively(comm, [&] {
-    sort_orbits(numbering.orbits, segments, family_keys);
-    sort_sections(numbering.sections, numbering.orbits, segments, family_keys);
+    sort_orbits(numbering.orbits, segments, selection.keys);
+    sort_sections(numbering.sections, numbering.orbits, segments, selection.keys);
     numbering.modes_at = running_sum(numbering.orbits, &OrbitRow::modes_count);
     numbering.maps_at = running_sum(numbering.orbits, &OrbitRow::map_count);
   });

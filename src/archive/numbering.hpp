@@ -31,7 +31,19 @@ struct SectionRow {
   double time = 0.0;
 };
 
-/// All rows of all segments in canonical order, the same on every rank.
+struct StepRange {
+  std::int64_t first = 0;
+  std::int64_t last = 0;
+};
+
+/// Which rows of the segments the archive takes.
+struct Selection {
+  std::vector<std::string> keys;      ///< of the families, sorted
+  std::vector<StepRange> steps;       ///< one a key
+  std::vector<std::string> left_out;  ///< keys of families whose rows are left out, sorted
+};
+
+/// All rows that are taken of all segments in canonical order, the same on every rank.
 struct Numbering {
   std::vector<OrbitRow> orbits;
   std::vector<SectionRow> sections;
@@ -42,9 +54,9 @@ struct Numbering {
   [[nodiscard]] std::int64_t first_orbit(std::int64_t family) const;
 };
 
-/// Collective. Checks the segments (each by one rank) and numbers their rows. `family_keys` is sorted. Throws
-/// InputError on all ranks as `consolidate` says.
+/// Collective. Checks the segments (each by one rank) and numbers the rows that `selection`, the same
+/// on all ranks, takes. Throws InputError on all ranks as `consolidate` says.
 [[nodiscard]] Numbering number_rows(MPI_Comm comm, const std::vector<std::string>& segments, const Header& header,
-                                    const std::vector<std::string>& family_keys);
+                                    const Selection& selection);
 
 }  // namespace orbweaver::archive

@@ -1,6 +1,7 @@
 #include "root_tables.hpp"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <tuple>
 
@@ -71,11 +72,17 @@ void fill_family(Table& table, const FamilyRecord& family, const std::vector<std
 
 }  // namespace
 
-std::vector<std::string> sorted_keys(const Records& tables) {
-  std::vector<std::string> keys;
-  for (const FamilyRecord& family : tables.families) keys.push_back(family.key);
-  std::sort(keys.begin(), keys.end());
-  return keys;
+Selection selection_of(const Records& tables) {
+  std::map<std::string, StepRange> steps;
+  for (const FamilyRecord& family : tables.families) steps[family.key] = {family.first_step, family.last_step};
+  Selection selection;
+  for (const auto& [key, range] : steps) {
+    selection.keys.push_back(key);
+    selection.steps.push_back(range);
+  }
+  selection.left_out = tables.left_out_keys;
+  std::sort(selection.left_out.begin(), selection.left_out.end());
+  return selection;
 }
 
 RootTables make_root_tables(const Header& header, const Records& tables, const std::vector<std::string>& keys,

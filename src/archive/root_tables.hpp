@@ -14,8 +14,8 @@ struct RootTables {
   Table crossings;
 };
 
-/// Keys of the families, sorted.
-[[nodiscard]] std::vector<std::string> sorted_keys(const Records& tables);
+/// What `tables` says of the rows of the segments.
+[[nodiscard]] Selection selection_of(const Records& tables);
 
 /// `tables` must have been checked (check_records.hpp); `keys` are its sorted keys.
 [[nodiscard]] RootTables make_root_tables(const Header& header, const Records& tables,

@@ -131,6 +131,7 @@ Records tables_of(const Records& records) {
   Records tables;
   tables.families = records.families;
   tables.crossings = records.crossings;
+  tables.left_out_keys = records.left_out_keys;
   return tables;
 }
 

@@ -97,6 +97,7 @@ TEST_F(Failures, AnInvalidRecordOfOneRankIsRefusedByAll) {
   EXPECT_THAT(refusal_of([](Records& r) { some_orbit(r).cutoff = -1; }), HasSubstr("cutoff is -1"));
   EXPECT_THAT(refusal_of([](Records& r) { some_orbit(r).family_key = "\xff\xfe"; }), HasSubstr("UTF-8"));
   EXPECT_THAT(refusal_of([](Records& r) { r.families.resize(1); }), HasSubstr("consolidate"));
+  EXPECT_THAT(refusal_of([](Records& r) { r.left_out_keys = {"0001"}; }), HasSubstr("consolidate"));
   EXPECT_THAT(refusal_of([](Records& r) {
                 r.sections.assign(1, {"0001", 0, not_computed, {0, 0}});
               }),
@@ -191,6 +192,12 @@ TEST_F(Failures, InvalidTablesAreRefusedByAllRanks) {
   EXPECT_THAT(refusal([](Records& t) { t.families[0].parent_key = "9"; }), HasSubstr("parent_key '9'"));
   EXPECT_THAT(refusal([](Records& t) { t.families[0].end_family_key = "9"; }), HasSubstr("end_family_key '9'"));
   EXPECT_THAT(refusal([](Records& t) { t.families[0].end_reason.clear(); }), HasSubstr("end_reason"));
+  EXPECT_THAT(refusal([](Records& t) {
+                t.families[0].first_step = 3;
+                t.families[0].last_step = 2;
+              }),
+              HasSubstr("steps end at 2 before they begin at 3"));
+  EXPECT_THAT(refusal([](Records& t) { t.left_out_keys = {"9", "0003"}; }), HasSubstr("left out too"));
   EXPECT_THAT(refusal([](Records& t) { t.crossings[0].family_key = "9"; }), HasSubstr("family_key '9'"));
   EXPECT_THAT(refusal([](Records& t) { t.crossings[0].arclength = not_computed; }), HasSubstr("arclength is nan"));
   EXPECT_THAT(refusal([&](Records& t) { t.orbits = records.orbits; }), HasSubstr("write_segment"));

@@ -20,9 +20,13 @@ struct FamilyRecord {
   std::string end_reason;      ///< sentence-like text, never empty in a finished archive
   std::string end_family_key;  ///< empty: none
   int end_crossing = -1;       ///< as `crossing`
+  /// Rows of the segments with other steps are left out: a branch that ran on into what another family covers is cut.
+  int first_step = std::numeric_limits<int>::min();
+  int last_step = std::numeric_limits<int>::max();
 };
 
-/// One row of /orbits. Columns that were not computed stay NaN. `step` orders the orbits of a family.
+/// One row of /orbits. Columns that were not computed stay NaN. `step` orders the orbits of a family. A family that runs
+/// through the crossing it was born at has steps and arclengths below zero on one side of it.
 struct OrbitRecord {
   std::string family_key;
   int step = 0;
@@ -88,6 +92,7 @@ struct Records {
   std::vector<OrbitRecord> orbits;
   std::vector<CrossingRecord> crossings;
   std::vector<SectionRecord> sections;
+  std::vector<std::string> left_out_keys;  ///< families that the archive does not have; rows of theirs are left out
 };
 
 }  // namespace orbweaver::archive
