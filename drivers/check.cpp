@@ -100,13 +100,18 @@ void print_continuation(const scene::Scene& scene) {
                                {"corrector", c.corrector}});
 }
 
+std::string depth_text(int depth) {
+  if (depth == 0) return "the base families only";
+  if (depth == 1) return "the base families and their branches";
+  if (depth == 2) return "the base families, their branches, and the branches of these";
+  return fmt::format("the base families and {} generations of branches", depth);
+}
+
 void print_survey(const scene::Scene& scene) {
   const scene::Survey& survey = scene.survey;
   const bool all = survey.spectrum == scene::Spectrum::all;
-  const std::string depth =
-      survey.depth == 0 ? "base families only" : "base families and branches up to that generation";
   print_group("Survey",
-              {{"depth", fmt::format("{}: {}", survey.depth, depth)},
+              {{"depth", fmt::format("{}: {}", survey.depth, depth_text(survey.depth))},
                {"subharmonics", fmt::format("branches that close after up to {} period{}", survey.subharmonics,
                                             survey.subharmonics == 1 ? "" : "s")},
                {"spectrum", all ? "at every orbit" : "at events"},
@@ -118,16 +123,26 @@ std::string energy_text(const scene::Limits& limits) {
   return fmt::format("from {} to {}", limits.energy_from, limits.energy_to);
 }
 
+std::string time_text(double seconds) {
+  return std::isinf(seconds) ? "any" : fmt::format("the whole survey stops after {} s", seconds);
+}
+
 void print_limits(const scene::Scene& scene) {
   const scene::Limits& limits = scene.limits;
   print_group("Limits", {{"period", std::isinf(limits.period) ? "any" : fmt::format("up to {}", limits.period)},
                          {"energy", energy_text(limits)},
                          {"families", fmt::format("at most {}", limits.families)},
-                         {"steps", fmt::format("at most {} a family", limits.steps)}});
+                         {"steps", fmt::format("at most {} a family", limits.steps)},
+                         {"time", time_text(limits.time)}});
 }
 
-std::string value_list(const std::vector<double>& values) {
-  return values.empty() ? "none" : fmt::format("{}", fmt::join(values, ", "));
+std::string value_list(const std::string& quantity, const std::vector<double>& values) {
+  return values.empty() ? "none" : fmt::format("the orbits with {} = {}", quantity, fmt::join(values, ", "));
+}
+
+void print_events(const scene::Scene& scene) {
+  print_group("Located on every family, besides its crossings", {{"periods", value_list("T", scene.events.periods)},
+                                                                 {"energies", value_list("E", scene.events.energies)}});
 }
 
 std::string section_text(const scene::Scene& scene, const systems::Description& system) {
@@ -140,9 +155,7 @@ std::string section_text(const scene::Scene& scene, const systems::Description& 
 void print_outputs(const scene::Scene& scene, const systems::Description& system) {
   print_group(
       "Output",
-      {{"periods", value_list(scene.events.periods)},
-       {"energies", value_list(scene.events.energies)},
-       {"section", section_text(scene, system)},
+      {{"section", section_text(scene, system)},
        {"flush", fmt::format("every {} s or {} orbits", scene.output.flush_seconds, scene.output.flush_orbits)}});
 }
 
@@ -166,6 +179,7 @@ int check(const SceneOptions& options, const Invocation& invocation) {
   print_continuation(scene);
   print_survey(scene);
   print_limits(scene);
+  print_events(scene);
   print_outputs(scene, system);
   print_not_built(scene);
   print_result("");  // throws if what was printed cannot be written

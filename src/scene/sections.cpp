@@ -45,10 +45,10 @@ void read_continuation(const Field& field, Continuation& continuation) {
 }
 
 void read_survey(const Field& field, Survey& survey) {
-  const Keys keys(field, {"depth", "subharmonics", "spectrum", "team_size"}, "survey: {depth: 2, subharmonics: 2}");
-  if (const auto depth = keys.find("depth")) survey.depth = depth->integer({.lower = 0, .upper = 100, .example = "2"});
+  const Keys keys(field, {"depth", "subharmonics", "spectrum", "team_size"}, "survey: {depth: 2, subharmonics: 4}");
+  if (const auto depth = keys.find("depth")) survey.depth = depth->integer({.lower = 0, .upper = 16, .example = "2"});
   if (const auto most = keys.find("subharmonics"))
-    survey.subharmonics = most->integer({.lower = 1, .upper = 1000, .example = "2"});
+    survey.subharmonics = most->integer({.lower = 1, .upper = 16, .example = "4"});
   if (const auto spectrum = keys.find("spectrum"))
     survey.spectrum = spectrum->choice({"all", "events"}) == "all" ? Spectrum::all : Spectrum::events;
   if (const auto team = keys.find("team_size"))
@@ -56,13 +56,15 @@ void read_survey(const Field& field, Survey& survey) {
 }
 
 void read_limits(const Field& field, Limits& limits) {
-  const Keys keys(field, {"period", "energy", "families", "steps"}, "limits: {period: 30}");
+  const Keys keys(field, {"period", "energy", "families", "steps", "time"}, "limits: {period: 30}");
   if (const auto period = keys.find("period"))
     limits.period = period->number({.lower = 0, .lower_open = true, .infinite = true, .example = "30"});
   if (const auto energy = keys.find("energy"))
     std::tie(limits.energy_from, limits.energy_to) = energy->range({.infinite = true, .example = "[-.inf, .inf]"});
   if (const auto families = keys.find("families")) limits.families = families->integer({.lower = 1, .example = "1000"});
   if (const auto steps = keys.find("steps")) limits.steps = steps->integer({.lower = 1, .example = "5000"});
+  if (const auto time = keys.find("time"))
+    limits.time = time->number({.lower = 0, .lower_open = true, .infinite = true, .example = "300"});
 }
 
 void read_events(const Field& field, Events& events) {

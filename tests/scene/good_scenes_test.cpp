@@ -75,6 +75,7 @@ TEST(GoodScene, LimitsEventsSectionAndOutputAreRead) {
   EXPECT_EQ(s.limits.energy_to, infinity);
   EXPECT_EQ(s.limits.families, 7);
   EXPECT_EQ(s.limits.steps, 8);
+  EXPECT_EQ(s.limits.time, 90.5);
   EXPECT_THAT(s.events.periods, ElementsAre(10.0, 12.5));
   EXPECT_THAT(s.events.energies, ElementsAre(-1.0, 0.0));
   EXPECT_EQ(s.section.coordinate, "th2");
@@ -103,7 +104,7 @@ TEST(GoodScene, EveryKeyButSystemAndStartsHasItsDefault) {
   EXPECT_EQ(s.continuation.cutoff_to, 4096);
   EXPECT_EQ(s.continuation.corrector, "automatic");
   EXPECT_EQ(s.survey.depth, 0);
-  EXPECT_EQ(s.survey.subharmonics, 1);
+  EXPECT_EQ(s.survey.subharmonics, 4);
   EXPECT_EQ(s.survey.spectrum, scene::Spectrum::events);
   EXPECT_EQ(s.survey.team_size, 1);
   EXPECT_EQ(s.limits.period, 30.0);
@@ -111,11 +112,20 @@ TEST(GoodScene, EveryKeyButSystemAndStartsHasItsDefault) {
   EXPECT_EQ(s.limits.energy_to, infinity);
   EXPECT_EQ(s.limits.families, 1000);
   EXPECT_EQ(s.limits.steps, 5000);
+  EXPECT_EQ(s.limits.time, infinity);
   EXPECT_THAT(s.events.periods, IsEmpty());
   EXPECT_THAT(s.events.energies, IsEmpty());
   EXPECT_EQ(s.section.coordinate, "");
   EXPECT_EQ(s.output.flush_seconds, 5.0);
   EXPECT_EQ(s.output.flush_orbits, 5000);
+}
+
+TEST(GoodScene, TheGreatestDepthAndSubharmonicsAreTaken) {
+  const scene::Scene s = scene::parse("system: {name: double_pendulum}\nstarts: {}\n", "text",
+                                      {"survey.depth=16", "survey.subharmonics=16", "limits.time=.inf"});
+  EXPECT_EQ(s.survey.depth, 16);
+  EXPECT_EQ(s.survey.subharmonics, 16);
+  EXPECT_EQ(s.limits.time, infinity);
 }
 
 TEST(GoodScene, TextIsTheFileWordForWord) {
@@ -129,7 +139,7 @@ TEST(SceneFolder, EverySceneLoads) {
     ++count;
     EXPECT_NO_THROW(static_cast<void>(scene::load(entry.path()))) << entry.path();
   }
-  EXPECT_GE(count, 3);
+  EXPECT_GE(count, 4);
 }
 
 TEST(SceneFolder, TheQuickstartSceneIsTheContracts) {
@@ -144,6 +154,17 @@ TEST(SceneFolder, TheQuickstartSceneIsTheContracts) {
   EXPECT_EQ(s.survey.subharmonics, 2);
   EXPECT_EQ(s.section.coordinate, "w1");
   EXPECT_FALSE(s.continuation.fixed_step.has_value());
+}
+
+TEST(SceneFolder, HenonHeilesBeginsAtTheOrigin) {
+  const scene::Scene s = scene::load(source / "drivers/scenes/henon_heiles.yaml");
+  EXPECT_EQ(s.system.name, "henon_heiles");
+  EXPECT_THAT(s.fixed_points.grid, ElementsAre(ElementsAre(0.0), ElementsAre(0.0)));
+  EXPECT_LT(s.sweep.period_from, 2 * pi);
+  EXPECT_GT(s.sweep.period_to, 2 * pi);
+  EXPECT_LT(s.limits.energy_to, 1.0 / 6) << "orbits escape above";
+  EXPECT_EQ(s.survey.depth, 1);
+  EXPECT_EQ(s.survey.subharmonics, 3);
 }
 
 TEST(SceneFolder, TheDeepAndTheHalfDegreeSceneDifferWhereTheySay) {

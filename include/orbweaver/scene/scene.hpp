@@ -47,8 +47,8 @@ struct Continuation {
 enum class Spectrum { all, events };
 
 struct Survey {
-  int depth = 0;
-  int subharmonics = 1;
+  int depth = 0;         ///< generations of branches below the base families
+  int subharmonics = 4;  ///< branches that close after up to this many periods
   Spectrum spectrum = Spectrum::events;
   int team_size = 1;
 };
@@ -59,6 +59,7 @@ struct Limits {
   double energy_to = std::numeric_limits<double>::infinity();
   int families = 1000;
   int steps = 5000;
+  double time = std::numeric_limits<double>::infinity();  ///< of the whole survey, seconds of wall clock
 };
 
 struct Events {
