@@ -19,6 +19,7 @@
 #include "orbweaver/queue/run.hpp"
 #include "orbweaver/survey/version.hpp"
 #include "segment_flusher.hpp"
+#include "time_limit.hpp"
 
 namespace orbweaver::survey {
 
@@ -29,7 +30,7 @@ using Clock = std::chrono::steady_clock;
 // Passes everything on to the display and keeps the outcomes that the summary and the archive need.
 class Recorder : public queue::Observer {
  public:
-  explicit Recorder(queue::Observer& display) : _display(display) {}
+  Recorder(queue::Observer& display, TimeLimit& time) : _display(display), _time(time) {}
 
   void started(const queue::Task& task, int rank) override { _display.started(task, rank); }
   void progress(const queue::Task& task, const queue::Progress& p, int rank) override {
@@ -43,7 +44,15 @@ class Recorder : public queue::Observer {
     _ended.insert_or_assign(task.key, std::pair(task, outcome));
     _display.failed(task, outcome);
   }
-  void tick(const queue::TaskCounts& counts) override { _display.tick(counts); }
+  // Its rows are kept, and so must the family be.
+  void stopped(const queue::Task& task, const queue::TaskOutcome& outcome) override {
+    _ended.insert_or_assign(task.key, std::pair(task, outcome));
+    _display.stopped(task, outcome);
+  }
+  void tick(const queue::TaskCounts& counts) override {
+    _time.tick();
+    _display.tick(counts);
+  }
 
   /// Tasks with their outcomes in order of keys.
   [[nodiscard]] const std::map<std::string, std::pair<queue::Task, queue::TaskOutcome>>& ended() const {
@@ -52,6 +61,7 @@ class Recorder : public queue::Observer {
 
  private:
   queue::Observer& _display;
+  TimeLimit& _time;
   std::map<std::string, std::pair<queue::Task, queue::TaskOutcome>> _ended;
 };
 
@@ -223,12 +233,14 @@ Summary run_survey(const core::Communicator& comm, const scene::Scene& scene,
   options.flush_seconds = scene.output.flush_seconds;
   options.flush_rows = scene.output.flush_orbits;
 
-  Recorder sweeps(progress);
+  TimeLimit time(scene.limits.time);
+  Recorder sweeps(progress, time);
   // On every rank, so that a field that is not finite on the grid is the same error everywhere.
   const queue::RunSummary swept = queue::run(comm, options, sweep_tasks(scene, *system), executor, sweeps, flusher);
-  Recorder branches(progress);
+  Recorder branches(progress, time);
   const queue::RunSummary followed = queue::run(
       comm, options, branch_tasks(scene, system->description(), sweeps, summary), executor, branches, flusher);
+  if (time.reached()) summary.remarks.push_back(time.remark(followed));
 
   archive::Records tables;
   gather_failed_sweeps(system->description(), sweeps, summary, tables);

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "orbweaver/queue/run.hpp"
+
+namespace orbweaver::survey {
+
+/// The scene's limits.time: asks the queue of this process to stop early (queue::request_stop) once that many seconds
+/// have passed since the object was made. It ends a run and decides nothing else. Only rank 0's counts.
+class TimeLimit {
+ public:
+  explicit TimeLimit(double seconds) : _seconds(seconds) {}
+  TimeLimit(const TimeLimit&) = delete;
+  TimeLimit& operator=(const TimeLimit&) = delete;
+  /// Takes its own request back, so that a later run in this process is not stopped by it.
+  ~TimeLimit();
+
+  /// To be called from the observer's ticks.
+  void tick();
+  [[nodiscard]] bool reached() const noexcept { return _reached; }
+  /// "stopped after limits.time = 60 s: tasks cut short: 2, not begun: 5", for the summary.
+  [[nodiscard]] std::string remark(const queue::RunSummary& run) const;
+
+ private:
+  double _seconds;
+  bool _reached = false;
+  std::chrono::steady_clock::time_point _began = std::chrono::steady_clock::now();
+};
+
+}  // namespace orbweaver::survey
