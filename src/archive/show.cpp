@@ -1,170 +1,11 @@
 #include "orbweaver/archive/show.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "text_grid.hpp"
+#include "show_parts.hpp"
 
 namespace orbweaver::archive {
-
-namespace {
-
-std::string csv_number(double value) { return std::isnan(value) ? "nan" : fmt::format("{:.17g}", value); }
-std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{:.17g}", value) : "null"; }
-std::string short_number(double value) { return std::isnan(value) ? "-" : fmt::format("{:.10g}", value); }
-
-std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + '"';
-}
-
-std::string json_text(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\')
-      quoted += std::string("\\") + c;
-    else if (static_cast<unsigned char>(c) < 0x20)
-      quoted += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
-    else
-      quoted += c;
-  }
-  return quoted + '"';
-}
-
-// Name of value `index` within a row of a vector column: state_th1, winding_n1, stability_0, stability_0_re.
-std::string value_name(const Header& header, const ColumnSpec& spec, std::size_t index) {
-  if (spec.row_shape.empty()) return spec.name;
-  if (spec.name == "state") return "state_" + header.state_names[index];
-  if (spec.name == "winding") return "winding_" + header.winding_names[index];
-  if (spec.row_shape.size() == 2) return fmt::format("{}_{}_{}", spec.name, index / 2, index % 2 == 0 ? "re" : "im");
-  return fmt::format("{}_{}", spec.name, index);
-}
-
-// Writes the values of a row of a column through the three printers.
-template <class Number>
-std::string value_text(const Column& column, std::size_t at, const Number& number,
-                       std::string (*text)(const std::string&)) {
-  if (const auto* integers = std::get_if<std::vector<std::int64_t>>(&column.values))
-    return std::to_string((*integers)[at]);
-  if (const auto* reals = std::get_if<std::vector<double>>(&column.values)) return number((*reals)[at]);
-  return text(std::get<std::vector<std::string>>(column.values)[at]);
-}
-
-std::string plain(const std::string& text) { return text; }
-
-void print_csv(std::ostream& out, const Header& header, const Table& table) {
-  std::vector<std::string> heads;
-  for (const Column& column : table.columns())
-    for (std::size_t i = 0; i < column.spec.width(); ++i) heads.push_back(csv_text(value_name(header, column.spec, i)));
-  out << fmt::format("{}\n", fmt::join(heads, ","));
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    std::vector<std::string> cells;
-    for (const Column& column : table.columns()) {
-      const std::size_t width = column.spec.width();
-      for (std::size_t i = 0; i < width; ++i)
-        cells.push_back(value_text(column, row * width + i, csv_number, csv_text));
-    }
-    out << fmt::format("{}\n", fmt::join(cells, ","));
-  }
-}
-
-std::string json_pairs(const Column& column, std::size_t row, std::size_t width) {
-  std::vector<std::string> pairs;
-  for (std::size_t i = row * width; i < (row + 1) * width; i += 2)
-    pairs.push_back(fmt::format("[{}, {}]", value_text(column, i, json_number, json_text),
-                                value_text(column, i + 1, json_number, json_text)));
-  return fmt::format("[{}]", fmt::join(pairs, ", "));
-}
-
-std::string json_value(const Column& column, std::size_t row) {
-  const std::size_t width = column.spec.width();
-  if (column.spec.row_shape.empty()) return value_text(column, row, json_number, json_text);
-  if (column.spec.row_shape.size() == 2) return json_pairs(column, row, width);
-  std::vector<std::string> values;
-  for (std::size_t i = row * width; i < (row + 1) * width; ++i)
-    values.push_back(value_text(column, i, json_number, json_text));
-  return fmt::format("[{}]", fmt::join(values, ", "));
-}
-
-void print_json(std::ostream& out, const Table& table) {
-  out << '[';
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    std::vector<std::string> members;
-    for (const Column& column : table.columns())
-      members.push_back(fmt::format("\"{}\": {}", column.spec.name, json_value(column, row)));
-    out << fmt::format("{}\n  {{{}}}", row == 0 ? "" : ",", fmt::join(members, ", "));
-  }
-  out << (table.rows() == 0 ? "]\n" : "\n]\n");
-}
-
-void print_readable(std::ostream& out, const Header& header, const Table& table) {
-  TextGrid grid;
-  for (const Column& column : table.columns()) {
-    const std::size_t width = column.spec.width();
-    for (std::size_t i = 0; i < width; ++i) {
-      std::vector<std::string> cells;
-      for (std::size_t row = 0; row < table.rows(); ++row)
-        cells.push_back(value_text(column, row * width + i, short_number, plain));
-      grid.add_column(value_name(header, column.spec, i), std::move(cells), column.spec.type != ColumnType::text);
-    }
-  }
-  grid.print(out);
-}
-
-std::vector<std::string> number_cells(const std::vector<std::int64_t>& values) {
-  std::vector<std::string> cells;
-  for (const std::int64_t value : values) cells.push_back(std::to_string(value));
-  return cells;
-}
-
-std::vector<std::string> family_names(const Archive& atlas, const char* column) {
-  const auto& names = atlas.families().texts("name");
-  std::vector<std::string> cells;
-  for (const std::int64_t row : atlas.families().integers(column))
-    cells.push_back(row < 0 ? "-" : names[static_cast<std::size_t>(row)]);
-  return cells;
-}
-
-std::string range_text(const double* begin, const double* end) {
-  double low = not_computed;
-  double high = not_computed;
-  for (const double* value = begin; value != end; ++value) {
-    low = std::fmin(low, *value);
-    high = std::fmax(high, *value);
-  }
-  return std::isnan(low) ? "-" : fmt::format("{:.6g} .. {:.6g}", low, high);
-}
-
-std::vector<std::string> family_ranges(const Archive& atlas, const char* column) {
-  const double* values = atlas.orbits().reals(column).data();
-  const auto& firsts = atlas.families().integers("first_orbit");
-  const auto& counts = atlas.families().integers("orbit_count");
-  std::vector<std::string> cells;
-  for (std::size_t i = 0; i < firsts.size(); ++i)
-    cells.push_back(range_text(values + firsts[i], values + firsts[i] + counts[i]));
-  return cells;
-}
-
-void print_families(std::ostream& out, const Archive& atlas) {
-  const Table& families = atlas.families();
-  TextGrid grid;
-  grid.add_column("name", families.texts("name"), false);
-  grid.add_column("parent", family_names(atlas, "parent"), false);
-  grid.add_column("times around", number_cells(families.integers("multiplicity")));
-  grid.add_column("isotropy", families.texts("isotropy"), false);
-  grid.add_column("orbits", number_cells(families.integers("orbit_count")));
-  grid.add_column("period", family_ranges(atlas, "period"));
-  grid.add_column("energy", family_ranges(atlas, "energy"));
-  grid.add_column("end", families.texts("end_reason"), false);
-  grid.print(out);
-}
-
-}  // namespace
 
 const Table& shown_table(const Archive& atlas, const std::string& name) {
   if (name == "families") return atlas.families();
@@ -177,8 +18,7 @@ const Table& shown_table(const Archive& atlas, const std::string& name) {
 void print_summary(std::ostream& out, const Archive& atlas) {
   const Header& header = atlas.header();
   const auto whole_range = [&](const char* column) {
-    const auto& values = atlas.orbits().reals(column);
-    return range_text(values.data(), values.data() + values.size());
+    return range_text(atlas.orbits().reals(column), 0, atlas.orbits().rows());
   };
   const std::uint64_t bytes = atlas.mode_values() * sizeof(double);
   out << fmt::format("{}: {} {}, written by Orbweaver {}\n", atlas.path().string(), atlas_format, format_version,
@@ -204,6 +44,8 @@ void print_table(std::ostream& out, const Archive& atlas, const std::string& nam
     print_json(out, table);
   else if (name == "families")
     print_families(out, atlas);
+  else if (name == "crossings")
+    print_crossings(out, atlas);
   else
     print_readable(out, atlas.header(), table);
 }

@@ -2,6 +2,8 @@
 
 #include <sstream>
 
+#include <fmt/format.h>
+
 #include "archive/sample.hpp"
 #include "orbweaver/archive/show.hpp"
 #include "orbweaver/core/error.hpp"
@@ -10,6 +12,7 @@ namespace {
 
 using namespace orbweaver;
 using namespace orbweaver::archive;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 Archive sample_atlas(const std::string& folder, const Header& header) {
@@ -83,19 +86,131 @@ TEST(Show, TextsAreEscapedInJson) {
   EXPECT_THAT(text, HasSubstr("\"line one\\u000aback\\\\slash\""));
 }
 
-TEST(Show, FamiliesReadablyWithNamesForIndices) {
-  const Archive atlas = sample_atlas("readable", test::sample_header());
-  const auto lines = lines_of(shown(atlas, "families", TextFormat::readable));
-  ASSERT_EQ(lines.size(), 6u);
-  EXPECT_EQ(lines[0],
-            "name             parent     times around  isotropy   orbits          period              energy  end");
-  EXPECT_EQ(lines[3],
-            "Up-Down          -                     1  S@1/2 R@0       0               -                   -  "
-            "no first orbit could be found – the Newton iteration stalled");
-  EXPECT_EQ(lines[5],
-            "Ästhetik \"B\", 1  Out-Phase             2  S@1/2 R@0       5  4.625 .. 5.125  -1.6875 .. -1.4375  "
-            "the period reached the scene's limit");
-  EXPECT_THAT(shown(atlas, "crossings", TextFormat::readable), HasSubstr("period-doubling"));
+TEST(Show, FamiliesReadablyAsATree) {
+  const Header header = test::sample_header();
+  Records records = test::sample_records(header);
+  records.crossings[1].multiplicity = 2;
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("readable"), header, records));
+  EXPECT_EQ(shown(atlas, "families", TextFormat::readable),
+            R"(family             born at                     orbits          period              energy
+In-Phase           -                               12    3.125 .. 4.5    -2.4375 .. -1.75
+    S@1/2 R@0; unstable; ended: the period reached the scene's limit
+  ID1              period-doubling T 6.5, m 1       3     5.25 .. 5.5     -1.375 .. -1.25
+      S@1/2 R@0; unstable; ended: the period reached the scene's limit
+Up-Down            -                                0               -                   -
+    S@1/2 R@0; ended: no first orbit could be found – the Newton iteration stalled
+Out-Phase          -                                9          2 .. 3          -3 .. -2.5
+    S@1/2 R@0; stable T 2 .. 2.25; ended: the period reached the scene's limit
+  Ästhetik "B", 1  branch-point T 5.5, m 2          5  4.625 .. 5.125  -1.6875 .. -1.4375
+      S@1/2 R@0; unstable; ended: the period reached the scene's limit -> ID1 at fold-energy T 4.5
+)");
+}
+
+TEST(Show, CrossingsReadablyWithTheFamiliesBornThere) {
+  const Header header = test::sample_header();
+  Records records = test::sample_records(header);
+  records.families[0].crossing = 0;
+  records.crossings[0].energy = -1.25;
+  records.crossings[0].sector_j = 1;
+  records.crossings[0].sector_q = 4;
+  records.crossings[0].multiplicity = 2;
+  records.crossings[0].residual = -3.5e-12;
+  records.crossings[0].test_value = -2;
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("crossings"), header, records));
+  EXPECT_EQ(shown(atlas, "crossings", TextFormat::readable),
+            R"(family     period  energy  kind             m  q  j  kernel  residual  test value  born there
+In-Phase      4.5       -  fold-energy      1  1  0       2         -           -  -
+In-Phase      6.5   -1.25  period-doubling  2  4  1       2  -3.5e-12          -2  ID1, Ästhetik "B", 1
+Out-Phase     5.5       -  branch-point     1  1  0       2         -           -  -
+)");
+}
+
+TEST(Show, LinesOfTheTreeStayWithin120Characters) {
+  const Header header = test::sample_header();
+  Records records = test::sample_records(header);
+  for (int n = 0; n < 200; ++n) records.families[2].end_reason += fmt::format(", and reason {}", n);
+  records.families[3].name = std::string(80, 'n');
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("long"), header, records));
+  const std::string text = shown(atlas, "families", TextFormat::readable);
+  for (const std::string& line : lines_of(text)) EXPECT_LE(line.size(), 121U) << line;  // one letter has two bytes
+  EXPECT_THAT(text, HasSubstr("\n    reason 3,"));
+  EXPECT_THAT(text, HasSubstr("...\n  ID1 "));
+  EXPECT_THAT(text, HasSubstr("nnnnn... "));
+  EXPECT_THAT(shown(atlas, "families", TextFormat::csv), HasSubstr("and reason 199"));
+}
+
+std::vector<std::string> family_column(const Archive& atlas) {
+  std::vector<std::string> names;
+  for (const std::string& line : lines_of(shown(atlas, "families", TextFormat::readable)))
+    if (line.find("ended:") == std::string::npos)
+      names.push_back(line.substr(0, line.find("  ", line.find_first_not_of(' '))));
+  return names;
+}
+
+TEST(Show, ChildrenStandBehindTheirParentWhateverTheOrderOfKeys) {
+  const Header header = test::sample_header();
+  Records records;
+  const auto add = [&](const char* key, const char* name, const char* parent) {
+    FamilyRecord family;
+    family.key = key;
+    family.name = name;
+    family.parent_key = parent;
+    family.end_reason = "-";
+    records.families.push_back(family);
+  };
+  add("1", "one", "");
+  add("1+", "other side", "");
+  add("1.1", "child", "1");
+  add("1.1.1", "grandchild", "1.1");
+  add("1.2", "second child", "1");
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("order"), header, records));
+  EXPECT_THAT(family_column(atlas),
+              ElementsAre("family", "one", "  child", "    grandchild", "  second child", "other side"));
+  records.families[0].parent_key = "1.1";  // in a circle
+  const Archive circle(test::write_sample_atlas(test::fresh_folder("circle"), header, records));
+  EXPECT_THAT(family_column(circle),
+              ElementsAre("family", "other side", "one", "  child", "    grandchild", "  second child"));
+}
+
+// The one family of five orbits with T = 1 ... 5, these stabilities, and this error bound.
+std::string stability_of(const Header& header, const std::vector<std::vector<double>>& values, double error) {
+  Records records = test::sample_records(header);
+  records.crossings.clear();
+  records.families = {records.families[1]};
+  records.orbits.resize(values.size());
+  records.sections.clear();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    records.orbits[i].period = static_cast<double>(i + 1);
+    records.orbits[i].stability = values[i];
+    records.orbits[i].stability_error = error;
+  }
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("stability"), header, records));
+  const std::string line = lines_of(shown(atlas, "families", TextFormat::readable)).at(2);
+  const std::size_t begin = line.find("; ") + 2;
+  return line.substr(begin, line.find("ended:") - begin);
+}
+
+TEST(Show, StabilityOfOnePairInIntervalsOfThePeriod) {
+  const Header one = test::sample_header();
+  const double nan = not_computed;
+  EXPECT_EQ(stability_of(one, {{1}, {-1.5}, {2.5}, {0}, {-3}}, 1e-9), "stable T 1 .. 2, 4; ");
+  EXPECT_EQ(stability_of(one, {{3}, {1}, {nan}, {1}, {2}}, 1e-9), "stable T 2, 4 .. 5; ");
+  EXPECT_EQ(stability_of(one, {{1}, {-2}, {2}, {0}, {1}}, 1e-9), "stable; ");
+  EXPECT_EQ(stability_of(one, {{3}, {-9}, {4}, {nan}, {7}}, nan), "unstable; ");
+  EXPECT_EQ(stability_of(one, {{2 + 1e-7}, {-2 - 1e-7}, {2.1}, {3}, {4}}, 1e-6), "stable T 1 .. 2; ");
+  EXPECT_EQ(stability_of(one, {{2 + 1e-7}, {-2 - 1e-7}, {2.1}, {3}, {4}}, 1e-8), "unstable; ");
+  EXPECT_EQ(stability_of(one, {{1}, {1}, {1}, {1}, {1}}, 1), "") << "errors too large to tell";
+}
+
+TEST(Show, StabilityOfTwoPairsNeedsBoth) {
+  const Header two = test::sample_header(2);
+  EXPECT_EQ(stability_of(two, {{1, 0, 1, 0}, {1, 0, 3, 0}, {3, 0, 1, 0}, {1, 0.5, 1, -0.5}, {0, 0, -1, 0}}, 1e-9),
+            "stable T 1, 5; ");
+}
+
+TEST(Show, StabilityByMultipliersWhereTheFlowIsNotSymplectic) {
+  const Header damped = test::sample_header(1, false);
+  EXPECT_EQ(stability_of(damped, {{0.5, 0.5}, {-1.1, 0}, {0.8, 0.8}, {0, -1}, {1.5, 0}}, 1e-9), "stable T 1, 4; ");
 }
 
 TEST(Show, Summary) {

@@ -1,0 +1,92 @@
+#include <cmath>
+#include <complex>
+#include <optional>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "show_parts.hpp"
+
+namespace orbweaver::archive {
+
+namespace {
+
+constexpr double largest_error = 1e-3;
+constexpr std::size_t most_intervals = 8;
+
+// The file does not say which of the two a complex value is: multipliers, or indices of two or more symplectic pairs.
+bool holds_multipliers(const Archive& atlas) {
+  if (!has_complex_stability(atlas.header())) return false;
+  if (atlas.header().pairs == 1) return true;
+  for (const double energy : atlas.orbits().reals("energy"))
+    if (!std::isnan(energy)) return false;
+  return true;
+}
+
+class Stability {
+ public:
+  explicit Stability(const Archive& atlas)
+      : _values(atlas.orbits().reals("stability")),
+        _errors(atlas.orbits().reals("stability_error")),
+        _pairs(static_cast<std::size_t>(atlas.header().pairs)),
+        _complex(has_complex_stability(atlas.header())),
+        _multipliers(holds_multipliers(atlas)) {}
+
+  // Nothing where it is not known.
+  [[nodiscard]] std::optional<bool> of(std::size_t orbit) const {
+    const double error = std::isnan(_errors[orbit]) ? 0.0 : _errors[orbit];
+    if (_pairs == 0 || error > largest_error) return std::nullopt;
+    bool stable = true;
+    for (std::size_t pair = 0; pair < _pairs; ++pair) {
+      const std::complex<double> k = value(orbit, pair);
+      if (std::isnan(k.real()) || std::isnan(k.imag())) return std::nullopt;
+      stable = stable && (_multipliers ? std::abs(k) <= 1.0 + error
+                                       : std::abs(k.imag()) <= error && std::abs(k.real()) <= 2.0 + error);
+    }
+    return stable;
+  }
+
+ private:
+  [[nodiscard]] std::complex<double> value(std::size_t orbit, std::size_t pair) const {
+    const std::size_t at = orbit * _pairs + pair;
+    return _complex ? std::complex<double>(_values[2 * at], _values[2 * at + 1]) : _values[at];
+  }
+
+  const std::vector<double>& _values;
+  const std::vector<double>& _errors;
+  std::size_t _pairs;
+  bool _complex;
+  bool _multipliers;
+};
+
+}  // namespace
+
+std::string stability_text(const Archive& atlas, std::size_t family) {
+  const Stability stability(atlas);
+  const auto& periods = atlas.orbits().reals("period");
+  const auto first = static_cast<std::size_t>(atlas.families().integers("first_orbit")[family]);
+  const auto end = first + static_cast<std::size_t>(atlas.families().integers("orbit_count")[family]);
+  std::vector<std::string> intervals;
+  std::size_t known = 0;
+  std::size_t stable = 0;
+  std::size_t begin = first;  // of the interval under way
+  for (std::size_t orbit = first; orbit <= end; ++orbit) {
+    const std::optional<bool> here = orbit < end ? stability.of(orbit) : std::nullopt;
+    known += here.has_value() ? 1 : 0;
+    stable += here.value_or(false) ? 1 : 0;
+    if (here.value_or(false)) continue;
+    if (orbit - begin == 1) intervals.push_back(fmt::format("{:.6g}", periods[begin]));
+    if (orbit - begin > 1) intervals.push_back(fmt::format("{:.6g} .. {:.6g}", periods[begin], periods[orbit - 1]));
+    begin = orbit + 1;
+  }
+  if (known == 0) return "";
+  if (stable == 0) return "unstable";
+  if (stable == end - first) return "stable";
+  if (intervals.size() > most_intervals) {
+    intervals.resize(most_intervals);
+    intervals.emplace_back("...");
+  }
+  return fmt::format("stable T {}", fmt::join(intervals, ", "));
+}
+
+}  // namespace orbweaver::archive
