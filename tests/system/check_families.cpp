@@ -1,5 +1,5 @@
 // check_families ATLAS [--split]: no orbit of a family lies on another family (or elsewhere on its own), away from
-// crossings. Prints what does, and exits 1. With --split every second orbit of the first family is mirrored, started at
+// crossings. Prints what does, and exits 1. With --split every second orbit of each family is mirrored, started at
 // another time, and taken for a family of its own, which must be found.
 #include <algorithm>
 #include <cmath>
@@ -111,17 +111,20 @@ class Check {
     }
   }
 
-  void split_first_family() {
-    core::require(!_families.empty() && _families.front().points.size() >= 4, "nothing to split");
-    Family& first = _families.front();
-    Family second{first.name + ", every second orbit", first.isotropy, {}, {}};
-    std::vector<Point> kept;
-    for (std::size_t n = 0; n < first.points.size(); ++n) {
-      (n % 2 == 0 ? kept : second.points).push_back(first.points[n]);
-      if (n % 2 == 1) second.points.back().moved = true;
+  void split_families() {
+    core::require(!_families.empty(), "nothing to split");
+    const std::size_t count = _families.size();
+    for (std::size_t n = 0; n < count; ++n) {
+      Family second{_families[n].name + ", every second orbit", _families[n].isotropy, {}, {}};
+      std::vector<Point> kept;
+      for (const Point& point : _families[n].points) {
+        const bool moved = (&point - _families[n].points.data()) % 2 == 1;
+        (moved ? second.points : kept).push_back(point);
+        if (moved) second.points.back().moved = true;
+      }
+      _families[n].points = std::move(kept);
+      add(std::move(second));
     }
-    first.points = std::move(kept);
-    add(std::move(second));
   }
 
   int run() {
@@ -231,7 +234,7 @@ int main(int argc, char** argv) {
   const core::Session session;
   try {
     Check check(argv[1]);
-    if (split) check.split_first_family();
+    if (split) check.split_families();
     return check.run();
   } catch (const std::exception& error) {
     fmt::print(stderr, "check_families: {}\n", error.what());
