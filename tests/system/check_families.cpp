@@ -182,7 +182,9 @@ class Check {
     for (std::size_t x = 0; x < other.points.size(); ++x) {
       if (!is_in(other.points[x], family.box)) continue;
       for (std::size_t n = 0; n + 1 < family.points.size(); ++n) {
-        const bool is_own = &family == &other && x + 2 >= n && x <= n + 3;
+        // On its own family, neighbours do not count; a closed one ends where it began.
+        const std::size_t apart = x > n ? x - n : n - x;
+        const bool is_own = &family == &other && (apart <= 3 || apart + 3 >= family.points.size());
         if (!is_own && is_in(other.points[x], box_of(family.points, n, n + 1))) out.push_back({x, n});
       }
     }

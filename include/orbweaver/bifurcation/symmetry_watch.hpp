@@ -47,7 +47,8 @@ class SymmetryWatch {
   [[nodiscard]] static Seen see(const loop::Loop& loop);
 
   /// All candidates whose broken part turned round between `a` and `b`, or vanishes at `b`, those that generate the most
-  /// together with the own isotropy first. Broken parts below 1e-8 of the loop at `a` are rounding, and pass nothing.
+  /// together with the own isotropy first. Broken parts below 1e-8 of the loop at `a` are rounding, and pass nothing. Where
+  /// it vanishes at `b` to that size, `b` lies on the crossing, or the corrector has slipped onto the symmetric family.
   [[nodiscard]] std::vector<Gained> all_passed(const Seen& a, const Seen& b) const;
   /// The first of them.
   [[nodiscard]] std::optional<Gained> passed(const Seen& a, const Seen& b) const;
