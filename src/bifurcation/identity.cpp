@@ -163,7 +163,8 @@ bool may_lie_between(const Orbit& a, const Orbit& b, const Orbit& x, double wide
 Comparison same_family(const systems::System& system, const Orbit& a, const Orbit& b, const loop::Isotropy& isotropy,
                        const Orbit& x, const IdentityOptions& options) {
   Orbit primitive = x;
-  const int m = loop::repetitions(x.loop, options.tolerance * (1.0 + loop::rms_size(x.loop)));
+  const double negligible = std::min(options.tolerance, 1e-3 * loop::rms_amplitude(x.loop));
+  const int m = loop::repetitions(x.loop, negligible);
   if (m > 1) {
     primitive.loop = loop::without_repetition(x.loop, m);
     primitive.action /= m;

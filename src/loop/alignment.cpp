@@ -108,9 +108,26 @@ bool winds_by_multiples_of(const Loop& loop, int m) {
   return std::all_of(loop.winding.begin(), loop.winding.end(), [m](double n) { return std::fmod(n, m) == 0.0; });
 }
 
+// False only where no harmonic but multiples of `prime` can be below `tolerance`: by samples, whatever the time map. A
+// shift by T/prime changes a harmonic by at most twice its size.
+bool may_repeat(const Loop& loop, int prime, double tolerance) {
+  const int step = (time_sample_count + prime - 1) / prime;
+  const TimeSamples samples = time_samples(loop, step * prime);
+  double sum = 0.0;
+  for (int i = 0; i < samples.dimension; ++i)
+    for (int j = 0; j < samples.count; ++j) {
+      const double* z = samples.states.data() + static_cast<std::ptrdiff_t>(i) * samples.count;
+      const double change = z[(j + step) % samples.count] - z[j];
+      sum += change * change;
+    }
+  return std::sqrt(sum / samples.count) <= 4.0 * tolerance;
+}
+
 }  // namespace
 
 int repetitions(const Loop& loop, double tolerance) {
+  const auto may = [&](int prime) { return may_repeat(loop, prime, tolerance); };
+  if (!loop.time_map.is_identity() && !may(2) && !may(3) && !may(5) && !may(7) && !may(11)) return 1;
   const Loop even = resolved_in_time(loop);
   for (int m = 12; m > 1; --m) {
     double sum = 0.0;

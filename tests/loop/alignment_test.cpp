@@ -218,9 +218,14 @@ TEST(Repetitions, HoldToTheTolerance) {
 }
 
 TEST(Repetitions, AreSeenUnderATimeMap) {
-  const Loop loop = with_time_map(repeated(rotation(), 2), {1.0, {0.2, -0.1}}, 160);
-  EXPECT_EQ(repetitions(loop, 1e-9), 2);
-  expect_same(pendulum(), without_repetition(loop, 2), rotation(), "1");
+  Loop once = test::random_loop(4, 6, 67, 4.2, 0.5);
+  once.winding = {1.0, -2.0, 0.0, 0.0};
+  for (const int m : {2, 3, 5, 7, 9, 11}) {
+    const Loop loop = with_time_map(repeated(once, m), {1.0, {0.2, -0.1}}, 40 * m);
+    EXPECT_EQ(repetitions(loop, 1e-9), m);
+    expect_same(pendulum(), without_repetition(loop, m), once, "1");
+  }
+  EXPECT_EQ(repetitions(with_time_map(once, {1.0, {0.2, -0.1}}, 60), 1e-9), 1);
 }
 
 }  // namespace

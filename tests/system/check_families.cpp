@@ -42,6 +42,7 @@ struct Family {
   loop::Isotropy isotropy;
   std::vector<Point> points;
   Box box;
+  std::vector<Box> segments;  // of points n and n + 1
 };
 
 struct Pair {
@@ -103,6 +104,7 @@ class Check {
       Family family{_atlas.families().texts("name")[n],
                     isotropy_of(_system->description(), _atlas.families().texts("isotropy")[n]),
                     {},
+                    {},
                     {}};
       const auto first = static_cast<std::size_t>(_atlas.families().integers("first_orbit")[n]);
       const auto count = static_cast<std::size_t>(_atlas.families().integers("orbit_count")[n]);
@@ -115,7 +117,7 @@ class Check {
     core::require(!_families.empty(), "nothing to split");
     const std::size_t count = _families.size();
     for (std::size_t n = 0; n < count; ++n) {
-      Family second{_families[n].name + ", every second orbit", _families[n].isotropy, {}, {}};
+      Family second{_families[n].name + ", every second orbit", _families[n].isotropy, {}, {}, {}};
       std::vector<Point> kept;
       for (const Point& point : _families[n].points) {
         const bool moved = (&point - _families[n].points.data()) % 2 == 1;
@@ -123,6 +125,7 @@ class Check {
         if (moved) second.points.back().moved = true;
       }
       _families[n].points = std::move(kept);
+      measure(_families[n]);
       add(std::move(second));
     }
   }
@@ -147,8 +150,15 @@ class Check {
 
   void add(Family family) {
     if (family.points.size() < 2) return;
-    family.box = box_of(family.points, 0, family.points.size() - 1);
+    measure(family);
     _families.push_back(std::move(family));
+  }
+
+  static void measure(Family& family) {
+    family.box = box_of(family.points, 0, family.points.size() - 1);
+    family.segments.clear();
+    for (std::size_t n = 0; n + 1 < family.points.size(); ++n)
+      family.segments.push_back(box_of(family.points, n, n + 1));
   }
 
   [[nodiscard]] bool is_at_crossing(const Point& x) const {
@@ -185,7 +195,7 @@ class Check {
         // On its own family, neighbours do not count; a closed one ends where it began.
         const std::size_t apart = x > n ? x - n : n - x;
         const bool is_own = &family == &other && (apart <= 3 || apart + 3 >= family.points.size());
-        if (!is_own && is_in(other.points[x], box_of(family.points, n, n + 1))) out.push_back({x, n});
+        if (!is_own && is_in(other.points[x], family.segments[n])) out.push_back({x, n});
       }
     }
     return out;
