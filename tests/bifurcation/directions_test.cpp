@@ -1,6 +1,8 @@
 // Directions at crossings whose orbits have reversors: fixed lines.
 #include "orbweaver/bifurcation/directions.hpp"
 
+#include <algorithm>
+
 #include "bifurcation/crossings.hpp"
 #include "orbweaver/certificate/certificate.hpp"
 
@@ -67,6 +69,11 @@ TEST(Directions, TwoFamiliesLeaveADoublingPoint) {
     for (const double v : direction.modes) square += v * v;
     EXPECT_NEAR(square, 1.0, 1e-12);
     for (const double amplitude : {1e-3, 1e-6}) expect_born(direction, amplitude, "S");
+    // The first coordinate that moves at s = 0 does so upwards.
+    loop::Loop v = direction.base;
+    v.modes = direction.modes;
+    const std::vector<double> move = loop::state_at(v, 0.0);
+    EXPECT_GT(*std::find_if(move.begin(), move.end(), [](double c) { return std::abs(c) > 1e-6; }), 0.0);
   }
   // A brake orbit is at rest at s = 0; the other starts on the fixed set of RS: angles 0.
   const std::vector<double> rest = loop::state_at(found[0].base, 0.0);

@@ -3,6 +3,7 @@
 
 #include "bifurcation/crossings.hpp"
 #include "orbweaver/bifurcation/directions.hpp"
+#include "orbweaver/certificate/certificate.hpp"
 
 namespace orbweaver::bifurcation {
 namespace {
@@ -125,6 +126,62 @@ TEST(Search, FindsTheOneFamilyOfOrderThree) {
   EXPECT_TRUE(known[0].both_sides);
   expect_same_by_search(family, crossing, 3, true, 1, "S@1/2");
 }
+
+/// IB: the family that leaves the in-phase one at T = 10.4168. It has S@1/2 and no reversor.
+const test::Family& without_reversors() {
+  static const test::Family family = [] {
+    const test::Family longer = slow_family(test::pendulum(), 10.6);
+    const loop::Loop orbit = longer.at_period(longer.orbits.back().loop, 10.416773281973249);
+    const Crossing crossing = test::crossing_at(*test::pendulum(), orbit, longer.isotropy, 1, 1);
+    const Direction start = directions(*test::pendulum(), crossing.base, longer.isotropy, crossing.kernel).at(0);
+    return test::family_from(test::pendulum(), {start.base, start.modes, start.isotropy}, 10.6);
+  }();
+  return family;
+}
+
+class WithoutReversors : public testing::TestWithParam<int> {};
+
+// To leading order the orbits stand where cos(q angle + const) is largest and smallest: pi/q apart, modulo 2 pi/q.
+TEST_P(WithoutReversors, TwoFamiliesOfEvenOrderLeaveHalfAnAngleApart) {
+  const int q = GetParam();
+  const int times = q / 2;
+  const double angle = 2.0 * std::numbers::pi / q;
+  const Crossing crossing = crossing_of(without_reversors(), 2.0 * std::cos(angle), times);
+  const std::vector<Direction> found =
+      directions(*test::pendulum(), crossing.base, without_reversors().isotropy, crossing.kernel);
+  ASSERT_EQ(found.size(), 2u);
+  std::vector<corrector::Result> born;
+  for (const Direction& direction : found) {
+    EXPECT_EQ(loop::to_text(direction.isotropy), "");
+    EXPECT_FALSE(direction.both_sides);
+    EXPECT_GE(direction.amplitude, std::pow(1e-6, 1.0 / (q - 2)) - 1e-12);
+    born.push_back(born_orbit(*test::pendulum(), direction.base, direction.modes, {}, direction.amplitude));
+    ASSERT_TRUE(born.back().converged()) << born.back().detail;
+    EXPECT_LT(certificate::certify(*test::pendulum(), born.back().loop).closure, 1e-9);
+    // A quarter further out the direction is still the same: an angle that nothing fixes would drift.
+    const corrector::Result further =
+        born_orbit(*test::pendulum(), direction.base, direction.modes, {}, 1.25 * direction.amplitude);
+    ASSERT_TRUE(further.converged()) << further.detail;
+    for (const std::vector<double>& v : crossing.kernel) {
+      double near = 0.0;
+      double far = 0.0;
+      for (std::size_t n = 0; n < v.size(); ++n) {
+        near += v[n] * (born.back().loop.modes[n] - crossing.base.modes[n]) / direction.amplitude;
+        far += v[n] * (further.loop.modes[n] - crossing.base.modes[n]) / (1.25 * direction.amplitude);
+      }
+      EXPECT_NEAR(near, far, 0.1 * angle);
+    }
+  }
+  loop::Loop v = crossing.base;
+  v.modes = found[1].modes;
+  std::vector<std::vector<double>> images;
+  for (int turn = 0; turn < q; ++turn) images.push_back(loop::time_shifted(v, turn / static_cast<double>(q)).modes);
+  const std::vector<double> parts = overlaps(found[0].modes, images);
+  EXPECT_NEAR(std::acos(*std::max_element(parts.begin(), parts.end())), 0.5 * angle, 0.1 * angle);
+  EXPECT_FALSE(loop::find_map(test::pendulum()->description(), born[0].loop, born[1].loop, 1e-3, q).has_value());
+}
+
+INSTANTIATE_TEST_SUITE_P(Search, WithoutReversors, testing::Values(6, 8));
 
 }  // namespace
 }  // namespace orbweaver::bifurcation
