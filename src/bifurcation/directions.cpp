@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <tuple>
 
 #include <fmt/format.h>
 
 #include "fixed_spaces.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/log.hpp"
 #include "search.hpp"
 #include "symmetry_group.hpp"
 
@@ -162,15 +164,21 @@ std::vector<Direction> searched(const systems::System& system, const SymmetryGro
   const Eigen::VectorXd generic = Eigen::VectorXd::LinSpaced(group.dimension(), 1.0, std::sqrt(2.0)).array().sin();
   const loop::Isotropy kept =
       isotropy_along(system.description(), group, base, group.modes_of(generic.normalized()), options);
-  const auto found = search_directions(system, base, group, kept, start_directions(group.dimension(), q, options.seeds),
-                                       amplitude, lines, options.corrector);
-  if (plane && q > 2 && found.size() > 2)
+  const double nudge = plane ? 0.2 * std::numbers::pi / q : 0.03;
+  const SearchResult result =
+      search_directions(system, base, group, kept, start_directions(group.dimension(), q, options.seeds), amplitude,
+                        nudge, lines, options.corrector);
+  const bool too_many = plane && q > 2 && result.found.size() > 2;
+  if (too_many || (result.not_isolated > 0 && lines.empty() && result.found.empty()))
     throw core::NumericalError(fmt::format(
-        "a search in a kernel of dimension 2 found {} directions modulo its {} rotations, at most 2 can be: "
-        "at amplitude {:.2g} the loss does not tell them apart",
-        found.size(), q, amplitude));
+        "directions in a kernel of dimension {} are not isolated at amplitude {:.2g}: {} found, {} more or less "
+        "anywhere; either they form a continuum or the loss does not tell them apart",
+        group.dimension(), amplitude, result.found.size(), result.not_isolated));
+  if (result.not_isolated > 0)
+    core::log_warning(fmt::format("{} directions in a kernel of dimension {} are not isolated and are left out",
+                               result.not_isolated, group.dimension()));
   std::vector<Direction> out;
-  for (const FoundOrbit& orbit : found)
+  for (const FoundOrbit& orbit : result.found)
     out.push_back({base, group.modes_of(orbit.coordinates),
                    loop::find_isotropy(system.description(), orbit.loop, 1e-2 * amplitude, group.denominator()),
                    has_other_sides(group, orbit.coordinates), amplitude});

@@ -11,7 +11,7 @@ namespace orbweaver::bifurcation {
 
 namespace {
 
-constexpr double same_direction = 0.02;  // radians; after the second correction they agree much closer
+constexpr double same_direction = 0.02;  // radians; settled ones agree much closer
 constexpr double settled = 1e-3;         // radians between the pinned direction and the one of the orbit found
 constexpr double largest_tilt = 1.0;
 constexpr int most_pins = 8;
@@ -24,52 +24,84 @@ double halton(int n, int base) {
   return value;
 }
 
-// Where the orbit leaves the base, or nothing if it is not near the base along the kernel.
-std::optional<Eigen::VectorXd> direction_of(const loop::Loop& base, const SymmetryGroup& group, const loop::Loop& orbit,
-                                            double amplitude) {
-  const std::vector<double> start = loop::with_cutoff(base, orbit.cutoff).modes;
-  Eigen::VectorXd gap = Eigen::Map<const Eigen::VectorXd>(orbit.modes.data(), static_cast<Eigen::Index>(start.size())) -
-                        Eigen::Map<const Eigen::VectorXd>(start.data(), static_cast<Eigen::Index>(start.size()));
-  const Eigen::VectorXd inside = group.coordinates_of({gap.data(), static_cast<std::size_t>(gap.size())});
-  const double length = inside.norm();
-  const double outside = std::sqrt(std::max(0.0, gap.squaredNorm() - length * length));
-  if (!(length <= amplitude / std::cos(largest_tilt) && outside <= length)) return std::nullopt;
-  return inside / length;
-}
+struct Search {
+  const systems::System& system;
+  const loop::Loop& base;
+  const SymmetryGroup& group;
+  const loop::Isotropy& isotropy;
+  double amplitude;
+  const corrector::Options& options;
 
-}  // namespace
+  // Where the orbit leaves the base, or nothing if it is not near the base along the kernel.
+  [[nodiscard]] std::optional<Eigen::VectorXd> direction_of(const loop::Loop& orbit) const {
+    std::vector<double> gap = loop::with_cutoff(base, orbit.cutoff).modes;
+    for (std::size_t n = 0; n < gap.size(); ++n) gap[n] = orbit.modes[n] - gap[n];
+    const Eigen::VectorXd inside = group.coordinates_of(gap);
+    const double length = inside.norm();
+    const double whole = Eigen::Map<const Eigen::VectorXd>(gap.data(), static_cast<Eigen::Index>(gap.size())).norm();
+    if (!(length <= amplitude / std::cos(largest_tilt) && whole <= std::numbers::sqrt2 * length)) return std::nullopt;
+    return inside / length;
+  }
 
-std::vector<FoundOrbit> search_directions(const systems::System& system, const loop::Loop& base,
-                                          const SymmetryGroup& group, const loop::Isotropy& isotropy,
-                                          const std::vector<Eigen::VectorXd>& starts, double amplitude,
-                                          const std::vector<Eigen::VectorXd>& known,
-                                          const corrector::Options& options) {
-  std::vector<FoundOrbit> found;
-  std::vector<Eigen::VectorXd> taken = known;
-  const auto is_new = [&](const Eigen::VectorXd& coordinates) {
-    return std::none_of(taken.begin(), taken.end(), [&](const Eigen::VectorXd& other) {
-      return group.image(coordinates, other, same_direction) != 0;
-    });
-  };
-  for (const Eigen::VectorXd& start : starts) {
-    // Newton's method turns away from the direction that it is pinned to, or stalls on the way: it is pinned again to the
-    // one it came to, until that stays. Then the part in the kernel has the amplitude itself.
-    Eigen::VectorXd pinned = start;
+  // Newton's method turns away from the direction that it is pinned to, or stalls on the way: it is pinned again to the one
+  // it came to, until that stays. Then the part in the kernel has the amplitude itself.
+  template <class Unwanted>
+  [[nodiscard]] std::optional<FoundOrbit> settle(Eigen::VectorXd pinned, const Unwanted& unwanted) const {
     for (int pins = 0; pins < most_pins; ++pins) {
       const corrector::Result result = born_orbit(system, base, group.modes_of(pinned), isotropy, amplitude, options);
-      const auto direction = direction_of(base, group, result.loop, amplitude);
-      if (!direction) break;
+      const auto direction = direction_of(result.loop);
+      if (!direction) return std::nullopt;
       const double tilt = (*direction - pinned).norm();
       pinned = *direction;
       if (!result.converged()) continue;
-      if (!is_new(pinned)) break;
-      if (tilt > settled) continue;
-      taken.push_back(pinned);
-      found.push_back({pinned, result.loop});
-      break;
+      if (unwanted(pinned)) return std::nullopt;
+      if (tilt <= settled) return FoundOrbit{pinned, result.loop};
     }
+    return std::nullopt;
   }
-  return found;
+
+  // Neighbouring directions lead back to it: it is neither one of a continuum nor one where the loss, at this amplitude, is
+  // below its threshold along all directions.
+  [[nodiscard]] bool is_isolated(const Eigen::VectorXd& v, double nudge) const {
+    Eigen::MatrixXd along = v;
+    if (group.constant()) {
+      along.conservativeResize(Eigen::NoChange, 2);
+      along.col(1) = group.quarter() * v;
+    }
+    const Eigen::Index others = v.size() - along.cols();
+    const Eigen::MatrixXd axes = along.householderQr().householderQ();
+    for (const Eigen::VectorXd& aside : axes.rightCols(others).colwise()) {
+      const auto back = settle((v + nudge * aside).normalized(), [](const Eigen::VectorXd&) { return false; });
+      if (!back || (back->coordinates - v).norm() > 0.2 * nudge) return false;
+    }
+    return true;
+  }
+};
+
+}  // namespace
+
+SearchResult search_directions(const systems::System& system, const loop::Loop& base, const SymmetryGroup& group,
+                               const loop::Isotropy& isotropy, const std::vector<Eigen::VectorXd>& starts,
+                               double amplitude, double nudge, const std::vector<Eigen::VectorXd>& known,
+                               const corrector::Options& options) {
+  const Search search{system, base, group, isotropy, amplitude, options};
+  SearchResult out;
+  std::vector<Eigen::VectorXd> taken = known;
+  const auto is_taken = [&](const Eigen::VectorXd& v) {
+    return std::any_of(taken.begin(), taken.end(),
+                       [&](const Eigen::VectorXd& other) { return group.image(v, other, same_direction) != 0; });
+  };
+  for (const Eigen::VectorXd& start : starts) {
+    auto orbit = search.settle(start, is_taken);
+    if (!orbit) continue;
+    if (!search.is_isolated(orbit->coordinates, nudge)) {
+      ++out.not_isolated;
+      continue;
+    }
+    taken.push_back(orbit->coordinates);
+    out.found.push_back(std::move(*orbit));
+  }
+  return out;
 }
 
 std::vector<Eigen::VectorXd> start_directions(int dimension, int order, int count) {

@@ -14,13 +14,19 @@ struct FoundOrbit {
   loop::Loop loop;
 };
 
+struct SearchResult {
+  std::vector<FoundOrbit> found;
+  int not_isolated = 0;  ///< orbits whose direction may be changed a little and then stays: not among `found`
+};
+
 /// Orbits near `base` whose part in the kernel has the length `amplitude`, one for each that no symmetry of `group` maps
-/// to another or to one of `known` (to its negative neither): Newton's method from the kernel directions `starts`.
-[[nodiscard]] std::vector<FoundOrbit> search_directions(const systems::System& system, const loop::Loop& base,
-                                                        const SymmetryGroup& group, const loop::Isotropy& isotropy,
-                                                        const std::vector<Eigen::VectorXd>& starts, double amplitude,
-                                                        const std::vector<Eigen::VectorXd>& known,
-                                                        const corrector::Options& options);
+/// to another or to one of `known` (to its negative neither): Newton's method from the kernel directions `starts`. Each
+/// is sought once more from `nudge` radians beside it.
+[[nodiscard]] SearchResult search_directions(const systems::System& system, const loop::Loop& base,
+                                             const SymmetryGroup& group, const loop::Isotropy& isotropy,
+                                             const std::vector<Eigen::VectorXd>& starts, double amplitude, double nudge,
+                                             const std::vector<Eigen::VectorXd>& known,
+                                             const corrector::Options& options);
 
 /// Unit vectors: evenly over the angles [0, 2 pi / order) of a plane, or from a Halton sequence on a sphere of more
 /// dimensions (four times as many in three, doubling with each).

@@ -87,12 +87,12 @@ TEST(Equilibrium, ThreeFamiliesUpToSymmetryLeaveHenonHeiles) {
   EXPECT_GT(std::abs(loop::state_at(ends[1].loop, 0.0)[0]), 0.1);
 }
 
-/// Two equal oscillators, H = (p^2 + q^2) / 2 + (q1^4 + q2^4) / 4 + coupling q1^2 q2^2 / 2; state q1, q2, p1, p2.
+/// Two equal oscillators, H = (p^2 + q^2) / 2 + quartic (q1^4 + q2^4) / 4 + coupling q1^2 q2^2 / 2; state q1, q2, p1, p2.
 /// Families from the origin: along an axis (2), along a diagonal (2), and loops (2, one up to reversal).
 class CoupledOscillators final : public test::PointSystem {
  public:
-  CoupledOscillators(systems::Description description, double coupling)
-      : PointSystem(std::move(description)), _coupling(coupling) {}
+  CoupledOscillators(systems::Description description, double coupling, double quartic = 1.0)
+      : PointSystem(std::move(description)), _coupling(coupling), _quartic(quartic) {}
 
   [[nodiscard]] Eigen::VectorXd field_at(const Eigen::VectorXd& z) const override {
     const Eigen::Vector4d g = gradient_at(z);
@@ -102,17 +102,17 @@ class CoupledOscillators final : public test::PointSystem {
     Eigen::Matrix4d a = Eigen::Matrix4d::Zero();
     a.topRightCorner<2, 2>().setIdentity();
     const double cross = -2 * _coupling * z(0) * z(1);
-    a.bottomLeftCorner<2, 2>() << -1 - 3 * z(0) * z(0) - _coupling * z(1) * z(1), cross, cross,
-        -1 - 3 * z(1) * z(1) - _coupling * z(0) * z(0);
+    a.bottomLeftCorner<2, 2>() << -1 - 3 * _quartic * z(0) * z(0) - _coupling * z(1) * z(1), cross, cross,
+        -1 - 3 * _quartic * z(1) * z(1) - _coupling * z(0) * z(0);
     return a;
   }
   [[nodiscard]] Eigen::VectorXd gradient_at(const Eigen::VectorXd& z) const override {
-    return Eigen::Vector4d(z(0) + std::pow(z(0), 3) + _coupling * z(0) * z(1) * z(1),
-                           z(1) + std::pow(z(1), 3) + _coupling * z(1) * z(0) * z(0), z(2), z(3));
+    return Eigen::Vector4d(z(0) + _quartic * std::pow(z(0), 3) + _coupling * z(0) * z(1) * z(1),
+                           z(1) + _quartic * std::pow(z(1), 3) + _coupling * z(1) * z(0) * z(0), z(2), z(3));
   }
   [[nodiscard]] double energy(std::span<const double> z) const override {
-    return (z[0] * z[0] + z[1] * z[1] + z[2] * z[2] + z[3] * z[3]) / 2 + (std::pow(z[0], 4) + std::pow(z[1], 4)) / 4 +
-           _coupling * z[0] * z[0] * z[1] * z[1] / 2;
+    return (z[0] * z[0] + z[1] * z[1] + z[2] * z[2] + z[3] * z[3]) / 2 +
+           _quartic * (std::pow(z[0], 4) + std::pow(z[1], 4)) / 4 + _coupling * z[0] * z[0] * z[1] * z[1] / 2;
   }
 
   enum class Says { all, reversor, nothing };
@@ -132,6 +132,7 @@ class CoupledOscillators final : public test::PointSystem {
 
  private:
   double _coupling;
+  double _quartic;
 };
 
 /// Ratios of the oscillations' complex amplitudes, q2 / q1: 0 or infinity on an axis, +-1 on a diagonal, +-i loops.
@@ -174,6 +175,16 @@ TEST(Equilibrium, OscillatorsWithoutDeclaredSymmetriesAreFoundByASearch) {
   EXPECT_EQ(
       kinds(directions_at_origin(bare)),
       (std::vector<std::string>{"diagonal", "first axis", "loop", "other diagonal", "other loop", "second axis"}));
+}
+
+// With a coupling of 1 the potential is that of a central force: every direction has its own straight orbit,
+// and only the circular ones are isolated.
+TEST(Equilibrium, AContinuumOfDirectionsIsLeftOut) {
+  const CoupledOscillators bare(CoupledOscillators::described(CoupledOscillators::Says::nothing), 1.0);
+  EXPECT_EQ(kinds(directions_at_origin(bare)), (std::vector<std::string>{"loop", "other loop"}));
+  // Two uncoupled linear oscillators: nothing is isolated.
+  EXPECT_THROW(static_cast<void>(directions_at_origin(CoupledOscillators(bare.description(), 0.0, 0.0))),
+               core::NumericalError);
 }
 
 // A single oscillation has one direction, with or without a reversor.

@@ -37,8 +37,7 @@ struct DirectionOptions {
 /// isotropy: generators of the crossing's orbit; base must have each of them, whatever its shift.
 /// kernel: orthonormal null vectors, (2K + 1) x dimension each; at an equilibrium of harmonic 1 alone, both phases of each
 /// oscillation. Throws MisuseError for sizes that disagree or vectors that are not orthonormal, NumericalError where the
-/// symmetries do not map the kernel to itself isometrically, or where a search in a plane finds more directions than
-/// can be.
+/// symmetries do not map the kernel to itself isometrically, or where directions are not isolated (a continuum).
 [[nodiscard]] std::vector<Direction> directions(const systems::System& system, const loop::Loop& base,
                                                 const loop::Isotropy& isotropy,
                                                 const std::vector<std::vector<double>>& kernel,
