@@ -104,6 +104,26 @@ TEST(Directions, DoNotDependOnWhereTheOrbitStartsNorOnTheBasisOfTheKernel) {
   }
 }
 
+// A kernel that is good to 1e-6 gives directions that have the born orbits' symmetries to rounding.
+TEST(Directions, AreExactlySymmetric) {
+  std::vector<std::vector<double>> rough = doubling().kernel;
+  for (std::size_t n = 0; n < rough[0].size(); ++n) {
+    rough[0][n] += 1e-7 * std::sin(static_cast<double>(n));
+    rough[1][n] += 1e-7 * std::cos(static_cast<double>(n));
+  }
+  for (const Direction& direction : directions(*test::pendulum(), doubling().base, both(), rough)) {
+    const loop::Subspace kept(4, direction.base.cutoff, direction.isotropy);
+    std::vector<double> part(static_cast<std::size_t>(kept.size()));
+    kept.project(direction.modes, part);
+    std::vector<double> rest = direction.modes;
+    for (double& c : part) c = -c;
+    kept.add_to(part, rest);
+    double square = 0.0;
+    for (const double c : rest) square += c * c;
+    EXPECT_LT(std::sqrt(square), 1e-12);
+  }
+}
+
 TEST(Directions, OneFamilyOfTheSamePeriodLosesTheReversors) {
   const corrector::Result orbit = test::orbit_at(test::even_family_to_twelve(test::in_phase()), in_phase_branch_point);
   const test::Crossing crossing = test::crossing_at(*test::pendulum(), orbit.loop, both(), 1, 1);

@@ -125,6 +125,18 @@ TEST(Search, FindsTheOneFamilyOfOrderThree) {
   EXPECT_EQ(loop::to_text(known[0].isotropy), "S@1/2 R@0");
   EXPECT_TRUE(known[0].both_sides);
   expect_same_by_search(family, crossing, 3, true, 1, "S@1/2");
+  // The born orbits start where the first coordinate is largest, wherever the crossing's orbit starts.
+  Crossing later{loop::time_shifted(crossing.base, 0.5), {}};
+  for (const std::vector<double>& v : crossing.kernel) {
+    loop::Loop vector = crossing.base;
+    vector.modes = v;
+    later.kernel.push_back(loop::time_shifted(vector, 0.5).modes);
+  }
+  EXPECT_LT(loop::state_at(later.base, 0.0)[0], -0.1);
+  const std::vector<Direction> again = directions(*system, later.base, family.isotropy, later.kernel);
+  ASSERT_EQ(again.size(), 1u);
+  EXPECT_EQ(loop::to_text(again[0].isotropy), "S@1/2 R@0");
+  EXPECT_LT(loop::mean_distance(again[0].base, known[0].base), 1e-9);
 }
 
 /// IB: the family that leaves the in-phase one at T = 10.4168. It has S@1/2 and no reversor.
