@@ -26,11 +26,12 @@ Loop interpolant(const TimeSamples& samples) {
 }
 
 Loop resolved_in_time(const Loop& loop) {
-  constexpr double negligible = 1e-12;
   if (loop.time_map.is_identity()) return loop;
-  Loop out = interpolant(time_samples(loop));
-  if (tail(out) <= std::max(negligible, 2.0 * tail(loop))) return out;
-  return evenly_in_time(loop, negligible);
+  const double negligible = std::max(1e-12, 2.0 * tail(loop));
+  for (int count = time_sample_count;; count *= 2) {
+    Loop out = interpolant(time_samples(loop, count));
+    if (tail(out) <= negligible || out.cutoff >= 8 * loop.cutoff) return out;
+  }
 }
 
 }  // namespace orbweaver::loop
