@@ -123,14 +123,17 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
     examined_to = right.position;
     return;
   }
+  // Relative to the ends: near its birth a family's index leaves 2 like a power of its distance, small but not at a zero.
+  const double ends = std::min(std::abs(left.reading.value), std::abs(right.reading.value));
   const auto zero = [&](const Node& node) {
-    return std::abs(node.reading.value) <= std::max(node.reading.error, _options.touch);
+    return std::abs(node.reading.value) <= std::max(node.reading.error, _options.touch * std::min(1.0, 10.0 * ends));
   };
   const auto least = std::min_element(nodes.begin(), nodes.end(), [](const Node& a, const Node& b) {
     return std::abs(a.reading.value) < std::abs(b.reading.value);
   });
   if (least->position < right.position - 0.01 * length) examined_to = right.position;
   if (!zero(*least) || !(least->reading.error <= _options.touch_error)) return;
+  if (least == nodes.begin() || least + 1 == nodes.end()) return;
   auto from = least;
   auto to = least;
   while (from != nodes.begin() && zero(*from)) --from;

@@ -146,6 +146,7 @@ class CollocationBranch final : public Branch::Implementation {
     if (frontier.orbit.iterations > renew_after) state().factor_point.clear();
     Prediction prediction = extrapolate(state().points, options.predictor_order, last_point().parameter + length);
     if (equations().borders() > 1) prediction.values[static_cast<std::size_t>(equations().period_at() + 1)] = 0.0;
+    _points.hold_phase(prediction, last_point().values);
     const std::vector<double> weights = _points.conditions_at(prediction);
     return _points.correct(std::move(prediction), weights);
   }

@@ -82,34 +82,56 @@ double matrix_free_eigenvalue(const systems::System& system, const loop::Loop& l
 
 }  // namespace
 
+namespace {
+
+std::vector<OffBranchTriplet> triplets_in(const systems::System& system, const loop::Loop& loop, const Sector& sector,
+                                          const spectrum::TripletOptions& options) {
+  spectrum::TripletOptions here = options;
+  here.count = std::min(options.count, sector.slice.free());
+  const spectrum::SingularTriplets found =
+      spectrum::smallest_singular_triplets(system, loop, sector.unknowns, sector.slice, here);
+  std::vector<OffBranchTriplet> all;
+  for (std::size_t n = 0; n < found.values.size(); ++n) {
+    OffBranchTriplet t;
+    t.singular_value = found.values[n];
+    t.modes.assign(loop.modes.size(), 0.0);
+    const Eigen::VectorXd v = found.right.col(static_cast<Eigen::Index>(n));
+    sector.unknowns.subspace.add_to(std::span(v.data(), static_cast<std::size_t>(sector.unknowns.subspace.size())),
+                                    t.modes);
+    if (sector.unknowns.period) t.period = v(v.size() - 1);
+    t.signs = sector.signs;
+    t.residual = found.residuals[n];
+    t.left_residual = found.left_residuals[n];
+    all.push_back(std::move(t));
+  }
+  return all;
+}
+
+}  // namespace
+
 std::vector<OffBranchTriplet> off_branch_triplets(const systems::System& system, const loop::Loop& loop,
                                                   const loop::Isotropy& isotropy, std::span<const double> tangent_modes,
                                                   double tangent_period, const spectrum::TripletOptions& options) {
   std::vector<OffBranchTriplet> all;
-  for (const Sector& sector : sectors_of(loop, isotropy, tangent_modes, tangent_period)) {
-    spectrum::TripletOptions here = options;
-    here.count = std::min(options.count, sector.slice.free());
-    const spectrum::SingularTriplets found =
-        spectrum::smallest_singular_triplets(system, loop, sector.unknowns, sector.slice, here);
-    for (std::size_t n = 0; n < found.values.size(); ++n) {
-      OffBranchTriplet t;
-      t.singular_value = found.values[n];
-      t.modes.assign(loop.modes.size(), 0.0);
-      const Eigen::VectorXd v = found.right.col(static_cast<Eigen::Index>(n));
-      sector.unknowns.subspace.add_to(std::span(v.data(), static_cast<std::size_t>(sector.unknowns.subspace.size())),
-                                      t.modes);
-      if (sector.unknowns.period) t.period = v(v.size() - 1);
-      t.signs = sector.signs;
-      t.residual = found.residuals[n];
-      t.left_residual = found.left_residuals[n];
-      all.push_back(std::move(t));
-    }
-  }
+  for (const Sector& sector : sectors_of(loop, isotropy, tangent_modes, tangent_period))
+    for (OffBranchTriplet& t : triplets_in(system, loop, sector, options)) all.push_back(std::move(t));
   std::stable_sort(all.begin(), all.end(), [](const OffBranchTriplet& a, const OffBranchTriplet& b) {
     return a.singular_value < b.singular_value;
   });
   if (all.size() > static_cast<std::size_t>(options.count)) all.resize(static_cast<std::size_t>(options.count));
   return all;
+}
+
+std::vector<OffBranchTriplet> sector_triplets(const systems::System& system, const loop::Loop& loop,
+                                              const loop::Isotropy& isotropy, const std::vector<int>& signs,
+                                              std::span<const double> tangent_modes, double tangent_period,
+                                              const spectrum::TripletOptions& options) {
+  const bool all_kept = std::all_of(signs.begin(), signs.end(), [](int sign) { return sign > 0; });
+  loss::Unknowns unknowns{loop::Subspace(loop.dimension, loop.cutoff, isotropy, signs), all_kept};
+  if (unknowns.subspace.size() == 0) return {};
+  loss::Slice slice = complement(unknowns, loop, tangent_modes, tangent_period);
+  if (slice.free() == 0) return {};
+  return triplets_in(system, loop, {std::move(unknowns), signs, std::move(slice)}, options);
 }
 
 double off_branch_eigenvalue(const systems::System& system, const loop::Loop& loop, const loop::Isotropy& isotropy,

@@ -72,6 +72,33 @@ std::vector<double> PointCorrector::conditions_at(const Prediction& prediction) 
   return weights;
 }
 
+void PointCorrector::hold_phase(Prediction& prediction, const std::vector<double>& last) {
+  Collocation& e = equations();
+  if (e.borders() < 2) return;
+  const int stride = e.grid().stride();
+  std::vector<double> z(static_cast<std::size_t>(e.dimension() * stride));
+  std::vector<double> slope(z.size());
+  std::vector<double> shift(z.size());
+  e.grid().at_nodes(last.data(), z.data(), slope.data());
+  e.grid().from_nodal(slope.data(), shift.data());
+  double square = 0.0;
+  double moved = 0.0;
+  double turned = 0.0;
+  for (int i = 0; i < e.dimension(); ++i)
+    for (int j = 0; j <= e.cells(); ++j) {
+      const auto n = static_cast<std::size_t>(i * stride + j);
+      const double weight = e.node_weights()[static_cast<std::size_t>(j)] * slope[n];
+      square += weight * shift[n];
+      moved += weight * (prediction.values[n] - last[n]);
+      turned += weight * prediction.tangent[n];
+    }
+  if (!(square > 1e-16)) return;  // at an equilibrium there is no phase
+  for (std::size_t n = 0; n < shift.size(); ++n) {
+    prediction.values[n] -= moved / square * shift[n];
+    prediction.tangent[n] -= turned / square * shift[n];
+  }
+}
+
 void PointCorrector::phase_condition(const Prediction& prediction, std::vector<double>& weights) {
   Collocation& e = equations();
   const int stride = e.grid().stride();

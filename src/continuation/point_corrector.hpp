@@ -44,6 +44,9 @@ class PointCorrector {
   /// The highest harmonic on a grid of `cells`.
   [[nodiscard]] int cutoff_of(int cells) const { return (cells * _domain.copies() - 1) / 2; }
 
+  /// Takes the time shift since `last` out of a prediction and its direction: a phase that drifts from orbit to orbit would
+  /// be extrapolated, and use up the steps.
+  void hold_phase(Prediction& prediction, const std::vector<double>& last);
   /// Conditions at a prediction: the change orthogonal to the branch, and to the time shift where the domain has one.
   [[nodiscard]] std::vector<double> conditions_at(const Prediction& prediction);
   Trial correct(Prediction prediction, const std::vector<double>& weights);

@@ -13,6 +13,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::size_t narrowest_terminal = 79;  // a line that wraps would spoil the redrawing
+constexpr int most_live_lines = 16;
 constexpr auto time_between_lines = std::chrono::seconds(5);
 
 std::string line_of(const FamilyState& f) {
@@ -55,6 +56,7 @@ void ProgressDisplay::ended(const queue::Task& task, const queue::TaskOutcome& o
   }
   if (_style == Display::lines) print_line(f);
   if (_style == Display::live) redraw();
+  _families.erase(task.key);
 }
 
 void ProgressDisplay::finished(const queue::Task& task, const queue::TaskOutcome& outcome) { ended(task, outcome); }
@@ -77,17 +79,23 @@ void ProgressDisplay::print_line(FamilyState& family) {
   core::write_line(stderr, line_of(family));
 }
 
+// Lines of running families at the bottom, redrawn in place; what has ended stays above them.
 void ProgressDisplay::redraw() {
-  if (_families.empty()) return;
-  std::string text;
-  if (_drawn > 0) text = fmt::format("\x1b[{}A", _drawn);
-  const char* separator = "";
-  for (const auto& [key, family] : _families) {
-    text += fmt::format("{}\x1b[2K{}", separator, line_of(family).substr(0, narrowest_terminal));
-    separator = "\n";
-  }
-  _drawn = static_cast<int>(_families.size());
-  core::write_line(stderr, text);
+  std::string text = _drawn > 0 ? fmt::format("\x1b[{}A\x1b[J", _drawn) : "";
+  int lines = 0;
+  int running = 0;
+  const auto add = [&](const FamilyState& f) {
+    text += fmt::format("{}{}", lines++ == 0 ? "" : "\n", line_of(f).substr(0, narrowest_terminal));
+  };
+  for (const auto& [key, family] : _families)
+    if (!family.running) add(family);
+  for (const auto& [key, family] : _families)
+    if (family.running && running < most_live_lines) {
+      ++running;
+      add(family);
+    }
+  _drawn = running;
+  if (lines > 0) core::write_line(stderr, text);
 }
 
 }  // namespace orbweaver::survey

@@ -1,16 +1,14 @@
 #include "executor.hpp"
 
-#include <algorithm>
-#include <exception>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "orbweaver/certificate/certificate.hpp"
+#include "branch_task.hpp"
+#include "locate_task.hpp"
 #include "orbweaver/continuation/sweep.hpp"
 #include "orbweaver/core/error.hpp"
 #include "small_oscillations.hpp"
-#include "stability_columns.hpp"
 
 namespace orbweaver::survey {
 
@@ -51,7 +49,10 @@ Executor::Executor(const scene::Scene& scene, std::shared_ptr<const systems::Sys
 
 queue::TaskOutcome Executor::execute(const queue::Task& task, queue::TaskContext& context) {
   if (task.kind == sweep_kind) return sweep(unpack_sweep_work(task.payload));
-  if (task.kind == branch_kind) return follow(unpack_branch_work(task.payload), context);
+  if (task.kind == branch_kind)
+    return BranchTask(_scene, _system, unpack_branch_work(task.payload), _rows, context).run();
+  if (task.kind == locate_kind) return locate(_scene, _system, unpack_locate_work(task.payload));
+  if (task.kind == start_kind) return start(_scene, _system, unpack_start_work(task.payload));
   throw core::EnvironmentError(fmt::format("no such kind of task: `{}`", task.kind));
 }
 
@@ -70,7 +71,7 @@ queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
     found.direction = mode.direction;
     found.cutoff = options.cutoff;
     found.one_direction = directions_are_images(_system->description(), work.point, mode, options.cutoff);
-    set_isotropy(found, mode.isotropy);
+    found.isotropy = record_of(mode.isotropy);
     outcome.modes.push_back(std::move(found));
   }
   for (const continuation::RejectedDip& dip : result.rejected)
@@ -78,66 +79,6 @@ queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
   queue::TaskOutcome done;
   done.payload = pack(outcome);
   return done;
-}
-
-queue::TaskOutcome Executor::follow(const BranchWork& work, queue::TaskContext& context) {
-  BranchOutcome outcome;
-  outcome.key = work.key;
-  continuation::Start start;
-  const auto keep = [&](const continuation::Orbit& orbit) {
-    _rows.orbits.push_back(record(work.key, orbit, start.isotropy));
-    const bool first = outcome.orbits == 0;
-    outcome.period_from = first ? orbit.loop.period : std::min(outcome.period_from, orbit.loop.period);
-    outcome.period_to = first ? orbit.loop.period : std::max(outcome.period_to, orbit.loop.period);
-    outcome.energy_from = first ? orbit.energy : std::min(outcome.energy_from, orbit.energy);
-    outcome.energy_to = first ? orbit.energy : std::max(outcome.energy_to, orbit.energy);
-    outcome.last_period = orbit.loop.period;
-    outcome.last_energy = orbit.energy;
-    outcome.last_cutoff = orbit.loop.cutoff;
-    ++outcome.orbits;
-    return context.report(
-        {orbit.step + 1, 1, {orbit.loop.period, orbit.energy, static_cast<double>(orbit.loop.cutoff)}});
-  };
-  continuation::Ending ending;
-  try {
-    start = start_of(work, _system->description());
-    ending = continuation::trace(_system, start, branch_options(_scene), keep);
-  } catch (
-      const std::exception& error) {  // caught here, not by the queue, so that the summary still counts the orbits kept
-    ending = {continuation::EndReason::failure, error.what()};
-  }
-  outcome.end_reason = ending.text();
-  queue::TaskOutcome done;
-  done.failed = ending.failed();
-  done.reason = ending.failed() ? outcome.end_reason : "";
-  done.payload = pack(outcome);
-  return done;
-}
-
-archive::OrbitRecord Executor::record(const std::string& key, const continuation::Orbit& orbit,
-                                      const loop::Isotropy& isotropy) const {
-  archive::OrbitRecord row;
-  row.family_key = key;
-  row.step = orbit.step;
-  row.arclength = orbit.arclength;
-  row.period = orbit.loop.period;
-  row.energy = orbit.energy;
-  row.action = orbit.action;
-  row.cutoff = orbit.loop.cutoff;
-  row.loss_rms = orbit.loss_rms;
-  row.off_branch_eigenvalue = orbit.off_branch_eigenvalue;
-  row.tail = orbit.tail;
-  row.state = loop::state_at(orbit.loop, 0.0);
-  row.modes = orbit.loop.modes;
-  row.time_map = loop::to_numbers(orbit.loop.time_map);
-  const systems::Description& system = _system->description();
-  for (const int angle : system.angles) row.winding.push_back(orbit.loop.winding[static_cast<std::size_t>(angle)]);
-  set_stability(*_system, orbit.loop, isotropy, row);
-  const certificate::Certificate certificate = certificate::certify(*_system, orbit.loop);
-  row.closure = certificate.closure;
-  row.single_shot = certificate.single_shot;
-  row.energy_drift = certificate.energy_drift;
-  return row;
 }
 
 }  // namespace orbweaver::survey

@@ -19,9 +19,6 @@ class Executor : public queue::Executor {
 
  private:
   [[nodiscard]] queue::TaskOutcome sweep(const SweepWork& work) const;
-  [[nodiscard]] queue::TaskOutcome follow(const BranchWork& work, queue::TaskContext& context);
-  [[nodiscard]] archive::OrbitRecord record(const std::string& key, const continuation::Orbit& orbit,
-                                            const loop::Isotropy& isotropy) const;
 
   const scene::Scene& _scene;
   std::shared_ptr<const systems::System> _system;

@@ -5,8 +5,6 @@
 #include <vector>
 
 #include "orbweaver/archive/schema.hpp"
-#include "orbweaver/core/error.hpp"
-#include "orbweaver/spectrum/floquet.hpp"
 
 namespace orbweaver::survey {
 
@@ -23,23 +21,20 @@ std::vector<double> columns_of(const std::vector<std::complex<double>>& values, 
 
 }  // namespace
 
-void set_stability(const systems::System& system, const loop::Loop& loop, const loop::Isotropy& isotropy,
+void set_stability(const systems::Description& system, const std::optional<spectrum::Stability>& stability,
                    archive::OrbitRecord& row) {
   archive::Header header;
-  header.pairs = system.description().pairs();
-  header.symplectic = system.description().symplectic;
+  header.pairs = system.pairs();
+  header.symplectic = system.symplectic;
   row.stability.assign(archive::stability_width(header), archive::not_computed);
   row.fundamental_stability = row.stability;
   row.stability_error = archive::not_computed;
-  try {
-    const spectrum::Stability stability = spectrum::floquet(system, loop, isotropy);
-    const bool complex = archive::has_complex_stability(header);
-    row.stability = columns_of(stability.full, complex);
-    row.fundamental_stability = columns_of(stability.fundamental, complex);
-    if (!stability.full_error.empty())
-      row.stability_error = *std::max_element(stability.full_error.begin(), stability.full_error.end());
-  } catch (const core::NumericalError&) {
-  }
+  if (!stability) return;
+  const bool complex = archive::has_complex_stability(header);
+  row.stability = columns_of(stability->full, complex);
+  row.fundamental_stability = columns_of(stability->fundamental, complex);
+  if (!stability->full_error.empty())
+    row.stability_error = *std::max_element(stability->full_error.begin(), stability->full_error.end());
 }
 
 }  // namespace orbweaver::survey

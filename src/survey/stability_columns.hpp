@@ -1,15 +1,15 @@
 #pragma once
 
+#include <optional>
+
 #include "orbweaver/archive/records.hpp"
-#include "orbweaver/loop/isotropy.hpp"
-#include "orbweaver/loop/loop.hpp"
-#include "orbweaver/systems/system.hpp"
+#include "orbweaver/spectrum/floquet.hpp"
+#include "orbweaver/systems/description.hpp"
 
 namespace orbweaver::survey {
 
-/// Fills the row's stability columns from the orbit's Floquet multipliers (spectrum/floquet.hpp); NaN where they cannot
-/// be computed (core::NumericalError). `isotropy` is one that the loop has.
-void set_stability(const systems::System& system, const loop::Loop& loop, const loop::Isotropy& isotropy,
+/// Fills the row's stability columns; NaN where the multipliers could not be computed.
+void set_stability(const systems::Description& system, const std::optional<spectrum::Stability>& stability,
                    archive::OrbitRecord& row);
 
 }  // namespace orbweaver::survey

@@ -10,6 +10,7 @@
 
 #include "display.hpp"
 #include "executor.hpp"
+#include "family_tree.hpp"
 #include "naming.hpp"
 #include "orbweaver/archive/consolidate.hpp"
 #include "orbweaver/continuation/fixed_points.hpp"
@@ -18,6 +19,7 @@
 #include "orbweaver/core/log.hpp"
 #include "orbweaver/queue/run.hpp"
 #include "orbweaver/survey/version.hpp"
+#include "recorders.hpp"
 #include "segment_flusher.hpp"
 #include "time_limit.hpp"
 
@@ -26,44 +28,6 @@ namespace orbweaver::survey {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-// Passes everything on to the display and keeps the outcomes that the summary and the archive need.
-class Recorder : public queue::Observer {
- public:
-  Recorder(queue::Observer& display, TimeLimit& time) : _display(display), _time(time) {}
-
-  void started(const queue::Task& task, int rank) override { _display.started(task, rank); }
-  void progress(const queue::Task& task, const queue::Progress& p, int rank) override {
-    _display.progress(task, p, rank);
-  }
-  void finished(const queue::Task& task, const queue::TaskOutcome& outcome) override {
-    _ended.insert_or_assign(task.key, std::pair(task, outcome));
-    _display.finished(task, outcome);
-  }
-  void failed(const queue::Task& task, const queue::TaskOutcome& outcome) override {
-    _ended.insert_or_assign(task.key, std::pair(task, outcome));
-    _display.failed(task, outcome);
-  }
-  // Its rows are kept, and so must the family be.
-  void stopped(const queue::Task& task, const queue::TaskOutcome& outcome) override {
-    _ended.insert_or_assign(task.key, std::pair(task, outcome));
-    _display.stopped(task, outcome);
-  }
-  void tick(const queue::TaskCounts& counts) override {
-    _time.tick();
-    _display.tick(counts);
-  }
-
-  /// Tasks with their outcomes in order of keys.
-  [[nodiscard]] const std::map<std::string, std::pair<queue::Task, queue::TaskOutcome>>& ended() const {
-    return _ended;
-  }
-
- private:
-  queue::Observer& _display;
-  TimeLimit& _time;
-  std::map<std::string, std::pair<queue::Task, queue::TaskOutcome>> _ended;
-};
 
 // The archive's text columns hold 4096 bytes.
 std::string limited(std::string text) {
@@ -103,7 +67,7 @@ std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::S
 
 // Families in the order of their keys: equilibria sorted, longest period first; no more than the scene allows.
 std::vector<queue::Task> branch_tasks(const scene::Scene& scene, const systems::Description& system,
-                                      const Recorder& sweeps, Summary& summary) {
+                                      const SweepRecorder& sweeps, Summary& summary) {
   std::vector<queue::Task> tasks;
   for (const auto& [key, ended] : sweeps.ended()) {
     const auto& [task, outcome] = ended;
@@ -118,12 +82,23 @@ std::vector<queue::Task> branch_tasks(const scene::Scene& scene, const systems::
     for (std::size_t n = 0; n < found.modes.size(); ++n) {
       const std::string name = base_name(scene, system, found.point, found.index, static_cast<int>(n));
       const std::string branch_key = fmt::format("{:04}.{:04}", found.index, n);
-      if (found.modes[n].one_direction) {
-        tasks.push_back(task_of(BranchWork{branch_key, name, found.point, found.modes[n], 1}));
-      } else {
-        tasks.push_back(task_of(BranchWork{branch_key + "+", name, found.point, found.modes[n], 1}));
-        tasks.push_back(task_of(BranchWork{branch_key + "-", name + " (other side)", found.point, found.modes[n], -1}));
+      const FoundMode& mode = found.modes[n];
+      BranchWork work;
+      work.key = work.lineage.family = branch_key;
+      work.name = name;
+      work.direction = mode.direction;
+      work.isotropy = mode.isotropy;
+      work.base = record_of(loop::constant_loop(found.point, mode.period, mode.cutoff));
+      if (mode.one_direction) {
+        tasks.push_back(task_of(work));
+        continue;
       }
+      work.key = work.lineage.family = branch_key + "+";
+      tasks.push_back(task_of(work));
+      work.key = work.lineage.family = branch_key + "-";
+      work.name += " (other side)";
+      for (double& v : work.direction) v = -v;
+      tasks.push_back(task_of(work));
     }
   }
   const auto allowed = static_cast<std::size_t>(scene.limits.families);
@@ -135,7 +110,7 @@ std::vector<queue::Task> branch_tasks(const scene::Scene& scene, const systems::
 }
 
 // An equilibrium whose sweep failed is a family without orbits, so that the archive says so.
-void gather_failed_sweeps(const systems::Description& system, const Recorder& sweeps, Summary& summary,
+void gather_failed_sweeps(const systems::Description& system, const SweepRecorder& sweeps, Summary& summary,
                           archive::Records& tables) {
   for (const auto& [key, ended] : sweeps.ended()) {
     const auto& [task, outcome] = ended;
@@ -149,39 +124,6 @@ void gather_failed_sweeps(const systems::Description& system, const Recorder& sw
     summary.families.push_back({record.key, record.name, "", 0, 0.0, 0.0, 0.0, 0.0, record.end_reason, true});
     summary.failed_tasks.push_back(fmt::format("{}: {}", key, outcome.reason));
     tables.families.push_back(std::move(record));
-  }
-}
-
-void gather_families(const systems::Description& system, const Recorder& branches, Summary& summary,
-                     archive::Records& tables) {
-  for (const auto& [key, ended] : branches.ended()) {
-    const auto& [task, outcome] = ended;
-    const BranchWork work = unpack_branch_work(task.payload);
-    FamilySummary family;
-    family.key = key;
-    family.name = work.name;
-    family.isotropy = loop::to_text(isotropy_of(work.start, system));
-    family.failed = outcome.failed;
-    family.end_reason = fmt::format("failure ({})", outcome.reason);
-    if (!outcome.payload.empty()) {
-      const BranchOutcome branch = unpack_branch_outcome(outcome.payload);
-      family.orbits = branch.orbits;
-      family.period_from = branch.period_from;
-      family.period_to = branch.period_to;
-      family.energy_from = branch.energy_from;
-      family.energy_to = branch.energy_to;
-      family.end_reason = branch.end_reason;
-    }
-    family.end_reason = limited(family.end_reason);
-    if (family.failed) summary.failed_tasks.push_back(fmt::format("{} ({}): {}", key, family.name, outcome.reason));
-    summary.orbits += family.orbits;
-    archive::FamilyRecord record;
-    record.key = key;
-    record.name = family.name;
-    record.isotropy = family.isotropy;
-    record.end_reason = family.end_reason;
-    tables.families.push_back(std::move(record));
-    summary.families.push_back(std::move(family));
   }
 }
 
@@ -234,19 +176,23 @@ Summary run_survey(const core::Communicator& comm, const scene::Scene& scene,
   options.flush_rows = scene.output.flush_orbits;
 
   TimeLimit time(scene.limits.time);
-  Recorder sweeps(progress, time);
+  SweepRecorder sweeps(progress, time);
   // On every rank, so that a field that is not finite on the grid is the same error everywhere.
   const queue::RunSummary swept = queue::run(comm, options, sweep_tasks(scene, *system), executor, sweeps, flusher);
-  Recorder branches(progress, time);
+  FamilyTree tree(scene, system->description());
+  TreeRecorder branches(progress, time, tree);
   const queue::RunSummary followed = queue::run(
       comm, options, branch_tasks(scene, system->description(), sweeps, summary), executor, branches, flusher);
   if (time.reached()) summary.remarks.push_back(time.remark(followed));
 
-  archive::Records tables;
+  FamilyTree::Result found = tree.resolve();
+  archive::Records& tables = found.tables;
+  summary.families = std::move(found.families);
+  for (std::string& failure : found.failures) summary.failed_tasks.push_back(std::move(failure));
+  for (std::string& remark : found.remarks) summary.remarks.push_back(std::move(remark));
+  for (const FamilySummary& family : summary.families) summary.orbits += family.orbits;
+  summary.crossings = static_cast<long>(tables.crossings.size());
   gather_failed_sweeps(system->description(), sweeps, summary, tables);
-  gather_families(system->description(), branches, summary, tables);
-  std::sort(summary.families.begin(), summary.families.end(),
-            [](const FamilySummary& a, const FamilySummary& b) { return a.key < b.key; });
   summary.atlas = directory / "atlas.h5";
   archive::consolidate(comm.get(), flusher.segments(), summary.atlas, header, tables);
   if (comm.is_root()) {

@@ -3,35 +3,85 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/time_map.hpp"
 #include "payload.hpp"
 
 namespace boost::serialization {
 
+using namespace orbweaver::survey;
+
 template <class Archive>
-void serialize(Archive& archive, orbweaver::survey::SweepWork& w, unsigned) {
+void serialize(Archive& archive, LoopRecord& r, unsigned) {
+  archive& r.dimension& r.cutoff& r.period& r.modes& r.winding& r.time_map;
+}
+
+template <class Archive>
+void serialize(Archive& archive, IsotropyRecord& r, unsigned) {
+  archive& r.names& r.reversing& r.shift_numerators& r.shift_denominators;
+}
+
+template <class Archive>
+void serialize(Archive& archive, SweepWork& w, unsigned) {
   archive& w.index& w.point;
 }
 
 template <class Archive>
-void serialize(Archive& archive, orbweaver::survey::FoundMode& m, unsigned) {
-  archive& m.period& m.direction& m.cutoff& m.isotropy& m.reversing& m.shift_numerators& m.shift_denominators& m
-      .one_direction;
+void serialize(Archive& archive, FoundMode& m, unsigned) {
+  archive& m.period& m.direction& m.cutoff& m.isotropy& m.one_direction;
 }
 
 template <class Archive>
-void serialize(Archive& archive, orbweaver::survey::SweepOutcome& o, unsigned) {
+void serialize(Archive& archive, SweepOutcome& o, unsigned) {
   archive& o.index& o.point& o.modes& o.rejected;
 }
 
 template <class Archive>
-void serialize(Archive& archive, orbweaver::survey::BranchWork& w, unsigned) {
-  archive& w.key& w.name& w.point& w.start& w.sign;
+void serialize(Archive& archive, Lineage& l, unsigned) {
+  archive& l.family& l.crossing& l.depth& l.multiplicity& l.side;
 }
 
 template <class Archive>
-void serialize(Archive& archive, orbweaver::survey::BranchOutcome& o, unsigned) {
+void serialize(Archive& archive, BranchWork& w, unsigned) {
+  archive& w.key& w.name& w.lineage& w.base& w.direction& w.isotropy& w.amplitude;
+}
+
+template <class Archive>
+void serialize(Archive& archive, ArrivalRecord& a, unsigned) {
+  archive& a.period& a.energy& a.near;
+}
+
+template <class Archive>
+void serialize(Archive& archive, BranchOutcome& o, unsigned) {
   archive& o.key& o.orbits& o.period_from& o.period_to& o.energy_from& o.energy_to& o.last_period& o.last_energy& o
-      .last_cutoff& o.end_reason;
+      .last_cutoff& o.end_reason& o.arrival& o.remarks;
+}
+
+template <class Archive>
+void serialize(Archive& archive, KnownOrbit& k, unsigned) {
+  archive& k.position& k.loop;
+}
+
+template <class Archive>
+void serialize(Archive& archive, LocateWork& w, unsigned) {
+  archive& w.key& w.name& w.lineage& w.isotropy& w.known& w.before_first& w.event& w.function& w.q& w.j& w.tangency& w
+      .from& w.to;
+}
+
+template <class Archive>
+void serialize(Archive& archive, LeavingRecord& r, unsigned) {
+  archive& r.key& r.isotropy& r.both_sides& r.base& r.direction;
+}
+
+template <class Archive>
+void serialize(Archive& archive, LocateOutcome& o, unsigned) {
+  archive& o.key& o.lineage& o.arclength& o.period& o.energy& o.kind& o.multiplicity& o.kernel_dimension& o.residual& o
+      .kernel_singular_value& o.next_singular_value& o.test_value& o.state& o.q& o.j& o.fundamental_order& o.leaving& o
+      .remark;
+}
+
+template <class Archive>
+void serialize(Archive& archive, StartWork& w, unsigned) {
+  archive& w.branch;
 }
 
 }  // namespace boost::serialization
@@ -40,8 +90,9 @@ namespace orbweaver::survey {
 
 namespace {
 
-constexpr int sweep_priority = 0;
-constexpr int branch_priority = 1;
+// Within one depth: branches, then what they crossed, then what leaves there.
+constexpr int kinds_a_depth = 3;
+int priority_of(int depth, int kind) { return 1 + kinds_a_depth * depth + kind; }
 
 const Eigen::MatrixXd& declared_matrix(const systems::Description& system, const std::string& name, bool reversing) {
   for (const systems::Symmetry& s : reversing ? system.reversors : system.equivariances)
@@ -52,45 +103,97 @@ const Eigen::MatrixXd& declared_matrix(const systems::Description& system, const
 
 }  // namespace
 
-queue::Task task_of(const SweepWork& work) {
-  return {fmt::format("sweep.{:04}", work.index), sweep_priority, sweep_kind, pack(work)};
+LoopRecord record_of(const loop::Loop& loop) {
+  return {loop.dimension, loop.cutoff, loop.period, loop.modes, loop.winding, loop::to_numbers(loop.time_map)};
 }
-queue::Task task_of(const BranchWork& work) { return {work.key, branch_priority, branch_kind, pack(work)}; }
+
+loop::Loop loop_of(const LoopRecord& record) {
+  loop::Loop loop;
+  loop.dimension = record.dimension;
+  loop.cutoff = record.cutoff;
+  loop.period = record.period;
+  loop.modes = record.modes;
+  loop.winding = record.winding;
+  loop.time_map = loop::time_map_of(record.time_map);
+  return loop;
+}
+
+IsotropyRecord record_of(const loop::Isotropy& isotropy) {
+  IsotropyRecord record;
+  for (const loop::SymmetryElement& g : isotropy) {
+    record.names.push_back(g.name);
+    record.reversing.push_back(g.reversing ? 1 : 0);
+    record.shift_numerators.push_back(g.shift_numerator);
+    record.shift_denominators.push_back(g.shift_denominator);
+  }
+  return record;
+}
+
+loop::Isotropy isotropy_of(const IsotropyRecord& record, const systems::Description& system) {
+  loop::Isotropy isotropy;
+  for (std::size_t n = 0; n < record.names.size(); ++n) {
+    const bool reversing = record.reversing.at(n) != 0;
+    isotropy.push_back({record.names[n], reversing, declared_matrix(system, record.names[n], reversing),
+                        record.shift_numerators.at(n), record.shift_denominators.at(n)});
+  }
+  return isotropy;
+}
+
+void set_event(LocateWork& work, const bifurcation::Event& event) {
+  work.event = static_cast<int>(event.kind);
+  work.function = static_cast<int>(event.function.kind);
+  work.q = event.function.sector.q;
+  work.j = event.function.sector.j;
+  work.tangency = event.tangency;
+}
+
+bifurcation::Event event_of(const LocateWork& work) {
+  bifurcation::Event event;
+  event.kind = static_cast<bifurcation::Event::Kind>(work.event);
+  event.function.kind = static_cast<bifurcation::TestFunction::Kind>(work.function);
+  event.function.sector = {work.q, work.j};
+  event.tangency = work.tangency;
+  return event;
+}
+
+double signed_arclength(const Lineage& lineage, double before_first, double position) {
+  return lineage.side > 0 ? position : -2.0 * before_first - position;
+}
+
+queue::Task task_of(const SweepWork& work) {
+  return {fmt::format("sweep.{:04}", work.index), 0, sweep_kind, pack(work)};
+}
+queue::Task task_of(const BranchWork& work) {
+  return {work.key, priority_of(work.lineage.depth, 0), branch_kind, pack(work)};
+}
+queue::Task task_of(const LocateWork& work) {
+  return {"locate " + work.key, priority_of(work.lineage.depth, 1), locate_kind, pack(work)};
+}
+queue::Task task_of(const StartWork& work) {
+  return {"start " + work.branch.key, priority_of(work.branch.lineage.depth - 1, 2), start_kind, pack(work)};
+}
 
 std::string pack(const SweepWork& work) { return to_payload(work); }
 std::string pack(const SweepOutcome& outcome) { return to_payload(outcome); }
 std::string pack(const BranchWork& work) { return to_payload(work); }
 std::string pack(const BranchOutcome& outcome) { return to_payload(outcome); }
+std::string pack(const LocateWork& work) { return to_payload(work); }
+std::string pack(const LocateOutcome& outcome) { return to_payload(outcome); }
+std::string pack(const StartWork& work) { return to_payload(work); }
 SweepWork unpack_sweep_work(const std::string& bytes) { return from_payload<SweepWork>(bytes); }
 SweepOutcome unpack_sweep_outcome(const std::string& bytes) { return from_payload<SweepOutcome>(bytes); }
 BranchWork unpack_branch_work(const std::string& bytes) { return from_payload<BranchWork>(bytes); }
 BranchOutcome unpack_branch_outcome(const std::string& bytes) { return from_payload<BranchOutcome>(bytes); }
-
-void set_isotropy(FoundMode& mode, const loop::Isotropy& isotropy) {
-  for (const loop::SymmetryElement& g : isotropy) {
-    mode.isotropy.push_back(g.name);
-    mode.reversing.push_back(g.reversing ? 1 : 0);
-    mode.shift_numerators.push_back(g.shift_numerator);
-    mode.shift_denominators.push_back(g.shift_denominator);
-  }
-}
-
-loop::Isotropy isotropy_of(const FoundMode& mode, const systems::Description& system) {
-  loop::Isotropy isotropy;
-  for (std::size_t n = 0; n < mode.isotropy.size(); ++n) {
-    const bool reversing = mode.reversing.at(n) != 0;
-    isotropy.push_back({mode.isotropy[n], reversing, declared_matrix(system, mode.isotropy[n], reversing),
-                        mode.shift_numerators.at(n), mode.shift_denominators.at(n)});
-  }
-  return isotropy;
-}
+LocateWork unpack_locate_work(const std::string& bytes) { return from_payload<LocateWork>(bytes); }
+LocateOutcome unpack_locate_outcome(const std::string& bytes) { return from_payload<LocateOutcome>(bytes); }
+StartWork unpack_start_work(const std::string& bytes) { return from_payload<StartWork>(bytes); }
 
 continuation::Start start_of(const BranchWork& work, const systems::Description& system) {
   continuation::Start start;
-  start.base = loop::constant_loop(work.point, work.start.period, work.start.cutoff);
-  start.direction = work.start.direction;
-  for (double& v : start.direction) v *= work.sign;
-  start.isotropy = isotropy_of(work.start, system);
+  start.base = loop_of(work.base);
+  start.direction = work.direction;
+  for (double& v : start.direction) v *= work.lineage.side;
+  start.isotropy = isotropy_of(work.isotropy, system);
   return start;
 }
 

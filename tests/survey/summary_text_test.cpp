@@ -18,6 +18,7 @@ survey::Summary sample_summary() {
   summary.failed_tasks = {"0001.0000 (A name of great length): failure (a NaN at node 3)"};
   summary.failures = 1;
   summary.orbits = 37;
+  summary.crossings = 5;
   summary.seconds = 12.345;
   summary.peak_memory_mib = {48.4, 417.2};
   summary.atlas = "some/folder/atlas.h5";
@@ -29,10 +30,12 @@ TEST(SummaryText, SaysEverythingThatItKnows) {
   EXPECT_THAT(text, AllOf(HasSubstr("In-Phase"), HasSubstr("A name of great length"),
                           HasSubstr("8.209400 .. 30.000000"), HasSubstr("-2.99990000 ..  2.99906644"),
                           HasSubstr("period limit (T = 30)"), HasSubstr("failure (a NaN at node 3)")));
-  EXPECT_THAT(text, AllOf(HasSubstr("note: no small oscillations around the top\n"),
-                          HasSubstr("failed: 0001.0000 (A name of great length): failure (a NaN at node 3)\n"),
-                          HasSubstr("2 families, 37 orbits, 1 failed, 12.35 s; peak memory per rank: 48 417 MiB\n"),
-                          HasSubstr("archive: some/folder/atlas.h5\n")));
+  EXPECT_THAT(
+      text,
+      AllOf(HasSubstr("note: no small oscillations around the top\n"),
+            HasSubstr("failed: 0001.0000 (A name of great length): failure (a NaN at node 3)\n"),
+            HasSubstr("2 families, 5 crossings, 37 orbits, 1 failed, 12.35 s; peak memory per rank: 48 417 MiB\n"),
+            HasSubstr("archive: some/folder/atlas.h5\n")));
 }
 
 TEST(SummaryText, ColumnsAlign) {
@@ -45,8 +48,20 @@ TEST(SummaryText, ColumnsAlign) {
 
 TEST(SummaryText, NothingFoundIsSaidToo) {
   const std::string text = survey::to_text({});
-  EXPECT_THAT(text, HasSubstr("0 families, 0 orbits, 0 failed"));
+  EXPECT_THAT(text, HasSubstr("0 families, 0 crossings, 0 orbits, 0 failed"));
   EXPECT_THAT(text, AllOf(Not(HasSubstr("note:")), Not(HasSubstr("failed:"))));
+}
+
+TEST(SummaryText, ChildrenAreIndented) {
+  survey::Summary summary = sample_summary();
+  summary.families[1].depth = 2;
+  EXPECT_THAT(survey::to_text(summary), HasSubstr("\n    A name of great length"));
+}
+
+TEST(SummaryText, AnArchiveOfManyFamiliesIsListedInPart) {
+  survey::Summary summary = sample_summary();
+  summary.families.resize(100, summary.families[0]);
+  EXPECT_THAT(survey::to_text(summary), HasSubstr("... and 40 more: orbweaver show some/folder/atlas.h5 families\n"));
 }
 
 }  // namespace

@@ -30,6 +30,14 @@ struct OffBranchTriplet {
                                                                 double tangent_period,
                                                                 const spectrum::TripletOptions& options);
 
+/// The same within one sector: `signs` under the generators of `isotropy` (+1 kept, -1 broken), which must be involutions.
+/// Empty where the sector holds nothing but the time shift and the family's direction.
+[[nodiscard]] std::vector<OffBranchTriplet> sector_triplets(const systems::System& system, const loop::Loop& loop,
+                                                            const loop::Isotropy& isotropy, const std::vector<int>& signs,
+                                                            std::span<const double> tangent_modes,
+                                                            double tangent_period,
+                                                            const spectrum::TripletOptions& options);
+
 /// The smallest eigenvalue of H over the same perturbations: the paper's off-branch eigenvalue (section III C). With
 /// `krylov_from` coefficients or more the whole space is solved at once and matrix-free, which is then faster than sector
 /// by sector (docs/performance.md); NaN where that does not converge. It belongs to the coefficients of the loop with s even

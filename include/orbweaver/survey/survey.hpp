@@ -23,16 +23,18 @@ struct FamilySummary {
   double energy_to = 0.0;
   std::string end_reason;
   bool failed = false;
+  int depth = 0;  ///< 0 for bases
 };
 
 /// What a survey came to; complete on rank 0, `failures` and `stopped_early` on all ranks.
 struct Summary {
-  std::vector<FamilySummary> families;    ///< in order of their keys
+  std::vector<FamilySummary> families;    ///< by depth, then key
   std::vector<std::string> remarks;       ///< equilibria without oscillations, rejected dips, limits that cut
   std::vector<std::string> failed_tasks;  ///< key and reason
   std::size_t failures = 0;
   bool stopped_early = false;
   long orbits = 0;
+  long crossings = 0;
   double seconds = 0.0;
   std::vector<double> peak_memory_mib;  ///< one a rank
   std::filesystem::path atlas;

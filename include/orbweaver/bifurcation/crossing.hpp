@@ -1,0 +1,43 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "orbweaver/bifurcation/fold_watch.hpp"
+#include "orbweaver/bifurcation/test_functions.hpp"
+#include "orbweaver/continuation/family_curve.hpp"
+#include "orbweaver/spectrum/floquet.hpp"
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::bifurcation {
+
+/// What is to be located: a zero of a test function, or an extremum of the period or the energy.
+struct Event {
+  enum class Kind { test_function, fold_period, fold_energy } kind = Kind::test_function;
+  TestFunction function{};  ///< of Kind::test_function
+  bool tangency = false;    ///< the function only touches zero
+};
+
+/// A located event.
+struct Crossing {
+  continuation::CurvePoint point;  ///< the orbit there, with the family's direction
+  spectrum::Stability stability;
+  Reading reading{};   ///< of the test function, or of the slope of the period or the energy along the family
+  double width = 0.0;  ///< of the interval of positions that is left around it
+};
+
+/// Locates `event` between two positions of the family, every trial orbit converged anew. Positions are found to
+/// `tolerance` relative to 1 + |position|. None where the function has no zero there (`why` then says so).
+[[nodiscard]] std::optional<Crossing> locate(const systems::System& system, continuation::FamilyCurve& family,
+                                             const Event& event, double from, double to, std::string& why,
+                                             double tolerance = 1e-11);
+
+/// The multiplier pair that is nearest to the sector: k - 2 cos(2 pi j/q), with its error bound.
+[[nodiscard]] Reading index_deviation(const spectrum::Stability& stability, const Sector& sector);
+
+/// dT/ds and dE/ds of the family at a point, s being the length in modes and period.
+[[nodiscard]] double period_slope(const continuation::CurvePoint& point);
+[[nodiscard]] double energy_slope(const systems::System& system, const continuation::CurvePoint& point);
+
+}  // namespace orbweaver::bifurcation

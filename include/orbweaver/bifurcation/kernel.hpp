@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "orbweaver/bifurcation/sector.hpp"
+#include "orbweaver/continuation/family_curve.hpp"
+#include "orbweaver/loop/isotropy.hpp"
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::bifurcation {
+
+/// The flat directions at a crossing besides the family's own and the time shift.
+struct Kernel {
+  loop::Loop base;                           ///< the crossing's orbit, as many times around as born orbits take to close
+  std::vector<std::vector<double>> vectors;  ///< orthonormal modes, (2K + 1) x dimension
+  std::vector<double> singular_values;       ///< of the loop's Jacobian in the sector, smallest first
+
+  [[nodiscard]] int dimension() const { return static_cast<int>(vectors.size()); }
+  /// The largest singular value of the kernel, and the smallest beside it (NaN where none was computed).
+  [[nodiscard]] double largest() const;
+  [[nodiscard]] double next() const;
+};
+
+/// The kernel at an orbit in one sector of its fundamental map (order p, design: m = q/gcd(q, p) times around). Its
+/// dimension, at most `expected` (1 for q <= 2 and 2 beyond, times the pairs of multipliers that are there), is where the
+/// singular values have their largest gap; vectors whose values exceed `largest` do not count.
+[[nodiscard]] Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& point,
+                               const loop::Isotropy& isotropy, const Sector& sector, int expected,
+                               double largest = 1e-5);
+
+}  // namespace orbweaver::bifurcation

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "orbweaver/continuation/branch.hpp"
+#include "orbweaver/loop/isotropy.hpp"
+#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::continuation {
+
+/// A place of a family: an orbit and where it lies along the family.
+struct CurvePoint {
+  double position = 0.0;  ///< arclength of known orbits, in proportion to the chord between them
+  loop::Loop loop;
+  std::vector<double> tangent_modes;  ///< unit direction of the family there, towards larger positions; empty where unknown
+  double tangent_period = 0.0;
+};
+
+/// A stretch of a family between a few known orbits: every orbit between two of them can be had, converged anew.
+///
+/// The orbit at position a + share (b - a) between the neighbours A and B is the one whose projection on the chord
+/// B - A (modes and period, under B's time map) is that share of it: a smooth function of the position that does not
+/// depend on what was asked before.
+class FamilyCurve {
+ public:
+  FamilyCurve(std::shared_ptr<const systems::System> system, loop::Isotropy isotropy, const Options& options);
+
+  /// The next known orbit; positions increase. Only the last `keep` known orbits stay.
+  void add(double position, const loop::Loop& loop, std::size_t keep = 5);
+
+  /// The known orbits, oldest first.
+  struct Known {
+    double position = 0.0;
+    loop::Loop loop;
+  };
+  [[nodiscard]] const std::vector<Known>& known() const { return _known; }
+  [[nodiscard]] const loop::Isotropy& isotropy() const { return _isotropy; }
+
+  /// The orbit at `position`, which lies between the first and the last known one; none where the corrector fails.
+  /// Throws MisuseError for a position outside.
+  [[nodiscard]] std::optional<CurvePoint> at(double position);
+
+ private:
+  /// Two neighbours with what has been found between and around them, all under one time map and with one cutoff.
+  struct Interval {
+    double from = 0.0;
+    double to = 0.0;
+    loop::Loop first;
+    loop::Loop last;
+    std::vector<CurvePoint> points;  // by position
+  };
+  void open_interval(double position);
+  void set_cutoff(int cutoff);
+  [[nodiscard]] loop::Loop guess_at(double position) const;
+  [[nodiscard]] const CurvePoint* found_at(double position) const;
+
+  std::shared_ptr<const systems::System> _system;
+  loop::Isotropy _isotropy;
+  Options _options;
+  std::vector<Known> _known;
+  std::optional<Interval> _interval;
+};
+
+}  // namespace orbweaver::continuation

@@ -1,0 +1,105 @@
+#include "orbweaver/bifurcation/crossing.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "orbweaver/bifurcation/locate.hpp"
+#include "orbweaver/core/error.hpp"
+
+namespace orbweaver::bifurcation {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+class EventFunction {
+ public:
+  EventFunction(const systems::System& system, continuation::FamilyCurve& family, const Event& event)
+      : _system(system), _family(family), _event(event) {}
+
+  double operator()(double position) {
+    const std::optional<Crossing> there = at(position);
+    return there ? there->reading.value : nan;
+  }
+
+  std::optional<Crossing> at(double position) {
+    std::optional<continuation::CurvePoint> point = _family.at(position);
+    if (!point) return std::nullopt;
+    Crossing out;
+    out.point = std::move(*point);
+    try {
+      out.stability = spectrum::floquet(_system, out.point.loop, _family.isotropy());
+    } catch (const core::NumericalError&) {
+      if (_event.kind == Event::Kind::test_function) return std::nullopt;
+    }
+    if (_event.kind == Event::Kind::test_function)
+      out.reading = evaluate(_event.function, _system.description(), out.stability);
+    else if (_event.kind == Event::Kind::fold_period)
+      out.reading = {period_slope(out.point), 0.0};
+    else
+      out.reading = {energy_slope(_system, out.point), 0.0};
+    return out;
+  }
+
+ private:
+  const systems::System& _system;
+  continuation::FamilyCurve& _family;
+  const Event& _event;
+};
+
+}  // namespace
+
+double period_slope(const continuation::CurvePoint& point) { return point.tangent_period; }
+
+double energy_slope(const systems::System& system, const continuation::CurvePoint& point) {
+  loop::Loop tangent = point.loop;
+  tangent.modes = point.tangent_modes;
+  std::fill(tangent.winding.begin(), tangent.winding.end(), 0.0);
+  const std::vector<double> state = loop::state_at(point.loop, 0.0);
+  const std::vector<double> change = loop::state_at(tangent, 0.0);
+  std::vector<double> gradient(state.size());
+  system.energy_gradient(state, gradient);
+  double slope = 0.0;
+  for (std::size_t i = 0; i < state.size(); ++i) slope += gradient[i] * change[i];
+  return slope;
+}
+
+Reading index_deviation(const spectrum::Stability& stability, const Sector& sector) {
+  Reading nearest{nan, nan};
+  for (std::size_t n = 0; n < stability.fundamental.size(); ++n) {
+    const double deviation = stability.fundamental[n].real() - sector.index();
+    if (n == 0 || std::abs(deviation) < std::abs(nearest.value)) nearest = {deviation, stability.fundamental_error[n]};
+  }
+  return nearest;
+}
+
+std::optional<Crossing> locate(const systems::System& system, continuation::FamilyCurve& family, const Event& event,
+                               double from, double to, std::string& why, double tolerance) {
+  EventFunction function(system, family, event);
+  const double absolute = tolerance * (1.0 + std::max(std::abs(from), std::abs(to)));
+  const auto along = [&](double position) { return function(position); };
+  const std::optional<Located> located =
+      event.tangency ? locate_minimum([&](double position) { return std::abs(function(position)); }, from, to, absolute)
+                     : locate_root(along, from, to, absolute);
+  if (!located) {
+    why = fmt::format("no zero between positions {:.9g} and {:.9g}: the function has one sign there, or no orbit", from,
+                      to);
+    return std::nullopt;
+  }
+  std::optional<Crossing> crossing = function.at(located->position);
+  if (!crossing) {
+    why = fmt::format("no orbit at position {:.12g}", located->position);
+    return std::nullopt;
+  }
+  if (event.kind == Event::Kind::test_function &&
+      !is_event(event.function, system.description(), crossing->stability, event.tangency)) {
+    why = "two multipliers pass one another there: nothing leaves";
+    return std::nullopt;
+  }
+  crossing->width = located->width;
+  return crossing;
+}
+
+}  // namespace orbweaver::bifurcation

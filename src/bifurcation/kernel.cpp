@@ -1,0 +1,118 @@
+#include "orbweaver/bifurcation/kernel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "orbweaver/continuation/off_branch.hpp"
+#include "orbweaver/loop/fundamental_domain.hpp"
+
+namespace orbweaver::bifurcation {
+
+namespace {
+
+using continuation::OffBranchTriplet;
+
+Eigen::MatrixXd power_of(const Eigen::MatrixXd& matrix, int exponent) {
+  Eigen::MatrixXd power = Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols());
+  for (int n = 0; n < exponent; ++n) power = matrix * power;
+  return power;
+}
+
+/// Involutions of the repeated orbit under which the kernel splits: half a turn of the whole loop, and a reversor.
+struct Split {
+  loop::Isotropy involutions;
+  std::vector<std::vector<int>> signs;  ///< the sectors that the kernel can lie in
+};
+
+Split split_of(const loop::Isotropy& isotropy, int dimension, const Sector& sector, int multiplicity) {
+  const loop::FundamentalDomain domain = loop::fundamental_domain(isotropy, dimension);
+  const int turns = domain.order * multiplicity;  // least shifts in the repeated loop
+  Split split;
+  split.signs.emplace_back();
+  if (turns % 2 == 0) {
+    split.involutions.push_back({"half turn", false, power_of(domain.generator, turns / 2), 1, 2});
+    // The least shift turns the kernel by 2 pi j/q.
+    const double angle = 2.0 * std::numbers::pi * sector.j * (turns / 2) / sector.q;
+    split.signs.front().push_back(std::cos(angle) > 0.0 ? 1 : -1);
+  }
+  for (const loop::SymmetryElement& e : isotropy) {
+    if (!e.reversing || e.shift_numerator % e.shift_denominator != 0) continue;
+    split.involutions.push_back(e);
+    std::vector<int> other = split.signs.front();
+    split.signs.front().push_back(1);
+    other.push_back(-1);
+    split.signs.push_back(std::move(other));
+    break;
+  }
+  return split;
+}
+
+/// The place of the largest ratio between neighbours among the first `most` + 1 values.
+int dimension_of(const std::vector<double>& values, int most, double largest) {
+  int dimension = 0;
+  double widest = 0.0;
+  for (int n = 1; n <= most && n <= static_cast<int>(values.size()); ++n) {
+    const double inside = values[static_cast<std::size_t>(n - 1)];
+    if (inside > largest) break;
+    const double outside = n < static_cast<int>(values.size()) ? values[static_cast<std::size_t>(n)] : 1.0;
+    const double gap = outside / std::max(inside, std::numeric_limits<double>::min());
+    if (gap > widest) {
+      widest = gap;
+      dimension = n;
+    }
+  }
+  return dimension;
+}
+
+}  // namespace
+
+double Kernel::largest() const {
+  return vectors.empty() ? std::numeric_limits<double>::quiet_NaN() : singular_values[vectors.size() - 1];
+}
+
+double Kernel::next() const {
+  return singular_values.size() > vectors.size() ? singular_values[vectors.size()]
+                                                 : std::numeric_limits<double>::quiet_NaN();
+}
+
+Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& point, const loop::Isotropy& isotropy,
+                 const Sector& sector, int expected, double largest) {
+  const loop::FundamentalDomain domain = loop::fundamental_domain(isotropy, system.dimension());
+  const int multiplicity = sector.multiplicity(domain.order);
+  const loop::Loop even = loop::evenly_in_time(point.loop);
+  loop::Loop tangent = point.loop;
+  tangent.modes = point.tangent_modes;
+  std::fill(tangent.winding.begin(), tangent.winding.end(), 0.0);
+  tangent = loop::with_time_map(tangent, {}, even.cutoff);
+
+  Kernel kernel;
+  kernel.base = loop::repeated(even, multiplicity);
+  const loop::Loop tangent_there = loop::repeated(tangent, multiplicity);
+  const Split split = split_of(isotropy, system.dimension(), sector, multiplicity);
+  spectrum::TripletOptions options;
+  options.count = split.signs.size() > 1 && expected > 1 ? expected / 2 + 1 : expected + 1;
+  options.multiple = split.signs.size() == 1 && expected > 1;
+  std::vector<OffBranchTriplet> all;
+  for (const std::vector<int>& signs : split.signs)
+    for (OffBranchTriplet& t :
+         continuation::sector_triplets(system, kernel.base, split.involutions, signs, tangent_there.modes,
+                                       point.tangent_period * multiplicity, options))
+      all.push_back(std::move(t));
+  std::stable_sort(all.begin(), all.end(), [](const OffBranchTriplet& a, const OffBranchTriplet& b) {
+    return a.singular_value < b.singular_value;
+  });
+  for (const OffBranchTriplet& t : all) kernel.singular_values.push_back(t.singular_value);
+  const int dimension = dimension_of(kernel.singular_values, expected, largest);
+  for (int n = 0; n < dimension; ++n) {
+    std::vector<double> v = std::move(all[static_cast<std::size_t>(n)].modes);
+    double square = 0.0;
+    for (const double c : v) square += c * c;
+    for (double& c : v) c /= std::sqrt(square);
+    kernel.vectors.push_back(std::move(v));
+  }
+  return kernel;
+}
+
+}  // namespace orbweaver::bifurcation

@@ -1,0 +1,160 @@
+#include "branch_task.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "arrival.hpp"
+#include "executor.hpp"
+#include "orbit_row.hpp"
+#include "orbweaver/bifurcation/crossing.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/fundamental_domain.hpp"
+#include "requested.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+/// Known orbits that a location gets along: the two around the event and their neighbours.
+constexpr std::size_t kept_orbits = 5;
+
+int fundamental_order(const loop::Isotropy& isotropy, int dimension) {
+  return loop::fundamental_domain(isotropy, dimension).order;
+}
+
+}  // namespace
+
+BranchTask::BranchTask(const scene::Scene& scene, std::shared_ptr<const systems::System> system, BranchWork work,
+                       archive::Records& rows, queue::TaskContext& context)
+    : _scene(scene),
+      _system(std::move(system)),
+      _work(std::move(work)),
+      _rows(rows),
+      _context(context),
+      _start(start_of(_work, _system->description())),
+      _curve(_system, _start.isotropy, branch_options(scene)),
+      _symmetry(_system->description(), _start.isotropy),
+      _functions(bifurcation::test_functions(_system->description(),
+                                             fundamental_order(_start.isotropy, _system->dimension()),
+                                             scene.survey.subharmonics)) {
+  _outcome.key = _work.key;
+}
+
+queue::TaskOutcome BranchTask::run() {
+  continuation::Ending ending;
+  try {
+    continuation::Options options = branch_options(_scene);
+    if (_work.amplitude > 0.0) options.start_amplitude = _work.amplitude;
+    ending =
+        continuation::trace(_system, _start, options, [this](const continuation::Orbit& orbit) { return take(orbit); });
+    const auto probing = [this](double position) { return probe(position); };
+    for (const bifurcation::Bracket& b : _detector.finish(probing))
+      add_event({bifurcation::Event::Kind::test_function, _functions[b.function], b.tangency}, b.from, b.to);
+  } catch (const std::exception& error) {  // here, not in the queue, so that the summary still counts the orbits kept
+    ending = {continuation::EndReason::failure, error.what()};
+  }
+  _outcome.end_reason = _outcome.arrival.empty()
+                            ? ending.text()
+                            : fmt::format("joined (T = {:.9g}, E = {:.9g})", _outcome.arrival.front().period,
+                                          _outcome.arrival.front().energy);
+  queue::TaskOutcome done;
+  done.failed = ending.failed();
+  done.reason = ending.failed() ? _outcome.end_reason : "";
+  done.children = std::move(_children);
+  done.payload = pack(_outcome);
+  return done;
+}
+
+bool BranchTask::take(const continuation::Orbit& orbit) {
+  if (!_last)
+    _before_first = _work.lineage.crossing.empty() ? 0.0 : continuation::arclength_between(_start.base, orbit.loop);
+  _curve.add(orbit.arclength, orbit.loop, kept_orbits);
+  if (arrive(orbit)) return false;
+  const std::optional<spectrum::Stability> stability = stability_of(*_system, orbit.loop, _start.isotropy);
+  detect(orbit, stability);
+  if (_last) solve_requested(orbit);
+  store(orbit, stability);
+  _last = orbit;
+  const double seen[] = {orbit.loop.period, orbit.energy, static_cast<double>(orbit.loop.cutoff)};
+  return _context.report({_outcome.orbits, 1, {seen[0], seen[1], seen[2]}});
+}
+
+bool BranchTask::arrive(const continuation::Orbit& orbit) {
+  bifurcation::SymmetryWatch::Seen seen = bifurcation::SymmetryWatch::see(orbit.loop);
+  if (_last) {
+    if (const auto arrival = arrival_between(*_system, _curve, _symmetry, *_last, *_seen, orbit, seen))
+      _outcome.arrival.push_back(*arrival);
+  }
+  _seen = std::move(seen);
+  return !_outcome.arrival.empty();
+}
+
+bifurcation::Station BranchTask::station(double position, const std::optional<spectrum::Stability>& stability) const {
+  bifurcation::Station out{position, {}};
+  for (const bifurcation::TestFunction& function : _functions)
+    out.readings.push_back(stability ? bifurcation::evaluate(function, _system->description(), *stability)
+                                     : bifurcation::Reading{archive::not_computed, archive::not_computed});
+  return out;
+}
+
+std::optional<bifurcation::Station> BranchTask::probe(double position) {
+  if (position < _curve.known().front().position) return std::nullopt;  // so far back no orbits are kept
+  const std::optional<continuation::CurvePoint> point = _curve.at(position);
+  if (!point) return std::nullopt;
+  return station(position, stability_of(*_system, point->loop, _start.isotropy));
+}
+
+void BranchTask::detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability) {
+  using Kind = bifurcation::Event::Kind;
+  const auto probing = [this](double position) { return probe(position); };
+  for (const bifurcation::Bracket& b : _detector.advance(station(orbit.arclength, stability), probing))
+    add_event({Kind::test_function, _functions[b.function], b.tangency}, b.from, b.to);
+  for (const bifurcation::Fold& fold : _folds.advance(orbit.arclength, orbit.loop.period, orbit.energy))
+    add_event({fold.quantity == bifurcation::Fold::Quantity::period ? Kind::fold_period : Kind::fold_energy, {}, false},
+              fold.from, fold.to);
+}
+
+void BranchTask::add_event(const bifurcation::Event& event, double from, double to) {
+  LocateWork work;
+  set_event(work, event);
+  const bool is_fold = event.kind != bifurcation::Event::Kind::test_function;
+  work.key = fmt::format("{}/{:03}.{}", _work.key, _events++,
+                         is_fold ? "fold" : fmt::format("q{}.j{}", event.function.sector.q, event.function.sector.j));
+  work.name = _work.name;
+  work.lineage = _work.lineage;
+  work.isotropy = _work.isotropy;
+  work.before_first = _before_first;
+  for (const continuation::FamilyCurve::Known& known : _curve.known())
+    work.known.push_back({known.position, record_of(known.loop)});
+  work.from = from;
+  work.to = to;
+  _children.push_back(task_of(work));
+}
+
+void BranchTask::solve_requested(const continuation::Orbit& orbit) {
+  for (continuation::Orbit& wanted : requested_orbits(_scene, *_system, _curve, *_last, orbit))
+    store(wanted, stability_of(*_system, wanted.loop, _start.isotropy));
+}
+
+void BranchTask::store(continuation::Orbit orbit, const std::optional<spectrum::Stability>& stability) {
+  const bool first = _outcome.orbits == 0;
+  const double period = orbit.loop.period;
+  _outcome.period_from = first ? period : std::min(_outcome.period_from, period);
+  _outcome.period_to = first ? period : std::max(_outcome.period_to, period);
+  _outcome.energy_from = first ? orbit.energy : std::min(_outcome.energy_from, orbit.energy);
+  _outcome.energy_to = first ? orbit.energy : std::max(_outcome.energy_to, orbit.energy);
+  _outcome.last_period = period;
+  _outcome.last_energy = orbit.energy;
+  _outcome.last_cutoff = orbit.loop.cutoff;
+  // The other side of a crossing: counted backwards from it.
+  orbit.step = _work.lineage.side > 0 ? _outcome.orbits : -1 - _outcome.orbits;
+  orbit.arclength = signed_arclength(_work.lineage, _before_first, orbit.arclength);
+  ++_outcome.orbits;
+  _rows.orbits.push_back(orbit_row(*_system, _work.lineage.family, orbit, stability));
+}
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "orbweaver/archive/records.hpp"
+#include "orbweaver/bifurcation/detector.hpp"
+#include "orbweaver/bifurcation/fold_watch.hpp"
+#include "orbweaver/bifurcation/symmetry_watch.hpp"
+#include "orbweaver/continuation/family_curve.hpp"
+#include "orbweaver/queue/executor.hpp"
+#include "orbweaver/scene/scene.hpp"
+#include "orbweaver/survey/work.hpp"
+
+namespace orbweaver::survey {
+
+/// Follows one branch: rows of its orbits, of those at requested periods and energies, a task for each event on it, and
+/// its end, also where it meets a more symmetric family.
+class BranchTask {
+ public:
+  BranchTask(const scene::Scene& scene, std::shared_ptr<const systems::System> system, BranchWork work,
+             archive::Records& rows, queue::TaskContext& context);
+
+  [[nodiscard]] queue::TaskOutcome run();
+
+ private:
+  bool take(const continuation::Orbit& orbit);
+  bool arrive(const continuation::Orbit& orbit);
+  void detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability);
+  void add_event(const bifurcation::Event& event, double from, double to);
+  void solve_requested(const continuation::Orbit& orbit);
+  void store(continuation::Orbit orbit, const std::optional<spectrum::Stability>& stability);
+  [[nodiscard]] bifurcation::Station station(double position,
+                                             const std::optional<spectrum::Stability>& stability) const;
+  [[nodiscard]] std::optional<bifurcation::Station> probe(double position);
+
+  const scene::Scene& _scene;
+  std::shared_ptr<const systems::System> _system;
+  BranchWork _work;
+  archive::Records& _rows;
+  queue::TaskContext& _context;
+
+  continuation::Start _start;
+  continuation::FamilyCurve _curve;
+  bifurcation::SymmetryWatch _symmetry;
+  std::vector<bifurcation::TestFunction> _functions;
+  bifurcation::Detector _detector;
+  bifurcation::FoldWatch _folds;
+  std::optional<continuation::Orbit> _last;
+  std::optional<bifurcation::SymmetryWatch::Seen> _seen;  // of the last orbit
+  double _before_first = 0.0;                             // arclength from the crossing to the first orbit
+  int _events = 0;
+  BranchOutcome _outcome;
+  std::vector<queue::Task> _children;
+};
+
+}  // namespace orbweaver::survey

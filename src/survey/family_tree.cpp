@@ -1,0 +1,332 @@
+#include "family_tree.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "orbweaver/loop/alignment.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+bool lies_on(const std::string& key, const std::string& branch) {
+  return key.size() > branch.size() && key.compare(0, branch.size(), branch) == 0 && key[branch.size()] == '/';
+}
+
+bool is_fold(const LocateOutcome& crossing) { return crossing.kind.starts_with("fold"); }
+
+/// The kind of a family in its name: B, D, T3, ...
+std::string letter_of(int multiplicity) {
+  if (multiplicity == 1) return "B";
+  return multiplicity == 2 ? "D" : fmt::format("T{}", multiplicity);
+}
+
+// The archive's text columns hold 4096 bytes.
+std::string limited(std::string text) {
+  constexpr std::size_t longest = 2000;
+  if (text.size() > longest) text = text.substr(0, longest) + " ...";
+  return text;
+}
+
+/// base + step * direction.
+loop::Loop moved(const loop::Loop& base, const std::vector<double>& direction, double step) {
+  loop::Loop out = base;
+  for (std::size_t n = 0; n < out.modes.size(); ++n) out.modes[n] += step * direction[n];
+  return out;
+}
+
+}  // namespace
+
+/// A family with its branches: one, or one a side.
+struct FamilyTree::Family {
+  std::string key;
+  Lineage lineage;
+  std::vector<const Branch*> sides;  // + first
+  std::string name;
+};
+
+void FamilyTree::add(const queue::Task& task, const queue::TaskOutcome& outcome) {
+  if (task.kind == branch_kind) {
+    BranchWork work = unpack_branch_work(task.payload);
+    Branch& branch = _branches[task.key];
+    branch.lineage = std::move(work.lineage);
+    branch.name = std::move(work.name);
+    branch.isotropy = std::move(work.isotropy);
+    branch.failed = outcome.failed;
+    branch.reason = outcome.reason;
+    if (!outcome.payload.empty()) branch.outcome = unpack_branch_outcome(outcome.payload);
+  } else if (task.kind == start_kind && outcome.failed) {
+    const BranchWork work = unpack_start_work(task.payload).branch;
+    _branches[work.key] = {work.lineage, work.name, work.isotropy, std::nullopt, true, outcome.reason};
+  } else if (task.kind == locate_kind) {
+    if (outcome.failed) _failures.push_back(fmt::format("{}: {}", task.key, outcome.reason));
+    if (outcome.payload.empty()) return;
+    LocateOutcome crossing = unpack_locate_outcome(outcome.payload);
+    const std::string key = crossing.key;
+    if (!crossing.kind.empty()) _crossings.insert_or_assign(key, std::move(crossing));
+  }
+}
+
+std::optional<FamilyTree::Meeting> FamilyTree::meeting_of(const Branch& branch, const LocateOutcome& crossing) const {
+  const ArrivalRecord& arrival = branch.outcome->arrival.front();
+  const double period = crossing.multiplicity * crossing.period;
+  if (std::abs(arrival.period / period - 1.0) > 1e-3 ||
+      std::abs(arrival.energy - crossing.energy) > 1e-3 * (1.0 + std::abs(crossing.energy)))
+    return std::nullopt;
+  const loop::Loop near = loop_of(arrival.near);
+  std::optional<Meeting> best;
+  double nearest = 0.4;  // of the distance from the crossing's orbit; other directions are further off
+  for (const LeavingRecord& leaving : crossing.leaving) {
+    const loop::Loop base = loop_of(leaving.base);
+    const double distance = loop::align(_system, near, base).distance;
+    const double unit = loop::mean_distance(base, moved(base, leaving.direction, 1.0));
+    for (const int side : {1, -1}) {
+      if (side < 0 && !leaving.both_sides) continue;
+      const loop::Loop expected = moved(base, leaving.direction, side * distance / unit);
+      const double away = loop::align(_system, near, expected).distance / distance;
+      if (away < nearest) {
+        nearest = away;
+        best = Meeting{crossing.key, leaving.key, side};
+      }
+    }
+  }
+  return best;
+}
+
+std::optional<FamilyTree::Meeting> FamilyTree::meeting_of(const Branch& branch) const {
+  if (!branch.outcome || branch.outcome->arrival.empty()) return std::nullopt;
+  for (const auto& [key, crossing] : _crossings) {
+    const auto known = _met.find({branch.outcome->key, key});
+    const auto& meeting =
+        known != _met.end()
+            ? known->second
+            : _met.emplace(std::pair(branch.outcome->key, key), meeting_of(branch, crossing)).first->second;
+    if (meeting) return meeting;
+  }
+  return std::nullopt;
+}
+
+/// True if `branch` is `other` run backwards and `other` is to stay.
+bool FamilyTree::covers(const Branch& other, const std::string& other_key, const Branch& branch,
+                        const std::string& key) const {
+  const std::optional<Meeting> meeting = meeting_of(other);
+  if (!meeting || meeting->family != branch.lineage.family || meeting->side != branch.lineage.side) return false;
+  if (other_key == key) return false;
+  if (std::tie(other.lineage.depth, other_key) < std::tie(branch.lineage.depth, key)) return true;
+  const std::optional<Meeting> back = meeting_of(branch);
+  return branch.outcome && !(back && back->family == other.lineage.family && back->side == other.lineage.side);
+}
+
+bool FamilyTree::wanted(const queue::Task& task) const {
+  if (task.kind != branch_kind && task.kind != start_kind) return true;
+  const BranchWork work =
+      task.kind == branch_kind ? unpack_branch_work(task.payload) : unpack_start_work(task.payload).branch;
+  if (work.lineage.depth == 0) return true;
+  const Branch branch{work.lineage, work.name, work.isotropy, std::nullopt, false, ""};
+  std::set<std::string> earlier;
+  for (const auto& [key, other] : _branches) {
+    const bool before = std::tie(other.lineage.depth, key) < std::tie(work.lineage.depth, work.key);
+    if (before && covers(other, key, branch, work.key)) return false;
+    if (before) earlier.insert(other.lineage.family);
+  }
+  return earlier.contains(work.lineage.family) || static_cast<int>(earlier.size()) < _scene.limits.families;
+}
+
+std::map<std::string, FamilyTree::Branch> FamilyTree::kept_branches() const {
+  std::vector<std::pair<std::string, const Branch*>> ordered;
+  for (const auto& [key, branch] : _branches) ordered.emplace_back(key, &branch);
+  std::stable_sort(ordered.begin(), ordered.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.second->lineage.depth, a.first) < std::tie(b.second->lineage.depth, b.first);
+  });
+  std::set<std::string> dropped;
+  std::map<std::string, Branch> kept;
+  std::set<std::string> families;
+  for (const auto& [key, branch] : ordered) {
+    const bool below = std::any_of(dropped.begin(), dropped.end(), [&k = key](const auto& d) { return lies_on(k, d); });
+    const bool covered = std::any_of(ordered.begin(), ordered.end(), [&, &k = key, b = branch](const auto& other) {
+      return !dropped.contains(other.first) && covers(*other.second, other.first, *b, k);
+    });
+    const bool too_many =
+        !families.contains(branch->lineage.family) && static_cast<int>(families.size()) >= _scene.limits.families;
+    if (below || covered || too_many) {
+      dropped.insert(key);
+    } else {
+      kept.emplace(key, *branch);
+      families.insert(branch->lineage.family);
+    }
+  }
+  return kept;
+}
+
+std::vector<FamilyTree::Family> FamilyTree::families_of(const std::map<std::string, Branch>& kept) const {
+  std::vector<Family> families;
+  for (const int side : {1, -1})
+    for (const auto& [key, branch] : kept) {
+      if (branch.lineage.side != side) continue;
+      const auto known = std::find_if(families.begin(), families.end(),
+                                      [&, &b = branch](const Family& f) { return f.key == b.lineage.family; });
+      if (known != families.end())
+        known->sides.push_back(&branch);
+      else
+        families.push_back({branch.lineage.family, branch.lineage, {&branch}, branch.name});
+    }
+  std::sort(families.begin(), families.end(), [](const Family& a, const Family& b) {
+    return std::tie(a.lineage.depth, a.key) < std::tie(b.lineage.depth, b.key);
+  });
+  return families;
+}
+
+/// Parents come first, so their names are known.
+void FamilyTree::name_all(std::vector<Family>& families) const {
+  std::map<std::string, std::string> prefix;
+  for (Family& family : families) {
+    if (family.lineage.depth == 0) {
+      const auto letter = _scene.fixed_points.letters.find(family.name);
+      prefix[family.key] = letter != _scene.fixed_points.letters.end() ? letter->second : family.name + " ";
+      continue;
+    }
+    const LocateOutcome& crossing = _crossings.at(family.lineage.crossing);
+    // The crossings of this kind on the parent where a family begins, by arclength, and the families born at this one.
+    std::set<std::pair<double, std::string>> places;
+    std::vector<std::string> born;
+    for (const Family& other : families) {
+      if (other.lineage.depth == 0) continue;
+      const LocateOutcome& place = _crossings.at(other.lineage.crossing);
+      if (place.lineage.family != crossing.lineage.family || other.lineage.multiplicity != family.lineage.multiplicity)
+        continue;
+      places.insert({place.arclength, place.key});
+      if (place.key == crossing.key) born.push_back(other.key);
+    }
+    const std::string letter = letter_of(family.lineage.multiplicity);
+    family.name = prefix.at(crossing.lineage.family) + letter;
+    if (places.size() > 1) {
+      const auto place = places.find({crossing.arclength, crossing.key});
+      family.name += fmt::format("{}{}", letter.size() > 1 ? "-" : "", std::distance(places.begin(), place) + 1);
+    }
+    std::sort(born.begin(), born.end());
+    if (born.size() > 1) {
+      const auto at = std::find(born.begin(), born.end(), family.key) - born.begin();
+      family.name += static_cast<char>('a' + at % 26);
+    }
+    prefix[family.key] = family.name;
+  }
+}
+
+void FamilyTree::add_crossings(const std::map<std::string, Branch>& kept, Result& result,
+                               std::map<std::string, int>& index) const {
+  for (const auto& [key, crossing] : _crossings) {
+    const std::string branch = key.substr(0, key.rfind('/'));
+    if (!kept.contains(branch)) continue;
+    // A fold in energy shows twice: as an extremum and as a zero of the test function of q = 1.
+    const bool twice = std::any_of(index.begin(), index.end(), [&, &c = crossing](const auto& other) {
+      const LocateOutcome& o = _crossings.at(other.first);
+      return is_fold(c) && o.kind == c.kind && o.lineage.family == c.lineage.family &&
+             std::abs(o.arclength - c.arclength) < 1e-4 * (1.0 + std::abs(c.arclength));
+    });
+    if (twice) continue;
+    index[key] = static_cast<int>(result.tables.crossings.size());
+    archive::CrossingRecord row;
+    row.family_key = crossing.lineage.family;
+    row.arclength = crossing.arclength;
+    row.period = crossing.period;
+    row.energy = crossing.energy;
+    row.kind = crossing.kind;
+    row.multiplicity = crossing.multiplicity;
+    row.kernel_dimension = crossing.kernel_dimension;
+    row.residual = crossing.residual;
+    row.state = crossing.state;
+    row.sector_j = crossing.j;
+    row.sector_q = crossing.q;
+    row.fundamental_order = crossing.fundamental_order;
+    row.test_value = crossing.test_value;
+    result.tables.crossings.push_back(std::move(row));
+  }
+}
+
+void FamilyTree::add_families(const std::vector<Family>& families, const std::map<std::string, int>& crossing_index,
+                              Result& result) const {
+  std::map<std::string, std::string> names;
+  for (const Family& family : families) names[family.key] = family.name;
+  for (const Family& family : families) {
+    archive::FamilyRecord record;
+    FamilySummary summary;
+    record.key = summary.key = family.key;
+    record.name = summary.name = family.name;
+    record.multiplicity = family.lineage.multiplicity;
+    record.isotropy = summary.isotropy = loop::to_text(isotropy_of(family.sides.front()->isotropy, _system));
+    if (family.lineage.depth > 0) {
+      const LocateOutcome& born = _crossings.at(family.lineage.crossing);
+      record.parent_key = born.lineage.family;
+      record.crossing = crossing_index.at(born.key);
+    }
+    summary.depth = family.lineage.depth;
+    for (const Branch* side : family.sides) {
+      std::string reason = side->outcome ? side->outcome->end_reason : fmt::format("failure ({})", side->reason);
+      if (const std::optional<Meeting> meeting = meeting_of(*side)) {
+        const LocateOutcome& met = _crossings.at(meeting->crossing);
+        const auto row = crossing_index.find(met.key);
+        const auto name = names.find(met.lineage.family);
+        if (row != crossing_index.end() && name != names.end()) {
+          record.end_family_key = met.lineage.family;
+          record.end_crossing = row->second;
+          reason = fmt::format("joined {} at T = {:.12g} (crossing at T = {:.12g}, {} times around)", name->second,
+                               side->outcome->arrival.front().period, met.period, met.multiplicity);
+        }
+      }
+      if (family.sides.size() > 1)
+        record.end_reason += fmt::format("{}{}: {}", record.end_reason.empty() ? "" : "; ",
+                                         side->lineage.side > 0 ? "forwards" : "backwards", reason);
+      else
+        record.end_reason = reason;
+      summary.failed = summary.failed || side->failed;
+      if (side->failed) result.failures.push_back(fmt::format("{} ({}): {}", family.key, family.name, side->reason));
+      if (!side->outcome || side->outcome->orbits == 0) continue;
+      const BranchOutcome& o = *side->outcome;
+      const bool first = summary.orbits == 0;
+      summary.orbits += o.orbits;
+      summary.period_from = first ? o.period_from : std::min(summary.period_from, o.period_from);
+      summary.period_to = first ? o.period_to : std::max(summary.period_to, o.period_to);
+      summary.energy_from = first ? o.energy_from : std::min(summary.energy_from, o.energy_from);
+      summary.energy_to = first ? o.energy_to : std::max(summary.energy_to, o.energy_to);
+    }
+    if (family.sides.size() == 1) {  // of a family with two sides the other one may have been run as well
+      if (family.lineage.side < 0) record.last_step = -1;
+      if (family.lineage.side > 0) record.first_step = 0;
+    }
+    record.end_reason = summary.end_reason = limited(record.end_reason);
+    result.tables.families.push_back(std::move(record));
+    result.families.push_back(std::move(summary));
+  }
+}
+
+FamilyTree::Result FamilyTree::resolve() const {
+  Result result;
+  const std::map<std::string, Branch> kept = kept_branches();
+  std::vector<Family> families = families_of(kept);
+  name_all(families);
+  std::map<std::string, int> crossing_index;
+  add_crossings(kept, result, crossing_index);
+  add_families(families, crossing_index, result);
+  std::set<std::string> kept_families;
+  for (const Family& family : families) kept_families.insert(family.key);
+  std::set<std::string> left_out;
+  for (const auto& [key, branch] : _branches)
+    if (!kept_families.contains(branch.lineage.family)) left_out.insert(branch.lineage.family);
+  result.tables.left_out_keys.assign(left_out.begin(), left_out.end());
+  for (const std::string& failure : _failures) {
+    const std::string key =
+        failure.substr(std::string("locate ").size(), failure.find(':') - std::string("locate ").size());
+    if (kept.contains(key.substr(0, key.rfind('/')))) result.failures.push_back(failure);
+  }
+  for (const auto& [key, branch] : kept)
+    if (branch.outcome)
+      for (const std::string& remark : branch.outcome->remarks) result.remarks.push_back(remark);
+  return result;
+}
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "orbweaver/archive/records.hpp"
+#include "orbweaver/queue/task.hpp"
+#include "orbweaver/scene/scene.hpp"
+#include "orbweaver/survey/survey.hpp"
+#include "orbweaver/survey/work.hpp"
+#include "orbweaver/systems/description.hpp"
+
+namespace orbweaver::survey {
+
+/// What rank 0 knows of the families while the survey runs, and what it makes of it at the end: which branches are the
+/// same curve from another end, names, parents, ends.
+///
+/// A branch that arrives at a crossing has come along one of the directions that leave there, so whatever starts in that
+/// direction is the same branch run backwards. It is left out if the branch that arrives comes first in the order of depth,
+/// then key (or if it does not arrive in turn); everything found along it is left out as well. This depends on tasks and
+/// outcomes only, not on when they came: a branch that was never run because of it and one that was make the same archive.
+class FamilyTree {
+ public:
+  FamilyTree(const scene::Scene& scene, const systems::Description& system) : _scene(scene), _system(system) {}
+
+  /// A task has ended: done, failed or stopped.
+  void add(const queue::Task& task, const queue::TaskOutcome& outcome);
+  /// False for a task whose branch is known to be another one's, or one family too many.
+  [[nodiscard]] bool wanted(const queue::Task& task) const;
+
+  struct Result {
+    archive::Records tables;              ///< families and crossings, and what of the rows does not belong to them
+    std::vector<FamilySummary> families;  ///< parents before children
+    std::vector<std::string> failures;    ///< key and reason
+    std::vector<std::string> remarks;
+  };
+  [[nodiscard]] Result resolve() const;
+
+ private:
+  struct Branch {
+    Lineage lineage;
+    std::string name;  ///< of a base
+    IsotropyRecord isotropy;
+    std::optional<BranchOutcome> outcome;
+    bool failed = false;
+    std::string reason;
+  };
+  /// Where a branch arrived: along which direction of which crossing.
+  struct Meeting {
+    std::string crossing;
+    std::string family;
+    int side = 1;
+  };
+  struct Family;
+
+  [[nodiscard]] std::optional<Meeting> meeting_of(const Branch& branch, const LocateOutcome& crossing) const;
+  [[nodiscard]] std::optional<Meeting> meeting_of(const Branch& branch) const;
+  [[nodiscard]] bool covers(const Branch& other, const std::string& other_key, const Branch& branch,
+                            const std::string& key) const;
+  [[nodiscard]] std::map<std::string, Branch> kept_branches() const;
+  [[nodiscard]] std::vector<Family> families_of(const std::map<std::string, Branch>& kept) const;
+  void name_all(std::vector<Family>& families) const;
+  void add_crossings(const std::map<std::string, Branch>& kept, Result& result,
+                     std::map<std::string, int>& index) const;
+  void add_families(const std::vector<Family>& families, const std::map<std::string, int>& crossing_index,
+                    Result& result) const;
+
+  const scene::Scene& _scene;
+  const systems::Description& _system;
+  std::map<std::string, Branch> _branches;                                             // by key
+  std::map<std::string, LocateOutcome> _crossings;                                     // by key
+  std::vector<std::string> _failures;                                                  // of locations
+  mutable std::map<std::pair<std::string, std::string>, std::optional<Meeting>> _met;  // branch, crossing
+};
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,184 @@
+#include "locate_task.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "arrival.hpp"
+#include "executor.hpp"
+#include "orbweaver/archive/records.hpp"
+#include "orbweaver/bifurcation/crossing.hpp"
+#include "orbweaver/bifurcation/directions.hpp"
+#include "orbweaver/bifurcation/kernel.hpp"
+#include "orbweaver/continuation/orbit.hpp"
+#include "orbweaver/core/error.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+using bifurcation::Event;
+using bifurcation::TestFunction;
+
+std::string kind_of(const Event& event, int multiplicity) {
+  if (event.kind == Event::Kind::fold_period) return "fold-period";
+  if (event.kind == Event::Kind::fold_energy) return "fold-energy";
+  if (event.function.kind == TestFunction::Kind::krein) return "krein";
+  if (event.function.kind == TestFunction::Kind::torus) return "torus";
+  if (multiplicity == 1) return "branch-point";
+  return multiplicity == 2 ? "period-doubling" : "subharmonic";
+}
+
+/// Null vectors that the multipliers at the crossing let expect.
+int expected_dimension(const bifurcation::Crossing& crossing, const bifurcation::Sector& sector) {
+  int pairs = 0;
+  for (std::size_t n = 0; n < crossing.stability.fundamental.size(); ++n) {
+    const double away = std::abs(crossing.stability.fundamental[n] - sector.index());
+    if (away < std::max(1e-6, 10.0 * crossing.stability.fundamental_error[n])) ++pairs;
+  }
+  return std::max(1, pairs) * (sector.q <= 2 ? 1 : 2);
+}
+
+/// The |dz(s = 0)| of a step of length `amplitude` along the direction.
+double change_at_start(const bifurcation::Direction& direction, double amplitude) {
+  loop::Loop step = direction.base;
+  step.modes = direction.modes;
+  std::fill(step.winding.begin(), step.winding.end(), 0.0);
+  double square = 0.0;
+  for (const double v : loop::state_at(step, 0.0)) square += v * v;
+  return amplitude * std::sqrt(square);
+}
+
+class Location {
+ public:
+  Location(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system, const LocateWork& work)
+      : _scene(scene), _system(system), _work(work), _event(event_of(work)) {
+    _outcome.key = work.key;
+    _outcome.lineage = work.lineage;
+    _outcome.q = work.q;
+    _outcome.j = work.j;
+  }
+
+  queue::TaskOutcome run() {
+    continuation::Options options = branch_options(_scene);
+    options.corrector.tolerance *= 0.01;
+    continuation::FamilyCurve family(_system, isotropy_of(_work.isotropy, _system->description()), options);
+    for (const KnownOrbit& known : _work.known) family.add(known.position, loop_of(known.loop), _work.known.size());
+    std::string why;
+    const auto crossing = bifurcation::locate(*_system, family, _event, _work.from, _work.to, why);
+    if (!crossing) return without_crossing(why);
+    describe(*crossing);
+    if (_event.kind == Event::Kind::test_function && _event.function.kind == TestFunction::Kind::sector)
+      leave(*crossing, family.isotropy());
+    queue::TaskOutcome done;
+    done.failed = !_failure.empty();
+    done.reason = _failure;
+    done.children = std::move(_starts);
+    done.payload = pack(_outcome);
+    return done;
+  }
+
+ private:
+  queue::TaskOutcome without_crossing(const std::string& why) {
+    queue::TaskOutcome done;
+    // Only minima that come near zero, and functions that vanish for other reasons, may turn out to be nothing.
+    done.failed = !_event.tangency && why.find("nothing leaves") == std::string::npos;
+    done.reason =
+        fmt::format("the event between arclength {:.6g} and {:.6g} was not located: {}", _work.from, _work.to, why);
+    _outcome.remark = why;
+    done.payload = pack(_outcome);
+    if (!done.failed) done.reason.clear();
+    return done;
+  }
+
+  void describe(const bifurcation::Crossing& crossing) {
+    const loop::Loop& loop = crossing.point.loop;
+    _outcome.arclength = signed_arclength(_work.lineage, _work.before_first, crossing.point.position);
+    _outcome.period = loop.period;
+    _outcome.energy = continuation::energy_of(*_system, loop);
+    _outcome.fundamental_order = crossing.stability.fundamental_order;
+    const bool by_sector =
+        _event.kind == Event::Kind::test_function && _event.function.kind == TestFunction::Kind::sector;
+    _outcome.multiplicity = by_sector ? _event.function.sector.multiplicity(_outcome.fundamental_order) : 1;
+    _outcome.kind = kind_of(_event, _outcome.multiplicity);
+    _outcome.residual = crossing.reading.value;
+    _outcome.test_value = by_sector ? bifurcation::index_deviation(crossing.stability, _event.function.sector).value
+                                    : crossing.reading.value;
+    _outcome.kernel_singular_value = archive::not_computed;
+    _outcome.next_singular_value = archive::not_computed;
+    _outcome.kernel_dimension = by_sector ? -1 : 0;  // not computed yet
+    _outcome.state = loop::state_at(loop, 0.0);
+  }
+
+  void leave(const bifurcation::Crossing& crossing, const loop::Isotropy& isotropy) {
+    if (_outcome.multiplicity * _outcome.period > _scene.limits.period * (1.0 + 1e-9)) {
+      _outcome.remark = "orbits born here lie beyond the period limit";
+      return;
+    }
+    const bifurcation::Sector& sector = _event.function.sector;
+    const bifurcation::Kernel kernel =
+        bifurcation::kernel_of(*_system, crossing.point, isotropy, sector, expected_dimension(crossing, sector));
+    _outcome.kernel_dimension = kernel.dimension();
+    _outcome.kernel_singular_value = kernel.largest();
+    _outcome.next_singular_value = kernel.next();
+    if (kernel.dimension() == 0) {
+      _outcome.remark = fmt::format("no flat direction besides the family's own (smallest singular value {:.2g})",
+                                    kernel.singular_values.empty() ? archive::not_computed : kernel.singular_values[0]);
+      // For q = 1 the family then turns back in energy, and nothing leaves.
+      if (sector.q == 1)
+        _outcome.kind = "fold-energy";
+      else
+        _failure = _outcome.remark;
+      return;
+    }
+    int number = 0;
+    for (const bifurcation::Direction& direction :
+         bifurcation::directions(*_system, kernel.base, isotropy, kernel.vectors)) {
+      LeavingRecord leaving;
+      leaving.key = fmt::format("{}/{}", _work.key, number++);
+      leaving.isotropy = record_of(direction.isotropy);
+      leaving.both_sides = direction.both_sides;
+      leaving.base = record_of(sketch_of(direction.base));
+      loop::Loop vector = direction.base;
+      vector.modes = direction.modes;
+      leaving.direction = loop::with_cutoff(vector, leaving.base.cutoff).modes;
+      if (_work.lineage.depth < _scene.survey.depth) add_starts(direction, leaving);
+      _outcome.leaving.push_back(std::move(leaving));
+    }
+  }
+
+  void add_starts(const bifurcation::Direction& direction, const LeavingRecord& leaving) {
+    for (const int side : {1, -1}) {
+      if (side < 0 && !leaving.both_sides) continue;
+      StartWork start;
+      BranchWork& branch = start.branch;
+      branch.key = leaving.key + (leaving.both_sides ? (side > 0 ? "+" : "-") : "");
+      branch.name = fmt::format("{}>{}@{:.4g}{}", _work.name, _outcome.multiplicity, _outcome.period,
+                                leaving.key.substr(_work.key.size()));
+      branch.lineage = {leaving.key, _work.key, _work.lineage.depth + 1, _outcome.multiplicity, side};
+      branch.base = record_of(direction.base);
+      branch.direction = direction.modes;
+      branch.isotropy = leaving.isotropy;
+      branch.amplitude = direction.amplitude > 0.0 ? change_at_start(direction, direction.amplitude) : 0.0;
+      _starts.push_back(task_of(start));
+    }
+  }
+
+  const scene::Scene& _scene;
+  const std::shared_ptr<const systems::System>& _system;
+  const LocateWork& _work;
+  Event _event;
+  LocateOutcome _outcome;
+  std::vector<queue::Task> _starts;
+  std::string _failure;
+};
+
+}  // namespace
+
+queue::TaskOutcome locate(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
+                          const LocateWork& work) {
+  return Location(scene, system, work).run();
+}
+
+}  // namespace orbweaver::survey

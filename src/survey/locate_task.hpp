@@ -1,0 +1,22 @@
+#pragma once
+
+#include <memory>
+
+#include "orbweaver/queue/task.hpp"
+#include "orbweaver/scene/scene.hpp"
+#include "orbweaver/survey/work.hpp"
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::survey {
+
+/// Locates an event, finds its kernel and the directions in which families leave, and makes a start task of each that
+/// the scene's depth and period allow.
+[[nodiscard]] queue::TaskOutcome locate(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
+                                        const LocateWork& work);
+
+/// Finds the first orbit along a direction: the branch's task is then its child. An orbit that is the crossing's own
+/// family again is noticed, and other amplitudes are tried.
+[[nodiscard]] queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
+                                       const StartWork& work);
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,44 @@
+#include "orbit_row.hpp"
+
+#include "orbweaver/certificate/certificate.hpp"
+#include "orbweaver/core/error.hpp"
+#include "stability_columns.hpp"
+
+namespace orbweaver::survey {
+
+std::optional<spectrum::Stability> stability_of(const systems::System& system, const loop::Loop& loop,
+                                                const loop::Isotropy& isotropy) {
+  try {
+    return spectrum::floquet(system, loop, isotropy);
+  } catch (const core::NumericalError&) {
+    return std::nullopt;
+  }
+}
+
+archive::OrbitRecord orbit_row(const systems::System& system, const std::string& family,
+                               const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability) {
+  archive::OrbitRecord row;
+  row.family_key = family;
+  row.step = orbit.step;
+  row.arclength = orbit.arclength;
+  row.period = orbit.loop.period;
+  row.energy = orbit.energy;
+  row.action = orbit.action;
+  row.cutoff = orbit.loop.cutoff;
+  row.loss_rms = orbit.loss_rms;
+  row.off_branch_eigenvalue = orbit.off_branch_eigenvalue;
+  row.tail = orbit.tail;
+  row.state = loop::state_at(orbit.loop, 0.0);
+  row.modes = orbit.loop.modes;
+  row.time_map = loop::to_numbers(orbit.loop.time_map);
+  for (const int angle : system.description().angles)
+    row.winding.push_back(orbit.loop.winding[static_cast<std::size_t>(angle)]);
+  set_stability(system.description(), stability, row);
+  const certificate::Certificate certificate = certificate::certify(system, orbit.loop);
+  row.closure = certificate.closure;
+  row.single_shot = certificate.single_shot;
+  row.energy_drift = certificate.energy_drift;
+  return row;
+}
+
+}  // namespace orbweaver::survey

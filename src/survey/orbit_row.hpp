@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "orbweaver/archive/records.hpp"
+#include "orbweaver/continuation/orbit.hpp"
+#include "orbweaver/spectrum/floquet.hpp"
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::survey {
+
+/// Multipliers of an orbit, or none where they cannot be computed.
+[[nodiscard]] std::optional<spectrum::Stability> stability_of(const systems::System& system, const loop::Loop& loop,
+                                                              const loop::Isotropy& isotropy);
+
+/// The row of an accepted orbit, with its certificate.
+[[nodiscard]] archive::OrbitRecord orbit_row(const systems::System& system, const std::string& family,
+                                             const continuation::Orbit& orbit,
+                                             const std::optional<spectrum::Stability>& stability);
+
+}  // namespace orbweaver::survey

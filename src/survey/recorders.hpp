@@ -1,0 +1,75 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+
+#include "family_tree.hpp"
+#include "orbweaver/queue/observer.hpp"
+#include "time_limit.hpp"
+
+namespace orbweaver::survey {
+
+/// Passes everything on to the display, and minds the time.
+class Recorder : public queue::Observer {
+ public:
+  Recorder(queue::Observer& display, TimeLimit& time) : _display(display), _time(time) {}
+
+  void started(const queue::Task& task, int rank) override { _display.started(task, rank); }
+  void progress(const queue::Task& task, const queue::Progress& p, int rank) override {
+    _display.progress(task, p, rank);
+  }
+  void finished(const queue::Task& task, const queue::TaskOutcome& outcome) override {
+    keep(task, outcome);
+    _display.finished(task, outcome);
+  }
+  void failed(const queue::Task& task, const queue::TaskOutcome& outcome) override {
+    keep(task, outcome);
+    _display.failed(task, outcome);
+  }
+  // Its rows are kept, and so must the family be.
+  void stopped(const queue::Task& task, const queue::TaskOutcome& outcome) override {
+    keep(task, outcome);
+    _display.stopped(task, outcome);
+  }
+  void tick(const queue::TaskCounts& counts) override {
+    _time.tick();
+    _display.tick(counts);
+  }
+
+ protected:
+  virtual void keep(const queue::Task& task, const queue::TaskOutcome& outcome) = 0;
+
+ private:
+  queue::Observer& _display;
+  TimeLimit& _time;
+};
+
+/// Keeps the outcomes of sweeps.
+class SweepRecorder : public Recorder {
+ public:
+  using Recorder::Recorder;
+  /// Tasks with their outcomes in order of keys.
+  [[nodiscard]] const std::map<std::string, std::pair<queue::Task, queue::TaskOutcome>>& ended() const {
+    return _ended;
+  }
+
+ private:
+  void keep(const queue::Task& task, const queue::TaskOutcome& outcome) override {
+    _ended.insert_or_assign(task.key, std::pair(task, outcome));
+  }
+  std::map<std::string, std::pair<queue::Task, queue::TaskOutcome>> _ended;
+};
+
+/// Grows the tree of families.
+class TreeRecorder : public Recorder {
+ public:
+  TreeRecorder(queue::Observer& display, TimeLimit& time, FamilyTree& tree) : Recorder(display, time), _tree(tree) {}
+  bool wanted(const queue::Task& task) override { return _tree.wanted(task); }
+
+ private:
+  void keep(const queue::Task& task, const queue::TaskOutcome& outcome) override { _tree.add(task, outcome); }
+  FamilyTree& _tree;
+};
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,72 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "executor.hpp"
+#include "locate_task.hpp"
+#include "orbweaver/continuation/branch.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+/// What of the orbit's way from the crossing lies along the direction in which it was to leave: 1 where all does.
+double share_along(const continuation::Start& start, const loop::Loop& orbit) {
+  const int cutoff = std::min(start.base.cutoff, orbit.cutoff);
+  const loop::Loop even = orbit.time_map.is_identity() ? orbit : loop::with_time_map(orbit, {}, orbit.cutoff);
+  const loop::Loop there = loop::with_cutoff(even, cutoff);
+  const loop::Loop base = loop::with_cutoff(start.base, cutoff);
+  double along = 0.0;
+  double length = 0.0;
+  double moved = 0.0;
+  for (std::size_t n = 0; n < there.modes.size(); ++n) {
+    const double step = there.modes[n] - base.modes[n];
+    along += step * start.direction[n];
+    length += start.direction[n] * start.direction[n];
+    moved += step * step;
+  }
+  return moved > 0.0 ? along / std::sqrt(length * moved) : 0.0;
+}
+
+}  // namespace
+
+queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
+                         const StartWork& work) {
+  const continuation::Start begin = start_of(work.branch, system->description());
+  continuation::Options options = branch_options(scene);
+  const double first = work.branch.amplitude > 0.0 ? work.branch.amplitude : options.start_amplitude;
+  std::string why;
+  // A born orbit leaves along its direction. Too large an amplitude may find another family, too small a one is lost in
+  // rounding.
+  for (const double factor : {1.0, 0.3, 3.0, 0.1, 10.0, 0.03}) {
+    options.start_amplitude = factor * first;
+    continuation::Branch branch(system, begin, options);
+    const std::optional<continuation::Orbit> orbit = branch.advance();
+    if (!orbit) {
+      const continuation::Ending ending = branch.ending().value();
+      why = ending.text();
+      if (ending.failed()) continue;
+      queue::TaskOutcome done;  // beyond the scene's limits: no family begins
+      done.payload = why;
+      return done;
+    }
+    const double share = share_along(begin, orbit->loop);
+    if (share < 0.5) {
+      why = fmt::format("at amplitude {:.2g} the orbit found lies beside the direction (cosine {:.2f})",
+                        options.start_amplitude, share);
+      continue;
+    }
+    BranchWork found = work.branch;
+    found.amplitude = options.start_amplitude;
+    queue::TaskOutcome done;
+    done.children.push_back(task_of(found));
+    return done;
+  }
+  queue::TaskOutcome failed;
+  failed.failed = true;
+  failed.reason = fmt::format("no orbit leaves along this direction: {}", why);
+  return failed;
+}
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,106 @@
+#include "orbweaver/bifurcation/crossing.hpp"
+
+#include <gtest/gtest.h>
+
+#include "continuation/families.hpp"
+#include "orbweaver/bifurcation/kernel.hpp"
+#include "orbweaver/core/error.hpp"
+
+namespace {
+
+using namespace orbweaver;
+using bifurcation::Event;
+using bifurcation::Sector;
+
+/// The orbits of a traced family around the period, as a survey hands them to a location.
+continuation::FamilyCurve curve_around(const test::Trace& family, double period) {
+  std::size_t after = 0;
+  while (family.orbits[after].loop.period < period) ++after;
+  continuation::Options options;
+  options.corrector.tolerance = 1e-12;
+  continuation::FamilyCurve curve(test::pendulum(), test::pendulum_isotropy(*test::pendulum()), options);
+  for (std::size_t n = after < 3 ? 0 : after - 3; n <= std::min(after + 1, family.orbits.size() - 1); ++n)
+    curve.add(family.orbits[n].arclength, family.orbits[n].loop);
+  return curve;
+}
+
+struct Expected {
+  double period;
+  Sector sector;
+  int dimension;
+  int multiplicity;
+};
+
+void expect_crossing(const test::PendulumMode& mode, const Expected& expected) {
+  SCOPED_TRACE(expected.period);
+  continuation::FamilyCurve curve = curve_around(test::family_to_twelve(mode), expected.period);
+  const Event event{Event::Kind::test_function, {bifurcation::TestFunction::Kind::sector, expected.sector}, false};
+  std::string why;
+  const auto found = bifurcation::locate(*test::pendulum(), curve, event, curve.known().front().position,
+                                         curve.known().back().position, why);
+  ASSERT_TRUE(found) << why;
+  EXPECT_NEAR(found->point.loop.period, expected.period, 1e-9);
+  const bifurcation::Reading deviation = bifurcation::index_deviation(found->stability, expected.sector);
+  EXPECT_LE(std::abs(deviation.value), std::max(1e-9, deviation.error));
+  const bifurcation::Kernel kernel =
+      bifurcation::kernel_of(*test::pendulum(), found->point, curve.isotropy(), expected.sector,
+                             expected.sector.q <= 2 ? 1 : 2);
+  EXPECT_EQ(kernel.dimension(), expected.dimension);
+  EXPECT_LT(kernel.largest(), 1e-8);
+  EXPECT_GT(kernel.next(), 1e3 * kernel.largest());
+  EXPECT_NEAR(kernel.base.period, expected.multiplicity * expected.period, 1e-8);
+}
+
+TEST(Crossings, OfTheInPhaseFamily) {
+  expect_crossing(test::in_phase(), {8.442930704977588, {4, 1}, 2, 2});
+  expect_crossing(test::in_phase(), {10.416773281973249, {1, 0}, 1, 1});
+}
+
+TEST(Crossings, OfTheOutPhaseFamily) { expect_crossing(test::out_phase(), {4.059557792801163, {4, 1}, 2, 2}); }
+
+TEST(Crossings, AZeroThatIsNotThereIsSaid) {
+  continuation::FamilyCurve curve = curve_around(test::family_to_twelve(test::in_phase()), 9.0);
+  const Event event{Event::Kind::test_function, {bifurcation::TestFunction::Kind::sector, {1, 0}}, false};
+  std::string why;
+  const auto& known = curve.known();
+  EXPECT_FALSE(bifurcation::locate(*test::pendulum(), curve, event, known[2].position, known[3].position, why));
+  EXPECT_NE(why.find("no zero between"), std::string::npos);
+}
+
+TEST(FamilyCurve, AnOrbitDoesNotDependOnWhatWasAskedBefore) {
+  const test::Trace& family = test::family_to_twelve(test::in_phase());
+  continuation::FamilyCurve once = curve_around(family, 9.0);
+  continuation::FamilyCurve often = curve_around(family, 9.0);
+  const double from = once.known()[2].position;
+  const double to = once.known()[3].position;
+  for (const double share : {0.1, 0.7, 0.45, 0.43}) ASSERT_TRUE(often.at(from + share * (to - from)));
+  const double position = from + 0.44 * (to - from);
+  const auto a = once.at(position);
+  const auto b = often.at(position);
+  ASSERT_TRUE(a && b);
+  EXPECT_LT(loop::mean_distance(a->loop, b->loop), 1e-11);
+  EXPECT_NEAR(a->loop.period, b->loop.period, 1e-11);
+}
+
+TEST(FamilyCurve, TheTangentPointsAlongTheFamily) {
+  continuation::FamilyCurve curve = curve_around(test::family_to_twelve(test::in_phase()), 9.0);
+  const double from = curve.known()[2].position;
+  const double step = 1e-4;
+  const auto a = curve.at(from + 0.05);
+  const auto b = curve.at(from + 0.05 + step);
+  ASSERT_TRUE(a && b);
+  // dT and dE in the direction of the tangent, against differences along the curve.
+  const double period_change = b->loop.period - a->loop.period;
+  const double energy_change = continuation::energy_of(*test::pendulum(), b->loop) -
+                               continuation::energy_of(*test::pendulum(), a->loop);
+  EXPECT_NEAR(bifurcation::energy_slope(*test::pendulum(), *a) / bifurcation::period_slope(*a),
+              energy_change / period_change, 1e-3 * std::abs(energy_change / period_change));
+  EXPECT_GT(bifurcation::period_slope(*a), 0.0);
+}
+
+TEST(FamilyCurve, NothingBeyondItsEnds) {
+  continuation::FamilyCurve curve = curve_around(test::family_to_twelve(test::in_phase()), 9.0);
+  EXPECT_THROW((void)curve.at(curve.known().back().position + 0.1), core::MisuseError);
+}
+
+}  // namespace
