@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <optional>
@@ -59,6 +60,22 @@ class Stability {
   bool _multipliers;
 };
 
+// The period at which stability changes between neighbouring orbits: of the crossing that was located there, or that of
+// the stable one.
+double boundary(const Archive& atlas, std::size_t family, std::size_t stable, std::size_t unstable) {
+  const auto& arclengths = atlas.orbits().reals("arclength");
+  const auto [from, to] = std::minmax(arclengths[stable], arclengths[unstable]);
+  const Table& crossings = atlas.crossings();
+  for (std::size_t row = 0; row < crossings.rows(); ++row) {
+    const std::string& kind = crossings.texts("kind")[row];
+    const double where = crossings.reals("arclength")[row];
+    const bool is_between =
+        where >= from && where <= to && crossings.integers("family")[row] == static_cast<std::int64_t>(family);
+    if (is_between && kind != "subharmonic" && kind != "fold-period") return crossings.reals("period")[row];
+  }
+  return atlas.orbits().reals("period")[stable];
+}
+
 }  // namespace
 
 std::string stability_text(const Archive& atlas, std::size_t family) {
@@ -75,8 +92,11 @@ std::string stability_text(const Archive& atlas, std::size_t family) {
     known += here.has_value() ? 1 : 0;
     stable += here.value_or(false) ? 1 : 0;
     if (here.value_or(false)) continue;
-    if (orbit - begin == 1) intervals.push_back(fmt::format("{:.6g}", periods[begin]));
-    if (orbit - begin > 1) intervals.push_back(fmt::format("{:.6g} .. {:.6g}", periods[begin], periods[orbit - 1]));
+    if (orbit > begin) {
+      const double from = begin == first ? periods[begin] : boundary(atlas, family, begin, begin - 1);
+      const double to = orbit == end ? periods[orbit - 1] : boundary(atlas, family, orbit - 1, orbit);
+      intervals.push_back(from == to ? fmt::format("{:.6g}", from) : fmt::format("{:.6g} .. {:.6g}", from, to));
+    }
     begin = orbit + 1;
   }
   if (known == 0) return "";

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <sstream>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -200,6 +201,24 @@ TEST(Show, StabilityOfOnePairInIntervalsOfThePeriod) {
   EXPECT_EQ(stability_of(one, {{2 + 1e-7}, {-2 - 1e-7}, {2.1}, {3}, {4}}, 1e-6), "stable T 1 .. 2; ");
   EXPECT_EQ(stability_of(one, {{2 + 1e-7}, {-2 - 1e-7}, {2.1}, {3}, {4}}, 1e-8), "unstable; ");
   EXPECT_EQ(stability_of(one, {{1}, {1}, {1}, {1}, {1}}, 1), "") << "errors too large to tell";
+}
+
+TEST(Show, StabilityChangesAtLocatedCrossings) {
+  const Header header = test::sample_header();
+  Records records = test::sample_records(header);
+  const CrossingRecord some = records.crossings[1];  // of Out-Phase, whose steps are a quarter in arclength
+  records.crossings.clear();
+  for (const auto& [arclength, period, kind] :
+       {std::tuple(-0.6, 2.2, "subharmonic"), std::tuple(-0.4, 2.27, "branch-point"), std::tuple(0.9, 2.9, "krein")}) {
+    records.crossings.push_back(some);
+    records.crossings.back().arclength = arclength;
+    records.crossings.back().period = period;
+    records.crossings.back().kind = kind;
+  }
+  for (FamilyRecord& family : records.families) family.crossing = family.end_crossing = -1;
+  records.orbits[8].stability = {0.5};  // the last of Out-Phase, T = 3
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("located"), header, records));
+  EXPECT_THAT(shown(atlas, "families", TextFormat::readable), HasSubstr("; stable T 2 .. 2.27, 2.9 .. 3; "));
 }
 
 TEST(Show, StabilityOfTwoPairsNeedsBoth) {
