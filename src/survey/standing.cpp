@@ -9,9 +9,9 @@ namespace orbweaver::survey {
 
 namespace {
 
-bool has_failure(const archive::Archive& archive) {
+bool has_end(const archive::Archive& archive, const char* beginning) {
   for (const std::string& reason : archive.families().texts("end_reason"))
-    if (reason.starts_with("failure")) return true;
+    if (reason.starts_with(beginning)) return true;
   return false;
 }
 
@@ -26,7 +26,8 @@ Standing standing_of(const std::filesystem::path& directory, const scene::Scene&
           fmt::format("{} was made from another scene than this one: give another folder with -o, or move the "
                       "archive away",
                       atlas.string()));
-    return has_failure(archive) ? Standing::finished_with_failures : Standing::finished;
+    if (has_end(archive, "stopped")) return Standing::unfinished;
+    return has_end(archive, "failure") ? Standing::finished_with_failures : Standing::finished;
   }
   return std::filesystem::exists(directory / "segments") ? Standing::unfinished : Standing::none;
 }

@@ -77,6 +77,11 @@ TEST(Standing, AFamilyThatFailedIsRemembered) {
   EXPECT_EQ(survey::standing_of(folder, sample_scene()), Standing::finished_with_failures);
 }
 
+TEST(Standing, AFamilyThatAStopCutMakesItUnfinished) {
+  const auto folder = folder_with_atlas("stopped", "stopped (T = 7.5)");
+  EXPECT_EQ(survey::standing_of(folder, sample_scene()), Standing::unfinished);
+}
+
 TEST(Standing, AnArchiveOfAnotherSceneIsRefused) {
   const auto folder = folder_with_atlas("other_scene");
   scene::Scene other = sample_scene();

@@ -9,7 +9,7 @@ namespace orbweaver::survey {
 /// What a folder holds of a survey.
 enum class Standing {
   none,                    ///< nothing: absent, empty, or no survey in it
-  unfinished,              ///< segments of a survey that did not reach its archive
+  unfinished,              ///< segments of a survey that did not reach its archive, or one with families cut by a stop
   finished,                ///< an archive of this very scene
   finished_with_failures,  ///< the same, with a family that failed
 };
