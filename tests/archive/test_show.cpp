@@ -209,12 +209,15 @@ TEST(Show, StabilityChangesAtLocatedCrossings) {
   const CrossingRecord some = records.crossings[1];  // of Out-Phase, whose steps are a quarter in arclength
   records.crossings.clear();
   for (const auto& [arclength, period, kind] :
-       {std::tuple(-0.6, 2.2, "subharmonic"), std::tuple(-0.4, 2.27, "branch-point"), std::tuple(0.9, 2.9, "krein")}) {
+       {std::tuple(-0.45, 2.26, "subharmonic"), std::tuple(-0.4, 2.27, "branch-point"), std::tuple(0.9, 2.9, "krein")}) {
     records.crossings.push_back(some);
     records.crossings.back().arclength = arclength;
     records.crossings.back().period = period;
     records.crossings.back().kind = kind;
   }
+  records.crossings.push_back(records.crossings.back());
+  records.crossings.back().family_key = "0001";
+  records.crossings.back().period = 9;
   for (FamilyRecord& family : records.families) family.crossing = family.end_crossing = -1;
   records.orbits[8].stability = {0.5};  // the last of Out-Phase, T = 3
   const Archive atlas(test::write_sample_atlas(test::fresh_folder("located"), header, records));
