@@ -18,7 +18,7 @@ std::vector<std::string> cells_of(const std::vector<double>& values, const char*
 
 std::vector<std::string> cells_of(const std::vector<std::int64_t>& values) {
   std::vector<std::string> cells;
-  for (const std::int64_t value : values) cells.push_back(std::to_string(value));
+  for (const std::int64_t value : values) cells.push_back(value < 0 ? "-" : std::to_string(value));
   return cells;
 }
 

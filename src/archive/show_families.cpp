@@ -51,12 +51,15 @@ std::string born_text(const Archive& atlas, std::size_t family) {
 }
 
 std::string end_text(const Archive& atlas, std::size_t family) {
-  std::string text = "ended: " + cut(atlas.families().texts("end_reason")[family], longest_reason);
+  const std::string& reason = atlas.families().texts("end_reason")[family];
+  const std::string text = "ended: " + cut(reason, longest_reason);
   const std::int64_t joined = atlas.families().integers("end_family")[family];
   const std::int64_t crossing = atlas.families().integers("end_crossing")[family];
-  if (joined >= 0) text += " -> " + atlas.families().texts("name")[static_cast<std::size_t>(joined)];
-  if (crossing >= 0) text += " at " + crossing_text(atlas, static_cast<std::size_t>(crossing));
-  return text;
+  if (joined < 0) return text;
+  const std::string& name = atlas.families().texts("name")[static_cast<std::size_t>(joined)];
+  if (reason.find(name) != std::string::npos) return text;  // said already
+  const std::string where = crossing < 0 ? "" : " at " + crossing_text(atlas, static_cast<std::size_t>(crossing));
+  return fmt::format("{} -> {}{}", text, name, where);
 }
 
 std::string details(const Archive& atlas, std::size_t family) {

@@ -117,13 +117,22 @@ TEST(Show, CrossingsReadablyWithTheFamiliesBornThere) {
   records.crossings[0].multiplicity = 2;
   records.crossings[0].residual = -3.5e-12;
   records.crossings[0].test_value = -2;
+  records.crossings[2].kernel_dimension = -1;
   const Archive atlas(test::write_sample_atlas(test::fresh_folder("crossings"), header, records));
   EXPECT_EQ(shown(atlas, "crossings", TextFormat::readable),
             R"(family     period  energy  kind             m  q  j  kernel  residual  test value  born there
-In-Phase      4.5       -  fold-energy      1  1  0       2         -           -  -
+In-Phase      4.5       -  fold-energy      1  1  0       -         -           -  -
 In-Phase      6.5   -1.25  period-doubling  2  4  1       2  -3.5e-12          -2  ID1, Ästhetik "B", 1
 Out-Phase     5.5       -  branch-point     1  1  0       2         -           -  -
 )");
+}
+
+TEST(Show, AnEndThatNamesTheFamilyIsNotToldTwice) {
+  const Header header = test::sample_header();
+  Records records = test::sample_records(header);
+  records.families[0].end_reason = "joined ID1 at T = 4.5";
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("joined"), header, records));
+  EXPECT_THAT(shown(atlas, "families", TextFormat::readable), HasSubstr("ended: joined ID1 at T = 4.5\n"));
 }
 
 TEST(Show, LinesOfTheTreeStayWithin120Characters) {
@@ -209,7 +218,8 @@ TEST(Show, StabilityChangesAtLocatedCrossings) {
   const CrossingRecord some = records.crossings[1];  // of Out-Phase, whose steps are a quarter in arclength
   records.crossings.clear();
   for (const auto& [arclength, period, kind] :
-       {std::tuple(-0.45, 2.26, "subharmonic"), std::tuple(-0.4, 2.27, "branch-point"), std::tuple(0.9, 2.9, "krein")}) {
+       {std::tuple(-0.45, 2.26, "subharmonic"), std::tuple(-0.4, 2.27, "branch-point"),
+        std::tuple(0.9, 2.9, "krein")}) {
     records.crossings.push_back(some);
     records.crossings.back().arclength = arclength;
     records.crossings.back().period = period;
