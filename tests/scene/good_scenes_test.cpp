@@ -160,6 +160,8 @@ TEST(SceneFolder, HenonHeilesBeginsAtTheOrigin) {
   const scene::Scene s = scene::load(source / "drivers/scenes/henon_heiles.yaml");
   EXPECT_EQ(s.system.name, "henon_heiles");
   EXPECT_THAT(s.fixed_points.grid, ElementsAre(ElementsAre(0.0), ElementsAre(0.0)));
+  ASSERT_EQ(s.fixed_points.names.size(), 1U);
+  EXPECT_THAT(s.fixed_points.names[0].names, ElementsAre("Straight", "Curved", "Loop"));
   EXPECT_LT(s.sweep.period_from, 2 * pi);
   EXPECT_GT(s.sweep.period_to, 2 * pi);
   EXPECT_LT(s.limits.energy_to, 1.0 / 6) << "orbits escape above";
