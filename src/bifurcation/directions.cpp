@@ -149,36 +149,49 @@ int rotations(const SymmetryGroup& group) {
   return static_cast<int>(distinct.size());
 }
 
-// The amplitude from which on terms of order q - 2, which fix the angle, are above 1e-6.
-double search_amplitude(int q, const loop::Loop& base, bool constant) {
-  const double least = q > 4 ? std::pow(1e-6, 1.0 / (q - 2)) : 0.0;
-  return std::clamp(least, 0.01, 0.1) * (constant ? 1.0 : std::min(1.0, loop::rms_amplitude(base)));
+// The amplitudes to search at: from where terms of order q - 2, which fix the angle, are above 1e-6. Their coefficient may
+// be small.
+std::vector<double> search_amplitudes(int q, const loop::Loop& base, bool constant) {
+  const double scale = constant ? 1.0 : std::min(1.0, loop::rms_amplitude(base));
+  const double least = std::clamp(q > 4 ? std::pow(1e-6, 1.0 / (q - 2)) : 0.0, 0.01, 0.1);
+  std::vector<double> out{scale * least};
+  if (q > 2)
+    for (double r = 2.0 * least; r < 0.3; r *= 2.0) out.push_back(scale * r);
+  return out;
 }
 
 std::vector<Direction> searched(const systems::System& system, const SymmetryGroup& group, const loop::Loop& base,
                                 const std::vector<Eigen::VectorXd>& lines, const DirectionOptions& options) {
   const bool plane = group.dimension() == 2;
   const int q = plane ? rotations(group) : 1;
-  const double amplitude = search_amplitude(q, base, group.constant());
   // What every vector of the kernel keeps: that of one without symmetry.
   const Eigen::VectorXd generic = Eigen::VectorXd::LinSpaced(group.dimension(), 1.0, std::sqrt(2.0)).array().sin();
   const loop::Isotropy kept =
       isotropy_along(system.description(), group, base, group.modes_of(generic.normalized()), options);
   const double nudge = plane ? 0.2 * std::numbers::pi / q : 0.03;
-  const SearchResult result =
-      search_directions(system, base, group, kept, start_directions(group.dimension(), q, options.seeds), amplitude,
-                        nudge, lines, options.corrector);
-  const bool too_many = plane && q > 2 && result.found.size() > 2;
-  if (too_many || (result.not_isolated > 0 && lines.empty() && result.found.empty()))
-    throw core::NumericalError(fmt::format(
-        "directions in a kernel of dimension {} are not isolated at amplitude {:.2g}: {} found, {} more or less "
-        "anywhere; either they form a continuum or the loss does not tell them apart",
-        group.dimension(), amplitude, result.found.size(), result.not_isolated));
-  if (result.not_isolated > 0)
-    core::log_warning(fmt::format("{} directions in a kernel of dimension {} are not isolated and are left out",
-                               result.not_isolated, group.dimension()));
+  const int expected = plane && q > 2 ? (q % 2 == 0 ? 2 : 1) : 0;
+  SearchResult best;
+  double amplitude = 0.0;
+  for (const double r : search_amplitudes(q, base, group.constant())) {
+    SearchResult result =
+        search_directions(system, base, group, kept, start_directions(group.dimension(), q, options.seeds), r, nudge,
+                          lines, options.corrector);
+    const auto count = static_cast<int>(result.found.size());
+    const bool possible = expected == 0 || count <= expected;
+    if (amplitude == 0.0 || (possible && result.found.size() > best.found.size())) {
+      best = possible ? std::move(result) : SearchResult{{}, result.not_isolated + count};
+      amplitude = r;
+    }
+    if (expected == 0 || static_cast<int>(best.found.size()) == expected) break;
+  }
+  const std::string seen = fmt::format(
+      "a kernel of dimension {} (q = {}): {} directions found at amplitude {:.2g}, {} where orbits are not isolated",
+      group.dimension(), q, best.found.size(), amplitude, best.not_isolated);
+  if (lines.empty() && best.found.empty())
+    throw core::NumericalError(seen + "; they form a continuum, or the loss does not tell them apart");
+  if (best.not_isolated > 0 || static_cast<int>(best.found.size()) < expected) core::log_warning(seen);
   std::vector<Direction> out;
-  for (const FoundOrbit& orbit : result.found)
+  for (const FoundOrbit& orbit : best.found)
     out.push_back({base, group.modes_of(orbit.coordinates),
                    loop::find_isotropy(system.description(), orbit.loop, 1e-2 * amplitude, group.denominator()),
                    has_other_sides(group, orbit.coordinates), amplitude});

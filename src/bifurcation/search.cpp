@@ -53,9 +53,10 @@ struct Search {
       if (!direction) return std::nullopt;
       const double tilt = (*direction - pinned).norm();
       pinned = *direction;
-      if (!result.converged()) continue;
-      if (unwanted(pinned)) return std::nullopt;
-      if (tilt <= settled) return FoundOrbit{pinned, result.loop};
+      if (result.converged() && unwanted(pinned)) return std::nullopt;
+      if (tilt > settled) continue;
+      if (!result.converged()) return std::nullopt;
+      return FoundOrbit{pinned, result.loop};
     }
     return std::nullopt;
   }

@@ -42,9 +42,8 @@ void expect_crossing(const test::PendulumMode& mode, const Expected& expected) {
   EXPECT_NEAR(found->point.loop.period, expected.period, 1e-9);
   const bifurcation::Reading deviation = bifurcation::index_deviation(found->stability, expected.sector);
   EXPECT_LE(std::abs(deviation.value), std::max(1e-9, deviation.error));
-  const bifurcation::Kernel kernel =
-      bifurcation::kernel_of(*test::pendulum(), found->point, curve.isotropy(), expected.sector,
-                             expected.sector.q <= 2 ? 1 : 2);
+  const bifurcation::Kernel kernel = bifurcation::kernel_of(*test::pendulum(), found->point, curve.isotropy(),
+                                                            expected.sector, expected.sector.q <= 2 ? 1 : 2);
   EXPECT_EQ(kernel.dimension(), expected.dimension);
   EXPECT_LT(kernel.largest(), 1e-8);
   EXPECT_GT(kernel.next(), 1e3 * kernel.largest());
@@ -91,8 +90,8 @@ TEST(FamilyCurve, TheTangentPointsAlongTheFamily) {
   ASSERT_TRUE(a && b);
   // dT and dE in the direction of the tangent, against differences along the curve.
   const double period_change = b->loop.period - a->loop.period;
-  const double energy_change = continuation::energy_of(*test::pendulum(), b->loop) -
-                               continuation::energy_of(*test::pendulum(), a->loop);
+  const double energy_change =
+      continuation::energy_of(*test::pendulum(), b->loop) - continuation::energy_of(*test::pendulum(), a->loop);
   EXPECT_NEAR(bifurcation::energy_slope(*test::pendulum(), *a) / bifurcation::period_slope(*a),
               energy_change / period_change, 1e-3 * std::abs(energy_change / period_change));
   EXPECT_GT(bifurcation::period_slope(*a), 0.0);

@@ -106,10 +106,14 @@ struct Family {
       const double after = index_of(orbits[n].loop) - index;
       if (before * after < 0.0) {
         const loop::Loop& near = orbits[n].loop;
+        const bool rising = near.period > orbits[n - 1].loop.period;
+        const std::pair<double, double> ends[2] = {{orbits[n - 1].loop.period, before}, {near.period, after}};
+        const auto& [from, at_from] = ends[rising ? 0 : 1];
+        const auto& [to, at_to] = ends[rising ? 1 : 0];
         std::uintmax_t evaluations = 60;
         const auto [low, high] = boost::math::tools::toms748_solve(
-            [&](double period) { return index_of(at_period(near, period)) - index; }, orbits[n - 1].loop.period,
-            near.period, before, after, boost::math::tools::eps_tolerance<double>(48), evaluations);
+            [&](double period) { return index_of(at_period(near, period)) - index; }, from, to, at_from, at_to,
+            boost::math::tools::eps_tolerance<double>(48), evaluations);
         return at_period(near, 0.5 * (low + high));
       }
       before = after;

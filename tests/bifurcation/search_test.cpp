@@ -17,16 +17,17 @@ std::shared_ptr<const systems::System> declaring(const std::shared_ptr<const sys
       std::vector<systems::Symmetry>{});
 }
 
-/// The family of the slowest oscillation about the lower equilibrium.
-test::Family slow_family(const std::shared_ptr<const systems::System>& system, double period_limit) {
+/// The family of an oscillation about the lower equilibrium, the slowest first.
+test::Family family_of(const std::shared_ptr<const systems::System>& system, std::size_t mode_number,
+                       double period_limit) {
   const std::vector<double> origin(4, 0.0);
-  const continuation::NormalMode mode = continuation::sweep(*system, origin, {}).modes.front();
+  const continuation::NormalMode mode = continuation::sweep(*system, origin, {}).modes.at(mode_number);
   return test::family_from(system, {loop::constant_loop(origin, mode.period, 10), mode.direction, mode.isotropy},
                            period_limit);
 }
 
 const test::Family& in_phase() {
-  static const test::Family family = slow_family(test::pendulum(), 10.3);
+  static const test::Family family = family_of(test::pendulum(), 0, 10.3);
   return family;
 }
 
@@ -117,7 +118,7 @@ TEST(Search, FindsTheOneFamilyOfOrderFive) {
 // With m2 = 0.87 the slow family begins at an index below -1 and passes it.
 TEST(Search, FindsTheOneFamilyOfOrderThree) {
   const auto system = systems::make_system("double_pendulum", {{"m2", 0.87}});
-  const test::Family family = slow_family(system, 10.0);
+  const test::Family family = family_of(system, 0, 10.0);
   ASSERT_LT(family.index_of(family.orbits.front().loop), -1.0);
   const Crossing crossing = crossing_of(family, -1.0, 3);
   const std::vector<Direction> known = directions(*system, crossing.base, family.isotropy, crossing.kernel);
@@ -142,7 +143,7 @@ TEST(Search, FindsTheOneFamilyOfOrderThree) {
 /// IB: the family that leaves the in-phase one at T = 10.4168. It has S@1/2 and no reversor.
 const test::Family& without_reversors() {
   static const test::Family family = [] {
-    const test::Family longer = slow_family(test::pendulum(), 10.6);
+    const test::Family longer = family_of(test::pendulum(), 0, 10.6);
     const loop::Loop orbit = longer.at_period(longer.orbits.back().loop, 10.416773281973249);
     const Crossing crossing = test::crossing_at(*test::pendulum(), orbit, longer.isotropy, 1, 1);
     const Direction start = directions(*test::pendulum(), crossing.base, longer.isotropy, crossing.kernel).at(0);
@@ -194,6 +195,27 @@ TEST_P(WithoutReversors, TwoFamiliesOfEvenOrderLeaveHalfAnAngleApart) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Search, WithoutReversors, testing::Values(6, 8));
+
+// On OB, from the out-phase family at T = 6.1475, the terms that fix the angle are weak: solves stall nearby.
+TEST(Search, GoesFurtherOutWhereTheAngleIsHardlyFixed) {
+  const test::Family family = family_of(test::pendulum(), 1, 6.3);
+  const Crossing branch_point = test::crossing_at(*test::pendulum(), family.with_index(2.0), family.isotropy, 1, 1);
+  EXPECT_NEAR(branch_point.base.period, 6.1475153497, 1e-8);
+  const Direction start = directions(*test::pendulum(), branch_point.base, family.isotropy, branch_point.kernel).at(0);
+  EXPECT_EQ(loop::to_text(start.isotropy), "S@1/2");
+  const test::Family born = test::family_from(test::pendulum(), {start.base, start.modes, start.isotropy}, 6.148);
+  const Crossing crossing = crossing_of(born, 1.0, 3);
+  const std::vector<Direction> found = directions(*test::pendulum(), crossing.base, born.isotropy, crossing.kernel);
+  ASSERT_EQ(found.size(), 2u);
+  for (const Direction& direction : found) {
+    EXPECT_GT(direction.amplitude, 0.05);
+    EXPECT_FALSE(direction.both_sides);
+    const corrector::Result orbit =
+        born_orbit(*test::pendulum(), direction.base, direction.modes, direction.isotropy, direction.amplitude);
+    ASSERT_TRUE(orbit.converged()) << orbit.detail;
+    EXPECT_LT(certificate::certify(*test::pendulum(), orbit.loop).closure, 1e-9);
+  }
+}
 
 }  // namespace
 }  // namespace orbweaver::bifurcation
