@@ -65,7 +65,7 @@ TEST(Equilibrium, ThreeFamiliesUpToSymmetryLeaveHenonHeiles) {
     const certificate::Certificate certificate = certificate::certify(*system, loop);
     EXPECT_LT(certificate.closure, 1e-10);
     EXPECT_LT(certificate.energy_drift, 1e-12);
-    // dW/dE = T, by Simpson's rule in between would need equal steps: the trapezium brackets it.
+    // dW/dE = T: its mean over a step lies between the periods at both ends.
     for (std::size_t n = 1; n < trace.orbits.size(); ++n) {
       const continuation::Orbit& a = trace.orbits[n - 1];
       const continuation::Orbit& b = trace.orbits[n];
