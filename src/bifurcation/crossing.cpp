@@ -24,8 +24,9 @@ class EventFunction {
     return there ? there->reading.value : nan;
   }
 
-  std::optional<Crossing> at(double position) {
-    std::optional<continuation::CurvePoint> point = _family.at(position);
+  std::optional<Crossing> at(double position, bool with_tangent = false) {
+    const bool fold = _event.kind != Event::Kind::test_function;
+    std::optional<continuation::CurvePoint> point = _family.at(position, with_tangent || fold);
     if (!point) return std::nullopt;
     Crossing out;
     out.point = std::move(*point);
@@ -88,7 +89,7 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
                       to);
     return std::nullopt;
   }
-  std::optional<Crossing> crossing = function.at(located->position);
+  std::optional<Crossing> crossing = function.at(located->position, true);
   if (!crossing) {
     why = fmt::format("no orbit at position {:.12g}", located->position);
     return std::nullopt;

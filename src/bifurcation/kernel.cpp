@@ -93,6 +93,8 @@ Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& 
   const Split split = split_of(isotropy, system.dimension(), sector, multiplicity);
   spectrum::TripletOptions options;
   options.count = split.signs.size() > 1 && expected > 1 ? expected / 2 + 1 : expected + 1;
+  options.tolerance = 1e-6;  // of the vectors: starts are corrected; values come out to its square
+  options.inner_tolerance = 1e-7;
   options.multiple = split.signs.size() == 1 && expected > 1;
   std::vector<OffBranchTriplet> all;
   for (const std::vector<int>& signs : split.signs)

@@ -34,7 +34,7 @@ Eigen::MatrixXd conditions_at(const loop::Loop& guess, const loss::Unknowns& unk
   std::vector<double> shift = unknowns.time_shift_direction(guess);
   const Eigen::Map<const Eigen::VectorXd> direction(shift.data(), static_cast<Eigen::Index>(shift.size()));
   const double length = direction.norm();
-  if (length < 1e-8 * loop::rms_amplitude(guess)) return normal;
+  if (length <= 1e-8 * loop::rms_amplitude(guess)) return normal;
   Eigen::MatrixXd conditions(normal.size(), 2);
   conditions << normal, direction / length;
   return conditions;

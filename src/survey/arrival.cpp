@@ -24,30 +24,36 @@ double at_zero(const std::vector<Sample>& samples, double Sample::*value) {
   return sum;
 }
 
+/// A smaller broken part is an orbit of the more symmetric family, onto which the corrector has slipped.
+constexpr double slipped = 1e-6;
+
 std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuation::FamilyCurve& family,
                                         const bifurcation::SymmetryWatch& watch, const bifurcation::Gained& gained,
                                         const continuation::Orbit& from, const continuation::Orbit& to) {
-  const auto sample = [&](const loop::Loop& loop) {
-    return Sample{watch.signed_part(gained, from.loop, loop), loop.period, continuation::energy_of(system, loop)};
+  std::vector<Sample> samples;
+  const auto add = [&](const loop::Loop& loop) {
+    if (watch.relative_size(gained, from.loop, loop) < slipped) return;
+    samples.push_back({watch.signed_part(gained, from.loop, loop), loop.period, continuation::energy_of(system, loop)});
   };
-  // At the meeting point itself the two families cannot be told apart: orbits on both sides, a fifth of the way off.
-  std::vector<Sample> samples{sample(from.loop), sample(to.loop)};
-  const double share = samples[0].part / (samples[0].part - samples[1].part);
-  const double length = to.arclength - from.arclength;
-  std::optional<continuation::CurvePoint> near;
-  for (const double there : {0.8 * share, share + 0.2 * (1.0 - share)}) {
-    auto point = family.at(from.arclength + there * length);
-    if (!point) continue;
-    const Sample found = sample(point->loop);
+  // Orbits before the meeting point and, if the branch went on along the images, one beyond. At the point itself the two
+  // families cannot be told apart, so that nothing is solved for there.
+  const std::vector<continuation::FamilyCurve::Known>& known = family.known();
+  const std::size_t before = known.size() >= 4 ? known.size() - 4 : 0;
+  for (std::size_t n = before; n < known.size(); ++n) add(known[n].loop);
+  const double part = watch.signed_part(gained, from.loop, to.loop);
+  const double there = from.arclength + 0.7 / (1.0 - std::min(part, 0.0)) * (to.arclength - from.arclength);
+  loop::Loop near = from.loop;
+  if (const auto point = family.at(there)) {
+    const double size = watch.relative_size(gained, from.loop, point->loop);
     // A part that turns instead of vanishing is no arrival.
-    if (watch.relative_size(gained, from.loop, point->loop) > 2.0 * std::abs(found.part) + 0.05) return std::nullopt;
-    samples.push_back(found);
-    if (found.part > 0.0) near = std::move(point);
+    if (size > 2.0 * std::abs(watch.signed_part(gained, from.loop, point->loop)) + 0.05) return std::nullopt;
+    add(point->loop);
+    if (size > 1e-2) near = point->loop;
   }
   ArrivalRecord record;
   record.period = at_zero(samples, &Sample::period);
   record.energy = at_zero(samples, &Sample::energy);
-  record.near = record_of(sketch_of(near ? near->loop : from.loop));
+  record.near = record_of(sketch_of(near));
   return record;
 }
 

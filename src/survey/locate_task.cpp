@@ -62,7 +62,6 @@ class Location {
 
   queue::TaskOutcome run() {
     continuation::Options options = branch_options(_scene);
-    options.corrector.tolerance *= 0.01;
     continuation::FamilyCurve family(_system, isotropy_of(_work.isotropy, _system->description()), options);
     for (const KnownOrbit& known : _work.known) family.add(known.position, loop_of(known.loop), _work.known.size());
     std::string why;
@@ -132,6 +131,7 @@ class Location {
         _failure = _outcome.remark;
       return;
     }
+    if (_work.lineage.depth >= _scene.survey.depth) return;
     int number = 0;
     for (const bifurcation::Direction& direction :
          bifurcation::directions(*_system, kernel.base, isotropy, kernel.vectors)) {
@@ -143,7 +143,7 @@ class Location {
       loop::Loop vector = direction.base;
       vector.modes = direction.modes;
       leaving.direction = loop::with_cutoff(vector, leaving.base.cutoff).modes;
-      if (_work.lineage.depth < _scene.survey.depth) add_starts(direction, leaving);
+      add_starts(direction, leaving);
       _outcome.leaving.push_back(std::move(leaving));
     }
   }

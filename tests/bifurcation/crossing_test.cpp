@@ -13,15 +13,16 @@ using bifurcation::Event;
 using bifurcation::Sector;
 
 /// The orbits of a traced family around the period, as a survey hands them to a location.
-continuation::FamilyCurve curve_around(const test::Trace& family, double period) {
+struct Curve : continuation::FamilyCurve {
+  Curve(const test::Trace& family, double period);
+};
+
+Curve::Curve(const test::Trace& family, double period)
+    : FamilyCurve(test::pendulum(), test::pendulum_isotropy(*test::pendulum()), {}) {
   std::size_t after = 0;
   while (family.orbits[after].loop.period < period) ++after;
-  continuation::Options options;
-  options.corrector.tolerance = 1e-12;
-  continuation::FamilyCurve curve(test::pendulum(), test::pendulum_isotropy(*test::pendulum()), options);
   for (std::size_t n = after < 3 ? 0 : after - 3; n <= std::min(after + 1, family.orbits.size() - 1); ++n)
-    curve.add(family.orbits[n].arclength, family.orbits[n].loop);
-  return curve;
+    add(family.orbits[n].arclength, family.orbits[n].loop);
 }
 
 struct Expected {
@@ -33,7 +34,7 @@ struct Expected {
 
 void expect_crossing(const test::PendulumMode& mode, const Expected& expected) {
   SCOPED_TRACE(expected.period);
-  continuation::FamilyCurve curve = curve_around(test::family_to_twelve(mode), expected.period);
+  Curve curve(test::family_to_twelve(mode), expected.period);
   const Event event{Event::Kind::test_function, {bifurcation::TestFunction::Kind::sector, expected.sector}, false};
   std::string why;
   const auto found = bifurcation::locate(*test::pendulum(), curve, event, curve.known().front().position,
@@ -58,7 +59,7 @@ TEST(Crossings, OfTheInPhaseFamily) {
 TEST(Crossings, OfTheOutPhaseFamily) { expect_crossing(test::out_phase(), {4.059557792801163, {4, 1}, 2, 2}); }
 
 TEST(Crossings, AZeroThatIsNotThereIsSaid) {
-  continuation::FamilyCurve curve = curve_around(test::family_to_twelve(test::in_phase()), 9.0);
+  Curve curve(test::family_to_twelve(test::in_phase()), 9.0);
   const Event event{Event::Kind::test_function, {bifurcation::TestFunction::Kind::sector, {1, 0}}, false};
   std::string why;
   const auto& known = curve.known();
@@ -68,8 +69,8 @@ TEST(Crossings, AZeroThatIsNotThereIsSaid) {
 
 TEST(FamilyCurve, AnOrbitDoesNotDependOnWhatWasAskedBefore) {
   const test::Trace& family = test::family_to_twelve(test::in_phase());
-  continuation::FamilyCurve once = curve_around(family, 9.0);
-  continuation::FamilyCurve often = curve_around(family, 9.0);
+  Curve once(family, 9.0);
+  Curve often(family, 9.0);
   const double from = once.known()[2].position;
   const double to = once.known()[3].position;
   for (const double share : {0.1, 0.7, 0.45, 0.43}) ASSERT_TRUE(often.at(from + share * (to - from)));
@@ -82,10 +83,10 @@ TEST(FamilyCurve, AnOrbitDoesNotDependOnWhatWasAskedBefore) {
 }
 
 TEST(FamilyCurve, TheTangentPointsAlongTheFamily) {
-  continuation::FamilyCurve curve = curve_around(test::family_to_twelve(test::in_phase()), 9.0);
+  Curve curve(test::family_to_twelve(test::in_phase()), 9.0);
   const double from = curve.known()[2].position;
   const double step = 1e-4;
-  const auto a = curve.at(from + 0.05);
+  const auto a = curve.at(from + 0.05, true);
   const auto b = curve.at(from + 0.05 + step);
   ASSERT_TRUE(a && b);
   // dT and dE in the direction of the tangent, against differences along the curve.
@@ -98,7 +99,7 @@ TEST(FamilyCurve, TheTangentPointsAlongTheFamily) {
 }
 
 TEST(FamilyCurve, NothingBeyondItsEnds) {
-  continuation::FamilyCurve curve = curve_around(test::family_to_twelve(test::in_phase()), 9.0);
+  Curve curve(test::family_to_twelve(test::in_phase()), 9.0);
   EXPECT_THROW((void)curve.at(curve.known().back().position + 0.1), core::MisuseError);
 }
 

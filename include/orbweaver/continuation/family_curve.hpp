@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -19,6 +20,8 @@ struct CurvePoint {
   double tangent_period = 0.0;
 };
 
+class CurveInterval;
+
 /// A stretch of a family between a few known orbits: every orbit between two of them can be had, converged anew.
 ///
 /// The orbit at position a + share (b - a) between the neighbours A and B is the one whose projection on the chord
@@ -27,6 +30,9 @@ struct CurvePoint {
 class FamilyCurve {
  public:
   FamilyCurve(std::shared_ptr<const systems::System> system, loop::Isotropy isotropy, const Options& options);
+  ~FamilyCurve();
+  FamilyCurve(const FamilyCurve&) = delete;
+  FamilyCurve& operator=(const FamilyCurve&) = delete;
 
   /// The next known orbit; positions increase. Only the last `keep` known orbits stay.
   void add(double position, const loop::Loop& loop, std::size_t keep = 5);
@@ -39,29 +45,16 @@ class FamilyCurve {
   [[nodiscard]] const std::vector<Known>& known() const { return _known; }
   [[nodiscard]] const loop::Isotropy& isotropy() const { return _isotropy; }
 
-  /// The orbit at `position`, which lies between the first and the last known one; none where the corrector fails.
-  /// Throws MisuseError for a position outside.
-  [[nodiscard]] std::optional<CurvePoint> at(double position);
+  /// The orbit at `position`, which lies between the first and the last known one, with the family's direction there if
+  /// that is asked for; none where the corrector fails. Throws MisuseError for a position outside.
+  [[nodiscard]] std::optional<CurvePoint> at(double position, bool with_tangent = false);
 
  private:
-  /// Two neighbours with what has been found between and around them, all under one time map and with one cutoff.
-  struct Interval {
-    double from = 0.0;
-    double to = 0.0;
-    loop::Loop first;
-    loop::Loop last;
-    std::vector<CurvePoint> points;  // by position
-  };
-  void open_interval(double position);
-  void set_cutoff(int cutoff);
-  [[nodiscard]] loop::Loop guess_at(double position) const;
-  [[nodiscard]] const CurvePoint* found_at(double position) const;
-
   std::shared_ptr<const systems::System> _system;
   loop::Isotropy _isotropy;
   Options _options;
   std::vector<Known> _known;
-  std::optional<Interval> _interval;
+  std::map<std::size_t, std::unique_ptr<CurveInterval>> _intervals;  // by the index of their ends
 };
 
 }  // namespace orbweaver::continuation
