@@ -67,10 +67,6 @@ StaggeredGrid::StaggeredGrid(const FundamentalDomain& domain, int cells)
       _images[static_cast<std::size_t>((r * turn + l + nodes()) % nodes())] = {std::abs(l), direct + (l < 0 ? 1 : 0)};
     power = domain.generator * power;
   }
-  for (int q = 0; q < nodes(); ++q) {
-    _cosine.push_back(std::cos(2.0 * std::numbers::pi * q / nodes()));
-    _sine.push_back(std::sin(2.0 * std::numbers::pi * q / nodes()));
-  }
   for (int k = 0; k <= cutoff(); ++k) {
     const double x = std::numbers::pi * k / nodes();
     _unfilter.push_back(k == 0 ? 1.0 : x / std::sin(x));
@@ -201,17 +197,6 @@ void StaggeredGrid::to_modes(const double* y, double* modes) const {
   }
 }
 
-/// out_j += weight table(k s_j) at the nodes of the domain.
-void StaggeredGrid::add_harmonic(const std::vector<double>& table, int k, double weight, double* out) const {
-  const int n = nodes();
-  int q = 0;
-  for (int j = 0; j <= _cells; ++j) {
-    out[j] += weight * table[static_cast<std::size_t>(q)];
-    q += k;
-    if (q >= n) q -= n;
-  }
-}
-
 void StaggeredGrid::from_modes(int modes_cutoff, const double* modes, double* y) const {
   const int d = dimension();
   std::fill_n(y, static_cast<std::size_t>(_stride) * static_cast<std::size_t>(d), 0.0);
@@ -220,16 +205,21 @@ void StaggeredGrid::from_modes(int modes_cutoff, const double* modes, double* y)
     _filters->from_modes(highest, modes, y);
     return;
   }
+  const int n = nodes();
+  const int half = n / 2 + 1;
   for (int i = 0; i < d; ++i) {
-    double* out = y + static_cast<std::ptrdiff_t>(i) * _stride;
-    for (int j = 0; j <= _cells; ++j) out[j] = modes[i];
+    auto* c = reinterpret_cast<double*>(_transforms->complex + static_cast<std::ptrdiff_t>(i) * half);
+    std::fill_n(c, 2 * static_cast<std::size_t>(half), 0.0);
+    c[0] = modes[i];
     for (int k = 1; k <= highest; ++k) {
-      const double a = modes[(2 * k - 1) * d + i] * _unfilter[static_cast<std::size_t>(k)];
-      const double b = modes[2 * k * d + i] * _unfilter[static_cast<std::size_t>(k)];
-      if (a != 0.0) add_harmonic(_cosine, k, a, out);
-      if (b != 0.0) add_harmonic(_sine, k, b, out);
+      const double scale = 0.5 * _unfilter[static_cast<std::size_t>(k)];
+      c[2 * k] = scale * modes[(2 * k - 1) * d + i];
+      c[2 * k + 1] = -scale * modes[2 * k * d + i];
     }
   }
+  fftw_execute(_transforms->backward);
+  for (int i = 0; i < d; ++i)
+    for (int j = 0; j <= _cells; ++j) y[i * _stride + j] = _transforms->real[i * n + j % n];
 }
 
 void StaggeredGrid::from_nodal(const double* z, double* y) const {

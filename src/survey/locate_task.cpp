@@ -102,8 +102,11 @@ class Location {
     _outcome.multiplicity = by_sector ? _event.function.sector.multiplicity(_outcome.fundamental_order) : 1;
     _outcome.kind = kind_of(_event, _outcome.multiplicity);
     _outcome.residual = crossing.reading.value;
-    _outcome.test_value = by_sector ? bifurcation::index_deviation(crossing.stability, _event.function.sector).value
-                                    : crossing.reading.value;
+    _outcome.test_value = archive::not_computed;
+    if (by_sector) {  // the index itself, and how far it is from the sector's
+      _outcome.residual = bifurcation::index_deviation(crossing.stability, _event.function.sector).value;
+      _outcome.test_value = _event.function.sector.index() + _outcome.residual;
+    }
     _outcome.kernel_singular_value = archive::not_computed;
     _outcome.next_singular_value = archive::not_computed;
     _outcome.kernel_dimension = by_sector ? -1 : 0;  // not computed yet

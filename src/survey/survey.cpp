@@ -149,6 +149,13 @@ void make_folder(const core::Communicator& comm, const std::filesystem::path& fo
                                              folder.string(), problem.empty() ? "" : ": ", problem));
 }
 
+// Failures of what stays in the archive, the same number on all ranks.
+std::size_t agreed_failures(const core::Communicator& comm, const Summary& summary) {
+  auto failures = static_cast<unsigned long>(summary.failed_tasks.size());
+  core::check_mpi(MPI_Bcast(&failures, 1, MPI_UNSIGNED_LONG, 0, comm.get()), "MPI_Bcast");
+  return failures;
+}
+
 void gather_memory(const core::Communicator& comm, Summary& summary) {
   const double mine = peak_memory_mib();
   summary.peak_memory_mib.resize(static_cast<std::size_t>(comm.size()));
@@ -201,7 +208,7 @@ Summary run_survey(const core::Communicator& comm, const scene::Scene& scene,
     std::filesystem::remove(segments, ignored);
   }
   gather_memory(comm, summary);
-  summary.failures = swept.failed + followed.failed;
+  summary.failures = agreed_failures(comm, summary);
   summary.stopped_early = swept.stopped_early || followed.stopped_early;
   summary.seconds = std::chrono::duration<double>(Clock::now() - began).count();
   return summary;

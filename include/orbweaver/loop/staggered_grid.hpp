@@ -52,7 +52,6 @@ class StaggeredGrid {
  private:
   struct Transforms;
   void expand(const double* y, double* full) const;
-  void add_harmonic(const std::vector<double>& table, int k, double weight, double* out) const;
   /// Multiplies the harmonics by real + i imaginary.
   void apply_by_fft(const std::vector<double>& real, const std::vector<double>& imaginary, const double* y, double* out,
                     int count, int out_stride) const;
@@ -66,8 +65,6 @@ class StaggeredGrid {
   };
   std::vector<Image> _images;              // of every node of the whole loop
   std::vector<Eigen::MatrixXd> _elements;  // symmetries that map the domain to its copies
-  std::vector<double> _cosine;             // cos s at the nodes of the whole loop
-  std::vector<double> _sine;
   std::vector<double> _midpoint_real, _midpoint_imaginary, _node, _slope, _zero;  // filters by harmonic, with 1/nodes
   std::vector<double> _unfilter;                                                  // x / sin x of each harmonic
   bool _diagonal = false;  // every element is a diagonal of signs
