@@ -49,11 +49,10 @@ TEST(LocateRoot, SaysWhenItRanOutOfEvaluations) {
 TEST(LocateRoot, EndsCount) {
   const auto line = [](double x) { return x - 1.0; };
   EXPECT_EQ(locate_root(line, 1.0, 2.0, 1e-9)->position, 1.0);
-  for (const double sign : {1.0, -1.0}) {
-    const auto root = locate_root([=](double x) { return sign * (x - 1.0); }, 0.0, 1.0, 1e-9);
-    ASSERT_TRUE(root);
-    EXPECT_EQ(root->position, 1.0);
-  }
+  EXPECT_EQ(locate_root(line, 0.0, 1.0, 1e-9)->position, 1.0);
+  const auto falling = locate_root([](double x) { return 1.0 - x; }, 0.0, 1.0, 1e-9);
+  ASSERT_TRUE(falling);
+  EXPECT_EQ(falling->position, 1.0);
 }
 
 TEST(LocateRoot, SaysWhereThereIsNone) {
