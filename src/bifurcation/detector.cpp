@@ -141,22 +141,21 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
   found.push_back({function, from->position, to->position, true});
 }
 
-/// Examines the minimum of |value| that the parabola through three nodes has between two of one sign, if it may reach zero.
+/// Examines the minimum of |value| that the parabola through three nodes of one sign has between them, if it may reach
+/// zero. (With unlike signs a minimum would have the wrong curvature.)
 void Detector::look_for_minimum(std::size_t function, const Node& a, const Node& b, const Node& c, const Probe& probe,
                                 std::vector<Bracket>& found) {
+  const int sign = b.reading.sign();
+  if (a.reading.sign() != sign || c.reading.sign() != sign) return;
   const Vertex vertex = vertex_of(a, b, c);
   const double examined_to = _state.watches[function].examined_to;
   if (!(vertex.position > std::max(a.position, examined_to) && vertex.position < c.position)) return;
-  const bool early = vertex.position <= b.position;
-  const Node& left = early ? a : b;
-  const Node& right = early ? b : c;
-  const int sign = b.reading.sign();
-  if (left.reading.sign() != right.reading.sign() || sign * vertex.curvature <= 0.0) return;
+  if (sign * vertex.curvature <= 0.0) return;
   const auto [least, most] = std::minmax({sign * a.reading.value, sign * b.reading.value, sign * c.reading.value});
-  const double smaller = std::min(std::abs(left.reading.value), std::abs(right.reading.value));
+  const Node& beside = vertex.position <= b.position ? a : c;
+  const double smaller = sign * (std::abs(beside.reading.value) < std::abs(b.reading.value) ? beside : b).reading.value;
   if (sign * vertex.value > std::max(most - least, 0.5 * smaller)) return;
-  const bool from_a = a.reading.sign() == sign && a.position >= examined_to;
-  examine(function, from_a ? a : b, c.reading.sign() == sign ? c : b, probe, found);
+  examine(function, a.position >= examined_to ? a : b, c, probe, found);
 }
 
 void Detector::take(std::size_t function, const Node& node, const Probe& probe, std::vector<Bracket>& found) {
