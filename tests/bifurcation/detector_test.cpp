@@ -212,14 +212,16 @@ TEST(Detector, ZerosOfSeveralFunctionsInOneStep) {
 }
 
 TEST(Detector, BracketsComeByPosition) {
-  Family family{
-      {exact([](double x) { return 0.05 * (4.3 - x); }), exact([](double x) { return 0.03 * (x - 3.7) * (x - 3.7); })}};
-  expect_events(family.run(evenly(0, 9, 9)), {{0, 4.3}, {1, 3.7, true}});
+  Family family{{exact([](double x) { return 0.05 * (4.3 - x); }),
+                 exact([](double x) { return 0.03 * (x - 4.02) * (x - 4.02); })}};
+  expect_events(family.run(evenly(0, 9, 9)), {{0, 4.3}, {1, 4.02, true}});
 }
 
 TEST(Detector, SubdivisionIsBounded) {
   Family family{{exact([](double x) { return x < std::numbers::e ? -0.5 : 0.5; })}};
-  expect_events(family.run(evenly(0, 10, 10)), {{0, std::numbers::e}});
+  const auto found = family.run(evenly(0, 10, 10));
+  expect_events(found, {{0, std::numbers::e}});
+  EXPECT_EQ(found[0].to - found[0].from, 1.0 / 8.0);
   EXPECT_GT(family.probes, 0);
   EXPECT_LE(family.probes, 3 * 3);
 }
