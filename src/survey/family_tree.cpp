@@ -119,7 +119,7 @@ bool FamilyTree::covers(const Branch& other, const std::string& other_key, const
   if (other_key == key) return false;
   if (std::tie(other.lineage.depth, other_key) < std::tie(branch.lineage.depth, key)) return true;
   const std::optional<Meeting> back = meeting_of(branch);
-  return branch.outcome && !(back && back->family == other.lineage.family && back->side == other.lineage.side);
+  return !(back && back->family == other.lineage.family && back->side == other.lineage.side);
 }
 
 bool FamilyTree::wanted(const queue::Task& task) const {
@@ -128,13 +128,18 @@ bool FamilyTree::wanted(const queue::Task& task) const {
       task.kind == branch_kind ? unpack_branch_work(task.payload) : unpack_start_work(task.payload).branch;
   if (work.lineage.depth == 0) return true;
   const Branch branch{work.lineage, work.name, work.isotropy, std::nullopt, false, ""};
-  std::set<std::string> earlier;
-  for (const auto& [key, other] : _branches) {
-    const bool before = std::tie(other.lineage.depth, key) < std::tie(work.lineage.depth, work.key);
-    if (before && covers(other, key, branch, work.key)) return false;
-    if (before) earlier.insert(other.lineage.family);
-  }
-  return earlier.contains(work.lineage.family) || static_cast<int>(earlier.size()) < _scene.limits.families;
+  const auto comes_before = [&](const std::string& key, const Branch& other) {
+    return std::tie(other.lineage.depth, key) < std::tie(work.lineage.depth, work.key);
+  };
+  for (const auto& [key, other] : _branches)
+    if (comes_before(key, other) && covers(other, key, branch, work.key)) return false;
+  const auto one_too_many = [&](const std::map<std::string, Branch>& branches) {
+    std::set<std::string> earlier;
+    for (const auto& [key, other] : branches)
+      if (comes_before(key, other)) earlier.insert(other.lineage.family);
+    return !earlier.contains(work.lineage.family) && static_cast<int>(earlier.size()) >= _scene.limits.families;
+  };
+  return !one_too_many(_branches) || !one_too_many(kept_branches());  // what is left out does not count
 }
 
 std::map<std::string, FamilyTree::Branch> FamilyTree::kept_branches() const {
