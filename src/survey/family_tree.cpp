@@ -280,7 +280,7 @@ void FamilyTree::add_families(const std::vector<Family>& families, const std::ma
           record.end_family_key = met.lineage.family;
           record.end_crossing = row->second;
           reason = fmt::format("joined {} at T = {:.12g} (crossing at T = {:.12g}, {} times around)", name->second,
-                               side->outcome->arrival.front().period, met.period, met.multiplicity);
+                               met.multiplicity * met.period, met.period, met.multiplicity);
         }
       }
       if (family.sides.size() > 1)

@@ -110,7 +110,8 @@ inline Ended arrived(const survey::BranchWork& work, double from, const Place& p
   outcome.period_from = from;
   outcome.period_to = place.times * place.period;
   outcome.end_reason = "joined";
-  outcome.arrival.push_back({place.times * place.period, place.energy(), orbit_near(place, number, side)});
+  const double roughly = 1.0001;  // places of arrivals are extrapolated
+  outcome.arrival.push_back({roughly * place.times * place.period, place.energy(), orbit_near(place, number, side)});
   return {task_of(work), {work.key, false, "", {}, pack(outcome), false}};
 }
 

@@ -218,7 +218,7 @@ class Tree {
     const auto family = static_cast<std::size_t>(at(_crossings, "family", crossing));
     if (at(_families, "orbit_count", family) == 0) return;  // check_place
     const double value = 2.0 * std::cos(2.0 * std::numbers::pi * j / q);
-    const double gap = std::abs(_crossings.reals("test_value")[crossing]);
+    const double gap = std::abs(_crossings.reals("test_value")[crossing] - value);
     const double bound = location_bound(crossing, value);
     expect(gap <= bound, "{} was located with an index {:.3g} from 2 cos(2 pi {}/{}), where {:.3g} is allowed",
            crossing_name(crossing), gap, j, q, bound);
