@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/bifurcation/locate.hpp"
+#include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/core/error.hpp"
 
 namespace orbweaver::bifurcation {
@@ -50,6 +51,24 @@ class EventFunction {
   const Event& _event;
 };
 
+/// The least or largest period or energy between two positions, if it lies within.
+std::optional<Located> extremum(const systems::System& system, continuation::FamilyCurve& family, const Event& event,
+                                double from, double to, double tolerance) {
+  const auto quantity = [&](double position) {
+    const std::optional<continuation::CurvePoint> point = family.at(position);
+    if (!point) return nan;
+    return event.kind == Event::Kind::fold_period ? point->loop.period : continuation::energy_of(system, point->loop);
+  };
+  const double ends = 0.5 * (quantity(from) + quantity(to));
+  for (const double sign : {1.0, -1.0}) {
+    std::optional<Located> found =
+        locate_minimum([&](double position) { return sign * (quantity(position) - ends); }, from, to, tolerance);
+    const double margin = 1e-3 * (to - from);
+    if (found && found->position > from + margin && found->position < to - margin) return found;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 double period_slope(const continuation::CurvePoint& point) { return point.tangent_period; }
@@ -81,9 +100,12 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
   EventFunction function(system, family, event);
   const double absolute = tolerance * (1.0 + std::max(std::abs(from), std::abs(to)));
   const auto along = [&](double position) { return function(position); };
-  const std::optional<Located> located =
+  std::optional<Located> located =
       event.tangency ? locate_minimum([&](double position) { return std::abs(function(position)); }, from, to, absolute)
                      : locate_root(along, from, to, absolute);
+  // Where directions along the family are uncertain, the extremum itself is looked for.
+  if (!located && event.kind != Event::Kind::test_function)
+    located = extremum(system, family, event, from, to, absolute);
   if (!located) {
     why = fmt::format("no zero between positions {:.9g} and {:.9g}: the function has one sign there, or no orbit", from,
                       to);

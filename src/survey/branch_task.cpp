@@ -59,8 +59,8 @@ queue::TaskOutcome BranchTask::run() {
   }
   _outcome.end_reason = _outcome.arrival.empty()
                             ? ending.text()
-                            : fmt::format("joined (T = {:.9g}, E = {:.9g})", _outcome.arrival.front().period,
-                                          _outcome.arrival.front().energy);
+                            : fmt::format("met a family of more symmetry (T = {:.9g}, E = {:.9g})",
+                                          _outcome.arrival.front().period, _outcome.arrival.front().energy);
   queue::TaskOutcome done;
   done.failed = ending.failed();
   done.reason = ending.failed() ? _outcome.end_reason : "";
@@ -119,6 +119,9 @@ void BranchTask::detect(const continuation::Orbit& orbit, const std::optional<sp
 }
 
 void BranchTask::add_event(const bifurcation::Event& event, double from, double to) {
+  // A family's own birth is no event: its index leaves 2 there like a power of the distance, first within its error.
+  const bool at_birth = _work.lineage.depth > 0 && from <= 0.0;
+  if (at_birth && event.kind == bifurcation::Event::Kind::test_function && event.function.sector.q == 1) return;
   LocateWork work;
   set_event(work, event);
   const bool is_fold = event.kind != bifurcation::Event::Kind::test_function;
@@ -154,7 +157,7 @@ void BranchTask::store(continuation::Orbit orbit, const std::optional<spectrum::
   orbit.step = _work.lineage.side > 0 ? _outcome.orbits : -1 - _outcome.orbits;
   orbit.arclength = signed_arclength(_work.lineage, _before_first, orbit.arclength);
   ++_outcome.orbits;
-  _rows.orbits.push_back(orbit_row(*_system, _work.lineage.family, orbit, stability));
+  _rows.orbits.push_back(orbit_row(*_system, _work.lineage.family, orbit, _start.isotropy, stability));
 }
 
 }  // namespace orbweaver::survey

@@ -91,7 +91,7 @@ std::optional<FamilyTree::Meeting> FamilyTree::meeting_of(const Branch& branch, 
       const double away = loop::align(_system, near, expected).distance / distance;
       if (away < nearest) {
         nearest = away;
-        best = Meeting{crossing.key, leaving.key, side};
+        best = Meeting{crossing.key, leaving.key, side, away};
       }
     }
   }
@@ -100,15 +100,15 @@ std::optional<FamilyTree::Meeting> FamilyTree::meeting_of(const Branch& branch, 
 
 std::optional<FamilyTree::Meeting> FamilyTree::meeting_of(const Branch& branch) const {
   if (!branch.outcome || branch.outcome->arrival.empty()) return std::nullopt;
+  std::optional<Meeting> best;
   for (const auto& [key, crossing] : _crossings) {
-    const auto known = _met.find({branch.outcome->key, key});
-    const auto& meeting =
-        known != _met.end()
-            ? known->second
-            : _met.emplace(std::pair(branch.outcome->key, key), meeting_of(branch, crossing)).first->second;
-    if (meeting) return meeting;
+    const std::pair place(branch.outcome->key, key);
+    auto known = _met.find(place);
+    if (known == _met.end()) known = _met.emplace(place, meeting_of(branch, crossing)).first;
+    const std::optional<Meeting>& meeting = known->second;
+    if (meeting && (!best || meeting->away < best->away)) best = meeting;
   }
-  return std::nullopt;
+  return best;
 }
 
 /// True if `branch` is `other` run backwards and `other` is to stay.

@@ -52,6 +52,7 @@ class FamilyTree {
     std::string crossing;
     std::string family;
     int side = 1;
+    double away = 0.0;  ///< of the orbit before, from the direction, in parts of its distance from the crossing
   };
   struct Family;
 

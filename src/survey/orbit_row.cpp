@@ -2,6 +2,7 @@
 
 #include "orbweaver/certificate/certificate.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/standard_phase.hpp"
 #include "stability_columns.hpp"
 
 namespace orbweaver::survey {
@@ -16,7 +17,9 @@ std::optional<spectrum::Stability> stability_of(const systems::System& system, c
 }
 
 archive::OrbitRecord orbit_row(const systems::System& system, const std::string& family,
-                               const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability) {
+                               const continuation::Orbit& orbit, const loop::Isotropy& isotropy,
+                               const std::optional<spectrum::Stability>& stability) {
+  const loop::Loop stored = loop::in_standard_phase(system.description(), orbit.loop, isotropy);
   archive::OrbitRecord row;
   row.family_key = family;
   row.step = orbit.step;
@@ -24,13 +27,13 @@ archive::OrbitRecord orbit_row(const systems::System& system, const std::string&
   row.period = orbit.loop.period;
   row.energy = orbit.energy;
   row.action = orbit.action;
-  row.cutoff = orbit.loop.cutoff;
+  row.cutoff = stored.cutoff;
   row.loss_rms = orbit.loss_rms;
   row.off_branch_eigenvalue = orbit.off_branch_eigenvalue;
   row.tail = orbit.tail;
-  row.state = loop::state_at(orbit.loop, 0.0);
-  row.modes = orbit.loop.modes;
-  row.time_map = loop::to_numbers(orbit.loop.time_map);
+  row.state = loop::state_at(stored, 0.0);
+  row.modes = stored.modes;
+  row.time_map = loop::to_numbers(stored.time_map);
   for (const int angle : system.description().angles)
     row.winding.push_back(orbit.loop.winding[static_cast<std::size_t>(angle)]);
   set_stability(system.description(), stability, row);

@@ -14,9 +14,9 @@ namespace orbweaver::survey {
 [[nodiscard]] std::optional<spectrum::Stability> stability_of(const systems::System& system, const loop::Loop& loop,
                                                               const loop::Isotropy& isotropy);
 
-/// The row of an accepted orbit, with its certificate.
+/// The row of an accepted orbit, with its certificate; s = 0 as docs/file_format.md has it.
 [[nodiscard]] archive::OrbitRecord orbit_row(const systems::System& system, const std::string& family,
-                                             const continuation::Orbit& orbit,
+                                             const continuation::Orbit& orbit, const loop::Isotropy& isotropy,
                                              const std::optional<spectrum::Stability>& stability);
 
 }  // namespace orbweaver::survey

@@ -16,10 +16,10 @@ class AndersonSolver {
     double rounding = 3e-13;   ///< a change this small is as far as double precision goes
     int scaled_from = -1;      ///< changes of unknowns from here on (the borders) count `border_scale` times; -1: none
     double border_scale = 1.0;
-    double stagnation = 100.0;  ///< changes below this many tolerances that shrink no more are as far as digits go
-    double divergence = 5.0;    ///< a change this large is a failure
-    int stale_iterations = 10;  ///< with a kept factor; then it is renewed
-    int fresh_iterations = 18;  ///< with a new factor; then the solve has failed
+    double stagnation = 1000.0;  ///< changes below this many tolerances that shrink no more are as far as digits go
+    double divergence = 5.0;     ///< a change this large is a failure
+    int stale_iterations = 10;   ///< with a kept factor; then it is renewed
+    int fresh_iterations = 18;   ///< with a new factor; then the solve has failed
   };
   struct Result {
     bool converged = false;
