@@ -23,6 +23,9 @@ using corrector::Collocation;
 /// Iterations of the last correction above which the preconditioner is built anew (docs/performance.md: 4 to 9 cost the same).
 constexpr int renew_after = 7;
 
+/// Orbits from one look for another general time map to the next.
+constexpr int refit_every = 32;
+
 class CollocationBranch final : public Branch::Implementation {
  public:
   CollocationBranch(std::shared_ptr<const systems::System> of, const Start& from, const Options& with,
@@ -256,7 +259,6 @@ class CollocationBranch final : public Branch::Implementation {
 
   Orbit accept(Trial& trial) {
     Collocation& e = equations();
-    const double trial_tail = _points.tail_limit(trial);
     Orbit orbit;
     orbit.energy = _points.energy();
     orbit.loop = std::move(_points.modes());
@@ -279,13 +281,16 @@ class CollocationBranch final : public Branch::Implementation {
           off_branch_eigenvalue(*system, here(), start.isotropy, frontier.tangent_modes, frontier.tangent_period);
     }
     const Orbit accepted = frontier.orbit;
-    coarsen(trial_tail);
+    coarsen(trial);
     return accepted;
   }
 
-  /// Fewer cells where the orbit needs far fewer harmonics than it has.
-  void coarsen(double limit) {
-    const std::optional<int> fewer = coarser_cells(here(), _points.domain(), limit, options.cutoff_from);
+  /// Fewer cells where the orbit needs far fewer harmonics than it has, or would under another time map.
+  void coarsen(const Trial& trial) {
+    if (options.fit_time_map && frontier.orbit.step % refit_every == 0)
+      if (const std::optional<Resolution> other = _points.remapped(trial)) return _points.regrid(*other);
+    const std::optional<int> fewer =
+        coarser_cells(here(), _points.domain(), _points.tail_limit(trial), options.cutoff_from);
     if (fewer && *fewer < state().cells) _points.regrid({*fewer, state().time_map});
   }
 
@@ -303,15 +308,19 @@ class CollocationBranch final : public Branch::Implementation {
     } catch (const core::NumericalError&) {
       // Next to a crossing the linear system is singular: the polynomial's own direction stands.
     }
+    const loop::StaggeredGrid* grid = &e.grid();
     if (!(state().time_map == here().time_map)) {  // after a regrid for an orbit that was not accepted
-      const Collocation before(*system, _points.domain(), own.centre(), own.winding(), state().cells, here().time_map);
+      const std::vector<double> no_winding(own.winding().size(), 0.0);
+      const int cells = cell_counts::at_least_for_cutoff(_points.domain(), here().cutoff);
+      const Collocation before(*system, _points.domain(), own.centre(), no_winding, cells, here().time_map);
       tangent = before.resampled(e, tangent);
+      grid = &before.grid();
     }
-    frontier.tangent_modes.resize((2 * static_cast<std::size_t>(e.grid().cutoff()) + 1) *
+    frontier.tangent_modes.resize((2 * static_cast<std::size_t>(grid->cutoff()) + 1) *
                                   static_cast<std::size_t>(e.dimension()));
-    e.grid().to_modes(tangent.data(), frontier.tangent_modes.data());
+    grid->to_modes(tangent.data(), frontier.tangent_modes.data());
     frontier.tangent_modes.resize(here().modes.size(), 0.0);
-    frontier.tangent_period = tangent[static_cast<std::size_t>(e.period_at())];
+    frontier.tangent_period = tangent[tangent.size() - static_cast<std::size_t>(e.borders())];
     double square = frontier.tangent_period * frontier.tangent_period;
     for (const double v : frontier.tangent_modes) square += v * v;
     for (double& v : frontier.tangent_modes) v /= std::sqrt(square);

@@ -24,6 +24,7 @@ PointCorrector::PointCorrector(const systems::System& system, const Start& start
                                const Options& options, Frontier& frontier)
     : _system(system),
       _domain(std::move(domain)),
+      _isotropy(start.isotropy),
       _centre(start.base.modes.begin(), start.base.modes.begin() + start.base.dimension),
       _winding(start.base.winding),
       _options(options),
@@ -243,7 +244,21 @@ bool PointCorrector::resolved(const Trial& trial) {
 }
 
 std::optional<Resolution> PointCorrector::finer(const Trial& trial) {
+  // At most one new map a step: the next fit would be to the same orbit.
+  if (_options.fit_time_map && state().time_map == _frontier.orbit.loop.time_map)
+    if (std::optional<Resolution> general = remapped(trial)) return general;
   return finer_resolution(equations(), trial.values, tail_limit(trial), _options.cutoff_to, _options.fit_time_map);
+}
+
+std::optional<Resolution> PointCorrector::remapped(const Trial& of) {
+  const Collocation& e = equations();
+  const std::vector<double>& settled = state().points.back().values;
+  // What the loss allows the first harmonic that is left out, at the present cutoff.
+  const double period = settled[static_cast<std::size_t>(e.period_at())];
+  const double allowed = 0.3 * of.threshold * period / (2.0 * std::numbers::pi * e.grid().cutoff());
+  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * of.quality.size;
+  return general_resolution(e, settled, _isotropy, std::max(std::min(tail_limit(of), allowed), rounding),
+                            _options.cutoff_from);
 }
 
 void PointCorrector::regrid(const Resolution& to) {

@@ -58,6 +58,8 @@ class PointCorrector {
   [[nodiscard]] double tail_limit(const Trial& trial) const;
   /// What the orbit just found needs; none where that is beyond the largest cutoff.
   [[nodiscard]] std::optional<Resolution> finer(const Trial& trial);
+  /// A general time map for the last point where that pays, to the accuracy of `of`, a trial near it.
+  [[nodiscard]] std::optional<Resolution> remapped(const Trial& of);
   /// Another grid; all points of the frontier move along.
   void regrid(const Resolution& to);
 
@@ -81,6 +83,7 @@ class PointCorrector {
 
   const systems::System& _system;
   loop::FundamentalDomain _domain;
+  loop::Isotropy _isotropy;
   std::vector<double> _centre;
   std::vector<double> _winding;
   const Options& _options;

@@ -4,10 +4,18 @@
 #include <cmath>
 
 #include "cell_counts.hpp"
+#include "orbweaver/loop/time_map_fit.hpp"
 
 namespace orbweaver::continuation {
 
 namespace {
+
+/// Cells from which a general time map repays its fit (docs/performance.md).
+constexpr int general_from = 192;
+/// Harmonics of density to try; many serve loops that go several times around.
+constexpr int density_harmonics[] = {16, 32, 64};
+/// A new general map is to need at most this share of the harmonics.
+constexpr double general_pays = 0.8;
 
 double harmonic_norm(const loop::Loop& loop, int k) {
   double square = 0.0;
@@ -25,13 +33,32 @@ int harmonics_needed(const loop::Loop& loop, double limit) {
 
 }  // namespace
 
+std::optional<Resolution> general_resolution(const corrector::Collocation& equations, const std::vector<double>& values,
+                                             const loop::Isotropy& isotropy, double tolerance, int least_cutoff) {
+  if (equations.cells() < general_from) return std::nullopt;
+  const loop::Loop loop = equations.to_loop(values.data());
+  const int own = loop::harmonics_above(loop, tolerance);
+  loop::TimeMapFit best{loop.time_map, own};
+  for (const int most : density_harmonics) {
+    loop::TimeMapFit fit = loop::fit_general(loop, isotropy, tolerance, most);
+    if (fit.harmonics >= best.harmonics) break;
+    best = std::move(fit);
+  }
+  if (best.map == loop.time_map || best.harmonics > general_pays * own || !loop::is_invariant(best.map, isotropy))
+    return std::nullopt;
+  const int cutoff = std::max(best.harmonics * 6 / 5, least_cutoff);
+  const int cells = cell_counts::at_least_for_cutoff(equations.grid().domain(), cutoff);
+  if (cells > equations.cells()) return std::nullopt;
+  return Resolution{cells, best.map};
+}
+
 std::optional<Resolution> finer_resolution(const corrector::Collocation& equations, const std::vector<double>& values,
-                                           double tail_limit, int largest_cutoff, bool fit_time_map) {
+                                           double tail_limit, int largest_cutoff, bool fit_pulse) {
   const loop::FundamentalDomain& domain = equations.grid().domain();
   const auto cutoff_of = [&](int cells) { return (cells * domain.copies() - 1) / 2; };
   Resolution best{cell_counts::next(equations.cells()), equations.time_map()};
   const bool tail_decides = loop::tail(equations.to_loop(values.data())) > tail_limit;
-  if (fit_time_map && tail_decides && domain.order <= 2) {
+  if (fit_pulse && tail_decides && domain.order <= 2 && best.time_map.coefficients.empty()) {
     const int trial_cells = best.cells;
     int fewest = cutoff_of(best.cells);
     for (const double factor : {1.0, 1.2, 1.44}) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/fourier.hpp"
@@ -38,37 +39,36 @@ int pulse_harmonics(double kappa) {
   return q == 0.0 ? 0 : 2 * static_cast<int>(std::ceil(std::log(1e-17) / std::log(q)));
 }
 
+// Both at once: they share the harmonics.
+std::pair<double, double> phase_and_density(const TimeMap& map, double s) {
+  const double sine = std::sin(s);
+  const double cosine = std::cos(s);
+  double phase = s;
+  double density = 1.0;
+  if (map.kappa != 1.0) {
+    phase += std::atan2((map.kappa - 1.0) * sine * cosine, cosine * cosine + map.kappa * sine * sine);
+    density = pulse_density(map.kappa, cosine, sine);
+  }
+  Wave wave{cosine, sine};
+  for (std::size_t n = 0; 2 * n + 1 < map.coefficients.size(); ++n) {
+    const double c = map.coefficients[2 * n];
+    const double d = map.coefficients[2 * n + 1];
+    phase += (c * wave.sine + d * (1.0 - wave.cosine)) / static_cast<double>(n + 1);
+    density += c * wave.cosine + d * wave.sine;
+    wave.turn(cosine, sine);
+  }
+  return {phase, density};
+}
+
 }  // namespace
 
 bool TimeMap::is_identity() const {
   return kappa == 1.0 && std::all_of(coefficients.begin(), coefficients.end(), [](double c) { return c == 0.0; });
 }
 
-double TimeMap::phase(double s) const {
-  const double sine = std::sin(s);
-  const double cosine = std::cos(s);
-  double out = s;
-  if (kappa != 1.0) out += std::atan2((kappa - 1.0) * sine * cosine, cosine * cosine + kappa * sine * sine);
-  Wave wave{cosine, sine};
-  for (std::size_t n = 0; 2 * n + 1 < coefficients.size(); ++n) {
-    const double sum = coefficients[2 * n] * wave.sine + coefficients[2 * n + 1] * (1.0 - wave.cosine);
-    out += sum / static_cast<double>(n + 1);
-    wave.turn(cosine, sine);
-  }
-  return out;
-}
+double TimeMap::phase(double s) const { return phase_and_density(*this, s).first; }
 
-double TimeMap::density(double s) const {
-  const double sine = std::sin(s);
-  const double cosine = std::cos(s);
-  double out = kappa == 1.0 ? 1.0 : pulse_density(kappa, cosine, sine);
-  Wave wave{cosine, sine};
-  for (std::size_t n = 0; 2 * n + 1 < coefficients.size(); ++n) {
-    out += coefficients[2 * n] * wave.cosine + coefficients[2 * n + 1] * wave.sine;
-    wave.turn(cosine, sine);
-  }
-  return out;
-}
+double TimeMap::density(double s) const { return phase_and_density(*this, s).second; }
 
 double TimeMap::inverse(double phase_wanted) const {
   const double turns = std::floor(phase_wanted / two_pi);
@@ -82,12 +82,15 @@ double TimeMap::inverse(double phase_wanted) const {
     return s + two_pi * turns;
   }
   for (int n = 0; n < 200; ++n) {
-    const double excess = phase(s) - wanted;
+    const auto [here, slope] = phase_and_density(*this, s);
+    const double excess = here - wanted;
     (excess > 0.0 ? high : low) = s;
-    double next = s - excess / density(s);
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
-    if (next == s || std::abs(next - s) < 1e-16 * two_pi) break;
+    double next = s - excess / slope;
+    const bool inside = next > low && next < high;
+    if (!inside) next = 0.5 * (low + high);
+    const double step = std::abs(next - s);
     s = next;
+    if (step < 1e-15 || (inside && step < 1e-9)) break;  // Newton's next step would be of the order of its square
   }
   return s + two_pi * turns;
 }
