@@ -174,8 +174,8 @@ std::vector<Direction> searched(const systems::System& system, const SymmetryGro
   double amplitude = 0.0;
   for (const double r : search_amplitudes(q, base, group.constant())) {
     SearchResult result =
-        search_directions(system, base, group, kept, start_directions(group.dimension(), q, options.seeds), r, nudge,
-                          lines, options.corrector);
+        search_directions(system, base, group, kept, start_directions(group.dimension(), q, options.seeds),
+                          expected == 2 ? std::numbers::pi / q : 0.0, r, nudge, lines, options.corrector);
     const auto count = static_cast<int>(result.found.size());
     const bool possible = expected == 0 || count <= expected;
     if (amplitude == 0.0 || (possible && result.found.size() > best.found.size())) {

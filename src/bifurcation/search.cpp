@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 
+#include <Eigen/Geometry>
 #include <boost/math/distributions/normal.hpp>
 
 namespace orbweaver::bifurcation {
@@ -61,9 +62,10 @@ struct Search {
     return std::nullopt;
   }
 
-  // Neighbouring directions lead back to it: it is neither one of a continuum nor one where the loss, at this amplitude, is
-  // below its threshold along all directions.
-  [[nodiscard]] bool is_isolated(const Eigen::VectorXd& v, double nudge) const {
+  // Neighbouring directions lead back to it, or on to one that is `taken`: it is neither one of a continuum nor one where the
+  // loss, at this amplitude, is below its threshold along all directions.
+  template <class Taken>
+  [[nodiscard]] bool is_isolated(const Eigen::VectorXd& v, double nudge, const Taken& taken) const {
     Eigen::MatrixXd along = v;
     if (group.constant()) {
       along.conservativeResize(Eigen::NoChange, 2);
@@ -73,7 +75,8 @@ struct Search {
     const Eigen::MatrixXd axes = along.householderQr().householderQ();
     for (const Eigen::VectorXd& aside : axes.rightCols(others).colwise()) {
       const auto back = settle((v + nudge * aside).normalized(), [](const Eigen::VectorXd&) { return false; });
-      if (!back || (back->coordinates - v).norm() > 0.2 * nudge) return false;
+      if (!back) return false;
+      if ((back->coordinates - v).norm() > 0.2 * nudge && !taken(back->coordinates)) return false;
     }
     return true;
   }
@@ -82,7 +85,7 @@ struct Search {
 }  // namespace
 
 SearchResult search_directions(const systems::System& system, const loop::Loop& base, const SymmetryGroup& group,
-                               const loop::Isotropy& isotropy, const std::vector<Eigen::VectorXd>& starts,
+                               const loop::Isotropy& isotropy, std::vector<Eigen::VectorXd> starts, double partner,
                                double amplitude, double nudge, const std::vector<Eigen::VectorXd>& known,
                                const corrector::Options& options) {
   const Search search{system, base, group, isotropy, amplitude, options};
@@ -92,14 +95,16 @@ SearchResult search_directions(const systems::System& system, const loop::Loop& 
     return std::any_of(taken.begin(), taken.end(),
                        [&](const Eigen::VectorXd& other) { return group.image(v, other, same_direction) != 0; });
   };
-  for (const Eigen::VectorXd& start : starts) {
-    auto orbit = search.settle(start, is_taken);
+  for (std::size_t n = 0; n < starts.size(); ++n) {
+    auto orbit = search.settle(Eigen::VectorXd(starts[n]), is_taken);
     if (!orbit) continue;
-    if (!search.is_isolated(orbit->coordinates, nudge)) {
+    if (!search.is_isolated(orbit->coordinates, nudge, is_taken)) {
       ++out.not_isolated;
       continue;
     }
     taken.push_back(orbit->coordinates);
+    if (partner > 0.0)
+      starts.emplace_back(Eigen::Rotation2Dd(partner) * Eigen::Vector2d(orbit->coordinates(0), orbit->coordinates(1)));
     out.found.push_back(std::move(*orbit));
   }
   return out;

@@ -20,12 +20,13 @@ struct SearchResult {
 };
 
 /// Orbits near `base` whose part in the kernel has the length `amplitude`, one for each that no symmetry of `group` maps
-/// to another or to one of `known` (to its negative neither): Newton's method from the kernel directions `starts`. Each
-/// is sought once more from `nudge` radians beside it.
+/// to another or to one of `known` (to its negative neither): Newton's method from the kernel directions `starts` and, in a
+/// plane and if `partner` is not 0, from that angle beside each one found: extrema of the reduced action alternate, and one
+/// kind of them may be reached from very near only. Each is sought once more from `nudge` radians beside it.
 [[nodiscard]] SearchResult search_directions(const systems::System& system, const loop::Loop& base,
                                              const SymmetryGroup& group, const loop::Isotropy& isotropy,
-                                             const std::vector<Eigen::VectorXd>& starts, double amplitude, double nudge,
-                                             const std::vector<Eigen::VectorXd>& known,
+                                             std::vector<Eigen::VectorXd> starts, double partner, double amplitude,
+                                             double nudge, const std::vector<Eigen::VectorXd>& known,
                                              const corrector::Options& options);
 
 /// Unit vectors: evenly over the angles [0, 2 pi / order) of a plane, or from a Halton sequence on a sphere of more
