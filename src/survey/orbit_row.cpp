@@ -30,14 +30,14 @@ archive::OrbitRecord orbit_row(const systems::System& system, const std::string&
   row.cutoff = stored.cutoff;
   row.loss_rms = orbit.loss_rms;
   row.off_branch_eigenvalue = orbit.off_branch_eigenvalue;
-  row.tail = orbit.tail;
+  row.tail = loop::tail(stored);
   row.state = loop::state_at(stored, 0.0);
   row.modes = stored.modes;
   row.time_map = loop::to_numbers(stored.time_map);
   for (const int angle : system.description().angles)
     row.winding.push_back(orbit.loop.winding[static_cast<std::size_t>(angle)]);
   set_stability(system.description(), stability, row);
-  const certificate::Certificate certificate = certificate::certify(system, orbit.loop);
+  const certificate::Certificate certificate = certificate::certify(system, stored);
   row.closure = certificate.closure;
   row.single_shot = certificate.single_shot;
   row.energy_drift = certificate.energy_drift;
