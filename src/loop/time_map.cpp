@@ -81,16 +81,18 @@ double TimeMap::inverse(double phase_wanted) const {
                             std::cos(wanted) * std::cos(wanted) + std::sin(wanted) * std::sin(wanted) / kappa);
     return s + two_pi * turns;
   }
+  double last = two_pi;
   for (int n = 0; n < 200; ++n) {
     const auto [here, slope] = phase_and_density(*this, s);
     const double excess = here - wanted;
     (excess > 0.0 ? high : low) = s;
     double next = s - excess / slope;
-    const bool inside = next > low && next < high;
-    if (!inside) next = 0.5 * (low + high);
-    const double step = std::abs(next - s);
+    // Newton's steps may go to and fro within the bracket for ever: they must halve.
+    const bool newton = next > low && next < high && std::abs(next - s) <= 0.5 * last;
+    if (!newton) next = 0.5 * (low + high);
+    last = std::abs(next - s);
     s = next;
-    if (step < 1e-15 || (inside && step < 1e-9)) break;  // Newton's next step would be of the order of its square
+    if (last < 1e-15 || (newton && last < 1e-9)) break;  // Newton's next step would be of the order of its square
   }
   return s + two_pi * turns;
 }

@@ -41,6 +41,19 @@ TEST(TimeMap, IdentityByDefault) {
   EXPECT_FALSE((TimeMap{1.0, {0.0, 0.1}}).is_identity());
 }
 
+// Fitted to an orbit of the double pendulum. The phase has a step near s = 4, on either side of which Newton's method jumps
+// to the other side, again and again.
+TEST(TimeMap, InverseWhereThePhaseHasAStep) {
+  const TimeMap map{1.0,
+                    {-0.12, -0.60, 0.32,  0.51,  0.45,  -0.20, -0.22, -0.07, 0.22,  0.16,  0.08, -0.21, -0.16, 0.10,
+                     0.14,  0.08,  -0.10, -0.14, -0.08, 0.10,  0.11,  -0.05, -0.03, -0.06, 0.04, 0.04,  0.05,  -0.04,
+                     -0.02, 0.00,  0.03,  0.01,  0.02,  -0.04, 0.00,  0.00,  0.02,  -0.01, 0.00, -0.01}};
+  for (int n = 0; n <= 2000; ++n) {
+    const double wanted = two_pi * n / 2000;
+    EXPECT_NEAR(map.phase(map.inverse(wanted)), wanted, 1e-14 * (1.0 + wanted));
+  }
+}
+
 TEST(TimeMap, PhaseIsItsDefinition) {
   for (const TimeMap& map : maps())
     for (const double s : {0.0, 0.1, 1.5, 1.6, 3.0, 3.2, 4.7, 6.2, -0.4, 7.0})
