@@ -264,7 +264,17 @@ std::optional<Resolution> PointCorrector::remapped(const Trial& of) {
 void PointCorrector::regrid(const Resolution& to) {
   const std::unique_ptr<Collocation> from = std::move(_equations);
   set_grid(to.cells, to.time_map);
-  for (TracePoint& point : state().points) point.values = _equations->resampled(*from, point.values);
+  std::vector<TracePoint>& points = state().points;
+  for (TracePoint& point : points) point.values = _equations->resampled(*from, point.values);
+  if (points.size() < 2 || from->time_map() == to.time_map) return;
+  // Lengths are means over s: another map measures them anew.
+  const double last = points.back().parameter - points[points.size() - 2].parameter;
+  for (std::size_t n = 1; n < points.size(); ++n) {
+    const std::vector<double>& a = points[n - 1].values;
+    const std::vector<double>& b = points[n].values;
+    points[n].parameter = points[n - 1].parameter + std::sqrt(product(b, a, b, a));
+  }
+  _frontier.next_length *= (points.back().parameter - points[points.size() - 2].parameter) / last;
 }
 
 double PointCorrector::energy() const {
