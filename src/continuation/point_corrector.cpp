@@ -266,8 +266,8 @@ void PointCorrector::regrid(const Resolution& to) {
   set_grid(to.cells, to.time_map);
   std::vector<TracePoint>& points = state().points;
   for (TracePoint& point : points) point.values = _equations->resampled(*from, point.values);
-  if (points.size() < 2 || from->time_map() == to.time_map) return;
-  // Lengths are means over s: another map measures them anew.
+  if (points.size() < 2 || from->time_map() == to.time_map || to.time_map.coefficients.empty()) return;
+  // Lengths are means over s: a general map measures them anew (a somewhat sharper pulse changes them little).
   const double last = points.back().parameter - points[points.size() - 2].parameter;
   for (std::size_t n = 1; n < points.size(); ++n) {
     const std::vector<double>& a = points[n - 1].values;
