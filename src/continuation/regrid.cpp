@@ -13,7 +13,7 @@ namespace {
 /// Cells from which a general time map repays its fit (docs/performance.md).
 constexpr int general_from = 192;
 /// Harmonics of density to try; many serve loops that go several times around.
-constexpr int density_harmonics[] = {16, 32, 64};
+constexpr int density_harmonics[] = {16, 32};
 /// A new general map is to need at most this share of the harmonics.
 constexpr double general_pays = 0.8;
 
