@@ -72,7 +72,7 @@ TEST(DoublePendulum, HasItsFourFamilies) {
 
 TEST(DoublePendulum, HasBranchesOfBranches) {
   for (const char* name :
-       {"ID1a", "ID1b", "ID2a", "ID2b", "IB", "IBB", "ODa", "ODb", "ODbB", "OB", "OBB", "OBDa", "OBDb"})
+       {"ID1a", "ID1b", "ID2a", "ID2b", "IB", "IBB", "IBDa", "IBDb", "ODa", "ODb", "ODbB", "OB", "OBB", "OBDa", "OBDb"})
     EXPECT_THAT(atlas->families().texts("name"), Contains(name));
 }
 
