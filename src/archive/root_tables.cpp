@@ -51,6 +51,7 @@ void fill_crossing(Table& table, std::size_t row, const CrossingRecord& crossing
   table.integers("sector_q")[row] = crossing.sector_q;
   table.integers("fundamental_order")[row] = crossing.fundamental_order;
   table.reals("test_value")[row] = crossing.test_value;
+  table.reals("kernel_residual")[row] = crossing.kernel_residual;
 }
 
 void fill_family(Table& table, const FamilyRecord& family, const std::vector<std::string>& keys,

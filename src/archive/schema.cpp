@@ -71,7 +71,7 @@ TableSpec crossings_spec(const Header& header) {
   return {"crossings",
           {integer("family"), real("arclength"), real("period"), real("energy"), text("kind"), integer("multiplicity"),
            integer("kernel_dimension"), real("residual"), state(header), integer("sector_j"), integer("sector_q"),
-           integer("fundamental_order"), real("test_value")}};
+           integer("fundamental_order"), real("test_value"), real("kernel_residual")}};
 }
 
 TableSpec sections_spec(const Header& header) { return {"sections", {integer("orbit"), real("time"), state(header)}}; }

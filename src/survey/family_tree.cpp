@@ -249,6 +249,7 @@ void FamilyTree::add_crossings(const std::map<std::string, Branch>& kept, Result
     row.sector_q = crossing.q;
     row.fundamental_order = crossing.fundamental_order;
     row.test_value = crossing.test_value;
+    row.kernel_residual = crossing.kernel_singular_value;
     result.tables.crossings.push_back(std::move(row));
   }
 }

@@ -66,6 +66,7 @@ struct CrossingRecord {
   int sector_q = 1;
   int fundamental_order = 1;
   double test_value = not_computed;
+  double kernel_residual = not_computed;  ///< the largest singular value that counts as zero
 };
 
 /// One row of /sections: a crossing of the scene's Poincare section by an orbit (family_key, step).
