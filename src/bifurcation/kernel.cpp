@@ -78,18 +78,20 @@ double Kernel::next() const {
 }
 
 Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& point, const loop::Isotropy& isotropy,
-                 const Sector& sector, int expected, double largest) {
+                 const Sector& sector, int expected, bool even_in_time, double largest) {
   const loop::FundamentalDomain domain = loop::fundamental_domain(isotropy, system.dimension());
   const int multiplicity = sector.multiplicity(domain.order);
-  const loop::Loop even = loop::evenly_in_time(point.loop);
+  Kernel kernel;
   loop::Loop tangent = point.loop;
   tangent.modes = point.tangent_modes;
   std::fill(tangent.winding.begin(), tangent.winding.end(), 0.0);
-  tangent = loop::with_time_map(tangent, {}, even.cutoff);
-
-  Kernel kernel;
-  kernel.base = loop::repeated(even, multiplicity);
-  const loop::Loop tangent_there = loop::repeated(tangent, multiplicity);
+  if (even_in_time || multiplicity > 1) {
+    const loop::Loop even = loop::evenly_in_time(point.loop);
+    kernel.base = loop::repeated(even, multiplicity);
+    tangent = loop::repeated(loop::with_time_map(tangent, {}, even.cutoff), multiplicity);
+  } else {
+    kernel.base = point.loop;
+  }
   const Split split = split_of(isotropy, system.dimension(), sector, multiplicity);
   spectrum::TripletOptions options;
   options.count = split.signs.size() > 1 && expected > 1 ? expected / 2 + 1 : expected + 1;
@@ -99,7 +101,7 @@ Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& 
   std::vector<OffBranchTriplet> all;
   for (const std::vector<int>& signs : split.signs)
     for (OffBranchTriplet& t :
-         continuation::sector_triplets(system, kernel.base, split.involutions, signs, tangent_there.modes,
+         continuation::sector_triplets(system, kernel.base, split.involutions, signs, tangent.modes,
                                        point.tangent_period * multiplicity, options))
       all.push_back(std::move(t));
   std::stable_sort(all.begin(), all.end(), [](const OffBranchTriplet& a, const OffBranchTriplet& b) {

@@ -119,8 +119,9 @@ class Location {
       return;
     }
     const bifurcation::Sector& sector = _event.function.sector;
-    const bifurcation::Kernel kernel =
-        bifurcation::kernel_of(*_system, crossing.point, isotropy, sector, expected_dimension(crossing, sector));
+    const bool starts = _work.lineage.depth < _scene.survey.depth;
+    const bifurcation::Kernel kernel = bifurcation::kernel_of(*_system, crossing.point, isotropy, sector,
+                                                              expected_dimension(crossing, sector), starts);
     _outcome.kernel_dimension = kernel.dimension();
     _outcome.kernel_singular_value = kernel.largest();
     _outcome.next_singular_value = kernel.next();
@@ -134,7 +135,7 @@ class Location {
         _failure = _outcome.remark;
       return;
     }
-    if (_work.lineage.depth >= _scene.survey.depth) return;
+    if (!starts) return;
     int number = 0;
     for (const bifurcation::Direction& direction :
          bifurcation::directions(*_system, kernel.base, isotropy, kernel.vectors)) {

@@ -11,7 +11,7 @@ namespace orbweaver::bifurcation {
 
 /// The flat directions at a crossing besides the family's own and the time shift.
 struct Kernel {
-  loop::Loop base;                           ///< the crossing's orbit, as many times around as born orbits take to close
+  loop::Loop base;  ///< the crossing's orbit, as many times around as born orbits take to close
   std::vector<std::vector<double>> vectors;  ///< orthonormal modes, (2K + 1) x dimension
   std::vector<double> singular_values;       ///< of the loop's Jacobian in the sector, smallest first
 
@@ -23,9 +23,10 @@ struct Kernel {
 
 /// The kernel at an orbit in one sector of its fundamental map (order p, design: m = q/gcd(q, p) times around). Its
 /// dimension, at most `expected` (1 for q <= 2 and 2 beyond, times the pairs of multipliers that are there), is where the
-/// singular values have their largest gap; vectors whose values exceed `largest` do not count.
+/// singular values have their largest gap; vectors whose values exceed `largest` do not count. `even_in_time`: `base` is to
+/// have the identity as time map, as starts need it; orbits gone around once are cheaper under their own.
 [[nodiscard]] Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& point,
                                const loop::Isotropy& isotropy, const Sector& sector, int expected,
-                               double largest = 1e-5);
+                               bool even_in_time = true, double largest = 1e-5);
 
 }  // namespace orbweaver::bifurcation
