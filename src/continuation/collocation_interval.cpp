@@ -76,10 +76,10 @@ class CollocationInterval final : public CurveInterval {
         if (!trial.accepted()) return std::nullopt;
         return trial;
       }
-      const std::optional<Resolution> finer = _points.finer(trial);
-      if (!finer) return std::nullopt;
       // The time map stays: the chord is measured under it.
-      _points.regrid({cell_counts::next(equations().cells()), equations().time_map()});
+      const int cells = cell_counts::next(equations().cells());
+      if (_points.cutoff_of(cells) > 2 * _options.cutoff_to) return std::nullopt;
+      _points.regrid({cells, equations().time_map()});
     }
   }
 

@@ -257,6 +257,7 @@ std::optional<Resolution> PointCorrector::remapped(const Trial& of) {
   const double period = settled[static_cast<std::size_t>(e.period_at())];
   const double allowed = 0.3 * of.threshold * period / (2.0 * std::numbers::pi * e.grid().cutoff());
   const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * of.quality.size;
+  if (e.cells() < _options.general_map_cells) return std::nullopt;
   return general_resolution(e, settled, _isotropy, std::max(std::min(tail_limit(of), allowed), rounding),
                             _options.cutoff_from);
 }

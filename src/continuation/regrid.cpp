@@ -10,8 +10,6 @@ namespace orbweaver::continuation {
 
 namespace {
 
-/// Cells from which a general time map repays its fit (docs/performance.md).
-constexpr int general_from = 192;
 /// Harmonics of density to try; many serve loops that go several times around.
 constexpr int density_harmonics[] = {16, 32};
 /// A new general map is to need at most this share of the harmonics.
@@ -35,7 +33,6 @@ int harmonics_needed(const loop::Loop& loop, double limit) {
 
 std::optional<Resolution> general_resolution(const corrector::Collocation& equations, const std::vector<double>& values,
                                              const loop::Isotropy& isotropy, double tolerance, int least_cutoff) {
-  if (equations.cells() < general_from) return std::nullopt;
   const loop::Loop loop = equations.to_loop(values.data());
   const int own = loop::harmonics_above(loop, tolerance);
   loop::TimeMapFit best{loop.time_map, own};

@@ -36,8 +36,8 @@ bool is_larger(const std::vector<double>& a, const std::vector<double>& b, doubl
   return false;
 }
 
-// The time, in periods, at which coordinate i of a loop that runs evenly in time is largest.
-double time_of_maximum(const Loop& even, int i) {
+// s / 2 pi where the periodic part of coordinate i is largest.
+double turns_of_maximum(const Loop& even, int i) {
   const int nodes = FourierGrid::nodes_at_least(4 * even.cutoff + 2);
   std::vector<double> modes(2 * static_cast<std::size_t>(even.cutoff) + 1, 0.0);
   for (int k = 1; k <= even.cutoff; ++k) {
@@ -97,7 +97,10 @@ Loop in_standard_phase(const systems::Description& system, const Loop& loop, con
       return time_shifted(loop, take_second ? second : first);
     }
   const int coordinate = system.angles.empty() ? 0 : system.angles.front();
-  return time_shifted(loop, time_of_maximum(resolved_in_time(loop), coordinate));
+  // A maximum over s is one over time, but for the linear part of an angle that winds.
+  if (loop.winding[static_cast<std::size_t>(coordinate)] == 0.0)
+    return parameter_shifted(loop, turns_of_maximum(loop, coordinate));
+  return time_shifted(loop, turns_of_maximum(resolved_in_time(loop), coordinate));
 }
 
 }  // namespace orbweaver::loop

@@ -21,7 +21,7 @@ class GeneralMaps : public testing::TestWithParam<bool> {};
 
 TEST_P(GeneralMaps, ServeBranchesWithFewSymmetries) {
   // The pulse serves the loops with a reversor up to T = 17.
-  const Options options{.period_limit = GetParam() ? 24.0 : 12.0};
+  const Options options{.general_map_cells = 192, .period_limit = GetParam() ? 24.0 : 12.0};
   Start start = test::start_of(test::out_phase());
   start.isotropy = less_symmetry(GetParam());
   const test::Trace mapped = test::trace_of(test::pendulum(), start, options);

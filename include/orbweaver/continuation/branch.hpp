@@ -27,6 +27,7 @@ struct Options {
   double smallest_step = 1e-9;         ///< times (1 + amplitude) min(1, amplitude); below it the branch has failed
   double turning_angle = 0.25;         ///< wanted angle between neighbouring tangents, radians (without a predictor)
   bool fit_time_map = true;            ///< let s run with the orbit's speed where that needs fewer harmonics
+  int general_map_cells = 800;         ///< from which a general time map repays its fit (docs/performance.md)
   int predictor_order = 4;             ///< of the polynomial through the last orbits, at most
   double prediction_error = 3e-3;      ///< wanted largest error of a predicted coordinate, radians
   double period_limit = std::numeric_limits<double>::infinity();
