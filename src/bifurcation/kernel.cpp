@@ -49,6 +49,9 @@ Split split_of(const loop::Isotropy& isotropy, int dimension, const Sector& sect
   return split;
 }
 
+/// Below it singular values of a loop's Jacobian are rounding.
+constexpr double rounding = 1e-11;
+
 /// The place of the largest ratio between neighbours among the first `most` + 1 values.
 int dimension_of(const std::vector<double>& values, int most, double largest) {
   int dimension = 0;
@@ -57,7 +60,7 @@ int dimension_of(const std::vector<double>& values, int most, double largest) {
     const double inside = values[static_cast<std::size_t>(n - 1)];
     if (inside > largest) break;
     const double outside = n < static_cast<int>(values.size()) ? values[static_cast<std::size_t>(n)] : 1.0;
-    const double gap = outside / std::max(inside, std::numeric_limits<double>::min());
+    const double gap = outside / std::max(inside, rounding);
     if (gap > widest) {
       widest = gap;
       dimension = n;

@@ -37,9 +37,19 @@ std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuat
   };
   // Orbits before the meeting point and, if the branch went on along the images, one beyond. At the point itself the two
   // families cannot be told apart, so that nothing is solved for there.
+  // Backwards from `from`, as long as the part grows: a polynomial in it needs values well apart.
   const std::vector<continuation::FamilyCurve::Known>& known = family.known();
-  const std::size_t before = known.size() >= 4 ? known.size() - 4 : 0;
-  for (std::size_t n = before; n < known.size(); ++n) add(known[n].loop);
+  for (auto orbit = known.rbegin(); orbit != known.rend() && samples.size() < 3; ++orbit) {
+    if (orbit->position > from.arclength) continue;
+    const std::size_t before = samples.size();
+    add(orbit->loop);
+    if (samples.size() == before) continue;
+    if (before > 0 && samples.back().part < 1.2 * samples[before - 1].part) {
+      samples.pop_back();
+      break;
+    }
+  }
+  add(to.loop);
   const double part = watch.signed_part(gained, from.loop, to.loop);
   const double there = from.arclength + 0.7 / (1.0 - std::min(part, 0.0)) * (to.arclength - from.arclength);
   loop::Loop near = from.loop;

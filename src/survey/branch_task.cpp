@@ -57,7 +57,7 @@ queue::TaskOutcome BranchTask::run() {
   } catch (const std::exception& error) {  // here, not in the queue, so that the summary still counts the orbits kept
     ending = {continuation::EndReason::failure, error.what()};
   }
-  _outcome.end_reason = _outcome.arrival.empty()
+  _outcome.end_reason = _outcome.arrival.empty() || ending.failed()
                             ? ending.text()
                             : fmt::format("met a family of more symmetry (T = {:.9g}, E = {:.9g})",
                                           _outcome.arrival.front().period, _outcome.arrival.front().energy);
@@ -133,13 +133,13 @@ void BranchTask::add_event(const bifurcation::Event& event, double from, double 
   work.before_first = _before_first;
   for (const continuation::FamilyCurve::Known& known : _curve.known())
     work.known.push_back({known.position, record_of(known.loop)});
-  work.from = from;
+  work.from = std::max(from, _curve.known().front().position);  // a long way without a sign may begin before
   work.to = to;
   _children.push_back(task_of(work));
 }
 
 void BranchTask::solve_requested(const continuation::Orbit& orbit) {
-  for (continuation::Orbit& wanted : requested_orbits(_scene, *_system, _curve, *_last, orbit))
+  for (continuation::Orbit& wanted : requested_orbits(_scene, *_system, _curve, *_last, orbit, _outcome.remarks))
     store(wanted, stability_of(*_system, wanted.loop, _start.isotropy));
 }
 
@@ -156,8 +156,8 @@ void BranchTask::store(continuation::Orbit orbit, const std::optional<spectrum::
   // The other side of a crossing: counted backwards from it.
   orbit.step = _work.lineage.side > 0 ? _outcome.orbits : -1 - _outcome.orbits;
   orbit.arclength = signed_arclength(_work.lineage, _before_first, orbit.arclength);
-  ++_outcome.orbits;
   _rows.orbits.push_back(orbit_row(*_system, _work.lineage.family, orbit, _start.isotropy, stability));
+  ++_outcome.orbits;
 }
 
 }  // namespace orbweaver::survey

@@ -18,6 +18,10 @@ bool lies_on(const std::string& key, const std::string& branch) {
   return key.size() > branch.size() && key.compare(0, branch.size(), branch) == 0 && key[branch.size()] == '/';
 }
 
+bool lies_on_one_of(const std::string& key, const std::set<std::string>& branches) {
+  return std::any_of(branches.begin(), branches.end(), [&](const std::string& branch) { return lies_on(key, branch); });
+}
+
 bool is_fold(const LocateOutcome& crossing) { return crossing.kind.starts_with("fold"); }
 
 /// The kind of a family in its name: B, D, T3, ...
@@ -64,7 +68,7 @@ void FamilyTree::add(const queue::Task& task, const queue::TaskOutcome& outcome)
     const BranchWork work = unpack_start_work(task.payload).branch;
     _branches[work.key] = {work.lineage, work.name, work.isotropy, std::nullopt, true, outcome.reason};
   } else if (task.kind == locate_kind) {
-    if (outcome.failed) _failures.push_back(fmt::format("{}: {}", task.key, outcome.reason));
+    if (outcome.failed) _failures[task.key.substr(task.key.find(' ') + 1)] = outcome.reason;
     if (outcome.payload.empty()) return;
     LocateOutcome crossing = unpack_locate_outcome(outcome.payload);
     const std::string key = crossing.key;
@@ -75,8 +79,8 @@ void FamilyTree::add(const queue::Task& task, const queue::TaskOutcome& outcome)
 std::optional<FamilyTree::Meeting> FamilyTree::meeting_of(const Branch& branch, const LocateOutcome& crossing) const {
   const ArrivalRecord& arrival = branch.outcome->arrival.front();
   const double period = crossing.multiplicity * crossing.period;
-  if (std::abs(arrival.period / period - 1.0) > 1e-3 ||
-      std::abs(arrival.energy - crossing.energy) > 1e-3 * (1.0 + std::abs(crossing.energy)))
+  if (!(std::abs(arrival.period / period - 1.0) <= 1e-3 &&
+        std::abs(arrival.energy - crossing.energy) <= 1e-3 * (1.0 + std::abs(crossing.energy))))
     return std::nullopt;
   const loop::Loop near = loop_of(arrival.near);
   std::optional<Meeting> best;
@@ -98,10 +102,11 @@ std::optional<FamilyTree::Meeting> FamilyTree::meeting_of(const Branch& branch, 
   return best;
 }
 
-std::optional<FamilyTree::Meeting> FamilyTree::meeting_of(const Branch& branch) const {
+std::optional<FamilyTree::Meeting> FamilyTree::meeting_of(const Branch& branch, const Keys& dropped) const {
   if (!branch.outcome || branch.outcome->arrival.empty()) return std::nullopt;
   std::optional<Meeting> best;
   for (const auto& [key, crossing] : _crossings) {
+    if (lies_on_one_of(key, dropped)) continue;
     const std::pair place(branch.outcome->key, key);
     auto known = _met.find(place);
     if (known == _met.end()) known = _met.emplace(place, meeting_of(branch, crossing)).first;
@@ -111,59 +116,87 @@ std::optional<FamilyTree::Meeting> FamilyTree::meeting_of(const Branch& branch) 
   return best;
 }
 
-/// True if `branch` is `other` run backwards and `other` is to stay.
-bool FamilyTree::covers(const Branch& other, const std::string& other_key, const Branch& branch,
-                        const std::string& key) const {
-  const std::optional<Meeting> meeting = meeting_of(other);
-  if (!meeting || meeting->family != branch.lineage.family || meeting->side != branch.lineage.side) return false;
-  if (other_key == key) return false;
-  if (std::tie(other.lineage.depth, other_key) < std::tie(branch.lineage.depth, key)) return true;
-  const std::optional<Meeting> back = meeting_of(branch);
-  return !(back && back->family == other.lineage.family && back->side == other.lineage.side);
-}
-
 bool FamilyTree::wanted(const queue::Task& task) const {
   if (task.kind != branch_kind && task.kind != start_kind) return true;
   const BranchWork work =
       task.kind == branch_kind ? unpack_branch_work(task.payload) : unpack_start_work(task.payload).branch;
   if (work.lineage.depth == 0) return true;
-  const Branch branch{work.lineage, work.name, work.isotropy, std::nullopt, false, ""};
-  const auto comes_before = [&](const std::string& key, const Branch& other) {
-    return std::tie(other.lineage.depth, key) < std::tie(work.lineage.depth, work.key);
-  };
-  for (const auto& [key, other] : _branches)
-    if (comes_before(key, other) && covers(other, key, branch, work.key)) return false;
-  const auto one_too_many = [&](const std::map<std::string, Branch>& branches) {
-    std::set<std::string> earlier;
-    for (const auto& [key, other] : branches)
-      if (comes_before(key, other)) earlier.insert(other.lineage.family);
-    return !earlier.contains(work.lineage.family) && static_cast<int>(earlier.size()) >= _scene.limits.families;
-  };
-  return !one_too_many(_branches) || !one_too_many(kept_branches());  // what is left out does not count
+  const Keys dropped = dropped_branches();
+  if (lies_on_one_of(work.key, dropped)) return false;
+  Keys earlier;
+  for (const auto& [key, other] : _branches) {
+    if (dropped.contains(key) || !(std::tie(other.lineage.depth, key) < std::tie(work.lineage.depth, work.key)))
+      continue;
+    const std::optional<Meeting> meeting = meeting_of(other, dropped);
+    if (meeting && meeting->family == work.lineage.family && meeting->side == work.lineage.side) return false;
+    earlier.insert(other.lineage.family);
+  }
+  return earlier.contains(work.lineage.family) || static_cast<int>(earlier.size()) < _scene.limits.families;
 }
 
-std::map<std::string, FamilyTree::Branch> FamilyTree::kept_branches() const {
+std::vector<std::pair<std::string, const FamilyTree::Branch*>> FamilyTree::ordered_branches() const {
   std::vector<std::pair<std::string, const Branch*>> ordered;
   for (const auto& [key, branch] : _branches) ordered.emplace_back(key, &branch);
   std::stable_sort(ordered.begin(), ordered.end(), [](const auto& a, const auto& b) {
     return std::tie(a.second->lineage.depth, a.first) < std::tie(b.second->lineage.depth, b.first);
   });
-  std::set<std::string> dropped;
-  std::map<std::string, Branch> kept;
-  std::set<std::string> families;
-  for (const auto& [key, branch] : ordered) {
-    const bool below = std::any_of(dropped.begin(), dropped.end(), [&k = key](const auto& d) { return lies_on(k, d); });
-    const bool covered = std::any_of(ordered.begin(), ordered.end(), [&, &k = key, b = branch](const auto& other) {
-      return !dropped.contains(other.first) && covers(*other.second, other.first, *b, k);
+  return ordered;
+}
+
+/// One round: who is dropped if crossings on `before` do not count.
+FamilyTree::Keys FamilyTree::dropped_without(const Keys& before) const {
+  const auto ordered = ordered_branches();
+  std::map<std::string, std::optional<Meeting>> meetings;
+  for (const auto& [key, branch] : ordered) meetings[key] = meeting_of(*branch, before);
+  const auto arrives_at = [&](const std::string& key, const Branch& branch) {
+    const std::optional<Meeting>& meeting = meetings.at(key);
+    return meeting && meeting->family == branch.lineage.family && meeting->side == branch.lineage.side;
+  };
+  Keys dropped;
+  // By branches that come first, and so stay themselves.
+  for (auto b = ordered.begin(); b != ordered.end(); ++b) {
+    const bool covered = std::any_of(ordered.begin(), b, [&](const auto& other) {
+      return !dropped.contains(other.first) && arrives_at(other.first, *b->second);
     });
-    const bool too_many =
+    if (covered || lies_on_one_of(b->first, dropped)) dropped.insert(b->first);
+  }
+  // By later ones, at whose start the branch does not arrive in turn: it failed on the way.
+  const Keys by_earlier = dropped;
+  for (auto b = ordered.begin(); b != ordered.end(); ++b) {
+    const bool covered = std::any_of(b, ordered.end(), [&](const auto& other) {
+      return other.first != b->first && !by_earlier.contains(other.first) && !lies_on(other.first, b->first) &&
+             arrives_at(other.first, *b->second) && !arrives_at(b->first, *other.second);
+    });
+    if (covered || lies_on_one_of(b->first, dropped)) dropped.insert(b->first);
+  }
+  return dropped;
+}
+
+FamilyTree::Keys FamilyTree::dropped_branches() const {
+  Keys dropped;
+  constexpr int most_rounds = 20;
+  for (int round = 0; round < most_rounds; ++round) {
+    Keys next = dropped_without(dropped);
+    if (next == dropped) break;
+    dropped = std::move(next);
+  }
+  return dropped;
+}
+
+std::map<std::string, FamilyTree::Branch> FamilyTree::kept_branches(const Keys& dropped) const {
+  std::map<std::string, Branch> kept;
+  Keys families;
+  Keys too_many;
+  for (const auto& [key, branch] : ordered_branches()) {
+    if (dropped.contains(key)) continue;
+    const bool over =
         !families.contains(branch->lineage.family) && static_cast<int>(families.size()) >= _scene.limits.families;
-    if (below || covered || too_many) {
-      dropped.insert(key);
-    } else {
-      kept.emplace(key, *branch);
-      families.insert(branch->lineage.family);
+    if (over || lies_on_one_of(key, too_many)) {
+      too_many.insert(key);
+      continue;
     }
+    kept.emplace(key, *branch);
+    families.insert(branch->lineage.family);
   }
   return kept;
 }
@@ -254,8 +287,8 @@ void FamilyTree::add_crossings(const std::map<std::string, Branch>& kept, Result
   }
 }
 
-void FamilyTree::add_families(const std::vector<Family>& families, const std::map<std::string, int>& crossing_index,
-                              Result& result) const {
+void FamilyTree::add_families(const std::vector<Family>& families, const Keys& dropped,
+                              const std::map<std::string, int>& crossing_index, Result& result) const {
   std::map<std::string, std::string> names;
   for (const Family& family : families) names[family.key] = family.name;
   for (const Family& family : families) {
@@ -273,7 +306,7 @@ void FamilyTree::add_families(const std::vector<Family>& families, const std::ma
     summary.depth = family.lineage.depth;
     for (const Branch* side : family.sides) {
       std::string reason = side->outcome ? side->outcome->end_reason : fmt::format("failure ({})", side->reason);
-      if (const std::optional<Meeting> meeting = meeting_of(*side)) {
+      if (const std::optional<Meeting> meeting = meeting_of(*side, dropped)) {
         const LocateOutcome& met = _crossings.at(meeting->crossing);
         const auto row = crossing_index.find(met.key);
         const auto name = names.find(met.lineage.family);
@@ -312,26 +345,28 @@ void FamilyTree::add_families(const std::vector<Family>& families, const std::ma
 
 FamilyTree::Result FamilyTree::resolve() const {
   Result result;
-  const std::map<std::string, Branch> kept = kept_branches();
+  const Keys dropped = dropped_branches();
+  const std::map<std::string, Branch> kept = kept_branches(dropped);
   std::vector<Family> families = families_of(kept);
   name_all(families);
   std::map<std::string, int> crossing_index;
   add_crossings(kept, result, crossing_index);
-  add_families(families, crossing_index, result);
-  std::set<std::string> kept_families;
+  add_families(families, dropped, crossing_index, result);
+  Keys kept_families;
   for (const Family& family : families) kept_families.insert(family.key);
-  std::set<std::string> left_out;
+  Keys left_out;
   for (const auto& [key, branch] : _branches)
     if (!kept_families.contains(branch.lineage.family)) left_out.insert(branch.lineage.family);
   result.tables.left_out_keys.assign(left_out.begin(), left_out.end());
-  for (const std::string& failure : _failures) {
-    const std::string key =
-        failure.substr(std::string("locate ").size(), failure.find(':') - std::string("locate ").size());
-    if (kept.contains(key.substr(0, key.rfind('/')))) result.failures.push_back(failure);
-  }
+  const auto on_kept = [&](const std::string& crossing) {
+    return kept.contains(crossing.substr(0, crossing.rfind('/')));
+  };
+  for (const auto& [key, reason] : _failures)
+    if (on_kept(key)) result.failures.push_back(fmt::format("locate {}: {}", key, reason));
   for (const auto& [key, branch] : kept)
     if (branch.outcome)
-      for (const std::string& remark : branch.outcome->remarks) result.remarks.push_back(remark);
+      for (const std::string& remark : branch.outcome->remarks)
+        result.remarks.push_back(fmt::format("{}: {}", key, remark));
   return result;
 }
 

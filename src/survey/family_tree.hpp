@@ -2,7 +2,9 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "orbweaver/archive/records.hpp"
@@ -19,8 +21,9 @@ namespace orbweaver::survey {
 ///
 /// A branch that arrives at a crossing has come along one of the directions that leave there, so whatever starts in that
 /// direction is the same branch run backwards. It is left out if the branch that arrives comes first in the order of depth,
-/// then key (or if it does not arrive in turn); everything found along it is left out as well. This depends on tasks and
-/// outcomes only, not on when they came: a branch that was never run because of it and one that was make the same archive.
+/// then key (or if it does not arrive in turn); everything found along it is left out as well. `wanted` judges by what has
+/// ended so far; what it has left out wrongly is run afterwards (Survey), so that the archive depends on tasks and outcomes
+/// only, not on when they came.
 class FamilyTree {
  public:
   FamilyTree(const scene::Scene& scene, const systems::Description& system) : _scene(scene), _system(system) {}
@@ -57,22 +60,27 @@ class FamilyTree {
   struct Family;
 
   [[nodiscard]] std::optional<Meeting> meeting_of(const Branch& branch, const LocateOutcome& crossing) const;
-  [[nodiscard]] std::optional<Meeting> meeting_of(const Branch& branch) const;
-  [[nodiscard]] bool covers(const Branch& other, const std::string& other_key, const Branch& branch,
-                            const std::string& key) const;
-  [[nodiscard]] std::map<std::string, Branch> kept_branches() const;
+  using Keys = std::set<std::string>;
+  /// The best of all, crossings on `dropped` branches left out.
+  [[nodiscard]] std::optional<Meeting> meeting_of(const Branch& branch, const Keys& dropped) const;
+  [[nodiscard]] std::vector<std::pair<std::string, const Branch*>> ordered_branches() const;
+  [[nodiscard]] Keys dropped_without(const Keys& before) const;
+  /// Branches that are others run backwards, and all that lies on them.
+  [[nodiscard]] Keys dropped_branches() const;
+  /// The others, as many families as the scene allows.
+  [[nodiscard]] std::map<std::string, Branch> kept_branches(const Keys& dropped) const;
   [[nodiscard]] std::vector<Family> families_of(const std::map<std::string, Branch>& kept) const;
   void name_all(std::vector<Family>& families) const;
   void add_crossings(const std::map<std::string, Branch>& kept, Result& result,
                      std::map<std::string, int>& index) const;
-  void add_families(const std::vector<Family>& families, const std::map<std::string, int>& crossing_index,
-                    Result& result) const;
+  void add_families(const std::vector<Family>& families, const Keys& dropped,
+                    const std::map<std::string, int>& crossing_index, Result& result) const;
 
   const scene::Scene& _scene;
   const systems::Description& _system;
-  std::map<std::string, Branch> _branches;                                             // by key
-  std::map<std::string, LocateOutcome> _crossings;                                     // by key
-  std::vector<std::string> _failures;                                                  // of locations
+  std::map<std::string, Branch> _branches;          // by key
+  std::map<std::string, LocateOutcome> _crossings;  // by key
+  std::map<std::string, std::string> _failures;     // of locations: by the crossing's key
   mutable std::map<std::pair<std::string, std::string>, std::optional<Meeting>> _met;  // branch, crossing
 };
 

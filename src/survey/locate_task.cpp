@@ -68,8 +68,11 @@ class Location {
     const auto crossing = bifurcation::locate(*_system, family, _event, _work.from, _work.to, why);
     if (!crossing) return without_crossing(why);
     describe(*crossing);
-    if (_event.kind == Event::Kind::test_function && _event.function.kind == TestFunction::Kind::sector)
-      leave(*crossing, family.isotropy());
+    if (_event.kind == Event::Kind::test_function && _event.function.kind == TestFunction::Kind::sector) try {
+        leave(*crossing, family);
+      } catch (const core::NumericalError& error) {  // the crossing itself is located, and stays
+        _failure = error.what();
+      }
     queue::TaskOutcome done;
     done.failed = !_failure.empty();
     done.reason = _failure;
@@ -113,7 +116,8 @@ class Location {
     _outcome.state = loop::state_at(loop, 0.0);
   }
 
-  void leave(const bifurcation::Crossing& crossing, const loop::Isotropy& isotropy) {
+  void leave(const bifurcation::Crossing& crossing, continuation::FamilyCurve& family) {
+    const loop::Isotropy& isotropy = family.isotropy();
     if (_outcome.multiplicity * _outcome.period > _scene.limits.period * (1.0 + 1e-9)) {
       _outcome.remark = "orbits born here lie beyond the period limit";
       return;
@@ -125,16 +129,7 @@ class Location {
     _outcome.kernel_dimension = kernel.dimension();
     _outcome.kernel_singular_value = kernel.largest();
     _outcome.next_singular_value = kernel.next();
-    if (kernel.dimension() == 0) {
-      _outcome.remark = fmt::format("no flat direction besides the family's own (smallest singular value {:.2g})",
-                                    kernel.singular_values.empty() ? archive::not_computed : kernel.singular_values[0]);
-      // For q = 1 the family then turns back in energy, and nothing leaves.
-      if (sector.q == 1)
-        _outcome.kind = "fold-energy";
-      else
-        _failure = _outcome.remark;
-      return;
-    }
+    if (kernel.dimension() == 0) return without_kernel(kernel, family);
     if (!starts) return;
     int number = 0;
     for (const bifurcation::Direction& direction :
@@ -150,6 +145,25 @@ class Location {
       add_starts(direction, leaving);
       _outcome.leaving.push_back(std::move(leaving));
     }
+  }
+
+  void without_kernel(const bifurcation::Kernel& kernel, continuation::FamilyCurve& family) {
+    _outcome.remark = fmt::format("no flat direction besides the family's own (smallest singular value {:.2g})",
+                                  kernel.singular_values.empty() ? archive::not_computed : kernel.singular_values[0]);
+    if (_event.tangency) {  // a minimum that came near zero, but is none
+      _outcome.kind.clear();
+    } else if (_event.function.sector.q == 1 && turns_in_energy(family)) {
+      _outcome.kind = "fold-energy";
+    } else {
+      _failure = _outcome.remark;
+    }
+  }
+
+  [[nodiscard]] bool turns_in_energy(continuation::FamilyCurve& family) const {
+    const auto before = family.at(_work.from, true);
+    const auto after = family.at(_work.to, true);
+    return before && after &&
+           bifurcation::energy_slope(*_system, *before) * bifurcation::energy_slope(*_system, *after) < 0.0;
   }
 
   void add_starts(const bifurcation::Direction& direction, const LeavingRecord& leaving) {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "family_tree.hpp"
 #include "orbweaver/queue/observer.hpp"
@@ -66,10 +68,20 @@ class TreeRecorder : public Recorder {
  public:
   TreeRecorder(queue::Observer& display, TimeLimit& time, FamilyTree& tree) : Recorder(display, time), _tree(tree) {}
   bool wanted(const queue::Task& task) override { return _tree.wanted(task); }
+  void left_out(const queue::Task& task) override { _left_out.push_back(task); }
+  /// Tasks left out that are wanted now that more is known; they are no longer among those left out.
+  [[nodiscard]] std::vector<queue::Task> wanted_after_all() {
+    const auto first = std::stable_partition(_left_out.begin(), _left_out.end(),
+                                             [this](const queue::Task& task) { return !_tree.wanted(task); });
+    std::vector<queue::Task> tasks(first, _left_out.end());
+    _left_out.erase(first, _left_out.end());
+    return tasks;
+  }
 
  private:
   void keep(const queue::Task& task, const queue::TaskOutcome& outcome) override { _tree.add(task, outcome); }
   FamilyTree& _tree;
+  std::vector<queue::Task> _left_out;
 };
 
 }  // namespace orbweaver::survey

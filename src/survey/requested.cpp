@@ -1,11 +1,15 @@
 #include "requested.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "executor.hpp"
 #include "orbweaver/bifurcation/locate.hpp"
+#include "orbweaver/loss/linearization.hpp"
 
 namespace orbweaver::survey {
 
@@ -24,15 +28,14 @@ std::optional<continuation::CurvePoint> orbit_with(const Value& value, double wa
   return located ? family.at(located->position) : std::nullopt;
 }
 
-continuation::Orbit orbit_of(const systems::System& system, const corrector::Result& result, double arclength) {
+continuation::Orbit orbit_of(const systems::System& system, const loop::Loop& loop, double arclength) {
   continuation::Orbit orbit;
-  orbit.loop = result.loop;
+  orbit.loop = loop;
   orbit.arclength = arclength;
-  orbit.energy = continuation::energy_of(system, orbit.loop);
-  orbit.action = continuation::action_of(system, orbit.loop);
-  orbit.loss_rms = result.loss_rms;
-  orbit.tail = loop::tail(orbit.loop);
-  orbit.iterations = result.iterations;
+  orbit.energy = continuation::energy_of(system, loop);
+  orbit.action = continuation::action_of(system, loop);
+  orbit.loss_rms = std::sqrt(loss::Linearization(system, loop, loss::Linearization::Order::residual).loss());
+  orbit.tail = loop::tail(loop);
   return orbit;
 }
 
@@ -42,25 +45,33 @@ bool between(double value, double a, double b) { return (value - a) * (value - b
 
 std::vector<continuation::Orbit> requested_orbits(const scene::Scene& scene, const systems::System& system,
                                                   continuation::FamilyCurve& family, const continuation::Orbit& from,
-                                                  const continuation::Orbit& to) {
+                                                  const continuation::Orbit& to, std::vector<std::string>& remarks) {
   std::vector<continuation::Orbit> found;
-  const continuation::Options options = branch_options(scene);
+  const auto missing = [&](const char* what, double value) {
+    remarks.push_back(fmt::format("the orbit of {} {:.12g} between arclength {:.6g} and {:.6g} could not be converged",
+                                  what, value, from.arclength, to.arclength));
+  };
   for (const double period : scene.events.periods) {
     if (!between(period, from.loop.period, to.loop.period)) continue;
     const auto near = orbit_with([](const loop::Loop& loop) { return loop.period; }, period, family, from, to);
-    if (!near) continue;
-    const corrector::Result exact =
-        continuation::orbit_at_period(system, near->loop, family.isotropy(), period, options);
-    if (exact.converged()) found.push_back(orbit_of(system, exact, near->position));
+    if (near) {
+      const corrector::Result exact =
+          continuation::orbit_at_period(system, near->loop, family.isotropy(), period, branch_options(scene));
+      if (exact.converged()) {
+        found.push_back(orbit_of(system, exact.loop, near->position));
+        continue;
+      }
+    }
+    missing("period", period);
   }
   for (const double energy : scene.events.energies) {
     if (!between(energy, from.energy, to.energy)) continue;
-    const auto near = orbit_with([&](const loop::Loop& loop) { return continuation::energy_of(system, loop); }, energy,
-                                 family, from, to);
-    if (!near) continue;
-    const corrector::Result settled =
-        continuation::orbit_at_period(system, near->loop, family.isotropy(), near->loop.period, options);
-    if (settled.converged()) found.push_back(orbit_of(system, settled, near->position));
+    const auto there = orbit_with([&](const loop::Loop& loop) { return continuation::energy_of(system, loop); }, energy,
+                                  family, from, to);
+    if (there)
+      found.push_back(orbit_of(system, there->loop, there->position));
+    else
+      missing("energy", energy);
   }
   std::sort(found.begin(), found.end(),
             [](const continuation::Orbit& a, const continuation::Orbit& b) { return a.arclength < b.arclength; });

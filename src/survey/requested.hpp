@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "orbweaver/continuation/family_curve.hpp"
@@ -10,11 +11,10 @@
 namespace orbweaver::survey {
 
 /// The orbits between two neighbours of a family that have the scene's requested periods (exactly) and energies (to
-/// rounding), in their order along the family. Those that cannot be converged are left out.
-[[nodiscard]] std::vector<continuation::Orbit> requested_orbits(const scene::Scene& scene,
-                                                                const systems::System& system,
-                                                                continuation::FamilyCurve& family,
-                                                                const continuation::Orbit& from,
-                                                                const continuation::Orbit& to);
+/// rounding), in their order along the family. A remark is made of each one that
+/// cannot be had.
+[[nodiscard]] std::vector<continuation::Orbit> requested_orbits(
+    const scene::Scene& scene, const systems::System& system, continuation::FamilyCurve& family,
+    const continuation::Orbit& from, const continuation::Orbit& to, std::vector<std::string>& remarks);
 
 }  // namespace orbweaver::survey

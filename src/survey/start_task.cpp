@@ -45,10 +45,11 @@ queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const 
     const std::optional<continuation::Orbit> orbit = branch.advance();
     if (!orbit) {
       const continuation::Ending ending = branch.ending().value();
-      why = ending.text();
-      if (ending.failed()) continue;
+      if (ending.failed() || !why.empty()) {  // a limit reached from further out says nothing of this family
+        if (why.empty()) why = ending.text();
+        continue;
+      }
       queue::TaskOutcome done;  // beyond the scene's limits: no family begins
-      done.payload = why;
       return done;
     }
     const double share = share_along(begin, orbit->loop);

@@ -149,6 +149,13 @@ void make_folder(const core::Communicator& comm, const std::filesystem::path& fo
                                              folder.string(), problem.empty() ? "" : ": ", problem));
 }
 
+// Rank 0's answer, on all ranks.
+bool agreed(const core::Communicator& comm, bool answer) {
+  int number = answer ? 1 : 0;
+  core::check_mpi(MPI_Bcast(&number, 1, MPI_INT, 0, comm.get()), "MPI_Bcast");
+  return number != 0;
+}
+
 // Failures of what stays in the archive, the same number on all ranks.
 std::size_t agreed_failures(const core::Communicator& comm, const Summary& summary) {
   auto failures = static_cast<unsigned long>(summary.failed_tasks.size());
@@ -188,8 +195,13 @@ Summary run_survey(const core::Communicator& comm, const scene::Scene& scene,
   const queue::RunSummary swept = queue::run(comm, options, sweep_tasks(scene, *system), executor, sweeps, flusher);
   FamilyTree tree(scene, system->description());
   TreeRecorder branches(progress, time, tree);
-  const queue::RunSummary followed = queue::run(
-      comm, options, branch_tasks(scene, system->description(), sweeps, summary), executor, branches, flusher);
+  queue::RunSummary followed = queue::run(comm, options, branch_tasks(scene, system->description(), sweeps, summary),
+                                          executor, branches, flusher);
+  while (!followed.stopped_early) {
+    std::vector<queue::Task> tasks = comm.is_root() ? branches.wanted_after_all() : std::vector<queue::Task>{};
+    if (!agreed(comm, !tasks.empty())) break;
+    followed = queue::run(comm, options, std::move(tasks), executor, branches, flusher);
+  }
   if (time.reached()) summary.remarks.push_back(time.remark(followed));
 
   FamilyTree::Result found = tree.resolve();

@@ -47,7 +47,7 @@ TEST_P(GeneralMaps, LeaveTheTangentAsItIs) {
   start.isotropy = less_symmetry(GetParam());
   start.direction = loop::with_cutoff(orbits[orbits.size() - 5].loop, start.base.cutoff).modes;
   for (std::size_t n = 0; n < start.direction.size(); ++n) start.direction[n] -= start.base.modes[n];
-  Branch branch(test::pendulum(), start, {});
+  Branch branch(test::pendulum(), start, {.general_map_cells = 192});
   const Orbit orbit = branch.advance().value();
   const Frontier& frontier = branch.frontier();
   ASSERT_FALSE(frontier.trace.time_map == orbit.loop.time_map);
