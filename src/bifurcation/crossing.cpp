@@ -107,8 +107,8 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
   if (!located && event.kind != Event::Kind::test_function)
     located = extremum(system, family, event, from, to, absolute);
   if (!located) {
-    why = fmt::format("no zero between positions {:.9g} and {:.9g}: the function has one sign there, or no orbit", from,
-                      to);
+    why = fmt::format("no zero between positions {:.9g} and {:.9g}, where the function is {:.3g} and {:.3g}", from, to,
+                      function(from), function(to));
     return std::nullopt;
   }
   std::optional<Crossing> crossing = function.at(located->position, true);

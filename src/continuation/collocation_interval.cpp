@@ -71,7 +71,7 @@ class CollocationInterval final : public CurveInterval {
       // Conditions of the interval, not of the guess: the orbit must not depend on how it is found.
       const std::vector<double> weights = _points.conditions_at({points()[_first].values, prediction.tangent, 1});
       Trial trial = _points.correct(prediction, weights);
-      if (!trial.converged) return std::nullopt;
+      if (!trial.converged || slipped(trial, prediction)) return std::nullopt;
       if (_points.resolved(trial)) {
         if (!trial.accepted()) return std::nullopt;
         return trial;
@@ -81,6 +81,15 @@ class CollocationInterval final : public CurveInterval {
       if (_points.cutoff_of(cells) > 2 * _options.cutoff_to) return std::nullopt;
       _points.regrid({cells, equations().time_map()});
     }
+  }
+
+  /// True if the corrector has gone far from where the family is expected: onto another one.
+  [[nodiscard]] bool slipped(const Trial& trial, const Prediction& prediction) {
+    const std::vector<double>& first = points()[_first].values;
+    const std::vector<double>& last = points()[_last].values;
+    const std::vector<double>& guess = prediction.values;
+    return _points.product(trial.values, guess, trial.values, guess) >
+           largest_correction * largest_correction * _points.product(last, first, last, first);
   }
 
   /// On the polynomial through the nearest points, moved along the chord to its share of it.

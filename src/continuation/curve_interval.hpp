@@ -19,6 +19,9 @@ class CurveInterval {
   [[nodiscard]] virtual std::optional<CurvePoint> at(double position, bool with_tangent) = 0;
 };
 
+/// An orbit further than this from its prediction, in parts of the chord, belongs to another family.
+inline constexpr double largest_correction = 0.2;
+
 /// What an interval is made of: all known orbits, those at `from` and `to` among them.
 struct IntervalOf {
   const systems::System& system;

@@ -55,6 +55,10 @@ class LoopInterval final : public CurveInterval {
         continue;
       }
       if (!result.converged()) return std::nullopt;
+      const std::vector<double> correction = unknowns.difference(guess, result.loop);
+      if (Eigen::Map<const Eigen::VectorXd>(correction.data(), unknowns.size()).norm() >
+          largest_correction * chord.norm())
+        return std::nullopt;
       CurvePoint point;
       point.position = position;
       point.loop = result.loop;

@@ -61,15 +61,37 @@ class Location {
   }
 
   queue::TaskOutcome run() {
-    continuation::Options options = branch_options(_scene);
-    continuation::FamilyCurve family(_system, isotropy_of(_work.isotropy, _system->description()), options);
-    for (const KnownOrbit& known : _work.known) family.add(known.position, loop_of(known.loop), _work.known.size());
     std::string why;
-    const auto crossing = bifurcation::locate(*_system, family, _event, _work.from, _work.to, why);
-    if (!crossing) return without_crossing(why);
-    describe(*crossing);
+    continuation::Options options = branch_options(_scene);
+    const loop::Isotropy isotropy = isotropy_of(_work.isotropy, _system->description());
+    continuation::FamilyCurve fast(_system, isotropy, options);
+    add_known(fast);
+    auto crossing = bifurcation::locate(*_system, fast, _event, _work.from, _work.to, why);
+    if (crossing || _event.tangency) return crossing ? located(*crossing, fast) : without_crossing(why);
+    // Newton's method on whole loops is slower, and finds orbits that the fast way misses. Its positions between known
+    // orbits are a little different ones.
+    options.corrector.method = corrector::Method::newton_krylov;
+    continuation::FamilyCurve any(_system, isotropy, options);
+    add_known(any);
+    double from = any.known().front().position;
+    double to = any.known().back().position;
+    for (const continuation::FamilyCurve::Known& known : any.known()) {
+      if (known.position <= _work.from) from = std::max(from, known.position);
+      if (known.position >= _work.to) to = std::min(to, known.position);
+    }
+    crossing = bifurcation::locate(*_system, any, _event, from, to, why);
+    return crossing ? located(*crossing, any) : without_crossing(why);
+  }
+
+ private:
+  void add_known(continuation::FamilyCurve& family) const {
+    for (const KnownOrbit& known : _work.known) family.add(known.position, loop_of(known.loop), _work.known.size());
+  }
+
+  queue::TaskOutcome located(const bifurcation::Crossing& crossing, continuation::FamilyCurve& family) {
+    describe(crossing);
     if (_event.kind == Event::Kind::test_function && _event.function.kind == TestFunction::Kind::sector) try {
-        leave(*crossing, family);
+        leave(crossing, family);
       } catch (const core::NumericalError& error) {  // the crossing itself is located, and stays
         _failure = error.what();
       }
@@ -81,7 +103,6 @@ class Location {
     return done;
   }
 
- private:
   queue::TaskOutcome without_crossing(const std::string& why) {
     queue::TaskOutcome done;
     // Only minima that come near zero, and functions that vanish for other reasons, may turn out to be nothing.

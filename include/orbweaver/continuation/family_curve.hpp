@@ -31,8 +31,8 @@ class FamilyCurve {
  public:
   FamilyCurve(std::shared_ptr<const systems::System> system, loop::Isotropy isotropy, const Options& options);
   ~FamilyCurve();
-  FamilyCurve(const FamilyCurve&) = delete;
-  FamilyCurve& operator=(const FamilyCurve&) = delete;
+  FamilyCurve(FamilyCurve&&) = delete;
+  FamilyCurve& operator=(FamilyCurve&&) = delete;
 
   /// The next known orbit; positions increase. Only the last `keep` known orbits stay.
   void add(double position, const loop::Loop& loop, std::size_t keep = 5);
