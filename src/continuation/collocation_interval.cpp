@@ -40,28 +40,24 @@ class CollocationInterval final : public CurveInterval {
   }
 
   std::optional<CurvePoint> at(double position, bool with_tangent) override {
-    const auto known = std::find_if(_found.begin(), _found.end(), [&](const Found& f) {
-      return f.point.position == position && (!with_tangent || !f.point.tangent_modes.empty());
+    const auto known = std::find_if(_found.begin(), _found.end(), [&](const CurvePoint& point) {
+      return point.position == position && (!with_tangent || !point.tangent_modes.empty());
     });
-    if (known != _found.end()) return known->point;
+    if (known != _found.end()) return *known;
     std::optional<Trial> trial = solve(position);
     if (!trial) {
       _frontier.trace.factor_point.clear();
       trial = solve(position);
     }
     if (!trial) return std::nullopt;
-    Found found{{position, _points.modes(), {}, 0.0}};
-    if (with_tangent) set_tangent(trial->values, found.point);
+    CurvePoint found{position, _points.modes(), {}, 0.0};
+    if (with_tangent) set_tangent(trial->values, found);
     points().push_back({std::move(trial->values), position});
     _found.push_back(found);
-    return found.point;
+    return found;
   }
 
  private:
-  struct Found {
-    CurvePoint point;
-  };
-
   [[nodiscard]] Collocation& equations() { return _points.equations(); }
   [[nodiscard]] std::vector<TracePoint>& points() { return _frontier.trace.points; }
 
@@ -147,7 +143,7 @@ class CollocationInterval final : public CurveInterval {
   PointCorrector _points;
   std::size_t _first = 0;  // of the interval, among the points
   std::size_t _last = 0;
-  std::vector<Found> _found;
+  std::vector<CurvePoint> _found;
 };
 
 }  // namespace

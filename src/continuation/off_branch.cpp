@@ -80,10 +80,6 @@ double matrix_free_eigenvalue(const systems::System& system, const loop::Loop& l
   }
 }
 
-}  // namespace
-
-namespace {
-
 std::vector<OffBranchTriplet> triplets_in(const systems::System& system, const loop::Loop& loop, const Sector& sector,
                                           const spectrum::TripletOptions& options) {
   spectrum::TripletOptions here = options;

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "naming.hpp"
 #include "orbweaver/loop/alignment.hpp"
 
 namespace orbweaver::survey {
@@ -28,13 +29,6 @@ bool is_fold(const LocateOutcome& crossing) { return crossing.kind.starts_with("
 std::string letter_of(int multiplicity) {
   if (multiplicity == 1) return "B";
   return multiplicity == 2 ? "D" : fmt::format("T{}", multiplicity);
-}
-
-// The archive's text columns hold 4096 bytes.
-std::string limited(std::string text) {
-  constexpr std::size_t longest = 2000;
-  if (text.size() > longest) text = text.substr(0, longest) + " ...";
-  return text;
 }
 
 /// base + step * direction.
@@ -363,6 +357,12 @@ FamilyTree::Result FamilyTree::resolve() const {
   };
   for (const auto& [key, reason] : _failures)
     if (on_kept(key)) result.failures.push_back(fmt::format("locate {}: {}", key, reason));
+  const auto beyond = std::count_if(_crossings.begin(), _crossings.end(), [&](const auto& entry) {
+    return on_kept(entry.first) && entry.second.multiplicity * entry.second.period > _scene.limits.period;
+  });
+  if (beyond > 0)
+    result.remarks.push_back(
+        fmt::format("{} crossings lead to orbits beyond limits.period: nothing was started there", beyond));
   for (const auto& [key, branch] : kept)
     if (branch.outcome)
       for (const std::string& remark : branch.outcome->remarks)

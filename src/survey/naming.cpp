@@ -33,6 +33,12 @@ std::string base_name(const scene::Scene& scene, const systems::Description& sys
   return fmt::format("Equilibrium {}, mode {}", index + 1, mode + 1);
 }
 
+std::string limited(std::string text) {
+  constexpr std::size_t longest = 2000;
+  if (text.size() > longest) text = text.substr(0, longest) + " ...";
+  return text;
+}
+
 std::string point_text(const systems::Description& system, const std::vector<double>& point) {
   std::string text;
   for (std::size_t i = 0; i < point.size(); ++i) {

@@ -13,6 +13,9 @@ namespace orbweaver::survey {
 [[nodiscard]] std::string base_name(const scene::Scene& scene, const systems::Description& system,
                                     const std::vector<double>& point, int index, int mode);
 
+/// The text, cut to what the archive's text columns hold (4096 bytes) with room to spare.
+[[nodiscard]] std::string limited(std::string text);
+
 /// "(0, 180)" in degrees for angles: an equilibrium for people.
 [[nodiscard]] std::string point_text(const systems::Description& system, const std::vector<double>& point);
 

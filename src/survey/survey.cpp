@@ -29,13 +29,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// The archive's text columns hold 4096 bytes.
-std::string limited(std::string text) {
-  constexpr std::size_t longest = 2000;
-  if (text.size() > longest) text = text.substr(0, longest) + " ...";
-  return text;
-}
-
 double peak_memory_mib() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
