@@ -177,4 +177,15 @@ void check_crossings(const Header& header, const Records& records) {
   }
 }
 
+void check_voided(const Records& records, std::size_t segments) {
+  for (const VoidedRows& rows : records.voided) {
+    const std::string record = fmt::format("voided rows of family '{}'", rows.family_key);
+    check_key(record, rows.family_key);
+    expect(rows.first_step <= rows.last_step, record,
+           fmt::format("their steps end at {} before they begin at {}", rows.last_step, rows.first_step));
+    expect(rows.before_segment >= 0 && rows.before_segment <= static_cast<std::int64_t>(segments), record,
+           fmt::format("before_segment is {}; 0 ... {} was expected", rows.before_segment, segments));
+  }
+}
+
 }  // namespace orbweaver::archive

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "orbweaver/archive/records.hpp"
 
 namespace orbweaver::archive {
@@ -11,5 +13,7 @@ void check_sections(const Header& header, const Records& records);
 /// Families and crossings as they are handed over for a finished archive.
 void check_families(const Records& records);
 void check_crossings(const Header& header, const Records& records);
+/// `segments`: how many are listed to consolidate.
+void check_voided(const Records& records, std::size_t segments);
 
 }  // namespace orbweaver::archive

@@ -34,7 +34,10 @@ Order share_order(MPI_Comm comm, Order order) {
   broadcast(comm, header.winding_names);
   broadcast(comm, order.selection.keys);
   broadcast(comm, order.selection.left_out);
+  broadcast(comm, order.selection.voided_keys);
+  broadcast(comm, order.selection.earlier_scenes);
   order.selection.steps = gather_rows(comm, order.selection.steps);  // only rank 0 has any
+  order.selection.voided = gather_rows(comm, order.selection.voided);
   order.output = texts[0];
   header.orbweaver_version = texts[1];
   header.scene = texts[2];
@@ -183,7 +186,7 @@ void write_sections(MPI_Comm comm, ParallelFile& file, const Order& order, const
   }
 }
 
-void check_input(MPI_Comm comm, const Header& header, const Records& tables) {
+void check_input(MPI_Comm comm, const Header& header, const Records& tables, std::size_t segments) {
   collectively(comm, [&] {
     if (rank_of(comm) != 0) return;
     core::require(tables.orbits.empty() && tables.sections.empty(),
@@ -191,6 +194,7 @@ void check_input(MPI_Comm comm, const Header& header, const Records& tables) {
     check_header(header);
     check_families(tables);
     check_crossings(header, tables);
+    check_voided(tables, segments);
   });
 }
 
@@ -200,7 +204,7 @@ void consolidate(MPI_Comm comm, const std::vector<std::filesystem::path>& segmen
                  const Header& header, const Records& tables, const ConsolidateOptions& options) {
   const core::LogStage stage(core::Stage::archive);
   const bool is_root = rank_of(comm) == 0;
-  check_input(comm, header, tables);
+  check_input(comm, header, tables, segments.size());
   Order given;
   if (is_root) {
     given = {{}, output.string(), header, selection_of(tables), options.block_values};

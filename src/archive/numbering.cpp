@@ -36,12 +36,25 @@ class SegmentScan {
                               found.winding_names == _header.winding_names && found.pairs == _header.pairs &&
                               has_complex_stability(found) == has_complex_stability(_header);
     segment.file().expect(same_columns, "was written for another system (state names, angles or stability differ)");
-    segment.file().expect(found.scene == _header.scene, "was written for another scene");
+    const auto& earlier = _selection.earlier_scenes;
+    segment.file().expect(
+        found.scene == _header.scene || std::find(earlier.begin(), earlier.end(), found.scene) != earlier.end(),
+        "was written for another scene");
+  }
+
+  [[nodiscard]] bool is_voided(std::int64_t segment, const std::string& key, std::int64_t step) const {
+    const auto& keys = _selection.voided_keys;
+    const auto [first, last] = std::equal_range(keys.begin(), keys.end(), key);
+    const auto at = [&](auto position) { return _selection.voided.begin() + (position - keys.begin()); };
+    return std::any_of(at(first), at(last), [&](const VoidedSteps& rows) {
+      return segment < rows.before_segment && step >= rows.steps.first && step <= rows.steps.last;
+    });
   }
 
   // Nothing for a row that is left out.
-  [[nodiscard]] std::optional<std::int64_t> family_of(const SegmentFile& segment, const std::string& key,
-                                                      std::int64_t step) const {
+  [[nodiscard]] std::optional<std::int64_t> family_of(const SegmentFile& segment, std::int64_t index,
+                                                      const std::string& key, std::int64_t step) const {
+    if (is_voided(index, key, step)) return std::nullopt;
     if (std::binary_search(_selection.left_out.begin(), _selection.left_out.end(), key)) return std::nullopt;
     const auto& keys = _selection.keys;
     const auto found = std::lower_bound(keys.begin(), keys.end(), key);
@@ -61,7 +74,7 @@ class SegmentScan {
     const auto map_begin = segment.orbit_integers("time_map_begin");
     const auto map_count = segment.orbit_integers("time_map_count");
     for (std::size_t i = 0; i < keys.size(); ++i)
-      if (const auto family = family_of(segment, keys[i], steps[i]))
+      if (const auto family = family_of(segment, index, keys[i], steps[i]))
         orbits.push_back({*family, steps[i], index, static_cast<std::int64_t>(i), modes_begin[i], modes_count[i],
                           map_begin[i], map_count[i]});
   }
@@ -72,7 +85,7 @@ class SegmentScan {
     const auto& steps = table.integers("step");
     const auto& times = table.reals("time");
     for (std::size_t i = 0; i < keys.size(); ++i)
-      if (const auto family = family_of(segment, keys[i], steps[i]))
+      if (const auto family = family_of(segment, index, keys[i], steps[i]))
         sections.push_back({*family, steps[i], index, static_cast<std::int64_t>(i), -1, times[i]});
   }
 

@@ -36,11 +36,20 @@ struct StepRange {
   std::int64_t last = 0;
 };
 
+/// Steps that are left out of the segments before `before_segment`.
+struct VoidedSteps {
+  StepRange steps;
+  std::int64_t before_segment = 0;
+};
+
 /// Which rows of the segments the archive takes.
 struct Selection {
-  std::vector<std::string> keys;      ///< of the families, sorted
-  std::vector<StepRange> steps;       ///< one a key
-  std::vector<std::string> left_out;  ///< keys of families whose rows are left out, sorted
+  std::vector<std::string> keys;         ///< of the families, sorted
+  std::vector<StepRange> steps;          ///< one a key
+  std::vector<std::string> left_out;     ///< keys of families whose rows are left out, sorted
+  std::vector<std::string> voided_keys;  ///< of the families that have voided rows, sorted, one an entry of `voided`
+  std::vector<VoidedSteps> voided;
+  std::vector<std::string> earlier_scenes;  ///< besides the header's
 };
 
 /// All rows that are taken of all segments in canonical order, the same on every rank.

@@ -83,6 +83,14 @@ Selection selection_of(const Records& tables) {
   }
   selection.left_out = tables.left_out_keys;
   std::sort(selection.left_out.begin(), selection.left_out.end());
+  std::multimap<std::string, VoidedSteps> voided;
+  for (const VoidedRows& rows : tables.voided)
+    voided.insert({rows.family_key, {{rows.first_step, rows.last_step}, rows.before_segment}});
+  for (const auto& [key, rows] : voided) {
+    selection.voided_keys.push_back(key);
+    selection.voided.push_back(rows);
+  }
+  selection.earlier_scenes = tables.earlier_scenes;
   return selection;
 }
 

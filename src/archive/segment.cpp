@@ -147,7 +147,8 @@ void check_input(MPI_Comm comm, const Header& header, const Records& mine) {
   broadcast(comm, root);
   collectively(comm, [&] {
     core::require(own == root, "the ranks give different headers to write_segment");
-    core::require(mine.families.empty() && mine.crossings.empty() && mine.left_out_keys.empty(),
+    core::require(mine.families.empty() && mine.crossings.empty() && mine.left_out_keys.empty() &&
+                      mine.voided.empty() && mine.earlier_scenes.empty(),
                   "segments hold orbits and sections; hand families and crossings to consolidate");
     check_header(header);
     check_orbits(header, mine);

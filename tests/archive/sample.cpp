@@ -132,6 +132,8 @@ Records tables_of(const Records& records) {
   tables.families = records.families;
   tables.crossings = records.crossings;
   tables.left_out_keys = records.left_out_keys;
+  tables.voided = records.voided;
+  tables.earlier_scenes = records.earlier_scenes;
   return tables;
 }
 

@@ -19,7 +19,7 @@ archive::Header sample_header(int pairs = 1, bool symplectic = true);
 /// given out of order.
 archive::Records sample_records(const archive::Header& header);
 
-/// The families, crossings and keys left out, or the orbits and sections, of `records` alone.
+/// The families, crossings and what says which rows are left out, or the orbits and sections, of `records` alone.
 archive::Records tables_of(const archive::Records& records);
 archive::Records rows_of(const archive::Records& records);
 

@@ -98,6 +98,7 @@ TEST_F(Failures, AnInvalidRecordOfOneRankIsRefusedByAll) {
   EXPECT_THAT(refusal_of([](Records& r) { some_orbit(r).family_key = "\xff\xfe"; }), HasSubstr("UTF-8"));
   EXPECT_THAT(refusal_of([](Records& r) { r.families.resize(1); }), HasSubstr("consolidate"));
   EXPECT_THAT(refusal_of([](Records& r) { r.left_out_keys = {"0001"}; }), HasSubstr("consolidate"));
+  EXPECT_THAT(refusal_of([](Records& r) { r.voided = {{"0001", 0, 1, 0}}; }), HasSubstr("consolidate"));
   EXPECT_THAT(refusal_of([](Records& r) {
                 r.sections.assign(1, {"0001", 0, not_computed, {0, 0}});
               }),
@@ -198,6 +199,12 @@ TEST_F(Failures, InvalidTablesAreRefusedByAllRanks) {
               }),
               HasSubstr("steps end at 2 before they begin at 3"));
   EXPECT_THAT(refusal([](Records& t) { t.left_out_keys = {"9", "0003"}; }), HasSubstr("left out too"));
+  EXPECT_THAT(refusal([](Records& t) {
+                t.voided = {{"0003", 3, 2, 0}};
+              }),
+              HasSubstr("steps end at 2 before they begin at 3"));
+  EXPECT_THAT(refusal([](Records& t) { t.voided = {{"0003", 0, 2, 1}}; }), HasSubstr("before_segment is 1; 0 ... 0"));
+  EXPECT_THAT(refusal([](Records& t) { t.voided = {{"", 0, 2, 0}}; }), HasSubstr("family key is empty"));
   EXPECT_THAT(refusal([](Records& t) { t.crossings[0].family_key = "9"; }), HasSubstr("family_key '9'"));
   EXPECT_THAT(refusal([](Records& t) { t.crossings[0].arclength = not_computed; }), HasSubstr("arclength is nan"));
   EXPECT_THAT(refusal([&](Records& t) { t.orbits = records.orbits; }), HasSubstr("write_segment"));

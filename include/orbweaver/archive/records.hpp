@@ -87,6 +87,15 @@ struct Header {
   bool symplectic = true;
 };
 
+/// Rows of one family that are no longer valid in the first `before_segment` segments (as listed to `consolidate`): a
+/// survey resumed with wider limits computes them again. Later segments hold what stands in their place, if anything.
+struct VoidedRows {
+  std::string family_key;
+  int first_step = std::numeric_limits<int>::min();
+  int last_step = std::numeric_limits<int>::max();
+  int before_segment = 0;
+};
+
 /// Records in any order; tables are sorted by key and step when they are written.
 struct Records {
   std::vector<FamilyRecord> families;
@@ -94,6 +103,9 @@ struct Records {
   std::vector<CrossingRecord> crossings;
   std::vector<SectionRecord> sections;
   std::vector<std::string> left_out_keys;  ///< families that the archive does not have; rows of theirs are left out
+  std::vector<VoidedRows> voided;          ///< several for one family are allowed
+  /// Scenes, besides the header's, for which segments may have been written: those before limits were widened.
+  std::vector<std::string> earlier_scenes;
 };
 
 }  // namespace orbweaver::archive
