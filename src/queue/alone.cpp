@@ -47,21 +47,28 @@ void Alone::do_next() {
   _unshown_rows = 0;
   _flush_seconds = 0.0;
   _told_to_stop = false;
+  _stopped_at.clear();
   const Stopwatch watch;
   TaskOutcome outcome = execute_guarded(_executor, *task, *this);
   _load.busy_seconds += watch.seconds() - _flush_seconds;
   ++_load.tasks;
   outcome.stopped = _told_to_stop;
+  outcome.state = std::move(_stopped_at);
   if (_error.empty()) _ledger.settle(std::move(outcome));
 }
 
-bool Alone::report(const Progress& progress) {
+bool Alone::report(const Progress& progress, const StateSource& state) {
+  _state = state ? &state : nullptr;
   try {
     if (_error.empty()) note(progress);
   } catch (...) {
     _error = current_exception_text();
   }
-  if (stop_requested() || !_error.empty()) _told_to_stop = true;
+  if (stop_requested() || !_error.empty()) {
+    if (!_told_to_stop && state) _stopped_at = state();
+    _told_to_stop = true;
+  }
+  _state = nullptr;
   return !_told_to_stop;
 }
 
@@ -81,12 +88,13 @@ void Alone::note(const Progress& progress) {
 
 void Alone::flush() {
   const int number = _flushes++;
+  if (_ledger.counts().running > 0) _ledger.set_state(_key, _state != nullptr ? (*_state)() : std::string());
   _ledger.flushing(number);
   const Stopwatch watch;
   const std::string error = flush_guarded(_flusher, number);
   _flush_seconds += watch.seconds();
   if (!error.empty()) throw core::EnvironmentError(flush_failed_text(number, {{0, error}}, 1));
-  _ledger.flushed();
+  _ledger.flushed(number);
   _schedule.flushed();
 }
 

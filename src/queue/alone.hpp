@@ -15,7 +15,7 @@ class Alone final : public TaskContext {
   Alone(const Options& options, Executor& executor, Observer& observer, Flusher& flusher);
 
   RunSummary run(std::vector<Task> initial);
-  [[nodiscard]] bool report(const Progress& progress) override;
+  [[nodiscard]] bool report(const Progress& progress, const StateSource& state) override;
 
  private:
   void do_all();
@@ -28,11 +28,13 @@ class Alone final : public TaskContext {
   Ledger _ledger;
   FlushSchedule _schedule;
   Interval _progress_interval;
-  std::string _key;                // of the running task
-  std::int64_t _unshown_rows = 0;  // not yet told to the observer
-  double _flush_seconds = 0.0;     // inside the running task
-  bool _told_to_stop = false;      // the running task
-  std::string _error;              // met inside report(), which must not throw
+  std::string _key;                     // of the running task
+  std::int64_t _unshown_rows = 0;       // not yet told to the observer
+  double _flush_seconds = 0.0;          // inside the running task
+  bool _told_to_stop = false;           // the running task
+  std::string _stopped_at;              // its state then
+  const StateSource* _state = nullptr;  // inside report()
+  std::string _error;                   // met inside report(), which must not throw
   int _flushes = 0;
   RankLoad _load;
 };

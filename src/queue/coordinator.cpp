@@ -86,8 +86,8 @@ bool Coordinator::advance_flush() {
       return true;
     case FlushRound::Phase::flushing:
       if (!_round.complete()) return false;
+      _ledger.flushed(_round.number());
       _round.end();
-      _ledger.flushed();
       _schedule.flushed();
       _over = _last_round;
       return true;
@@ -134,8 +134,11 @@ void Coordinator::accept(int worker, const Message& message) {
           [&](const FlushReady& ready) {
             _round.ready(worker, ready.number);
             count_rows(ready.rows);
+            const std::string& key = _task_of[static_cast<std::size_t>(worker)];
+            if (!key.empty()) _ledger.set_state(key, ready.state);
           },
           [&](const FlushDone& done) { _round.done(worker, done.number, done.error); },
+          [&](const Stop&) { request_stop(); },
           [&](const Alarm& alarm) { throw core::EnvironmentError(fmt::format("rank {}: {}", worker, alarm.error)); },
           [&](const auto& other) { refuse(worker, other.tag); },
       },

@@ -48,7 +48,7 @@ void Ledger::settle(TaskOutcome outcome) {
 }
 
 void Ledger::put_back(const TaskOutcome& outcome) {
-  const Task task = _queue.put_back(outcome.key);
+  const Task task = _queue.put_back(outcome.key, outcome.state);
   ++_summary.stopped;
   _observer.stopped(task, outcome);
 }

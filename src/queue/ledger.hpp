@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "interval.hpp"
@@ -24,7 +25,11 @@ class Ledger {
   void tick();
 
   void flushing(int number) { _observer.flushing(number, _queue); }
-  void flushed() { ++_summary.flushes; }
+  void set_state(const std::string& key, std::string state) { _queue.set_state(key, std::move(state)); }
+  void flushed(int number) {
+    ++_summary.flushes;
+    _observer.flushed(number);
+  }
   void set_load(int rank, const RankLoad& load) { _summary.loads[static_cast<std::size_t>(rank)] = load; }
 
   [[nodiscard]] const TaskCounts& counts() const noexcept { return _queue.counts(); }

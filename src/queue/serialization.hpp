@@ -11,12 +11,12 @@ namespace orbweaver::queue {
 
 template <class Archive>
 void serialize(Archive& archive, Task& t, unsigned) {
-  archive& t.key& t.priority& t.kind& t.payload;
+  archive& t.key& t.priority& t.kind& t.payload& t.state;
 }
 
 template <class Archive>
 void serialize(Archive& archive, TaskOutcome& o, unsigned) {
-  archive& o.key& o.failed& o.stopped& o.reason& o.children& o.payload;
+  archive& o.key& o.failed& o.stopped& o.reason& o.children& o.payload& o.state;
 }
 
 template <class Archive>
@@ -51,7 +51,7 @@ void serialize(Archive& archive, FlushRequest& m, unsigned) {
 
 template <class Archive>
 void serialize(Archive& archive, FlushReady& m, unsigned) {
-  archive& m.number& m.rows;
+  archive& m.number& m.rows& m.state;
 }
 
 template <class Archive>

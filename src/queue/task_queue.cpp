@@ -51,12 +51,20 @@ Task TaskQueue::fail(const std::string& key) {
   return task;
 }
 
-Task TaskQueue::put_back(const std::string& key) {
+Task TaskQueue::put_back(const std::string& key, std::string state) {
   Task task = leave_running(key);
+  task.state = std::move(state);
   _states[task.key] = TaskState::waiting;
   _waiting.emplace(Place{task.priority, task.key}, task);
   ++_counts.waiting;
   return task;
+}
+
+void TaskQueue::set_state(const std::string& key, std::string state) {
+  const auto found = _running.find(key);
+  if (found == _running.end())
+    throw core::MisuseError(fmt::format("task \"{}\" was expected to be running, and is not", key));
+  found->second.state = std::move(state);
 }
 
 TaskState TaskQueue::state(const std::string& key) const {

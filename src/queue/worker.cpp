@@ -8,6 +8,7 @@
 #include "backoff.hpp"
 #include "guarded.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/queue/stop.hpp"
 #include "overloaded.hpp"
 
 namespace orbweaver::queue {
@@ -70,19 +71,23 @@ void Worker::work() {
 void Worker::do_task() {
   _executing = true;
   _told_to_stop = false;
+  _stopped_at.clear();
   _flush_seconds = 0.0;
   const Stopwatch watch;
   TaskOutcome outcome = execute_guarded(_executor, *_task, *this);
   _load.busy_seconds += watch.seconds() - _flush_seconds;
   ++_load.tasks;
   outcome.stopped = _told_to_stop;
+  outcome.state = std::move(_stopped_at);
   _executing = false;
   _task.reset();
   if (!_shutdown && _trouble.empty()) _channel.send(0, Outcome{std::move(outcome), std::exchange(_uncounted_rows, 0)});
 }
 
-bool Worker::report(const Progress& progress) {
+bool Worker::report(const Progress& progress, const StateSource& state_source) {
+  _state = &state_source;
   try {
+    pass_on_stop();
     if (!_shutdown && _trouble.empty()) tell(progress);
     while (!_shutdown && _trouble.empty()) {
       const auto received = _channel.poll();
@@ -92,8 +97,29 @@ bool Worker::report(const Progress& progress) {
   } catch (...) {
     _trouble = current_exception_text();
   }
-  if (_stopping || _shutdown || !_trouble.empty()) _told_to_stop = true;
+  if (_stopping || _shutdown || !_trouble.empty()) tell_to_stop();
+  _state = nullptr;
   return !_told_to_stop;
+}
+
+/// Only once: afterwards the work may no longer be where it was.
+void Worker::tell_to_stop() {
+  if (_told_to_stop) return;
+  _told_to_stop = true;
+  try {
+    _stopped_at = state();
+  } catch (...) {
+    if (_trouble.empty()) _trouble = current_exception_text();
+  }
+}
+
+std::string Worker::state() const { return _state != nullptr && *_state ? (*_state)() : std::string(); }
+
+/// A signal may reach a worker alone; rank 0 decides.
+void Worker::pass_on_stop() {
+  if (_passed_on || !stop_requested()) return;
+  _passed_on = true;
+  _channel.send(0, Stop{});
 }
 
 void Worker::tell(const Progress& progress) {
@@ -110,6 +136,7 @@ Message Worker::wait() {
   Backoff backoff(_options);
   for (;;) {
     if (const auto received = _channel.poll()) return received->open();
+    pass_on_stop();
     if (_channel.sending()) backoff.reset();
     backoff.wait();
   }
@@ -165,7 +192,7 @@ void Worker::take(const Message& message) {
 
 void Worker::stand_still(int number) {
   const Stopwatch watch;
-  _channel.send(0, FlushReady{number, std::exchange(_uncounted_rows, 0)});
+  _channel.send(0, FlushReady{number, std::exchange(_uncounted_rows, 0), state()});
   bool go = false;
   while (!go && !_shutdown) {
     const Message message = wait();

@@ -16,12 +16,15 @@ class Worker final : public TaskContext {
   Worker(const core::Communicator& comm, const Options& options, Executor& executor, Flusher& flusher);
 
   RunSummary run();
-  [[nodiscard]] bool report(const Progress& progress) override;
+  [[nodiscard]] bool report(const Progress& progress, const StateSource& state) override;
 
  private:
   void work();
   void do_task();
   void tell(const Progress& progress);
+  void pass_on_stop();
+  void tell_to_stop();
+  [[nodiscard]] std::string state() const;
   Message wait();
   Shutdown wait_for_shutdown();
   void part();
@@ -39,8 +42,11 @@ class Worker final : public TaskContext {
   std::int64_t _uncounted_rows = 0;  // not yet sent to rank 0
   double _flush_seconds = 0.0;       // inside the running task
   bool _stopping = false;
-  bool _told_to_stop = false;  // the running task
-  std::string _trouble;        // met inside report(), which must not throw
+  bool _passed_on = false;              // that this process was asked to stop the run
+  bool _told_to_stop = false;           // the running task
+  std::string _stopped_at;              // its state then
+  const StateSource* _state = nullptr;  // inside report()
+  std::string _trouble;                 // met inside report(), which must not throw
   std::optional<Shutdown> _shutdown;
   RankLoad _load;
 };

@@ -118,7 +118,7 @@ TEST_F(BrokenProtocol, AnotherProtocolVersion) {
 
 TEST_F(BrokenProtocol, MessagesOutOfTurnAtRankZero) {
   EXPECT_THAT(error_at_root(message(queue::Hello{})), HasSubstr("\"hello\" that does not fit"));
-  EXPECT_THAT(error_at_root(message(queue::Stop{})), HasSubstr("\"stop\" that does not fit"));
+  EXPECT_THAT(error_at_root(message(queue::FlushGo{0})), HasSubstr("\"flush_go\" that does not fit"));
   EXPECT_THAT(error_at_root(message(queue::Outcome{{"another", false, "", {}, "", false}, 0})),
               HasSubstr("\"outcome\" that does not fit"));
   EXPECT_THAT(error_at_root(message(queue::ProgressReport{"another", {}})),

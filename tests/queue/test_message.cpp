@@ -54,10 +54,10 @@ std::string forge(std::uint32_t type, const std::string& body) {
 }
 
 TEST(Message, RoundTripOfTasksAndOutcomes) {
-  const Task task{"family/1/b", -7, "branch", all_bytes};
+  const Task task{"family/1/b", -7, "branch", all_bytes, all_bytes};
   EXPECT_EQ(round_trip(Assign{task}).task, task);
   const TaskOutcome outcome{"k",       true, "because", {task, {}, {"x", std::numeric_limits<int>::min(), "", ""}},
-                            all_bytes, true};
+                            all_bytes, true, all_bytes};
   const Outcome back = round_trip(Outcome{outcome, 1LL << 40});
   EXPECT_EQ(back.outcome, outcome);
   EXPECT_EQ(back.rows, 1LL << 40);
@@ -76,6 +76,7 @@ TEST(Message, RoundTripOfTheOthers) {
   EXPECT_EQ(round_trip(FlushRequest{3}).number, 3);
   EXPECT_EQ(round_trip(FlushReady{4, 9}).number, 4);
   EXPECT_EQ(round_trip(FlushReady{4, 9}).rows, 9);
+  EXPECT_EQ(round_trip(FlushReady{4, 9, all_bytes}).state, all_bytes);
   EXPECT_EQ(round_trip(FlushGo{5}).number, 5);
   EXPECT_EQ(round_trip(FlushDone{6, "disk full"}).number, 6);
   EXPECT_EQ(round_trip(FlushDone{6, "disk full"}).error, "disk full");

@@ -82,9 +82,14 @@ TEST(TaskQueue, StatesAndCounts) {
   EXPECT_EQ(queue.state("d"), TaskState::waiting);
   EXPECT_EQ(queue.running("c").payload, "payload of c");
   EXPECT_THAT(queue.unfinished(), testing::ElementsAre(make("c", 0), make("d", 0)));
-  queue.put_back("c");
+  queue.put_back("c", "half way");
   EXPECT_EQ(queue.counts(), (TaskCounts{2, 0, 1, 1}));
-  EXPECT_EQ(queue.start_next(), make("c", 0));
+  Task interrupted = make("c", 0);
+  interrupted.state = "half way";
+  EXPECT_EQ(queue.start_next(), interrupted);
+  queue.set_state("c", "further");
+  EXPECT_EQ(queue.running("c").state, "further");
+  EXPECT_EQ(queue.unfinished().front().state, "further");
 }
 
 TEST(TaskQueue, DuplicateKeysAreRefusedInEveryState) {
@@ -104,7 +109,8 @@ TEST(TaskQueue, MisuseIsRefused) {
   queue.add(make("a", 0));
   EXPECT_THROW(queue.finish("a"), MisuseError);
   EXPECT_THROW(queue.fail("a"), MisuseError);
-  EXPECT_THROW(queue.put_back("a"), MisuseError);
+  EXPECT_THROW(queue.put_back("a", ""), MisuseError);
+  EXPECT_THROW(queue.set_state("a", ""), MisuseError);
   EXPECT_THROW((void)queue.running("a"), MisuseError);
   EXPECT_THROW((void)queue.state("b"), MisuseError);
   EXPECT_FALSE(queue.knows("b"));

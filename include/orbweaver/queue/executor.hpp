@@ -1,9 +1,16 @@
 #pragma once
 
+#include <functional>
+#include <string>
+
 #include "orbweaver/queue/progress.hpp"
 #include "orbweaver/queue/task.hpp"
 
 namespace orbweaver::queue {
+
+/// Gives the state of running work: bytes from which `execute` can go on, rows reported so far not repeated. Empty bytes:
+/// it has to begin again (work without rows only).
+using StateSource = std::function<std::string()>;
 
 /// What running work sees of the run.
 class TaskContext {
@@ -14,7 +21,8 @@ class TaskContext {
   /// steps where the Flusher finds them: a flush takes place inside this call. Tells rank 0 (seldom enough not to
   /// flood it) and costs microseconds otherwise. Never throws.
   /// Returns false when the run is to stop: the work then returns its outcome so far at once.
-  [[nodiscard]] virtual bool report(const Progress& progress) = 0;
+  /// `state` is asked within the call, if a flush or a stop comes, for the state after the finished steps.
+  [[nodiscard]] virtual bool report(const Progress& progress, const StateSource& state = {}) = 0;
 };
 
 /// Does the work of a rank.
@@ -22,8 +30,8 @@ class Executor {
  public:
   virtual ~Executor() = default;
 
-  /// Called on any rank that computes, one task at a time. Whatever it throws becomes a failed outcome with the
-  /// exception's text as its reason, and the run goes on.
+  /// Called on any rank that computes, one task at a time; goes on from `task.state` if there is one. Whatever it throws
+  /// becomes a failed outcome with the exception's text as its reason, and the run goes on.
   virtual TaskOutcome execute(const Task& task, TaskContext& context) = 0;
 };
 

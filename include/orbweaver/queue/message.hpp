@@ -12,7 +12,7 @@
 namespace orbweaver::queue {
 
 /// Version of who sends what and when (docs/protocol.md); ranks of different versions do not work together.
-inline constexpr std::uint32_t protocol_version = 1;
+inline constexpr std::uint32_t protocol_version = 2;
 /// Version of the envelope and of how the messages are laid out in it.
 inline constexpr std::uint32_t message_format_version = 1;
 
@@ -69,6 +69,7 @@ struct FlushReady {
   static constexpr Tag tag = Tag::flush_ready;
   int number = 0;
   std::int64_t rows = 0;  ///< ready since the last message that counted rows
+  std::string state{};    ///< of the running task; empty: none, or it would begin again
 };
 
 /// Rank 0 -> all workers: enter the flush now.
@@ -84,7 +85,7 @@ struct FlushDone {
   std::string error;  ///< empty: it went well
 };
 
-/// Rank 0 -> all workers: end the task you have at your next report.
+/// Rank 0 -> all workers: end the task you have at your next report. Worker -> rank 0: I was asked to stop the run.
 struct Stop {
   static constexpr Tag tag = Tag::stop;
 };

@@ -26,8 +26,10 @@ class Observer {
   /// The task was interrupted by an early stop and waits again.
   virtual void stopped(const Task& /*task*/, const TaskOutcome& /*outcome*/) {}
   /// All ranks stand still and are about to flush. Every outcome sent before has arrived and nothing else is on its
-  /// way, so that `queue` together with what the running tasks hold is the whole state of the run.
+  /// way, so that `queue`, where running tasks have the states that their workers gave, is the whole state of the run.
   virtual void flushing(int /*number*/, const TaskQueue& /*queue*/) {}
+  /// That flush has succeeded on all ranks. Outcomes may have come since `flushing`.
+  virtual void flushed(int /*number*/) {}
   /// About ten times a second.
   virtual void tick(const TaskCounts& /*counts*/) {}
 };

@@ -11,11 +11,13 @@ struct Task {
   int priority = 0;     ///< smaller runs first; ties go by key, compared byte by byte
   std::string kind;     ///< what the executor is to do
   std::string payload;  ///< serialised input, any bytes
+  std::string state{};  ///< how far an earlier attempt has come, in the executor's bytes; empty: from the beginning
 
   friend bool operator==(const Task&, const Task&) = default;
 };
 
-/// What became of a task. Must be a pure function of the task, so that a run does not depend on the number of ranks.
+/// What became of a task. Must be a pure function of the task's key, kind and payload, so that a run depends neither on the
+/// number of ranks nor on where earlier attempts were cut off: going on from a state comes to the same end.
 struct TaskOutcome {
   std::string key;  ///< filled in by the queue
   bool failed = false;
@@ -24,6 +26,7 @@ struct TaskOutcome {
       children;          ///< queued when the outcome arrives, also those of a failed task; not those of a stopped one
   std::string payload;   ///< serialised result, any bytes
   bool stopped = false;  ///< filled in by the queue: report() had told the work to stop, so this is not its end
+  std::string state{};   ///< filled in by the queue if stopped: where to go on
 
   friend bool operator==(const TaskOutcome&, const TaskOutcome&) = default;
 };

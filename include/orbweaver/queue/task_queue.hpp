@@ -34,7 +34,9 @@ class TaskQueue {
   /// Running -> done, failed, or back to waiting (interrupted). Each returns the task.
   Task finish(const std::string& key);
   Task fail(const std::string& key);
-  Task put_back(const std::string& key);
+  Task put_back(const std::string& key, std::string state);
+  /// Where a running task would go on from.
+  void set_state(const std::string& key, std::string state);
 
   [[nodiscard]] bool knows(const std::string& key) const { return _states.contains(key); }
   [[nodiscard]] TaskState state(const std::string& key) const;

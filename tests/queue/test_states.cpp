@@ -1,0 +1,143 @@
+#include <map>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+
+#include "orbweaver/queue/stop.hpp"
+#include "queue/synthetic.hpp"
+
+namespace {
+
+using namespace synthetic;
+using orbweaver::core::Communicator;
+using queue::Task;
+using queue::TaskContext;
+using queue::TaskOutcome;
+
+constexpr int steps_each = 40;
+
+/// A step a row; the state is the number of steps done. Rows count as written from the flush on, and what a flush writes
+/// stays only if the queue was told that it succeeded, as in a program that is killed and begun again.
+class Steps : public queue::Executor, public queue::Flusher, public queue::Observer {
+ public:
+  explicit Steps(const Communicator& comm) : _comm(comm) {}
+
+  TaskOutcome execute(const Task& t, TaskContext& context) override {
+    int step = t.state.empty() ? 0 : std::stoi(t.state);
+    if (step > 0) ++_gone_on;
+    while (step < steps_each) {
+      sleep_us(hash(t.key, static_cast<std::uint64_t>(step)) % 300);
+      _held.emplace_back(t.key, step++);
+      if (!context.report({step, 1, {}}, [&] { return std::to_string(step); })) break;
+    }
+    return {};
+  }
+
+  void flush(int) override {
+    MPI_Barrier(_comm.get());
+    for (const auto& row : _held) ++_written[row];
+    _held.clear();
+  }
+
+  void flushing(int number, const queue::TaskQueue& now) override {
+    if (number == _dies_at) throw std::runtime_error("killed here");
+    _snapshot = now.unfinished();
+  }
+  void flushed(int number) override {
+    if (_comm.is_root()) {
+      EXPECT_EQ(number, _flushed++);
+    }
+    _unfinished = _snapshot;
+  }
+
+  void die_at(int flush) {
+    _dies_at = flush;
+    _flushed = 0;
+  }
+  void forget_rows_in_hand() { _held.clear(); }
+  [[nodiscard]] const std::vector<Task>& unfinished() const { return _unfinished; }
+  [[nodiscard]] std::int64_t gone_on() const { return sum(_comm, _gone_on); }
+
+  /// Every step of every task has been written by one rank, once.
+  void expect_each_once(int count) const {
+    std::vector<std::int64_t> written;
+    for (const Task& t : tasks(count))
+      for (int step = 0; step < steps_each; ++step) {
+        const auto found = _written.find({t.key, step});
+        written.push_back(found == _written.end() ? 0 : found->second);
+      }
+    MPI_Allreduce(MPI_IN_PLACE, written.data(), static_cast<int>(written.size()), MPI_INT64_T, MPI_SUM, _comm.get());
+    EXPECT_THAT(written, testing::Each(1));
+  }
+
+ private:
+  const Communicator& _comm;
+  std::vector<std::pair<std::string, int>> _held;
+  std::map<std::pair<std::string, int>, int> _written;
+  std::vector<Task> _snapshot;
+  std::vector<Task> _unfinished;
+  std::int64_t _gone_on = 0;
+  int _dies_at = -1;
+  int _flushed = 0;
+};
+
+queue::Options often() {
+  queue::Options options;
+  options.flush_seconds = 0;
+  options.flush_rows = 60;
+  options.progress_seconds = 0.001;
+  return options;
+}
+
+TEST(States, ARunThatEndsBetweenFlushesGoesOnFromTheLastOne) {
+  const Communicator comm;
+  Steps steps(comm);
+  constexpr int count = 60;
+  std::vector<Task> todo = tasks(count);
+  for (const int death : {4, 2, 1}) {
+    steps.die_at(death);
+    EXPECT_THAT(error_of([&] { (void)queue::run(comm, often(), todo, steps, steps, steps); }),
+                testing::HasSubstr("killed here"));
+    steps.forget_rows_in_hand();
+    todo = steps.unfinished();
+  }
+  steps.die_at(-1);
+  const auto summary = queue::run(comm, often(), todo, steps, steps, steps);
+  EXPECT_FALSE(summary.stopped_early);
+  EXPECT_GT(steps.gone_on(), 0) << "some task must have been in the middle of its steps";
+  if (comm.is_root()) {
+    EXPECT_TRUE(steps.unfinished().empty());
+  }
+  steps.expect_each_once(count);
+}
+
+/// Asks for a stop when a task has come to its tenth step, on one rank.
+class StopsOnce : public Steps {
+ public:
+  StopsOnce(const Communicator& comm, int rank) : Steps(comm), _asks(comm.rank() == rank) {}
+  TaskOutcome execute(const Task& t, TaskContext& context) override {
+    if (_asks && _calls++ == 2) queue::request_stop();
+    return Steps::execute(t, context);
+  }
+
+ private:
+  bool _asks;
+  int _calls = 0;
+};
+
+TEST(States, AStoppedTaskWaitsWithItsState) {
+  const Communicator comm;
+  constexpr int count = 60;
+  StopsOnce steps(comm, comm.size() - 1);  // a request on any rank counts
+  const auto first = queue::run(comm, often(), tasks(count), steps, steps, steps);
+  queue::clear_stop();
+  EXPECT_TRUE(first.stopped_early);
+  const std::vector<Task> todo = steps.unfinished();
+  steps.die_at(-1);
+  const auto second = queue::run(comm, often(), todo, steps, steps, steps);
+  EXPECT_FALSE(second.stopped_early);
+  EXPECT_GT(steps.gone_on(), 0);
+  steps.expect_each_once(count);
+}
+
+}  // namespace
