@@ -18,4 +18,7 @@ void read_events(const Field& field, Events& events);
 void read_section(const Field& field, const systems::Description& system, Section& section);
 void read_output(const Field& field, Output& output);
 
+/// The parameters that the system has with the effects chosen.
+[[nodiscard]] std::vector<systems::Parameter> known_parameters(const SystemChoice& choice);
+
 }  // namespace orbweaver::scene

@@ -8,6 +8,15 @@
 
 namespace orbweaver::scene {
 
+std::vector<systems::Parameter> known_parameters(const SystemChoice& choice) {
+  const systems::Description& description = systems::describe_system(choice.name);
+  std::vector<systems::Parameter> known = description.parameters;
+  for (const systems::Effect& effect : description.effects)
+    if (std::count(choice.effects.begin(), choice.effects.end(), effect.name) > 0)
+      known.insert(known.end(), effect.parameters.begin(), effect.parameters.end());
+  return known;
+}
+
 namespace {
 
 // The layer `systems` knows what is allowed; the scene knows where it was asked for.
@@ -17,15 +26,6 @@ void ask_system(const Field& field, const SystemChoice& choice) {
   } catch (const core::InputError& error) {
     field.fail(error.what());
   }
-}
-
-std::vector<systems::Parameter> known_parameters(const SystemChoice& choice) {
-  const systems::Description& description = systems::describe_system(choice.name);
-  std::vector<systems::Parameter> known = description.parameters;
-  for (const systems::Effect& effect : description.effects)
-    if (std::count(choice.effects.begin(), choice.effects.end(), effect.name) > 0)
-      known.insert(known.end(), effect.parameters.begin(), effect.parameters.end());
-  return known;
 }
 
 void read_effects(const Field& field, SystemChoice& choice) {

@@ -1,0 +1,222 @@
+#include "orbweaver/scene/differences.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "orbweaver/systems/system.hpp"
+#include "sections.hpp"
+#include "source.hpp"
+#include "units.hpp"
+
+namespace orbweaver::scene {
+
+namespace {
+
+struct Value {
+  std::string key;
+  std::string text;
+  bool is_limit = false;
+  double lower = 0.0;  ///< of a limit
+  double upper = 0.0;
+};
+
+std::string text_of(double value) {
+  if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";
+  return fmt::format("{}", value);
+}
+
+// The shortest number of degrees that reads back as this angle.
+std::string degrees_text(double angle) {
+  for (int digits = 1; digits <= 17; ++digits) {
+    std::string text = fmt::format("{:.{}g}", degrees(angle), digits);
+    if (const auto value = parse_number(text); value && radians(*value) == angle) return text;
+  }
+  return fmt::format("{}rad", angle);
+}
+
+std::string angle_with_unit(double angle) {
+  const std::string text = degrees_text(angle);
+  return text.ends_with("rad") ? text : text + "deg";
+}
+
+template <class Items, class Text>
+std::string list_text(const Items& items, const Text& text) {
+  std::string list;
+  for (const auto& item : items) list += (list.empty() ? "" : ", ") + text(item);
+  return "[" + list + "]";
+}
+
+// All keys of a scene with their values, the ones it does not give included.
+class Values {
+ public:
+  explicit Values(const Scene& scene) : _system(systems::describe_system(scene.system.name)) {
+    add("name", scene.name);
+    add_system(scene.system);
+    add_starts(scene);
+    add_continuation(scene.continuation);
+    add_limit("survey.depth", scene.survey.depth);
+    add("survey.subharmonics", scene.survey.subharmonics);
+    add("survey.spectrum", scene.survey.spectrum == Spectrum::all ? "all" : "events");
+    add("survey.team_size", scene.survey.team_size);
+    add_limits(scene.limits);
+    add("events.periods", list_text(scene.events.periods, text_of));
+    add("events.energies", list_text(scene.events.energies, text_of));
+    add("section.coordinate", scene.section.coordinate);
+    add("section.value", coordinate_text(scene.section.value, index_of(scene.section.coordinate)));
+    add("output.flush_seconds", scene.output.flush_seconds);
+    add("output.flush_orbits", scene.output.flush_orbits);
+  }
+
+  [[nodiscard]] const std::vector<Value>& get() const noexcept { return _values; }
+
+ private:
+  void add(const std::string& key, const std::string& text) { _values.push_back({key, text}); }
+  void add(const std::string& key, double value) { add(key, text_of(value)); }
+  void add_range(const std::string& key, double from, double to) { add(key, list_text(std::array{from, to}, text_of)); }
+  void add_limit(const std::string& key, double value) { _values.push_back({key, text_of(value), true, 0.0, value}); }
+  void add_limits(const std::string& key, double from, double to) {
+    _values.push_back({key, list_text(std::array{from, to}, text_of), true, from, to});
+  }
+
+  void add_system(const SystemChoice& choice) {
+    add("system.name", choice.name);
+    for (const systems::Parameter& parameter : known_parameters(choice)) {
+      const auto given = choice.parameters.find(parameter.name);
+      add("system.parameters." + parameter.name, given == choice.parameters.end() ? parameter.standard : given->second);
+    }
+    add("system.effects", list_text(std::set(choice.effects.begin(), choice.effects.end()), std::identity{}));
+  }
+
+  void add_starts(const Scene& scene) {
+    const FixedPoints& points = scene.fixed_points;
+    auto grid = points.grid;
+    if (!grid.empty()) grid.resize(_system.state_names.size(), {0.0});
+    std::size_t index = 0;
+    add("starts.fixed_points.grid", list_text(grid, [&](const std::vector<double>& values) {
+          const std::size_t coordinate = index++;
+          return list_text(values, [&](double value) { return coordinate_text(value, coordinate); });
+        }));
+    std::set<std::string> names;
+    for (const FixedPoints::Names& named : points.names)
+      names.insert(fmt::format("{}: {}", point_text(named.point), list_text(named.names, std::identity{})));
+    add("starts.fixed_points.names", list_text(names, std::identity{}));
+    add("starts.fixed_points.letters", list_text(points.letters, [](const auto& family_and_letters) {
+          return family_and_letters.first + ": " + family_and_letters.second;
+        }));
+    add_range("starts.sweep.period", scene.sweep.period_from, scene.sweep.period_to);
+    add("starts.sweep.step", scene.sweep.step);
+  }
+
+  void add_continuation(const Continuation& continuation) {
+    const auto& step = continuation.fixed_step;
+    add("continuation.step", step ? angle_with_unit(*step) : "adaptive");
+    add("continuation.start", angle_with_unit(continuation.start_amplitude));
+    add("continuation.tolerance", continuation.tolerance);
+    add_range("continuation.cutoff", continuation.cutoff_from, continuation.cutoff_to);
+    add("continuation.corrector", continuation.corrector);
+  }
+
+  void add_limits(const Limits& limits) {
+    add_limit("limits.period", limits.period);
+    add_limits("limits.energy", limits.energy_from, limits.energy_to);
+    add_limit("limits.families", limits.families);
+    add_limit("limits.steps", limits.steps);
+    add("limits.time", limits.time);
+  }
+
+  [[nodiscard]] std::size_t index_of(const std::string& coordinate) const {
+    const auto& names = _system.state_names;
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), coordinate) - names.begin());
+  }
+
+  [[nodiscard]] std::string coordinate_text(double value, std::size_t coordinate) const {
+    const bool is_angle = std::count(_system.angles.begin(), _system.angles.end(), static_cast<int>(coordinate)) > 0;
+    return is_angle ? degrees_text(value) : text_of(value);
+  }
+
+  [[nodiscard]] std::string point_text(std::vector<double> point) const {
+    point.resize(_system.state_names.size(), 0.0);
+    std::size_t index = 0;
+    return list_text(point, [&](double value) { return coordinate_text(value, index++); });
+  }
+
+  const systems::Description& _system;
+  std::vector<Value> _values;
+};
+
+bool is_inside(const std::string& path, const std::string& outer) {
+  return path.starts_with(outer) && (path.size() == outer.size() || path[outer.size()] == '.');
+}
+
+std::string written(const YAML::Node& node) {
+  if (node.IsSequence()) return list_text(node, written);
+  if (node.IsMap())
+    return list_text(node, [](const auto& entry) { return written(entry.first) + ": " + written(entry.second); });
+  if (!node.IsScalar()) return "";
+  const auto number = parse_number(node.Scalar());
+  return number ? text_of(*number) : node.Scalar();
+}
+
+// What stands in the text outside the keys in `known`.
+void add_unknown(const YAML::Node& node, const std::string& path, const std::vector<Value>& known,
+                 std::vector<Value>& unknown) {
+  for (const auto& entry : node) {
+    const std::string key = (path.empty() ? "" : path + ".") + written(entry.first);
+    if (std::any_of(known.begin(), known.end(), [&](const Value& value) { return is_inside(key, value.key); }))
+      continue;
+    if (entry.second.IsMap())
+      add_unknown(entry.second, key, known, unknown);
+    else
+      unknown.push_back({key, written(entry.second)});
+  }
+}
+
+std::vector<Value> values_of(const Scene& scene) {
+  std::vector<Value> values = Values(scene).get();
+  std::vector<Value> unknown;
+  add_unknown(parse_document(scene.text, "scene", true), "", values, unknown);
+  values.insert(values.end(), unknown.begin(), unknown.end());
+  return values;
+}
+
+bool is_free(const std::string& key) {
+  return key == "name" || key == "limits.time" || key == "limits.task_time" || key == "survey.team_size" ||
+         key.starts_with("output.");
+}
+
+Change change_of(const Value& before, const Value& now) {
+  if (is_free(before.key)) return Change::free;
+  if (!before.is_limit || !now.is_limit) return Change::other;
+  return now.lower <= before.lower && now.upper >= before.upper ? Change::widened : Change::narrowed;
+}
+
+Value find(const std::vector<Value>& values, const std::string& key) {
+  const auto found = std::find_if(values.begin(), values.end(), [&](const Value& value) { return value.key == key; });
+  return found == values.end() ? Value{key, ""} : *found;
+}
+
+}  // namespace
+
+std::vector<Difference> differences(const Scene& before, const Scene& now) {
+  const std::vector<Value> old_values = values_of(before);
+  const std::vector<Value> new_values = values_of(now);
+  std::vector<std::string> keys;
+  for (const auto* values : {&old_values, &new_values})
+    for (const Value& value : *values)
+      if (std::find(keys.begin(), keys.end(), value.key) == keys.end()) keys.push_back(value.key);
+  std::vector<Difference> result;
+  for (const std::string& key : keys) {
+    const Value old_value = find(old_values, key);
+    const Value new_value = find(new_values, key);
+    if (old_value.text != new_value.text)
+      result.push_back({key, old_value.text, new_value.text, change_of(old_value, new_value)});
+  }
+  return result;
+}
+
+}  // namespace orbweaver::scene

@@ -1,0 +1,227 @@
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/scene/differences.hpp"
+
+namespace {
+
+namespace scene = orbweaver::scene;
+using scene::Change;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+const std::string base = "system: {name: double_pendulum}\nstarts: {}\n";
+
+scene::Scene with(const std::vector<std::string>& overrides) { return scene::parse(base, "base.yaml", overrides); }
+
+// What a key is unless it is given, another value of it, and what the change from the first to the second means.
+struct Case {
+  std::string standard;
+  std::string other;
+  Change change = Change::other;
+};
+
+// A new key of a scene needs a line here, and a place in differences.cpp.
+const std::map<std::string, Case> cases{
+    {"name", {"double_pendulum", "another", Change::free}},
+    {"system.name", {"double_pendulum", "henon_heiles"}},
+    {"system.parameters.m1", {"1", "2"}},
+    {"system.parameters.m2", {"1.0", "2"}},
+    {"system.parameters.l1", {"1", "0.5"}},
+    {"system.parameters.l2", {"1", "0.5"}},
+    {"system.parameters.g", {"1", "9.81"}},
+    {"system.effects", {"[]", ""}},  // no system has one yet
+    {"starts.fixed_points.grid", {"[[90]]", "[[91]]"}},
+    {"starts.fixed_points.names", {"{}", "{[0, 180]: [Down-Up]}"}},
+    {"starts.fixed_points.letters", {"{}", ""}},  // none without names
+    {"starts.sweep.period", {"[1, 12]", "[1, 13]"}},
+    {"starts.sweep.step", {"0.01", "0.02"}},
+    {"continuation.step", {"adaptive", "0.5deg"}},
+    {"continuation.start", {"0.5deg", "0.4deg"}},
+    {"continuation.tolerance", {"1e-10", "1e-12"}},
+    {"continuation.cutoff", {"[8, 4096]", "[8, 2048]"}},
+    {"continuation.corrector", {"automatic", "brgn"}},
+    {"survey.depth", {"0", "1", Change::widened}},
+    {"survey.subharmonics", {"4", "5"}},
+    {"survey.spectrum", {"events", "all"}},
+    {"survey.team_size", {"1", "2", Change::free}},
+    {"limits.period", {"30.0", "31", Change::widened}},
+    {"limits.energy", {"[-.inf, .inf]", "[-10, .inf]", Change::narrowed}},
+    {"limits.families", {"1000", "999", Change::narrowed}},
+    {"limits.steps", {"5000", "5001", Change::widened}},
+    {"limits.time", {".inf", "60", Change::free}},
+    {"events.periods", {"[]", "[10]"}},
+    {"events.energies", {"[]", "[0.5]"}},
+    {"section.coordinate", {"", ""}},  // no section without one: tested below
+    {"section.value", {"", ""}},
+    {"output.flush_seconds", {"5", "6", Change::free}},
+    {"output.flush_orbits", {"5000", "1", Change::free}},
+};
+
+// The keys that may stand under `path`, as the scene itself names them when it refuses another.
+std::vector<std::string> keys_under(const std::string& path) {
+  const std::string prefix = path.empty() ? "" : path + ".";
+  try {
+    static_cast<void>(with({prefix + "qqqqqqqqqqqqqqqqqqqq=1"}));
+  } catch (const orbweaver::core::InputError& error) {
+    const std::string text = error.what();
+    const std::string lead = "unknown key, expected one of ";
+    const std::size_t begin = text.find(lead);
+    if (begin == std::string::npos) return {};
+    std::string names = text.substr(begin + lead.size(), text.find(", got") - begin - lead.size());
+    if (const std::size_t last = names.find(" or "); last != std::string::npos) names.replace(last, 4, ", ");
+    std::vector<std::string> keys;
+    for (std::size_t at = 0; at != std::string::npos;) {
+      const std::size_t comma = names.find(", ", at);
+      keys.push_back(prefix + names.substr(at, comma == std::string::npos ? comma : comma - at));
+      at = comma == std::string::npos ? comma : comma + 2;
+    }
+    return keys;
+  }
+  return {};
+}
+
+void collect_keys(const std::string& path, std::vector<std::string>& leaves) {
+  const std::vector<std::string> keys = keys_under(path);
+  if (keys.empty()) leaves.push_back(path);
+  for (const std::string& key : keys) collect_keys(key, leaves);
+}
+
+TEST(Differences, EveryKeyOfASceneIsClassified) {
+  std::vector<std::string> leaves;
+  collect_keys("", leaves);
+  std::vector<std::string> tested;
+  for (const auto& [key, ignored] : cases) tested.push_back(key);
+  EXPECT_THAT(leaves, testing::UnorderedElementsAreArray(tested));
+}
+
+TEST(Differences, EachKeyIsFoundAloneAndNamed) {
+  for (const auto& [key, values] : cases) {
+    if (values.other.empty()) continue;
+    SCOPED_TRACE(key);
+    const scene::Scene standard = with({key + "=" + values.standard});
+    const scene::Scene changed = with({key + "=" + values.other});
+    std::vector<scene::Difference> found = differences(standard, changed);
+    if (key == "system.name") {  // brings other parameters and another standard name
+      std::erase_if(found, [](const auto& d) { return d.key.starts_with("system.parameters.") || d.key == "name"; });
+    }
+    ASSERT_THAT(found, SizeIs(1));
+    EXPECT_EQ(found[0].key, key);
+    EXPECT_EQ(found[0].change, values.change);
+    EXPECT_NE(found[0].before, found[0].now);
+    if (key.starts_with("starts.fixed_points")) continue;  // completed to all coordinates
+    EXPECT_EQ(found[0].now, values.other);
+  }
+}
+
+TEST(Differences, DefaultsAreFilledIn) {
+  for (const auto& [key, values] : cases) {
+    if (values.standard.empty() || key == "starts.fixed_points.grid") continue;
+    SCOPED_TRACE(key);
+    EXPECT_THAT(differences(with({}), with({key + "=" + values.standard})), IsEmpty());
+  }
+}
+
+Change change(const std::string& before, const std::string& now) {
+  const std::vector<scene::Difference> found = differences(with({before}), with({now}));
+  EXPECT_THAT(found, SizeIs(1)) << before << " " << now;
+  return found.empty() ? Change::free : found[0].change;
+}
+
+TEST(Differences, LimitsAreWiderOnlyIfNoEndMovesInward) {
+  EXPECT_EQ(change("limits.period=30", "limits.period=.inf"), Change::widened);
+  EXPECT_EQ(change("limits.period=.inf", "limits.period=30"), Change::narrowed);
+  EXPECT_EQ(change("limits.steps=8", "limits.steps=7"), Change::narrowed);
+  EXPECT_EQ(change("limits.families=8", "limits.families=9"), Change::widened);
+  EXPECT_EQ(change("survey.depth=3", "survey.depth=1"), Change::narrowed);
+  EXPECT_EQ(change("limits.energy=[-2, 2]", "limits.energy=[-2, 3]"), Change::widened);
+  EXPECT_EQ(change("limits.energy=[-2, 2]", "limits.energy=[-3, 2]"), Change::widened);
+  EXPECT_EQ(change("limits.energy=[-2, 2]", "limits.energy=[-1, 3]"), Change::narrowed);
+  EXPECT_EQ(change("limits.energy=[-2, 2]", "limits.energy=[-3, 1]"), Change::narrowed);
+  EXPECT_EQ(change("limits.time=20", "limits.time=10"), Change::free);
+}
+
+TEST(Differences, SayBothValuesAsAUserWouldWriteThem) {
+  const auto found = differences(with({"limits.energy=[-1.50, 2]", "continuation.step=0.7deg", "limits.time=90.5"}),
+                                 with({"limits.energy=[-.inf, 2.25]", "continuation.step=0.02rad"}));
+  ASSERT_THAT(found, SizeIs(3));
+  EXPECT_EQ(found[0].key, "continuation.step");
+  EXPECT_EQ(found[0].before, "0.7deg");
+  EXPECT_EQ(found[1].before, "[-1.5, 2]");
+  EXPECT_EQ(found[1].now, "[-.inf, 2.25]");
+  EXPECT_EQ(found[2].now, ".inf");
+}
+
+TEST(Differences, NotationUnitsAndOrderOfKeysDoNotCount) {
+  const std::string one = R"(# the one
+name: double-pendulum
+system: {name: double_pendulum, parameters: {g: 9.81, m1: 1.0}}
+starts:
+  fixed_points: {grid: [[0, 180.0], [-9e1]], names: {[0, 180]: [Down-Up], [180]: [Up-Down]}, letters: {Down-Up: D}}
+continuation: {step: 90deg}
+section: {coordinate: th1, value: 45}
+)";
+  const std::string same = R"(section: {value: 4.5e+1, coordinate: "th1"}
+continuation: {step: 1.5707963267948966rad, start: 0.50deg, tolerance: 0.0000000001}
+starts:
+  fixed_points:
+    letters: {Down-Up: D}
+    names: {[180]: [Up-Down], [0, 180.0, 0]: ["Down-Up"]}
+    grid: [[0.0, 180], [-90], [0]]
+system: {parameters: {m1: 1, g: 9.810}, name: double_pendulum}
+name: double-pendulum
+)";
+  EXPECT_THAT(differences(scene::parse(one, "one"), scene::parse(same, "same")), IsEmpty());
+  const auto found = differences(scene::parse(one, "one"), scene::parse(one, "one", {"section.value=46"}));
+  ASSERT_THAT(found, SizeIs(1));
+  EXPECT_EQ(found[0].before, "45");
+  EXPECT_EQ(found[0].now, "46");
+  EXPECT_EQ(found[0].change, Change::other);
+}
+
+TEST(Differences, ASectionThatOnlyOneSceneHasIsAnotherScene) {
+  const auto found = differences(with({}), with({"section={coordinate: w1, value: 2}"}));
+  ASSERT_THAT(found, SizeIs(2));
+  EXPECT_EQ(found[0].key, "section.coordinate");
+  EXPECT_EQ(found[0].now, "w1");
+  EXPECT_EQ(found[1].key, "section.value");
+  EXPECT_EQ(found[1].change, Change::other);
+}
+
+// As a later version might read, whose keys this one does not know.
+TEST(Differences, AnUnknownKeyIsAnotherSceneUnlessItIsKnownToBeFree) {
+  const auto found = [](const std::string& before, const std::string& now) {
+    scene::Scene a = with({});
+    scene::Scene b = with({});
+    a.text = base + before;
+    b.text = base + now;
+    return differences(a, b);
+  };
+  const auto other = found("limits: {period: 30, colour: 7}\n", "limits: {period: 30, colour: 8}\n");
+  ASSERT_THAT(other, SizeIs(1));
+  EXPECT_EQ(other[0].key, "limits.colour");
+  EXPECT_EQ(other[0].before, "7");
+  EXPECT_EQ(other[0].now, "8");
+  EXPECT_EQ(other[0].change, Change::other);
+  EXPECT_THAT(found("limits: {colour: 7}\n", "limits: {colour: 7.0}\n"), IsEmpty());
+  EXPECT_THAT(found("", "weather: {rain: {drops: [1, 2]}}\n"), SizeIs(1));
+  EXPECT_EQ(found("weather: {rain: {drops: [1, 2]}}\n", "")[0].key, "weather.rain.drops");
+  EXPECT_EQ(found("limits: {task_time: 7}\n", "")[0].change, Change::free);
+}
+
+TEST(Differences, ASceneComesBackFromItsTextAsItWas) {
+  const scene::Scene once = with({"limits.period=12.5", "starts.fixed_points.grid=[[0, 180], [0, 0.1]]",
+                                  "starts.fixed_points.names={[0, 180]: [Down-Up]}", "continuation.step=0.3deg"});
+  const scene::Scene again = scene::parse(once.text, "the checkpoint");
+  EXPECT_THAT(differences(once, again), IsEmpty());
+  EXPECT_EQ(again.text, once.text);
+}
+
+}  // namespace
