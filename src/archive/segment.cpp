@@ -6,6 +6,7 @@
 
 #include "agree.hpp"
 #include "check_records.hpp"
+#include "fingerprint.hpp"
 #include "orbweaver/core/log_stage.hpp"
 #include "parallel_file.hpp"
 #include "segment_file.hpp"
@@ -133,6 +134,13 @@ void write_values(MPI_Comm comm, ParallelFile& file, const std::string& name, co
   }
 }
 
+std::uint64_t fingerprint_of(const Records& mine) {
+  Fingerprint fingerprint;
+  for (const OrbitRecord& orbit : mine.orbits)
+    fingerprint.add(orbit.family_key, orbit.step, orbit.arclength, orbit.period);
+  return fingerprint.value();
+}
+
 std::vector<std::string> header_texts(const Header& header) {
   std::vector<std::string> texts{header.orbweaver_version, header.scene,
                                  fmt::format("{} {} {}", header.pairs, header.symplectic, header.state_names.size())};
@@ -158,7 +166,8 @@ void check_input(MPI_Comm comm, const Header& header, const Records& mine) {
 
 }  // namespace
 
-void write_segment(MPI_Comm comm, const std::filesystem::path& path, const Header& header, const Records& mine) {
+WrittenSegment write_segment(MPI_Comm comm, const std::filesystem::path& path, const Header& header,
+                             const Records& mine) {
   const core::LogStage stage(core::Stage::archive);
   check_input(comm, header, mine);
   const Share orbit_rows = share_of(comm, mine.orbits.size());
@@ -186,12 +195,18 @@ void write_segment(MPI_Comm comm, const std::filesystem::path& path, const Heade
   write_values(comm, file, "modes", mine, &OrbitRecord::modes, modes.first);
   write_values(comm, file, "time_maps", mine, &OrbitRecord::time_map, maps.first);
   file.publish();
+  std::uint64_t bytes = 0;
+  collectively(comm, [&] {
+    if (rank_of(comm) == 0) bytes = std::filesystem::file_size(path);
+  });
+  return {path.filename().string(), greatest(comm, bytes), orbit_rows.total, section_rows.total,
+          share_of(comm, fingerprint_of(mine)).total};
 }
 
 SegmentInfo inspect_segment(const std::filesystem::path& path) {
   const SegmentFile segment(path);
   segment.check_values();
-  return {segment.file().header(), segment.orbits(), segment.sections(), segment.mode_values()};
+  return {segment.file().header(), segment.orbits(), segment.sections(), segment.mode_values(), segment.fingerprint()};
 }
 
 }  // namespace orbweaver::archive

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "fingerprint.hpp"
+
 namespace orbweaver::archive {
 
 SegmentFile::SegmentFile(const std::filesystem::path& path)
@@ -36,6 +38,19 @@ void SegmentFile::check_lots(const char* begin, const char* count, std::uint64_t
   }
   _file.expect(static_cast<std::uint64_t>(next) == total,
                fmt::format("stores {} values where its rows of {} add up to {}", total, count, next));
+}
+
+std::uint64_t SegmentFile::fingerprint() const {
+  const auto keys = orbit_texts("family_key");
+  const auto steps = orbit_integers("step");
+  const auto reals = [&](const char* name) {
+    return std::get<std::vector<double>>(_file.read("orbits", {name, ColumnType::real, {}}, 0, _orbit_rows).values);
+  };
+  const auto arclengths = reals("arclength");
+  const auto periods = reals("period");
+  Fingerprint fingerprint;
+  for (std::size_t i = 0; i < keys.size(); ++i) fingerprint.add(keys[i], steps[i], arclengths[i], periods[i]);
+  return fingerprint.value();
 }
 
 std::vector<std::int64_t> SegmentFile::orbit_integers(const char* name) const {

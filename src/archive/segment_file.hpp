@@ -24,6 +24,9 @@ class SegmentFile {
   [[nodiscard]] std::vector<std::int64_t> orbit_integers(const char* name) const;
   [[nodiscard]] std::vector<std::string> orbit_texts(const char* name) const;
 
+  /// Of the orbits it holds (WrittenSegment).
+  [[nodiscard]] std::uint64_t fingerprint() const;
+
  private:
   void check_lots(const char* begin, const char* count, std::uint64_t total) const;
 

@@ -2,12 +2,22 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 #include <mpi.h>
 
 #include "orbweaver/archive/records.hpp"
 
 namespace orbweaver::archive {
+
+/// What tells a segment from others, for a checkpoint to list.
+struct WrittenSegment {
+  std::string name;  ///< of the file, without its folder
+  std::uint64_t bytes = 0;
+  std::uint64_t orbits = 0;
+  std::uint64_t sections = 0;
+  std::uint64_t fingerprint = 0;  ///< of which orbits it holds (keys, steps, arclengths, periods), in any order
+};
 
 /// Writes the orbits and sections of all ranks together into a new segment file. Collective over `comm`.
 ///
@@ -16,10 +26,11 @@ namespace orbweaver::archive {
 /// PATH.part, which is flushed, synced and only then renamed: a file named PATH is whole. Segments hold the bulk only;
 /// families and crossings are few, change until a survey ends, and are handed to `consolidate` by rank 0.
 ///
-/// Throws, on all ranks alike: MisuseError if a record of any rank is invalid or the ranks' headers differ or a rank
+/// Returns on every rank what was written. Throws, on all ranks alike: MisuseError if a record of any rank is invalid or the ranks' headers differ or a rank
 /// gives families or crossings; EnvironmentError if the file cannot be created, written, synced or renamed (PATH.part
 /// is then removed and an older PATH is untouched).
-void write_segment(MPI_Comm comm, const std::filesystem::path& path, const Header& header, const Records& mine);
+WrittenSegment write_segment(MPI_Comm comm, const std::filesystem::path& path, const Header& header,
+                             const Records& mine);
 
 /// What a valid segment holds.
 struct SegmentInfo {
@@ -27,6 +38,7 @@ struct SegmentInfo {
   std::uint64_t orbits = 0;
   std::uint64_t sections = 0;
   std::uint64_t mode_values = 0;
+  std::uint64_t fingerprint = 0;  ///< as in WrittenSegment
 };
 
 /// Checks a segment from end to end, except the numbers themselves: whole file, version, columns, lengths and indices.
