@@ -14,12 +14,14 @@ set(ORBWEAVER_TEST_ENVIRONMENT
 
 # orbweaver_test(<name> LAYER <layer> SOURCES ... [DEPENDS ...] [RANKS 1 2 3] [TIMEOUT seconds] [LABELS ...])
 # A GoogleTest program. Without RANKS it runs alone; with RANKS it runs under mpirun once for each rank count.
-# SESSION links a main that starts MPI, PETSc and SLEPc around the tests.
+# SESSION links a main that starts MPI, PETSc and SLEPc around the tests, as RANKS does; with WITHOUT_PETSC that one starts MPI only.
 function(orbweaver_test name)
-  cmake_parse_arguments(TEST "SESSION" "LAYER;TIMEOUT" "SOURCES;DEPENDS;RANKS;LABELS" ${ARGN})
+  cmake_parse_arguments(TEST "SESSION;WITHOUT_PETSC" "LAYER;TIMEOUT" "SOURCES;DEPENDS;RANKS;LABELS" ${ARGN})
   set(target test_${name})
   add_executable(${target} ${TEST_SOURCES})
-  if(TEST_SESSION OR TEST_RANKS)
+  if(TEST_WITHOUT_PETSC AND TEST_RANKS)
+    target_link_libraries(${target} PRIVATE orbweaver_test_main_without_petsc GTest::gmock)
+  elseif(TEST_SESSION OR TEST_RANKS)
     target_link_libraries(${target} PRIVATE orbweaver_test_main GTest::gmock)
   else()
     target_link_libraries(${target} PRIVATE GTest::gmock GTest::gtest_main)

@@ -2,7 +2,7 @@
 
 #include <climits>
 
-#include "orbweaver/core/check.hpp"
+#include "orbweaver/core/check_mpi.hpp"
 #include "orbweaver/core/error.hpp"
 
 namespace orbweaver::archive {

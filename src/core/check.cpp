@@ -1,6 +1,5 @@
 #include "orbweaver/core/check.hpp"
 
-#include <array>
 #include <string>
 
 #include <fmt/format.h>
@@ -16,15 +15,6 @@ void throw_petsc_error(PetscErrorCode code, const char* call, std::source_locati
   const std::string detail = (specific != nullptr && *specific != '\0') ? fmt::format(" ({})", specific) : "";
   throw EnvironmentError(fmt::format("{} failed: {}{} [PETSc error {}, {}:{}]", call,
                                      text != nullptr ? text : "unknown error", detail, static_cast<int>(code),
-                                     where.file_name(), where.line()));
-}
-
-void throw_mpi_error(int code, const char* call, std::source_location where) {
-  std::array<char, MPI_MAX_ERROR_STRING> text{};
-  int length = 0;
-  MPI_Error_string(code, text.data(), &length);
-  throw EnvironmentError(fmt::format("{} failed: {} [MPI error {}, {}:{}]", call,
-                                     std::string(text.data(), static_cast<std::size_t>(length)), code,
                                      where.file_name(), where.line()));
 }
 

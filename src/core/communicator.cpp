@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "orbweaver/core/check.hpp"
+#include "orbweaver/core/check_mpi.hpp"
 
 namespace orbweaver::core {
 

@@ -3,7 +3,7 @@
 #include <slepcsys.h>
 
 #include "orbweaver/core/check.hpp"
-#include "orbweaver/core/log_stage.hpp"
+#include "petsc_log.hpp"
 
 namespace orbweaver::core {
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "orbweaver/core/check.hpp"
+#include "orbweaver/core/check_mpi.hpp"
 #include "orbweaver/core/error.hpp"
 
 namespace orbweaver::queue {

@@ -4,7 +4,7 @@
 
 #include "alone.hpp"
 #include "coordinator.hpp"
-#include "orbweaver/core/check.hpp"
+#include "orbweaver/core/check_mpi.hpp"
 #include "orbweaver/core/error.hpp"
 #include "worker.hpp"
 

@@ -97,13 +97,13 @@ TEST(LogEvent, CountsWithinItsStage) {
 }
 
 TEST(LogStage, WithoutASessionOrALogItDoesNothing) {
-  const detail::LogIds ids = detail::log_ids;
-  forget_log_stages();
+  const detail::Log kept = detail::log;
+  detail::log = detail::no_log;
   const PetscLogStage before = current();
   const LogStage stage(Stage::sweep);
   const LogEvent event(Event::field);
   EXPECT_EQ(current(), before);
-  detail::log_ids = ids;
+  detail::log = kept;
 }
 
 }  // namespace
