@@ -47,6 +47,7 @@ void write_line(std::FILE* stream, std::string_view line) noexcept {
   std::fflush(stream);
 }
 
+bool logs_debug() { return logger().should_log(spdlog::level::debug); }
 void log_debug(std::string_view message) { logger().debug(message); }
 void log_info(std::string_view message) { logger().info(message); }
 void log_warning(std::string_view message) { logger().warn(message); }

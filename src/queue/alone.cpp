@@ -45,12 +45,12 @@ void Alone::do_next() {
   if (task == nullptr) return;
   _key = task->key;
   _unshown_rows = 0;
-  _flush_seconds = 0.0;
   _told_to_stop = false;
   _stopped_at.clear();
-  const Stopwatch watch;
+  _times.begin();
   TaskOutcome outcome = execute_guarded(_executor, *task, *this);
-  _load.busy_seconds += watch.seconds() - _flush_seconds;
+  _load.busy_seconds += _times.seconds();
+  log_task(*task, outcome, _times.seconds(), _times.silence());
   ++_load.tasks;
   outcome.stopped = _told_to_stop;
   outcome.state = std::move(_stopped_at);
@@ -58,6 +58,7 @@ void Alone::do_next() {
 }
 
 bool Alone::report(const Progress& progress, const StateSource& state) {
+  _times.arrived();
   _state = state ? &state : nullptr;
   try {
     if (_error.empty()) note(progress);
@@ -69,6 +70,7 @@ bool Alone::report(const Progress& progress, const StateSource& state) {
     _told_to_stop = true;
   }
   _state = nullptr;
+  _times.left();
   return !_told_to_stop;
 }
 
@@ -92,7 +94,7 @@ void Alone::flush() {
   _ledger.flushing(number);
   const Stopwatch watch;
   const std::string error = flush_guarded(_flusher, number);
-  _flush_seconds += watch.seconds();
+  _times.flushed(watch.seconds());
   if (!error.empty()) throw core::EnvironmentError(flush_failed_text(number, {{0, error}}, 1));
   _ledger.flushed(number);
   _schedule.flushed();

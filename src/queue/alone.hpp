@@ -6,6 +6,7 @@
 #include "flush_schedule.hpp"
 #include "ledger.hpp"
 #include "orbweaver/queue/run.hpp"
+#include "task_times.hpp"
 
 namespace orbweaver::queue {
 
@@ -28,9 +29,9 @@ class Alone final : public TaskContext {
   Ledger _ledger;
   FlushSchedule _schedule;
   Interval _progress_interval;
-  std::string _key;                     // of the running task
-  std::int64_t _unshown_rows = 0;       // not yet told to the observer
-  double _flush_seconds = 0.0;          // inside the running task
+  std::string _key;                // of the running task
+  std::int64_t _unshown_rows = 0;  // not yet told to the observer
+  TaskTimes _times;
   bool _told_to_stop = false;           // the running task
   std::string _stopped_at;              // its state then
   const StateSource* _state = nullptr;  // inside report()

@@ -1,5 +1,9 @@
 #include "guarded.hpp"
 
+#include <fmt/format.h>
+
+#include "orbweaver/core/log.hpp"
+
 namespace orbweaver::queue {
 
 std::string current_exception_text() {
@@ -24,6 +28,15 @@ TaskOutcome execute_guarded(Executor& executor, const Task& task, TaskContext& c
   outcome.key = task.key;
   if (outcome.failed && outcome.reason.empty()) outcome.reason = "the executor gave no reason";
   return outcome;
+}
+
+void log_task(const Task& task, const TaskOutcome& outcome, double seconds, double silence) {
+  if (!core::logs_debug()) return;
+  std::string children;
+  for (const Task& child : outcome.children) children += " " + child.key;
+  core::log_debug(fmt::format(
+      "queue: task {} ({}, priority {}) took {:.6f} s, silent {:.6f} s, {} bytes in, {} out, children{}", task.key,
+      task.kind, task.priority, seconds, silence, task.payload.size(), outcome.payload.size(), children));
 }
 
 std::string flush_guarded(Flusher& flusher, int number) {

@@ -14,6 +14,10 @@ namespace orbweaver::queue {
 /// The executor's outcome with its key filled in; a thrown exception becomes a failed outcome.
 [[nodiscard]] TaskOutcome execute_guarded(Executor& executor, const Task& task, TaskContext& context);
 
+/// A debug line on a task that has ended here: how long it took, the longest time it let pass without a report (s), bytes in
+/// and out, and its children.
+void log_task(const Task& task, const TaskOutcome& outcome, double seconds, double silence);
+
 /// Flushes; returns the text of what was thrown, empty if nothing was.
 [[nodiscard]] std::string flush_guarded(Flusher& flusher, int number);
 

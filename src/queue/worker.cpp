@@ -72,10 +72,10 @@ void Worker::do_task() {
   _executing = true;
   _told_to_stop = false;
   _stopped_at.clear();
-  _flush_seconds = 0.0;
-  const Stopwatch watch;
+  _times.begin();
   TaskOutcome outcome = execute_guarded(_executor, *_task, *this);
-  _load.busy_seconds += watch.seconds() - _flush_seconds;
+  _load.busy_seconds += _times.seconds();
+  log_task(*_task, outcome, _times.seconds(), _times.silence());
   ++_load.tasks;
   outcome.stopped = _told_to_stop;
   outcome.state = std::move(_stopped_at);
@@ -85,6 +85,7 @@ void Worker::do_task() {
 }
 
 bool Worker::report(const Progress& progress, const StateSource& state_source) {
+  _times.arrived();
   _state = &state_source;
   try {
     pass_on_stop();
@@ -99,6 +100,7 @@ bool Worker::report(const Progress& progress, const StateSource& state_source) {
   }
   if (_stopping || _shutdown || !_trouble.empty()) tell_to_stop();
   _state = nullptr;
+  _times.left();
   return !_told_to_stop;
 }
 
@@ -207,7 +209,7 @@ void Worker::stand_still(int number) {
                       tag_name(static_cast<int>(tag_of(message))), number));
   }
   if (go) flush(number);
-  _flush_seconds += watch.seconds();
+  _times.flushed(watch.seconds());
 }
 
 void Worker::flush(int number) {

@@ -7,6 +7,7 @@
 #include "channel.hpp"
 #include "interval.hpp"
 #include "orbweaver/queue/run.hpp"
+#include "task_times.hpp"
 
 namespace orbweaver::queue {
 
@@ -40,7 +41,7 @@ class Worker final : public TaskContext {
   std::optional<Task> _task;
   bool _executing = false;
   std::int64_t _uncounted_rows = 0;  // not yet sent to rank 0
-  double _flush_seconds = 0.0;       // inside the running task
+  TaskTimes _times;
   bool _stopping = false;
   bool _passed_on = false;              // that this process was asked to stop the run
   bool _told_to_stop = false;           // the running task

@@ -13,6 +13,8 @@ void start_logging(LogLevel level, int rank, int ranks);
 
 /// Log one line; formatting is the caller's (fmt::format). Safe before start_logging (prints warnings and errors).
 void log_debug(std::string_view message);
+/// Whether log_debug prints, for lines that are costly to make.
+[[nodiscard]] bool logs_debug();
 void log_info(std::string_view message);
 void log_warning(std::string_view message);
 void log_error(std::string_view message);
