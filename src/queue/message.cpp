@@ -2,14 +2,13 @@
 
 #include <array>
 #include <cstring>
-#include <sstream>
 #include <streambuf>
 #include <utility>
 
 #include <fmt/format.h>
+#include <zlib.h>
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
-#include <boost/crc.hpp>
 
 #include "orbweaver/core/error.hpp"
 #include "serialization.hpp"
@@ -36,11 +35,28 @@ class ReadBuffer : public std::streambuf {
   [[nodiscard]] std::size_t left() const { return static_cast<std::size_t>(egptr() - gptr()); }
 };
 
+/// Appends to a string: megabytes are copied once.
+class AppendBuffer : public std::streambuf {
+ public:
+  explicit AppendBuffer(std::string& bytes) : _bytes(bytes) {}
+
+ protected:
+  std::streamsize xsputn(const char* data, std::streamsize count) override {
+    _bytes.append(data, static_cast<std::size_t>(count));
+    return count;
+  }
+  int_type overflow(int_type c) override {
+    _bytes.push_back(traits_type::to_char_type(c));
+    return c;
+  }
+
+ private:
+  std::string& _bytes;
+};
+
 template <class T>
-void append(std::string& bytes, T value) {
-  std::array<char, sizeof(T)> raw{};
-  std::memcpy(raw.data(), &value, sizeof(T));
-  bytes.append(raw.data(), raw.size());
+void put(std::string& bytes, std::size_t place, T value) {
+  std::memcpy(bytes.data() + place, &value, sizeof(T));
 }
 
 template <class T>
@@ -52,10 +68,10 @@ T take(std::string_view& bytes) {
 }
 
 std::uint32_t checksum(std::string_view header, std::string_view body) {
-  boost::crc_32_type crc;
-  crc.process_bytes(header.data(), header.size());
-  crc.process_bytes(body.data(), body.size());
-  return crc.checksum();
+  const auto add = [](unsigned long crc, std::string_view bytes) {
+    return crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+  };
+  return static_cast<std::uint32_t>(add(add(0, header), body));
 }
 
 [[noreturn]] void refuse(std::string_view where, const std::string& what) {
@@ -128,19 +144,19 @@ std::string tag_name(int tag) {
 }
 
 std::string pack(const Message& message) {
-  std::stringbuf buffer(std::ios::out);
+  std::string bytes(envelope_bytes, '\0');
   {
+    AppendBuffer buffer(bytes);
     boost::archive::binary_oarchive archive(buffer, archive_flags);
     std::visit([&archive](const auto& m) { archive << m; }, message);
   }
-  const std::string body = std::move(buffer).str();
-  std::string bytes(magic);
-  bytes.reserve(envelope_bytes + body.size());
-  append(bytes, message_format_version);
-  append(bytes, static_cast<std::uint32_t>(tag_of(message)));
-  append(bytes, static_cast<std::uint64_t>(body.size()));
-  append(bytes, checksum(bytes, body));
-  return bytes += body;
+  const std::string_view body = std::string_view(bytes).substr(envelope_bytes);
+  bytes.replace(0, magic.size(), magic);
+  put(bytes, 8, message_format_version);
+  put(bytes, 12, static_cast<std::uint32_t>(tag_of(message)));
+  put(bytes, 16, static_cast<std::uint64_t>(body.size()));
+  put(bytes, checked_header, checksum(std::string_view(bytes).substr(0, checked_header), body));
+  return bytes;
 }
 
 Message unpack(std::string_view bytes, std::string_view where) {
