@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <csignal>
 #include <exception>
 #include <string>
 #include <vector>
@@ -65,6 +66,7 @@ int run(std::vector<std::string> words) {
 
 int main(int argc, char** argv) {
   open_standard_streams();
+  std::signal(SIGXFSZ, SIG_IGN);  // beyond `ulimit -f` a write fails, as on a full disk, and the program says so
   orbweaver::core::prefer_fitting_blas_kernels(argv);
   try {
     return run({argv + 1, argv + argc});

@@ -1,0 +1,41 @@
+# What a machine can do to a survey: each fault gives a message that says what, where and what to do, and the status of
+# the README, on any number of ranks; CTest's time limit ends a hang.
+set(fine_scene "${PROJECT_SOURCE_DIR}/drivers/scenes/double_pendulum_half_degree.yaml")
+set(fine --set continuation.step=1deg --set limits.period=12 --set starts.sweep.step=0.01 --set output.flush_seconds=0.2)
+
+# full_disk_test(<name> <ranks> <bytes> <segments> [KEY=value of run_program.cmake ...]): no file may grow beyond <bytes>
+# once <segments> segments stand.
+function(full_disk_test name ranks bytes segments)
+  set(command "$<TARGET_FILE:orbweaver>" survey "${fine_scene}" -o out ${fine} -q)
+  if(ranks GREATER 1)
+    set(command ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks} ${command})
+  endif()
+  list(JOIN command "|" command)
+  set(keys ${ARGN})
+  list(TRANSFORM keys PREPEND "-D")
+  orbweaver_add_ctest(system.${name} ${ranks} system 120 ${CMAKE_COMMAND}
+    "-DCOMMAND=${CMAKE_CURRENT_FUNCTION_LIST_DIR}/full_disk.sh|${bytes}|${segments}|${command}" -DSTATUS=3 ${keys}
+    -P "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/run_program.cmake")
+endfunction()
+
+foreach(ranks IN ITEMS 1 2 3)
+  set(tag ranks${ranks})
+  # A folder that is a file, one under a file, one where nobody may write.
+  set(folder "${runs}/system.output_is_a_file.${tag}/out")
+  system_test(output_is_a_file.${tag} ${ranks} 3 "ERR=cannot create the folder out|Not a directory|give -o a place where you may write"
+    "FRESH=${folder}" "LEFTOVER=${folder}" "SAME=${folder}" survey "${scene}" -o out ${limits})
+  system_test(output_below_a_file.${tag} ${ranks} 3 "ERR=cannot create the folder out/file/inside|Not a directory"
+    "FRESH=${runs}/system.output_below_a_file.${tag}/out" "LEFTOVER=${runs}/system.output_below_a_file.${tag}/out/file"
+    "SAME=${runs}/system.output_below_a_file.${tag}/out/file" survey "${scene}" -o out/file/inside ${limits})
+  system_test(output_in_proc.${tag} ${ranks} 3 "ERR=cannot create the folder /proc/orbweaver|give -o a place where you may write"
+    survey "${scene}" -o /proc/orbweaver ${limits})
+  # A disk that is full at the first flush, and one that holds the segments but not the atlas made of them.
+  set(folder "${runs}/system.full_disk.${tag}/out")
+  full_disk_test(full_disk.${tag} ${ranks} 2000 0
+    "ERR=cannot reserve disk space for 'out/segments/segment-000001.h5.part'|File too large|the free space"
+    "GONE=${folder}/segments/segment-000001.h5.part")
+  set(folder "${runs}/system.full_disk_at_the_end.${tag}/out")
+  full_disk_test(full_disk_at_the_end.${tag} ${ranks} 3400000 0
+    "ERR=cannot reserve disk space for 'out/atlas.h5.part'|File too large|the free space"
+    "HAS=${folder}/segments/segment-000001.h5" "GONE=${folder}/atlas.h5")
+endforeach()
