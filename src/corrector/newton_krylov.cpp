@@ -27,11 +27,13 @@ NewtonKrylovRun run_newton_krylov(const systems::System& system, const loop::Loo
   const int most = options.max_iterations > 0 ? options.max_iterations : 30;
   NewtonKrylovRun run;
   run.loop = guess;
-  loss::LoopSolver inner(unknowns.size() + loss::LoopEquations::unfoldings(unknowns, image, slice), "corrector_inner_");
+  core::Team* const team = core::worth_dividing(options.team, system.dimension());
+  loss::LoopSolver inner(unknowns.size() + loss::LoopEquations::unfoldings(unknowns, image, slice), "corrector_inner_",
+                         team);
   double last_loss = std::numeric_limits<double>::infinity();
   int without_progress = 0;
   while (run.stop == Stop::none) {
-    loss::LoopEquations equations(system, run.loop, unknowns, image, slice);
+    loss::LoopEquations equations(system, run.loop, unknowns, image, slice, team);
     const double threshold = acceptance_threshold(run.loop, equations.linearization(), options.tolerance);
     without_progress = equations.loss() < 0.25 * last_loss ? 0 : without_progress + 1;
     last_loss = equations.loss();

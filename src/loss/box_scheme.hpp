@@ -5,6 +5,8 @@
 
 #include <Eigen/Dense>
 
+#include "orbweaver/core/team.hpp"
+
 namespace orbweaver::loss {
 
 /// The staggered box scheme of a linearised loop problem on N nodes of a full period,
@@ -13,8 +15,9 @@ namespace orbweaver::loss {
 ///   sum_j R_j . y_j + S p = a,
 ///
 /// with small dense blocks B_j (d x d) and as many border unknowns p as border rows. Factored by orthogonal elimination
-/// along the loop, which stays bounded however unstable the orbit is: O(N d^3) once, O(N d^2) a solve. Solves share
-/// scratch space: one at a time.
+/// along the loop, which stays bounded however unstable the orbit is: O(N d^3) once, O(N d^2) a solve. Members of a team
+/// each eliminate within a stretch of the loop; what is left couples the stretches' first nodes and is solved by all.
+/// Solves share scratch space: one at a time.
 class BoxScheme {
  public:
   static constexpr int most_borders = 4;
@@ -23,9 +26,11 @@ class BoxScheme {
     int dimension = 0;
     int nodes = 0;
     double spacing = 0.0;        ///< h
-    std::vector<double> blocks;  ///< B: entry (i, l) of node j at [(i d + l) N + j]
-    Eigen::MatrixXd columns;     ///< C: (d N) x borders, entry i of node j at row i N + j
-    Eigen::MatrixXd rows;        ///< R: borders x (d N), same order
+    int first = 0;               ///< `blocks` and `columns` begin with this box,
+    int boxes = 0;               ///< and are of so many
+    std::vector<double> blocks;  ///< B: entry (i, l) of box j at [(i d + l) boxes + j - first]
+    Eigen::MatrixXd columns;     ///< C: (d boxes) x borders, entry i of box j at row i boxes + j - first
+    Eigen::MatrixXd rows;        ///< R: borders x (d N), entry i of node j in column i N + j
     Eigen::MatrixXd corner;      ///< S: borders x borders
   };
 
@@ -42,7 +47,12 @@ class BoxScheme {
   virtual void solve_transposed(Eigen::VectorXd& right_side) const = 0;
 };
 
-/// Factors. Throws core::NumericalError if the condensed system is singular, MisuseError for more than `most_borders`.
-[[nodiscard]] std::unique_ptr<BoxScheme> factor_box_scheme(const BoxScheme::Matrices& matrices);
+/// The boxes that this rank eliminates: all without a team, or where the team is too large.
+[[nodiscard]] core::Team::Part boxes_of(const core::Team* team, int nodes);
+
+/// Factors; `matrices` holds the boxes of `boxes_of`. Throws core::NumericalError if the condensed system is singular,
+/// MisuseError for more than `most_borders`. With a team, this and the solves are collective over it.
+[[nodiscard]] std::unique_ptr<BoxScheme> factor_box_scheme(const BoxScheme::Matrices& matrices,
+                                                           core::Team* team = nullptr);
 
 }  // namespace orbweaver::loss

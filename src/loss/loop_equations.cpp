@@ -89,10 +89,11 @@ std::span<double> view(LoopEquations::Out& x, int size) { return {x.data(), stat
 }  // namespace
 
 LoopEquations::LoopEquations(const systems::System& system, const loop::Loop& loop, const Unknowns& unknowns,
-                             const loop::Subspace& image, const Slice& slice)
+                             const loop::Subspace& image, const Slice& slice, core::Team* team)
     : _unknowns(unknowns),
       _image(image),
       _slice(slice),
+      _team(core::several(team)),
       _unfoldings(unfoldings(unknowns, image, slice)),
       _linearization(system, loop, Linearization::Order::jacobian),
       _modes(loop.modes.size()),
@@ -222,41 +223,49 @@ void LoopEquations::factor(const systems::System& system, const loop::Loop& loop
   const core::LogEvent event(core::Event::factor);
   const int nodes = 2 * loop.cutoff + 1;
   const loop::FourierGrid& grid = loop::FourierGrid::of_size(nodes);
+  const core::Team::Part mine = boxes_of(_team, nodes);
+  const auto boxes = static_cast<std::size_t>(mine.end - mine.begin);
   const auto n = static_cast<std::size_t>(nodes);
   const auto d = static_cast<std::size_t>(loop.dimension);
   const double h = 2.0 * std::numbers::pi / nodes;
   const double rate = _linearization.rate();
-  const std::vector<double> z = states_at(grid, loop, 0.5 * h);
+  std::vector<double> z = states_at(grid, loop, 0.5 * h);
+  for (std::size_t i = 0; i < d; ++i)
+    std::copy_n(z.begin() + static_cast<std::ptrdiff_t>(i * n) + mine.begin, boxes,
+                z.begin() + static_cast<std::ptrdiff_t>(i * boxes));
+  z.resize(d * boxes);
   BoxScheme::Matrices m;
   m.dimension = loop.dimension;
   m.nodes = nodes;
+  m.first = mine.begin;
+  m.boxes = mine.end - mine.begin;
   m.spacing = h / rate;
-  m.blocks.resize(d * d * n);
-  std::vector<double> f(d * n);
-  system.field_jacobian(n, z.data(), f.data(), m.blocks.data());
+  m.blocks.resize(d * d * boxes);
+  std::vector<double> f(d * boxes);
+  system.field_jacobian(boxes, z.data(), f.data(), m.blocks.data());
   std::vector<double> density;
   if (!loop.time_map.is_identity()) {
-    density.resize(n);
-    for (std::size_t j = 0; j < n; ++j) density[j] = loop.time_map.density(h * (static_cast<double>(j) + 0.5));
+    for (int j = mine.begin; j < mine.end; ++j)
+      density.push_back(loop.time_map.density(h * (static_cast<double>(j) + 0.5)));
     multiply_by(density, f);
     multiply_by(density, m.blocks);
   }
 
   const auto borders = static_cast<Eigen::Index>(_slice.conditions().cols());
-  m.columns = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(d * n), borders);
+  m.columns = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(d * boxes), borders);
   m.rows = Eigen::MatrixXd::Zero(borders, static_cast<Eigen::Index>(d * n));
   m.corner = Eigen::MatrixXd::Zero(borders, borders);
   Eigen::Index column = 0;
   if (_unknowns.period) {
     // d/dT of w r is -(rate / T) z', and z' rate = w f at an orbit.
-    for (std::size_t q = 0; q < d * n; ++q) m.columns(static_cast<Eigen::Index>(q), column) = -f[q] / loop.period;
+    for (std::size_t q = 0; q < d * boxes; ++q) m.columns(static_cast<Eigen::Index>(q), column) = -f[q] / loop.period;
     m.corner.col(column) = _slice.conditions().row(_unknowns.size() - 1).transpose();
     ++column;
   }
   if (_unfoldings > 0) {
-    std::vector<double> gradient = energy_gradients(system, n, z);
+    std::vector<double> gradient = energy_gradients(system, boxes, z);
     if (!density.empty()) multiply_by(density, gradient);
-    for (std::size_t q = 0; q < d * n; ++q) m.columns(static_cast<Eigen::Index>(q), column) = -gradient[q];
+    for (std::size_t q = 0; q < d * boxes; ++q) m.columns(static_cast<Eigen::Index>(q), column) = -gradient[q];
   }
   // c . u in coefficients is the mean over nodes of a loop with twice c's harmonics; y enters through the filter of z = F(y).
   std::vector<double> nodal(d * n);
@@ -270,7 +279,7 @@ void LoopEquations::factor(const systems::System& system, const loop::Loop& loop
     grid.synthesize(loop.cutoff, loop.dimension, modes.data(), nodal.data());
     for (std::size_t q = 0; q < d * n; ++q) m.rows(r, static_cast<Eigen::Index>(q)) = nodal[q] / nodes;
   }
-  _box = factor_box_scheme(m);
+  _box = factor_box_scheme(m, _team);
 }
 
 void LoopEquations::precondition(const In& r, Out out) const {

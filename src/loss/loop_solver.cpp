@@ -17,20 +17,50 @@ constexpr int most_iterations = 180;
 
 struct Context {
   const LoopEquations* equations = nullptr;
+  core::Team* team = nullptr;
   core::CallbackGuard guard{};
 };
 
 using Product = void (LoopEquations::*)(const LoopEquations::In&, LoopEquations::Out) const;
 
+// This rank's rows of a vector, as they are distributed over the team.
+core::Team::Part rows_of(const core::Team* team, int size) {
+  return team == nullptr ? core::Team::Part{0, size} : team->part_of(team->rank(), size);
+}
+
+// A vector of which PETSc has this rank's rows, whole.
+Eigen::VectorXd whole(core::Team* team, const ConstVectorMap& rows, int size) {
+  if (team == nullptr) return rows;
+  Eigen::VectorXd all(size);
+  team->divide("loop solver: a vector", size, 1, all.data(),
+               [&](int begin, int end) { all.segment(begin, end - begin) = rows; });
+  return all;
+}
+
+void apply_with_team(Context& context, Product product, const ConstVectorMap& in, VectorMap out) {
+  // A member that fails alone within must not leave the others in PETSc's own collectives.
+  context.team->together("loop solver: a product", [&] {
+    const int size = context.equations->size();
+    const Eigen::VectorXd x = whole(context.team, in, size);
+    Eigen::VectorXd y(size);
+    (context.equations->*product)(x, y);
+    out = y.segment(rows_of(context.team, size).begin, out.size());
+  });
+}
+
 PetscErrorCode apply(Context& context, Product product, Vec x, Vec y) {
-  PetscInt size = 0;
+  PetscInt rows = 0;
   const PetscScalar* in = nullptr;
   PetscScalar* out = nullptr;
-  PetscCall(VecGetLocalSize(x, &size));
+  PetscCall(VecGetLocalSize(x, &rows));
   PetscCall(VecGetArrayRead(x, &in));
   PetscCall(VecGetArrayWrite(y, &out));
-  const PetscErrorCode code =
-      context.guard.run([&] { (context.equations->*product)(ConstVectorMap(in, size), VectorMap(out, size)); });
+  const PetscErrorCode code = context.guard.run([&] {
+    if (context.team != nullptr)
+      apply_with_team(context, product, ConstVectorMap(in, rows), VectorMap(out, rows));
+    else
+      (context.equations->*product)(ConstVectorMap(in, rows), VectorMap(out, rows));
+  });
   PetscCall(VecRestoreArrayWrite(y, &out));
   PetscCall(VecRestoreArrayRead(x, &in));
   return code;
@@ -60,18 +90,21 @@ struct LoopSolver::Krylov {
   core::Handle<KSP> ksp;
 };
 
-LoopSolver::LoopSolver(int size, const char* options_prefix) : _krylov(std::make_unique<Krylov>()) {
+LoopSolver::LoopSolver(int size, const char* options_prefix, core::Team* team) : _krylov(std::make_unique<Krylov>()) {
   Krylov& k = *_krylov;
-  k.right_side = create_vector(size);
-  k.solution = create_vector(size);
-  core::check(MatCreateShell(PETSC_COMM_SELF, size, size, size, size, &k.context, k.matrix.put()), "MatCreateShell");
+  k.context.team = core::several(team);
+  const MPI_Comm comm = k.context.team != nullptr ? k.context.team->comm() : PETSC_COMM_SELF;
+  const core::Team::Part mine = rows_of(k.context.team, size);
+  const int rows = mine.end - mine.begin;
+  core::check(MatCreateShell(comm, rows, rows, size, size, &k.context, k.matrix.put()), "MatCreateShell");
+  core::check(MatCreateVecs(k.matrix.get(), k.solution.put(), k.right_side.put()), "MatCreateVecs");
   const auto set = [&](MatOperation operation, PetscErrorCode (*function)(Mat, Vec, Vec)) {
     core::check(MatShellSetOperation(k.matrix.get(), operation, reinterpret_cast<void (*)()>(function)),
                 "MatShellSetOperation");
   };
   set(MATOP_MULT, multiply<&LoopEquations::apply>);
   set(MATOP_MULT_TRANSPOSE, multiply<&LoopEquations::apply_transposed>);
-  core::check(KSPCreate(PETSC_COMM_SELF, k.ksp.put()), "KSPCreate");
+  core::check(KSPCreate(comm, k.ksp.put()), "KSPCreate");
   core::check(KSPSetOptionsPrefix(k.ksp.get(), options_prefix), "KSPSetOptionsPrefix");
   core::check(KSPSetOperators(k.ksp.get(), k.matrix.get(), k.matrix.get()), "KSPSetOperators");
   core::check(KSPSetType(k.ksp.get(), KSPGMRES), "KSPSetType");
@@ -92,8 +125,13 @@ LoopSolver::~LoopSolver() = default;
 Eigen::VectorXd LoopSolver::run(const LoopEquations& equations, const Eigen::VectorXd& right_side, Accuracy accuracy,
                                 bool transposed) {
   Krylov& k = *_krylov;
+  core::Team* const team = k.context.team;
+  const int size = static_cast<int>(right_side.size());
+  core::require(equations.team() == team, "loop equations and their solver need the same team");
   k.context.equations = &equations;
-  assign(k.right_side.get(), right_side);
+  const core::Team::Part mine = rows_of(team, size);
+  assign(k.right_side.get(), right_side.segment(mine.begin, mine.end - mine.begin));
+  if (team != nullptr) team->compare("loop solver: a solve", static_cast<std::uint64_t>(size));
   core::check(KSPSetTolerances(k.ksp.get(), accuracy.wanted, 1e-300, PETSC_DEFAULT, most_iterations),
               "KSPSetTolerances");
   const PetscErrorCode code = transposed ? KSPSolveTranspose(k.ksp.get(), k.right_side.get(), k.solution.get())
@@ -101,11 +139,14 @@ Eigen::VectorXd LoopSolver::run(const LoopEquations& equations, const Eigen::Vec
   k.context.guard.rethrow();
   core::check(code, "KSPSolve");
   PetscInt iterations = 0;
-  PetscReal residual = 0.0;
+  double residual = 0.0;
   core::check(KSPGetIterationNumber(k.ksp.get(), &iterations), "KSPGetIterationNumber");
   core::check(KSPGetResidualNorm(k.ksp.get(), &residual), "KSPGetResidualNorm");
+  // What is decided below rests on one member's word: sums over ranks may differ in their last bits.
+  if (team != nullptr) team->divide("loop solver: the residual", 1, 1, &residual, [](int, int) {});
   _iterations += static_cast<int>(iterations);
-  Eigen::VectorXd x = to_eigen(k.solution.get());
+  const Eigen::VectorXd own = to_eigen(k.solution.get());
+  Eigen::VectorXd x = whole(team, ConstVectorMap(own.data(), own.size()), size);
   if (!x.allFinite() || !(residual <= accuracy.accepted * right_side.norm() + 1e-300))
     throw core::NumericalError(
         "GMRES on the loop equations does not converge: the orbit is near a point where they are singular");

@@ -74,30 +74,54 @@ TraceError error_of_trace(const Chain& chain, const TransverseFlow& flow) {
   return error;
 }
 
+/// The indices as numbers, and back into indices of the same sizes.
+Eigen::VectorXd numbers_of(const FloquetIndices& indices) {
+  Eigen::VectorXcd all(static_cast<Eigen::Index>(indices.full.size() + indices.fundamental.size()));
+  std::copy(indices.fundamental.begin(), indices.fundamental.end(),
+            std::copy(indices.full.begin(), indices.full.end(), all.data()));
+  return Eigen::Map<const Eigen::VectorXd>(reinterpret_cast<const double*>(all.data()), 2 * all.size());
+}
+
+FloquetIndices indices_of(const Eigen::VectorXd& numbers, FloquetIndices sizes) {
+  const auto* at = reinterpret_cast<const Complex*>(numbers.data());
+  for (Values* values : {&sizes.full, &sizes.fundamental})
+    for (Complex& value : *values) value = *at++;
+  return sizes;
+}
+
 /// Where there is no trace to read: the largest response to four sets of such errors, `change(m, random)` being that of
 /// factor m. They are enlarged sixteenfold and the response divided by four, which covers an eigenvalue about to
 /// split, whose response grows with the root only.
 template <class Change>
 void add_probes(const systems::Description& system, const TransverseFlow& flow, int order,
-                const FloquetIndices& indices, const Change& change, Stability& stability) {
+                const FloquetIndices& indices, const Change& change, core::Team* team, Stability& stability) {
   constexpr int probes = 4;
   constexpr double enlarged = 16.0;
   constexpr double divided = 0.25;
-  unsigned state = 12345;
-  const auto random = [&state] {
-    state = state * 1664525u + 1013904223u;
-    return static_cast<double>(state >> 8) / 8388608.0 - 1.0;
+  Eigen::MatrixXd answers(2 * (indices.full.size() + indices.fundamental.size()), probes);
+  const auto ask = [&](int begin, int end) {
+    unsigned state = 12345;
+    const auto random = [&state] {
+      state = state * 1664525u + 1013904223u;
+      return static_cast<double>(state >> 8) / 8388608.0 - 1.0;
+    };
+    for (int probe = 0; probe < end; ++probe) {  // those before `begin` for their random numbers alone
+      TransverseFlow changed = flow;
+      for (Eigen::Index m = 0; m < flow.factors.cols(); ++m) changed.factors.col(m) += enlarged * change(m, random);
+      if (probe >= begin) answers.col(probe) = numbers_of(floquet_indices(system, changed, order));
+    }
   };
-  for (int probe = 0; probe < probes; ++probe) {
-    TransverseFlow changed = flow;
-    for (Eigen::Index m = 0; m < flow.factors.cols(); ++m) changed.factors.col(m) += enlarged * change(m, random);
-    add_distances(indices, floquet_indices(system, changed, order), divided, stability);
-  }
+  if (team != nullptr)
+    team->divide("Floquet probes", probes, static_cast<int>(answers.rows()), answers.data(), ask);
+  else
+    ask(0, probes);
+  for (int probe = 0; probe < probes; ++probe)
+    add_distances(indices, indices_of(answers.col(probe), indices), divided, stability);
 }
 
 /// Bounds what the chain's truncation errors do to the indices; returns the rounding's share if it comes with it.
 TraceError add_truncation(const systems::Description& system, const Chain& chain, const TransverseFlow& flow, int order,
-                          const FloquetIndices& indices, Stability& stability) {
+                          const FloquetIndices& indices, core::Team* team, Stability& stability) {
   if (is_single_pair(system, flow)) {
     const TraceError error = error_of_trace(chain, flow);
     stability.fundamental_error[0] += error.truncation;
@@ -106,30 +130,30 @@ TraceError add_truncation(const systems::Description& system, const Chain& chain
   const auto change = [&](Eigen::Index m, const auto& random) -> Eigen::VectorXd {
     return std::copysign(truncation_share, random()) * flow.errors.col(m);
   };
-  add_probes(system, flow, order, indices, change, stability);
+  add_probes(system, flow, order, indices, change, team, stability);
   return {};
 }
 
 void add_rounding_probes(const systems::Description& system, const Chain& chain, const TransverseFlow& flow, int order,
-                         const FloquetIndices& indices, Stability& stability) {
+                         const FloquetIndices& indices, core::Team* team, Stability& stability) {
   const auto change = [&](Eigen::Index m, const auto& random) {
     const double scale = rounding_of(chain, m) * flow.factors.col(m).norm();
     Eigen::VectorXd changes(flow.factors.rows());
     for (double& entry : changes) entry = scale * random();
     return changes;
   };
-  add_probes(system, flow, order, indices, change, stability);
+  add_probes(system, flow, order, indices, change, team, stability);
 }
 
 /// The values' response to the orbit's own error, on a scale where differences keep their digits.
 void add_orbit_error(const systems::System& system, const Chain& chain, const FundamentalGroup& group,
-                     const FloquetIndices& indices, Stability& stability) {
+                     const FloquetIndices& indices, core::Team* team, Stability& stability) {
   constexpr double visible = 1e-7;
   const OrbitCorrection correction = orbit_correction(chain, group, system.description().conservative);
   const double size = std::max(correction.states.cwiseAbs().maxCoeff(), std::abs(correction.stretch));
   if (size == 0.0) return;
   const double factor = std::max(1.0, visible / size);
-  const TransverseFlow flow = transverse_flow(system, corrected(system, chain, correction, factor), group);
+  const TransverseFlow flow = transverse_flow(system, corrected(system, chain, correction, factor, team), group, team);
   add_distances(indices, floquet_indices(system.description(), flow, group.order), orbit_safety / factor, stability);
 }
 
@@ -174,19 +198,19 @@ struct Integrated {
 };
 
 Integrated integrated(const systems::System& system, const loop::Loop& loop, const FundamentalGroup& group,
-                      const FloquetOptions& options) {
+                      const FloquetOptions& options, core::Team* team) {
   const systems::Description& description = system.description();
   VariationalStep stepper(system);
   Integrated result;
   int least = options.least_segments;
   for (int refinement = 0;; ++refinement) {
-    result.chain = make_chain(system, stepper, loop, group, least);
-    result.flow = transverse_flow(system, result.chain, group);
+    result.chain = make_chain(system, stepper, loop, group, least, team);
+    result.flow = transverse_flow(system, result.chain, group, team);
     result.indices = floquet_indices(description, result.flow, group.order);
     check_finite(result.indices.full, loop);
     result.stability = without_errors(result.indices, group.order);
     result.trace =
-        add_truncation(description, result.chain, result.flow, group.order, result.indices, result.stability);
+        add_truncation(description, result.chain, result.flow, group.order, result.indices, team, result.stability);
     const double error = largest_relative(result.stability.fundamental, result.stability.fundamental_error);
     if (error <= options.tolerance || refinement >= options.refinements) return result;
     const double finer = std::min(2.0, 1.1 * std::pow(error / options.tolerance, 1.0 / 8.0));
@@ -208,14 +232,15 @@ Stability floquet(const systems::System& system, const loop::Loop& loop, const l
   const systems::Description& description = system.description();
   const FundamentalGroup group = fundamental_group(system, loop, isotropy);
   if (loop.dimension == (description.conservative ? 2 : 1)) return without_errors({}, group.order);
-  auto [chain, flow, indices, trace, stability] = integrated(system, loop, group, options);
-  add_orbit_error(system, chain, group, indices, stability);
+  core::Team* const team = core::worth_dividing(options.team, loop.dimension);
+  auto [chain, flow, indices, trace, stability] = integrated(system, loop, group, options, team);
+  add_orbit_error(system, chain, group, indices, team, stability);
   if (is_single_pair(description, flow)) {
     stability.fundamental_error[0] += trace.rounding;
     stability.full_error[0] =
         repeated_index_error(stability.fundamental[0].real(), stability.fundamental_error[0], group.order);
   } else {
-    add_rounding_probes(description, chain, flow, group.order, indices, stability);
+    add_rounding_probes(description, chain, flow, group.order, indices, team, stability);
   }
   if (description.conservative && !description.symplectic) {
     stability.full.emplace_back(1.0);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <span>
 #include <vector>
 
 #include "matrix_table.hpp"
@@ -79,7 +80,7 @@ double sum_of_rates(const Chain& chain) {
 
 /// Integrates from the states at the given nodes and hands each result to `take(node, lane)`.
 template <class Take>
-void integrate(VariationalStep& stepper, const Chain& chain, const std::vector<Eigen::Index>& nodes, const Take& take) {
+void integrate(VariationalStep& stepper, const Chain& chain, std::span<const Eigen::Index> nodes, const Take& take) {
   constexpr std::size_t lanes = VariationalStep::lanes;
   const Eigen::Index d = chain.dimension();
   std::vector<double> starts(static_cast<std::size_t>(d) * lanes);
@@ -124,22 +125,11 @@ struct Carriers {
   }
 };
 
+/// Integrates the segments `own` and fills in them and their mirrors.
 template <int D>
-void take_transitions(VariationalStep& stepper, const FundamentalGroup& group, Chain& chain) {
+void fill_segments(VariationalStep& stepper, std::span<const Eigen::Index> own, const std::vector<Mirror>& mirrors,
+                   const Carriers& carriers, Chain& chain) {
   const Eigen::Index d = chain.dimension();
-  const Eigen::Index segments = chain.segments();
-  chain.transitions.resize(d * d, segments);
-  chain.truncations.resize(d * d, segments);
-  chain.defects.resize(d, segments);
-  chain.offsets.resize(d, segments);
-  chain.mirrored.assign(static_cast<std::size_t>(segments), false);
-  std::vector<Eigen::Index> own;
-  std::vector<Mirror> mirrors;
-  for (Eigen::Index m = 0; m < segments; ++m) {
-    mirrors.push_back(group.reversor ? mirror_of(m, *group.reversor, segments, segments * group.order) : Mirror{m, 0});
-    if (mirrors.back().segment >= m) own.push_back(m);
-  }
-  const Carriers carriers(group);
   constexpr auto lanes = static_cast<Eigen::Index>(VariationalStep::lanes);
   integrate(stepper, chain, own, [&](Eigen::Index m, Eigen::Index lane) {
     auto transition = matrix_in<D>(chain.transitions, m, d);
@@ -161,15 +151,80 @@ void take_transitions(VariationalStep& stepper, const FundamentalGroup& group, C
     matrix_in<D>(chain.truncations, mirror.segment, d) = -changed * matrix_in<D>(chain.transitions, mirror.segment, d);
     chain.defects.col(mirror.segment).noalias() = -back * chain.defects.col(m);
     chain.offsets.col(mirror.segment).noalias() = carriers.forward[turns] * chain.defects.col(m);
-    chain.mirrored[static_cast<std::size_t>(mirror.segment)] = true;
   });
 }
 
-void take_transitions(VariationalStep& stepper, const FundamentalGroup& group, Chain& chain) {
-  if (chain.dimension() == 4)
-    take_transitions<4>(stepper, group, chain);
+/// All that `fill_segments` writes of segment m, as one column for the other members of a team, or from them.
+template <class Copy>
+void copy_segment(Chain& chain, Eigen::Index m, Eigen::Ref<Eigen::VectorXd> column, const Copy& copy) {
+  const Eigen::Index d = chain.dimension();
+  copy(chain.transitions.col(m), column.head(d * d));
+  copy(chain.truncations.col(m), column.segment(d * d, d * d));
+  copy(chain.defects.col(m), column.segment(2 * d * d, d));
+  copy(chain.offsets.col(m), column.tail(d));
+}
+
+/// The same divided among a team by groups of lanes: the bits of a segment depend neither on the others nor on who does it.
+template <int D>
+void fill_divided(core::Team& team, VariationalStep& stepper, const std::vector<Eigen::Index>& own,
+                  const std::vector<Mirror>& mirrors, const Carriers& carriers, Chain& chain) {
+  const Eigen::Index d = chain.dimension();
+  const auto count = static_cast<Eigen::Index>(own.size());
+  constexpr auto lanes = static_cast<Eigen::Index>(VariationalStep::lanes);
+  const Eigen::Index groups = (count + lanes - 1) / lanes;
+  const Eigen::Index size = 2 * d * d + 2 * d;
+  const bool with_mirrors = !carriers.forward.empty();
+  Eigen::MatrixXd table((with_mirrors ? 2 : 1) * size, groups * lanes);
+  const auto copy_all = [&](Eigen::Index begin, Eigen::Index end, const auto& copy) {
+    for (Eigen::Index n = begin; n < end; ++n) {
+      const Eigen::Index m = own[static_cast<std::size_t>(n)];
+      copy_segment(chain, m, table.col(n).head(size), copy);
+      if (with_mirrors)
+        copy_segment(chain, mirrors[static_cast<std::size_t>(m)].segment, table.col(n).tail(size), copy);
+    }
+  };
+  team.divide("Floquet chain: transitions", static_cast<int>(groups), static_cast<int>(table.rows() * lanes),
+              table.data(), [&](int first, int last) {
+                const Eigen::Index begin = std::min<Eigen::Index>(first * lanes, count);
+                const Eigen::Index end = std::min<Eigen::Index>(last * lanes, count);
+                fill_segments<D>(
+                    stepper,
+                    std::span(own).subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin)),
+                    mirrors, carriers, chain);
+                copy_all(begin, end, [](const auto& from, auto to) { to = from; });
+              });
+  copy_all(0, count, [](auto to, const auto& from) { to = from; });
+}
+
+template <int D>
+void take_transitions(VariationalStep& stepper, const FundamentalGroup& group, core::Team* team, Chain& chain) {
+  const Eigen::Index d = chain.dimension();
+  const Eigen::Index segments = chain.segments();
+  chain.transitions.resize(d * d, segments);
+  chain.truncations.resize(d * d, segments);
+  chain.defects.resize(d, segments);
+  chain.offsets.resize(d, segments);
+  chain.mirrored.assign(static_cast<std::size_t>(segments), false);
+  std::vector<Eigen::Index> own;
+  std::vector<Mirror> mirrors;
+  for (Eigen::Index m = 0; m < segments; ++m) {
+    mirrors.push_back(group.reversor ? mirror_of(m, *group.reversor, segments, segments * group.order) : Mirror{m, 0});
+    if (mirrors.back().segment < m) continue;
+    own.push_back(m);
+    if (mirrors.back().segment > m) chain.mirrored[static_cast<std::size_t>(mirrors.back().segment)] = true;
+  }
+  const Carriers carriers(group);
+  if (team != nullptr)
+    fill_divided<D>(*team, stepper, own, mirrors, carriers, chain);
   else
-    take_transitions<Eigen::Dynamic>(stepper, group, chain);
+    fill_segments<D>(stepper, own, mirrors, carriers, chain);
+}
+
+void take_transitions(VariationalStep& stepper, const FundamentalGroup& group, core::Team* team, Chain& chain) {
+  if (chain.dimension() == 4)
+    take_transitions<4>(stepper, group, team, chain);
+  else
+    take_transitions<Eigen::Dynamic>(stepper, group, team, chain);
 }
 
 }  // namespace
@@ -192,7 +247,7 @@ void evaluate_field(const systems::System& system, Chain& chain) {
 }
 
 Chain make_chain(const systems::System& system, VariationalStep& stepper, const loop::Loop& loop,
-                 const FundamentalGroup& group, int at_least) {
+                 const FundamentalGroup& group, int at_least, core::Team* team) {
   const double resolution = std::max<double>(at_least, segments_a_harmonic * loop.cutoff);
   const int around = allowed_segments(resolution, group.grid_factor);
   Chain chain = nodes_of(system, loop, group, around);
@@ -204,7 +259,7 @@ Chain make_chain(const systems::System& system, VariationalStep& stepper, const 
         "derivatives at every state of an accepted orbit");
   const int finer = allowed_segments(wanted, group.grid_factor);
   if (finer > around) chain = nodes_of(system, loop, group, finer);
-  take_transitions(stepper, group, chain);
+  take_transitions(stepper, group, team, chain);
   return chain;
 }
 

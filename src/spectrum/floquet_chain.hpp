@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 
 #include "floquet_group.hpp"
+#include "orbweaver/core/team.hpp"
 #include "orbweaver/loop/loop.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "variational_step.hpp"
@@ -32,9 +33,10 @@ struct Chain {
 void evaluate_field(const systems::System& system, Chain& chain);
 
 /// The chain with at least `at_least` segments a period: as many as suit the loop's resolution, the rates of its
-/// linearised flow and its symmetries, even on T/p. Segments that a reversor gives are not integrated.
+/// linearised flow and its symmetries, even on T/p. Segments that a reversor gives are not integrated. A team divides the
+/// segments among its members, who all get the whole chain.
 /// Throws core::NotFiniteError if the Jacobian is not finite on the loop.
 [[nodiscard]] Chain make_chain(const systems::System& system, VariationalStep& stepper, const loop::Loop& loop,
-                               const FundamentalGroup& group, int at_least);
+                               const FundamentalGroup& group, int at_least, core::Team* team = nullptr);
 
 }  // namespace orbweaver::spectrum

@@ -207,7 +207,7 @@ SingularTriplets smallest_singular_triplets(const loss::LoopEquations& equations
   const int free = equations.slice().free();
   core::require(options.count >= 1 && options.count <= free, "between one and all singular triplets can be asked for");
   Inverse inverse{equations,
-                  loss::LoopSolver(equations.size(), "spectrum_inner_"),
+                  loss::LoopSolver(equations.size(), "spectrum_inner_", equations.team()),
                   {options.inner_tolerance, 1.0},
                   Eigen::MatrixXd(unknowns, 0),
                   Eigen::MatrixXd(rows, 0)};
@@ -243,7 +243,8 @@ SingularTriplets smallest_singular_triplets(const systems::System& system, const
                                             const TripletOptions& options) {
   const loop::Subspace image = unknowns.subspace.image();
   if (unknowns.size() >= options.krylov_from && loss::LoopEquations::are_square(system, unknowns, image, slice)) {
-    loss::LoopEquations equations(system, loop, unknowns, image, slice);
+    loss::LoopEquations equations(system, loop, unknowns, image, slice,
+                                  core::worth_dividing(options.team, system.dimension()));
     equations.factor(system, loop);
     return smallest_singular_triplets(equations, options);
   }

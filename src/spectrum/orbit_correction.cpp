@@ -135,14 +135,14 @@ OrbitCorrection correction_of(const Chain& chain, const FundamentalGroup& group,
   return correction;
 }
 
-/// `off`: where the segments leave the loop, `factor` times their offsets from it.
+/// Of segments `first` to `last` - 1. `off`: where the segments leave the loop, `factor` times their offsets from it.
 template <int D>
 void change_transitions(const Chain& chain, const OrbitCorrection& correction, double factor, const Chain& off,
-                        Chain& changed) {
+                        Eigen::Index first, Eigen::Index last, Chain& changed) {
   const Eigen::Index d = chain.dimension();
   Eigen::Matrix<double, D, D> before(d, d);
   Eigen::Matrix<double, D, D> after(d, d);
-  for (Eigen::Index m = 0; m < chain.segments(); ++m) {
+  for (Eigen::Index m = first; m < last; ++m) {
     const bool mirrored = chain.mirrored[static_cast<std::size_t>(m)];
     const auto transition = matrix_in<D>(chain.transitions, m, d);
     const auto begin = mirrored ? matrix_in<D>(off.jacobians, m, d) : matrix_in<D>(chain.jacobians, m, d);
@@ -165,7 +165,8 @@ OrbitCorrection orbit_correction(const Chain& chain, const FundamentalGroup& gro
   return correction_of<Eigen::Dynamic>(chain, group, conservative);
 }
 
-Chain corrected(const systems::System& system, const Chain& chain, const OrbitCorrection& correction, double factor) {
+Chain corrected(const systems::System& system, const Chain& chain, const OrbitCorrection& correction, double factor,
+                core::Team* team) {
   Chain changed;
   changed.steps = chain.steps * (1.0 + factor * correction.stretch);
   changed.states = chain.states + factor * correction.states;
@@ -176,10 +177,17 @@ Chain corrected(const systems::System& system, const Chain& chain, const OrbitCo
     off.states.col(m) += chain.states.col(chain.mirrored[static_cast<std::size_t>(m)] ? m : m + 1);
   evaluate_field(system, off);
   changed.transitions.resize(chain.transitions.rows(), chain.transitions.cols());
-  if (chain.dimension() == 4)
-    change_transitions<4>(chain, correction, factor, off, changed);
+  const auto change = [&](Eigen::Index first, Eigen::Index last) {
+    if (chain.dimension() == 4)
+      change_transitions<4>(chain, correction, factor, off, first, last, changed);
+    else
+      change_transitions<Eigen::Dynamic>(chain, correction, factor, off, first, last, changed);
+  };
+  if (team == nullptr)
+    change(0, chain.segments());
   else
-    change_transitions<Eigen::Dynamic>(chain, correction, factor, off, changed);
+    team->divide("orbit correction: transitions", static_cast<int>(chain.segments()),
+                 static_cast<int>(changed.transitions.rows()), changed.transitions.data(), change);
   return changed;
 }
 

@@ -110,7 +110,7 @@ Eigen::Matrix<double, 8, Eigen::Dynamic> bases_of_four(const Chain& chain) {
 }
 
 template <int D, int C>
-TransverseFlow reduced(const Chain& chain, const FundamentalGroup& group) {
+TransverseFlow reduced(const Chain& chain, const FundamentalGroup& group, core::Team* team) {
   using Basis = Eigen::Matrix<double, D, rest(D, C)>;
   const Eigen::Index d = chain.dimension();
   const Eigen::Index segments = chain.segments();
@@ -128,22 +128,32 @@ TransverseFlow reduced(const Chain& chain, const FundamentalGroup& group) {
   flow.factors.resize((d - C) * (d - C), segments);
   const bool estimated = chain.truncations.cols() > 0;
   if (estimated) flow.errors.resize(flow.factors.rows(), segments);
-  Basis basis = first;
-  Basis next = first;
-  Basis image;
-  for (Eigen::Index m = 0; m < segments; ++m) {
-    const bool last = m + 1 == segments;
-    if (last)
-      next.noalias() = inverse.transpose() * first;
-    else
-      next = basis_of(m + 1);
-    image.noalias() = matrix_in<D>(chain.transitions, m, d) * basis;
-    matrix_in<rest(D, C)>(flow.factors, m, d - C).noalias() = next.transpose() * image;
-    if (estimated) {
-      image.noalias() = matrix_in<D>(chain.truncations, m, d) * basis;
-      matrix_in<rest(D, C)>(flow.errors, m, d - C).noalias() = next.transpose() * image;
+  const auto reduce = [&](Eigen::Index begin, Eigen::Index end) {
+    Basis basis = begin == 0 || begin == end ? first : basis_of(begin);
+    Basis next = first;
+    Basis image;
+    for (Eigen::Index m = begin; m < end; ++m) {
+      const bool last = m + 1 == segments;
+      if (last)
+        next.noalias() = inverse.transpose() * first;
+      else
+        next = basis_of(m + 1);
+      image.noalias() = matrix_in<D>(chain.transitions, m, d) * basis;
+      matrix_in<rest(D, C)>(flow.factors, m, d - C).noalias() = next.transpose() * image;
+      if (estimated) {
+        image.noalias() = matrix_in<D>(chain.truncations, m, d) * basis;
+        matrix_in<rest(D, C)>(flow.errors, m, d - C).noalias() = next.transpose() * image;
+      }
+      basis = next;
     }
-    basis = next;
+  };
+  if (team == nullptr) {
+    reduce(0, segments);
+  } else {
+    const auto count = static_cast<int>(segments);
+    const auto size = static_cast<int>(flow.factors.rows());
+    team->divide("transverse flow: factors", count, size, flow.factors.data(), reduce);
+    if (estimated) team->divide("transverse flow: errors", count, size, flow.errors.data(), [](int, int) {});
   }
   const Eigen::MatrixXd frame = first;
   flow.around = frame.transpose() * group.around * frame;
@@ -152,10 +162,11 @@ TransverseFlow reduced(const Chain& chain, const FundamentalGroup& group) {
 
 }  // namespace
 
-TransverseFlow transverse_flow(const systems::System& system, const Chain& chain, const FundamentalGroup& group) {
-  if (!system.description().conservative) return reduced<Eigen::Dynamic, 1>(chain, group);
-  if (chain.dimension() == 4) return reduced<4, 2>(chain, group);
-  return reduced<Eigen::Dynamic, 2>(chain, group);
+TransverseFlow transverse_flow(const systems::System& system, const Chain& chain, const FundamentalGroup& group,
+                               core::Team* team) {
+  if (!system.description().conservative) return reduced<Eigen::Dynamic, 1>(chain, group, team);
+  if (chain.dimension() == 4) return reduced<4, 2>(chain, group, team);
+  return reduced<Eigen::Dynamic, 2>(chain, group, team);
 }
 
 }  // namespace orbweaver::spectrum

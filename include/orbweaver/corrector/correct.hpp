@@ -6,6 +6,7 @@
 
 #include <Eigen/Dense>
 
+#include "orbweaver/core/team.hpp"
 #include "orbweaver/loop/loop.hpp"
 #include "orbweaver/loss/linearization.hpp"
 #include "orbweaver/loss/slice.hpp"
@@ -54,6 +55,7 @@ struct Options {
   double tail_tolerance = 1e-3;  ///< under_resolved needs a tail above this times the threshold
   int max_iterations = 0;        ///< 0: 30 for second-order methods, 200,000 for first-order ones
   loss::Curvature curvature = loss::Curvature::gauss_newton;  ///< Hessian for nls and ntr
+  core::Team* team = nullptr;  ///< ranks that divide newton-krylov among them; then `correct` is collective over it
 };
 
 struct Result {

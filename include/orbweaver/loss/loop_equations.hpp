@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 
+#include "orbweaver/core/team.hpp"
 #include "orbweaver/loop/loop.hpp"
 #include "orbweaver/loss/linearization.hpp"
 #include "orbweaver/loss/slice.hpp"
@@ -18,10 +19,13 @@ class BoxScheme;
 /// slice's conditions; unknowns are those of the loss and, where a phase condition is held, an unfolding multiple of grad H.
 /// Under a time map the residual is taken as w r = (2 pi/T) z' - w f, w the density: the box scheme's cells then differ
 /// only by their factor w of the field.
+///
+/// With a team, `factor`, the preconditioner and the products are collective over it, and `factor` and the preconditioner
+/// divided by boxes along the loop. Arguments and results are whole, and the same on every member.
 class LoopEquations {
  public:
   LoopEquations(const systems::System& system, const loop::Loop& loop, const Unknowns& unknowns,
-                const loop::Subspace& image, const Slice& slice);
+                const loop::Subspace& image, const Slice& slice, core::Team* team = nullptr);
   ~LoopEquations();
   LoopEquations(const LoopEquations&) = delete;
   LoopEquations& operator=(const LoopEquations&) = delete;
@@ -44,6 +48,7 @@ class LoopEquations {
   [[nodiscard]] const Unknowns& unknowns() const { return _unknowns; }
   [[nodiscard]] const loop::Subspace& image() const { return _image; }
   [[nodiscard]] const Slice& slice() const { return _slice; }
+  [[nodiscard]] core::Team* team() const { return _team; }
 
   /// Projected residual, zeros for the conditions (they hold exactly along the iteration).
   [[nodiscard]] Eigen::VectorXd residual() const;
@@ -73,6 +78,7 @@ class LoopEquations {
   const Unknowns& _unknowns;
   const loop::Subspace& _image;
   const Slice& _slice;
+  core::Team* _team;
   int _unfoldings;
   Linearization _linearization;
   std::vector<double> _slope_modes;   // of z'

@@ -3,6 +3,7 @@
 #include <complex>
 #include <vector>
 
+#include "orbweaver/core/team.hpp"
 #include "orbweaver/loop/isotropy.hpp"
 #include "orbweaver/loop/loop.hpp"
 #include "orbweaver/systems/system.hpp"
@@ -14,6 +15,8 @@ struct FloquetOptions {
   int least_segments = 48;   ///< Runge-Kutta steps a period, at least
   double tolerance = 5e-10;  ///< on the bound of the relative truncation error; above it the steps are refined
   int refinements = 3;       ///< how often, by at most a half each time
+  core::Team* team =
+      nullptr;  ///< ranks that divide segments and probes among them, with the same bits; then collective
 };
 
 /// The linear stability of one orbit. Multipliers that belong to the flow and to the conserved energy are taken out by

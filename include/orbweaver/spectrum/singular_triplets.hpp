@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 
 #include "orbweaver/core/handle.hpp"
+#include "orbweaver/core/team.hpp"
 #include "orbweaver/loss/loop_equations.hpp"
 #include "orbweaver/spectrum/eigenpairs.hpp"
 
@@ -27,6 +28,7 @@ struct TripletOptions {
   double inner_tolerance = 1e-9;  ///< of the solves inside
   bool multiple = false;          ///< look again beside those found, matrix-free: else a multiple value is found once
   int krylov_from = 120;          ///< smaller problems are solved by dense matrices (measured: docs/performance.md)
+  core::Team* team = nullptr;     ///< ranks that divide the matrix-free way among them; then it is collective
 };
 
 /// The `count` smallest singular triplets of a dense matrix with at least as many rows as columns, by SLEPc's SVD on the
@@ -44,7 +46,7 @@ struct TripletOptions {
                                                           const TripletOptions& options);
 
 /// The matrix-free way: Lanczos bidiagonalisation (SLEPc's SVD) of the inverse that GMRES with the box scheme gives
-/// (docs/mathematics.md, "Singular triplets"). The equations must be factored.
+/// (docs/mathematics.md, "Singular triplets"). The equations must be factored; the solves are divided among their team.
 [[nodiscard]] SingularTriplets smallest_singular_triplets(const loss::LoopEquations& equations,
                                                           const TripletOptions& options);
 

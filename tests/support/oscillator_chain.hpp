@@ -1,0 +1,130 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::test {
+
+/// A chain of N particles on cubic springs, fixed at both ends:
+///
+///   H = sum_i p_i^2 / 2 + sum_i (q_i^2 / 2 + q_i^4 / 4) + sum_i (c d_i^2 / 2 + d_i^4 / 4),   d_i = q_(i+1) - q_i,
+///
+/// i = 0 .. N with q_0 = q_(N+1) = 0 in the last sum; c the coupling. State q_1 .. q_N, p_1 .. p_N: dimension 2 N.
+/// Small oscillations have the frequencies sqrt(1 + 4 c sin(k pi / (2 N + 2))^2), k = 1 .. N.
+class OscillatorChain final : public systems::System {
+ public:
+  explicit OscillatorChain(int particles, double coupling = 0.1)
+      : _n(static_cast<std::size_t>(particles)), _coupling(coupling), _description(describe(particles)) {}
+
+  [[nodiscard]] const systems::Description& description() const override { return _description; }
+  [[nodiscard]] const std::map<std::string, double>& parameters() const override { return _parameters; }
+
+  void field(std::size_t nodes, const double* z, double* f) const override {
+    for (std::size_t i = 0; i < _n; ++i)
+      for (std::size_t j = 0; j < nodes; ++j) {
+        const double q = z[i * nodes + j];
+        const double left = q - (i > 0 ? z[(i - 1) * nodes + j] : 0.0);
+        const double right = (i + 1 < _n ? z[(i + 1) * nodes + j] : 0.0) - q;
+        f[i * nodes + j] = z[(_n + i) * nodes + j];
+        f[(_n + i) * nodes + j] = -q - q * q * q + force(right) - force(left);
+      }
+  }
+  void field_jacobian(std::size_t nodes, const double* z, double* f, double* jacobian) const override {
+    field(nodes, z, f);
+    const std::size_t d = 2 * _n;
+    for (std::size_t e = 0; e < d * d * nodes; ++e) jacobian[e] = 0.0;
+    for (std::size_t i = 0; i < _n; ++i)
+      for (std::size_t j = 0; j < nodes; ++j) {
+        const auto entry = [&](std::size_t row, std::size_t column) -> double& {
+          return jacobian[(row * d + column) * nodes + j];
+        };
+        const double q = z[i * nodes + j];
+        const double left = q - (i > 0 ? z[(i - 1) * nodes + j] : 0.0);
+        const double right = (i + 1 < _n ? z[(i + 1) * nodes + j] : 0.0) - q;
+        entry(i, _n + i) = 1.0;
+        entry(_n + i, i) = -1.0 - 3.0 * q * q - stiffness(right) - stiffness(left);
+        if (i > 0) entry(_n + i, i - 1) = stiffness(left);
+        if (i + 1 < _n) entry(_n + i, i + 1) = stiffness(right);
+      }
+  }
+  void second_derivatives(std::size_t nodes, const double* z, const double* weights,
+                          double* contracted) const override {
+    const std::size_t d = 2 * _n;
+    for (std::size_t e = 0; e < d * d * nodes; ++e) contracted[e] = 0.0;
+    for (std::size_t i = 0; i <= _n; ++i)  // the spring between particles i - 1 and i, and the ground of particle i
+      for (std::size_t j = 0; j < nodes; ++j) {
+        const auto entry = [&](std::size_t row, std::size_t column) -> double& {
+          return contracted[(row * d + column) * nodes + j];
+        };
+        const auto at = [&](std::size_t k) { return z[k * nodes + j]; };
+        const auto weight = [&](std::size_t k) { return weights[(_n + k) * nodes + j]; };
+        const bool has_left = i > 0;
+        const bool has_right = i < _n;
+        if (has_right) entry(i, i) += -6.0 * at(i) * weight(i);
+        const double stretch = (has_right ? at(i) : 0.0) - (has_left ? at(i - 1) : 0.0);
+        // Force on the left particle is force(stretch), on the right one its opposite.
+        const double bend = 6.0 * stretch * ((has_left ? weight(i - 1) : 0.0) - (has_right ? weight(i) : 0.0));
+        if (has_left) entry(i - 1, i - 1) += bend;
+        if (has_right) entry(i, i) += bend;
+        if (has_left && has_right) {
+          entry(i - 1, i) -= bend;
+          entry(i, i - 1) -= bend;
+        }
+      }
+  }
+  [[nodiscard]] double energy(std::span<const double> z) const override {
+    double sum = 0.0;
+    for (std::size_t i = 0; i <= _n; ++i) {
+      const double q = i < _n ? z[i] : 0.0;
+      const double stretch = q - (i > 0 ? z[i - 1] : 0.0);
+      sum += 0.5 * _coupling * stretch * stretch + 0.25 * stretch * stretch * stretch * stretch;
+      sum += 0.5 * q * q + 0.25 * q * q * q * q + (i < _n ? 0.5 * z[_n + i] * z[_n + i] : 0.0);
+    }
+    return sum;
+  }
+  void energy_gradient(std::span<const double> z, std::span<double> gradient) const override {
+    std::vector<double> f(2 * _n);
+    field(1, z.data(), f.data());
+    for (std::size_t i = 0; i < _n; ++i) {
+      gradient[i] = -f[_n + i];
+      gradient[_n + i] = f[i];
+    }
+  }
+  [[nodiscard]] double action_density(std::span<const double> z) const override {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < _n; ++i) sum += z[_n + i] * z[_n + i];
+    return sum;
+  }
+
+ private:
+  [[nodiscard]] double force(double stretch) const { return _coupling * stretch + stretch * stretch * stretch; }
+  [[nodiscard]] double stiffness(double stretch) const { return _coupling + 3.0 * stretch * stretch; }
+
+  static systems::Description describe(int particles) {
+    systems::Description description;
+    description.name = "oscillator_chain";
+    for (const char* letter : {"q", "p"})
+      for (int i = 1; i <= particles; ++i) description.state_names.emplace_back(letter).append(std::to_string(i));
+    const Eigen::Index d = 2 * particles;
+    description.equivariances = {{"S", -Eigen::MatrixXd::Identity(d, d)}};
+    Eigen::MatrixXd reversor = Eigen::MatrixXd::Identity(d, d);
+    reversor.bottomRightCorner(particles, particles) *= -1.0;
+    description.reversors = {{"R", reversor}, {"RS", -reversor}};
+    description.conservative = true;
+    description.symplectic = true;
+    return description;
+  }
+
+  std::size_t _n;
+  double _coupling;
+  systems::Description _description;
+  std::map<std::string, double> _parameters;
+};
+
+}  // namespace orbweaver::test
