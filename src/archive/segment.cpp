@@ -16,7 +16,7 @@ namespace orbweaver::archive {
 namespace {
 
 // Doubles that a rank stages for one collective write: bounds memory and keeps below MPI's 2 GiB a call.
-constexpr std::size_t staged_values = std::size_t{1} << 22;
+constexpr std::size_t staged_values = std::size_t{1} << 20;
 
 using RealMember = double OrbitRecord::*;
 using VectorMember = std::vector<double> OrbitRecord::*;

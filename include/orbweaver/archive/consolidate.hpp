@@ -11,9 +11,9 @@
 namespace orbweaver::archive {
 
 struct ConsolidateOptions {
-  /// Doubles that one rank holds of the rows at a time (32 MiB; a single larger orbit is held whole). The bytes of the
+  /// Doubles that one rank holds of the rows at a time (8 MiB; a single larger orbit is held whole). The bytes of the
   /// archive do not depend on it.
-  std::size_t block_values = std::size_t{1} << 22;
+  std::size_t block_values = std::size_t{1} << 20;
 };
 
 /// Makes the atlas OUTPUT from segments and from the tables that only rank 0 has. Collective over `comm`; only rank 0's
