@@ -32,7 +32,9 @@ class EventFunction {
     Crossing out;
     out.point = std::move(*point);
     try {
-      out.stability = spectrum::floquet(_system, out.point.loop, _family.isotropy());
+      spectrum::FloquetOptions options;
+      options.team = _family.options().corrector.team;
+      out.stability = spectrum::floquet(_system, out.point.loop, _family.isotropy(), options);
     } catch (const core::NumericalError&) {
       if (_event.kind == Event::Kind::test_function) return std::nullopt;
     }

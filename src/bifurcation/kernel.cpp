@@ -81,7 +81,7 @@ double Kernel::next() const {
 }
 
 Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& point, const loop::Isotropy& isotropy,
-                 const Sector& sector, int expected, bool even_in_time, double largest) {
+                 const Sector& sector, int expected, bool even_in_time, core::Team* team, double largest) {
   const loop::FundamentalDomain domain = loop::fundamental_domain(isotropy, system.dimension());
   const int multiplicity = sector.multiplicity(domain.order);
   Kernel kernel;
@@ -100,6 +100,7 @@ Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& 
   options.count = split.signs.size() > 1 && expected > 1 ? expected / 2 + 1 : expected + 1;
   options.tolerance = 1e-6;  // of the vectors: starts are corrected; values come out to its square
   options.inner_tolerance = 1e-7;
+  options.team = team;
   options.multiple = split.signs.size() == 1 && expected > 1;
   std::vector<OffBranchTriplet> all;
   for (const std::vector<int>& signs : split.signs)

@@ -137,7 +137,7 @@ void Team::compare(std::string_view place, std::uint64_t digest) { meet(place, d
 
 void Team::end(const std::optional<std::string>& error, std::uint64_t digest) {
   if (_fallen_apart) return;
-  if (error) digest = digest_of(*error);
+  if (error) digest ^= digest_of(*error);
   meet("the end of a task", digest, error ? Problem{Problem::Kind::alike, *error} : Problem{});
 }
 

@@ -14,10 +14,6 @@ std::vector<std::string> not_built_yet(const Scene& scene) {
   const systems::Description& system = systems::describe_system(scene.system.name);
   say(!system.conservative || !scene.system.effects.empty(),
       "system: continuation of systems without a conserved energy, or with effects, is not built yet.");
-  say(scene.survey.team_size > 1,
-      fmt::format(
-          "survey.team_size = {}: teams of ranks that share a task are not built yet; every task runs on one rank.",
-          scene.survey.team_size));
   say(!scene.section.coordinate.empty(),
       fmt::format("section: crossings of the Poincare section {} = {:g} are not computed yet.",
                   scene.section.coordinate, scene.section.value));

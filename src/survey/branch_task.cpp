@@ -29,14 +29,15 @@ int fundamental_order(const loop::Isotropy& isotropy, int dimension) {
 }  // namespace
 
 BranchTask::BranchTask(const scene::Scene& scene, std::shared_ptr<const systems::System> system, BranchWork work,
-                       archive::Records& rows, queue::TaskContext& context)
+                       archive::Records& rows, queue::TaskContext& context, core::Team* team)
     : _scene(scene),
       _system(std::move(system)),
       _work(std::move(work)),
       _rows(rows),
       _context(context),
+      _team(team),
       _start(start_of(_work, _system->description())),
-      _curve(_system, _start.isotropy, branch_options(scene)),
+      _curve(_system, _start.isotropy, branch_options(scene, team)),
       _symmetry(_system->description(), _start.isotropy),
       _functions(bifurcation::test_functions(_system->description(),
                                              fundamental_order(_start.isotropy, _system->dimension()),
@@ -47,7 +48,7 @@ BranchTask::BranchTask(const scene::Scene& scene, std::shared_ptr<const systems:
 queue::TaskOutcome BranchTask::run() {
   continuation::Ending ending;
   try {
-    continuation::Options options = branch_options(_scene);
+    continuation::Options options = branch_options(_scene, _team);
     if (_work.amplitude > 0.0) options.start_amplitude = _work.amplitude;
     ending =
         continuation::trace(_system, _start, options, [this](const continuation::Orbit& orbit) { return take(orbit); });
@@ -74,7 +75,7 @@ bool BranchTask::take(const continuation::Orbit& orbit) {
     _before_first = _work.lineage.crossing.empty() ? 0.0 : continuation::arclength_between(_start.base, orbit.loop);
   _curve.add(orbit.arclength, orbit.loop, kept_orbits);
   if (arrive(orbit)) return false;
-  const std::optional<spectrum::Stability> stability = stability_of(*_system, orbit.loop, _start.isotropy);
+  const std::optional<spectrum::Stability> stability = stability_of(*_system, orbit.loop, _start.isotropy, _team);
   detect(orbit, stability);
   if (_last) solve_requested(orbit);
   store(orbit, stability);
@@ -105,7 +106,7 @@ std::optional<bifurcation::Station> BranchTask::probe(double position) {
   if (position < _curve.known().front().position) return std::nullopt;  // so far back no orbits are kept
   const std::optional<continuation::CurvePoint> point = _curve.at(position);
   if (!point) return std::nullopt;
-  return station(position, stability_of(*_system, point->loop, _start.isotropy));
+  return station(position, stability_of(*_system, point->loop, _start.isotropy, _team));
 }
 
 void BranchTask::detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability) {
@@ -140,7 +141,7 @@ void BranchTask::add_event(const bifurcation::Event& event, double from, double 
 
 void BranchTask::solve_requested(const continuation::Orbit& orbit) {
   for (continuation::Orbit& wanted : requested_orbits(_scene, *_system, _curve, *_last, orbit, _outcome.remarks))
-    store(wanted, stability_of(*_system, wanted.loop, _start.isotropy));
+    store(wanted, stability_of(*_system, wanted.loop, _start.isotropy, _team));
 }
 
 void BranchTask::store(continuation::Orbit orbit, const std::optional<spectrum::Stability>& stability) {

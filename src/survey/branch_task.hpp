@@ -20,7 +20,7 @@ namespace orbweaver::survey {
 class BranchTask {
  public:
   BranchTask(const scene::Scene& scene, std::shared_ptr<const systems::System> system, BranchWork work,
-             archive::Records& rows, queue::TaskContext& context);
+             archive::Records& rows, queue::TaskContext& context, core::Team* team);
 
   [[nodiscard]] queue::TaskOutcome run();
 
@@ -40,6 +40,7 @@ class BranchTask {
   BranchWork _work;
   archive::Records& _rows;
   queue::TaskContext& _context;
+  core::Team* _team;
 
   continuation::Start _start;
   continuation::FamilyCurve _curve;

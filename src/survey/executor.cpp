@@ -28,10 +28,11 @@ bool directions_are_images(const systems::Description& system, std::span<const d
 
 }  // namespace
 
-continuation::Options branch_options(const scene::Scene& scene) {
+continuation::Options branch_options(const scene::Scene& scene, core::Team* team) {
   continuation::Options options;
   options.corrector.method = corrector::method_of(scene.continuation.corrector);
   options.corrector.tolerance = scene.continuation.tolerance;
+  options.corrector.team = team;
   options.cutoff_from = scene.continuation.cutoff_from;
   options.cutoff_to = scene.continuation.cutoff_to;
   options.fixed_step = scene.continuation.fixed_step;
@@ -44,15 +45,16 @@ continuation::Options branch_options(const scene::Scene& scene) {
   return options;
 }
 
-Executor::Executor(const scene::Scene& scene, std::shared_ptr<const systems::System> system, archive::Records& rows)
-    : _scene(scene), _system(std::move(system)), _rows(rows) {}
+Executor::Executor(const scene::Scene& scene, std::shared_ptr<const systems::System> system, archive::Records& rows,
+                   core::Team* team)
+    : _scene(scene), _system(std::move(system)), _rows(rows), _team(team) {}
 
 queue::TaskOutcome Executor::execute(const queue::Task& task, queue::TaskContext& context) {
   if (task.kind == sweep_kind) return sweep(unpack_sweep_work(task.payload));
   if (task.kind == branch_kind)
-    return BranchTask(_scene, _system, unpack_branch_work(task.payload), _rows, context).run();
-  if (task.kind == locate_kind) return locate(_scene, _system, unpack_locate_work(task.payload));
-  if (task.kind == start_kind) return start(_scene, _system, unpack_start_work(task.payload));
+    return BranchTask(_scene, _system, unpack_branch_work(task.payload), _rows, context, _team).run();
+  if (task.kind == locate_kind) return locate(_scene, _system, unpack_locate_work(task.payload), _team);
+  if (task.kind == start_kind) return start(_scene, _system, unpack_start_work(task.payload), _team);
   throw core::EnvironmentError(fmt::format("no such kind of task: `{}`", task.kind));
 }
 

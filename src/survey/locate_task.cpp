@@ -52,8 +52,9 @@ double change_at_start(const bifurcation::Direction& direction, double amplitude
 
 class Location {
  public:
-  Location(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system, const LocateWork& work)
-      : _scene(scene), _system(system), _work(work), _event(event_of(work)) {
+  Location(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system, const LocateWork& work,
+           core::Team* team)
+      : _scene(scene), _system(system), _work(work), _team(team), _event(event_of(work)) {
     _outcome.key = work.key;
     _outcome.lineage = work.lineage;
     _outcome.q = work.q;
@@ -62,7 +63,7 @@ class Location {
 
   queue::TaskOutcome run() {
     std::string why;
-    continuation::Options options = branch_options(_scene);
+    continuation::Options options = branch_options(_scene, _team);
     const loop::Isotropy isotropy = isotropy_of(_work.isotropy, _system->description());
     continuation::FamilyCurve fast(_system, isotropy, options);
     add_known(fast);
@@ -146,7 +147,7 @@ class Location {
     const bifurcation::Sector& sector = _event.function.sector;
     const bool starts = _work.lineage.depth < _scene.survey.depth;
     const bifurcation::Kernel kernel = bifurcation::kernel_of(*_system, crossing.point, isotropy, sector,
-                                                              expected_dimension(crossing, sector), starts);
+                                                              expected_dimension(crossing, sector), starts, _team);
     _outcome.kernel_dimension = kernel.dimension();
     _outcome.kernel_singular_value = kernel.largest();
     _outcome.next_singular_value = kernel.next();
@@ -207,6 +208,7 @@ class Location {
   const scene::Scene& _scene;
   const std::shared_ptr<const systems::System>& _system;
   const LocateWork& _work;
+  core::Team* _team;
   Event _event;
   LocateOutcome _outcome;
   std::vector<queue::Task> _starts;
@@ -216,8 +218,8 @@ class Location {
 }  // namespace
 
 queue::TaskOutcome locate(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
-                          const LocateWork& work) {
-  return Location(scene, system, work).run();
+                          const LocateWork& work, core::Team* team) {
+  return Location(scene, system, work, team).run();
 }
 
 }  // namespace orbweaver::survey

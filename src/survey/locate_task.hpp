@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "orbweaver/core/team.hpp"
 #include "orbweaver/queue/task.hpp"
 #include "orbweaver/scene/scene.hpp"
 #include "orbweaver/survey/work.hpp"
@@ -10,13 +11,13 @@
 namespace orbweaver::survey {
 
 /// Locates an event, finds its kernel and the directions in which families leave, and makes a start task of each that
-/// the scene's depth and period allow.
+/// the scene's depth and period allow. `team` divides the work; may be null.
 [[nodiscard]] queue::TaskOutcome locate(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
-                                        const LocateWork& work);
+                                        const LocateWork& work, core::Team* team);
 
 /// Finds the first orbit along a direction: the branch's task is then its child. An orbit that is the crossing's own
 /// family again is noticed, and other amplitudes are tried.
 [[nodiscard]] queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
-                                       const StartWork& work);
+                                       const StartWork& work, core::Team* team);
 
 }  // namespace orbweaver::survey

@@ -8,9 +8,11 @@
 namespace orbweaver::survey {
 
 std::optional<spectrum::Stability> stability_of(const systems::System& system, const loop::Loop& loop,
-                                                const loop::Isotropy& isotropy) {
+                                                const loop::Isotropy& isotropy, core::Team* team) {
   try {
-    return spectrum::floquet(system, loop, isotropy);
+    spectrum::FloquetOptions options;
+    options.team = team;
+    return spectrum::floquet(system, loop, isotropy, options);
   } catch (const core::NumericalError&) {
     return std::nullopt;
   }

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "executor.hpp"
 #include "orbweaver/bifurcation/locate.hpp"
 #include "orbweaver/loss/linearization.hpp"
 
@@ -56,7 +55,7 @@ std::vector<continuation::Orbit> requested_orbits(const scene::Scene& scene, con
     const auto near = orbit_with([](const loop::Loop& loop) { return loop.period; }, period, family, from, to);
     if (near) {
       const corrector::Result exact =
-          continuation::orbit_at_period(system, near->loop, family.isotropy(), period, branch_options(scene));
+          continuation::orbit_at_period(system, near->loop, family.isotropy(), period, family.options());
       if (exact.converged()) {
         found.push_back(orbit_of(system, exact.loop, near->position));
         continue;

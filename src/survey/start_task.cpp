@@ -32,9 +32,9 @@ double share_along(const continuation::Start& start, const loop::Loop& orbit) {
 }  // namespace
 
 queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
-                         const StartWork& work) {
+                         const StartWork& work, core::Team* team) {
   const continuation::Start begin = start_of(work.branch, system->description());
-  continuation::Options options = branch_options(scene);
+  continuation::Options options = branch_options(scene, team);
   const double first = work.branch.amplitude > 0.0 ? work.branch.amplitude : options.start_amplitude;
   std::string why;
   // A born orbit leaves along its direction. Too large an amplitude may find another family, too small a one is lost in

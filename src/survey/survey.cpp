@@ -21,6 +21,7 @@
 #include "orbweaver/survey/version.hpp"
 #include "recorders.hpp"
 #include "segment_flusher.hpp"
+#include "teams.hpp"
 #include "time_limit.hpp"
 
 namespace orbweaver::survey {
@@ -163,11 +164,10 @@ void gather_memory(const core::Communicator& comm, Summary& summary) {
                   "MPI_Gather");
 }
 
-}  // namespace
-
-Summary run_survey(const core::Communicator& comm, const scene::Scene& scene,
-                   const std::shared_ptr<const systems::System>& system, const std::filesystem::path& directory,
-                   Display display) {
+// The survey of rank 0 and the leaders of teams, who are `comm`.
+Summary lead_survey(const core::Communicator& comm, const scene::Scene& scene,
+                    const std::shared_ptr<const systems::System>& system, const std::filesystem::path& directory,
+                    Display display, core::Team* team) {
   const auto began = Clock::now();
   Summary summary;
   const archive::Header header = header_of(scene, system->description());
@@ -175,7 +175,8 @@ Summary run_survey(const core::Communicator& comm, const scene::Scene& scene,
   make_folder(comm, segments);
 
   archive::Records rows;
-  Executor executor(scene, system, rows);
+  Executor member(scene, system, rows, team);
+  TeamExecutor executor(team, member);
   SegmentFlusher flusher(comm, segments, header, rows);
   ProgressDisplay progress(display);
   queue::Options options;
@@ -212,10 +213,41 @@ Summary run_survey(const core::Communicator& comm, const scene::Scene& scene,
     std::error_code ignored;  // not empty: somebody else's files
     std::filesystem::remove(segments, ignored);
   }
-  gather_memory(comm, summary);
   summary.failures = agreed_failures(comm, summary);
   summary.stopped_early = swept.stopped_early || followed.stopped_early;
   summary.seconds = std::chrono::duration<double>(Clock::now() - began).count();
+  return summary;
+}
+
+Summary follow_survey(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
+                      core::Team& team) {
+  archive::Records rows;
+  Executor member(scene, system, rows, &team);
+  return follow(team, member, rows);
+}
+
+}  // namespace
+
+Summary run_survey(const core::Communicator& comm, const scene::Scene& scene,
+                   const std::shared_ptr<const systems::System>& system, const std::filesystem::path& directory,
+                   Display display) {
+  Teams teams(comm, scene.survey.team_size);
+  Summary summary;
+  if (teams.follows()) {
+    summary = follow_survey(scene, system, *teams.team());
+  } else {
+    try {
+      summary = lead_survey(teams.queue(), scene, system, directory, display, teams.team());
+    } catch (...) {
+      dismiss(teams.team(), std::current_exception());
+      throw;
+    }
+    dismiss(teams.team(), summary);
+  }
+  if (comm.size() == 1 && scene.survey.team_size > 1)
+    summary.remarks.push_back(
+        fmt::format("survey.team_size = {} needs more ranks: this one did every task alone", scene.survey.team_size));
+  gather_memory(comm, summary);
   return summary;
 }
 

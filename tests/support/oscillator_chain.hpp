@@ -17,7 +17,7 @@ namespace orbweaver::test {
 ///
 /// i = 0 .. N with q_0 = q_(N+1) = 0 in the last sum; c the coupling. State q_1 .. q_N, p_1 .. p_N: dimension 2 N.
 /// Small oscillations have the frequencies sqrt(1 + 4 c sin(k pi / (2 N + 2))^2), k = 1 .. N.
-class OscillatorChain final : public systems::System {
+class OscillatorChain : public systems::System {
  public:
   explicit OscillatorChain(int particles, double coupling = 0.1)
       : _n(static_cast<std::size_t>(particles)), _coupling(coupling), _description(describe(particles)) {}

@@ -44,6 +44,7 @@ class FamilyCurve {
   };
   [[nodiscard]] const std::vector<Known>& known() const { return _known; }
   [[nodiscard]] const loop::Isotropy& isotropy() const { return _isotropy; }
+  [[nodiscard]] const Options& options() const { return _options; }
 
   /// The orbit at `position`, which lies between the first and the last known one, with the family's direction there if
   /// that is asked for; none where the corrector fails. Throws MisuseError for a position outside.

@@ -61,7 +61,7 @@ class Team {
 
   /// Before a task: whatever happened in the last one is forgotten.
   void begin();
-  /// At the end of a task, for a member that came through with what has this `digest`, or failed (`error`: its text).
+  /// At the end of a task, for a member that came through or failed (`error`: its text), with what has this `digest`.
   /// Throws TeamError where not all came to the same end; returns if the team has fallen apart already.
   void end(const std::optional<std::string>& error, std::uint64_t digest);
   /// What happened, if the team has fallen apart.

@@ -1,0 +1,224 @@
+// Surveys by teams: of two on 5 ranks, of three on 4.
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "orbweaver/core/error.hpp"
+#include "support/oscillator_chain.hpp"
+#include "survey/atlas.hpp"
+#include "teams.hpp"
+
+namespace {
+
+using namespace orbweaver;
+using ::testing::AllOf;
+using ::testing::Each;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+int team_size(const core::Communicator& comm) { return comm.size() == 5 ? 2 : comm.size() - 1; }
+
+/// A chain of four particles, dimension 8: its four families, of a few orbits each. The scene's own system is not used.
+scene::Scene chain_scene(int team, const std::vector<std::string>& more = {}) {
+  std::vector<std::string> overrides{"survey.team_size=" + std::to_string(team)};
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  return scene::parse(
+      "system: {name: harmonic_oscillator}\n"
+      "starts: {fixed_points: {grid: [[0]]}, sweep: {period: [5.2, 6.3], step: 0.05}}\n"
+      "continuation: {start: 17deg}\n"
+      "survey: {depth: 0}\n"
+      "limits: {steps: 5}\n"
+      "output: {flush_seconds: 0.05, flush_orbits: 3}\n",
+      "chain", overrides);
+}
+
+survey::Summary run(const core::Communicator& comm, const scene::Scene& scene, const std::string& name,
+                    const std::shared_ptr<const systems::System>& system) {
+  const auto folder = test::fresh_folder(name + std::to_string(comm.size()), comm.get());
+  return survey::run_survey(comm, scene, system, folder, survey::Display::none);
+}
+
+std::shared_ptr<const systems::System> chain() { return std::make_shared<const test::OscillatorChain>(4); }
+
+/// A chain whose field is spoilt where a particle is far out (unless a single state is asked for).
+class SpoiltChain final : public test::OscillatorChain {
+ public:
+  explicit SpoiltChain(std::function<void(double& f)> spoil) : OscillatorChain(4), _spoil(std::move(spoil)) {}
+
+  void field(std::size_t nodes, const double* z, double* f) const override {
+    OscillatorChain::field(nodes, z, f);
+    for (std::size_t n = 0; n < 4 * nodes && nodes > 1; ++n)
+      if (std::abs(z[n]) > 0.4) _spoil(f[4 * nodes + n]);
+  }
+
+ private:
+  std::function<void(double& f)> _spoil;
+};
+
+/// The last member of each team, or its leader.
+bool is_last(const core::Communicator& comm) {
+  return comm.rank() > 0 && (comm.rank() - 1) % team_size(comm) == team_size(comm) - 1;
+}
+bool is_leader(const core::Communicator& comm) { return comm.rank() > 0 && (comm.rank() - 1) % team_size(comm) == 0; }
+
+TEST(Teams, AreRankZeroAndEqualPartsOfTheOthers) {
+  const core::Communicator comm;
+  survey::Teams teams(comm, team_size(comm));
+  EXPECT_EQ(teams.team() == nullptr, comm.is_root());
+  EXPECT_EQ(teams.follows(), !comm.is_root() && !is_leader(comm));
+  if (teams.team() != nullptr) {
+    EXPECT_EQ(teams.team()->size(), team_size(comm));
+  }
+  if (!teams.follows()) {
+    EXPECT_EQ(teams.queue().size(), 1 + (comm.size() - 1) / team_size(comm));
+  }
+
+  survey::Teams none(comm, 1);
+  EXPECT_EQ(none.team(), nullptr);
+  EXPECT_EQ(none.queue().size(), comm.size());
+}
+
+TEST(Teams, SizesThatDoNotDivideTheWorkersAreRefusedByAll) {
+  const core::Communicator comm;
+  try {
+    survey::Teams teams(comm, comm.size());
+    FAIL() << "a team of all ranks was formed";
+  } catch (const core::InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("survey.team_size = " + std::to_string(comm.size())));
+    EXPECT_THAT(error.what(), HasSubstr("start " + std::to_string(comm.size() + 1) + " ranks"));
+  }
+  const auto refused = [&] { (void)run(comm, chain_scene(comm.size()), "refused", chain()); };
+  EXPECT_THROW(refused(), core::InputError);
+}
+
+TEST(Teams, SurveyAsOneRankDoes) {
+  const core::Communicator comm;
+  const survey::Summary alone = run(comm, chain_scene(1), "alone", chain());
+  const survey::Summary shared = run(comm, chain_scene(team_size(comm)), "shared", chain());
+  const survey::Summary again = run(comm, chain_scene(team_size(comm)), "again", chain());
+  EXPECT_EQ(shared.failures, alone.failures);
+  EXPECT_FALSE(shared.stopped_early);
+  if (!comm.is_root()) return;
+  EXPECT_EQ(shared.peak_memory_mib.size(), static_cast<std::size_t>(comm.size()));
+  EXPECT_THAT(shared.peak_memory_mib, Each(::testing::Gt(1.0)));
+  const test::Atlas one(alone.atlas);
+  const test::Atlas team(shared.atlas);
+  const test::Atlas repeated(again.atlas);
+  ASSERT_EQ(one.families().rows(), 4U);
+  ASSERT_EQ(team.orbits().rows(), one.orbits().rows());
+  EXPECT_EQ(team.families().texts("end_reason"), one.families().texts("end_reason"));
+  EXPECT_EQ(team.families().texts("isotropy"), one.families().texts("isotropy"));
+  EXPECT_EQ(team.crossings().texts("kind"), one.crossings().texts("kind"));
+  EXPECT_EQ(team.orbits().integers("cutoff"), one.orbits().integers("cutoff"));
+  for (std::size_t row = 0; row < one.orbits().rows(); ++row) {
+    for (const char* column : {"period", "energy", "action", "arclength"})
+      EXPECT_NEAR(team.orbits().reals(column)[row], one.orbits().reals(column)[row], 1e-9) << column;
+    for (std::size_t pair = 3 * row; pair < 3 * row + 3; ++pair)
+      EXPECT_NEAR(team.orbits().reals("stability")[pair], one.orbits().reals("stability")[pair], 1e-8);
+    EXPECT_LT(team.orbits().reals("closure")[row], 1e-10);
+    EXPECT_EQ(repeated.modes(row), team.modes(row));
+    for (const char* column : {"period", "energy", "loss_rms", "closure", "stability_error"})
+      EXPECT_EQ(repeated.orbits().reals(column)[row], team.orbits().reals(column)[row]) << column;
+  }
+}
+
+TEST(Teams, HaveTheBytesOfOneRankWhereNothingIsDivided) {
+  const core::Communicator comm;
+  const std::vector<std::string> quick{"limits.period=6"};
+  std::vector<std::string> by_teams = quick;
+  by_teams.push_back("survey.team_size=" + std::to_string(team_size(comm)));
+  const survey::Summary alone = test::run(comm, test::quick_scene(quick), "pendulum_alone");
+  const survey::Summary shared = test::run(comm, test::quick_scene(by_teams), "pendulum_shared");
+  EXPECT_EQ(shared.failures, 0U);
+  if (!comm.is_root()) return;
+  const test::Atlas one(alone.atlas);
+  const test::Atlas team(shared.atlas);
+  ASSERT_GT(one.orbits().rows(), 4U);
+  ASSERT_EQ(team.orbits().rows(), one.orbits().rows());
+  for (std::size_t row = 0; row < one.orbits().rows(); ++row) EXPECT_EQ(team.modes(row), one.modes(row));
+}
+
+/// Most tasks fail, all for the same reason, and nobody waits.
+void expect_most_failed(const core::Communicator& comm, const survey::Summary& summary, const std::string& reason) {
+  EXPECT_GE(summary.failures, 3U);
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.families.size(), 4U);
+  EXPECT_EQ(summary.failed_tasks.size(), summary.failures);
+  EXPECT_THAT(summary.failed_tasks, Each(HasSubstr(reason)));
+}
+
+TEST(Teams, AFollowerThatThrowsFailsTheTaskForAll) {
+  const core::Communicator comm;
+  int calls = 0;
+  const auto spoil = [&](double&) {
+    if (is_last(comm) && ++calls % 997 == 0) throw std::runtime_error("no memory on this rank");
+  };
+  const auto summary = run(comm, chain_scene(team_size(comm)), "follower_throws", std::make_shared<SpoiltChain>(spoil));
+  const std::string who = fmt::format("member {} of a team of {} failed", team_size(comm) - 1, team_size(comm));
+  expect_most_failed(comm, summary, who);
+  expect_most_failed(comm, summary, "no memory on this rank");
+}
+
+TEST(Teams, ALeaderThatThrowsFailsTheTaskForAll) {
+  const core::Communicator comm;
+  int calls = 0;
+  const auto spoil = [&](double&) {
+    if (is_leader(comm) && ++calls % 1499 == 0) throw std::runtime_error("no memory on this rank");
+  };
+  const auto summary = run(comm, chain_scene(team_size(comm)), "leader_throws", std::make_shared<SpoiltChain>(spoil));
+  expect_most_failed(comm, summary, "no memory on this rank");
+}
+
+TEST(Teams, MembersWhoseNumbersDifferAreNoticed) {
+  const core::Communicator comm;
+  const auto spoil = [&](double& f) {
+    if (is_last(comm)) f += 1e-12;
+  };
+  const auto summary = run(comm, chain_scene(team_size(comm)), "differ", std::make_shared<SpoiltChain>(spoil));
+  expect_most_failed(comm, summary, "different numbers or different places");
+}
+
+TEST(Teams, AFieldThatIsNotFiniteIsTheTasksFailureAndNotTheTeams) {
+  const core::Communicator comm;
+  const auto spoil = [&](double& f) { f = std::nan(""); };
+  const auto system = std::make_shared<SpoiltChain>(spoil);
+  const auto alone = run(comm, chain_scene(1, {"limits.steps=100"}), "nan_alone", system);
+  const auto shared = run(comm, chain_scene(team_size(comm), {"limits.steps=100"}), "nan_shared", system);
+  EXPECT_EQ(shared.failures, 4U);
+  EXPECT_EQ(shared.failures, alone.failures);
+  if (!comm.is_root()) return;
+  EXPECT_THAT(shared.failed_tasks, Each(AllOf(HasSubstr("not finite"), Not(HasSubstr("team")))));
+  EXPECT_EQ(shared.orbits, alone.orbits);
+}
+
+TEST(Teams, AreDismissedWithTheErrorOfTheSurvey) {
+  class NowhereAtRest final : public test::OscillatorChain {
+   public:
+    NowhereAtRest() : OscillatorChain(4) {}
+    void field(std::size_t nodes, const double* z, double* f) const override {
+      OscillatorChain::field(nodes, z, f);
+      for (std::size_t j = 0; j < nodes; ++j) f[j] = 1.0;
+    }
+  };
+  const core::Communicator comm;
+  const auto begin = [&] {
+    (void)run(comm, chain_scene(team_size(comm)), "no_equilibrium", std::make_shared<NowhereAtRest>());
+  };
+  EXPECT_THROW(begin(), core::InputError);
+}
+
+TEST(Teams, StopWithTheirLeaders) {
+  const core::Communicator comm;
+  const auto summary =
+      run(comm, chain_scene(team_size(comm), {"limits.time=1e-6", "limits.steps=200"}), "stopped", chain());
+  EXPECT_TRUE(summary.stopped_early);
+}
+
+}  // namespace
