@@ -92,7 +92,7 @@ void integrate(VariationalStep& stepper, const Chain& chain, std::span<const Eig
       lengths[lane] = chain.steps[node];
       for (Eigen::Index i = 0; i < d; ++i) starts[static_cast<std::size_t>(i) * lanes + lane] = chain.states(i, node);
     }
-    stepper.run(starts.data(), lengths);
+    stepper.run(starts.data(), lengths, used);
     for (std::size_t lane = 0; lane < used; ++lane) take(nodes[first + lane], static_cast<Eigen::Index>(lane));
   }
 }
@@ -164,35 +164,29 @@ void copy_segment(Chain& chain, Eigen::Index m, Eigen::Ref<Eigen::VectorXd> colu
   copy(chain.offsets.col(m), column.tail(d));
 }
 
-/// The same divided among a team by groups of lanes: the bits of a segment depend neither on the others nor on who does it.
+/// The same divided among a team: the bits of a segment depend neither on the others nor on who does it.
 template <int D>
 void fill_divided(core::Team& team, VariationalStep& stepper, const std::vector<Eigen::Index>& own,
                   const std::vector<Mirror>& mirrors, const Carriers& carriers, Chain& chain) {
   const Eigen::Index d = chain.dimension();
-  const auto count = static_cast<Eigen::Index>(own.size());
-  constexpr auto lanes = static_cast<Eigen::Index>(VariationalStep::lanes);
-  const Eigen::Index groups = (count + lanes - 1) / lanes;
+  const auto count = static_cast<int>(own.size());
   const Eigen::Index size = 2 * d * d + 2 * d;
   const bool with_mirrors = !carriers.forward.empty();
-  Eigen::MatrixXd table((with_mirrors ? 2 : 1) * size, groups * lanes);
-  const auto copy_all = [&](Eigen::Index begin, Eigen::Index end, const auto& copy) {
-    for (Eigen::Index n = begin; n < end; ++n) {
+  Eigen::MatrixXd table((with_mirrors ? 2 : 1) * size, count);
+  const auto copy_all = [&](int begin, int end, const auto& copy) {
+    for (int n = begin; n < end; ++n) {
       const Eigen::Index m = own[static_cast<std::size_t>(n)];
       copy_segment(chain, m, table.col(n).head(size), copy);
       if (with_mirrors)
         copy_segment(chain, mirrors[static_cast<std::size_t>(m)].segment, table.col(n).tail(size), copy);
     }
   };
-  team.divide("Floquet chain: transitions", static_cast<int>(groups), static_cast<int>(table.rows() * lanes),
-              table.data(), [&](int first, int last) {
-                const Eigen::Index begin = std::min<Eigen::Index>(first * lanes, count);
-                const Eigen::Index end = std::min<Eigen::Index>(last * lanes, count);
-                fill_segments<D>(
-                    stepper,
-                    std::span(own).subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin)),
-                    mirrors, carriers, chain);
-                copy_all(begin, end, [](const auto& from, auto to) { to = from; });
-              });
+  team.divide(
+      "Floquet chain: transitions", count, static_cast<int>(table.rows()), table.data(), [&](int begin, int end) {
+        const auto first = own.begin() + begin;
+        fill_segments<D>(stepper, std::span(first, static_cast<std::size_t>(end - begin)), mirrors, carriers, chain);
+        copy_all(begin, end, [](const auto& from, auto to) { to = from; });
+      });
   copy_all(0, count, [](auto to, const auto& from) { to = from; });
 }
 

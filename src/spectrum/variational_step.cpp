@@ -77,16 +77,17 @@ Lanes sum_of(const double* slopes, std::size_t size) {
 
 /// values = start + lengths * (slopes weighted by the tableau's row).
 template <std::size_t Row>
-void combine_row(std::size_t size, const double* start, const double* lengths, const double* slopes, double* values) {
+void combine_row(std::size_t size, std::size_t used, const double* start, const double* lengths, const double* slopes,
+                 double* values) {
   constexpr std::size_t begin = row_begin(Row);
   constexpr std::size_t count = row_begin(Row + 1) - begin;
   for (std::size_t n = 0; n < size; n += w)
-    for (std::size_t g = 0; g < w; g += Lanes::width)
+    for (std::size_t g = 0; g < used; g += Lanes::width)
       (Lanes::load(start + n + g) + Lanes::load(lengths + g) * sum_of<tableau, begin, count>(slopes + n + g, size))
           .store(values + n + g);
 }
 
-using CombineRow = void (*)(std::size_t, const double*, const double*, const double*, double*);
+using CombineRow = void (*)(std::size_t, std::size_t, const double*, const double*, const double*, double*);
 template <std::size_t... rows>
 constexpr std::array<CombineRow, stages> combine_rows(std::index_sequence<rows...>) {
   return {&combine_row<rows + 1>...};
@@ -95,9 +96,9 @@ constexpr std::array<CombineRow, stages> combine = combine_rows(std::make_index_
 
 /// product = a b for matrices in lanes, of D x D (0: of size d).
 template <std::size_t D>
-void multiply(std::size_t dynamic, const double* a, const double* b, double* product) {
+void multiply(std::size_t dynamic, std::size_t used, const double* a, const double* b, double* product) {
   const std::size_t d = D == 0 ? dynamic : D;
-  for (std::size_t g = 0; g < w; g += Lanes::width) {
+  for (std::size_t g = 0; g < used; g += Lanes::width) {
     for (std::size_t i = 0; i < d; ++i) {
       for (std::size_t l = 0; l < d; ++l) {
         Lanes sum = Lanes::load(a + i * d * w + g) * Lanes::load(b + l * w + g);
@@ -124,7 +125,7 @@ VariationalStep::VariationalStep(const systems::System& system)
     std::fill_n(_start.begin() + static_cast<std::ptrdiff_t>((_dimension + i * _dimension + i) * lanes), lanes, 1.0);
 }
 
-void VariationalStep::slope(std::size_t stage) {
+void VariationalStep::slope(std::size_t stage, std::size_t used) {
   double* slopes = _slopes.data() + stage * _size;
   double* transition_slopes = slopes + _dimension * lanes;
   if (stage == 0) {  // Y is the unit matrix
@@ -133,14 +134,14 @@ void VariationalStep::slope(std::size_t stage) {
   }
   _system.field_jacobian(lanes, _values.data(), slopes, _jacobian.data());
   if (_dimension == 4)
-    multiply<4>(4, _jacobian.data(), transitions(), transition_slopes);
+    multiply<4>(4, used, _jacobian.data(), transitions(), transition_slopes);
   else
-    multiply<0>(_dimension, _jacobian.data(), transitions(), transition_slopes);
+    multiply<0>(_dimension, used, _jacobian.data(), transitions(), transition_slopes);
 }
 
-void VariationalStep::estimate(const double* lengths) {
+void VariationalStep::estimate(const double* lengths, std::size_t used) {
   const std::size_t states = _dimension * lanes;
-  for (std::size_t g = 0; g < w; g += Lanes::width) {
+  for (std::size_t g = 0; g < used; g += Lanes::width) {
     const Lanes h = Lanes::load(lengths + g);
     Lanes squares_5(0.0);
     Lanes squares_3(0.0);
@@ -159,14 +160,14 @@ void VariationalStep::estimate(const double* lengths) {
   }
 }
 
-void VariationalStep::run(const double* starts, const double* lengths) {
+void VariationalStep::run(const double* starts, const double* lengths, std::size_t used) {
   std::copy_n(starts, _dimension * lanes, _start.begin());
   std::copy(_start.begin(), _start.end(), _values.begin());
   for (std::size_t row = 0; row < stages; ++row) {
-    slope(row);
-    combine[row](_size, _start.data(), lengths, _slopes.data(), _values.data());
+    slope(row, used);
+    combine[row](_size, used, _start.data(), lengths, _slopes.data(), _values.data());
   }
-  estimate(lengths);
+  estimate(lengths, used);
 }
 
 }  // namespace orbweaver::spectrum

@@ -15,8 +15,9 @@ class VariationalStep {
 
   explicit VariationalStep(const systems::System& system);
 
-  /// `starts`: dimension x lanes, component-major; a step of its own length (`lengths`, one a lane) from each.
-  void run(const double* starts, const double* lengths);
+  /// `starts`: dimension x lanes, component-major; a step of its own length (`lengths`, one a lane) from each. Only the
+  /// first `used` lanes are wanted: what the others hold afterwards is of no use.
+  void run(const double* starts, const double* lengths, std::size_t used = lanes);
 
   /// State reached, [i * lanes + lane], and transition matrix, [(i * dimension + l) * lanes + lane].
   [[nodiscard]] const double* states() const { return _values.data(); }
@@ -26,8 +27,8 @@ class VariationalStep {
   [[nodiscard]] const double* truncations() const { return _truncations.data(); }
 
  private:
-  void slope(std::size_t stage);
-  void estimate(const double* lengths);
+  void slope(std::size_t stage, std::size_t used);
+  void estimate(const double* lengths, std::size_t used);
   const systems::System& _system;
   std::size_t _dimension;
   std::size_t _size;  ///< numbers a stage: (dimension + dimension^2) x lanes
