@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -21,6 +22,21 @@ std::optional<Orbit> Branch::Implementation::end(EndReason reason, std::string d
   }
   ending = Ending{reason, std::move(detail)};
   return std::nullopt;
+}
+
+/// Steps after which the branch would be on another family are taken back and shortened.
+std::optional<Orbit> Branch::Implementation::next_on_family() {
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  if (!options.jumped) return next_orbit(unlimited);
+  const Frontier before = frontier;
+  std::optional<Orbit> next = next_orbit(unlimited);
+  while (next && frontier.last_increment > options.smallest_jump && options.jumped(before.orbit, *next)) {
+    const double length = 0.3 * frontier.last_increment;
+    frontier = before;
+    forget();
+    next = next_orbit(length);
+  }
+  return next;
 }
 
 // T has more than doubled, and over its last tenth the energy has moved by less than a thousandth of its range.

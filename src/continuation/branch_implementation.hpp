@@ -27,7 +27,7 @@ struct Branch::Implementation {
     if (ending) return std::nullopt;
     if (!begun()) return first_orbit();
     ending = end_at(frontier.orbit);
-    return ending ? std::nullopt : next_orbit();
+    return ending ? std::nullopt : next_on_family();
   }
 
   /// Sets the frontier's tangent if it is not known yet.
@@ -38,7 +38,10 @@ struct Branch::Implementation {
 
  protected:
   virtual std::optional<Orbit> first_orbit() = 0;
-  virtual std::optional<Orbit> next_orbit() = 0;
+  /// With a step of at most this length.
+  virtual std::optional<Orbit> next_orbit(double at_most) = 0;
+  /// Drops what has been made for a frontier that is replaced.
+  virtual void forget() {}
 
   /// Ends the branch; a cutoff limit of a settled family is a divergence of the period.
   std::optional<Orbit> end(EndReason reason, std::string detail);
@@ -48,6 +51,7 @@ struct Branch::Implementation {
   void keep(Orbit& orbit, double increment, double amplitude);
 
  private:
+  std::optional<Orbit> next_on_family();
   [[nodiscard]] std::optional<Ending> end_at(const Orbit& orbit) const;
   [[nodiscard]] bool period_diverges() const;
 };

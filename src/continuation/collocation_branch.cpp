@@ -102,18 +102,26 @@ class CollocationBranch final : public Branch::Implementation {
     return out;
   }
 
-  std::optional<Orbit> next_orbit() override {
+  void forget() override { _points.forget_grid(); }
+
+  std::optional<Orbit> next_orbit(double at_most) override {
     const double amplitude = frontier.amplitude;
-    const double least = options.smallest_step * (1.0 + amplitude) * std::min(1.0, amplitude);
-    double length = std::max(length_to_try(), least);
-    while (true) {
-      Trial trial = try_step(length);
+    const double least = std::min(options.smallest_step * (1.0 + amplitude) * std::min(1.0, amplitude), 0.1 * at_most);
+    double length = std::min(std::max(length_to_try(), least), at_most);
+    std::optional<Prediction> tangent;  // of length 1 from the last orbit, where it is needed
+    for (int halved = 0;; ++halved) {
+      // A polynomial through a sharp turn may point backwards, however short the step.
+      if (halved >= 3 && !tangent) tangent = along_tangent();
+      Trial trial = tangent ? correct(scaled(*tangent, length)) : try_step(length);
       const double wanted = options.prediction_error * std::min(1.0, amplitude);
-      const bool jumped = trial.prediction_error > 100.0 * wanted ||
-                          (trial.converged && (_points.inverted(trial, last_point().values) || turned_back(trial)));
+      const bool jumped =
+          trial.prediction_error > 100.0 * wanted ||
+          (trial.converged && (_points.inverted(trial, last_point().values) || turned_too_far(trial, length, tangent)));
       if (trial.converged && !jumped && !_points.resolved(trial)) {
         if (!refine(trial))
           return end(EndReason::cutoff_limit, fmt::format("the next orbit needs more than K = {}", options.cutoff_to));
+        --halved;
+        tangent.reset();  // on the grid before
         continue;
       }
       if (trial.accepted() && !jumped) {
@@ -145,20 +153,49 @@ class CollocationBranch final : public Branch::Implementation {
   }
 
   Trial try_step(double length) {
+    return correct(extrapolate(state().points, options.predictor_order, last_point().parameter + length));
+  }
+
+  Trial correct(Prediction prediction) {
     // A factor that has grown stale costs more iterations than a new one.
     if (frontier.orbit.iterations > renew_after) state().factor_point.clear();
-    Prediction prediction = extrapolate(state().points, options.predictor_order, last_point().parameter + length);
     if (equations().borders() > 1) prediction.values[static_cast<std::size_t>(equations().period_at() + 1)] = 0.0;
     _points.hold_phase(prediction, last_point().values);
     const std::vector<double> weights = _points.conditions_at(prediction);
     return _points.correct(std::move(prediction), weights);
   }
 
-  /// True if the step leads back to where the last one came from: a polynomial through distant points may turn so.
-  [[nodiscard]] bool turned_back(const Trial& trial) {
+  /// The family's own direction at the last orbit, on the side of the step that led there, as a step of length 1.
+  [[nodiscard]] Prediction along_tangent() {
+    const Prediction chord = extrapolate(state().points, 1, last_point().parameter);
+    Prediction out{last_point().values, direction_here(chord), 1};
+    for (std::size_t n = 0; n < out.values.size(); ++n) out.values[n] += out.tangent[n];
+    const std::vector<double>& last = last_point().values;
+    const double length = std::sqrt(_points.product(out.values, last, out.values, last));
+    for (double& v : out.tangent) v /= length;
+    return scaled(out, 1.0);
+  }
+
+  [[nodiscard]] Prediction scaled(Prediction step, double length) const {
+    step.values = last_point().values;
+    for (std::size_t n = 0; n < step.values.size(); ++n) step.values[n] += length * step.tangent[n];
+    return step;
+  }
+
+  /// True if the step has left its prediction by more than 60 degrees, or turns by as much from the last step and from
+  /// the family's direction (the last step may have gone around a bend): a bend that is not resolved, or the way back.
+  [[nodiscard]] bool turned_too_far(const Trial& trial, double length, std::optional<Prediction>& tangent) {
     const std::vector<double>& last = last_point().values;
     const std::vector<double>& before = state().points[state().points.size() - 2].values;
-    return _points.product(trial.values, last, last, before) < 0.0;
+    const double step = std::sqrt(_points.product(trial.values, last, trial.values, last));
+    if (step > 2.0 * length) return true;
+    const auto turned = [&](const std::vector<double>& from, const std::vector<double>& to) {
+      return _points.product(trial.values, last, to, from) <
+             0.5 * step * std::sqrt(_points.product(to, from, to, from));
+    };
+    if (!turned(before, last)) return false;
+    if (!tangent) tangent = along_tangent();
+    return turned(last, tangent->values);
   }
 
   /// More harmonics for the orbit just found; false where the scene does not allow them.
@@ -294,33 +331,37 @@ class CollocationBranch final : public Branch::Implementation {
     if (fewer && *fewer < state().cells) _points.regrid({*fewer, state().time_map});
   }
 
-  /// With equations of its own, so that the course of the branch does not depend on who asks.
+  /// The family's direction at the last orbit, on the side of the prediction's. With equations of its own, so that the
+  /// course of the branch does not depend on who asks.
+  [[nodiscard]] std::vector<double> direction_here(const Prediction& prediction) {
+    const Collocation& own = equations();
+    Collocation e(*system, _points.domain(), own.centre(), own.winding(), state().cells, state().time_map);
+    e.set_conditions(_points.conditions_at(prediction), last_point().values);
+    try {
+      return corrector::family_direction(e, last_point().values);
+    } catch (const core::NumericalError&) {
+      return prediction.tangent;  // next to a crossing the linear system is singular
+    }
+  }
+
   void complete_frontier() override {
     if (!begun() || !frontier.tangent_modes.empty()) return;
     const Collocation& own = equations();
-    Collocation e(*system, _points.domain(), own.centre(), own.winding(), state().cells, state().time_map);
-    const std::vector<TracePoint>& points = state().points;
-    Prediction prediction = extrapolate(points, options.predictor_order, last_point().parameter);
-    e.set_conditions(_points.conditions_at(prediction), last_point().values);
-    std::vector<double> tangent = prediction.tangent;
-    try {
-      tangent = corrector::family_direction(e, last_point().values);
-    } catch (const core::NumericalError&) {
-      // Next to a crossing the linear system is singular: the polynomial's own direction stands.
-    }
-    const loop::StaggeredGrid* grid = &e.grid();
+    std::vector<double> tangent =
+        direction_here(extrapolate(state().points, options.predictor_order, last_point().parameter));
+    const loop::StaggeredGrid* grid = &own.grid();
     if (!(state().time_map == here().time_map)) {  // after a regrid for an orbit that was not accepted
       const std::vector<double> no_winding(own.winding().size(), 0.0);
       const int cells = cell_counts::at_least_for_cutoff(_points.domain(), here().cutoff);
       const Collocation before(*system, _points.domain(), own.centre(), no_winding, cells, here().time_map);
-      tangent = before.resampled(e, tangent);
+      tangent = before.resampled(own, tangent);
       grid = &before.grid();
     }
     frontier.tangent_modes.resize((2 * static_cast<std::size_t>(grid->cutoff()) + 1) *
-                                  static_cast<std::size_t>(e.dimension()));
+                                  static_cast<std::size_t>(own.dimension()));
     grid->to_modes(tangent.data(), frontier.tangent_modes.data());
     frontier.tangent_modes.resize(here().modes.size(), 0.0);
-    frontier.tangent_period = tangent[tangent.size() - static_cast<std::size_t>(e.borders())];
+    frontier.tangent_period = tangent[tangent.size() - static_cast<std::size_t>(own.borders())];
     double square = frontier.tangent_period * frontier.tangent_period;
     for (const double v : frontier.tangent_modes) square += v * v;
     for (double& v : frontier.tangent_modes) v /= std::sqrt(square);

@@ -107,10 +107,10 @@ struct LoopBranch final : Branch::Implementation {
     return std::min(length, 5.0 * options.largest_step);
   }
 
-  std::optional<Orbit> next_orbit() override {
+  std::optional<Orbit> next_orbit(double at_most) override {
     const double amplitude = loop::rms_amplitude(here());
-    const double least = options.smallest_step * (1.0 + amplitude) * std::min(1.0, amplitude);
-    double length = std::max(length_to_try(), least);
+    const double least = std::min(options.smallest_step * (1.0 + amplitude) * std::min(1.0, amplitude), 0.1 * at_most);
+    double length = std::min(std::max(length_to_try(), least), at_most);
     int raises = 0;
     while (true) {
       const Attempt attempt = correct(here(), tangent(), length);

@@ -41,6 +41,8 @@ class PointCorrector {
   corrector::Collocation& equations();
   /// A grid with nothing on it yet.
   void set_grid(int cells, const loop::TimeMap& map);
+  /// After a change of the frontier: its grid is made anew when it is needed.
+  void forget_grid() { _equations.reset(); }
   /// The highest harmonic on a grid of `cells`.
   [[nodiscard]] int cutoff_of(int cells) const { return (cells * _domain.copies() - 1) / 2; }
 

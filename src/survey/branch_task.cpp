@@ -11,6 +11,7 @@
 #include "executor.hpp"
 #include "orbit_row.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
+#include "orbweaver/bifurcation/family_jump.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/fundamental_domain.hpp"
 #include "requested.hpp"
@@ -50,6 +51,8 @@ queue::TaskOutcome BranchTask::run() {
   try {
     continuation::Options options = branch_options(_scene, _team);
     if (_work.amplitude > 0.0) options.start_amplitude = _work.amplitude;
+    if (bifurcation::passes_two_only_at_folds(_system->description(), _start.isotropy))
+      options.jumped = [this](const auto& from, const auto& to) { return jumped(from, to); };
     ending =
         continuation::trace(_system, _start, options, [this](const continuation::Orbit& orbit) { return take(orbit); });
     const auto probing = [this](double position) { return probe(position); };
@@ -75,13 +78,31 @@ bool BranchTask::take(const continuation::Orbit& orbit) {
     _before_first = _work.lineage.crossing.empty() ? 0.0 : continuation::arclength_between(_start.base, orbit.loop);
   _curve.add(orbit.arclength, orbit.loop, kept_orbits);
   if (arrive(orbit)) return false;
-  const std::optional<spectrum::Stability> stability = stability_of(*_system, orbit.loop, _start.isotropy, _team);
+  const std::optional<spectrum::Stability>& stability = stability_at(orbit);
   detect(orbit, stability);
   if (_last) solve_requested(orbit);
   store(orbit, stability);
   _last = orbit;
+  _last_stability = stability;
   const double seen[] = {orbit.loop.period, orbit.energy, static_cast<double>(orbit.loop.cutoff)};
   return _context.report({_outcome.orbits, 1, {seen[0], seen[1], seen[2]}});
+}
+
+/// Not computed again for the orbit that was asked for last.
+const std::optional<spectrum::Stability>& BranchTask::stability_at(const continuation::Orbit& orbit) {
+  if (_asked != orbit.loop.modes) {
+    _stability = stability_of(*_system, orbit.loop, _start.isotropy, _team);
+    _asked = orbit.loop.modes;
+  }
+  return _stability;
+}
+
+bool BranchTask::jumped(const continuation::Orbit& from, const continuation::Orbit& to) {
+  if (!_last_stability) _last_stability = stability_of(*_system, _last->loop, _start.isotropy, _team);
+  const std::optional<spectrum::Stability>& after = stability_at(to);
+  return _last_stability && after &&
+         bifurcation::has_jumped(_system, _start.isotropy, branch_options(_scene, _team), {from, *_last_stability},
+                                 {to, *after});
 }
 
 bool BranchTask::arrive(const continuation::Orbit& orbit) {

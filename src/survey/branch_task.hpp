@@ -26,6 +26,8 @@ class BranchTask {
 
  private:
   bool take(const continuation::Orbit& orbit);
+  const std::optional<spectrum::Stability>& stability_at(const continuation::Orbit& orbit);
+  bool jumped(const continuation::Orbit& from, const continuation::Orbit& to);
   bool arrive(const continuation::Orbit& orbit);
   void detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability);
   void add_event(const bifurcation::Event& event, double from, double to);
@@ -50,6 +52,9 @@ class BranchTask {
   bifurcation::FoldWatch _folds;
   std::optional<continuation::Orbit> _last;
   std::optional<bifurcation::SymmetryWatch::Seen> _seen;  // of the last orbit
+  std::optional<spectrum::Stability> _last_stability;     // of the last orbit
+  std::vector<double> _asked;                             // modes of the orbit whose stability was asked for last,
+  std::optional<spectrum::Stability> _stability;          // and its stability
   double _before_first = 0.0;                             // arclength from the crossing to the first orbit
   int _events = 0;
   BranchOutcome _outcome;

@@ -35,6 +35,10 @@ struct Options {
   double energy_to = std::numeric_limits<double>::infinity();
   int step_limit = 5000;             ///< orbits of the branch
   bool off_branch_spectrum = false;  ///< the paper's minimum off-branch eigenvalue at every orbit
+  /// Whether a step has gone over to another family, which nothing but the two orbits may decide. Then a shorter one is
+  /// tried: families that pass one another at a distance below `prediction_error` look like one to the corrector.
+  std::function<bool(const Orbit& from, const Orbit& to)> jumped{};
+  double smallest_jump = 1e-7;  ///< steps below this arclength are not asked: families as near as that cross
 };
 
 /// A place to start from: a known loop (a fixed point as a constant loop, or an orbit) and a direction in which loops

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+
+#include "orbweaver/continuation/branch.hpp"
+#include "orbweaver/loop/isotropy.hpp"
+#include "orbweaver/spectrum/floquet.hpp"
+#include "orbweaver/systems/description.hpp"
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::bifurcation {
+
+/// True for families of a symplectic system whose orbits no reversor maps to themselves. A multiplier 1 of the
+/// fundamental map has an eigenvector that keeps all symmetries then, so that along such a family an index passes 2
+/// only where the energy turns (docs/mathematics.md, "Families that nearly cross").
+[[nodiscard]] bool passes_two_only_at_folds(const systems::Description& system, const loop::Isotropy& isotropy);
+
+/// An orbit with its stability.
+struct KnownStability {
+  const continuation::Orbit& orbit;
+  const spectrum::Stability& stability;
+};
+
+/// True if a step along a family that passes 2 only at folds has gone over to another one: an index has passed 2, and
+/// the energy does not turn on the way. Also where that cannot be told, which a shorter step may change: the directions
+/// of the family at the two orbits cannot be had, or one is more than 60 degrees from the chord.
+[[nodiscard]] bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
+                              const continuation::Options& options, const KnownStability& from,
+                              const KnownStability& to);
+
+}  // namespace orbweaver::bifurcation

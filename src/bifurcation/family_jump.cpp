@@ -1,0 +1,57 @@
+#include "orbweaver/bifurcation/family_jump.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "orbweaver/bifurcation/crossing.hpp"
+#include "orbweaver/bifurcation/test_functions.hpp"
+#include "orbweaver/continuation/family_curve.hpp"
+
+namespace orbweaver::bifurcation {
+
+namespace {
+
+/// Cosine of the angle between the family's direction at `at` and the chord from `from` to `to`, all under one time map.
+double along_chord(const continuation::CurvePoint& at, const loop::Loop& from, const loop::Loop& to) {
+  const std::size_t size = std::min({at.tangent_modes.size(), from.modes.size(), to.modes.size()});
+  double product = 0.0;
+  double chord = 0.0;
+  double tangent = 0.0;
+  for (std::size_t n = 0; n < size; ++n) {
+    const double weight = n < static_cast<std::size_t>(from.dimension) ? 1.0 : 0.5;
+    const double change = to.modes[n] - from.modes[n];
+    product += weight * at.tangent_modes[n] * change;
+    chord += weight * change * change;
+    tangent += weight * at.tangent_modes[n] * at.tangent_modes[n];
+  }
+  const double change = (to.period - from.period) / from.period;
+  const double slope = at.tangent_period / from.period;
+  return (product + slope * change) / std::sqrt((chord + change * change) * (tangent + slope * slope));
+}
+
+}  // namespace
+
+bool passes_two_only_at_folds(const systems::Description& system, const loop::Isotropy& isotropy) {
+  return system.symplectic &&
+         std::none_of(isotropy.begin(), isotropy.end(), [](const loop::SymmetryElement& e) { return e.reversing; });
+}
+
+bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
+                const continuation::Options& options, const KnownStability& from, const KnownStability& to) {
+  const TestFunction two{TestFunction::Kind::sector, {1, 0}};
+  const int before = evaluate(two, system->description(), from.stability).sign();
+  const int after = evaluate(two, system->description(), to.stability).sign();
+  if (before * after >= 0) return false;
+  continuation::FamilyCurve step(system, isotropy, options);
+  step.add(0.0, from.orbit.loop);
+  step.add(1.0, to.orbit.loop);
+  const std::optional<continuation::CurvePoint> start = step.at(0.0, true);
+  const std::optional<continuation::CurvePoint> end = step.at(1.0, true);
+  if (!start || !end) return true;
+  for (const continuation::CurvePoint* point : {&*start, &*end})
+    if (along_chord(*point, start->loop, end->loop) < 0.5) return true;
+  return energy_slope(*system, *start) * energy_slope(*system, *end) > 0.0;
+}
+
+}  // namespace orbweaver::bifurcation

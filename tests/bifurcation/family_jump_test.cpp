@@ -1,0 +1,212 @@
+#include "orbweaver/bifurcation/family_jump.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "continuation/families.hpp"
+#include "orbweaver/ad/derivatives.hpp"
+
+namespace {
+
+using namespace orbweaver;
+using bifurcation::has_jumped;
+using continuation::Options;
+using continuation::Orbit;
+
+/// The double pendulum with charged joints in a magnetic field: the generalised force B (w2, -w1) does no work, keeps S
+/// and breaks both reversors.
+class MagneticPendulum final : public systems::System {
+ public:
+  explicit MagneticPendulum(double strength) : _force{strength}, _description(test::pendulum()->description()) {
+    _description.reversors.clear();
+  }
+  [[nodiscard]] const systems::Description& description() const override { return _description; }
+  [[nodiscard]] const std::map<std::string, double>& parameters() const override {
+    return test::pendulum()->parameters();
+  }
+  void field(std::size_t nodes, const double* z, double* f) const override {
+    test::pendulum()->field(nodes, z, f);
+    add(nodes, z, f, nullptr);
+  }
+  void field_jacobian(std::size_t nodes, const double* z, double* f, double* jacobian) const override {
+    test::pendulum()->field_jacobian(nodes, z, f, jacobian);
+    add(nodes, z, f, jacobian);
+  }
+  void second_derivatives(std::size_t nodes, const double* z, const double* weights, double* out) const override {
+    test::pendulum()->second_derivatives(nodes, z, weights, out);
+    for (std::size_t n = 0; n < nodes; ++n) {
+      const auto added = ad::second_derivatives<4>(_force, at(nodes, n, z).data(), at(nodes, n, weights).data());
+      for (std::size_t i = 0; i < 16; ++i) out[i * nodes + n] += added[i];
+    }
+  }
+  [[nodiscard]] double energy(std::span<const double> z) const override { return test::pendulum()->energy(z); }
+  void energy_gradient(std::span<const double> z, std::span<double> gradient) const override {
+    test::pendulum()->energy_gradient(z, gradient);
+  }
+  [[nodiscard]] double action_density(std::span<const double> z) const override {
+    return test::pendulum()->action_density(z);
+  }
+
+ private:
+  struct Force {
+    double strength;
+
+    template <class S>
+    void operator()(const S* z, S* f) const {
+      using std::cos;
+      const S c = cos(z[0] - z[1]);
+      const S share = S(strength) / (S(2.0) - c * c);
+      f[0] = f[1] = z[0] * 0.0;
+      f[2] = (z[3] + c * z[2]) * share;
+      f[3] = (c * z[3] + z[2] * 2.0) * share * -1.0;
+    }
+  };
+
+  static std::array<double, 4> at(std::size_t nodes, std::size_t n, const double* values) {
+    return {values[n], values[nodes + n], values[2 * nodes + n], values[3 * nodes + n]};
+  }
+
+  void add(std::size_t nodes, const double* z, double* f, double* jacobian) const {
+    for (std::size_t n = 0; n < nodes; ++n) {
+      const auto added = ad::field_jacobian<4>(_force, at(nodes, n, z).data());
+      for (std::size_t i = 0; i < 4; ++i) f[i * nodes + n] += added.value[i];
+      for (std::size_t i = 0; jacobian != nullptr && i < 16; ++i) jacobian[i * nodes + n] += added.jacobian[i];
+    }
+  }
+
+  Force _force;
+  systems::Description _description;
+};
+
+loop::Isotropy without_reversors() {
+  loop::Isotropy isotropy = test::pendulum_isotropy(*test::pendulum());
+  std::erase_if(isotropy, [](const loop::SymmetryElement& e) { return e.reversing; });
+  return isotropy;
+}
+
+continuation::Start in_phase_start() {
+  continuation::Start start = test::start_of(test::in_phase());
+  start.isotropy = without_reversors();
+  return start;
+}
+
+/// A family followed in the subspace of S@1/2 alone; `held`: steps that jump are taken back.
+struct Followed {
+  std::shared_ptr<const systems::System> system;
+  Options plain{};
+  std::vector<Orbit> orbits{};
+  std::vector<double> indices{};
+  int refused = 0;
+  continuation::Ending ending{};
+
+  Followed(std::shared_ptr<const systems::System> of, const continuation::Start& start, bool held)
+      : system(std::move(of)) {
+    plain.period_limit = 11.0;
+    plain.fit_time_map = false;
+    Options options = plain;
+    if (held) options.jumped = [this](const Orbit& from, const Orbit& to) { return jumped(from, to); };
+    ending = continuation::trace(system, start, options, [this](const Orbit& orbit) {
+      orbits.push_back(orbit);
+      indices.push_back(stability(orbit).fundamental[0].real());
+      return true;
+    });
+  }
+
+  [[nodiscard]] spectrum::Stability stability(const Orbit& orbit) const {
+    return spectrum::floquet(*system, orbit.loop, without_reversors());
+  }
+
+  [[nodiscard]] bool jumped(const Orbit& from, const Orbit& to) {
+    const bool jump = has_jumped(system, without_reversors(), plain, {from, stability(from)}, {to, stability(to)});
+    if (jump) ++refused;
+    return jump;
+  }
+
+  /// Steps across which the index passes 2.
+  [[nodiscard]] std::vector<std::size_t> passing_two() const {
+    std::vector<std::size_t> steps;
+    for (std::size_t n = 1; n < orbits.size(); ++n)
+      if ((indices[n - 1] - 2.0) * (indices[n] - 2.0) < 0.0) steps.push_back(n);
+    return steps;
+  }
+
+  /// Steps at which the energy turns.
+  [[nodiscard]] std::vector<std::size_t> turning() const {
+    std::vector<std::size_t> steps;
+    for (std::size_t n = 2; n < orbits.size(); ++n)
+      if ((orbits[n].energy - orbits[n - 1].energy) * (orbits[n - 1].energy - orbits[n - 2].energy) < 0.0)
+        steps.push_back(n);
+    return steps;
+  }
+};
+
+// At T = 10.4168 the in-phase family of the ideal pendulum crosses IB, which breaks both reversors. In the field the two
+// curves pass one another instead, at a distance of about the cube root of its strength, and turn ever more sharply.
+class FamilyJump : public ::testing::TestWithParam<double> {
+ protected:
+  std::shared_ptr<const systems::System> system = std::make_shared<MagneticPendulum>(GetParam());
+  Followed loose{system, in_phase_start(), false};
+};
+
+TEST_P(FamilyJump, StepsAcrossTheGapBetweenTwoFamiliesAreTakenBack) {
+  EXPECT_EQ(loose.passing_two().size(), 1U) << "if it does not jump, this is no test";
+  EXPECT_TRUE(loose.turning().empty());
+
+  const Followed held(system, in_phase_start(), true);
+  EXPECT_EQ(held.ending.reason, continuation::EndReason::period_limit) << held.ending.text();
+  EXPECT_TRUE(held.passing_two().empty());
+  EXPECT_TRUE(held.turning().empty());
+  EXPECT_GT(held.refused, 0);
+  EXPECT_LT(held.orbits.size(), 3 * loose.orbits.size());
+  EXPECT_GT(*std::max_element(held.indices.begin(), held.indices.end()), 1.9) << "it comes near";
+  // Both end at T = 11, on different orbits.
+  EXPECT_GT(std::abs(held.orbits.back().energy - loose.orbits.back().energy), 1e-3);
+}
+
+TEST_P(FamilyJump, AFoldInTheEnergyIsNone) {
+  // The other curve, from beyond the gap backwards: down to a fold, and up again.
+  const Orbit& last = loose.orbits.back();
+  const Orbit& before = loose.orbits[loose.orbits.size() - 2];
+  continuation::Start back{last.loop, {}, without_reversors()};
+  const loop::Loop towards = loop::with_cutoff(before.loop, last.loop.cutoff);
+  for (std::size_t n = 0; n < towards.modes.size(); ++n)
+    back.direction.push_back(towards.modes[n] - last.loop.modes[n]);
+  Followed held(system, back, true);
+  EXPECT_EQ(held.ending.reason, continuation::EndReason::period_limit) << held.ending.text();
+  ASSERT_EQ(held.passing_two().size(), 1U);
+  ASSERT_EQ(held.turning().size(), 1U);
+  const std::size_t across = held.passing_two()[0];
+  EXPECT_LE(held.turning()[0] - across, 1U) << "the step of the fold, or the next one shows it";
+  EXPECT_GT(held.indices.front(), 2.0);
+  EXPECT_LT(held.indices.back(), 2.0);
+  EXPECT_FALSE(held.jumped(held.orbits[across - 1], held.orbits[across]));
+  EXPECT_TRUE(held.jumped(held.orbits.front(), held.orbits.back())) << "so far apart it cannot be told";
+}
+
+INSTANTIATE_TEST_SUITE_P(Fields, FamilyJump, ::testing::Values(5e-13, 3.4e-11, 2.2e-9, 2.7e-8, 1e-6, 1e-5));
+
+TEST(Jumps, FamiliesThatCrossArePassedInTheEnd) {
+  // With the reversors in the equations, though not in the subspace, the index passes 2 at the crossing itself.
+  const Followed held(test::pendulum(), in_phase_start(), true);
+  EXPECT_EQ(held.ending.reason, continuation::EndReason::period_limit) << held.ending.text();
+  ASSERT_EQ(held.passing_two().size(), 1U);
+  EXPECT_GE(held.refused, 5);
+  const std::size_t across = held.passing_two()[0];
+  EXPECT_NEAR(held.orbits[across].loop.period, 10.416773281973249, 1e-6);
+  // Down to the smallest jump, or to where the index is 2 within its error bound.
+  EXPECT_LE(held.orbits[across].arclength - held.orbits[across - 1].arclength, 10.0 * Options{}.smallest_jump);
+}
+
+TEST(Jumps, IsToldFromTheIndexOnlyWhereNothingCanBreak) {
+  const systems::Description& pendulum = test::pendulum()->description();
+  EXPECT_TRUE(bifurcation::passes_two_only_at_folds(pendulum, without_reversors()));
+  EXPECT_TRUE(bifurcation::passes_two_only_at_folds(pendulum, {}));
+  EXPECT_FALSE(bifurcation::passes_two_only_at_folds(pendulum, test::pendulum_isotropy(*test::pendulum())));
+  systems::Description damped = pendulum;
+  damped.symplectic = false;
+  EXPECT_FALSE(bifurcation::passes_two_only_at_folds(damped, {}));
+}
+
+}  // namespace
