@@ -18,6 +18,9 @@ using continuation::Orbit;
 constexpr double beyond = 0.3;  // of the chord: how far outside its ends a projection may lie
 constexpr double away = 1.0;    // of the chord: how far from it an orbit between its ends can be
 constexpr int corrections = 4;
+/// A smooth family leaves the chord by about this share of it times position (1 - position); further off Newton's method
+/// has gone over to a neighbouring family.
+constexpr double bulge = 0.8;
 
 bool is_between(double a, double b, double x, double widening) {
   const double margin = 0.5 * std::abs(b - a) + widening;
@@ -83,6 +86,15 @@ class Chord {
     }
   }
 
+  /// How far an orbit of the family is from the chord's point at `position`, in parts of the chord, time shifts apart.
+  [[nodiscard]] double off_chord(const loop::Loop& x, double position) const {
+    Eigen::VectorXd off =
+        difference(*_unknowns, _first, as_here(x)) - position * difference(*_unknowns, _first, _second);
+    const Eigen::VectorXd shift = shift_direction(*_unknowns, _first);
+    if (shift.size() > 0) off -= shift.dot(off) * shift;
+    return off.norm() / chord_at(_first).norm();
+  }
+
   [[nodiscard]] loop::Loop as_here(const loop::Loop& x) const {
     return loop::with_time_map(x, _first.time_map, _first.cutoff);
   }
@@ -140,7 +152,12 @@ Comparison compare(const systems::System& system, Chord chord, const loop::Loop&
     alignment = loop::align(description, x, nearest);
     const double before = distance;
     distance = distance_between(x, nearest, alignment.distance);
-    if (distance <= tolerance) return {true, distance, position, "the same orbit"};
+    if (distance <= tolerance) {
+      const double off = chord.off_chord(nearest, position) * length;
+      if (off <= bulge * std::abs(position * (1.0 - position)) * length + 10.0 * tolerance)
+        return {true, distance, position, "the same orbit"};
+      return apart(off, position, "the correction leaves the family");
+    }
     if (distance > away * length + tolerance) return apart(distance, position, "far from the family");
     // What is left of a wrong phase shrinks with its square; what separates two families stays.
     if (distance > 0.3 * before) break;

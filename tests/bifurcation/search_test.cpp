@@ -3,7 +3,9 @@
 
 #include "bifurcation/crossings.hpp"
 #include "orbweaver/bifurcation/directions.hpp"
+#include "orbweaver/bifurcation/identity.hpp"
 #include "orbweaver/certificate/certificate.hpp"
+#include "orbweaver/loop/standard_phase.hpp"
 
 namespace orbweaver::bifurcation {
 namespace {
@@ -152,6 +154,22 @@ const test::Family& without_reversors() {
   return family;
 }
 
+/// The first orbits of a born family as a survey starts it, at the phases of the archive.
+std::vector<continuation::Orbit> first_two(const Direction& direction) {
+  loop::Loop step = direction.base;
+  step.modes = direction.modes;
+  double square = 0.0;
+  for (const double v : loop::state_at(step, 0.0)) square += v * v;
+  continuation::Options options;
+  options.start_amplitude = direction.amplitude * std::sqrt(square);
+  options.step_limit = 2;
+  std::vector<continuation::Orbit> orbits =
+      test::trace_of(test::pendulum(), {direction.base, direction.modes, direction.isotropy}, options).orbits;
+  for (continuation::Orbit& orbit : orbits)
+    orbit.loop = loop::in_standard_phase(test::pendulum()->description(), orbit.loop, direction.isotropy);
+  return orbits;
+}
+
 class WithoutReversors : public testing::TestWithParam<int> {};
 
 // To leading order the orbits stand where cos(q angle + const) is largest and smallest: pi/q apart, modulo 2 pi/q.
@@ -192,6 +210,17 @@ TEST_P(WithoutReversors, TwoFamiliesOfEvenOrderLeaveHalfAnAngleApart) {
   const std::vector<double> parts = overlaps(found[0].modes, images);
   EXPECT_NEAR(std::acos(*std::max_element(parts.begin(), parts.end())), 0.5 * angle, 0.1 * angle);
   EXPECT_FALSE(loop::find_map(test::pendulum()->description(), born[0].loop, born[1].loop, 1e-3, q).has_value());
+
+  // So weakly is the angle held that Newton's method may go from a point near the first orbit of the one to that of the
+  // other (with the phases of the archive it does, for q = 8). They are not one family for that.
+  for (const std::size_t one : {0U, 1U}) {
+    const std::vector<continuation::Orbit> orbits = first_two(found[one]);
+    const continuation::Orbit other = first_two(found[1 - one])[0];
+    const Comparison same = same_family(*test::pendulum(), orbits[0], orbits[1], {}, other);
+    EXPECT_FALSE(same.same) << same.distance << " at " << same.position;
+    const Comparison own = same_family(*test::pendulum(), orbits[0], orbits[1], {}, orbits[0]);
+    EXPECT_TRUE(own.same) << own.detail;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Search, WithoutReversors, testing::Values(6, 8));

@@ -186,15 +186,24 @@ class Check {
     return orbit;
   }
 
+  // Whether x, an orbit of the same branch, is no further along it from the step a-b than that is long.
+  [[nodiscard]] bool is_near(const Point& a, const Point& b, const Point& x) const {
+    const auto& arclength = _atlas.orbits().reals("arclength");
+    const double length = arclength[b.row] - arclength[a.row];
+    return arclength[x.row] >= arclength[a.row] - length && arclength[x.row] <= arclength[b.row] + length;
+  }
+
   // Which orbits of `other` have invariants between those of neighbours of `family`.
   [[nodiscard]] std::vector<Pair> candidates(const Family& family, const Family& other) const {
     std::vector<Pair> out;
     for (std::size_t x = 0; x < other.points.size(); ++x) {
       if (!is_in(other.points[x], family.box)) continue;
       for (std::size_t n = 0; n + 1 < family.points.size(); ++n) {
-        // On its own family, neighbours do not count; a closed one ends where it began.
+        // On its own family, neighbours do not count, and what is within a step of them where steps are short; a closed
+        // one ends where it began.
         const std::size_t apart = x > n ? x - n : n - x;
-        const bool is_own = &family == &other && (apart <= 3 || apart + 3 >= family.points.size());
+        const bool is_own = &family == &other && (apart <= 3 || apart + 3 >= family.points.size() ||
+                                                  is_near(family.points[n], family.points[n + 1], other.points[x]));
         if (!is_own && is_in(other.points[x], family.segments[n])) out.push_back({x, n});
       }
     }
