@@ -1,4 +1,5 @@
 // Surveys by teams: of two on 5 ranks, of three on 4.
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -96,6 +97,76 @@ TEST(Teams, SizesThatDoNotDivideTheWorkersAreRefusedByAll) {
   }
   const auto refused = [&] { (void)run(comm, chain_scene(comm.size()), "refused", chain()); };
   EXPECT_THROW(refused(), core::InputError);
+}
+
+/// Steps that leave a row each, until a report says to stop; counts what it saw.
+class Stepper final : public queue::Executor {
+ public:
+  explicit Stepper(archive::Records& rows) : _rows(rows) {}
+
+  queue::TaskOutcome execute(const queue::Task& task, queue::TaskContext& context) override {
+    steps = states = 0;
+    most_rows = 0;
+    for (bool go_on = true; go_on && steps < 50;) {
+      ++steps;
+      _rows.orbits.emplace_back();
+      most_rows = std::max(most_rows, _rows.orbits.size());
+      go_on = context.report({steps, 1, {0.5 * steps}}, [this] {
+        ++states;
+        return std::string("state");
+      });
+    }
+    queue::TaskOutcome outcome;
+    outcome.payload = task.payload + std::to_string(steps);
+    return outcome;
+  }
+
+  int steps = 0;
+  int states = 0;
+  std::size_t most_rows = 0;
+
+ private:
+  archive::Records& _rows;
+};
+
+/// A run that asks for the state at the second report and stops the work at the fifth.
+class StoppingRun final : public queue::TaskContext {
+ public:
+  bool report(const queue::Progress& progress, const queue::StateSource& state) override {
+    if (progress.step == 2) {
+      EXPECT_EQ(state(), "state");
+    }
+    return progress.step < 5;
+  }
+};
+
+TEST(Teams, FollowTheLeadersAnswersToReports) {
+  const core::Communicator comm;
+  survey::Teams teams(comm, team_size(comm));
+  if (teams.team() == nullptr) return;
+  archive::Records rows;
+  Stepper member(rows);
+  if (teams.follows()) {
+    const survey::Summary summary = survey::follow(*teams.team(), member, rows);
+    EXPECT_EQ(summary.failures, 3U);
+    EXPECT_TRUE(summary.stopped_early);
+    EXPECT_TRUE(rows.orbits.empty());
+    EXPECT_EQ(member.most_rows, 1U);
+  } else {
+    survey::TeamExecutor leader(teams.team(), member);
+    StoppingRun run;
+    for (const char* payload : {"first ", "second "}) {
+      const queue::TaskOutcome outcome = leader.execute({"key", 0, "steps", payload}, run);
+      EXPECT_EQ(outcome.payload, std::string(payload) + "5");
+    }
+    EXPECT_EQ(rows.orbits.size(), 10U);
+    survey::Summary summary;
+    summary.failures = 3;
+    summary.stopped_early = true;
+    survey::dismiss(teams.team(), summary);
+  }
+  EXPECT_EQ(member.steps, 5);
+  EXPECT_EQ(member.states, 1);
 }
 
 TEST(Teams, SurveyAsOneRankDoes) {
