@@ -127,13 +127,18 @@ std::string time_text(double seconds) {
   return std::isinf(seconds) ? "any" : fmt::format("the whole survey stops after {} s", seconds);
 }
 
+std::string task_time_text(double seconds) {
+  return std::isinf(seconds) ? "any" : fmt::format("tasks that take more than {} s are put aside", seconds);
+}
+
 void print_limits(const scene::Scene& scene) {
   const scene::Limits& limits = scene.limits;
   print_group("Limits", {{"period", std::isinf(limits.period) ? "any" : fmt::format("up to {}", limits.period)},
                          {"energy", energy_text(limits)},
                          {"families", fmt::format("at most {}", limits.families)},
                          {"steps", fmt::format("at most {} a family", limits.steps)},
-                         {"time", time_text(limits.time)}});
+                         {"time", time_text(limits.time)},
+                         {"task time", task_time_text(limits.task_time)}});
 }
 
 std::string value_list(const std::string& quantity, const std::vector<double>& values) {

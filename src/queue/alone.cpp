@@ -16,7 +16,8 @@ Alone::Alone(const Options& options, Executor& executor, Observer& observer, Flu
       _flusher(flusher),
       _ledger(options, 1, observer),
       _schedule(options),
-      _progress_interval(options.progress_seconds) {}
+      _progress_interval(options.progress_seconds),
+      _watchdog(options.task_seconds) {}
 
 RunSummary Alone::run(std::vector<Task> initial) {
   try {
@@ -48,13 +49,16 @@ void Alone::do_next() {
   _told_to_stop = false;
   _stopped_at.clear();
   _times.begin();
+  _watchdog.began(_key);
   TaskOutcome outcome = execute_guarded(_executor, *task, *this);
   _load.busy_seconds += _times.seconds();
   log_task(*task, outcome, _times.seconds(), _times.silence());
   ++_load.tasks;
+  const bool overdue = _watchdog.overdue();
+  _watchdog.ended();
   outcome.stopped = _told_to_stop;
   outcome.state = std::move(_stopped_at);
-  if (_error.empty()) _ledger.settle(std::move(outcome));
+  if (_error.empty()) _ledger.settle(std::move(outcome), overdue);
 }
 
 bool Alone::report(const Progress& progress, const StateSource& state) {
@@ -65,7 +69,7 @@ bool Alone::report(const Progress& progress, const StateSource& state) {
   } catch (...) {
     _error = current_exception_text();
   }
-  if (stop_requested() || !_error.empty()) {
+  if (stop_requested() || _watchdog.overdue() || !_error.empty()) {
     if (!_told_to_stop && state) _stopped_at = state();
     _told_to_stop = true;
   }
@@ -92,9 +96,12 @@ void Alone::flush() {
   const int number = _flushes++;
   if (_ledger.counts().running > 0) _ledger.set_state(_key, _state != nullptr ? (*_state)() : std::string());
   _ledger.flushing(number);
+  _schedule.begun();
+  _watchdog.stands();
   const Stopwatch watch;
   const std::string error = flush_guarded(_flusher, number);
   _times.flushed(watch.seconds());
+  _watchdog.go_on();
   if (!error.empty()) throw core::EnvironmentError(flush_failed_text(number, {{0, error}}, 1));
   _ledger.flushed(number);
   _schedule.flushed();

@@ -7,6 +7,7 @@
 #include "ledger.hpp"
 #include "orbweaver/queue/run.hpp"
 #include "task_times.hpp"
+#include "watchdog.hpp"
 
 namespace orbweaver::queue {
 
@@ -32,6 +33,7 @@ class Alone final : public TaskContext {
   std::string _key;                // of the running task
   std::int64_t _unshown_rows = 0;  // not yet told to the observer
   TaskTimes _times;
+  Watchdog _watchdog;
   bool _told_to_stop = false;           // the running task
   std::string _stopped_at;              // its state then
   const StateSource* _state = nullptr;  // inside report()

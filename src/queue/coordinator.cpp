@@ -21,6 +21,7 @@ Coordinator::Coordinator(const core::Communicator& comm, const Options& options,
       _ledger(options, comm.size(), observer),
       _schedule(options),
       _round(comm.size()),
+      _deadlines(options.task_seconds, comm.size()),
       _task_of(static_cast<std::size_t>(comm.size())),
       _greeted(static_cast<std::size_t>(comm.size()), false) {}
 
@@ -42,6 +43,7 @@ void Coordinator::serve() {
   while (!_over) {
     bool busy = receive_some();
     busy |= pass_on_stop();
+    busy |= mind_deadlines();
     busy |= advance_flush();
     busy |= hand_out();
     _ledger.tick();
@@ -69,6 +71,17 @@ bool Coordinator::pass_on_stop() {
   return true;
 }
 
+bool Coordinator::mind_deadlines() {
+  if (const auto deaf = _deadlines.deaf()) {
+    // It cannot be asked to take part in an orderly end.
+    core::log_error(deaf_text(_task_of[static_cast<std::size_t>(*deaf)], *deaf, _options.task_seconds));
+    MPI_Abort(_comm.get(), static_cast<int>(core::ExitStatus::environment_failed));
+  }
+  const std::vector<int> workers = _deadlines.overdue();
+  for (const int worker : workers) _channel.send(worker, EndTask{_task_of[static_cast<std::size_t>(worker)]});
+  return !workers.empty();
+}
+
 bool Coordinator::work_over() const {
   return _ledger.counts().running == 0 && (_stopping || _ledger.counts().waiting == 0);
 }
@@ -78,6 +91,7 @@ bool Coordinator::advance_flush() {
     case FlushRound::Phase::none:
       if (!work_over() && !_schedule.due()) return false;
       _round.request();
+      _schedule.begun();
       _channel.send_to_workers(FlushRequest{_round.number()});
       return true;
     case FlushRound::Phase::gathering:
@@ -86,10 +100,7 @@ bool Coordinator::advance_flush() {
       return true;
     case FlushRound::Phase::flushing:
       if (!_round.complete()) return false;
-      _ledger.flushed(_round.number());
-      _round.end();
-      _schedule.flushed();
-      _over = _last_round;
+      end_flush();
       return true;
   }
   return false;
@@ -104,6 +115,15 @@ void Coordinator::flush_together() {
   _round.own_result(flush_guarded(_flusher, number));
 }
 
+void Coordinator::end_flush() {
+  const int number = _round.number();
+  _round.end();
+  _ledger.flushed(number);
+  _schedule.flushed();
+  _deadlines.go_on();
+  _over = _last_round;
+}
+
 bool Coordinator::hand_out() {
   // None during a flush: a worker that stands still would only let the task wait.
   if (_stopping || _round.phase() != FlushRound::Phase::none) return false;
@@ -115,6 +135,7 @@ bool Coordinator::hand_out() {
     if (task == nullptr) break;
     _task_of[static_cast<std::size_t>(worker)] = task->key;
     _idle.erase(_idle.begin());
+    _deadlines.began(worker);
     _channel.send(worker, Assign{*task});
   }
   return any;
@@ -125,14 +146,15 @@ void Coordinator::count_rows(std::int64_t rows) {
   _ledger.count_rows(rows);
 }
 
-void Coordinator::accept(int worker, const Message& message) {
+void Coordinator::accept(int worker, Message&& message) {
   std::visit(
       Overloaded{
           [&](const Hello& hello) { accept(worker, hello); },
-          [&](const Outcome& outcome) { accept(worker, outcome); },
+          [&](Outcome& outcome) { accept(worker, std::move(outcome)); },
           [&](const ProgressReport& report) { accept(worker, report); },
           [&](const FlushReady& ready) {
             _round.ready(worker, ready.number);
+            _deadlines.stands(worker);
             count_rows(ready.rows);
             const std::string& key = _task_of[static_cast<std::size_t>(worker)];
             if (!key.empty()) _ledger.set_state(key, ready.state);
@@ -156,13 +178,15 @@ void Coordinator::accept(int worker, const Hello& hello) {
   _idle.insert(worker);
 }
 
-void Coordinator::accept(int worker, const Outcome& outcome) {
+void Coordinator::accept(int worker, Outcome&& outcome) {
   std::string& key = _task_of[static_cast<std::size_t>(worker)];
   if (key.empty() || outcome.outcome.key != key) refuse(worker, Outcome::tag);
+  const bool overdue = _deadlines.told(worker);
+  _deadlines.ended(worker);
   key.clear();
   _idle.insert(worker);
   count_rows(outcome.rows);
-  _ledger.settle(outcome.outcome);
+  _ledger.settle(std::move(outcome.outcome), overdue);
 }
 
 void Coordinator::accept(int worker, const ProgressReport& report) {

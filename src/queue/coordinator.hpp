@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "channel.hpp"
+#include "deadlines.hpp"
 #include "flush_round.hpp"
 #include "flush_schedule.hpp"
 #include "ledger.hpp"
@@ -26,14 +27,16 @@ class Coordinator {
   bool receive_some();
   bool pass_on_stop();
   bool advance_flush();
+  bool mind_deadlines();
   bool hand_out();
   [[nodiscard]] bool work_over() const;
   void flush_together();
+  void end_flush();
   void count_rows(std::int64_t rows);
 
-  void accept(int worker, const Message& message);
+  void accept(int worker, Message&& message);
   void accept(int worker, const Hello& hello);
-  void accept(int worker, const Outcome& outcome);
+  void accept(int worker, Outcome&& outcome);
   void accept(int worker, const ProgressReport& report);
   [[noreturn]] void refuse(int worker, Tag tag) const;
 
@@ -44,6 +47,7 @@ class Coordinator {
   Ledger _ledger;
   FlushSchedule _schedule;
   FlushRound _round;
+  Deadlines _deadlines;
   std::vector<std::string> _task_of;  // by rank; empty: none
   std::vector<bool> _greeted;         // by rank
   std::set<int> _idle;

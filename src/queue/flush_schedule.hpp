@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "interval.hpp"
@@ -7,24 +8,35 @@
 
 namespace orbweaver::queue {
 
-/// When the next flush is due: by time or by rows, whichever comes first.
+/// When the next flush is due: by time or by rows, whichever comes first, but not so often that flushes take more than
+/// their share of the run.
 class FlushSchedule {
  public:
-  explicit FlushSchedule(const Options& options)
-      : _by_time(options.flush_seconds > 0), _most_rows(options.flush_rows), _interval(options.flush_seconds) {}
+  explicit FlushSchedule(const Options& options) : _options(options) {}
 
   void count(std::int64_t rows) { _rows += rows; }
-  [[nodiscard]] bool due() const { return (_by_time && _interval.over()) || (_most_rows > 0 && _rows >= _most_rows); }
+  [[nodiscard]] bool due() const {
+    const double since = _since_flush.seconds();
+    const bool by_time = _options.flush_seconds > 0 && since >= _options.flush_seconds;
+    const bool by_rows = _options.flush_rows > 0 && _rows >= _options.flush_rows;
+    return (by_time || by_rows) && since >= _rest;
+  }
+  /// Ranks begin to stand still for a flush, and go on from it.
+  void begun() { _since_begun.restart(); }
   void flushed() {
+    _rest = std::min(_since_begun.seconds() / _options.flush_share, longest_rest * _options.flush_seconds);
     _rows = 0;
-    _interval.restart();
+    _since_flush.restart();
   }
 
  private:
-  bool _by_time;
-  std::int64_t _most_rows;
+  static constexpr double longest_rest = 10.0;  // in flush_seconds: what a crash may lose
+
+  const Options& _options;
   std::int64_t _rows = 0;
-  Interval _interval;
+  double _rest = 0.0;
+  Stopwatch _since_flush;
+  Stopwatch _since_begun;
 };
 
 }  // namespace orbweaver::queue

@@ -30,12 +30,20 @@ TaskOutcome execute_guarded(Executor& executor, const Task& task, TaskContext& c
   return outcome;
 }
 
+std::string deaf_text(const std::string& key, int rank, double task_seconds) {
+  return fmt::format(
+      "task {} on rank {} was to end after {:g} s and has not done so in the same time again; ending the program: what "
+      "the "
+      "last flush wrote is safe, and a run that goes on from it begins with that task again",
+      key, rank, task_seconds);
+}
+
 void log_task(const Task& task, const TaskOutcome& outcome, double seconds, double silence) {
   if (!core::logs_debug()) return;
   std::string children;
-  for (const Task& child : outcome.children) children += " " + child.key;
+  for (const Task& child : outcome.children) children += (children.empty() ? " " : ", ") + child.key;
   core::log_debug(fmt::format(
-      "queue: task {} ({}, priority {}) took {:.6f} s, silent {:.6f} s, {} bytes in, {} out, children{}", task.key,
+      "queue: task {} ({}, priority {}) took {:.6f} s, silent {:.6f} s, {} bytes in, {} out, children:{}", task.key,
       task.kind, task.priority, seconds, silence, task.payload.size(), outcome.payload.size(), children));
 }
 

@@ -14,6 +14,9 @@ namespace orbweaver::queue {
 /// The executor's outcome with its key filled in; a thrown exception becomes a failed outcome.
 [[nodiscard]] TaskOutcome execute_guarded(Executor& executor, const Task& task, TaskContext& context);
 
+/// What a program says before it ends because a task neither ends nor reports.
+[[nodiscard]] std::string deaf_text(const std::string& key, int rank, double task_seconds);
+
 /// A debug line on a task that has ended here: how long it took, the longest time it let pass without a report (s), bytes in
 /// and out, and its children.
 void log_task(const Task& task, const TaskOutcome& outcome, double seconds, double silence);

@@ -39,16 +39,18 @@ void Ledger::report(const std::string& key, const Progress& progress, int rank) 
   _observer.progress(_queue.running(key), progress, rank);
 }
 
-void Ledger::settle(TaskOutcome outcome) {
+void Ledger::settle(TaskOutcome outcome, bool overdue) {
   if (outcome.stopped)
-    put_back(outcome);
+    put_back(outcome, overdue);
   else
     end(outcome);
   if (_keep_outcomes) _summary.outcomes.push_back(std::move(outcome));
 }
 
-void Ledger::put_back(const TaskOutcome& outcome) {
-  const Task task = _queue.put_back(outcome.key, outcome.state);
+void Ledger::put_back(const TaskOutcome& outcome, bool overdue) {
+  const Task task =
+      overdue ? _queue.put_aside(outcome.key, outcome.state) : _queue.put_back(outcome.key, outcome.state);
+  if (overdue) _summary.put_aside.push_back(outcome.key);
   ++_summary.stopped;
   _observer.stopped(task, outcome);
 }
@@ -56,11 +58,11 @@ void Ledger::put_back(const TaskOutcome& outcome) {
 void Ledger::end(TaskOutcome& outcome) {
   const Task task = outcome.failed ? _queue.fail(outcome.key) : _queue.finish(outcome.key);
   if (outcome.failed) _summary.failures.push_back({outcome.key, outcome.reason});
-  add(outcome.children);
   if (outcome.failed)
     _observer.failed(task, outcome);
   else
     _observer.finished(task, outcome);
+  add(_keep_outcomes ? outcome.children : std::move(outcome.children));
 }
 
 void Ledger::tick() {
@@ -73,7 +75,7 @@ RunSummary Ledger::numbers() const {
   RunSummary summary;
   summary.done = _queue.counts().done;
   summary.failed = _queue.counts().failed;
-  summary.waiting = _queue.counts().waiting;
+  summary.waiting = _queue.counts().waiting + _queue.counts().aside;
   summary.stopped = _summary.stopped;
   summary.stopped_early = summary.waiting > 0;
   summary.flushes = _summary.flushes;
@@ -85,10 +87,12 @@ RunSummary Ledger::numbers() const {
 RunSummary Ledger::close() {
   RunSummary summary = numbers();
   summary.failures = std::move(_summary.failures);
+  summary.put_aside = std::move(_summary.put_aside);
   summary.outcomes = std::move(_summary.outcomes);
   summary.loads = std::move(_summary.loads);
   const auto by_key = [](const auto& a, const auto& b) { return a.key < b.key; };
   std::sort(summary.failures.begin(), summary.failures.end(), by_key);
+  std::sort(summary.put_aside.begin(), summary.put_aside.end());
   std::sort(summary.outcomes.begin(), summary.outcomes.end(), by_key);
   return summary;
 }

@@ -20,7 +20,8 @@ class Ledger {
   /// Starts the first waiting task that is wanted for `rank`, and leaves out those before it. Null: none waits now.
   const Task* start(int rank);
   void report(const std::string& key, const Progress& progress, int rank);
-  void settle(TaskOutcome outcome);
+  /// What became of a task. `overdue`: its time was over; if it was stopped, it does not wait for another turn.
+  void settle(TaskOutcome outcome, bool overdue);
   void count_rows(std::int64_t rows) { _summary.rows += rows; }
   void tick();
 
@@ -39,7 +40,7 @@ class Ledger {
   [[nodiscard]] RunSummary close();
 
  private:
-  void put_back(const TaskOutcome& outcome);
+  void put_back(const TaskOutcome& outcome, bool overdue);
   void end(TaskOutcome& outcome);
   void leave_out(const std::string& key);
 

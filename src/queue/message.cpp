@@ -21,9 +21,9 @@ constexpr std::string_view magic{"ORBWMSG\x1a", 8};
 constexpr std::size_t checked_header = envelope_bytes - sizeof(std::uint32_t);
 constexpr unsigned archive_flags = boost::archive::no_header | boost::archive::no_codecvt;
 
-constexpr std::array<std::string_view, 12> tag_names{"hello",         "assign",      "outcome",  "progress",
-                                                     "flush_request", "flush_ready", "flush_go", "flush_done",
-                                                     "stop",          "alarm",       "shutdown", "goodbye"};
+constexpr std::array<std::string_view, 13> tag_names{
+    "hello",      "assign", "outcome", "progress", "flush_request", "flush_ready", "flush_go",
+    "flush_done", "stop",   "alarm",   "shutdown", "goodbye",       "end_task"};
 static_assert(tag_names.size() == std::variant_size_v<Message>);
 
 class ReadBuffer : public std::streambuf {

@@ -82,6 +82,11 @@ void serialize(Archive& archive, Goodbye& m, unsigned) {
   archive& m.tasks& m.busy_seconds;
 }
 
+template <class Archive>
+void serialize(Archive& archive, EndTask& m, unsigned) {
+  archive& m.key;
+}
+
 }  // namespace orbweaver::queue
 
 // The envelope carries the version, and nothing is shared by pointer: Boost need not write class information.
@@ -104,5 +109,6 @@ ORBWEAVER_QUEUE_PLAIN(Stop)
 ORBWEAVER_QUEUE_PLAIN(Alarm)
 ORBWEAVER_QUEUE_PLAIN(Shutdown)
 ORBWEAVER_QUEUE_PLAIN(Goodbye)
+ORBWEAVER_QUEUE_PLAIN(EndTask)
 
 #undef ORBWEAVER_QUEUE_PLAIN

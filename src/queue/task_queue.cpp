@@ -60,6 +60,15 @@ Task TaskQueue::put_back(const std::string& key, std::string state) {
   return task;
 }
 
+Task TaskQueue::put_aside(const std::string& key, std::string state) {
+  Task task = leave_running(key);
+  task.state = std::move(state);
+  _states[task.key] = TaskState::aside;
+  _aside.push_back(task);
+  ++_counts.aside;
+  return task;
+}
+
 void TaskQueue::set_state(const std::string& key, std::string state) {
   const auto found = _running.find(key);
   if (found == _running.end())
@@ -81,8 +90,8 @@ const Task& TaskQueue::running(const std::string& key) const {
 }
 
 std::vector<Task> TaskQueue::unfinished() const {
-  std::vector<Task> tasks;
-  tasks.reserve(_waiting.size() + _running.size());
+  std::vector<Task> tasks = _aside;
+  tasks.reserve(_aside.size() + _waiting.size() + _running.size());
   for (const auto& [place, task] : _waiting) tasks.push_back(task);
   for (const auto& [key, task] : _running) tasks.push_back(task);
   std::sort(tasks.begin(), tasks.end(),

@@ -70,7 +70,7 @@ void Worker::work() {
 
 void Worker::do_task() {
   _executing = true;
-  _told_to_stop = false;
+  _told_to_stop = _overdue = false;
   _stopped_at.clear();
   _times.begin();
   TaskOutcome outcome = execute_guarded(_executor, *_task, *this);
@@ -98,7 +98,7 @@ bool Worker::report(const Progress& progress, const StateSource& state_source) {
   } catch (...) {
     _trouble = current_exception_text();
   }
-  if (_stopping || _shutdown || !_trouble.empty()) tell_to_stop();
+  if (_stopping || _overdue || _shutdown || !_trouble.empty()) tell_to_stop();
   _state = nullptr;
   _times.left();
   return !_told_to_stop;
@@ -181,6 +181,8 @@ void Worker::take(const Message& message) {
           },
           [&](const FlushRequest& request) { stand_still(request.number); },
           [&](const Stop&) { _stopping = true; },
+          // It may meet the outcome on its way: then it is for a task that is no longer here.
+          [&](const EndTask& end) { _overdue |= _executing && end.key == _task->key; },
           [&](const Shutdown& shutdown) { _shutdown = shutdown; },
           [&](const auto& other) {
             throw core::EnvironmentError(
@@ -200,7 +202,8 @@ void Worker::stand_still(int number) {
     const Message message = wait();
     if (const auto* flush_go = std::get_if<FlushGo>(&message); flush_go != nullptr && flush_go->number == number)
       go = true;
-    else if (std::holds_alternative<Stop>(message) || std::holds_alternative<Shutdown>(message))
+    else if (std::holds_alternative<Stop>(message) || std::holds_alternative<EndTask>(message) ||
+             std::holds_alternative<Shutdown>(message))
       take(message);
     else
       throw core::EnvironmentError(

@@ -44,6 +44,7 @@ class Worker final : public TaskContext {
   TaskTimes _times;
   bool _stopping = false;
   bool _passed_on = false;              // that this process was asked to stop the run
+  bool _overdue = false;                // rank 0 has ended the running task
   bool _told_to_stop = false;           // the running task
   std::string _stopped_at;              // its state then
   const StateSource* _state = nullptr;  // inside report()

@@ -127,6 +127,7 @@ class Values {
     add_limit("limits.families", limits.families);
     add_limit("limits.steps", limits.steps);
     add("limits.time", limits.time);
+    add("limits.task_time", limits.task_time);
   }
 
   [[nodiscard]] std::size_t index_of(const std::string& coordinate) const {

@@ -56,7 +56,7 @@ void read_survey(const Field& field, Survey& survey) {
 }
 
 void read_limits(const Field& field, Limits& limits) {
-  const Keys keys(field, {"period", "energy", "families", "steps", "time"}, "limits: {period: 30}");
+  const Keys keys(field, {"period", "energy", "families", "steps", "time", "task_time"}, "limits: {period: 30}");
   if (const auto period = keys.find("period"))
     limits.period = period->number({.lower = 0, .lower_open = true, .infinite = true, .example = "30"});
   if (const auto energy = keys.find("energy"))
@@ -65,6 +65,8 @@ void read_limits(const Field& field, Limits& limits) {
   if (const auto steps = keys.find("steps")) limits.steps = steps->integer({.lower = 1, .example = "5000"});
   if (const auto time = keys.find("time"))
     limits.time = time->number({.lower = 0, .lower_open = true, .infinite = true, .example = "300"});
+  if (const auto time = keys.find("task_time"))
+    limits.task_time = time->number({.lower = 0, .lower_open = true, .infinite = true, .example = "3600"});
 }
 
 void read_events(const Field& field, Events& events) {

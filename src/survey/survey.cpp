@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <map>
 #include <system_error>
 
@@ -182,6 +183,7 @@ Summary lead_survey(const core::Communicator& comm, const scene::Scene& scene,
   queue::Options options;
   options.flush_seconds = scene.output.flush_seconds;
   options.flush_rows = scene.output.flush_orbits;
+  if (std::isfinite(scene.limits.task_time)) options.task_seconds = scene.limits.task_time;
 
   TimeLimit time(scene.limits.time);
   SweepRecorder sweeps(progress, time);
@@ -197,6 +199,9 @@ Summary lead_survey(const core::Communicator& comm, const scene::Scene& scene,
     followed = queue::run(comm, options, std::move(tasks), executor, branches, flusher);
   }
   if (time.reached()) summary.remarks.push_back(time.remark(followed));
+  for (const std::string& key : followed.put_aside)
+    summary.remarks.push_back(
+        fmt::format("put aside after limits.task_time = {:g} s: {}", scene.limits.task_time, key));
 
   FamilyTree::Result found = tree.resolve();
   archive::Records& tables = found.tables;

@@ -96,10 +96,82 @@ TEST(Flush, ByTime) {
   queue::Options options;
   options.flush_seconds = 0.02;
   options.flush_rows = 0;
+  options.flush_share = 1e6;
   const auto summary = queue::run(comm, options, tasks(100), writers, writers, writers);
   EXPECT_EQ(summary.done, 100u);
   EXPECT_GE(summary.flushes, 3);
   writers.expect_all_written(summary);
+}
+
+/// Times flushes of 20 ms, in tasks that report every millisecond for half a second a rank.
+class Timed : public queue::Executor, public queue::Flusher, public queue::Observer {
+ public:
+  explicit Timed(const Communicator& comm) : _comm(comm) {}
+  TaskOutcome execute(const Task&, TaskContext& context) override {
+    for (std::int64_t step = 1; step <= 50; ++step) {
+      sleep_us(1000);
+      EXPECT_TRUE(context.report({step, 1, {}}));
+    }
+    return {};
+  }
+  void flush(int) override {
+    MPI_Barrier(_comm.get());
+    sleep_us(20'000);
+    MPI_Barrier(_comm.get());
+  }
+  void flushing(int, const queue::TaskQueue&) override { _began = Clock::now(); }
+  void flushed(int) override {
+    _last = std::chrono::duration<double>(Clock::now() - _began).count();
+    _seconds += _last;
+  }
+  /// In flushes, but for the last, which comes when the work is over.
+  [[nodiscard]] double seconds() const { return _seconds - _last; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const Communicator& _comm;
+  Clock::time_point _began;
+  double _last = 0.0;
+  double _seconds = 0.0;
+};
+
+queue::RunSummary run_timed(const Communicator& comm, Timed& timed, double flush_seconds, double share) {
+  queue::Options options;
+  options.flush_seconds = flush_seconds;
+  options.flush_share = share;
+  return queue::run(comm, options, tasks(20 * std::max(1, comm.size() - 1)), timed, timed, timed);
+}
+
+TEST(Flush, TakesNoMoreThanItsShareOfTheRun) {
+  const Communicator comm;
+  Timed timed(comm);
+  const auto summary = run_timed(comm, timed, 0.05, 0.2);
+  EXPECT_GE(summary.flushes, 3);
+  if (comm.is_root()) {
+    EXPECT_LT(timed.seconds(), 0.2 * summary.seconds);
+  }
+}
+
+TEST(Flush, ComesAfterTenTimesItsIntervalWhateverItsShare) {
+  const Communicator comm;
+  Timed timed(comm);
+  const auto summary = run_timed(comm, timed, 0.01, 1e-6);
+  EXPECT_GE(summary.flushes, 5);
+}
+
+TEST(Flush, TheObserverHearsOfNoneThatFailed) {
+  const Communicator comm;
+  struct Hears final : queue::Observer {
+    void flushed(int number) override { numbers.push_back(number); }
+    std::vector<int> numbers;
+  } hears;
+  Work work([](const Task&, TaskContext&) { return TaskOutcome{}; });
+  Flush flush([&](int) {
+    if (comm.rank() == comm.size() - 1) throw std::runtime_error("no space left");
+  });
+  EXPECT_THAT(error_of([&] { (void)queue::run(comm, {}, tasks(3), work, hears, flush); }),
+              testing::HasSubstr("no space left"));
+  EXPECT_TRUE(hears.numbers.empty());
 }
 
 TEST(Flush, OnlyAtTheEndWhenNoThresholdIsSet) {

@@ -92,6 +92,7 @@ TEST(Message, RoundTripOfTheOthers) {
   EXPECT_EQ(shutdown.flushes, 6);
   EXPECT_EQ(shutdown.rows, 7);
   EXPECT_EQ(shutdown.seconds, 8.5);
+  EXPECT_EQ(round_trip(EndTask{"k"}).key, "k");
   EXPECT_EQ(round_trip(Goodbye{10, 0.25}).tasks, 10);
   EXPECT_EQ(round_trip(Goodbye{10, 0.25}).busy_seconds, 0.25);
 }
@@ -138,8 +139,8 @@ TEST(Message, RefusalsSayWhatIsWrong) {
 
 TEST(Message, BodiesThatDoNotFitTheirTypeAreRefused) {
   EXPECT_EQ(refusal(forge(static_cast<std::uint32_t>(Tag::stop), "")), "accepted");
-  EXPECT_THAT(refusal(forge(0, "")), HasSubstr("type 0 is not one of 1 to 12"));
-  EXPECT_THAT(refusal(forge(13, "")), HasSubstr("type 13"));
+  EXPECT_THAT(refusal(forge(0, "")), HasSubstr("type 0 is not one of 1 to 13"));
+  EXPECT_THAT(refusal(forge(14, "")), HasSubstr("type 14"));
   EXPECT_THAT(refusal(forge(static_cast<std::uint32_t>(Tag::flush_go), "ab")), HasSubstr("its body is no flush_go"));
   EXPECT_THAT(refusal(forge(static_cast<std::uint32_t>(Tag::alarm), std::string(8, '\xff'))),
               HasSubstr("its body is no alarm"));
@@ -150,6 +151,7 @@ TEST(Message, TagsHaveNames) {
   EXPECT_EQ(tag_name(static_cast<int>(Tag::hello)), "hello");
   EXPECT_EQ(tag_name(static_cast<int>(Tag::progress)), "progress");
   EXPECT_EQ(tag_name(static_cast<int>(Tag::goodbye)), "goodbye");
+  EXPECT_EQ(tag_name(static_cast<int>(Tag::end_task)), "end_task");
   EXPECT_EQ(tag_name(77), "tag 77");
   EXPECT_EQ(tag_name(0), "tag 0");
 }

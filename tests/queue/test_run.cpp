@@ -274,6 +274,8 @@ TEST(Run, OptionsOutOfRangeAreRefusedOnEveryRank) {
   refused([](queue::Options& o) { o.flush_seconds = -1; });
   refused([](queue::Options& o) { o.flush_seconds = std::nan(""); });
   refused([](queue::Options& o) { o.flush_rows = -1; });
+  refused([](queue::Options& o) { o.flush_share = 0; });
+  refused([](queue::Options& o) { o.task_seconds = -1; });
   refused([](queue::Options& o) { o.progress_seconds = -1; });
   refused([](queue::Options& o) { o.tick_seconds = -1; });
   refused([](queue::Options& o) { o.shortest_sleep = std::chrono::microseconds(0); });

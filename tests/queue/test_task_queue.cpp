@@ -92,6 +92,21 @@ TEST(TaskQueue, StatesAndCounts) {
   EXPECT_EQ(queue.unfinished().front().state, "further");
 }
 
+TEST(TaskQueue, ATaskThatIsPutAsideIsUnfinishedAndNotStartedAgain) {
+  TaskQueue queue;
+  for (const char* key : {"a", "b"}) queue.add(make(key, 0));
+  queue.start_next();
+  Task aside = make("a", 0);
+  aside.state = "half way";
+  EXPECT_EQ(queue.put_aside("a", "half way"), aside);
+  EXPECT_EQ(queue.counts(), (TaskCounts{1, 0, 0, 0, 1}));
+  EXPECT_EQ(queue.state("a"), TaskState::aside);
+  EXPECT_EQ(queue.start_next().key, "b");
+  EXPECT_THROW(queue.start_next(), MisuseError);
+  EXPECT_THROW(queue.add(make("a", 0)), MisuseError);
+  EXPECT_THAT(queue.unfinished(), testing::ElementsAre(aside, make("b", 0)));
+}
+
 TEST(TaskQueue, DuplicateKeysAreRefusedInEveryState) {
   TaskQueue queue;
   for (const char* key : {"a", "b", "c", "d"}) queue.add(make(key, 0));
@@ -110,6 +125,7 @@ TEST(TaskQueue, MisuseIsRefused) {
   EXPECT_THROW(queue.finish("a"), MisuseError);
   EXPECT_THROW(queue.fail("a"), MisuseError);
   EXPECT_THROW(queue.put_back("a", ""), MisuseError);
+  EXPECT_THROW(queue.put_aside("a", ""), MisuseError);
   EXPECT_THROW(queue.set_state("a", ""), MisuseError);
   EXPECT_THROW((void)queue.running("a"), MisuseError);
   EXPECT_THROW((void)queue.state("b"), MisuseError);

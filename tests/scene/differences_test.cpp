@@ -57,6 +57,7 @@ const std::map<std::string, Case> cases{
     {"limits.families", {"1000", "999", Change::narrowed}},
     {"limits.steps", {"5000", "5001", Change::widened}},
     {"limits.time", {".inf", "60", Change::free}},
+    {"limits.task_time", {".inf", "60", Change::free}},
     {"events.periods", {"[]", "[10]"}},
     {"events.energies", {"[]", "[0.5]"}},
     {"section.coordinate", {"", ""}},  // no section without one: tested below
@@ -213,7 +214,7 @@ TEST(Differences, AnUnknownKeyIsAnotherSceneUnlessItIsKnownToBeFree) {
   EXPECT_THAT(found("limits: {colour: 7}\n", "limits: {colour: 7.0}\n"), IsEmpty());
   EXPECT_THAT(found("", "weather: {rain: {drops: [1, 2]}}\n"), SizeIs(1));
   EXPECT_EQ(found("weather: {rain: {drops: [1, 2]}}\n", "")[0].key, "weather.rain.drops");
-  EXPECT_EQ(found("limits: {task_time: 7}\n", "")[0].change, Change::free);
+  EXPECT_EQ(found("output: {compression: 7}\n", "")[0].change, Change::free);
 }
 
 TEST(Differences, ASceneComesBackFromItsTextAsItWas) {

@@ -76,6 +76,7 @@ TEST(GoodScene, LimitsEventsSectionAndOutputAreRead) {
   EXPECT_EQ(s.limits.families, 7);
   EXPECT_EQ(s.limits.steps, 8);
   EXPECT_EQ(s.limits.time, 90.5);
+  EXPECT_EQ(s.limits.task_time, 12.5);
   EXPECT_THAT(s.events.periods, ElementsAre(10.0, 12.5));
   EXPECT_THAT(s.events.energies, ElementsAre(-1.0, 0.0));
   EXPECT_EQ(s.section.coordinate, "th2");
@@ -113,6 +114,7 @@ TEST(GoodScene, EveryKeyButSystemAndStartsHasItsDefault) {
   EXPECT_EQ(s.limits.families, 1000);
   EXPECT_EQ(s.limits.steps, 5000);
   EXPECT_EQ(s.limits.time, infinity);
+  EXPECT_EQ(s.limits.task_time, infinity);
   EXPECT_THAT(s.events.periods, IsEmpty());
   EXPECT_THAT(s.events.energies, IsEmpty());
   EXPECT_EQ(s.section.coordinate, "");

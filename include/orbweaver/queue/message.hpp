@@ -12,7 +12,7 @@
 namespace orbweaver::queue {
 
 /// Version of who sends what and when (docs/protocol.md); ranks of different versions do not work together.
-inline constexpr std::uint32_t protocol_version = 2;
+inline constexpr std::uint32_t protocol_version = 3;
 /// Version of the envelope and of how the messages are laid out in it.
 inline constexpr std::uint32_t message_format_version = 1;
 
@@ -30,6 +30,7 @@ enum class Tag : int {
   alarm,
   shutdown,
   goodbye,
+  end_task,
 };
 
 /// Worker -> rank 0: I am here and have no task.
@@ -117,8 +118,14 @@ struct Goodbye {
   double busy_seconds = 0.0;
 };
 
+/// Rank 0 -> worker: end this task at your next report; its time is over.
+struct EndTask {
+  static constexpr Tag tag = Tag::end_task;
+  std::string key;
+};
+
 using Message = std::variant<Hello, Assign, Outcome, ProgressReport, FlushRequest, FlushReady, FlushGo, FlushDone, Stop,
-                             Alarm, Shutdown, Goodbye>;
+                             Alarm, Shutdown, Goodbye, EndTask>;
 
 [[nodiscard]] Tag tag_of(const Message& message);
 /// "flush_ready", ...; "tag 77" for a number that is none of ours.

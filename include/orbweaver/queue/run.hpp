@@ -18,9 +18,16 @@ namespace orbweaver::queue {
 struct Options {
   double flush_seconds = 5.0;      ///< a flush this long after the last one; 0: none by time
   std::int64_t flush_rows = 5000;  ///< a flush after this many reported rows; 0: none by amount
+  /// Flushes take about this share of the run at most, as long as that needs no more than ten times flush_seconds between
+  /// two: a flush that took t seconds from its request to its end is followed by t / flush_share without one.
+  double flush_share = 0.03;
   /// Least time (s) between two progress messages of a worker; longer with more than 1000 x this many workers, so that
   /// rank 0 never gets more than about 1000 of them a second.
   double progress_seconds = 0.2;
+  /// A task that runs longer (s, without flushes) is told to stop at its next report and put aside with its state: the run goes on
+  /// with the others and ends as stopped early. If it has not ended after the same time again, the program ends on all ranks
+  /// with exit status 3. 0: no limit.
+  double task_seconds = 0.0;
   double tick_seconds = 0.1;                     ///< between two ticks of the observer
   std::chrono::microseconds shortest_sleep{50};  ///< of a rank that waits; grows until something happens, up to:
   std::chrono::microseconds longest_sleep{2000};
@@ -44,15 +51,16 @@ struct RankLoad {
 struct RunSummary {
   std::size_t done = 0;  ///< with those left out
   std::size_t failed = 0;
-  std::size_t waiting = 0;     ///< not finished: only after an early stop
-  std::size_t stopped = 0;     ///< those of them that were running when the stop came
-  bool stopped_early = false;  ///< a stop left work undone
+  std::size_t waiting = 0;     ///< not finished: only after an early stop, or put aside
+  std::size_t stopped = 0;     ///< those of them that were running when the stop came, or were put aside
+  bool stopped_early = false;  ///< work was left undone
   int flushes = 0;             ///< with the one at the end
   std::int64_t rows = 0;       ///< all that was reported
   double seconds = 0.0;
-  std::vector<Failure> failures;      ///< by key
-  std::vector<TaskOutcome> outcomes;  ///< by key; empty unless Options::keep_outcomes
-  std::vector<RankLoad> loads;        ///< one a rank
+  std::vector<Failure> failures;       ///< by key
+  std::vector<std::string> put_aside;  ///< keys of tasks that took longer than Options::task_seconds, sorted
+  std::vector<TaskOutcome> outcomes;   ///< by key; empty unless Options::keep_outcomes
+  std::vector<RankLoad> loads;         ///< one a rank
 };
 
 /// Does `initial` and all children of it. Collective over `comm`; docs/protocol.md tells how.

@@ -11,13 +11,14 @@
 
 namespace orbweaver::queue {
 
-enum class TaskState { waiting, running, done, failed };
+enum class TaskState { waiting, aside, running, done, failed };
 
 struct TaskCounts {
   std::size_t waiting = 0;
   std::size_t running = 0;
   std::size_t done = 0;
   std::size_t failed = 0;
+  std::size_t aside = 0;  ///< interrupted, and not to be handed out again in this run
 
   friend bool operator==(const TaskCounts&, const TaskCounts&) = default;
 };
@@ -35,6 +36,8 @@ class TaskQueue {
   Task finish(const std::string& key);
   Task fail(const std::string& key);
   Task put_back(const std::string& key, std::string state);
+  /// Running -> aside.
+  Task put_aside(const std::string& key, std::string state);
   /// Where a running task would go on from.
   void set_state(const std::string& key, std::string state);
 
@@ -42,7 +45,7 @@ class TaskQueue {
   [[nodiscard]] TaskState state(const std::string& key) const;
   [[nodiscard]] const Task& running(const std::string& key) const;
   [[nodiscard]] const TaskCounts& counts() const noexcept { return _counts; }
-  /// Waiting and running tasks in the queue's order: what a restart would begin with.
+  /// Waiting, running and put-aside tasks in the queue's order: what a restart would begin with.
   [[nodiscard]] std::vector<Task> unfinished() const;
 
  private:
@@ -50,6 +53,7 @@ class TaskQueue {
   Task leave_running(const std::string& key);
 
   std::map<Place, Task> _waiting;
+  std::vector<Task> _aside;
   std::unordered_map<std::string, Task> _running;
   std::unordered_map<std::string, TaskState> _states;
   TaskCounts _counts;

@@ -59,7 +59,8 @@ struct Limits {
   double energy_to = std::numeric_limits<double>::infinity();
   int families = 1000;
   int steps = 5000;
-  double time = std::numeric_limits<double>::infinity();  ///< of the whole survey, seconds of wall clock
+  double time = std::numeric_limits<double>::infinity();       ///< of the whole survey, seconds of wall clock
+  double task_time = std::numeric_limits<double>::infinity();  ///< of one task; longer ones are put aside
 };
 
 struct Events {

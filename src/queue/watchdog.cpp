@@ -1,0 +1,64 @@
+#include "watchdog.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+
+#include "guarded.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/core/log.hpp"
+
+namespace orbweaver::queue {
+
+Watchdog::Watchdog(double task_seconds) : _seconds(task_seconds), _deadlines(task_seconds, 1) {
+  if (_seconds > 0) _thread = std::thread([this] { watch(); });
+}
+
+Watchdog::~Watchdog() {
+  {
+    const std::lock_guard lock(_mutex);
+    _over = true;
+  }
+  _woken.notify_all();
+  if (_thread.joinable()) _thread.join();
+}
+
+void Watchdog::began(const std::string& key) {
+  const std::lock_guard lock(_mutex);
+  _key = key;
+  _deadlines.began(0);
+}
+
+void Watchdog::ended() {
+  const std::lock_guard lock(_mutex);
+  _deadlines.ended(0);
+}
+
+void Watchdog::stands() {
+  const std::lock_guard lock(_mutex);
+  _deadlines.stands(0);
+}
+
+void Watchdog::go_on() {
+  const std::lock_guard lock(_mutex);
+  _deadlines.go_on();
+}
+
+bool Watchdog::overdue() {
+  const std::lock_guard lock(_mutex);
+  static_cast<void>(_deadlines.overdue());
+  return _deadlines.told(0);
+}
+
+void Watchdog::watch() {
+  const std::chrono::duration<double> interval(std::min(0.1, _seconds / 4));
+  std::unique_lock lock(_mutex);
+  while (!_woken.wait_for(lock, interval, [this] { return _over; })) {
+    static_cast<void>(_deadlines.overdue());
+    if (!_deadlines.deaf()) continue;
+    core::log_error(deaf_text(_key, 0, _seconds));
+    std::_Exit(static_cast<int>(core::ExitStatus::environment_failed));  // the task's thread will not end by itself
+  }
+}
+
+}  // namespace orbweaver::queue

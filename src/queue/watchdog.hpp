@@ -1,0 +1,42 @@
+#pragma once
+
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "deadlines.hpp"
+
+namespace orbweaver::queue {
+
+/// Minds Options::task_seconds where there is one rank and nobody else to do it: a thread that ends the program when a task
+/// neither ends nor reports. Without a limit there is no thread.
+class Watchdog {
+ public:
+  explicit Watchdog(double task_seconds);
+  Watchdog(const Watchdog&) = delete;
+  Watchdog& operator=(const Watchdog&) = delete;
+  Watchdog(Watchdog&&) = delete;
+  Watchdog& operator=(Watchdog&&) = delete;
+  ~Watchdog();
+
+  void began(const std::string& key);
+  void ended();
+  void stands();
+  void go_on();
+  /// Whether the time of the task is over.
+  [[nodiscard]] bool overdue();
+
+ private:
+  void watch();
+
+  double _seconds;
+  std::mutex _mutex;
+  std::condition_variable _woken;
+  bool _over = false;
+  std::string _key;
+  Deadlines _deadlines;
+  std::thread _thread;
+};
+
+}  // namespace orbweaver::queue
