@@ -20,6 +20,7 @@ namespace {
 
 using namespace orbweaver;
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::Each;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -187,6 +188,8 @@ TEST(Teams, SurveyAsOneRankDoes) {
   EXPECT_EQ(team.families().texts("end_reason"), one.families().texts("end_reason"));
   EXPECT_EQ(team.families().texts("isotropy"), one.families().texts("isotropy"));
   EXPECT_EQ(team.crossings().texts("kind"), one.crossings().texts("kind"));
+  EXPECT_EQ(team.crossings().integers("kernel_dimension"), one.crossings().integers("kernel_dimension"));
+  EXPECT_THAT(one.crossings().integers("kernel_dimension"), Contains(::testing::Gt(0)));
   EXPECT_EQ(team.orbits().integers("cutoff"), one.orbits().integers("cutoff"));
   for (std::size_t row = 0; row < one.orbits().rows(); ++row) {
     for (const char* column : {"period", "energy", "action", "arclength"})
