@@ -104,6 +104,19 @@ TEST(FamilyCurve, TheTangentPointsAlongTheFamily) {
   EXPECT_GT(bifurcation::period_slope(*a), 0.0);
 }
 
+TEST(FamilyCurve, RefusesOrbitsFarFromTheChord) {
+  // No family leads from the in-phase to the out-phase orbit of T = 8.3; what Newton's method finds from points
+  // between them lies elsewhere.
+  for (const corrector::Method method : {corrector::Method::automatic, corrector::Method::newton_krylov}) {
+    continuation::Options options;
+    options.corrector.method = method;
+    continuation::FamilyCurve curve(test::pendulum(), test::pendulum_isotropy(*test::pendulum()), options);
+    curve.add(0.0, test::orbit_at(test::family_to_twelve(test::in_phase()), 8.3).loop);
+    curve.add(1.0, test::orbit_at(test::family_to_twelve(test::out_phase()), 8.3).loop);
+    EXPECT_FALSE(curve.at(0.25));
+  }
+}
+
 TEST(FamilyCurve, NothingBeyondItsEnds) {
   Curve curve(test::family_to_twelve(test::in_phase()), 9.0);
   EXPECT_THROW((void)curve.at(curve.known().back().position + 0.1), core::MisuseError);
