@@ -100,7 +100,8 @@ Reading index_deviation(const spectrum::Stability& stability, const Sector& sect
 std::optional<Crossing> locate(const systems::System& system, continuation::FamilyCurve& family, const Event& event,
                                double from, double to, std::string& why, double tolerance) {
   EventFunction function(system, family, event);
-  const double absolute = tolerance * (1.0 + std::max(std::abs(from), std::abs(to)));
+  constexpr double widest = 1e-10;  // what |index - value| <= |dk/ds| 1e-10 allows
+  const double absolute = std::min(tolerance * (1.0 + std::max(std::abs(from), std::abs(to))), widest);
   const auto along = [&](double position) { return function(position); };
   std::optional<Located> located =
       event.tangency ? locate_minimum([&](double position) { return std::abs(function(position)); }, from, to, absolute)
