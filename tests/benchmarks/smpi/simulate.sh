@@ -27,6 +27,6 @@ END
 seq -f "n%g" 0 $((ranks - 1)) > "$folder/hosts-$ranks"
 # host-speed: computing takes as long there as here. A probe or a test that finds nothing costs 1 us and 0.1 us.
 exec smpirun -np "$ranks" -platform "$folder/platform-$ranks.xml" -hostfile "$folder/hosts-$ranks" \
-  --cfg=smpi/host-speed:10Gf --cfg=smpi/iprobe:1e-6 --cfg=smpi/test:1e-7 --cfg=smpi/cpu-threshold:1e-7 \
+  --cfg=smpi/host-speed:10Gf --cfg=smpi/iprobe:1e-6 --cfg=smpi/test:1e-7 --cfg=smpi/grow-injected-times:no --cfg=smpi/cpu-threshold:1e-7 \
   --cfg=smpi/send-is-detached-thresh:100000000 --cfg=smpi/privatization:no --cfg=contexts/stack-size:512 \
   --log=xbt_cfg.thres:warning "$folder/bench_queue" "$@"
