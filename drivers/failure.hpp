@@ -5,6 +5,7 @@
 #include <string>
 
 #include "orbweaver/core/communicator.hpp"
+#include "orbweaver/core/error.hpp"
 
 namespace orbweaver::drivers {
 
@@ -43,5 +44,18 @@ void agree(const core::Communicator& comm, const std::function<void()>& stage);
 /// the others waiting in a collective, so it is printed with its rank and the job is aborted with its status; what
 /// `agree` throws passes through, on all ranks alike.
 int run_on_ranks(const core::Communicator& comm, const std::function<int()>& body);
+
+/// What `body` returns. It throws InputError and EnvironmentError on all ranks alike; one of them reports.
+template <class Body>
+auto alike_on_all_ranks(const core::Communicator& comm, Body&& body) {
+  try {
+    return body();
+  } catch (const core::InputError&) {
+    agree(comm, [] { throw; });
+  } catch (const core::EnvironmentError&) {
+    agree(comm, [] { throw; });
+  }
+  throw core::MisuseError("an error that all ranks share was reported by none");
+}
 
 }  // namespace orbweaver::drivers

@@ -7,6 +7,7 @@
 
 #include "command.hpp"
 #include "common_options.hpp"
+#include "duration.hpp"
 #include "failure.hpp"
 #include "orbweaver/core/check.hpp"
 #include "orbweaver/core/communicator.hpp"
@@ -14,6 +15,7 @@
 #include "orbweaver/core/session.hpp"
 #include "orbweaver/survey/standing.hpp"
 #include "orbweaver/survey/survey.hpp"
+#include "signals.hpp"
 #include "terminal.hpp"
 
 namespace orbweaver::drivers {
@@ -25,6 +27,7 @@ struct Options {
   LogOptions log;
   std::filesystem::path directory;
   bool resume = false;
+  std::string walltime;
   std::string progress = "auto";
 };
 
@@ -39,23 +42,23 @@ core::ExitStatus status_of(const survey::Summary& summary) {
   return summary.failures > 0 ? core::ExitStatus::goal_missed : core::ExitStatus::done;
 }
 
-// run_survey throws InputError and EnvironmentError on all ranks alike; one of them reports.
-template <class Body>
-auto alike_on_all_ranks(const core::Communicator& comm, Body&& body) {
-  try {
-    return body();
-  } catch (const core::InputError&) {
-    agree(comm, [] { throw; });
-  } catch (const core::EnvironmentError&) {
-    agree(comm, [] { throw; });
-  }
-  throw core::MisuseError("an error that all ranks share was reported by none");
+std::string how_to_go_on(const Options& options) {
+  const std::string signal = stop_signal();
+  return fmt::format(
+      "stopped{}; the survey goes on, on any number of ranks, with\n  orbweaver survey {}{} -o {} --resume\n",
+      signal.empty() ? "" : " by " + signal, options.scene.file.string(),
+      options.scene.overrides.empty() ? "" : " (with the same --set)", options.directory.string());
 }
 
 int survey_on(const core::Communicator& comm, const Options& options) {
   scene::Scene scene;
   survey::Standing standing = survey::Standing::none;
-  agree(comm, [&] { scene = options.scene.load(); });
+  survey::RunOptions run_options{display_for(options), options.resume};
+  agree(comm, [&] {
+    scene = options.scene.load();
+    if (!options.walltime.empty()) run_options.walltime = seconds_of(options.walltime);
+  });
+  stop_on_signals();
   agree(comm, [&] {
     if (!comm.is_root()) return;  // folders need not look alike from every machine
     standing = survey::standing_of(options.directory, scene);
@@ -73,10 +76,12 @@ int survey_on(const core::Communicator& comm, const Options& options) {
     for (const std::string& sentence : scene::not_built_yet(scene))
       core::log_warning(fmt::format("not built yet: {}", sentence));
   const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
-  const survey::Summary summary = alike_on_all_ranks(
-      comm, [&] { return survey::run_survey(comm, scene, system, options.directory, display_for(options)); });
+  const survey::Summary summary =
+      alike_on_all_ranks(comm, [&] { return survey::run_survey(comm, scene, system, options.directory, run_options); });
   agree(comm, [&] {
-    if (comm.is_root()) print_result(survey::to_text(summary));
+    if (!comm.is_root()) return;
+    print_result(survey::to_text(summary));
+    if (summary.stopped_early) print_result(how_to_go_on(options));
   });
   return static_cast<int>(status_of(summary));
 }
@@ -101,7 +106,10 @@ Command make_survey_command(CLI::App& program) {
       program.add_subcommand("survey", "Find, follow and archive the families of a scene (under mpirun or alone)");
   add_scene_options(*parser, options->scene);
   parser->add_option("-o,--output", options->directory, "Folder for the archive, atlas.h5")->required();
-  parser->add_flag("--resume", options->resume, "Accept a folder that already holds this survey");
+  parser->add_flag("--resume", options->resume,
+                   "Go on with the survey in the folder, if there is one; limits may have become wider");
+  parser->add_option("--walltime", options->walltime,
+                     "Stop before this time is over, resumable: seconds, M:SS or H:MM:SS");
   parser
       ->add_option("--progress", options->progress, "live: a line a family, redrawn; lines: a plain line now and then")
       ->check(CLI::IsMember({"auto", "live", "lines"}))

@@ -7,6 +7,7 @@
 
 #include "agree.hpp"
 #include "h5_types.hpp"
+#include "orbweaver/core/pause.hpp"
 #include "posix_file.hpp"
 
 namespace orbweaver::archive {
@@ -93,7 +94,9 @@ void ParallelFile::publish() {
   });
   collectively(_comm, [&] { sync_file(_part); });
   collectively(_comm, [&] {
-    if (rank_of(_comm) == 0) rename_file(_part, _path);
+    if (rank_of(_comm) != 0) return;
+    core::pause_point("publish " + _path.filename().string());
+    rename_file(_part, _path);
   });
   _published = true;
 }

@@ -69,6 +69,18 @@ void expect_writable(const std::filesystem::path& path) {
   const Descriptor file(path, O_RDWR, "open for writing on every rank (is the folder shared by all machines?)");
 }
 
+void write_file(const std::filesystem::path& path, std::initializer_list<std::string_view> pieces) {
+  const Descriptor file(path, O_WRONLY | O_CREAT | O_TRUNC, "create");
+  for (std::string_view piece : pieces)
+    while (!piece.empty()) {
+      const ssize_t written = write(file.get(), piece.data(), piece.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written <= 0) throw_system_error("write to", path);
+      piece.remove_prefix(static_cast<std::size_t>(written));
+    }
+  if (fsync(file.get()) != 0) throw_system_error("sync", path);
+}
+
 void sync_file(const std::filesystem::path& path) { sync(path, O_WRONLY); }
 
 void rename_file(const std::filesystem::path& from, const std::filesystem::path& to) {

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
+#include <string_view>
 
 namespace orbweaver::archive {
 
@@ -14,6 +16,9 @@ void reserve_space(const std::filesystem::path& path, std::uint64_t bytes);
 
 /// Shows that this rank can open the file for writing.
 void expect_writable(const std::filesystem::path& path);
+
+/// Creates (or empties) the file, writes `pieces` one after the other and waits until they are on the disk.
+void write_file(const std::filesystem::path& path, std::initializer_list<std::string_view> pieces);
 
 /// Waits until what this machine wrote to the file is on the disk.
 void sync_file(const std::filesystem::path& path);

@@ -8,6 +8,7 @@
 #include "check_records.hpp"
 #include "fingerprint.hpp"
 #include "orbweaver/core/log_stage.hpp"
+#include "orbweaver/core/pause.hpp"
 #include "parallel_file.hpp"
 #include "segment_file.hpp"
 
@@ -192,6 +193,7 @@ WrittenSegment write_segment(MPI_Comm comm, const std::filesystem::path& path, c
                      {{"modes", modes.total}, {"time_maps", maps.total}}});
   file.write_table(orbits, orbit_rows.first);
   file.write_table(sections, section_rows.first);
+  core::pause_point("write " + path.filename().string());
   write_values(comm, file, "modes", mine, &OrbitRecord::modes, modes.first);
   write_values(comm, file, "time_maps", mine, &OrbitRecord::time_map, maps.first);
   file.publish();

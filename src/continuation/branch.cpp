@@ -109,6 +109,12 @@ Branch::Branch(std::shared_ptr<const systems::System> system, const Start& start
   if (!_implementation) _implementation = make_loop_branch(std::move(system), start, options);
 }
 
+Branch::Branch(std::shared_ptr<const systems::System> system, const Start& start, Options options, Frontier from)
+    : Branch(std::move(system), start, std::move(options)) {
+  loop::validate(from.orbit.loop);
+  _implementation->frontier = std::move(from);
+}
+
 Branch::~Branch() = default;
 Branch::Branch(Branch&&) noexcept = default;
 Branch& Branch::operator=(Branch&&) noexcept = default;
@@ -122,6 +128,7 @@ const Frontier& Branch::frontier() {
   _implementation->complete_frontier();
   return _implementation->frontier;
 }
+const Frontier& Branch::standing() const { return _implementation->frontier; }
 
 Ending trace(std::shared_ptr<const systems::System> system, const Start& start, const Options& options,
              const Observer& observer) {

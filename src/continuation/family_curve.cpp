@@ -54,9 +54,12 @@ void FamilyCurve::add(double position, const loop::Loop& loop, std::size_t keep)
   _intervals.clear();
 }
 
+void FamilyCurve::forget_found() { _intervals.clear(); }
+
 std::optional<CurvePoint> FamilyCurve::at(double position, bool with_tangent) {
   core::require(_known.size() >= 2 && position >= _known.front().position && position <= _known.back().position,
                 "a position outside the known part of a family");
+  if (_before_each) _before_each();
   std::size_t last = 1;
   while (position > _known[last].position) ++last;
   std::unique_ptr<CurveInterval>& interval = _intervals[last];

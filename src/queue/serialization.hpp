@@ -6,18 +6,9 @@
 #include <boost/serialization/vector.hpp>
 
 #include "orbweaver/queue/message.hpp"
+#include "orbweaver/queue/task_serialization.hpp"
 
 namespace orbweaver::queue {
-
-template <class Archive>
-void serialize(Archive& archive, Task& t, unsigned) {
-  archive& t.key& t.priority& t.kind& t.payload& t.state;
-}
-
-template <class Archive>
-void serialize(Archive& archive, TaskOutcome& o, unsigned) {
-  archive& o.key& o.failed& o.stopped& o.reason& o.children& o.payload& o.state;
-}
 
 template <class Archive>
 void serialize(Archive& archive, Progress& p, unsigned) {
@@ -94,8 +85,6 @@ void serialize(Archive& archive, EndTask& m, unsigned) {
   BOOST_CLASS_IMPLEMENTATION(orbweaver::queue::type, boost::serialization::object_serializable) \
   BOOST_CLASS_TRACKING(orbweaver::queue::type, boost::serialization::track_never)
 
-ORBWEAVER_QUEUE_PLAIN(Task)
-ORBWEAVER_QUEUE_PLAIN(TaskOutcome)
 ORBWEAVER_QUEUE_PLAIN(Progress)
 ORBWEAVER_QUEUE_PLAIN(Hello)
 ORBWEAVER_QUEUE_PLAIN(Assign)

@@ -27,16 +27,23 @@ int fundamental_order(const loop::Isotropy& isotropy, int dimension) {
   return loop::fundamental_domain(isotropy, dimension).order;
 }
 
+continuation::Options options_of(const scene::Scene& scene, const BranchWork& work, core::Team* team) {
+  continuation::Options options = branch_options(scene, team);
+  if (work.amplitude > 0.0) options.start_amplitude = work.amplitude;
+  return options;
+}
+
 }  // namespace
 
 BranchTask::BranchTask(const scene::Scene& scene, std::shared_ptr<const systems::System> system, BranchWork work,
-                       archive::Records& rows, queue::TaskContext& context, core::Team* team)
+                       const std::string& state, archive::Records& rows, queue::TaskContext& context, core::Team* team)
     : _scene(scene),
       _system(std::move(system)),
       _work(std::move(work)),
       _rows(rows),
       _context(context),
       _team(team),
+      _options(options_of(scene, _work, team)),
       _start(start_of(_work, _system->description())),
       _curve(_system, _start.isotropy, branch_options(scene, team)),
       _symmetry(_system->description(), _start.isotropy),
@@ -44,20 +51,39 @@ BranchTask::BranchTask(const scene::Scene& scene, std::shared_ptr<const systems:
                                              fundamental_order(_start.isotropy, _system->dimension()),
                                              scene.survey.subharmonics)) {
   _outcome.key = _work.key;
+  if (bifurcation::passes_two_only_at_folds(_system->description(), _start.isotropy))
+    _options.jumped = [this](const auto& from, const auto& to) { return jumped(from, to); };
+  begin(state);
+}
+
+void BranchTask::begin(const std::string& bytes) {
+  if (bytes.empty()) {
+    _branch.emplace(_system, _start, _options);
+    return;
+  }
+  BranchState state = unpack_branch_state(bytes);
+  _branch.emplace(_system, _start, _options, std::move(state.frontier));
+  for (const continuation::FamilyCurve::Known& known : state.known) _curve.add(known.position, known.loop, kept_orbits);
+  _detector = bifurcation::Detector(std::move(state.detector), {});
+  _folds = state.folds;
+  _seen = bifurcation::SymmetryWatch::see(state.last.loop);
+  _last = std::move(state.last);
+  _before_first = state.before_first;
+  _events = state.events;
+  _outcome = std::move(state.outcome);
+  _children = std::move(state.children);
+}
+
+BranchState BranchTask::state_at(const continuation::Frontier& frontier) const {
+  return {frontier,      _curve.known(), _detector.state(), _folds,   _last.value(),
+          _before_first, _events,        _outcome,          _children};
 }
 
 queue::TaskOutcome BranchTask::run() {
   continuation::Ending ending;
   try {
-    continuation::Options options = branch_options(_scene, _team);
-    if (_work.amplitude > 0.0) options.start_amplitude = _work.amplitude;
-    if (bifurcation::passes_two_only_at_folds(_system->description(), _start.isotropy))
-      options.jumped = [this](const auto& from, const auto& to) { return jumped(from, to); };
-    ending =
-        continuation::trace(_system, _start, options, [this](const continuation::Orbit& orbit) { return take(orbit); });
-    const auto probing = [this](double position) { return probe(position); };
-    for (const bifurcation::Bracket& b : _detector.finish(probing))
-      add_event({bifurcation::Event::Kind::test_function, _functions[b.function], b.tangency}, b.from, b.to);
+    ending = follow();
+    if (!_stopped) finish();
   } catch (const std::exception& error) {  // here, not in the queue, so that the summary still counts the orbits kept
     ending = {continuation::EndReason::failure, error.what()};
   }
@@ -73,6 +99,57 @@ queue::TaskOutcome BranchTask::run() {
   return done;
 }
 
+continuation::Ending BranchTask::follow() {
+  while (true) {
+    const continuation::Frontier before = _branch->standing();
+    const std::optional<continuation::Orbit> orbit = _branch->advance();
+    if (!orbit) {
+      note_limits(_branch->ending().value(), before);
+      return _branch->ending().value();
+    }
+    // The branch ends with an orbit on a limit, which it would not have under a wider one: no state may hold it.
+    const bool on_limit = orbit->loop.period >= _options.period_limit || _branch->standing().on_energy_limit;
+    if (on_limit) limited_by(period_limited | energy_limited, before);
+    if (!take(*orbit)) return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", orbit->loop.period)};
+    if (on_limit) continue;
+    _stopped = !_context.report({_outcome.orbits, 1, {orbit->loop.period, orbit->energy, orbit->loop.cutoff * 1.0}},
+                                [&] { return pack(state_at(_branch->standing())); });
+    if (_stopped) return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", orbit->loop.period)};
+  }
+}
+
+void BranchTask::note_limits(const continuation::Ending& ending, const continuation::Frontier& before) {
+  using continuation::EndReason;
+  if (_outcome.limited_by != 0) return;  // at the orbit on a limit
+  switch (ending.reason) {
+    case EndReason::step_limit: return limited_by(step_limited, before);
+    case EndReason::period_limit:
+    case EndReason::energy_limit:
+    // On the way to an orbit on a limit, perhaps.
+    case EndReason::cutoff_limit:
+    case EndReason::period_divergence:
+    case EndReason::failure: return limited_by(period_limited | energy_limited, before);
+    default: return;
+  }
+}
+
+void BranchTask::limited_by(int limits, const continuation::Frontier& before) {
+  if (_last) {
+    const std::string state = pack(state_at(before));
+    _outcome.before_limit = state;
+  }
+  _outcome.limited_by = limits;
+}
+
+/// What only the family's end shows, from the stored orbits alone, whatever was probed before.
+void BranchTask::finish() {
+  _curve.forget_found();
+  const auto probing = [this](double position) { return probe(position); };
+  for (const bifurcation::Bracket& b : _detector.finish(probing))
+    add_event({bifurcation::Event::Kind::test_function, _functions[b.function], b.tangency}, b.from, b.to);
+}
+
+/// False where the branch has arrived at another family.
 bool BranchTask::take(const continuation::Orbit& orbit) {
   if (!_last)
     _before_first = _work.lineage.crossing.empty() ? 0.0 : continuation::arclength_between(_start.base, orbit.loop);
@@ -84,8 +161,7 @@ bool BranchTask::take(const continuation::Orbit& orbit) {
   store(orbit, stability);
   _last = orbit;
   _last_stability = stability;
-  const double seen[] = {orbit.loop.period, orbit.energy, static_cast<double>(orbit.loop.cutoff)};
-  return _context.report({_outcome.orbits, 1, {seen[0], seen[1], seen[2]}});
+  return true;
 }
 
 /// Not computed again for the orbit that was asked for last.

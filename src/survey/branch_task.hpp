@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "branch_state.hpp"
 #include "orbweaver/archive/records.hpp"
 #include "orbweaver/bifurcation/detector.hpp"
 #include "orbweaver/bifurcation/fold_watch.hpp"
@@ -16,15 +17,22 @@
 namespace orbweaver::survey {
 
 /// Follows one branch: rows of its orbits, of those at requested periods and energies, a task for each event on it, and
-/// its end, also where it meets a more symmetric family.
+/// its end, also where it meets a more symmetric family. Goes on from a state, or gives it, after any orbit.
 class BranchTask {
  public:
+  /// `state`: that of queue::Task, possibly empty.
   BranchTask(const scene::Scene& scene, std::shared_ptr<const systems::System> system, BranchWork work,
-             archive::Records& rows, queue::TaskContext& context, core::Team* team);
+             const std::string& state, archive::Records& rows, queue::TaskContext& context, core::Team* team);
 
   [[nodiscard]] queue::TaskOutcome run();
 
  private:
+  void begin(const std::string& state);
+  [[nodiscard]] continuation::Ending follow();
+  [[nodiscard]] BranchState state_at(const continuation::Frontier& frontier) const;
+  void note_limits(const continuation::Ending& ending, const continuation::Frontier& before);
+  void limited_by(int limits, const continuation::Frontier& before);
+  void finish();
   bool take(const continuation::Orbit& orbit);
   const std::optional<spectrum::Stability>& stability_at(const continuation::Orbit& orbit);
   bool jumped(const continuation::Orbit& from, const continuation::Orbit& to);
@@ -44,7 +52,9 @@ class BranchTask {
   queue::TaskContext& _context;
   core::Team* _team;
 
+  continuation::Options _options;
   continuation::Start _start;
+  std::optional<continuation::Branch> _branch;
   continuation::FamilyCurve _curve;
   bifurcation::SymmetryWatch _symmetry;
   std::vector<bifurcation::TestFunction> _functions;
@@ -59,6 +69,7 @@ class BranchTask {
   int _events = 0;
   BranchOutcome _outcome;
   std::vector<queue::Task> _children;
+  bool _stopped = false;
 };
 
 }  // namespace orbweaver::survey

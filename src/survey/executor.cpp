@@ -52,8 +52,8 @@ Executor::Executor(const scene::Scene& scene, std::shared_ptr<const systems::Sys
 queue::TaskOutcome Executor::execute(const queue::Task& task, queue::TaskContext& context) {
   if (task.kind == sweep_kind) return sweep(unpack_sweep_work(task.payload));
   if (task.kind == branch_kind)
-    return BranchTask(_scene, _system, unpack_branch_work(task.payload), _rows, context, _team).run();
-  if (task.kind == locate_kind) return locate(_scene, _system, unpack_locate_work(task.payload), _team);
+    return BranchTask(_scene, _system, unpack_branch_work(task.payload), task.state, _rows, context, _team).run();
+  if (task.kind == locate_kind) return locate(_scene, _system, unpack_locate_work(task.payload), context, _team);
   if (task.kind == start_kind) return start(_scene, _system, unpack_start_work(task.payload), _team);
   throw core::EnvironmentError(fmt::format("no such kind of task: `{}`", task.kind));
 }

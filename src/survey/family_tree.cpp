@@ -20,8 +20,14 @@ bool lies_on(const std::string& key, const std::string& branch) {
 }
 
 bool lies_on_one_of(const std::string& key, const std::set<std::string>& branches) {
-  return std::any_of(branches.begin(), branches.end(), [&](const std::string& branch) { return lies_on(key, branch); });
+  if (branches.empty()) return false;
+  for (std::size_t slash = key.find('/'); slash != std::string::npos; slash = key.find('/', slash + 1))
+    if (branches.contains(key.substr(0, slash))) return true;
+  return false;
 }
+
+/// How far an arrival may be from the crossing that it is compared with, in period and energy.
+constexpr double arrival_window = 1e-3;
 
 bool is_fold(const LocateOutcome& crossing) { return crossing.kind.starts_with("fold"); }
 
@@ -57,7 +63,9 @@ void FamilyTree::add(const queue::Task& task, const queue::TaskOutcome& outcome)
     branch.isotropy = std::move(work.isotropy);
     branch.failed = outcome.failed;
     branch.reason = outcome.reason;
-    if (!outcome.payload.empty()) branch.outcome = unpack_branch_outcome(outcome.payload);
+    if (outcome.payload.empty()) return;
+    branch.outcome = unpack_branch_outcome(outcome.payload);
+    branch.outcome->before_limit = {};  // a journal has it
   } else if (task.kind == start_kind && outcome.failed) {
     const BranchWork work = unpack_start_work(task.payload).branch;
     _branches[work.key] = {work.lineage, work.name, work.isotropy, std::nullopt, true, outcome.reason};
@@ -66,15 +74,17 @@ void FamilyTree::add(const queue::Task& task, const queue::TaskOutcome& outcome)
     if (outcome.payload.empty()) return;
     LocateOutcome crossing = unpack_locate_outcome(outcome.payload);
     const std::string key = crossing.key;
-    if (!crossing.kind.empty()) _crossings.insert_or_assign(key, std::move(crossing));
+    if (crossing.kind.empty()) return;
+    if (!crossing.leaving.empty()) _leaving.insert({crossing.multiplicity * crossing.period, key});
+    _crossings.insert_or_assign(key, std::move(crossing));
   }
 }
 
 std::optional<FamilyTree::Meeting> FamilyTree::meeting_of(const Branch& branch, const LocateOutcome& crossing) const {
   const ArrivalRecord& arrival = branch.outcome->arrival.front();
   const double period = crossing.multiplicity * crossing.period;
-  if (!(std::abs(arrival.period / period - 1.0) <= 1e-3 &&
-        std::abs(arrival.energy - crossing.energy) <= 1e-3 * (1.0 + std::abs(crossing.energy))))
+  if (!(std::abs(arrival.period / period - 1.0) <= arrival_window &&
+        std::abs(arrival.energy - crossing.energy) <= arrival_window * (1.0 + std::abs(crossing.energy))))
     return std::nullopt;
   const loop::Loop near = loop_of(arrival.near);
   std::optional<Meeting> best;
@@ -99,11 +109,16 @@ std::optional<FamilyTree::Meeting> FamilyTree::meeting_of(const Branch& branch, 
 std::optional<FamilyTree::Meeting> FamilyTree::meeting_of(const Branch& branch, const Keys& dropped) const {
   if (!branch.outcome || branch.outcome->arrival.empty()) return std::nullopt;
   std::optional<Meeting> best;
-  for (const auto& [key, crossing] : _crossings) {
+  const double period = branch.outcome->arrival.front().period;
+  const auto last = _leaving.upper_bound({period * (1.0 + 2.0 * arrival_window), ""});
+  std::set<std::string> near;  // in the order of keys
+  for (auto at = _leaving.lower_bound({period * (1.0 - 2.0 * arrival_window), ""}); at != last; ++at)
+    near.insert(at->second);
+  for (const std::string& key : near) {
     if (lies_on_one_of(key, dropped)) continue;
     const std::pair place(branch.outcome->key, key);
     auto known = _met.find(place);
-    if (known == _met.end()) known = _met.emplace(place, meeting_of(branch, crossing)).first;
+    if (known == _met.end()) known = _met.emplace(place, meeting_of(branch, _crossings.at(key))).first;
     const std::optional<Meeting>& meeting = known->second;
     if (meeting && (!best || meeting->away < best->away)) best = meeting;
   }
@@ -140,29 +155,35 @@ std::vector<std::pair<std::string, const FamilyTree::Branch*>> FamilyTree::order
 /// One round: who is dropped if crossings on `before` do not count.
 FamilyTree::Keys FamilyTree::dropped_without(const Keys& before) const {
   const auto ordered = ordered_branches();
-  std::map<std::string, std::optional<Meeting>> meetings;
-  for (const auto& [key, branch] : ordered) meetings[key] = meeting_of(*branch, before);
-  const auto arrives_at = [&](const std::string& key, const Branch& branch) {
-    const std::optional<Meeting>& meeting = meetings.at(key);
-    return meeting && meeting->family == branch.lineage.family && meeting->side == branch.lineage.side;
+  // Who arrives at a side of a family, by places in the order.
+  using Side = std::pair<std::string, int>;
+  const auto side_of = [](const Branch& branch) { return Side(branch.lineage.family, branch.lineage.side); };
+  std::vector<std::optional<Side>> arrives_at(ordered.size());
+  std::map<Side, std::vector<std::size_t>> arrivers;
+  for (std::size_t n = 0; n < ordered.size(); ++n)
+    if (const std::optional<Meeting> meeting = meeting_of(*ordered[n].second, before)) {
+      arrives_at[n] = Side(meeting->family, meeting->side);
+      arrivers[*arrives_at[n]].push_back(n);
+    }
+  const auto covered = [&](std::size_t n, const auto& by) {
+    const auto found = arrivers.find(side_of(*ordered[n].second));
+    return found != arrivers.end() && std::any_of(found->second.begin(), found->second.end(), by);
   };
   Keys dropped;
   // By branches that come first, and so stay themselves.
-  for (auto b = ordered.begin(); b != ordered.end(); ++b) {
-    const bool covered = std::any_of(ordered.begin(), b, [&](const auto& other) {
-      return !dropped.contains(other.first) && arrives_at(other.first, *b->second);
-    });
-    if (covered || lies_on_one_of(b->first, dropped)) dropped.insert(b->first);
-  }
+  for (std::size_t n = 0; n < ordered.size(); ++n)
+    if (covered(n, [&](std::size_t other) { return other < n && !dropped.contains(ordered[other].first); }) ||
+        lies_on_one_of(ordered[n].first, dropped))
+      dropped.insert(ordered[n].first);
   // By later ones, at whose start the branch does not arrive in turn: it failed on the way.
   const Keys by_earlier = dropped;
-  for (auto b = ordered.begin(); b != ordered.end(); ++b) {
-    const bool covered = std::any_of(b, ordered.end(), [&](const auto& other) {
-      return other.first != b->first && !by_earlier.contains(other.first) && !lies_on(other.first, b->first) &&
-             arrives_at(other.first, *b->second) && !arrives_at(b->first, *other.second);
-    });
-    if (covered || lies_on_one_of(b->first, dropped)) dropped.insert(b->first);
-  }
+  const auto by_later = [&](std::size_t n, std::size_t other) {
+    return other > n && !by_earlier.contains(ordered[other].first) &&
+           !lies_on(ordered[other].first, ordered[n].first) && arrives_at[n] != side_of(*ordered[other].second);
+  };
+  for (std::size_t n = 0; n < ordered.size(); ++n)
+    if (covered(n, [&](std::size_t other) { return by_later(n, other); }) || lies_on_one_of(ordered[n].first, dropped))
+      dropped.insert(ordered[n].first);
   return dropped;
 }
 

@@ -78,9 +78,10 @@ class FamilyTree {
 
   const scene::Scene& _scene;
   const systems::Description& _system;
-  std::map<std::string, Branch> _branches;          // by key
-  std::map<std::string, LocateOutcome> _crossings;  // by key
-  std::map<std::string, std::string> _failures;     // of locations: by the crossing's key
+  std::map<std::string, Branch> _branches;            // by key
+  std::map<std::string, LocateOutcome> _crossings;    // by key
+  std::set<std::pair<double, std::string>> _leaving;  // those where families leave, by the period of the born orbits
+  std::map<std::string, std::string> _failures;       // of locations: by the crossing's key
   mutable std::map<std::pair<std::string, std::string>, std::optional<Meeting>> _met;  // branch, crossing
 };
 

@@ -50,11 +50,14 @@ double change_at_start(const bifurcation::Direction& direction, double amplitude
   return amplitude * std::sqrt(square);
 }
 
+/// The run is to stop.
+struct Interrupted {};
+
 class Location {
  public:
   Location(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system, const LocateWork& work,
-           core::Team* team)
-      : _scene(scene), _system(system), _work(work), _team(team), _event(event_of(work)) {
+           queue::TaskContext& context, core::Team* team)
+      : _scene(scene), _system(system), _work(work), _context(context), _team(team), _event(event_of(work)) {
     _outcome.key = work.key;
     _outcome.lineage = work.lineage;
     _outcome.q = work.q;
@@ -85,7 +88,13 @@ class Location {
   }
 
  private:
+  /// So that flushes need not wait for the end; a location that is stopped begins again.
+  void report() const {
+    if (!_context.report({})) throw Interrupted();
+  }
+
   void add_known(continuation::FamilyCurve& family) const {
+    family.before_each([this] { report(); });
     for (const KnownOrbit& known : _work.known) family.add(known.position, loop_of(known.loop), _work.known.size());
   }
 
@@ -142,10 +151,13 @@ class Location {
     const loop::Isotropy& isotropy = family.isotropy();
     if (_outcome.multiplicity * _outcome.period > _scene.limits.period * (1.0 + 1e-9)) {
       _outcome.remark = "orbits born here lie beyond the period limit";
+      _outcome.limited_by = period_limited;
       return;
     }
     const bifurcation::Sector& sector = _event.function.sector;
     const bool starts = _work.lineage.depth < _scene.survey.depth;
+    if (!starts) _outcome.limited_by = depth_limited;
+    report();
     const bifurcation::Kernel kernel = bifurcation::kernel_of(*_system, crossing.point, isotropy, sector,
                                                               expected_dimension(crossing, sector), starts, _team);
     _outcome.kernel_dimension = kernel.dimension();
@@ -153,6 +165,7 @@ class Location {
     _outcome.next_singular_value = kernel.next();
     if (kernel.dimension() == 0) return without_kernel(kernel, family);
     if (!starts) return;
+    report();
     int number = 0;
     for (const bifurcation::Direction& direction :
          bifurcation::directions(*_system, kernel.base, isotropy, kernel.vectors)) {
@@ -208,6 +221,7 @@ class Location {
   const scene::Scene& _scene;
   const std::shared_ptr<const systems::System>& _system;
   const LocateWork& _work;
+  queue::TaskContext& _context;
   core::Team* _team;
   Event _event;
   LocateOutcome _outcome;
@@ -218,8 +232,12 @@ class Location {
 }  // namespace
 
 queue::TaskOutcome locate(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
-                          const LocateWork& work, core::Team* team) {
-  return Location(scene, system, work, team).run();
+                          const LocateWork& work, queue::TaskContext& context, core::Team* team) {
+  try {
+    return Location(scene, system, work, context, team).run();
+  } catch (const Interrupted&) {
+    return {};
+  }
 }
 
 }  // namespace orbweaver::survey

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "orbweaver/core/team.hpp"
-#include "orbweaver/queue/task.hpp"
+#include "orbweaver/queue/executor.hpp"
 #include "orbweaver/scene/scene.hpp"
 #include "orbweaver/survey/work.hpp"
 #include "orbweaver/systems/system.hpp"
@@ -13,7 +13,7 @@ namespace orbweaver::survey {
 /// Locates an event, finds its kernel and the directions in which families leave, and makes a start task of each that
 /// the scene's depth and period allow. `team` divides the work; may be null.
 [[nodiscard]] queue::TaskOutcome locate(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
-                                        const LocateWork& work, core::Team* team);
+                                        const LocateWork& work, queue::TaskContext& context, core::Team* team);
 
 /// Finds the first orbit along a direction: the branch's task is then its child. An orbit that is the crossing's own
 /// family again is noticed, and other amplitudes are tried.

@@ -1,72 +1,84 @@
 #pragma once
 
 #include <algorithm>
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "bases.hpp"
+#include "checkpoint_keeper.hpp"
 #include "family_tree.hpp"
 #include "orbweaver/queue/observer.hpp"
+#include "segment_flusher.hpp"
 #include "time_limit.hpp"
 
 namespace orbweaver::survey {
 
-/// Passes everything on to the display, and minds the time.
+/// What every recorder serves.
+struct Recorded {
+  queue::Observer& display;
+  TimeLimit& time;
+  CheckpointKeeper& keeper;
+  const SegmentFlusher& flusher;
+};
+
+/// Passes everything on to the display, minds the time, and writes checkpoints.
 class Recorder : public queue::Observer {
  public:
-  Recorder(queue::Observer& display, TimeLimit& time) : _display(display), _time(time) {}
+  explicit Recorder(const Recorded& to) : _to(to) {}
 
-  void started(const queue::Task& task, int rank) override { _display.started(task, rank); }
+  void started(const queue::Task& task, int rank) override { _to.display.started(task, rank); }
   void progress(const queue::Task& task, const queue::Progress& p, int rank) override {
-    _display.progress(task, p, rank);
+    _to.display.progress(task, p, rank);
   }
   void finished(const queue::Task& task, const queue::TaskOutcome& outcome) override {
     keep(task, outcome);
-    _display.finished(task, outcome);
+    _to.keeper.ended(task, outcome);
+    _to.display.finished(task, outcome);
   }
   void failed(const queue::Task& task, const queue::TaskOutcome& outcome) override {
     keep(task, outcome);
-    _display.failed(task, outcome);
+    _to.keeper.ended(task, outcome);
+    _to.display.failed(task, outcome);
   }
-  // Its rows are kept, and so must the family be.
   void stopped(const queue::Task& task, const queue::TaskOutcome& outcome) override {
-    keep(task, outcome);
-    _display.stopped(task, outcome);
+    _to.display.stopped(task, outcome);
   }
+  void flushing(int, const queue::TaskQueue& queue) override { _to.keeper.take(queue, left_out_tasks()); }
+  void flushed(int) override { _to.keeper.commit(_to.flusher.written()); }
   void tick(const queue::TaskCounts& counts) override {
-    _time.tick();
-    _display.tick(counts);
+    _to.time.tick();
+    _to.display.tick(counts);
   }
+  [[nodiscard]] const std::vector<queue::Task>& left_out_tasks() const { return _left_out; }
 
  protected:
   virtual void keep(const queue::Task& task, const queue::TaskOutcome& outcome) = 0;
+  std::vector<queue::Task> _left_out;
 
  private:
-  queue::Observer& _display;
-  TimeLimit& _time;
+  Recorded _to;
 };
 
 /// Keeps the outcomes of sweeps.
 class SweepRecorder : public Recorder {
  public:
-  using Recorder::Recorder;
-  /// Tasks with their outcomes in order of keys.
-  [[nodiscard]] const std::map<std::string, std::pair<queue::Task, queue::TaskOutcome>>& ended() const {
-    return _ended;
-  }
+  SweepRecorder(const Recorded& to, SweepsEnded& ended) : Recorder(to), _ended(ended) {}
 
  private:
   void keep(const queue::Task& task, const queue::TaskOutcome& outcome) override {
     _ended.insert_or_assign(task.key, std::pair(task, outcome));
   }
-  std::map<std::string, std::pair<queue::Task, queue::TaskOutcome>> _ended;
+  SweepsEnded& _ended;
 };
 
 /// Grows the tree of families.
 class TreeRecorder : public Recorder {
  public:
-  TreeRecorder(queue::Observer& display, TimeLimit& time, FamilyTree& tree) : Recorder(display, time), _tree(tree) {}
+  /// `left_out`: tasks that an earlier run has left out.
+  TreeRecorder(const Recorded& to, FamilyTree& tree, std::vector<queue::Task> left_out) : Recorder(to), _tree(tree) {
+    _left_out = std::move(left_out);
+  }
   bool wanted(const queue::Task& task) override { return _tree.wanted(task); }
   void left_out(const queue::Task& task) override { _left_out.push_back(task); }
   /// Tasks left out that are wanted now that more is known; they are no longer among those left out.
@@ -81,7 +93,6 @@ class TreeRecorder : public Recorder {
  private:
   void keep(const queue::Task& task, const queue::TaskOutcome& outcome) override { _tree.add(task, outcome); }
   FamilyTree& _tree;
-  std::vector<queue::Task> _left_out;
 };
 
 }  // namespace orbweaver::survey

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "orbweaver/archive/records.hpp"
+#include "orbweaver/archive/segment.hpp"
 #include "orbweaver/core/communicator.hpp"
 #include "orbweaver/queue/flusher.hpp"
 
@@ -12,19 +13,21 @@ namespace orbweaver::survey {
 /// Writes the rows that the ranks hold into the next segment, all ranks together, and forgets them.
 class SegmentFlusher : public queue::Flusher {
  public:
+  /// `written`: those that are there already, on rank 0. Collective.
   SegmentFlusher(const core::Communicator& comm, std::filesystem::path folder, const archive::Header& header,
-                 archive::Records& rows);
+                 archive::Records& rows, std::vector<archive::WrittenSegment> written);
 
   void flush(int number) override;
-  /// The segments written so far, the same list on every rank.
-  [[nodiscard]] const std::vector<std::filesystem::path>& segments() const { return _segments; }
+  /// On rank 0.
+  [[nodiscard]] const std::vector<archive::WrittenSegment>& written() const { return _written; }
 
  private:
   const core::Communicator& _comm;
   std::filesystem::path _folder;
   const archive::Header& _header;
   archive::Records& _rows;
-  std::vector<std::filesystem::path> _segments;
+  std::vector<archive::WrittenSegment> _written;
+  unsigned long _last_number = 0;
 };
 
 }  // namespace orbweaver::survey

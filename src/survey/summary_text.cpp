@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "orbweaver/survey/survey.hpp"
 
@@ -33,10 +34,17 @@ std::string to_text(const Summary& summary) {
                         summary.atlas.string());
   for (const std::string& remark : summary.remarks) text += fmt::format("note: {}\n", remark);
   for (const std::string& failed : summary.failed_tasks) text += fmt::format("failed: {}\n", failed);
-  text += fmt::format("{} families, {} crossings, {} orbits, {} failed, {:.2f} s; peak memory per rank:",
-                      summary.families.size(), summary.crossings, summary.orbits, summary.failures, summary.seconds);
-  for (const double mib : summary.peak_memory_mib) text += fmt::format(" {:.0f}", mib);
-  text += fmt::format(" MiB\narchive: {}\n", summary.atlas.string());
+  text += fmt::format("{} families, {} crossings, {} orbits, {} failed", summary.families.size(), summary.crossings,
+                      summary.orbits, summary.failures);
+  if (!summary.peak_memory_mib.empty())
+    text += fmt::format(", {:.2f} s; peak memory per rank: {:.0f} MiB", summary.seconds,
+                        fmt::join(summary.peak_memory_mib, " "));
+  text += "\n";
+  if (summary.archived)
+    text += fmt::format("archive: {}\n", summary.atlas.string());
+  else
+    text += fmt::format("archive: not written (orbweaver consolidate {} makes it of what there is)\n",
+                        summary.atlas.parent_path().string());
   return text;
 }
 

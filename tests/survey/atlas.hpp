@@ -18,7 +18,7 @@ namespace orbweaver::test {
 inline survey::Summary run(const core::Communicator& comm, const scene::Scene& scene, const std::string& name) {
   const auto folder = fresh_folder(name + std::to_string(comm.size()), comm.get());
   const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
-  return survey::run_survey(comm, scene, system, folder, survey::Display::none);
+  return survey::run_survey(comm, scene, system, folder, {});
 }
 
 /// An archive with look-ups by name.

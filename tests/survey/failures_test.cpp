@@ -68,8 +68,7 @@ class Failures : public ::testing::Test {
     shared = std::make_unique<core::Communicator>();
     scene = std::make_unique<scene::Scene>(test::quick_scene({"limits.period=8.5"}));
     const auto folder = test::fresh_folder(own("clean"), shared->get());
-    clean_summary =
-        survey::run_survey(*shared, *scene, systems::make_system("double_pendulum"), folder, survey::Display::none);
+    clean_summary = survey::run_survey(*shared, *scene, systems::make_system("double_pendulum"), folder, {});
     if (shared->is_root()) clean = std::make_unique<archive::Archive>(clean_summary.atlas);
   }
   static void TearDownTestSuite() {
@@ -80,8 +79,7 @@ class Failures : public ::testing::Test {
 
   static survey::Summary run(const std::string& name, SpoiltPendulum::Spoil spoil) {
     const auto folder = test::fresh_folder(own(name), shared->get());
-    return survey::run_survey(*shared, *scene, std::make_shared<SpoiltPendulum>(std::move(spoil)), folder,
-                              survey::Display::none);
+    return survey::run_survey(*shared, *scene, std::make_shared<SpoiltPendulum>(std::move(spoil)), folder, {});
   }
 
   /// The orbits of a family have the same numbers as in the clean survey, as far as `count`.

@@ -62,6 +62,9 @@ TEST(Standing, AFolderInsideAFileHoldsNothing) {
 TEST(Standing, SegmentsWithoutAnArchiveAreUnfinished) {
   const auto folder = test::fresh_folder("unfinished");
   std::filesystem::create_directory(folder / "segments");
+  std::ofstream(folder / "segments" / "lock") << "";
+  EXPECT_EQ(survey::standing_of(folder, sample_scene()), Standing::none) << "nothing was written yet";
+  std::ofstream(folder / "segments" / "segment-000001.h5") << "rows";
   EXPECT_EQ(survey::standing_of(folder, sample_scene()), Standing::unfinished);
 }
 
@@ -109,7 +112,7 @@ TEST(Startable, ASurveyThereNeedsResume) {
                     HasSubstr("--resume to accept it as it is")));
   EXPECT_THAT(refusal(Standing::finished_with_failures), HasSubstr("a finished survey"));
   EXPECT_THAT(refusal(Standing::unfinished),
-              AllOf(HasSubstr("an unfinished survey"), HasSubstr("--resume to begin it anew")));
+              AllOf(HasSubstr("an unfinished survey"), HasSubstr("--resume to go on with it")));
   EXPECT_NO_THROW(survey::require_startable(Standing::finished, "some/folder", true));
   EXPECT_NO_THROW(survey::require_startable(Standing::finished_with_failures, "some/folder", true));
   EXPECT_NO_THROW(survey::require_startable(Standing::unfinished, "some/folder", true));

@@ -22,6 +22,7 @@ survey::Summary sample_summary() {
   summary.seconds = 12.345;
   summary.peak_memory_mib = {48.4, 417.2};
   summary.atlas = "some/folder/atlas.h5";
+  summary.archived = true;
   return summary;
 }
 

@@ -44,7 +44,7 @@ scene::Scene chain_scene(int team, const std::vector<std::string>& more = {}) {
 survey::Summary run(const core::Communicator& comm, const scene::Scene& scene, const std::string& name,
                     const std::shared_ptr<const systems::System>& system) {
   const auto folder = test::fresh_folder(name + std::to_string(comm.size()), comm.get());
-  return survey::run_survey(comm, scene, system, folder, survey::Display::none);
+  return survey::run_survey(comm, scene, system, folder, {});
 }
 
 std::shared_ptr<const systems::System> chain() { return std::make_shared<const test::OscillatorChain>(4); }

@@ -57,7 +57,7 @@ TEST(TimeLimit, EndsASurveyWithAWholeArchive) {
         {"continuation.step=0.0005deg", "limits.steps=100000000", "limits.time=" + std::to_string(seconds)});
     const auto folder = test::fresh_folder("stopped" + std::to_string(comm.size()), comm.get());
     const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
-    summary = survey::run_survey(comm, scene, system, folder, survey::Display::none);
+    summary = survey::run_survey(comm, scene, system, folder, {});
     EXPECT_TRUE(summary.stopped_early);
     EXPECT_EQ(summary.failures, 0U);
     families = summary.families.size();  // none if the sweeps alone took longer

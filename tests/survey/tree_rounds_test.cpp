@@ -52,7 +52,12 @@ TEST_F(TreeRounds, AnArrivalAtACrossingThatIsDroppedCountsAtTheNextBest) {
 TEST_F(TreeRounds, WhatWasLeftOutIsAskedAgainWhenMoreIsKnown) {
   queue::Observer display;
   TimeLimit time(1e9);
-  TreeRecorder recorder(display, time, tree);
+  CheckpointKeeper keeper("nowhere", {});
+  const core::Communicator alone(MPI_COMM_SELF);
+  const archive::Header header;
+  archive::Records rows;
+  const SegmentFlusher flusher(alone, "nowhere", header, rows, {});
+  TreeRecorder recorder({display, time, keeper, flusher}, tree, {});
   add({ended(base_work(), "period limit", 5, 12), located(o), located(p), located(q),
        arrived(work_from(p, 0), 16, q, 0)});
   const queue::Task start = task_of(StartWork{work_from(q, 0)});

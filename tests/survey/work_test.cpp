@@ -37,8 +37,20 @@ BranchWork sample_branch_work() {
   return {"0001.0002/003.q4.j1/0-", "Naïve", sample_lineage(), sample_loop(), {0.25, -0.5}, sample_isotropy(), 0.125};
 }
 BranchOutcome sample_branch_outcome() {
-  return {"0001.0000", 35, 3.4, 30.0, -2.9, 2.9, 30.0, 2.5, 562, "period limit (T = 30)", {{8.5, -1.5, sample_loop()}},
-          {"a remark"}};
+  return {"0001.0000",
+          35,
+          3.4,
+          30.0,
+          -2.9,
+          2.9,
+          30.0,
+          2.5,
+          562,
+          "period limit (T = 30)",
+          {{8.5, -1.5, sample_loop()}},
+          {"a remark"},
+          period_limited,
+          "a state"};
 }
 LocateWork sample_locate_work() {
   LocateWork work{"0001.0002/003.q4.j1", "Naïve", sample_lineage(), sample_isotropy(), {{0.5, sample_loop()}}, 0.25};
@@ -168,6 +180,7 @@ TEST(Payload, LocateOutcomeTravels) {
             std::tie(sent.arclength, sent.period, sent.energy, sent.kind, sent.multiplicity, sent.kernel_dimension));
   EXPECT_EQ(std::tie(back.residual, back.kernel_singular_value, back.next_singular_value, back.test_value, back.state),
             std::tie(sent.residual, sent.kernel_singular_value, sent.next_singular_value, sent.test_value, sent.state));
+  EXPECT_EQ(back.limited_by, sent.limited_by);
   EXPECT_EQ(std::tie(back.q, back.j, back.fundamental_order, back.remark),
             std::tie(sent.q, sent.j, sent.fundamental_order, sent.remark));
   ASSERT_EQ(back.leaving.size(), 1U);
@@ -196,6 +209,7 @@ TEST(Payload, BranchOutcomeTravels) {
   EXPECT_EQ(back.arrival[0].energy, -1.5);
   expect_equal(back.arrival[0].near, sent.arrival[0].near);
   EXPECT_EQ(back.remarks, sent.remarks);
+  EXPECT_EQ(std::tie(back.limited_by, back.before_limit), std::tie(sent.limited_by, sent.before_limit));
 }
 
 TEST(Payload, EqualWorkHasEqualBytes) { EXPECT_EQ(pack(sample_branch_work()), pack(sample_branch_work())); }

@@ -87,6 +87,9 @@ class Branch {
  public:
   /// Throws MisuseError for a start whose sizes disagree or whose direction is zero.
   Branch(std::shared_ptr<const systems::System> system, const Start& start, Options options);
+  /// Goes on from where a branch with the same start stood: `from` is what its `standing` was after some orbit. Its further
+  /// orbits have the same bits; limits may be wider.
+  Branch(std::shared_ptr<const systems::System> system, const Start& start, Options options, Frontier from);
   ~Branch();
   Branch(Branch&&) noexcept;
   Branch& operator=(Branch&&) noexcept;
@@ -99,6 +102,8 @@ class Branch {
   [[nodiscard]] const std::optional<Ending>& ending() const;
   /// Where the branch stands (after at least one orbit).
   [[nodiscard]] const Frontier& frontier();
+  /// The same without a tangent that no step has needed yet: for checkpoints.
+  [[nodiscard]] const Frontier& standing() const;
 
   struct Implementation;
 

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "orbweaver/continuation/branch.hpp"
@@ -16,7 +18,8 @@ namespace orbweaver::continuation {
 struct CurvePoint {
   double position = 0.0;  ///< arclength of known orbits, in proportion to the chord between them
   loop::Loop loop;
-  std::vector<double> tangent_modes;  ///< unit direction of the family there, towards larger positions; empty where unknown
+  std::vector<double>
+      tangent_modes;  ///< unit direction of the family there, towards larger positions; empty where unknown
   double tangent_period = 0.0;
 };
 
@@ -37,6 +40,12 @@ class FamilyCurve {
   /// The next known orbit; positions increase. Only the last `keep` known orbits stay.
   void add(double position, const loop::Loop& loop, std::size_t keep = 5);
 
+  /// Forgets the orbits found in between, which later ones are sought from: as after `add`.
+  void forget_found();
+
+  /// Called before every orbit that is sought, some milliseconds apart; may throw.
+  void before_each(std::function<void()> call) { _before_each = std::move(call); }
+
   /// The known orbits, oldest first.
   struct Known {
     double position = 0.0;
@@ -54,6 +63,7 @@ class FamilyCurve {
   std::shared_ptr<const systems::System> _system;
   loop::Isotropy _isotropy;
   Options _options;
+  std::function<void()> _before_each;
   std::vector<Known> _known;
   std::map<std::size_t, std::unique_ptr<CurveInterval>> _intervals;  // by the index of their ends
 };

@@ -16,6 +16,9 @@ inline constexpr const char* branch_kind = "branch";
 inline constexpr const char* locate_kind = "locate";
 inline constexpr const char* start_kind = "start";
 
+/// Limits of the scene that an outcome may rest on, as bits: with a wider one the task is done again.
+enum Limit : int { period_limited = 1, energy_limited = 2, step_limited = 4, depth_limited = 8 };
+
 /// A loop as it travels.
 struct LoopRecord {
   int dimension = 0;
@@ -107,6 +110,8 @@ struct BranchOutcome {
   std::string end_reason;
   std::vector<ArrivalRecord> arrival;  ///< one or none
   std::vector<std::string> remarks;
+  int limited_by = 0;        ///< Limit: with wider ones the branch would have gone on
+  std::string before_limit;  ///< the state (queue::Task) from which it would; empty: from its start
 };
 
 /// An orbit of a family with its place.
@@ -164,6 +169,7 @@ struct LocateOutcome {
   int fundamental_order = 1;
   std::vector<LeavingRecord> leaving;
   std::string remark;
+  int limited_by = 0;  ///< Limit: with wider ones more would have been looked for
 };
 
 /// Find the first orbit of a family along a direction.

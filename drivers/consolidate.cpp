@@ -1,0 +1,52 @@
+#include <exception>
+#include <filesystem>
+#include <memory>
+
+#include "command.hpp"
+#include "common_options.hpp"
+#include "failure.hpp"
+#include "orbweaver/core/communicator.hpp"
+#include "orbweaver/core/session.hpp"
+#include "orbweaver/survey/survey.hpp"
+
+namespace orbweaver::drivers {
+
+namespace {
+
+struct Options {
+  LogOptions log;
+  std::filesystem::path directory;
+};
+
+int consolidate_on(const core::Communicator& comm, const Options& options) {
+  const survey::Summary summary =
+      alike_on_all_ranks(comm, [&] { return survey::archive_survey(comm, options.directory); });
+  agree(comm, [&] {
+    if (comm.is_root()) print_result(survey::to_text(summary));
+  });
+  return static_cast<int>(core::ExitStatus::done);
+}
+
+int run(const Options& options, const Invocation& invocation) {
+  const core::Session session(invocation.petsc_options);
+  const core::Communicator comm;
+  core::start_logging(options.log.level(), comm.rank(), comm.size());
+  try {
+    return run_on_ranks(comm, [&] { return consolidate_on(comm, options); });
+  } catch (...) {  // as in survey.cpp
+    return report_failure(std::current_exception());
+  }
+}
+
+}  // namespace
+
+Command make_consolidate_command(CLI::App& program) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* parser = program.add_subcommand(
+      "consolidate", "Make the archive of what a survey that was broken off has come to (under mpirun or alone)");
+  parser->add_option("directory", options->directory, "The folder of the survey")->required();
+  add_log_options(*parser, options->log);
+  return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
+}
+
+}  // namespace orbweaver::drivers

@@ -1,0 +1,112 @@
+#include "archive_writer.hpp"
+
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "agreement.hpp"
+#include "branch_state.hpp"
+#include "orbweaver/archive/consolidate.hpp"
+#include "orbweaver/archive/folder_lock.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/survey/version.hpp"
+#include "resume.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+/// Branches that a stop has cut: their rows are kept, and so must the families be.
+void add_unfinished(const std::vector<queue::Task>& tasks, FamilyTree& tree) {
+  for (const queue::Task& task : tasks) {
+    if (task.kind != branch_kind || task.state.empty()) continue;
+    BranchState state = unpack_branch_state(task.state);
+    state.outcome.end_reason = fmt::format("stopped (T = {:.9g})", state.last.loop.period);
+    queue::TaskOutcome outcome;
+    outcome.key = task.key;
+    outcome.payload = pack(state.outcome);
+    tree.add(task, outcome);
+  }
+}
+
+/// Families of branches that were followed to narrower limits, and are not wanted now that more is known.
+void leave_out(const std::vector<queue::Task>& tasks, archive::Records& tables) {
+  std::set<std::string> known(tables.left_out_keys.begin(), tables.left_out_keys.end());
+  for (const archive::FamilyRecord& family : tables.families) known.insert(family.key);
+  for (const queue::Task& task : tasks) {
+    if (task.kind != branch_kind) continue;
+    const std::string family = unpack_branch_work(task.payload).lineage.family;
+    if (known.insert(family).second) tables.left_out_keys.push_back(family);
+  }
+}
+
+}  // namespace
+
+archive::Header header_of(const scene::Scene& scene, const systems::Description& system) {
+  archive::Header header;
+  header.orbweaver_version = version();
+  header.scene = scene.text;
+  header.state_names = system.state_names;
+  header.winding_names = system.winding_names;
+  header.pairs = system.pairs();
+  header.symplectic = system.symplectic;
+  return header;
+}
+
+void write_archive(const core::Communicator& comm, const scene::Scene& scene, const systems::System& system,
+                   const Checkpoint& standing, FamilyTree& tree, const SweepsEnded& sweeps, Summary& summary) {
+  archive::Records tables;
+  std::vector<std::filesystem::path> segments;
+  on_root(comm, [&] {
+    add_unfinished(standing.unfinished, tree);
+    FamilyTree::Result found = tree.resolve();
+    tables = std::move(found.tables);
+    summary.families = std::move(found.families);
+    for (std::string& failure : found.failures) summary.failed_tasks.push_back(std::move(failure));
+    for (std::string& remark : found.remarks) summary.remarks.push_back(std::move(remark));
+    for (const FamilySummary& family : summary.families) summary.orbits += family.orbits;
+    summary.crossings = static_cast<long>(tables.crossings.size());
+    gather_failed_sweeps(system.description(), sweeps, summary, tables);
+    leave_out(standing.left_out, tables);
+    tables.voided = standing.voided;
+    tables.earlier_scenes = standing.earlier_scenes;
+    const std::filesystem::path folder = state_folder(summary.atlas.parent_path());
+    for (const archive::WrittenSegment& segment : standing.segments) segments.push_back(folder / segment.name);
+  });
+  if (summary.archived)
+    archive::consolidate(comm.get(), segments, summary.atlas, header_of(scene, system.description()), tables);
+  summary.failures = agreed(comm, static_cast<unsigned long>(summary.failed_tasks.size()));
+}
+
+Summary archive_survey(const core::Communicator& comm, const std::filesystem::path& directory) {
+  archive::FolderLock lock;
+  on_root(comm, [&] {
+    if (std::filesystem::exists(state_folder(directory))) lock = archive::FolderLock(state_folder(directory));
+  });
+  Found found = find_checkpoint(comm, state_folder(directory));
+  if (!found.found) throw core::InputError(fmt::format("{} holds no survey with a checkpoint", directory.string()));
+  const std::string text = agreed(comm, found.checkpoint.scene);
+  const scene::Scene scene = scene::parse(text, "the checkpoint's scene");
+  const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  FamilyTree tree(scene, system->description());
+  SweepsEnded sweeps;
+  on_root(comm, [&] {
+    const Stage stage = found.checkpoint.stage;
+    continue_with(scene, state_folder(directory), found.checkpoint, [&](const EndedTask& entry) {
+      if (entry.task.kind == sweep_kind)
+        sweeps.insert_or_assign(entry.task.key, std::pair(entry.task, entry.outcome));
+      else
+        tree.add(entry.task, entry.outcome);
+    });
+    found.checkpoint.stage = stage;
+  });
+  Summary summary;
+  summary.atlas = directory / "atlas.h5";
+  summary.stopped_early = agreed(comm, found.checkpoint.stage != Stage::finished);
+  summary.archived = true;
+  write_archive(comm, scene, *system, found.checkpoint, tree, sweeps, summary);
+  return summary;
+}
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "checkpoint.hpp"
+#include "orbweaver/scene/scene.hpp"
+
+namespace orbweaver::survey {
+
+/// Bits of Limit (work.hpp) for the limits that lie farther out in `now`; `families_limited` among them.
+[[nodiscard]] int widened_limits(const scene::Scene& before, const scene::Scene& now);
+
+/// Decides, entry by entry in the order in which tasks ended, what a survey with wider limits keeps. What ended at one of
+/// them waits again in the checkpoint, from where it would have gone on; what was found behind that place, and the rows
+/// that it made, no longer count.
+class Reopening {
+ public:
+  Reopening(int widened, Checkpoint& checkpoint) : _widened(widened), _checkpoint(checkpoint) {}
+
+  /// False for a task that is done again, or that followed from what is.
+  [[nodiscard]] bool stays(const EndedTask& entry);
+  /// After the last entry: drops the same from the tasks that wait, and adds those to be done again.
+  void finish();
+  /// Whether anything is to be done again.
+  [[nodiscard]] bool any() const { return !_again.empty(); }
+
+ private:
+  /// Events of a branch from an ordinal on.
+  struct Behind {
+    std::string branch;
+    int first_event = 0;
+  };
+
+  [[nodiscard]] bool is_behind(const std::string& key) const;
+  [[nodiscard]] bool is_limited(const EndedTask& entry) const;
+  void reopen(const EndedTask& entry);
+  void drop(const queue::Task& task);
+  void forget_rows(const queue::Task& branch, int from);
+
+  int _widened;
+  Checkpoint& _checkpoint;
+  std::vector<Behind> _behind;
+  std::vector<queue::Task> _again;
+};
+
+}  // namespace orbweaver::survey

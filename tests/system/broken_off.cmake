@@ -1,0 +1,17 @@
+# Surveys that are broken off and go on. `long` runs many more kills (below).
+set(broken --set limits.period=18 --set survey.depth=1 --set starts.sweep.step=0.05 --set output.flush_seconds=0.2)
+# broken_off_test(<name> <labels> <seconds> <script> <arguments of the script ...> -- <options of survey ...>)
+function(broken_off_test name labels seconds script)
+  list(FIND ARGN "--" mark)
+  list(SUBLIST ARGN 0 ${mark} first)
+  math(EXPR mark "${mark} + 1")
+  list(SUBLIST ARGN ${mark} -1 rest)
+  orbweaver_add_ctest(system.${name} 4 "${labels}" ${seconds} "${CMAKE_CURRENT_SOURCE_DIR}/${script}" ${first}
+    $<TARGET_FILE:orbweaver> $<TARGET_FILE:compare_archives> "${scene}" "${runs}/system.${name}/work" ${rest})
+endfunction()
+broken_off_test(kills system 300 kills.sh 5 1 -- ${broken})
+broken_off_test(flush_kills system 300 flush_kills.sh 5 -- ${broken})
+broken_off_test(stops system 300 stops.sh -- ${broken})
+broken_off_test(widened system 300 widened.sh -- ${broken})
+broken_off_test(many_kills "system;long" 3600 kills.sh 100 2 -- --set output.flush_seconds=0.5)
+broken_off_test(many_flush_kills "system;long" 3600 flush_kills.sh 20 -- --set output.flush_seconds=0.5)

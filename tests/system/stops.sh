@@ -1,0 +1,61 @@
+#!/bin/bash
+# Asks a survey to stop (signals to mpirun, to rank 0, to a worker; wall time), which must end with status 4 and how to go on,
+# and resumes it; the archive must be that of an undisturbed run. Arguments: those of survey_runs.sh.
+. "$(dirname "$0")/survey_runs.sh"
+begin_anew
+survey whole 2 || fail "the undisturbed run failed"
+
+# expect_stopped STATUS WHAT
+expect_stopped() {
+  [ "$1" = 4 ] || fail "$2: exit status $1 instead of 4"
+  grep -q "the survey goes on, on any number of ranks, with" "$folder/log" || fail "$2: no word on how to go on"
+  [ -e "$folder/stopped/segments/checkpoint" ] || fail "$2: no checkpoint"
+}
+
+# Waits until the survey has written its first rows.
+wait_for_rows() {
+  until [ -e "$folder/stopped/segments/segment-000001.h5" ]; do sleep 0.02; done
+}
+
+for case in "TERM rank0" "USR1 mpirun" "USR1 worker" "INT rank0"; do
+  read -r signal whom <<< "$case"
+  rm -rf "$folder/stopped"
+  : > "$folder/log"
+  survey stopped 3 &
+  job=$!
+  wait_for_rows
+  case $whom in
+    mpirun) victim=$(mpirun_of stopped) ;;
+    rank0) victim=$(ranks_of stopped | head -1) ;;
+    worker) victim=$(ranks_of stopped | tail -1) ;;
+  esac
+  kill -"$signal" "$victim"
+  wait $job
+  expect_stopped $? "$case"
+  survey stopped 2 && fail "$case: begun without --resume on an unfinished survey"
+  survey stopped 2 --resume || fail "$case: the resumed run failed"
+  expect_same stopped
+  echo "$case: stopped and resumed"
+done
+
+rm -rf "$folder/stopped"
+: > "$folder/log"
+survey stopped 2 --walltime 0:02
+expect_stopped $? "--walltime"
+mpirun -n 2 "$program" consolidate "$folder/stopped" >> "$folder/log" 2>&1 || fail "consolidate failed"
+"$program" show "$folder/stopped/atlas.h5" families >> "$folder/log" || fail "the archive of a part cannot be shown"
+survey stopped 2 --resume || fail "--walltime: the resumed run failed"
+expect_same stopped
+echo "--walltime: stopped, consolidated, resumed"
+
+rm -rf "$folder/stopped"
+survey stopped 1 &
+job=$!
+wait_for_rows
+kill -INT "$(ranks_of stopped | head -1)"
+kill -INT "$(ranks_of stopped | head -1)" 2> /dev/null
+wait $job
+[ $? = 4 ] && echo "the second SIGINT came too late to be tested"
+survey stopped 1 --resume || fail "after two SIGINT: the resumed run failed"
+expect_same stopped
+echo "two SIGINT: ended and resumed"

@@ -1,0 +1,46 @@
+# Sourced by the scripts that break surveys off. They are called with
+#   PROGRAM COMPARE SCENE FOLDER [options of survey ...]
+# and run `survey`, which prints nothing, in FOLDER/NAME; FOLDER/whole holds the undisturbed run that `expect_same` compares
+# with.
+set -u
+program=$1 compare=$2 scene=$3 folder=$4
+shift 4
+options=("$@")
+export OMPI_MCA_rmaps_base_oversubscribe=1
+
+fail() {
+  echo "$1"
+  tail -25 "$folder/log"
+  exit 1
+}
+
+# survey NAME RANKS [more options ...]: its exit status is that of mpirun.
+survey() {
+  mpirun -n "$2" "$program" survey "$scene" -o "$folder/$1" --quiet "${options[@]}" "${@:3}" >> "$folder/log" 2>&1
+}
+
+# Waits until no process of the survey in FOLDER/NAME is left.
+wait_for_end() {
+  while pgrep -f -- "-o $folder/$1 --quiet" > /dev/null; do sleep 0.05; done
+}
+
+# The processes of the ranks, rank 0 first.
+ranks_of() {
+  pgrep -f -- "^$program survey .* -o $folder/$1 --quiet" | sort -n
+}
+mpirun_of() {
+  pgrep -f -- "^mpirun .* -o $folder/$1 --quiet" | head -1
+}
+
+expect_same() {
+  "$compare" "$folder/whole/atlas.h5" "$folder/$1/atlas.h5" >> "$folder/log" 2>&1 || fail "$1: the archive differs from the undisturbed run's"
+}
+
+begin_anew() {
+  rm -rf "$folder"
+  mkdir -p "$folder"
+}
+
+milliseconds() {
+  echo $(($(date +%s%N) / 1000000))
+}
