@@ -35,8 +35,16 @@ std::optional<Checkpoint> readable(const std::filesystem::path& folder, const st
 
 void remove_unlisted(const std::filesystem::path& folder, const Checkpoint& checkpoint) {
   std::set<std::string> listed;
-  for (const archive::WrittenSegment& segment : checkpoint.segments) listed.insert(segment.name);
-  for (const JournalFile& journal : checkpoint.journals) listed.insert(journal.name);
+  const auto list = [&](const Checkpoint& by) {
+    for (const archive::WrittenSegment& segment : by.segments) listed.insert(segment.name);
+    for (const JournalFile& journal : by.journals) listed.insert(journal.name);
+  };
+  list(checkpoint);
+  try {
+    list(read_checkpoint(previous_checkpoint_path(folder)));
+  } catch (const core::InputError&) {
+    // There is none to fall back to.
+  }
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
     const std::string name = entry.path().filename().string();

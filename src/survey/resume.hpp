@@ -29,7 +29,7 @@ struct Found {
 void continue_with(const scene::Scene& scene, const std::filesystem::path& folder, Checkpoint& checkpoint,
                    const std::function<void(const EndedTask&)>& take);
 
-/// Removes segments and journals that the checkpoint does not list: they came after it.
+/// Removes segments and journals that neither the checkpoint nor the previous one lists: they came after it.
 void remove_unlisted(const std::filesystem::path& folder, const Checkpoint& checkpoint);
 
 /// Sentences on the keys in which a survey of `before` cannot go on as one of `now`; empty: it can.

@@ -81,9 +81,14 @@ class Run {
 
   Summary run(bool resume) {
     begin(resume);
-    if (agreed(_comm, _start.stage == Stage::sweeps)) sweep();
-    if (!_summary.stopped_early) follow();
-    end();
+    try {
+      if (agreed(_comm, _start.stage == Stage::sweeps)) sweep();
+      if (!_summary.stopped_early) follow();
+      end();
+    } catch (const core::EnvironmentError& error) {
+      throw core::EnvironmentError(
+          fmt::format("{}\nThe last checkpoint stands: --resume goes on from it.", error.what()));
+    }
     _summary.seconds = std::chrono::duration<double>(Clock::now() - _began).count();
     return std::move(_summary);
   }

@@ -1,7 +1,7 @@
 # What a machine can do to a survey: each fault gives a message that says what, where and what to do, and the status of
 # the README, on any number of ranks; CTest's time limit ends a hang.
 set(fine_scene "${PROJECT_SOURCE_DIR}/drivers/scenes/double_pendulum_half_degree.yaml")
-set(fine --set continuation.step=1deg --set limits.period=12 --set starts.sweep.step=0.01 --set output.flush_seconds=0.2)
+set(fine --set continuation.step=0.5deg --set limits.period=12 --set starts.sweep.step=0.01 --set output.flush_seconds=0.2)
 
 # full_disk_test(<name> <ranks> <bytes> <segments> [KEY=value of run_program.cmake ...]): no file may grow beyond <bytes>
 # once <segments> segments stand.
@@ -31,14 +31,34 @@ foreach(ranks IN ITEMS 1 2 3)
     survey "${scene}" -o /proc/orbweaver ${limits})
   # A disk that is full at the first flush, and one that holds the segments but not the atlas made of them.
   set(folder "${runs}/system.full_disk.${tag}/out")
-  full_disk_test(full_disk.${tag} ${ranks} 60000 0
-    "ERR='out/segments/|File too large|the free space"
+  full_disk_test(full_disk.${tag} ${ranks} 20000 0
+    "ERR=orbweaver: the run was ended on all ranks: |cannot |'out/segments/|.part': File too large. Check the folder, its permissions and the free space."
     "GONE=${folder}/segments/segment-000001.h5.part")
   set(folder "${runs}/system.full_disk_at_the_end.${tag}/out")
-  full_disk_test(full_disk_at_the_end.${tag} ${ranks} 3400000 0
+  full_disk_test(full_disk_at_the_end.${tag} ${ranks} 5000000 0
     "ERR=cannot reserve disk space for 'out/atlas.h5.part'|File too large|the free space"
     "HAS=${folder}/segments/segment-000001.h5" "GONE=${folder}/atlas.h5")
 endforeach()
+
+# A survey ended by a full disk after two flushes is resumed, whole or with a file of it damaged: it comes to the archive of an
+# undisturbed one, or is refused and stays as it was.
+set(broken "${runs}/system.broken_off")
+full_disk_test(broken_off 2 20000 2 "ERR=File too large|the free space" "HAS=${broken}/out/segments/checkpoint.previous"
+  "GONE=${broken}/out/atlas.h5")
+set(whole "${runs}/system.not_broken_off/out")
+system_test(not_broken_off 1 0 "OUT=4 families" "FRESH=${whole}" survey "${fine_scene}" -o out ${fine})
+set_tests_properties(system.broken_off system.not_broken_off PROPERTIES FIXTURES_SETUP broken_off)
+foreach(case IN ITEMS as_it_is part_files torn_last_segment deleted_last_segment torn_journal torn_checkpoint
+    wrong_checksum torn_first_segment deleted_first_segment exchanged_segments no_checksum_holds newer_version other_scene narrower)
+  orbweaver_add_ctest(system.damaged.${case} 3 system 180 "${CMAKE_CURRENT_SOURCE_DIR}/damaged.sh" ${case}
+    $<TARGET_FILE:orbweaver> $<TARGET_FILE:compare_archives> "${broken}" "${whole}/atlas.h5" "${fine_scene}" ${fine})
+  set_tests_properties(system.damaged.${case} PROPERTIES FIXTURES_REQUIRED broken_off)
+endforeach()
+
+# Not a number, on the rank count that CMakeLists.txt leaves out.
+set(folder "${runs}/system.overflow.ranks2/out")
+system_test(overflow.ranks2 2 1 "OUT=failed: sweep.0000: | is not finite|archive: " "FRESH=${folder}" "HAS=${folder}/atlas.h5"
+  survey "${scene}" -o out --set system.parameters.g=1e300)
 
 # Ten times the orbits, no more memory: whoever kept the 34 MB of rows would need that much more.
 foreach(ranks IN ITEMS 1 2)

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # full_disk.sh BYTES SEGMENTS COMMAND...: runs COMMAND, a survey into ./out, alone or under mpirun. Once SEGMENTS segments stand
-# there (0: once MPI has started), no process of it can write a file beyond BYTES. Exits with the status of COMMAND.
+# there with a checkpoint after them (0: once MPI has started), no process of it can write a file beyond BYTES. Exits with the
+# status of COMMAND.
 set -u
 bytes=$1
 segments=$2
@@ -8,7 +9,7 @@ shift 2
 rm -rf out
 "$@" &
 pid=$!
-written() { find out/segments -name 'segment-*.h5' 2>/dev/null | wc -l; }
+written() { find out/segments -name 'segment-*.h5' ! -newer out/segments/checkpoint 2>/dev/null | wc -l; }
 for ((i = 0; i < 4000; ++i)); do
   [[ -d out/segments && $(written) -ge $segments ]] && break
   kill -0 "$pid" 2>/dev/null || break
