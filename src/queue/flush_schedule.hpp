@@ -8,8 +8,8 @@
 
 namespace orbweaver::queue {
 
-/// When the next flush is due: by time or by rows, whichever comes first, but not so often that flushes take more than
-/// their share of the run.
+/// When the next flush is due: by rows, so that memory stays bounded, or by time, but not so often that these take more
+/// than their share of the run.
 class FlushSchedule {
  public:
   explicit FlushSchedule(const Options& options) : _options(options) {}
@@ -19,7 +19,7 @@ class FlushSchedule {
     const double since = _since_flush.seconds();
     const bool by_time = _options.flush_seconds > 0 && since >= _options.flush_seconds;
     const bool by_rows = _options.flush_rows > 0 && _rows >= _options.flush_rows;
-    return (by_time || by_rows) && since >= _rest;
+    return by_rows || (by_time && since >= _rest);
   }
   /// Ranks begin to stand still for a flush, and go on from it.
   void begun() { _since_begun.restart(); }

@@ -1,7 +1,7 @@
 # What a machine can do to a survey: each fault gives a message that says what, where and what to do, and the status of
 # the README, on any number of ranks; CTest's time limit ends a hang.
 set(fine_scene "${PROJECT_SOURCE_DIR}/drivers/scenes/double_pendulum_half_degree.yaml")
-set(fine --set continuation.step=0.5deg --set limits.period=12 --set starts.sweep.step=0.01 --set output.flush_seconds=0.2)
+set(fine --set continuation.step=0.5deg --set limits.period=12 --set starts.sweep.step=0.01 --set output.flush_seconds=0.2 --set output.flush_orbits=100)
 
 # full_disk_test(<name> <ranks> <bytes> <segments> [KEY=value of run_program.cmake ...]): no file may grow beyond <bytes>
 # once <segments> segments stand.
