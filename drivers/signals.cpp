@@ -9,12 +9,14 @@ namespace orbweaver::drivers {
 namespace {
 
 volatile std::sig_atomic_t last_signal = 0;
+volatile std::sig_atomic_t interrupted = 0;
 
 extern "C" void ask_to_stop(int signal) {
-  if (signal == SIGINT && last_signal == SIGINT) {
+  if (signal == SIGINT && interrupted != 0) {
     std::signal(SIGINT, SIG_DFL);
     std::raise(SIGINT);
   }
+  if (signal == SIGINT) interrupted = 1;
   last_signal = signal;
   queue::request_stop();
 }

@@ -2,11 +2,12 @@
 
 #include <cstring>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
-#include <boost/crc.hpp>
+#include <zlib.h>
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/pause.hpp"
@@ -32,10 +33,10 @@ T number_at(const std::string& bytes, std::size_t at) {
 }
 
 std::uint32_t checksum(std::string_view head, std::string_view bytes) {
-  boost::crc_32_type crc;
-  crc.process_bytes(head.data(), head.size());
-  crc.process_bytes(bytes.data(), bytes.size());
-  return crc.checksum();
+  const auto add = [](unsigned long crc, std::string_view more) {
+    return crc32_z(crc, reinterpret_cast<const Bytef*>(more.data()), more.size());
+  };
+  return static_cast<std::uint32_t>(add(add(0, head), bytes));
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& what) {
@@ -45,9 +46,10 @@ std::uint32_t checksum(std::string_view head, std::string_view bytes) {
 std::string contents_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) refuse(path, "it is not there, or cannot be opened");
-  std::string all{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (file.bad()) refuse(path, "it cannot be read");
-  return all;
+  std::ostringstream all;
+  all << file.rdbuf();
+  if (file.bad() || all.bad()) refuse(path, "it cannot be read");
+  return std::move(all).str();
 }
 
 }  // namespace
@@ -92,9 +94,9 @@ std::string read_sealed(const std::filesystem::path& path, const Seal& seal) {
     refuse(path, "it does not begin as such a file should: it is torn, or another program's");
   const auto version = number_at<std::uint32_t>(all, mark_bytes);
   if (version > seal.version)
-    refuse(path,
-           fmt::format("its version is {}, and this Orbweaver reads up to {}: use the newer Orbweaver that wrote it",
-                       version, seal.version));
+    throw core::NewerVersionError(
+        fmt::format("{}: its version is {}, and this Orbweaver reads up to {}: use the newer Orbweaver that wrote it",
+                    path.string(), version, seal.version));
   const auto length = number_at<std::uint64_t>(all, mark_bytes + 4);
   if (length != all.size() - head_bytes)
     refuse(path, fmt::format("it should hold {} bytes and holds {}: it is torn", length, all.size() - head_bytes));

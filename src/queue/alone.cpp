@@ -15,7 +15,7 @@ Alone::Alone(const Options& options, Executor& executor, Observer& observer, Flu
     : _executor(executor),
       _flusher(flusher),
       _ledger(options, 1, observer),
-      _schedule(options),
+      _schedule(options, 1),
       _progress_interval(options.progress_seconds),
       _watchdog(options.task_seconds) {}
 

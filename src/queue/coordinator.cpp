@@ -19,7 +19,7 @@ Coordinator::Coordinator(const core::Communicator& comm, const Options& options,
       _flusher(flusher),
       _channel(comm),
       _ledger(options, comm.size(), observer),
-      _schedule(options),
+      _schedule(options, comm.size() - 1),
       _round(comm.size()),
       _deadlines(options.task_seconds, comm.size()),
       _task_of(static_cast<std::size_t>(comm.size())),
@@ -213,10 +213,12 @@ void Coordinator::part(const std::string& error) {
   while (goodbyes < _comm.size() - 1 || _channel.sending()) {
     const auto received = _channel.poll();
     if (!received) {
+      mind_deadlines();
       backoff.wait();
       continue;
     }
     backoff.reset();
+    if (received->is(Outcome::tag) || received->is(Goodbye::tag)) _deadlines.ended(received->source);
     if (!received->is(Goodbye::tag)) continue;
     ++goodbyes;
     note_load(*received);

@@ -8,18 +8,19 @@
 
 namespace orbweaver::queue {
 
-/// When the next flush is due: by rows, so that memory stays bounded, or by time, but not so often that these take more
-/// than their share of the run.
+/// When the next flush is due: by time or by rows, whichever comes first, but not so often that flushes take more than
+/// their share of the run. It is not put off where the ranks that work hold `flush_rows` each: memory stays bounded.
 class FlushSchedule {
  public:
-  explicit FlushSchedule(const Options& options) : _options(options) {}
+  FlushSchedule(const Options& options, int workers) : _options(options), _workers(workers) {}
 
   void count(std::int64_t rows) { _rows += rows; }
   [[nodiscard]] bool due() const {
     const double since = _since_flush.seconds();
     const bool by_time = _options.flush_seconds > 0 && since >= _options.flush_seconds;
     const bool by_rows = _options.flush_rows > 0 && _rows >= _options.flush_rows;
-    return by_rows || (by_time && since >= _rest);
+    if (by_rows && _rows >= _workers * _options.flush_rows) return true;
+    return (by_time || by_rows) && since >= _rest;
   }
   /// Ranks begin to stand still for a flush, and go on from it.
   void begun() { _since_begun.restart(); }
@@ -33,6 +34,7 @@ class FlushSchedule {
   static constexpr double longest_rest = 10.0;  // in flush_seconds: what a crash may lose
 
   const Options& _options;
+  int _workers;
   std::int64_t _rows = 0;
   double _rest = 0.0;
   Stopwatch _since_flush;

@@ -1,6 +1,5 @@
 #include "archive_writer.hpp"
 
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -27,17 +26,6 @@ void add_unfinished(const std::vector<queue::Task>& tasks, FamilyTree& tree) {
     outcome.key = task.key;
     outcome.payload = pack(state.outcome);
     tree.add(task, outcome);
-  }
-}
-
-/// Families of branches that were followed to narrower limits, and are not wanted now that more is known.
-void leave_out(const std::vector<queue::Task>& tasks, archive::Records& tables) {
-  std::set<std::string> known(tables.left_out_keys.begin(), tables.left_out_keys.end());
-  for (const archive::FamilyRecord& family : tables.families) known.insert(family.key);
-  for (const queue::Task& task : tasks) {
-    if (task.kind != branch_kind) continue;
-    const std::string family = unpack_branch_work(task.payload).lineage.family;
-    if (known.insert(family).second) tables.left_out_keys.push_back(family);
   }
 }
 
@@ -68,7 +56,6 @@ void write_archive(const core::Communicator& comm, const scene::Scene& scene, co
     for (const FamilySummary& family : summary.families) summary.orbits += family.orbits;
     summary.crossings = static_cast<long>(tables.crossings.size());
     gather_failed_sweeps(system.description(), sweeps, summary, tables);
-    leave_out(standing.left_out, tables);
     tables.voided = standing.voided;
     tables.earlier_scenes = standing.earlier_scenes;
     const std::filesystem::path folder = state_folder(summary.atlas.parent_path());

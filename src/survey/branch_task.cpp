@@ -86,6 +86,8 @@ queue::TaskOutcome BranchTask::run() {
     if (!_stopped) finish();
   } catch (const std::exception& error) {  // here, not in the queue, so that the summary still counts the orbits kept
     ending = {continuation::EndReason::failure, error.what()};
+    if (_outcome.limited_by == 0)
+      _outcome.limited_by = period_limited | energy_limited;  // from its start: where it stands is not known
   }
   _outcome.end_reason = _outcome.arrival.empty() || ending.failed()
                             ? ending.text()
@@ -135,8 +137,10 @@ void BranchTask::note_limits(const continuation::Ending& ending, const continuat
 
 void BranchTask::limited_by(int limits, const continuation::Frontier& before) {
   if (_last) {
-    const std::string state = pack(state_at(before));
-    _outcome.before_limit = state;
+    BranchState state = state_at(before);
+    state.children.clear();  // they are tasks of their own by the time that this is needed
+    state.outcome.limited_by = 0;
+    _outcome.before_limit = pack(state);
   }
   _outcome.limited_by = limits;
 }

@@ -27,8 +27,7 @@ class CheckpointKeeper {
   /// The survey is over and its archive written.
   void finish(std::size_t failures);
 
-  /// Tasks of the last state taken that had not ended.
-  [[nodiscard]] const std::vector<queue::Task>& unfinished() const { return _checkpoint.unfinished; }
+  /// The last checkpoint; of the tasks that had not ended, those that have a state.
   [[nodiscard]] const Checkpoint& last() const { return _checkpoint; }
 
  private:

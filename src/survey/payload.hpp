@@ -3,6 +3,7 @@
 #include <exception>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <boost/archive/binary_iarchive.hpp>
@@ -14,7 +15,7 @@
 
 namespace orbweaver::survey {
 
-/// Version of everything that travels in task and outcome payloads; ranks of one job share it, files will name it.
+/// Version of everything that travels in payloads and lies in checkpoints and journals.
 inline constexpr int payload_version = 1;
 
 /// `value` as bytes: a name, the version, and its members.
@@ -26,7 +27,7 @@ template <class T>
     const std::string name = T::payload_name;
     archive << name << payload_version << value;
   }
-  return stream.str();
+  return std::move(stream).str();
 }
 
 /// The value in `bytes`. Throws EnvironmentError unless they hold a T of this version, whole.
@@ -40,8 +41,8 @@ template <class T>
     archive >> name >> version;
     if (name != T::payload_name || version != payload_version)
       throw core::EnvironmentError(
-          fmt::format("expected a {} of version {}, got a {} of version {}: all ranks must run the same "
-                      "build of Orbweaver",
+          fmt::format("expected a {} of version {}, got a {} of version {}: all ranks, and whoever "
+                      "wrote the files of a survey, must be the same build of Orbweaver",
                       T::payload_name, payload_version, name, version));
     T value;
     archive >> value;

@@ -79,7 +79,10 @@ class TreeRecorder : public Recorder {
   TreeRecorder(const Recorded& to, FamilyTree& tree, std::vector<queue::Task> left_out) : Recorder(to), _tree(tree) {
     _left_out = std::move(left_out);
   }
-  bool wanted(const queue::Task& task) override { return _tree.wanted(task); }
+  /// What has begun is ended: it has rows, and crossings may lie on it. The tree drops it in the end, if it has to.
+  bool wanted(const queue::Task& task) override {
+    return (task.kind == branch_kind && !task.state.empty()) || _tree.wanted(task);
+  }
   void left_out(const queue::Task& task) override { _left_out.push_back(task); }
   /// Tasks left out that are wanted now that more is known; they are no longer among those left out.
   [[nodiscard]] std::vector<queue::Task> wanted_after_all() {

@@ -56,17 +56,20 @@ void Reopening::finish() {
 
 bool Reopening::is_behind(const std::string& key) const {
   const std::string place = place_of(key);
-  return std::any_of(_behind.begin(), _behind.end(), [&](const Behind& behind) {
-    const std::size_t length = behind.branch.size();
-    return place.size() > length + 1 && place.compare(0, length, behind.branch) == 0 && place[length] == '/' &&
-           std::stoi(place.substr(length + 1)) >= behind.first_event;
+  const bool gone = std::any_of(_whole.begin(), _whole.end(), [&](const std::string& branch) {
+    return place == branch || place.starts_with(branch + "/");
   });
+  return gone || std::any_of(_behind.begin(), _behind.end(), [&](const Behind& behind) {
+           const std::size_t length = behind.branch.size();
+           return place.size() > length + 1 && place.compare(0, length, behind.branch) == 0 && place[length] == '/' &&
+                  std::stoi(place.substr(length + 1)) >= behind.first_event;
+         });
 }
 
 bool Reopening::is_limited(const EndedTask& entry) const {
   int limits = 0;
   if (entry.task.kind == start_kind) {
-    if (!entry.had_children) limits = period_limited | energy_limited;
+    if (!entry.had_children || entry.outcome.payload == limited_start) limits = period_limited | energy_limited;
   } else if (entry.outcome.payload.empty()) {
     return false;
   } else if (entry.task.kind == branch_kind) {
@@ -80,14 +83,13 @@ bool Reopening::is_limited(const EndedTask& entry) const {
 void Reopening::reopen(const EndedTask& entry) {
   queue::Task task = entry.task;
   task.state.clear();
+  if (task.kind == start_kind) _whole.push_back(place_of(task.key));
   if (task.kind == branch_kind) {
     task.state = unpack_branch_outcome(entry.outcome.payload).before_limit;
     int orbits = 0;
     int events = 0;
     if (!task.state.empty()) {
-      BranchState state = unpack_branch_state(task.state);
-      state.children.clear();  // they are tasks of their own already
-      task.state = pack(state);
+      const BranchState state = unpack_branch_state(task.state);
       orbits = state.outcome.orbits;
       events = state.events;
     }

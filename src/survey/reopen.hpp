@@ -41,6 +41,7 @@ class Reopening {
   int _widened;
   Checkpoint& _checkpoint;
   std::vector<Behind> _behind;
+  std::vector<std::string> _whole;  // branches of which nothing stays
   std::vector<queue::Task> _again;
 };
 

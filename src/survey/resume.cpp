@@ -25,6 +25,8 @@ std::optional<Checkpoint> readable(const std::filesystem::path& folder, const st
     Checkpoint checkpoint = read_checkpoint(path);
     for (const JournalFile& journal : checkpoint.journals) (void)read_journal(folder, journal);
     return checkpoint;
+  } catch (const core::NewerVersionError&) {
+    throw;  // nothing is wrong with it: whoever fell back would destroy it
   } catch (const core::InputError& error) {
     problems.emplace_back(error.what());
     return std::nullopt;
@@ -59,10 +61,10 @@ Found find_checkpoint(const core::Communicator& comm, const std::filesystem::pat
   for (const std::filesystem::path& path : {checkpoint_path(folder), previous_checkpoint_path(folder)}) {
     std::optional<Checkpoint> candidate;
     bool there = false;
-    if (comm.is_root()) {
+    on_root(comm, [&] {
       there = std::filesystem::exists(path);
       if (there) candidate = readable(folder, path, problems);
-    }
+    });
     any |= agreed(comm, there);
     if (!agreed(comm, candidate.has_value())) continue;
     std::vector<std::string> scenes;
@@ -77,15 +79,14 @@ Found find_checkpoint(const core::Communicator& comm, const std::filesystem::pat
       continue;
     }
     Found found{true, candidate ? std::move(*candidate) : Checkpoint{}};
-    if (comm.is_root()) {
+    on_root(comm, [&] {
       for (const std::string& problem : problems) core::log_warning(problem);
       if (path != checkpoint_path(folder)) {
         core::log_warning("going on from the checkpoint before the last one");
-        std::error_code ignored;  // then it is found again as the previous one
-        std::filesystem::rename(path, checkpoint_path(folder), ignored);
+        std::filesystem::rename(path, checkpoint_path(folder));
       }
       remove_unlisted(folder, found.checkpoint);
-    }
+    });
     return found;
   }
   if (!any) return {};

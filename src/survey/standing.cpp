@@ -25,6 +25,8 @@ bool has_end(const archive::Archive& archive, const char* beginning) {
 std::optional<Checkpoint> newest_readable(const std::filesystem::path& folder) {
   for (const std::filesystem::path& path : {checkpoint_path(folder), previous_checkpoint_path(folder)}) try {
       return read_checkpoint(path);
+    } catch (const core::NewerVersionError&) {
+      throw;
     } catch (const core::InputError&) {
       // The resume says what is wrong with it.
     }

@@ -37,6 +37,7 @@ queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const 
   continuation::Options options = branch_options(scene, team);
   const double first = work.branch.amplitude > 0.0 ? work.branch.amplitude : options.start_amplitude;
   std::string why;
+  bool passed_over = false;
   // A born orbit leaves along its direction. Too large an amplitude may find another family, too small a one is lost in
   // rounding.
   for (const double factor : {1.0, 0.3, 3.0, 0.1, 10.0, 0.03}) {
@@ -46,6 +47,7 @@ queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const 
     if (!orbit) {
       const continuation::Ending ending = branch.ending().value();
       if (ending.failed() || !why.empty()) {  // a limit reached from further out says nothing of this family
+        passed_over = passed_over || !ending.failed();
         if (why.empty()) why = ending.text();
         continue;
       }
@@ -62,6 +64,7 @@ queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const 
     found.amplitude = options.start_amplitude;
     queue::TaskOutcome done;
     done.children.push_back(task_of(found));
+    if (passed_over) done.payload = limited_start;
     return done;
   }
   queue::TaskOutcome failed;

@@ -105,6 +105,7 @@ class Run {
     });
     Found found;
     if (resume) found = find_checkpoint(_comm, _folder);
+    if (!found.found) on_root(_comm, [&] { expect_nothing(resume); });
     if (resume && !found.found) sweeps = sweep_tasks(_scene, *_system);
     on_root(_comm, [&] {
       if (found.found) {
@@ -122,6 +123,21 @@ class Run {
     });
     _keeper.emplace(_folder, _start);
     _flusher.emplace(_comm, _folder, _header, _rows, _start.segments);
+  }
+
+  /// A survey writes its first checkpoint before anything else.
+  void expect_nothing(bool resume) const {
+    if (std::filesystem::exists(checkpoint_path(_folder)) || std::filesystem::exists(previous_checkpoint_path(_folder)))
+      throw core::InputError(fmt::format("{} already holds a survey, and nothing was changed: --resume goes on with it",
+                                         _folder.parent_path().string()));
+    for (const auto& entry : std::filesystem::directory_iterator(_folder)) {
+      const std::string name = entry.path().filename().string();
+      if (resume && (name.starts_with("segment-") || name.starts_with("journal-")) && !name.ends_with(".part"))
+        throw core::InputError(fmt::format(
+            "{} holds {} and no checkpoint, and nothing was changed: bring the checkpoint back from a copy, or "
+            "give another folder with -o",
+            _folder.string(), name));
+    }
   }
 
   void restore(const EndedTask& entry) {
@@ -143,17 +159,18 @@ class Run {
   void follow() {
     TreeRecorder recorder({_display, _time, *_keeper, *_flusher}, _tree, std::move(_start.left_out));
     std::vector<queue::Task> tasks = std::move(_start.unfinished);
-    if (_comm.is_root()) {
+    on_root(_comm, [&] {
       _keeper->set_stage(Stage::families);
       for (const queue::Task& task : tasks) _known.insert(task.key);
       for (const queue::Task& task : recorder.left_out_tasks()) _known.insert(task.key);
       for (queue::Task& task : branch_tasks(_scene, _system->description(), _sweeps_ended, _summary))
         if (!_known.contains(task.key)) tasks.push_back(std::move(task));
-    }
+    });
     do {
       note_stop(queue::run(_comm, _queue_options, std::move(tasks), _executor, recorder, *_flusher));
       if (_summary.stopped_early) return;
-      tasks = _comm.is_root() ? recorder.wanted_after_all() : std::vector<queue::Task>{};
+      tasks.clear();
+      on_root(_comm, [&] { tasks = recorder.wanted_after_all(); });
     } while (agreed(_comm, !tasks.empty()));
   }
 

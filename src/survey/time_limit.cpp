@@ -22,7 +22,7 @@ TimeLimit::~TimeLimit() {
 }
 
 void TimeLimit::tick() {
-  if (_reached) return;
+  if (_reached || queue::stop_requested()) return;
   const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - _began;
   if (passed.count() < std::min(_scene, _wall)) return;
   _reached = true;

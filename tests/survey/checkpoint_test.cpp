@@ -19,7 +19,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-queue::Task task(const std::string& key, const std::string& kind = locate_kind) {
+queue::Task task(const std::string& key, const std::string& kind = sweep_kind) {
   return {key, 3, kind, "payload of " + key};
 }
 

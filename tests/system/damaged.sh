@@ -44,7 +44,6 @@ damage() {
       ;;
     newer_version)
       put '\0143' 8 out/segments/checkpoint
-      put '\0143' 8 out/segments/checkpoint.previous
       ;;
     other_scene | narrower) ;;
     *) fail "unknown case $case" ;;

@@ -32,6 +32,12 @@ class InputError : public Error {
   explicit InputError(const std::string& message) : Error(ExitStatus::wrong_input, message) {}
 };
 
+/// A file of a version that only a newer Orbweaver reads.
+class NewerVersionError : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 /// The machine failed: a disk, a library, MPI.
 class EnvironmentError : public Error {
  public:

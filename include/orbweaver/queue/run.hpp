@@ -18,9 +18,9 @@ namespace orbweaver::queue {
 struct Options {
   double flush_seconds = 5.0;      ///< a flush this long after the last one; 0: none by time
   std::int64_t flush_rows = 5000;  ///< a flush after this many reported rows; 0: none by amount
-  /// Flushes by time take about this share of the run at most, as long as that needs no more than ten times flush_seconds between
+  /// Flushes take about this share of the run at most, as long as that needs no more than ten times flush_seconds between
   /// two: a flush that took t seconds from its request to its end is followed by t / flush_share without one.
-  /// Flushes by rows are never put off.
+  /// None is put off where there are flush_rows rows for each rank that works.
   double flush_share = 0.03;
   /// Least time (s) between two progress messages of a worker; longer with more than 1000 x this many workers, so that
   /// rank 0 never gets more than about 1000 of them a second.

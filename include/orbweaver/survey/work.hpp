@@ -111,7 +111,7 @@ struct BranchOutcome {
   std::vector<ArrivalRecord> arrival;  ///< one or none
   std::vector<std::string> remarks;
   int limited_by = 0;        ///< Limit: with wider ones the branch would have gone on
-  std::string before_limit;  ///< the state (queue::Task) from which it would; empty: from its start
+  std::string before_limit;  ///< the state (queue::Task) from which it would, without children; empty: from its start
 };
 
 /// An orbit of a family with its place.
@@ -171,6 +171,9 @@ struct LocateOutcome {
   std::string remark;
   int limited_by = 0;  ///< Limit: with wider ones more would have been looked for
 };
+
+/// The payload of a start that passed over an amplitude since it led beyond the period or energy limit; else it is empty.
+inline constexpr const char* limited_start = "passed over a limit";
 
 /// Find the first orbit of a family along a direction.
 struct StartWork {
