@@ -61,7 +61,7 @@ case $case in
   deleted_first_segment) status=2 says=("segment-000001.h5" "does not exist" "nothing was changed" "from a copy") ;;
   exchanged_segments) status=2 says=("segment-000001.h5" "nothing was changed" "from a copy") ;;
   no_checksum_holds) status=2 says=("checkpoint: its checksum is wrong" "checkpoint.previous: its checksum is wrong" "nothing was changed") ;;
-  newer_version) status=2 says=("its version is 99" "use the newer Orbweaver") ;;
+  newer_version) status=2 says=("its version is 99" "use the newer") ;;
   other_scene)
     status=2 options=(--set system.parameters.g=1.5)
     says=("holds a survey of another scene: system.parameters.g was 1 and is 1.5" "give another folder with -o")
