@@ -3,7 +3,9 @@
 # and resumes it; the archive must be that of an undisturbed run. Arguments: those of survey_runs.sh.
 . "$(dirname "$0")/survey_runs.sh"
 begin_anew
+began=$(milliseconds)
 survey whole 2 || fail "the undisturbed run failed"
+lasted=$(($(milliseconds) - began))
 
 # expect_stopped STATUS WHAT
 expect_stopped() {
@@ -40,7 +42,8 @@ done
 
 rm -rf "$folder/stopped"
 : > "$folder/log"
-survey stopped 2 --walltime 0:02
+half=$((lasted / 2))
+survey stopped 2 --walltime "0:$((half / 1000)).$(printf '%03d' $((half % 1000)))"
 expect_stopped $? "--walltime"
 mpirun -n 2 "$program" consolidate "$folder/stopped" >> "$folder/log" 2>&1 || fail "consolidate failed"
 "$program" show "$folder/stopped/atlas.h5" families >> "$folder/log" || fail "the archive of a part cannot be shown"
