@@ -93,16 +93,16 @@ TEST(States, ARunThatEndsBetweenFlushesGoesOnFromTheLastOne) {
   const Communicator comm;
   Steps steps(comm);
   constexpr int count = 60;
-  std::vector<Task> todo = tasks(count);
+  std::vector<Task> remaining = tasks(count);
   for (const int death : {4, 2, 1}) {
     steps.die_at(death);
-    EXPECT_THAT(error_of([&] { (void)queue::run(comm, often(), todo, steps, steps, steps); }),
+    EXPECT_THAT(error_of([&] { (void)queue::run(comm, often(), remaining, steps, steps, steps); }),
                 testing::HasSubstr("killed here"));
     steps.forget_rows_in_hand();
-    todo = steps.unfinished();
+    remaining = steps.unfinished();
   }
   steps.die_at(-1);
-  const auto summary = queue::run(comm, often(), todo, steps, steps, steps);
+  const auto summary = queue::run(comm, often(), remaining, steps, steps, steps);
   EXPECT_FALSE(summary.stopped_early);
   EXPECT_GT(steps.gone_on(), 0) << "some task must have been in the middle of its steps";
   if (comm.is_root()) {
@@ -132,9 +132,9 @@ TEST(States, AStoppedTaskWaitsWithItsState) {
   const auto first = queue::run(comm, often(), tasks(count), steps, steps, steps);
   queue::clear_stop();
   EXPECT_TRUE(first.stopped_early);
-  const std::vector<Task> todo = steps.unfinished();
+  const std::vector<Task> remaining = steps.unfinished();
   steps.die_at(-1);
-  const auto second = queue::run(comm, often(), todo, steps, steps, steps);
+  const auto second = queue::run(comm, often(), remaining, steps, steps, steps);
   EXPECT_FALSE(second.stopped_early);
   EXPECT_GT(steps.gone_on(), 0);
   steps.expect_each_once(count);

@@ -94,14 +94,14 @@ class BranchStates : public ::testing::Test {
     base.direction = mode.direction;
     base.isotropy = mode.isotropy;
     base.base = record_of(loop::constant_loop(std::vector<double>(4, 0.0), mode.period, mode.cutoff));
-    std::vector<queue::Task> todo{task_of(base)};
-    while (!todo.empty()) {
-      const queue::Task task = todo.back();
-      todo.pop_back();
+    std::vector<queue::Task> remaining{task_of(base)};
+    while (!remaining.empty()) {
+      const queue::Task task = remaining.back();
+      remaining.pop_back();
       if (task.kind == branch_kind) found[task.key] = task;
       if (task.kind == branch_kind && task.key != "0000.0000") continue;
       if (task.kind == locate_kind && task.key.find(kind) == std::string::npos) continue;
-      for (const queue::Task& child : done(task, 0).outcome.children) todo.push_back(child);
+      for (const queue::Task& child : done(task, 0).outcome.children) remaining.push_back(child);
     }
     return found;
   }
