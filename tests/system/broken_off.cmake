@@ -1,5 +1,5 @@
 # Surveys that are broken off and go on. `long` runs many more kills (below).
-set(broken --set limits.period=18 --set survey.depth=1 --set starts.sweep.step=0.05 --set output.flush_seconds=0.2)
+set(broken --set limits.period=18 --set survey.depth=1 --set starts.sweep.step=0.05 --set output.flush_seconds=0.2 --set output.flush_orbits=40)
 # broken_off_test(<name> <labels> <seconds> <script> <arguments of the script ...> -- <options of survey ...>)
 function(broken_off_test name labels seconds script)
   list(FIND ARGN "--" mark)
@@ -14,4 +14,4 @@ broken_off_test(flush_kills system 300 flush_kills.sh 5 -- ${broken})
 broken_off_test(stops system 300 stops.sh -- ${broken})
 broken_off_test(widened system 300 widened.sh -- ${broken})
 broken_off_test(many_kills "system;long" 3600 kills.sh 100 2 -- --set output.flush_seconds=0.5)
-broken_off_test(many_flush_kills "system;long" 3600 flush_kills.sh 20 -- --set output.flush_seconds=0.5)
+broken_off_test(many_flush_kills "system;long" 3600 flush_kills.sh 20 -- ${broken})
