@@ -1,6 +1,7 @@
 # The layers in the order of docs/architecture.md. A layer may include only those before it; tests/structure checks the includes.
 set(ORBWEAVER_LAYERS
-  core ad systems scene loop loss spectrum corrector continuation bifurcation certificate archive queue survey)
+  core ad systems scene loop loss equations spectrum corrector starts continuation bifurcation certificate archive queue survey
+  report)
 
 # g++ 12 reports its own AVX-512 intrinsics as maybe-uninitialized wherever Eigen inlines them.
 set(ORBWEAVER_WARNING_FLAGS -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wno-maybe-uninitialized)
@@ -23,14 +24,21 @@ if(ORBWEAVER_SANITIZE)
   target_link_options(orbweaver_build_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
-# orbweaver_layer(<name> [SOURCES ...] [DEPENDS layer-or-library ...])
-# One static library a layer: target orbweaver_<name>, alias orbweaver::<name>.
+# orbweaver_layer(<name> [EXCEPT folder ...] [DEPENDS layer-or-library ...])
+# One static library a layer: target orbweaver_<name>, alias orbweaver::<name>, of every .cpp in the layer's folder and its
+# subfolders. Private headers are named by their path from that folder.
 function(orbweaver_layer name)
-  cmake_parse_arguments(LAYER "" "" "SOURCES;DEPENDS" ${ARGN})
-  if(LAYER_SOURCES)
-    add_library(orbweaver_${name} STATIC ${LAYER_SOURCES})
+  cmake_parse_arguments(LAYER "" "FOLDER" "EXCEPT;DEPENDS" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}"
+    "${CMAKE_CURRENT_SOURCE_DIR}/${LAYER_FOLDER}/*.cpp")
+  foreach(folder IN LISTS LAYER_EXCEPT)
+    list(FILTER sources EXCLUDE REGEX "^${folder}/")
+  endforeach()
+  if(sources)
+    add_library(orbweaver_${name} STATIC ${sources})
     set(scope PUBLIC)
     target_link_libraries(orbweaver_${name} PRIVATE orbweaver_build_flags)
+    target_include_directories(orbweaver_${name} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}")
   else()
     add_library(orbweaver_${name} INTERFACE)
     set(scope INTERFACE)

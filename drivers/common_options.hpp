@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "orbweaver/core/log.hpp"
+#include "orbweaver/core/log/log.hpp"
 #include "orbweaver/scene/scene.hpp"
 
 namespace orbweaver::drivers {

@@ -5,9 +5,10 @@
 #include "command.hpp"
 #include "common_options.hpp"
 #include "failure.hpp"
-#include "orbweaver/core/communicator.hpp"
-#include "orbweaver/core/session.hpp"
-#include "orbweaver/survey/survey.hpp"
+#include "orbweaver/core/mpi/communicator.hpp"
+#include "orbweaver/core/petsc/session.hpp"
+#include "orbweaver/report/summary_text.hpp"
+#include "orbweaver/survey/run/survey.hpp"
 
 namespace orbweaver::drivers {
 
@@ -22,7 +23,7 @@ int consolidate_on(const core::Communicator& comm, const Options& options) {
   const survey::Summary summary =
       alike_on_all_ranks(comm, [&] { return survey::archive_survey(comm, options.directory); });
   agree(comm, [&] {
-    if (comm.is_root()) print_result(survey::to_text(summary));
+    if (comm.is_root()) print_result(report::to_text(summary));
   });
   return static_cast<int>(core::ExitStatus::done);
 }

@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "orbweaver/core/check.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/core/log.hpp"
+#include "orbweaver/core/log/log.hpp"
+#include "orbweaver/core/petsc/check.hpp"
 
 namespace orbweaver::drivers {
 

@@ -4,8 +4,8 @@
 #include <functional>
 #include <string>
 
-#include "orbweaver/core/communicator.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/mpi/communicator.hpp"
 
 namespace orbweaver::drivers {
 

@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "command.hpp"
-#include "orbweaver/archive/show.hpp"
+#include "orbweaver/report/show.hpp"
 
 namespace orbweaver::drivers {
 
@@ -18,18 +18,18 @@ struct ShowOptions {
   bool csv = false;
   bool json = false;
 
-  [[nodiscard]] archive::TextFormat format() const {
-    if (csv) return archive::TextFormat::csv;
-    return json ? archive::TextFormat::json : archive::TextFormat::readable;
+  [[nodiscard]] report::TextFormat format() const {
+    if (csv) return report::TextFormat::csv;
+    return json ? report::TextFormat::json : report::TextFormat::readable;
   }
 };
 
 int show(const ShowOptions& options) {
   const archive::Archive atlas(options.atlas);
   if (options.table.empty())
-    archive::print_summary(std::cout, atlas);
+    report::print_summary(std::cout, atlas);
   else
-    archive::print_table(std::cout, atlas, options.table, options.format());
+    report::print_table(std::cout, atlas, options.table, options.format());
   std::cout.flush();
   if (!std::cout) throw core::EnvironmentError("cannot write to the standard output: is the disk full?");
   return 0;

@@ -9,12 +9,13 @@
 #include "common_options.hpp"
 #include "duration.hpp"
 #include "failure.hpp"
-#include "orbweaver/core/check.hpp"
-#include "orbweaver/core/communicator.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/core/session.hpp"
-#include "orbweaver/survey/standing.hpp"
-#include "orbweaver/survey/survey.hpp"
+#include "orbweaver/core/mpi/communicator.hpp"
+#include "orbweaver/core/petsc/check.hpp"
+#include "orbweaver/core/petsc/session.hpp"
+#include "orbweaver/report/summary_text.hpp"
+#include "orbweaver/survey/run/survey.hpp"
+#include "orbweaver/survey/state/standing.hpp"
 #include "signals.hpp"
 #include "terminal.hpp"
 
@@ -80,7 +81,7 @@ int survey_on(const core::Communicator& comm, const Options& options) {
       alike_on_all_ranks(comm, [&] { return survey::run_survey(comm, scene, system, options.directory, run_options); });
   agree(comm, [&] {
     if (!comm.is_root()) return;
-    print_result(survey::to_text(summary));
+    print_result(report::to_text(summary));
     if (summary.stopped_early) print_result(how_to_go_on(options));
   });
   return static_cast<int>(status_of(summary));

@@ -7,10 +7,10 @@
 #include "command.hpp"
 #include "common_options.hpp"
 #include "failure.hpp"
-#include "orbweaver/core/communicator.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/core/session.hpp"
-#include "orbweaver/survey/sweep_report.hpp"
+#include "orbweaver/core/mpi/communicator.hpp"
+#include "orbweaver/core/petsc/session.hpp"
+#include "orbweaver/report/sweep_report.hpp"
 
 namespace orbweaver::drivers {
 
@@ -36,10 +36,10 @@ int run(const Options& options, const Invocation& invocation) {
   const core::Session session(invocation.petsc_options);
   const core::Communicator comm;
   if (!comm.is_root()) return 0;  // not distributed: under mpirun rank 0 does it
-  const auto reports = survey::sweep_report(scene);
-  print_result(survey::to_text(reports));
-  if (options.table) print_result("\n" + survey::eigenvalue_table(reports));
-  if (!options.csv.empty()) write_file(options.csv, survey::eigenvalue_csv(reports));
+  const auto reports = report::sweep_report(scene);
+  print_result(report::to_text(reports));
+  if (options.table) print_result("\n" + report::eigenvalue_table(reports));
+  if (!options.csv.empty()) write_file(options.csv, report::eigenvalue_csv(reports));
   return 0;
 }
 

@@ -10,7 +10,7 @@
 
 #include "fixed_spaces.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/core/log.hpp"
+#include "orbweaver/core/log/log.hpp"
 #include "search.hpp"
 #include "symmetry_group.hpp"
 

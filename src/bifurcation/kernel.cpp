@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "orbweaver/continuation/off_branch.hpp"
-#include "orbweaver/loop/fundamental_domain.hpp"
+#include "orbweaver/loop/symmetry/fundamental_domain.hpp"
 
 namespace orbweaver::bifurcation {
 

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/loop/shift_search.hpp"
-#include "orbweaver/loop/time_samples.hpp"
+#include "orbweaver/loop/curve/time_samples.hpp"
+#include "orbweaver/loop/symmetry/shift_search.hpp"
 
 namespace orbweaver::bifurcation {
 

@@ -10,7 +10,7 @@
 
 #include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/core/log_stage.hpp"
+#include "orbweaver/core/log/log_stage.hpp"
 
 namespace orbweaver::certificate {
 

@@ -9,8 +9,8 @@
 #include "attempt.hpp"
 #include "branch_implementation.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/core/log_stage.hpp"
-#include "orbweaver/loop/time_map_fit.hpp"
+#include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/loop/grid/time_map_fit.hpp"
 
 namespace orbweaver::continuation {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "orbweaver/loop/fundamental_domain.hpp"
+#include "orbweaver/loop/symmetry/fundamental_domain.hpp"
 
 /// The numbers of cells that are used on a fundamental domain: multiples of four with small factors, each about 1.2
 /// times the one before, so that few grids are made and their transforms are fast.

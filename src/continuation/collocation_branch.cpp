@@ -9,7 +9,7 @@
 #include "cell_counts.hpp"
 #include "orbweaver/continuation/off_branch.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/corrector/collocation.hpp"
+#include "orbweaver/equations/collocation.hpp"
 #include "point_corrector.hpp"
 #include "predictor.hpp"
 #include "regrid.hpp"
@@ -18,7 +18,7 @@ namespace orbweaver::continuation {
 
 namespace {
 
-using corrector::Collocation;
+using equations::Collocation;
 
 /// Iterations of the last correction above which the preconditioner is built anew (docs/performance.md: 4 to 9 cost the same).
 constexpr int renew_after = 7;
@@ -338,7 +338,7 @@ class CollocationBranch final : public Branch::Implementation {
     Collocation e(*system, _points.domain(), own.centre(), own.winding(), state().cells, state().time_map);
     e.set_conditions(_points.conditions_at(prediction), last_point().values);
     try {
-      return corrector::family_direction(e, last_point().values);
+      return equations::family_direction(e, last_point().values);
     } catch (const core::NumericalError&) {
       return prediction.tangent;  // next to a crossing the linear system is singular
     }

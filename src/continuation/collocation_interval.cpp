@@ -4,14 +4,14 @@
 #include "cell_counts.hpp"
 #include "curve_interval.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/loop/fundamental_domain.hpp"
+#include "orbweaver/loop/symmetry/fundamental_domain.hpp"
 #include "point_corrector.hpp"
 
 namespace orbweaver::continuation {
 
 namespace {
 
-using corrector::Collocation;
+using equations::Collocation;
 
 class CollocationInterval final : public CurveInterval {
  public:
@@ -122,7 +122,7 @@ class CollocationInterval final : public CurveInterval {
     e.set_conditions(_points.conditions_at(prediction), values);
     std::vector<double> tangent = prediction.tangent;
     try {
-      tangent = corrector::family_direction(e, values);
+      tangent = equations::family_direction(e, values);
     } catch (const core::NumericalError&) {
       // Next to a crossing the linear system is singular: the chord's direction stands.
     }

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/equations/loop_equations.hpp"
 #include "orbweaver/loss/linearization.hpp"
-#include "orbweaver/loss/loop_equations.hpp"
 #include "orbweaver/loss/matrices.hpp"
 #include "orbweaver/loss/slice.hpp"
 #include "orbweaver/spectrum/eigenpairs.hpp"
@@ -142,7 +142,7 @@ double off_branch_eigenvalue(const systems::System& system, const loop::Loop& lo
   }
   if (static_cast<int>(loop.modes.size()) >= krylov_from) {
     const Sector whole = sectors_of(loop, {}, tangent_modes, tangent_period).front();
-    if (loss::LoopEquations::are_square(system, whole.unknowns, whole.unknowns.subspace.image(), whole.slice))
+    if (equations::LoopEquations::are_square(system, whole.unknowns, whole.unknowns.subspace.image(), whole.slice))
       return matrix_free_eigenvalue(system, loop, whole);
   }
   const loss::Linearization linearization(system, loop, loss::Linearization::Order::jacobian);

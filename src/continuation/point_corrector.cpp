@@ -12,7 +12,7 @@
 
 namespace orbweaver::continuation {
 
-using corrector::Collocation;
+using equations::Collocation;
 
 std::string Trial::why() const {
   if (!converged) return reason;
@@ -126,7 +126,7 @@ Trial PointCorrector::correct(Prediction prediction, const std::vector<double>& 
     trial.reason = "the predicted period is not positive";
     return trial;
   }
-  corrector::AndersonSolver::Options solver;
+  equations::AndersonSolver::Options solver;
   // At a small amplitude A the equations see a change of T only A times.
   const double amplitude = std::min(1.0, std::max(_frontier.amplitude, 1e-300));
   double size = amplitude;

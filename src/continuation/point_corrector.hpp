@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "orbweaver/continuation/branch.hpp"
-#include "orbweaver/corrector/collocation.hpp"
-#include "orbweaver/corrector/orbit_solver.hpp"
+#include "orbweaver/equations/collocation.hpp"
+#include "orbweaver/equations/orbit_solver.hpp"
 #include "predictor.hpp"
 #include "regrid.hpp"
 
@@ -20,7 +20,7 @@ struct Trial {
   int order = 0;  ///< of the prediction
   int iterations = 0;
   double prediction_error = 0.0;
-  corrector::Collocation::Quality quality{};
+  equations::Collocation::Quality quality{};
   double threshold = 0.0;
 
   /// An orbit: the loss over the whole loop is under its threshold.
@@ -38,7 +38,7 @@ class PointCorrector {
 
   [[nodiscard]] const loop::FundamentalDomain& domain() const { return _domain; }
   /// The equations of the frontier, with the factor that it names.
-  corrector::Collocation& equations();
+  equations::Collocation& equations();
   /// A grid with nothing on it yet.
   void set_grid(int cells, const loop::TimeMap& map);
   /// After a change of the frontier: its grid is made anew when it is needed.
@@ -90,8 +90,8 @@ class PointCorrector {
   std::vector<double> _winding;
   const Options& _options;
   Frontier& _frontier;
-  std::unique_ptr<corrector::Collocation> _equations;
-  corrector::OrbitSolver _solver;
+  std::unique_ptr<equations::Collocation> _equations;
+  equations::OrbitSolver _solver;
   loop::Loop _modes;
 };
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "cell_counts.hpp"
-#include "orbweaver/loop/time_map_fit.hpp"
+#include "orbweaver/loop/grid/time_map_fit.hpp"
 
 namespace orbweaver::continuation {
 
@@ -31,7 +31,7 @@ int harmonics_needed(const loop::Loop& loop, double limit) {
 
 }  // namespace
 
-std::optional<Resolution> general_resolution(const corrector::Collocation& equations, const std::vector<double>& values,
+std::optional<Resolution> general_resolution(const equations::Collocation& equations, const std::vector<double>& values,
                                              const loop::Isotropy& isotropy, double tolerance, int least_cutoff) {
   const loop::Loop loop = equations.to_loop(values.data());
   const int own = loop::harmonics_above(loop, tolerance);
@@ -49,7 +49,7 @@ std::optional<Resolution> general_resolution(const corrector::Collocation& equat
   return Resolution{cells, best.map};
 }
 
-std::optional<Resolution> finer_resolution(const corrector::Collocation& equations, const std::vector<double>& values,
+std::optional<Resolution> finer_resolution(const equations::Collocation& equations, const std::vector<double>& values,
                                            double tail_limit, int largest_cutoff, bool fit_pulse) {
   const loop::FundamentalDomain& domain = equations.grid().domain();
   const auto cutoff_of = [&](int cells) { return (cells * domain.copies() - 1) / 2; };
@@ -61,7 +61,7 @@ std::optional<Resolution> finer_resolution(const corrector::Collocation& equatio
     for (const double factor : {1.0, 1.2, 1.44}) {
       loop::TimeMap map = equations.time_map();
       map.kappa = std::round(1000.0 * map.kappa * factor) / 1000.0;
-      corrector::Collocation trial(equations.system(), domain, equations.centre(), equations.winding(), trial_cells,
+      equations::Collocation trial(equations.system(), domain, equations.centre(), equations.winding(), trial_cells,
                                    map);
       const loop::Loop loop = trial.to_loop(trial.resampled(equations, values).data());
       const int needed = harmonics_needed(loop, tail_limit);

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "orbweaver/core/log.hpp"
+#include "orbweaver/core/log/log.hpp"
 
 namespace orbweaver::core {
 

@@ -8,7 +8,7 @@
 #include "newton_krylov.hpp"
 #include "objective.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/core/log_stage.hpp"
+#include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/spectrum/sliced_hessian.hpp"
 #include "tao_solver.hpp"
 

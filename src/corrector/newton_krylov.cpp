@@ -3,21 +3,21 @@
 #include <cmath>
 #include <limits>
 
-#include "orbweaver/loss/loop_equations.hpp"
-#include "orbweaver/loss/loop_solver.hpp"
+#include "orbweaver/equations/loop_equations.hpp"
+#include "orbweaver/equations/loop_solver.hpp"
 
 namespace orbweaver::corrector {
 
 namespace {
 
-constexpr loss::LoopSolver::Accuracy of_steps{1e-8, 1e-5};  // a step's error is squared away by the next
-constexpr loss::LoopSolver::Accuracy of_flat_direction{1e-13, 1e-8};
+constexpr equations::LoopSolver::Accuracy of_steps{1e-8, 1e-5};  // a step's error is squared away by the next
+constexpr equations::LoopSolver::Accuracy of_flat_direction{1e-13, 1e-8};
 
 }  // namespace
 
 bool newton_krylov_applies(const systems::System& system, const loss::Unknowns& unknowns, const loss::Slice& slice) {
   if (!unknowns.period || slice.conditions().cols() < 1) return false;
-  return loss::LoopEquations::are_square(system, unknowns, unknowns.subspace.image(), slice);
+  return equations::LoopEquations::are_square(system, unknowns, unknowns.subspace.image(), slice);
 }
 
 NewtonKrylovRun run_newton_krylov(const systems::System& system, const loop::Loop& guess,
@@ -28,12 +28,12 @@ NewtonKrylovRun run_newton_krylov(const systems::System& system, const loop::Loo
   NewtonKrylovRun run;
   run.loop = guess;
   core::Team* const team = core::worth_dividing(options.team, system.dimension());
-  loss::LoopSolver inner(unknowns.size() + loss::LoopEquations::unfoldings(unknowns, image, slice), "corrector_inner_",
-                         team);
+  equations::LoopSolver inner(unknowns.size() + equations::LoopEquations::unfoldings(unknowns, image, slice),
+                              "corrector_inner_", team);
   double last_loss = std::numeric_limits<double>::infinity();
   int without_progress = 0;
   while (run.stop == Stop::none) {
-    loss::LoopEquations equations(system, run.loop, unknowns, image, slice, team);
+    equations::LoopEquations equations(system, run.loop, unknowns, image, slice, team);
     const double threshold = acceptance_threshold(run.loop, equations.linearization(), options.tolerance);
     without_progress = equations.loss() < 0.25 * last_loss ? 0 : without_progress + 1;
     last_loss = equations.loss();

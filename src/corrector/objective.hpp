@@ -4,7 +4,7 @@
 
 #include <Eigen/Dense>
 
-#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/loss/linearization.hpp"
 #include "orbweaver/loss/slice.hpp"
 #include "orbweaver/loss/unknowns.hpp"

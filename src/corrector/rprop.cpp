@@ -5,7 +5,7 @@
 
 #include <petsc/private/taoimpl.h>
 
-#include "orbweaver/core/check.hpp"
+#include "orbweaver/core/petsc/check.hpp"
 #include "tao_solver.hpp"
 
 namespace orbweaver::corrector {

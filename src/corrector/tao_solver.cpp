@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 #include <petsctao.h>
 
-#include "orbweaver/core/check.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/core/handle.hpp"
+#include "orbweaver/core/petsc/check.hpp"
+#include "orbweaver/core/petsc/handle.hpp"
 #include "orbweaver/loss/dense.hpp"
 
 namespace orbweaver::corrector {

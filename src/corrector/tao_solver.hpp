@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 
 #include "objective.hpp"
-#include "orbweaver/core/callback.hpp"
+#include "orbweaver/core/petsc/callback.hpp"
 #include "orbweaver/corrector/correct.hpp"
 
 namespace orbweaver::corrector {

@@ -2,9 +2,9 @@
 #include <numbers>
 #include <vector>
 
-#include "orbweaver/core/check.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/core/log_stage.hpp"
+#include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/core/petsc/check.hpp"
 #include "orbweaver/loss/dense.hpp"
 #include "orbweaver/loss/matrices.hpp"
 

@@ -8,7 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/core/log_stage.hpp"
+#include "orbweaver/core/log/log_stage.hpp"
 
 namespace orbweaver::loss {
 

@@ -2,7 +2,7 @@
 #include <memory>
 #include <utility>
 
-#include "orbweaver/core/check.hpp"
+#include "orbweaver/core/petsc/check.hpp"
 #include "orbweaver/loss/dense.hpp"
 #include "orbweaver/loss/matrices.hpp"
 

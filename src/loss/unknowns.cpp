@@ -1,7 +1,7 @@
 #include "orbweaver/loss/unknowns.hpp"
 
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/loop/fourier.hpp"
+#include "orbweaver/loop/grid/fourier.hpp"
 
 namespace orbweaver::loss {
 

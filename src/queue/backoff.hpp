@@ -4,7 +4,7 @@
 #include <chrono>
 #include <thread>
 
-#include "orbweaver/core/log_stage.hpp"
+#include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/queue/run.hpp"
 
 namespace orbweaver::queue {

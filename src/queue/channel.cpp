@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "orbweaver/core/check_mpi.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/mpi/check_mpi.hpp"
 
 namespace orbweaver::queue {
 

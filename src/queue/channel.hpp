@@ -7,7 +7,7 @@
 
 #include <mpi.h>
 
-#include "orbweaver/core/communicator.hpp"
+#include "orbweaver/core/mpi/communicator.hpp"
 #include "orbweaver/queue/message.hpp"
 
 namespace orbweaver::queue {

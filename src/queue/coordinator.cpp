@@ -7,7 +7,7 @@
 #include "backoff.hpp"
 #include "guarded.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/core/log.hpp"
+#include "orbweaver/core/log/log.hpp"
 #include "orbweaver/queue/stop.hpp"
 #include "overloaded.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "orbweaver/core/log.hpp"
+#include "orbweaver/core/log/log.hpp"
 
 namespace orbweaver::queue {
 

@@ -4,8 +4,8 @@
 
 #include "alone.hpp"
 #include "coordinator.hpp"
-#include "orbweaver/core/check_mpi.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/mpi/check_mpi.hpp"
 #include "worker.hpp"
 
 namespace orbweaver::queue {

@@ -6,7 +6,7 @@
 
 #include "guarded.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/core/log.hpp"
+#include "orbweaver/core/log/log.hpp"
 
 namespace orbweaver::queue {
 

@@ -12,7 +12,7 @@
 #include "matrix_table.hpp"
 #include "orbit_correction.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/core/log_stage.hpp"
+#include "orbweaver/core/log/log_stage.hpp"
 #include "transverse_flow.hpp"
 
 namespace orbweaver::spectrum {

@@ -9,7 +9,7 @@
 
 #include "matrix_table.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/loop/fourier.hpp"
+#include "orbweaver/loop/grid/fourier.hpp"
 
 namespace orbweaver::spectrum {
 

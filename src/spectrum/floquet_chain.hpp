@@ -5,8 +5,8 @@
 #include <Eigen/Dense>
 
 #include "floquet_group.hpp"
-#include "orbweaver/core/team.hpp"
-#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/core/mpi/team.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "variational_step.hpp"
 

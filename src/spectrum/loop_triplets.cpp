@@ -7,12 +7,12 @@
 #include <fmt/format.h>
 #include <slepcsvd.h>
 
-#include "orbweaver/core/callback.hpp"
-#include "orbweaver/core/check.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/core/log_stage.hpp"
+#include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/core/petsc/callback.hpp"
+#include "orbweaver/core/petsc/check.hpp"
+#include "orbweaver/equations/loop_solver.hpp"
 #include "orbweaver/loss/dense.hpp"
-#include "orbweaver/loss/loop_solver.hpp"
 #include "orbweaver/loss/matrices.hpp"
 #include "orbweaver/spectrum/singular_triplets.hpp"
 #include "start_vector.hpp"
@@ -30,9 +30,9 @@ int basis_size(int count) { return 2 * count + 4; }
 
 // The pseudo-inverse of J on the slice (docs/mathematics.md, "Singular triplets"), without the triplets found already.
 struct Inverse {
-  const loss::LoopEquations& equations;
-  loss::LoopSolver solver;
-  loss::LoopSolver::Accuracy accuracy;
+  const equations::LoopEquations& equations;
+  equations::LoopSolver solver;
+  equations::LoopSolver::Accuracy accuracy;
   Eigen::MatrixXd right;  // found: unknowns x count
   Eigen::MatrixXd left;   // found: rows x count
   core::CallbackGuard guard{};
@@ -85,7 +85,7 @@ core::Handle<Mat> shell_of(Inverse& inverse) {
 }
 
 // Smooth, as the vectors that are sought, without symmetry, and in the slice.
-core::Handle<Vec> smooth_start(const loss::LoopEquations& equations) {
+core::Handle<Vec> smooth_start(const equations::LoopEquations& equations) {
   const loss::Unknowns& unknowns = equations.unknowns();
   core::Handle<Vec> start = start_vector(unknowns.size());
   Eigen::VectorXd values = loss::to_eigen(start.get());
@@ -108,7 +108,8 @@ struct Triplet {
 };
 
 // sigma = |J v|: off by the square of v's error.
-Triplet triplet_of(const loss::LoopEquations& equations, const Eigen::VectorXd& right, const Eigen::VectorXd& left) {
+Triplet triplet_of(const equations::LoopEquations& equations, const Eigen::VectorXd& right,
+                   const Eigen::VectorXd& left) {
   const loss::Linearization& linearization = equations.linearization();
   const loss::Slice& slice = equations.slice();
   Triplet t;
@@ -200,14 +201,14 @@ std::vector<std::size_t> order_of(const std::vector<Triplet>& found) {
 
 }  // namespace
 
-SingularTriplets smallest_singular_triplets(const loss::LoopEquations& equations, const TripletOptions& options) {
+SingularTriplets smallest_singular_triplets(const equations::LoopEquations& equations, const TripletOptions& options) {
   const core::LogStage stage(core::Stage::spectrum);
   const int unknowns = equations.unknowns().size();
   const int rows = equations.linearization().rows();
   const int free = equations.slice().free();
   core::require(options.count >= 1 && options.count <= free, "between one and all singular triplets can be asked for");
   Inverse inverse{equations,
-                  loss::LoopSolver(equations.size(), "spectrum_inner_", equations.team()),
+                  equations::LoopSolver(equations.size(), "spectrum_inner_", equations.team()),
                   {options.inner_tolerance, 1.0},
                   Eigen::MatrixXd(unknowns, 0),
                   Eigen::MatrixXd(rows, 0)};
@@ -242,9 +243,9 @@ SingularTriplets smallest_singular_triplets(const systems::System& system, const
                                             const loss::Unknowns& unknowns, const loss::Slice& slice,
                                             const TripletOptions& options) {
   const loop::Subspace image = unknowns.subspace.image();
-  if (unknowns.size() >= options.krylov_from && loss::LoopEquations::are_square(system, unknowns, image, slice)) {
-    loss::LoopEquations equations(system, loop, unknowns, image, slice,
-                                  core::worth_dividing(options.team, system.dimension()));
+  if (unknowns.size() >= options.krylov_from && equations::LoopEquations::are_square(system, unknowns, image, slice)) {
+    equations::LoopEquations equations(system, loop, unknowns, image, slice,
+                                       core::worth_dividing(options.team, system.dimension()));
     equations.factor(system, loop);
     return smallest_singular_triplets(equations, options);
   }

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <slepcsvd.h>
 
-#include "orbweaver/core/check.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/core/log_stage.hpp"
+#include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/core/petsc/check.hpp"
 #include "orbweaver/loss/dense.hpp"
 #include "start_vector.hpp"
 

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "orbweaver/core/check.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/petsc/check.hpp"
 #include "orbweaver/loss/dense.hpp"
 #include "orbweaver/loss/matrices.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "orbweaver/core/check.hpp"
+#include "orbweaver/core/petsc/check.hpp"
 #include "orbweaver/loss/dense.hpp"
 
 namespace orbweaver::spectrum {

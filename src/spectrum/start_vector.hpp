@@ -7,7 +7,7 @@
 #include <slepcbv.h>
 #include <Eigen/Dense>
 
-#include "orbweaver/core/handle.hpp"
+#include "orbweaver/core/petsc/handle.hpp"
 
 namespace orbweaver::spectrum {
 

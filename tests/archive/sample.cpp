@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
-#include "orbweaver/archive/consolidate.hpp"
-#include "orbweaver/archive/h5_handle.hpp"
-#include "orbweaver/archive/schema.hpp"
-#include "orbweaver/archive/segment.hpp"
+#include "orbweaver/archive/file/h5_handle.hpp"
+#include "orbweaver/archive/schema/schema.hpp"
+#include "orbweaver/archive/write/consolidate.hpp"
+#include "orbweaver/archive/write/segment.hpp"
 
 namespace orbweaver::test {
 

@@ -7,7 +7,7 @@
 
 #include <mpi.h>
 
-#include "orbweaver/archive/records.hpp"
+#include "orbweaver/archive/schema/records.hpp"
 
 namespace orbweaver::test {
 

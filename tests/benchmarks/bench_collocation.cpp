@@ -4,8 +4,8 @@
 
 #include "family_orbit.hpp"
 #include "orbweaver/continuation/branch.hpp"
-#include "orbweaver/corrector/collocation.hpp"
-#include "orbweaver/corrector/orbit_solver.hpp"
+#include "orbweaver/equations/collocation.hpp"
+#include "orbweaver/equations/orbit_solver.hpp"
 
 namespace orbweaver::benchmarks {
 
@@ -20,7 +20,7 @@ struct Problem {
     while (branch.advance()) {
     }
     const continuation::TraceState& trace = branch.frontier().trace;
-    equations = std::make_unique<corrector::Collocation>(
+    equations = std::make_unique<equations::Collocation>(
         *start.system, loop::fundamental_domain(start.start.isotropy, start.start.base.dimension),
         std::vector<double>(4, 0.0), std::vector<double>(4, 0.0), trace.cells, trace.time_map);
     const std::vector<double>& orbit = trace.points.back().values;
@@ -34,7 +34,7 @@ struct Problem {
   }
 
   FamilyStart start;
-  std::unique_ptr<corrector::Collocation> equations;
+  std::unique_ptr<equations::Collocation> equations;
   std::vector<double> prediction;
 };
 
@@ -53,8 +53,8 @@ void solve(benchmark::State& state) {
   state.counters["iterations"] = iterations;
 }
 
-void bare_orbit_solve(benchmark::State& state) { solve<corrector::AndersonSolver>(state); }
-void tao_orbit_solve(benchmark::State& state) { solve<corrector::OrbitSolver>(state); }
+void bare_orbit_solve(benchmark::State& state) { solve<equations::AndersonSolver>(state); }
+void tao_orbit_solve(benchmark::State& state) { solve<equations::OrbitSolver>(state); }
 
 void collocation_residual(benchmark::State& state) {
   const Problem problem(static_cast<double>(state.range(0)));

@@ -17,7 +17,7 @@
 #include "orbit_error.hpp"
 #include "orbweaver/core/blas_kernels.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/core/session.hpp"
+#include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
 
 namespace {

@@ -1,7 +1,7 @@
 #include <benchmark/benchmark.h>
 
 #include "orbweaver/core/blas_kernels.hpp"
-#include "orbweaver/core/session.hpp"
+#include "orbweaver/core/petsc/session.hpp"
 
 int main(int argc, char** argv) {
   orbweaver::core::prefer_fitting_blas_kernels(argv);

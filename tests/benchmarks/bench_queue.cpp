@@ -15,7 +15,7 @@
 #include <mpi.h>
 #include <CLI/CLI.hpp>
 
-#include "orbweaver/core/communicator.hpp"
+#include "orbweaver/core/mpi/communicator.hpp"
 #include "orbweaver/queue/run.hpp"
 #include "task_table.hpp"
 

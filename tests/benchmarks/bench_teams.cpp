@@ -12,9 +12,9 @@
 #include "orbweaver/certificate/certificate.hpp"
 #include "orbweaver/continuation/off_branch.hpp"
 #include "orbweaver/core/blas_kernels.hpp"
-#include "orbweaver/core/check_mpi.hpp"
-#include "orbweaver/core/session.hpp"
-#include "orbweaver/core/team.hpp"
+#include "orbweaver/core/mpi/check_mpi.hpp"
+#include "orbweaver/core/mpi/team.hpp"
+#include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
 #include "support/chain_start.hpp"
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "orbweaver/continuation/sweep.hpp"
+#include "orbweaver/starts/sweep.hpp"
 
 namespace orbweaver::benchmarks {
 
@@ -13,9 +13,9 @@ FamilyStart start_of(Family family) {
   constexpr double pi = std::numbers::pi;
   FamilyStart out{systems::make_system("double_pendulum"), {}};
   const std::vector<double> point{family == Family::up_down ? pi : 0.0, family == Family::down_up ? pi : 0.0, 0.0, 0.0};
-  const continuation::SweepOptions options{.period_from = 3.0, .period_to = 8.5, .step = 0.05, .cutoff = 10};
-  const continuation::SweepResult found = continuation::sweep(*out.system, point, options);
-  const continuation::NormalMode& mode = found.modes.at(family == Family::out_phase ? 1 : 0);
+  const starts::SweepOptions options{.period_from = 3.0, .period_to = 8.5, .step = 0.05, .cutoff = 10};
+  const starts::SweepResult found = starts::sweep(*out.system, point, options);
+  const starts::NormalMode& mode = found.modes.at(family == Family::out_phase ? 1 : 0);
   out.start = {loop::constant_loop(point, mode.period, options.cutoff), mode.direction, mode.isotropy};
   return out;
 }

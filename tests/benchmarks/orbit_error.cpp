@@ -4,7 +4,7 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/corrector/correct.hpp"
-#include "orbweaver/loop/fourier.hpp"
+#include "orbweaver/loop/grid/fourier.hpp"
 
 namespace orbweaver::benchmarks {
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "orbweaver/continuation/sweep.hpp"
-#include "orbweaver/loop/isotropy.hpp"
-#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
+#include "orbweaver/starts/sweep.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::benchmarks {

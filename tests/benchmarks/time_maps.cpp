@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "family_orbit.hpp"
-#include "orbweaver/core/session.hpp"
-#include "orbweaver/loop/time_map_fit.hpp"
+#include "orbweaver/core/petsc/session.hpp"
+#include "orbweaver/loop/grid/time_map_fit.hpp"
 
 using namespace orbweaver;
 

@@ -10,10 +10,10 @@
 
 #include "continuation/families.hpp"
 #include "orbweaver/continuation/off_branch.hpp"
-#include "orbweaver/continuation/sweep.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
 #include "orbweaver/spectrum/sliced_hessian.hpp"
+#include "orbweaver/starts/sweep.hpp"
 
 namespace orbweaver::test {
 

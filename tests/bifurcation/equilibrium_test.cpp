@@ -16,10 +16,9 @@ constexpr double two_pi = 2.0 * std::numbers::pi;
 
 std::vector<Direction> directions_at_origin(const systems::System& system) {
   const std::vector<double> origin(4, 0.0);
-  const continuation::SweepResult swept =
-      continuation::sweep(system, origin, {.period_from = 6.0, .period_to = 6.5, .step = 0.05});
+  const starts::SweepResult swept = starts::sweep(system, origin, {.period_from = 6.0, .period_to = 6.5, .step = 0.05});
   EXPECT_EQ(swept.degenerate.size(), 1u);
-  const continuation::DegenerateMode& mode = swept.degenerate.at(0);
+  const starts::DegenerateMode& mode = swept.degenerate.at(0);
   return equilibrium_directions(system, origin, mode.period, mode.kernel, 10);
 }
 

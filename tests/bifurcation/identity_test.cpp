@@ -7,7 +7,7 @@
 
 #include "bifurcation/branchings.hpp"
 #include "loop/samples.hpp"
-#include "orbweaver/loop/alignment.hpp"
+#include "orbweaver/loop/symmetry/alignment.hpp"
 
 namespace orbweaver::bifurcation {
 namespace {

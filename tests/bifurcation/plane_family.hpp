@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
 #include "spectrum/point_systems.hpp"
 
 namespace orbweaver::test {

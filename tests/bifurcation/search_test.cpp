@@ -5,7 +5,7 @@
 #include "orbweaver/bifurcation/directions.hpp"
 #include "orbweaver/bifurcation/identity.hpp"
 #include "orbweaver/certificate/certificate.hpp"
-#include "orbweaver/loop/standard_phase.hpp"
+#include "orbweaver/loop/symmetry/standard_phase.hpp"
 
 namespace orbweaver::bifurcation {
 namespace {
@@ -23,7 +23,7 @@ std::shared_ptr<const systems::System> declaring(const std::shared_ptr<const sys
 test::Family family_of(const std::shared_ptr<const systems::System>& system, std::size_t mode_number,
                        double period_limit) {
   const std::vector<double> origin(4, 0.0);
-  const continuation::NormalMode mode = continuation::sweep(*system, origin, {}).modes.at(mode_number);
+  const starts::NormalMode mode = starts::sweep(*system, origin, {}).modes.at(mode_number);
   return test::family_from(system, {loop::constant_loop(origin, mode.period, 10), mode.direction, mode.isotropy},
                            period_limit);
 }

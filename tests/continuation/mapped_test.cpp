@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "continuation/families.hpp"
-#include "orbweaver/loop/time_map_fit.hpp"
+#include "orbweaver/loop/grid/time_map_fit.hpp"
 
 namespace orbweaver::continuation {
 namespace {

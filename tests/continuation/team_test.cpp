@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "orbweaver/continuation/off_branch.hpp"
-#include "orbweaver/core/team.hpp"
+#include "orbweaver/core/mpi/team.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
 #include "support/chain_start.hpp"
 

@@ -1,13 +1,13 @@
-#include "orbweaver/core/callback.hpp"
+#include "orbweaver/core/petsc/callback.hpp"
 
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 #include <petscmat.h>
 
-#include "orbweaver/core/check.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/core/handle.hpp"
+#include "orbweaver/core/petsc/check.hpp"
+#include "orbweaver/core/petsc/handle.hpp"
 
 namespace orbweaver::core {
 namespace {

@@ -1,4 +1,4 @@
-#include "orbweaver/core/check.hpp"
+#include "orbweaver/core/petsc/check.hpp"
 
 #include <source_location>
 #include <string>
@@ -8,7 +8,7 @@
 #include <petscmat.h>
 
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/core/handle.hpp"
+#include "orbweaver/core/petsc/handle.hpp"
 
 namespace orbweaver::core {
 namespace {

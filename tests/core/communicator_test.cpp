@@ -1,4 +1,4 @@
-#include "orbweaver/core/communicator.hpp"
+#include "orbweaver/core/mpi/communicator.hpp"
 
 #include <type_traits>
 #include <utility>
@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "orbweaver/core/check.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/petsc/check.hpp"
 
 namespace orbweaver::core {
 namespace {

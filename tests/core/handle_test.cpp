@@ -1,4 +1,4 @@
-#include "orbweaver/core/handle.hpp"
+#include "orbweaver/core/petsc/handle.hpp"
 
 #include <source_location>
 #include <string>
@@ -10,7 +10,7 @@
 #include <petscksp.h>
 #include <slepceps.h>
 
-#include "orbweaver/core/check.hpp"
+#include "orbweaver/core/petsc/check.hpp"
 
 namespace orbweaver::core {
 namespace {

@@ -6,9 +6,9 @@
 #include <gmock/gmock.h>
 #include <petsclog.h>
 
-#include "orbweaver/core/check.hpp"
-#include "orbweaver/core/log_stage.hpp"
-#include "orbweaver/core/session.hpp"
+#include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/core/petsc/check.hpp"
+#include "orbweaver/core/petsc/session.hpp"
 
 namespace {
 

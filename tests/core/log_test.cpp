@@ -1,4 +1,4 @@
-#include "orbweaver/core/log.hpp"
+#include "orbweaver/core/log/log.hpp"
 
 #include <functional>
 #include <string>

@@ -7,9 +7,9 @@
 #include <petscvec.h>
 #include <slepcsys.h>
 
-#include "orbweaver/core/check.hpp"
-#include "orbweaver/core/handle.hpp"
-#include "orbweaver/core/session.hpp"
+#include "orbweaver/core/petsc/check.hpp"
+#include "orbweaver/core/petsc/handle.hpp"
+#include "orbweaver/core/petsc/session.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 
 #include <gmock/gmock.h>
 
-#include "orbweaver/core/team.hpp"
+#include "orbweaver/core/mpi/team.hpp"
 
 namespace {
 

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "corrector/fixture.hpp"
-#include "orbweaver/loop/fourier.hpp"
-#include "orbweaver/loss/loop_equations.hpp"
+#include "orbweaver/equations/loop_equations.hpp"
+#include "orbweaver/loop/grid/fourier.hpp"
 
 namespace orbweaver::corrector {
 namespace {
@@ -97,7 +97,7 @@ TEST(MappedCorrection, BordersOfThePreconditionerFollowTheMap) {
     problem.guess = problem.correct(Method::nls).loop;
     const loop::Subspace image = problem.unknowns.subspace.image();
     const loss::Slice slice(problem.unknowns.size(), problem.conditions);
-    loss::LoopEquations equations(*problem.system, problem.guess, problem.unknowns, image, slice);
+    equations::LoopEquations equations(*problem.system, problem.guess, problem.unknowns, image, slice);
     equations.factor(*problem.system, problem.guess);
     for (const int unknown : {problem.unknowns.size() - 1, problem.unknowns.size()}) {
       const Eigen::VectorXd unit = Eigen::VectorXd::Unit(equations.size(), unknown);

@@ -1,4 +1,4 @@
-#include "orbweaver/loop/alignment.hpp"
+#include "orbweaver/loop/symmetry/alignment.hpp"
 
 #include <cmath>
 
@@ -6,7 +6,7 @@
 
 #include "loop/samples.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/loop/time_samples.hpp"
+#include "orbweaver/loop/curve/time_samples.hpp"
 
 namespace orbweaver::loop {
 namespace {

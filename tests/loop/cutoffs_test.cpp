@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
 
 namespace orbweaver::loop {
 namespace {

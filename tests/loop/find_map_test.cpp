@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "loop/samples.hpp"
-#include "orbweaver/loop/isotropy.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
 
 namespace orbweaver::loop {
 namespace {

@@ -1,4 +1,4 @@
-#include "orbweaver/loop/fourier.hpp"
+#include "orbweaver/loop/grid/fourier.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "orbweaver/loop/isotropy.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
 
 #include <cmath>
 #include <functional>

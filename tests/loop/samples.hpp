@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "orbweaver/loop/isotropy.hpp"
-#include "orbweaver/loop/loop.hpp"
-#include "orbweaver/loop/subspace.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
+#include "orbweaver/loop/symmetry/subspace.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::test {

@@ -1,4 +1,4 @@
-#include "orbweaver/loop/staggered_grid.hpp"
+#include "orbweaver/loop/grid/staggered_grid.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/loop/subspace.hpp"
+#include "orbweaver/loop/symmetry/subspace.hpp"
 
 namespace orbweaver::loop {
 namespace {

@@ -1,4 +1,4 @@
-#include "orbweaver/loop/standard_phase.hpp"
+#include "orbweaver/loop/symmetry/standard_phase.hpp"
 
 #include <cmath>
 #include <numbers>

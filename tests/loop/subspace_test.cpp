@@ -1,4 +1,4 @@
-#include "orbweaver/loop/subspace.hpp"
+#include "orbweaver/loop/symmetry/subspace.hpp"
 
 #include <set>
 #include <string>

@@ -1,4 +1,4 @@
-#include "orbweaver/loop/time_map_fit.hpp"
+#include "orbweaver/loop/grid/time_map_fit.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "orbweaver/loop/time_map.hpp"
+#include "orbweaver/loop/curve/time_map.hpp"
 
 #include <cmath>
 #include <limits>

@@ -6,7 +6,7 @@
 
 #include <Eigen/Dense>
 
-#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/loss/linearization.hpp"
 #include "orbweaver/loss/unknowns.hpp"
 #include "orbweaver/systems/system.hpp"

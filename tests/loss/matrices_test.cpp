@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "loss/cases.hpp"
-#include "orbweaver/core/check.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/petsc/check.hpp"
 #include "orbweaver/loss/dense.hpp"
 
 namespace orbweaver::loss {

@@ -4,7 +4,7 @@
 
 #include "loop/samples.hpp"
 #include "loss/cases.hpp"
-#include "orbweaver/loop/fourier.hpp"
+#include "orbweaver/loop/grid/fourier.hpp"
 #include "orbweaver/loss/dense.hpp"
 #include "orbweaver/loss/matrices.hpp"
 

@@ -4,8 +4,8 @@
 
 #include <mpi.h>
 
-#include "orbweaver/core/communicator.hpp"
-#include "orbweaver/core/log.hpp"
+#include "orbweaver/core/log/log.hpp"
+#include "orbweaver/core/mpi/communicator.hpp"
 #include "orbweaver/queue/run.hpp"
 
 namespace {

@@ -12,8 +12,8 @@
 #include <gtest/gtest.h>
 #include <mpi.h>
 
-#include "orbweaver/core/communicator.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/mpi/communicator.hpp"
 #include "orbweaver/queue/run.hpp"
 
 namespace synthetic {

@@ -5,7 +5,7 @@
 
 #include <Eigen/Dense>
 
-#include "orbweaver/core/handle.hpp"
+#include "orbweaver/core/petsc/handle.hpp"
 #include "orbweaver/loss/dense.hpp"
 
 namespace orbweaver::test {

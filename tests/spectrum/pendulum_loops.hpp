@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "orbweaver/loop/isotropy.hpp"
-#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::test {

@@ -1,5 +1,5 @@
 #include "orbweaver/core/blas_kernels.hpp"
-#include "orbweaver/core/session.hpp"
+#include "orbweaver/core/petsc/session.hpp"
 #include "run_tests.hpp"
 
 int main(int argc, char** argv) {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "archive/sample.hpp"
-#include "orbweaver/archive/reader.hpp"
-#include "orbweaver/survey/survey.hpp"
+#include "orbweaver/archive/read/reader.hpp"
+#include "orbweaver/survey/run/survey.hpp"
 #include "survey/scenes.hpp"
 
 namespace orbweaver::test {

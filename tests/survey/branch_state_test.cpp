@@ -1,4 +1,4 @@
-#include "branch_state.hpp"
+#include "state/branch_state.hpp"
 
 #include <gmock/gmock.h>
 
@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "executor.hpp"
 #include "orbweaver/scene/scene.hpp"
 #include "survey/scenes.hpp"
+#include "tasks/executor.hpp"
 
 namespace {
 

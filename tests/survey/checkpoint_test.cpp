@@ -1,14 +1,14 @@
-#include "checkpoint.hpp"
+#include "state/checkpoint.hpp"
 
 #include <gmock/gmock.h>
 
 #include <fstream>
 
 #include "archive/sample.hpp"
-#include "checkpoint_keeper.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/survey/work.hpp"
-#include "reopen.hpp"
+#include "orbweaver/survey/tasks/work.hpp"
+#include "state/checkpoint_keeper.hpp"
+#include "state/reopen.hpp"
 #include "survey/scenes.hpp"
 
 namespace {

@@ -8,8 +8,9 @@
 #include <stdexcept>
 
 #include "archive/sample.hpp"
-#include "orbweaver/archive/reader.hpp"
-#include "orbweaver/survey/survey.hpp"
+#include "orbweaver/archive/read/reader.hpp"
+#include "orbweaver/report/summary_text.hpp"
+#include "orbweaver/survey/run/survey.hpp"
 #include "survey/scenes.hpp"
 
 namespace {
@@ -113,7 +114,7 @@ class Failures : public ::testing::Test {
     EXPECT_EQ(atlas.families().texts("end_reason")[3], failed.end_reason);
     ASSERT_EQ(summary.failed_tasks.size(), 1U);
     EXPECT_THAT(summary.failed_tasks[0], AllOf(StartsWith("0002.0000 (Up-Down): "), HasSubstr(failed.end_reason)));
-    EXPECT_THAT(survey::to_text(summary), AllOf(HasSubstr("1 failed"), HasSubstr(failed.end_reason)));
+    EXPECT_THAT(report::to_text(summary), AllOf(HasSubstr("1 failed"), HasSubstr(failed.end_reason)));
     EXPECT_EQ(atlas.families().integers("orbit_count")[3], failed.orbits);
     EXPECT_EQ(atlas.orbits().rows(), static_cast<std::size_t>(summary.orbits));
     ASSERT_GE(failed.orbits, 8);

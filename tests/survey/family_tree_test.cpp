@@ -1,4 +1,4 @@
-#include "family_tree.hpp"
+#include "tree/family_tree.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "naming.hpp"
+#include "orbweaver/survey/tree/naming.hpp"
 
 #include <gtest/gtest.h>
 

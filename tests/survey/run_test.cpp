@@ -4,9 +4,9 @@
 #include <fstream>
 
 #include "archive/sample.hpp"
-#include "orbweaver/archive/reader.hpp"
+#include "orbweaver/archive/read/reader.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/survey/survey.hpp"
+#include "orbweaver/survey/run/survey.hpp"
 #include "survey/scenes.hpp"
 
 namespace {

@@ -1,5 +1,5 @@
-#include "stability_columns.hpp"
-#include "orbit_row.hpp"
+#include "tasks/stability_columns.hpp"
+#include "tasks/orbit_row.hpp"
 
 #include <cmath>
 #include <limits>

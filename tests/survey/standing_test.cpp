@@ -1,4 +1,4 @@
-#include "orbweaver/survey/standing.hpp"
+#include "orbweaver/survey/state/standing.hpp"
 
 #include <gmock/gmock.h>
 

@@ -12,9 +12,9 @@
 #include <gmock/gmock.h>
 
 #include "orbweaver/core/error.hpp"
+#include "run/teams.hpp"
 #include "support/oscillator_chain.hpp"
 #include "survey/atlas.hpp"
-#include "teams.hpp"
 
 namespace {
 

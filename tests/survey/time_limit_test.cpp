@@ -1,4 +1,4 @@
-#include "time_limit.hpp"
+#include "run/time_limit.hpp"
 
 #include <gmock/gmock.h>
 
@@ -6,9 +6,9 @@
 #include <thread>
 
 #include "archive/sample.hpp"
-#include "orbweaver/archive/reader.hpp"
+#include "orbweaver/archive/read/reader.hpp"
 #include "orbweaver/queue/stop.hpp"
-#include "orbweaver/survey/survey.hpp"
+#include "orbweaver/survey/run/survey.hpp"
 #include "survey/scenes.hpp"
 
 namespace {

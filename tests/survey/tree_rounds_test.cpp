@@ -1,10 +1,10 @@
 #include <gmock/gmock.h>
 
-#include "family_tree.hpp"
 #include "orbweaver/systems/system.hpp"
-#include "recorders.hpp"
 #include "survey/scenes.hpp"
 #include "survey/tree_outcomes.hpp"
+#include "tasks/recorders.hpp"
+#include "tree/family_tree.hpp"
 
 namespace {
 

@@ -4,9 +4,9 @@
 #include <tuple>
 
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/survey/work.hpp"
+#include "orbweaver/survey/tasks/work.hpp"
 #include "orbweaver/systems/system.hpp"
-#include "payload.hpp"
+#include "tasks/payload.hpp"
 
 namespace {
 

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "orbweaver/archive/reader.hpp"
+#include "orbweaver/archive/read/reader.hpp"
 
 namespace {
 

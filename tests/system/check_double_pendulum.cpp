@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "orbweaver/archive/loop_of.hpp"
-#include "orbweaver/archive/reader.hpp"
-#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/archive/read/loop_of.hpp"
+#include "orbweaver/archive/read/reader.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
 
 namespace {
 

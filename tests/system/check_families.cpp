@@ -9,12 +9,12 @@
 
 #include <fmt/format.h>
 
-#include "orbweaver/archive/loop_of.hpp"
-#include "orbweaver/archive/reader.hpp"
+#include "orbweaver/archive/read/loop_of.hpp"
+#include "orbweaver/archive/read/reader.hpp"
 #include "orbweaver/bifurcation/identity.hpp"
 #include "orbweaver/core/blas_kernels.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/core/session.hpp"
+#include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/scene/scene.hpp"
 
 namespace {

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "archive/sample.hpp"
-#include "orbweaver/archive/reader.hpp"
+#include "orbweaver/archive/read/reader.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "orbweaver/archive/reader.hpp"
+#include "orbweaver/archive/read/reader.hpp"
 
 namespace orbweaver::test {
 

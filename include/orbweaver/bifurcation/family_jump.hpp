@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "orbweaver/continuation/branch.hpp"
-#include "orbweaver/loop/isotropy.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
 #include "orbweaver/systems/description.hpp"
 #include "orbweaver/systems/system.hpp"

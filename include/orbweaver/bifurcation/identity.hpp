@@ -5,7 +5,7 @@
 
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/corrector/correct.hpp"
-#include "orbweaver/loop/isotropy.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::bifurcation {

@@ -4,8 +4,8 @@
 
 #include "orbweaver/bifurcation/sector.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
-#include "orbweaver/core/team.hpp"
-#include "orbweaver/loop/isotropy.hpp"
+#include "orbweaver/core/mpi/team.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::bifurcation {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::certificate {

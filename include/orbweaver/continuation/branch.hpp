@@ -11,7 +11,7 @@
 #include "orbweaver/continuation/ending.hpp"
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/corrector/correct.hpp"
-#include "orbweaver/loop/isotropy.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
 
 namespace orbweaver::continuation {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "orbweaver/continuation/branch.hpp"
-#include "orbweaver/loop/isotropy.hpp"
-#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::continuation {

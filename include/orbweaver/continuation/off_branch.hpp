@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "orbweaver/loop/isotropy.hpp"
-#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/spectrum/singular_triplets.hpp"
 #include "orbweaver/systems/system.hpp"
 
@@ -33,7 +33,8 @@ struct OffBranchTriplet {
 /// The same within one sector: `signs` under the generators of `isotropy` (+1 kept, -1 broken), which must be involutions.
 /// Empty where the sector holds nothing but the time shift and the family's direction.
 [[nodiscard]] std::vector<OffBranchTriplet> sector_triplets(const systems::System& system, const loop::Loop& loop,
-                                                            const loop::Isotropy& isotropy, const std::vector<int>& signs,
+                                                            const loop::Isotropy& isotropy,
+                                                            const std::vector<int>& signs,
                                                             std::span<const double> tangent_modes,
                                                             double tangent_period,
                                                             const spectrum::TripletOptions& options);

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::continuation {

@@ -6,8 +6,8 @@
 
 #include <Eigen/Dense>
 
-#include "orbweaver/core/team.hpp"
-#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/core/mpi/team.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/loss/linearization.hpp"
 #include "orbweaver/loss/slice.hpp"
 #include "orbweaver/loss/unknowns.hpp"

@@ -5,8 +5,8 @@
 #include <petscmat.h>
 #include <Eigen/Dense>
 
-#include "orbweaver/core/check.hpp"
-#include "orbweaver/core/handle.hpp"
+#include "orbweaver/core/petsc/check.hpp"
+#include "orbweaver/core/petsc/handle.hpp"
 
 namespace orbweaver::loss {
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "orbweaver/loop/fourier.hpp"
-#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/grid/fourier.hpp"
 #include "orbweaver/loss/unknowns.hpp"
 #include "orbweaver/systems/system.hpp"
 

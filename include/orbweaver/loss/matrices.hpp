@@ -4,7 +4,7 @@
 
 #include <petscmat.h>
 
-#include "orbweaver/core/handle.hpp"
+#include "orbweaver/core/petsc/handle.hpp"
 #include "orbweaver/loss/linearization.hpp"
 #include "orbweaver/loss/unknowns.hpp"
 

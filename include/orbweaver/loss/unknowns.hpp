@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "orbweaver/loop/loop.hpp"
-#include "orbweaver/loop/subspace.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/symmetry/subspace.hpp"
 
 namespace orbweaver::loss {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "orbweaver/core/communicator.hpp"
+#include "orbweaver/core/mpi/communicator.hpp"
 #include "orbweaver/queue/executor.hpp"
 #include "orbweaver/queue/flusher.hpp"
 #include "orbweaver/queue/observer.hpp"

@@ -5,7 +5,7 @@
 #include <petscmat.h>
 #include <Eigen/Dense>
 
-#include "orbweaver/core/handle.hpp"
+#include "orbweaver/core/petsc/handle.hpp"
 
 namespace orbweaver::spectrum {
 

@@ -3,9 +3,9 @@
 #include <complex>
 #include <vector>
 
-#include "orbweaver/core/team.hpp"
-#include "orbweaver/loop/isotropy.hpp"
-#include "orbweaver/loop/loop.hpp"
+#include "orbweaver/core/mpi/team.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::spectrum {

@@ -5,9 +5,9 @@
 #include <petscmat.h>
 #include <Eigen/Dense>
 
-#include "orbweaver/core/handle.hpp"
-#include "orbweaver/core/team.hpp"
-#include "orbweaver/loss/loop_equations.hpp"
+#include "orbweaver/core/mpi/team.hpp"
+#include "orbweaver/core/petsc/handle.hpp"
+#include "orbweaver/equations/loop_equations.hpp"
 #include "orbweaver/spectrum/eigenpairs.hpp"
 
 namespace orbweaver::spectrum {
@@ -47,7 +47,7 @@ struct TripletOptions {
 
 /// The matrix-free way: Lanczos bidiagonalisation (SLEPc's SVD) of the inverse that GMRES with the box scheme gives
 /// (docs/mathematics.md, "Singular triplets"). The equations must be factored; the solves are divided among their team.
-[[nodiscard]] SingularTriplets smallest_singular_triplets(const loss::LoopEquations& equations,
+[[nodiscard]] SingularTriplets smallest_singular_triplets(const equations::LoopEquations& equations,
                                                           const TripletOptions& options);
 
 /// The smallest eigenpairs of the Gauss-Newton Hessian H = 2 J'J on the slice, from the triplets: values 2 sigma^2, which

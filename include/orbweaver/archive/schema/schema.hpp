@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "orbweaver/archive/schema/records.hpp"
+
+namespace orbweaver::archive {
+
+/// What stands in the root attribute `format`, and the only `format_version` that this Orbweaver writes and reads.
+inline constexpr const char* atlas_format = "orbweaver-atlas";
+inline constexpr const char* segment_format = "orbweaver-segment";
+inline constexpr int format_version = 1;
+
+enum class ColumnType { integer, real, text };
+
+/// One dataset of a table: its extents are the number of rows followed by `row_shape` (empty: one value a row).
+struct ColumnSpec {
+  std::string name;
+  ColumnType type = ColumnType::real;
+  std::vector<std::size_t> row_shape;
+  std::size_t text_width = 0;  ///< bytes of a text; set when the column is written
+
+  /// Values in one row.
+  [[nodiscard]] std::size_t width() const;
+};
+
+/// One group of datasets with a common number of rows.
+struct TableSpec {
+  std::string name;  ///< the group without its slash: "orbits"
+  std::vector<ColumnSpec> columns;
+};
+
+/// True where a stability value is a complex number, stored as re, im: multipliers of a system that is not symplectic,
+/// and the indices of two or more symplectic pairs, which leave the real axis in a Krein collision. One pair's index is
+/// real.
+[[nodiscard]] bool has_complex_stability(const Header& header);
+
+/// Doubles in OrbitRecord::stability and ::fundamental_stability: pairs, or 2 pairs (re, im, re, im, ...) where
+/// complex.
+[[nodiscard]] std::size_t stability_width(const Header& header);
+
+/// The tables of an atlas (docs/file_format.md). Widths of vector columns come from the header.
+[[nodiscard]] TableSpec families_spec();
+[[nodiscard]] TableSpec orbits_spec(const Header& header);
+[[nodiscard]] TableSpec crossings_spec(const Header& header);
+[[nodiscard]] TableSpec sections_spec(const Header& header);
+
+/// The tables of a segment: orbits and sections name their family by its key, since rows are not numbered yet.
+[[nodiscard]] TableSpec segment_orbits_spec(const Header& header);
+[[nodiscard]] TableSpec segment_sections_spec(const Header& header);
+
+}  // namespace orbweaver::archive

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <vector>
+
+#include "orbweaver/equations/preconditioned_equations.hpp"
+
+namespace orbweaver::equations {
+
+/// Newton's method with a preconditioner kept from an earlier point, accelerated: Anderson's mixing of the preconditioned
+/// residuals (Anderson 1965; Walker and Ni 2011), which solves the linear part as GMRES would at one residual and one
+/// back substitution an iteration. The factor is renewed where it does not contract well enough.
+class AndersonSolver {
+ public:
+  struct Options {
+    double tolerance = 1e-12;  ///< on the estimated error of y, absolute
+    double rounding = 3e-13;   ///< a change this small is as far as double precision goes
+    int scaled_from = -1;      ///< changes of unknowns from here on (the borders) count `border_scale` times; -1: none
+    double border_scale = 1.0;
+    double stagnation = 1000.0;  ///< changes below this many tolerances that shrink no more are as far as digits go
+    double divergence = 5.0;     ///< a change this large is a failure
+    int stale_iterations = 10;   ///< with a kept factor; then it is renewed
+    int fresh_iterations = 18;   ///< with a new factor; then the solve has failed
+  };
+  struct Result {
+    bool converged = false;
+    bool finite = true;
+    int iterations = 0;                ///< over all factors
+    bool factored = false;             ///< the factor was renewed,
+    std::vector<double> factor_point;  ///< here
+    double first_change = 0.0;  ///< largest entry of the first preconditioned residual: the error of the prediction
+    double last_change = 0.0;
+  };
+
+  /// Solves from the prediction in `u` (changed in place). `has_factor`: the preconditioner at hand is usable.
+  [[nodiscard]] Result solve(PreconditionedEquations& equations, std::vector<double>& u, bool has_factor,
+                             const Options& options);
+
+ private:
+  static constexpr int depth = 10;
+  void resize(int size);
+  void remember(int n);
+  void mix(std::vector<double>& u);
+
+  int _size = 0;
+  int _count = 0;  // pairs remembered since the last start
+  std::vector<double> _change, _last_change, _last_point, _prediction;
+  std::vector<double> _point_differences, _change_differences;  // depth x size, a ring
+  double _gram[depth][depth];
+};
+
+}  // namespace orbweaver::equations

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "orbweaver/equations/preconditioned_equations.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/grid/staggered_grid.hpp"
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::equations {
+
+class ChunkedBox;
+
+/// The bordered equations of an orbit on a fundamental domain, and their box preconditioner (docs/mathematics.md, "The
+/// fast solve"):
+///
+///   y_(j+1) - y_j + n h - c_j (f(z_j) + mu grad H(z_j)) = 0 at the midpoints, c_j = h T density / (2 pi),
+///   end conditions of the domain,   weights_q . (u - reference) = 0 for each border.
+///
+/// A point u holds y at the nodes (dimension x stride), then T, then mu where the loop has no reversor (an unfolding of
+/// the conserved energy, zero at an orbit).
+class Collocation final : public PreconditionedEquations {
+ public:
+  /// True where domain and system give a square problem that this class covers.
+  [[nodiscard]] static bool applies(const systems::System& system, const loop::FundamentalDomain& domain);
+
+  /// `centre`: a point that the symmetries of the domain map to itself, to which y is relative; `winding` as in Loop.
+  Collocation(const systems::System& system, const loop::FundamentalDomain& domain, std::vector<double> centre,
+              std::vector<double> winding, int cells, const loop::TimeMap& map);
+  ~Collocation() override;
+  Collocation(const Collocation&) = delete;
+  Collocation& operator=(const Collocation&) = delete;
+
+  [[nodiscard]] const systems::System& system() const { return _system; }
+  [[nodiscard]] int dimension() const { return _system.dimension(); }
+  [[nodiscard]] int cells() const { return _grid.cells(); }
+  [[nodiscard]] const loop::StaggeredGrid& grid() const { return _grid; }
+  [[nodiscard]] const loop::TimeMap& time_map() const { return _map; }
+  [[nodiscard]] int borders() const { return _borders; }
+  /// Numbers in a point.
+  [[nodiscard]] int size() const override { return dimension() * _grid.stride() + _borders; }
+  [[nodiscard]] int period_at() const { return dimension() * _grid.stride(); }
+
+  /// One row of `weights` (borders x size) a border.
+  void set_conditions(std::span<const double> weights, std::span<const double> reference);
+  /// The left-hand sides at `u`, laid out like a point (end condition i at node `cells` of coordinate i).
+  void residual(const double* u, double* r) const override;
+  /// Builds the preconditioner at `u` under the present conditions.
+  void factor(const double* u) override;
+  void precondition(double* r) const override;
+  /// The derivative of `residual` where the preconditioner was built, applied to a perturbation of the point.
+  void apply_jacobian(const double* v, double* r) const;
+
+  /// Means over time, each as a square root.
+  struct Quality {
+    double loss_rms = 0.0;   ///< of |dz/dt - f|^2, on twice the nodes of the loop
+    double speed_rms = 0.0;  ///< of |f|^2
+    double amplitude = 0.0;  ///< of |z - mean z|^2, winding left out
+    double size = 0.0;       ///< of |z|^2, winding left out
+  };
+  [[nodiscard]] Quality quality(const double* u) const;
+  /// sqrt of the mean of |df/dz|^2 where the preconditioner was built.
+  [[nodiscard]] double field_jacobian_rms() const { return _jacobian_rms; }
+  /// Closed integral of p dq.
+  [[nodiscard]] double action(const double* u) const;
+
+  [[nodiscard]] loop::Loop to_loop(const double* u) const;
+  /// The point of a loop that has this grid's time map and symmetries.
+  void from_loop(const loop::Loop& loop, double* u) const;
+  /// sqrt(mean over time of |z_a - z_b|^2 + ((T_a - T_b) / T_b)^2): the archive's arclength between neighbours.
+  [[nodiscard]] double distance(const double* a, const double* b) const;
+  /// The same orbit on another grid or under another time map.
+  [[nodiscard]] std::vector<double> resampled(const Collocation& from, const std::vector<double>& u) const;
+  /// False where the symmetries make the coordinate's mean over the loop zero (relative to the centre).
+  [[nodiscard]] bool keeps_mean(int coordinate) const;
+  /// Weights of the nodes in a mean over the loop (stride numbers, of sum 1).
+  [[nodiscard]] const std::vector<double>& node_weights() const { return _node_weights; }
+  /// The time map's densities at the nodes (cells + 1 numbers).
+  [[nodiscard]] const std::vector<double>& node_densities() const { return _node_density; }
+  [[nodiscard]] const std::vector<double>& centre() const { return _centre; }
+  [[nodiscard]] const std::vector<double>& winding() const { return _winding; }
+
+ private:
+  void midpoint_states(const double* u) const;
+
+  const systems::System& _system;
+  const loop::StaggeredGrid& _grid;
+  loop::TimeMap _map;
+  std::vector<double> _centre;
+  std::vector<double> _winding;
+  int _borders;
+  std::vector<double> _density;  // at the midpoints
+  std::vector<double> _node_density;
+  std::vector<double> _node_weights;
+  loop::FundamentalDomain::Ends _ends;
+  std::vector<double> _weights;
+  std::vector<double> _reference;
+  std::unique_ptr<ChunkedBox> _box;
+  double _jacobian_rms = 0.0;
+  mutable std::vector<double> _z, _f, _gradient, _blocks, _columns, _nodal, _slope, _node_field, _difference;
+};
+
+/// The direction of the family through the orbit `u`: the solution of the linearised equations that the first condition
+/// of `equations` sees as 1. Builds the preconditioner at `u`. Throws NumericalError where it does not converge.
+[[nodiscard]] std::vector<double> family_direction(Collocation& equations, const std::vector<double>& u);
+
+}  // namespace orbweaver::equations

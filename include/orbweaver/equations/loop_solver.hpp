@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+
+#include <Eigen/Dense>
+
+#include "orbweaver/equations/loop_equations.hpp"
+
+namespace orbweaver::equations {
+
+/// GMRES on loop equations of one size, preconditioned from the right by their box scheme (which must be factored).
+/// Overridable under an options prefix. With a team it runs on the team's communicator, rows distributed, and is collective
+/// over it; the equations must have the same team. Right-hand sides and solutions are whole.
+class LoopSolver {
+ public:
+  /// Relative residuals: asked for, and still accepted where rounding stops GMRES earlier.
+  struct Accuracy {
+    double wanted = 1e-8;
+    double accepted = 1e-5;
+  };
+
+  LoopSolver(int size, const char* options_prefix, core::Team* team = nullptr);
+  ~LoopSolver();
+  LoopSolver(const LoopSolver&) = delete;
+  LoopSolver& operator=(const LoopSolver&) = delete;
+  LoopSolver(LoopSolver&&) = delete;
+  LoopSolver& operator=(LoopSolver&&) = delete;
+
+  /// A x = right side. Throws NumericalError unless the residual falls to what is accepted.
+  [[nodiscard]] Eigen::VectorXd solve(const LoopEquations& equations, const Eigen::VectorXd& right_side,
+                                      Accuracy accuracy);
+  /// A' x = right side.
+  [[nodiscard]] Eigen::VectorXd solve_transposed(const LoopEquations& equations, const Eigen::VectorXd& right_side,
+                                                 Accuracy accuracy);
+
+  /// GMRES iterations of all solves so far.
+  [[nodiscard]] int iterations() const { return _iterations; }
+
+ private:
+  struct Krylov;
+  Eigen::VectorXd run(const LoopEquations& equations, const Eigen::VectorXd& right_side, Accuracy accuracy,
+                      bool transposed);
+  std::unique_ptr<Krylov> _krylov;
+  int _iterations = 0;
+};
+
+}  // namespace orbweaver::equations

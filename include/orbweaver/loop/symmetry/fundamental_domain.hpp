@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Dense>
+
+#include "orbweaver/loop/symmetry/isotropy.hpp"
+
+namespace orbweaver::loop {
+
+/// The part of a loop that its isotropy repeats: s in [0, 2 pi / order], with z(t + T/order) = generator z(t); or half of
+/// that where a reversor z(-t) = R z(t) mirrors it (both ends then lie on fixed sets).
+struct FundamentalDomain {
+  int order = 1;                            ///< p
+  Eigen::MatrixXd generator;                ///< dimension x dimension
+  std::optional<Eigen::MatrixXd> reversor;  ///< R of shift 0
+
+  [[nodiscard]] int dimension() const { return static_cast<int>(generator.rows()); }
+  /// How many copies of the domain make the loop.
+  [[nodiscard]] int copies() const { return reversor ? 2 * order : order; }
+  /// What holds between perturbations at both ends: left z(0) + right z(end) = 0, one condition a row.
+  struct Ends {
+    Eigen::MatrixXd left;
+    Eigen::MatrixXd right;
+  };
+  /// z(end) = generator z(0), or z(0) in Fix(R) and z(end) in Fix(generator R).
+  [[nodiscard]] Ends ends() const;
+  /// True if every element of `isotropy` is a product of the generator and the reversor: the domain then has all of it.
+  [[nodiscard]] bool expresses(const Isotropy& isotropy) const;
+  /// True if there are as many end conditions as coordinates: the domain is then a boundary value problem.
+  [[nodiscard]] bool is_square() const;
+};
+
+/// The domain of the largest order among the shifts in `isotropy`; reversors with another shift than 0 are not used.
+[[nodiscard]] FundamentalDomain fundamental_domain(const Isotropy& isotropy, int dimension);
+
+}  // namespace orbweaver::loop

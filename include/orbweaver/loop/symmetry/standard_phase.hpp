@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
+#include "orbweaver/systems/description.hpp"
+
+namespace orbweaver::loop {
+
+/// The phase phi in [0, 1), any real number, with z(T phi - t) = R z(t), if there is one to `tolerance` (mean distance,
+/// angles modulo 2 pi): the smallest. Started phi/2 later, the loop has R@0.
+[[nodiscard]] std::optional<double> reversor_phase(const systems::Symmetry& reversor, const std::vector<int>& angles,
+                                                   const Loop& loop, double tolerance);
+
+/// The orbit with s = 0 where the archive has it. `isotropy`: the loop's, at its present phase.
+///
+/// With a reversor in the group that `isotropy` generates: on the fixed set of the first one in the system's order, at
+/// that of its two points where the first coordinate is largest (of equal ones the next; angles that wind are compared
+/// modulo 2 pi). Otherwise at the maximum of the first angle, or of the first coordinate of a system without angles, less
+/// the linear part if it winds.
+[[nodiscard]] Loop in_standard_phase(const systems::Description& system, const Loop& loop, const Isotropy& isotropy);
+
+}  // namespace orbweaver::loop

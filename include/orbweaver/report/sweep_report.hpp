@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "orbweaver/scene/scene.hpp"
+#include "orbweaver/starts/sweep.hpp"
+
+namespace orbweaver::report {
+
+/// A normal mode with how well a step along it closes (paper, Table I).
+struct ModeRow {
+  std::string name;
+  double period = 0.0;          ///< refined
+  double grid_period = 0.0;     ///< of the sweep's grid, as in the paper
+  double deviation = 0.0;       ///< degrees: |Phi_T(z) - z| after a step of 0.5 degrees, refined period and direction
+  double grid_deviation = 0.0;  ///< degrees: the same with the period and eigenvector of the grid
+  std::string isotropy;
+};
+
+/// The sweep at one equilibrium.
+struct EquilibriumReport {
+  std::vector<double> point;
+  std::string text;  ///< "th1 = 0 deg, ..."
+  starts::SweepResult sweep;
+  std::vector<ModeRow> modes;
+};
+
+/// Finds the scene's equilibria and sweeps the period at each; not collective. Throws as find_fixed_points and sweep do.
+[[nodiscard]] std::vector<EquilibriumReport> sweep_report(const scene::Scene& scene);
+
+/// The modes, dips passed over, and equilibria without oscillations, for people.
+[[nodiscard]] std::string to_text(const std::vector<EquilibriumReport>& reports);
+
+/// Smallest eigenvalue against period as text with aligned columns (one column an equilibrium), or as CSV with full precision.
+[[nodiscard]] std::string eigenvalue_table(const std::vector<EquilibriumReport>& reports);
+[[nodiscard]] std::string eigenvalue_csv(const std::vector<EquilibriumReport>& reports);
+
+}  // namespace orbweaver::report

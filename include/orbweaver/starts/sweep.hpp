@@ -1,0 +1,68 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::starts {
+
+/// The range of periods swept at a fixed point.
+struct SweepOptions {
+  double period_from = 1.0;
+  double period_to = 12.0;
+  double step = 0.01;
+  int cutoff = 10;  ///< harmonics of the loop space whose Hessian is taken
+};
+
+/// The smallest eigenvalue of H of the constant loop with one period (over all coefficients, period held).
+struct SweepPoint {
+  double period = 0.0;
+  double eigenvalue = 0.0;
+};
+
+/// A family of small oscillations that starts at the fixed point.
+struct NormalMode {
+  double period = 0.0;                 ///< refined to rounding
+  double grid_period = 0.0;            ///< the swept period where the dip was seen
+  double residual = 0.0;               ///< smallest singular value of the linearised problem at `period`
+  std::vector<double> direction;       ///< modes of a loop with cutoff `SweepOptions::cutoff`, |dz(s = 0)| = 1
+  std::vector<double> grid_direction;  ///< the same from the eigenvector at `grid_period`
+  loop::Isotropy isotropy;             ///< of the small oscillations
+};
+
+/// Several oscillations Re(v e^{2 pi i t/T}) of one period: which of their combinations families start along, the linear
+/// problem does not say (bifurcation::equilibrium_directions).
+struct DegenerateMode {
+  double period = 0.0;
+  double grid_period = 0.0;
+  double residual = 0.0;    ///< the largest singular value that should vanish
+  Eigen::MatrixXcd kernel;  ///< orthonormal v, one a column
+};
+
+/// A dip of the eigenvalue that starts no family, and why.
+struct RejectedDip {
+  double period = 0.0;
+  std::string reason;
+};
+
+struct SweepResult {
+  std::vector<double> fixed_point;
+  std::vector<SweepPoint> table;
+  std::vector<NormalMode> modes;  ///< longest period first
+  std::vector<DegenerateMode> degenerate;
+  std::vector<RejectedDip> rejected;  ///< period multiples, near misses
+};
+
+/// Sweeps the period at a fixed point (paper, section III A): the smallest eigenvalue of the Hessian against T, each of
+/// its local minima refined to a root of a signed bordered function of the linearised problem at the dip's harmonic.
+/// Throws MisuseError for an empty or reversed range, a step that is not positive, or a state of another dimension.
+[[nodiscard]] SweepResult sweep(const systems::System& system, std::span<const double> fixed_point,
+                                const SweepOptions& options);
+
+}  // namespace orbweaver::starts

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "orbweaver/archive/file/h5_handle.hpp"
+#include "orbweaver/archive/read/table.hpp"
+
+namespace orbweaver::archive {
+
+/// What a file is expected to be, and what to tell a user who has another one.
+struct FileKind {
+  const char* format;  ///< root attribute `format`
+  const char* noun;    ///< "an Orbweaver atlas"
+  const char* remedy;  ///< "Write it anew with ..."
+};
+
+[[nodiscard]] const FileKind& atlas_kind();
+[[nodiscard]] const FileKind& segment_kind();
+
+/// One HDF5 file of Orbweaver, opened for reading by this rank alone; no MPI is needed and no lock is taken. Whatever
+/// is missing, torn or foreign throws InputError with the path, the problem and the remedy.
+class SerialFile {
+ public:
+  /// Opens and checks the attributes; datasets are checked by `expect_table` and `expect_flat`.
+  SerialFile(std::filesystem::path path, const FileKind& kind);
+
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return _path; }
+  [[nodiscard]] const Header& header() const noexcept { return _header; }
+
+  /// Checks that all columns exist with the right type and shape and equally many rows; fills in the text widths and
+  /// returns the number of rows. Only columns that were checked can be read.
+  std::uint64_t expect_table(TableSpec& spec);
+  /// The same for a flat float64 dataset of the root group; returns its length.
+  std::uint64_t expect_flat(const std::string& name);
+
+  /// Rows [first, first + count) of a column of `table`.
+  [[nodiscard]] Column read(const std::string& table, const ColumnSpec& spec, std::uint64_t first,
+                            std::uint64_t count) const;
+  [[nodiscard]] Table read_table(const TableSpec& spec, std::uint64_t rows) const;
+  [[nodiscard]] std::vector<double> read_flat(const std::string& name, std::uint64_t first, std::uint64_t count) const;
+
+  /// Throws InputError unless `condition`: "'path' <problem>. <remedy>".
+  void expect(bool condition, const std::string& problem) const;
+
+ private:
+  void open();
+  void read_header();
+  [[nodiscard]] H5Handle attribute(const char* name, H5T_class_t type) const;
+  [[nodiscard]] std::int64_t integer_attribute(const char* name) const;
+  [[nodiscard]] std::vector<std::string> text_attribute(const char* name) const;
+  [[nodiscard]] std::string single_text_attribute(const char* name) const;
+  const H5Handle& dataset(const std::string& name);
+  [[nodiscard]] std::vector<hsize_t> extents(const H5Handle& dataset) const;
+  void expect_type(const std::string& name, ColumnSpec& spec);
+  void read_rows(const std::string& name, hid_t memory_type, std::uint64_t first, const std::vector<hsize_t>& counts,
+                 void* data) const;
+
+  std::filesystem::path _path;
+  const FileKind* _kind;
+  Header _header;
+  H5Handle _file;
+  std::map<std::string, H5Handle> _datasets;
+};
+
+}  // namespace orbweaver::archive

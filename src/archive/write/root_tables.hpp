@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "numbering.hpp"
+#include "orbweaver/archive/read/table.hpp"
+
+namespace orbweaver::archive {
+
+/// The tables that rank 0 hands over, in canonical order with indices instead of keys.
+struct RootTables {
+  Table families;
+  Table crossings;
+};
+
+/// What `tables` says of the rows of the segments.
+[[nodiscard]] Selection selection_of(const Records& tables);
+
+/// `tables` must have been checked (check_records.hpp); `keys` are its sorted keys.
+[[nodiscard]] RootTables make_root_tables(const Header& header, const Records& tables,
+                                          const std::vector<std::string>& keys, const Numbering& numbering);
+
+}  // namespace orbweaver::archive

@@ -1,0 +1,214 @@
+#include "orbweaver/archive/write/segment.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "agree.hpp"
+#include "file/parallel_file.hpp"
+#include "file/segment_file.hpp"
+#include "fingerprint.hpp"
+#include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/core/pause.hpp"
+#include "schema/check_records.hpp"
+
+namespace orbweaver::archive {
+
+namespace {
+
+// Doubles that a rank stages for one collective write: bounds memory and keeps below MPI's 2 GiB a call.
+constexpr std::size_t staged_values = std::size_t{1} << 20;
+
+using RealMember = double OrbitRecord::*;
+using VectorMember = std::vector<double> OrbitRecord::*;
+
+constexpr std::pair<const char*, RealMember> real_columns[] = {
+    {"arclength", &OrbitRecord::arclength},
+    {"period", &OrbitRecord::period},
+    {"energy", &OrbitRecord::energy},
+    {"action", &OrbitRecord::action},
+    {"parameter", &OrbitRecord::parameter},
+    {"loss_rms", &OrbitRecord::loss_rms},
+    {"off_branch_eigenvalue", &OrbitRecord::off_branch_eigenvalue},
+    {"stability_error", &OrbitRecord::stability_error},
+    {"closure", &OrbitRecord::closure},
+    {"single_shot", &OrbitRecord::single_shot},
+    {"energy_drift", &OrbitRecord::energy_drift},
+    {"tail", &OrbitRecord::tail},
+};
+
+constexpr std::pair<const char*, VectorMember> vector_columns[] = {
+    {"stability", &OrbitRecord::stability},
+    {"fundamental_stability", &OrbitRecord::fundamental_stability},
+    {"state", &OrbitRecord::state},
+    {"winding", &OrbitRecord::winding},
+};
+
+void copy_into(std::vector<double>& column, std::size_t row, std::size_t width, const std::vector<double>& values) {
+  std::copy(values.begin(), values.end(), column.begin() + static_cast<std::ptrdiff_t>(row * width));
+}
+
+std::uint64_t count_values(const Records& mine, VectorMember member) {
+  std::uint64_t count = 0;
+  for (const OrbitRecord& orbit : mine.orbits) count += (orbit.*member).size();
+  return count;
+}
+
+void fill_lots(Table& table, const Records& mine, VectorMember member, const std::string& name, std::uint64_t first) {
+  auto& begins = table.integers(name + "_begin");
+  auto& counts = table.integers(name + "_count");
+  auto next = static_cast<std::int64_t>(first);
+  for (std::size_t i = 0; i < mine.orbits.size(); ++i) {
+    begins[i] = next;
+    counts[i] = static_cast<std::int64_t>((mine.orbits[i].*member).size());
+    next += counts[i];
+  }
+}
+
+Table orbit_table(const Header& header, const Records& mine) {
+  Table table(segment_orbits_spec(header), mine.orbits.size());
+  for (std::size_t i = 0; i < mine.orbits.size(); ++i) {
+    table.texts("family_key")[i] = mine.orbits[i].family_key;
+    table.integers("step")[i] = mine.orbits[i].step;
+    table.integers("cutoff")[i] = mine.orbits[i].cutoff;
+  }
+  for (const auto& [name, member] : real_columns) {
+    auto& column = table.reals(name);
+    for (std::size_t i = 0; i < mine.orbits.size(); ++i) column[i] = mine.orbits[i].*member;
+  }
+  for (const auto& [name, member] : vector_columns) {
+    const std::size_t width = table.column(name).spec.width();
+    for (std::size_t i = 0; i < mine.orbits.size(); ++i) copy_into(table.reals(name), i, width, mine.orbits[i].*member);
+  }
+  return table;
+}
+
+Table section_table(const Header& header, const Records& mine) {
+  Table table(segment_sections_spec(header), mine.sections.size());
+  for (std::size_t i = 0; i < mine.sections.size(); ++i) {
+    const SectionRecord& section = mine.sections[i];
+    table.texts("family_key")[i] = section.family_key;
+    table.integers("step")[i] = section.step;
+    table.reals("time")[i] = section.time;
+    copy_into(table.reals("state"), i, header.state_names.size(), section.state);
+  }
+  return table;
+}
+
+// Walks over the orbits' values as one long row, some at a time.
+class Stage {
+ public:
+  Stage(const Records& mine, VectorMember member) : _mine(mine), _member(member) {}
+
+  std::vector<double> next() {
+    std::vector<double> values;
+    while (values.size() < staged_values && _orbit < _mine.orbits.size()) {
+      const std::vector<double>& source = _mine.orbits[_orbit].*_member;
+      const std::size_t count = std::min(source.size() - _at, staged_values - values.size());
+      const auto begin = source.begin() + static_cast<std::ptrdiff_t>(_at);
+      values.insert(values.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
+      _at += count;
+      if (_at == source.size()) {
+        ++_orbit;
+        _at = 0;
+      }
+    }
+    return values;
+  }
+
+ private:
+  const Records& _mine;
+  VectorMember _member;
+  std::size_t _orbit = 0;
+  std::size_t _at = 0;
+};
+
+void write_values(MPI_Comm comm, ParallelFile& file, const std::string& name, const Records& mine, VectorMember member,
+                  std::uint64_t first) {
+  const std::uint64_t rounds = greatest(comm, (count_values(mine, member) + staged_values - 1) / staged_values);
+  Stage stage(mine, member);
+  for (std::uint64_t round = 0; round < rounds; ++round) {
+    std::vector<double> values;
+    collectively(comm, [&] { values = stage.next(); });
+    file.write_flat(name, values, first);
+    first += values.size();
+  }
+}
+
+std::uint64_t fingerprint_of(const Records& mine) {
+  Fingerprint fingerprint;
+  for (const OrbitRecord& orbit : mine.orbits)
+    fingerprint.add(orbit.family_key, orbit.step, orbit.arclength, orbit.period);
+  return fingerprint.value();
+}
+
+std::vector<std::string> header_texts(const Header& header) {
+  std::vector<std::string> texts{header.orbweaver_version, header.scene,
+                                 fmt::format("{} {} {}", header.pairs, header.symplectic, header.state_names.size())};
+  texts.insert(texts.end(), header.state_names.begin(), header.state_names.end());
+  texts.insert(texts.end(), header.winding_names.begin(), header.winding_names.end());
+  return texts;
+}
+
+void check_input(MPI_Comm comm, const Header& header, const Records& mine) {
+  const std::vector<std::string> own = header_texts(header);
+  std::vector<std::string> root = own;
+  broadcast(comm, root);
+  collectively(comm, [&] {
+    core::require(own == root, "the ranks give different headers to write_segment");
+    core::require(mine.families.empty() && mine.crossings.empty() && mine.left_out_keys.empty() &&
+                      mine.voided.empty() && mine.earlier_scenes.empty(),
+                  "segments hold orbits and sections; hand families and crossings to consolidate");
+    check_header(header);
+    check_orbits(header, mine);
+    check_sections(header, mine);
+  });
+}
+
+}  // namespace
+
+WrittenSegment write_segment(MPI_Comm comm, const std::filesystem::path& path, const Header& header,
+                             const Records& mine) {
+  const core::LogStage stage(core::Stage::archive);
+  check_input(comm, header, mine);
+  const Share orbit_rows = share_of(comm, mine.orbits.size());
+  const Share section_rows = share_of(comm, mine.sections.size());
+  const Share modes = share_of(comm, count_values(mine, &OrbitRecord::modes));
+  const Share maps = share_of(comm, count_values(mine, &OrbitRecord::time_map));
+  Table orbits;
+  Table sections;
+  collectively(comm, [&] {
+    orbits = orbit_table(header, mine);
+    sections = section_table(header, mine);
+    fill_lots(orbits, mine, &OrbitRecord::modes, "modes", modes.first);
+    fill_lots(orbits, mine, &OrbitRecord::time_map, "time_map", maps.first);
+  });
+  agree_on_text_widths(comm, orbits);
+  agree_on_text_widths(comm, sections);
+
+  ParallelFile file(comm, path,
+                    {segment_format,
+                     header,
+                     {{orbits.spec(), orbit_rows.total}, {sections.spec(), section_rows.total}},
+                     {{"modes", modes.total}, {"time_maps", maps.total}}});
+  file.write_table(orbits, orbit_rows.first);
+  file.write_table(sections, section_rows.first);
+  core::pause_point("write " + path.filename().string());
+  write_values(comm, file, "modes", mine, &OrbitRecord::modes, modes.first);
+  write_values(comm, file, "time_maps", mine, &OrbitRecord::time_map, maps.first);
+  file.publish();
+  std::uint64_t bytes = 0;
+  collectively(comm, [&] {
+    if (rank_of(comm) == 0) bytes = std::filesystem::file_size(path);
+  });
+  return {path.filename().string(), greatest(comm, bytes), orbit_rows.total, section_rows.total,
+          share_of(comm, fingerprint_of(mine)).total};
+}
+
+SegmentInfo inspect_segment(const std::filesystem::path& path) {
+  const SegmentFile segment(path);
+  segment.check_values();
+  return {segment.file().header(), segment.orbits(), segment.sections(), segment.mode_values(), segment.fingerprint()};
+}
+
+}  // namespace orbweaver::archive

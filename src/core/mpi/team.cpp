@@ -1,0 +1,154 @@
+#include "orbweaver/core/mpi/team.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <climits>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "orbweaver/core/mpi/check_mpi.hpp"
+
+namespace orbweaver::core {
+
+struct Team::Problem {
+  enum class Kind : std::uint64_t { none, numerical, not_finite, other, alike };  // alike: fine if all have it
+  Kind kind = Kind::none;
+  std::string text;
+};
+
+/// What a member says when it meets the others.
+struct Team::Word {
+  std::uint64_t step;
+  std::uint64_t place;
+  std::uint64_t digest;
+  std::uint64_t kind;
+};
+
+namespace {
+
+constexpr std::size_t words = 4;
+
+/// Sleeps until `request` is done: short at first, then up to 2 ms.
+void wait_asleep(MPI_Request& request) {
+  std::chrono::microseconds sleep{50};
+  for (;;) {
+    int done = 0;
+    check_mpi(MPI_Test(&request, &done, MPI_STATUS_IGNORE), "MPI_Test");
+    if (done != 0) return;
+    std::this_thread::sleep_for(sleep);
+    sleep = std::min(sleep + sleep / 4, std::chrono::microseconds(2000));
+  }
+}
+
+}  // namespace
+
+std::uint64_t digest_of(std::string_view bytes) {
+  std::uint64_t digest = 14695981039346656037U;
+  for (const char c : bytes) digest = (digest ^ static_cast<unsigned char>(c)) * 1099511628211U;
+  return digest;
+}
+
+Team::Team(MPI_Comm comm) : _comm(comm) {}
+
+void Team::begin() {
+  _fallen_apart.reset();
+  _step = 0;
+}
+
+Team::Problem Team::attempt(const std::function<void()>& work) {
+  try {
+    work();
+    return {};
+  } catch (const TeamError&) {
+    throw;  // met already
+  } catch (const NotFiniteError& error) {
+    return {Problem::Kind::not_finite, error.what()};
+  } catch (const NumericalError& error) {
+    return {Problem::Kind::numerical, error.what()};
+  } catch (const std::exception& error) {
+    return {Problem::Kind::other, error.what()};
+  } catch (...) {
+    return {Problem::Kind::other, "something that is not an exception was thrown"};
+  }
+}
+
+void Team::meet(std::string_view place, std::uint64_t digest, const Problem& problem) {
+  if (_fallen_apart) throw TeamError(*_fallen_apart);
+  const Word mine{++_step, digest_of(place), digest, static_cast<std::uint64_t>(problem.kind)};
+  std::vector<Word> all(static_cast<std::size_t>(size()));
+  check_mpi(MPI_Allgather(&mine, words, MPI_UINT64_T, all.data(), words, MPI_UINT64_T, comm()), "MPI_Allgather");
+  int speaker = -1;  // the first with a problem
+  bool together = true;
+  bool alike = true;
+  for (int m = 0; m < size(); ++m) {
+    const Word& word = all[static_cast<std::size_t>(m)];
+    if (speaker < 0 && word.kind != 0) speaker = m;
+    together = together && word.step == all[0].step && word.place == all[0].place && word.digest == all[0].digest;
+    alike = alike && word.kind == static_cast<std::uint64_t>(Problem::Kind::alike);
+  }
+  if (together && (speaker < 0 || alike)) return;
+  std::string text;
+  if (speaker >= 0) {
+    char buffer[1024] = {};
+    problem.text.copy(buffer, sizeof buffer - 1);
+    check_mpi(MPI_Bcast(buffer, sizeof buffer, MPI_CHAR, speaker, comm()), "MPI_Bcast");
+    text = buffer;
+    const auto kind = static_cast<Problem::Kind>(all[static_cast<std::size_t>(speaker)].kind);
+    if (together && kind == Problem::Kind::not_finite) throw NotFiniteError(text);
+    if (together && kind == Problem::Kind::numerical) throw NumericalError(text);
+    text = fmt::format("member {} of a team of {} failed: {}", speaker, size(), text);
+  } else {
+    text = fmt::format(
+        "the members of a team of {} came to different numbers or different places (member 0 at step {}); are their "
+        "CPUs of one type?",
+        size(), all[0].step);
+  }
+  _fallen_apart = text;
+  throw TeamError(text);
+}
+
+void Team::divide(std::string_view place, int count, int width, double* values,
+                  const std::function<void(int, int)>& work) {
+  const Part mine = part_of(rank(), count);
+  meet(place, static_cast<std::uint64_t>(count), attempt([&] { work(mine.begin, mine.end); }));
+  if (size() == 1) return;
+  std::vector<int> counts;
+  std::vector<int> starts;
+  for (int m = 0; m < size(); ++m) {
+    const Part part = part_of(m, count);
+    counts.push_back(part.end - part.begin);
+    starts.push_back(part.begin);
+  }
+  MPI_Datatype thing = MPI_DATATYPE_NULL;
+  check_mpi(MPI_Type_contiguous(width, MPI_DOUBLE, &thing), "MPI_Type_contiguous");
+  check_mpi(MPI_Type_commit(&thing), "MPI_Type_commit");
+  const int code =
+      MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, values, counts.data(), starts.data(), thing, comm());
+  MPI_Type_free(&thing);
+  check_mpi(code, "MPI_Allgatherv");
+}
+
+void Team::together(std::string_view place, const std::function<void()>& work) { meet(place, 0, attempt(work)); }
+
+void Team::compare(std::string_view place, std::uint64_t digest) { meet(place, digest, {}); }
+
+void Team::end(const std::optional<std::string>& error, std::uint64_t digest) {
+  if (_fallen_apart) return;
+  if (error) digest ^= digest_of(*error);
+  meet("the end of a task", digest, error ? Problem{Problem::Kind::alike, *error} : Problem{});
+}
+
+void Team::broadcast(std::string& bytes) {
+  auto length = static_cast<std::uint64_t>(bytes.size());
+  MPI_Request request = MPI_REQUEST_NULL;
+  check_mpi(MPI_Ibcast(&length, 1, MPI_UINT64_T, 0, comm(), &request), "MPI_Ibcast");
+  wait_asleep(request);
+  require(length <= INT_MAX, "bytes for a team are more than MPI can send");
+  bytes.resize(length);
+  check_mpi(MPI_Bcast(bytes.data(), static_cast<int>(length), MPI_CHAR, 0, comm()), "MPI_Bcast");
+}
+
+}  // namespace orbweaver::core

@@ -1,0 +1,381 @@
+#include "orbweaver/equations/collocation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "chunked_box.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/equations/anderson.hpp"
+
+namespace orbweaver::equations {
+
+namespace {
+
+constexpr double two_pi = 2.0 * std::numbers::pi;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+bool Collocation::applies(const systems::System& system, const loop::FundamentalDomain& domain) {
+  if (!ChunkedBox::of_dimension(system.dimension()) || !domain.is_square()) return false;
+  return domain.reversor.has_value() || system.description().conservative;
+}
+
+Collocation::Collocation(const systems::System& system, const loop::FundamentalDomain& domain,
+                         std::vector<double> centre, std::vector<double> winding, int cells, const loop::TimeMap& map)
+    : _system(system),
+      _grid(loop::StaggeredGrid::shared(domain, cells)),
+      _map(map),
+      _centre(std::move(centre)),
+      _winding(std::move(winding)),
+      _borders(domain.reversor ? 1 : 2),
+      _ends(domain.ends()),
+      _box(ChunkedBox::of_dimension(system.dimension())) {
+  core::require(cells % ChunkedBox::lanes == 0, "the cells of a domain must fill the lanes of the box scheme");
+  const double h = _grid.spacing();
+  for (int j = 0; j < cells; ++j) _density.push_back(_map.density((j + 0.5) * h));
+  for (int j = 0; j <= cells; ++j) _node_density.push_back(_map.density(j * h));
+  _node_weights.assign(at(_grid.stride()), 0.0);
+  const bool mirrored = domain.reversor.has_value();
+  for (int j = 0; j <= cells; ++j) {
+    const double share = mirrored ? (j == 0 || j == cells ? 0.5 : 1.0) : (j < cells ? 1.0 : 0.0);
+    _node_weights[at(j)] = share / cells;
+  }
+  const std::size_t d = at(dimension());
+  _z.resize(d * at(cells));
+  _f.resize(d * at(cells));
+  _gradient.resize(d * at(cells));
+  _blocks.resize(d * d * at(cells));
+  _columns.resize(at(_borders) * d * at(_grid.stride()));
+  _nodal.resize(d * at(_grid.stride()));
+  _slope.resize(d * at(_grid.stride()));
+  _weights.assign(at(_borders * size()), 0.0);
+  _reference.assign(at(size()), 0.0);
+}
+
+Collocation::~Collocation() = default;
+
+void Collocation::precondition(double* r) const {
+  const core::LogEvent event(core::Event::precondition);
+  _box->solve(r);
+}
+
+void Collocation::set_conditions(std::span<const double> weights, std::span<const double> reference) {
+  core::require(weights.size() == _weights.size() && reference.size() == _reference.size(),
+                "conditions of another size than the points they are for");
+  std::copy(weights.begin(), weights.end(), _weights.begin());
+  std::copy(reference.begin(), reference.end(), _reference.begin());
+}
+
+bool Collocation::keeps_mean(int coordinate) const {
+  const loop::FundamentalDomain& domain = _grid.domain();
+  const bool shifted = domain.order > 1 && domain.generator(coordinate, coordinate) < 0.5;
+  const bool mirrored = domain.reversor && (*domain.reversor)(coordinate, coordinate) < 0.5;
+  return !shifted && !mirrored;
+}
+
+void Collocation::midpoint_states(const double* u) const {
+  const int m = cells();
+  _grid.to_midpoints(u, _z.data());
+  for (int i = 0; i < dimension(); ++i) {
+    double* z = _z.data() + i * m;
+    const double centre = _centre[at(i)];
+    const double winding = _winding[at(i)];
+    if (winding == 0.0) {
+      for (int j = 0; j < m; ++j) z[j] += centre;
+    } else {
+      for (int j = 0; j < m; ++j) z[j] += centre + winding * (j + 0.5) * _grid.spacing();
+    }
+  }
+}
+
+void Collocation::residual(const double* u, double* r) const {
+  const core::LogEvent event(core::Event::residual);
+  const int m = cells();
+  const int d = dimension();
+  const int stride = _grid.stride();
+  midpoint_states(u);
+  _system.field(at(m), _z.data(), _f.data());
+  const double scale = _grid.spacing() * u[period_at()] / two_pi;
+  if (_borders > 1) {
+    const double mu = u[period_at() + 1];
+    _system.energy_gradients(at(m), _z.data(), _gradient.data());
+    for (std::size_t q = 0; q < _f.size(); ++q) _f[q] += mu * _gradient[q];
+  }
+  for (int i = 0; i < d; ++i) {
+    const double* y = u + i * stride;
+    const double* f = _f.data() + i * m;
+    double* out = r + i * stride;
+    const double turning = _winding[at(i)] * _grid.spacing();
+    for (int j = 0; j < m; ++j) out[j] = y[j + 1] - y[j] + turning - scale * _density[at(j)] * f[j];
+    double end = 0.0;
+    for (int l = 0; l < d; ++l) end += _ends.left(i, l) * u[l * stride] + _ends.right(i, l) * u[l * stride + m];
+    out[m] = end;
+    for (int j = m + 1; j < stride; ++j) out[j] = 0.0;
+  }
+  const Eigen::Map<const Eigen::VectorXd> point(u, size());
+  const Eigen::Map<const Eigen::VectorXd> reference(_reference.data(), size());
+  for (int q = 0; q < _borders; ++q) {
+    const Eigen::Map<const Eigen::VectorXd> weights(_weights.data() + q * size(), size());
+    r[period_at() + q] = weights.dot(point - reference);
+  }
+}
+
+void Collocation::factor(const double* u) {
+  const core::LogEvent event(core::Event::factor);
+  const int m = cells();
+  const int d = dimension();
+  const int stride = _grid.stride();
+  midpoint_states(u);
+  _system.field_jacobian(at(m), _z.data(), _f.data(), _blocks.data());
+  const double period = u[period_at()];
+  const double scale = _grid.spacing() * period / two_pi;
+  double square = 0.0;
+  for (int e = 0; e < d * d; ++e) {
+    double* block = _blocks.data() + e * m;
+    for (int j = 0; j < m; ++j) {
+      square += block[j] * block[j];
+      block[j] *= scale * _density[at(j)];
+    }
+  }
+  _jacobian_rms = std::sqrt(square / m);
+  if (_borders > 1) _system.energy_gradients(at(m), _z.data(), _gradient.data());
+  for (int i = 0; i < d; ++i)
+    for (int j = 0; j < m; ++j) {
+      const double c = scale * _density[at(j)];
+      _columns[at(i * stride + j)] = -c * _f[at(i * m + j)] / period;
+      if (_borders > 1) _columns[at((d + i) * stride + j)] = -c * _gradient[at(i * m + j)];
+    }
+  ChunkedBox::Matrices matrices;
+  matrices.cells = m;
+  matrices.stride = stride;
+  matrices.blocks = _blocks.data();
+  matrices.columns = _columns.data();
+  matrices.borders = _borders;
+  matrices.left = _ends.left;
+  matrices.right = _ends.right;
+  std::vector<double> rows(at(_borders * d * stride));
+  double corner[4] = {};
+  for (int q = 0; q < _borders; ++q) {
+    std::copy_n(_weights.data() + q * size(), d * stride, rows.data() + q * d * stride);
+    for (int p = 0; p < _borders; ++p) corner[q * _borders + p] = _weights[at(q * size() + period_at() + p)];
+  }
+  matrices.rows = rows.data();
+  matrices.corner = corner;
+  _box->factor(matrices);
+}
+
+void Collocation::apply_jacobian(const double* v, double* r) const {
+  const int m = cells();
+  const int d = dimension();
+  const int stride = _grid.stride();
+  _grid.to_midpoints(v, _z.data());
+  for (int i = 0; i < d; ++i) {
+    const double* y = v + i * stride;
+    double* out = r + i * stride;
+    for (int j = 0; j < m; ++j) {
+      out[j] = y[j + 1] - y[j];
+      for (int l = 0; l < d; ++l) out[j] -= _blocks[at((i * d + l) * m + j)] * _z[at(l * m + j)];
+      for (int p = 0; p < _borders; ++p) out[j] += _columns[at((p * d + i) * stride + j)] * v[period_at() + p];
+    }
+    double end = 0.0;
+    for (int l = 0; l < d; ++l) end += _ends.left(i, l) * v[l * stride] + _ends.right(i, l) * v[l * stride + m];
+    out[m] = end;
+    for (int j = m + 1; j < stride; ++j) out[j] = 0.0;
+  }
+  const Eigen::Map<const Eigen::VectorXd> perturbation(v, size());
+  for (int q = 0; q < _borders; ++q)
+    r[period_at() + q] = Eigen::Map<const Eigen::VectorXd>(_weights.data() + q * size(), size()).dot(perturbation);
+}
+
+Collocation::Quality Collocation::quality(const double* u) const {
+  const int m = cells();
+  const int d = dimension();
+  const int stride = _grid.stride();
+  const double rate = two_pi / u[period_at()];
+  midpoint_states(u);
+  _system.field(at(m), _z.data(), _f.data());
+  double loss = 0.0;
+  double speed = 0.0;
+  for (int j = 0; j < m; ++j) {
+    double square = 0.0;
+    double moved = 0.0;
+    for (int i = 0; i < d; ++i) {
+      const double* y = u + i * stride;
+      const double f = _f[at(i * m + j)];
+      const double r = rate / _density[at(j)] * ((y[j + 1] - y[j]) / _grid.spacing() + _winding[at(i)]) - f;
+      square += r * r;
+      moved += f * f;
+    }
+    loss += _density[at(j)] * square / m;
+    speed += _density[at(j)] * moved / m;
+  }
+  double amplitude = 0.0;
+  double size = 0.0;
+  for (int i = 0; i < d; ++i) {
+    double mean = 0.0;
+    double square = 0.0;
+    for (int j = 0; j < m; ++j) {
+      const double z = _z[at(i * m + j)] - _centre[at(i)] - _winding[at(i)] * (j + 0.5) * _grid.spacing();
+      mean += _density[at(j)] * z / m;
+      square += _density[at(j)] * z * z / m;
+    }
+    // Over the whole loop the mean survives in coordinates that the symmetries leave alone.
+    if (!keeps_mean(i)) mean = 0.0;
+    amplitude += std::max(0.0, square - mean * mean);
+    size += square + (2.0 * mean + _centre[at(i)]) * _centre[at(i)];
+  }
+  // The loop between the points where it was solved.
+  _grid.at_nodes(u, _nodal.data(), _slope.data());
+  const int count = m + 1;
+  for (int i = 0; i < d; ++i)
+    for (int j = 0; j < count; ++j)
+      _nodal[at(i * count + j)] = _nodal[at(i * stride + j)] + _centre[at(i)] + _winding[at(i)] * j * _grid.spacing();
+  std::vector<double>& f = _node_field;
+  f.resize(at(d * count));
+  _system.field(at(count), _nodal.data(), f.data());
+  double between = 0.0;
+  for (int j = 0; j < count; ++j) {
+    double square = 0.0;
+    for (int i = 0; i < d; ++i) {
+      const double r =
+          rate / _node_density[at(j)] * (_slope[at(i * stride + j)] + _winding[at(i)]) - f[at(i * count + j)];
+      square += r * r;
+    }
+    between += _node_density[at(j)] * _node_weights[at(j)] * square;
+  }
+  return {std::sqrt(0.5 * (loss + between)), std::sqrt(speed), std::sqrt(amplitude), std::sqrt(size)};
+}
+
+double Collocation::distance(const double* a, const double* b) const {
+  const int m = cells();
+  std::vector<double>& difference = _difference;
+  difference.resize(at(dimension() * _grid.stride()));
+  for (std::size_t q = 0; q < difference.size(); ++q) difference[q] = a[q] - b[q];
+  _grid.to_midpoints(difference.data(), _z.data());
+  double square = 0.0;
+  for (int i = 0; i < dimension(); ++i)
+    for (int j = 0; j < m; ++j) square += _density[at(j)] * _z[at(i * m + j)] * _z[at(i * m + j)] / m;
+  return std::hypot(std::sqrt(square), (a[period_at()] - b[period_at()]) / b[period_at()]);
+}
+
+std::vector<double> Collocation::resampled(const Collocation& from, const std::vector<double>& u) const {
+  std::vector<double> out(at(size()), 0.0);
+  const int d = dimension();
+  const int count = cells() + 1;
+  std::vector<double> modes((2 * at(from._grid.cutoff()) + 1) * at(d));
+  from._grid.to_modes(u.data(), modes.data());
+  if (from._map == _map) {
+    _grid.from_modes(from._grid.cutoff(), modes.data(), out.data());
+  } else {
+    // z at this grid's nodes, which the other map has elsewhere: harmonics by rotation, node by node.
+    std::vector<double> turn_cos(at(count)), turn_sin(at(count)), c(at(count), 1.0), s(at(count), 0.0);
+    std::vector<double> z(at(d * _grid.stride()), 0.0);
+    for (int j = 0; j < count; ++j) {
+      const double there = from._map.inverse(_map.phase(j * _grid.spacing()));
+      turn_cos[at(j)] = std::cos(there);
+      turn_sin[at(j)] = std::sin(there);
+    }
+    for (int k = 0; k <= from._grid.cutoff(); ++k) {
+      for (int i = 0; i < d; ++i) {
+        const double a = modes[at((k == 0 ? 0 : 2 * k - 1) * d + i)];
+        const double b = k == 0 ? 0.0 : modes[at(2 * k * d + i)];
+        if (a == 0.0 && b == 0.0) continue;
+        double* to = z.data() + i * _grid.stride();
+        for (int j = 0; j < count; ++j) to[j] += a * c[at(j)] + b * s[at(j)];
+      }
+      for (int j = 0; j < count; ++j) {
+        const double next = c[at(j)] * turn_cos[at(j)] - s[at(j)] * turn_sin[at(j)];
+        s[at(j)] = c[at(j)] * turn_sin[at(j)] + s[at(j)] * turn_cos[at(j)];
+        c[at(j)] = next;
+      }
+    }
+    // Where angles turn over, n s changes with the map as well.
+    for (int i = 0; i < d; ++i)
+      if (_winding[at(i)] != 0.0)
+        for (int j = 0; j < count; ++j) {
+          const double here = j * _grid.spacing();
+          z[at(i * _grid.stride() + j)] += _winding[at(i)] * (from._map.inverse(_map.phase(here)) - here);
+        }
+    _grid.from_nodal(z.data(), out.data());
+  }
+  for (int q = 0; q < _borders; ++q) out[at(period_at() + q)] = u[at(from.period_at() + q)];
+  return out;
+}
+
+double Collocation::action(const double* u) const {
+  const int m = cells();
+  const auto d = at(dimension());
+  midpoint_states(u);
+  std::vector<double> state(d);
+  double sum = 0.0;
+  for (int j = 0; j < m; ++j) {
+    for (std::size_t i = 0; i < d; ++i) state[i] = _z[i * at(m) + at(j)];
+    sum += _density[at(j)] * _system.action_density(state);
+  }
+  return u[period_at()] * sum / m;
+}
+
+loop::Loop Collocation::to_loop(const double* u) const {
+  loop::Loop out;
+  out.dimension = dimension();
+  out.cutoff = _grid.cutoff();
+  out.period = u[period_at()];
+  out.winding = _winding;
+  out.time_map = _map;
+  out.modes.resize((2 * at(out.cutoff) + 1) * at(out.dimension));
+  _grid.to_modes(u, out.modes.data());
+  for (std::size_t i = 0; i < at(out.dimension); ++i) out.modes[i] += _centre[i];
+  return out;
+}
+
+void Collocation::from_loop(const loop::Loop& loop, double* u) const {
+  core::require(loop.time_map == _map, "the loop has another time map than the collocation points");
+  std::vector<double> modes = loop.modes;
+  for (std::size_t i = 0; i < at(dimension()); ++i) modes[i] -= _centre[i];
+  _grid.from_modes(loop.cutoff, modes.data(), u);
+  u[period_at()] = loop.period;
+  if (_borders > 1) u[period_at() + 1] = 0.0;
+}
+
+namespace {
+
+/// J v = e, e a unit in the first condition.
+class DirectionEquations final : public PreconditionedEquations {
+ public:
+  explicit DirectionEquations(const Collocation& equations) : _equations(equations) {}
+  [[nodiscard]] int size() const override { return _equations.size(); }
+  void residual(const double* v, double* r) const override {
+    _equations.apply_jacobian(v, r);
+    r[_equations.period_at()] -= 1.0;
+  }
+  void factor(const double*) override {}
+  void precondition(double* r) const override { _equations.precondition(r); }
+
+ private:
+  const Collocation& _equations;
+};
+
+}  // namespace
+
+std::vector<double> family_direction(Collocation& equations, const std::vector<double>& u) {
+  equations.factor(u.data());
+  DirectionEquations linear(equations);
+  AndersonSolver solver;
+  std::vector<double> direction(at(equations.size()), 0.0);
+  AndersonSolver::Options options;
+  options.tolerance = 1e-9;
+  options.rounding = 1e-10;
+  options.divergence = 1e6;
+  options.scaled_from = equations.period_at();
+  options.border_scale = std::min(1.0, equations.quality(u.data()).amplitude);
+  options.fresh_iterations = 40;
+  const AndersonSolver::Result result = solver.solve(linear, direction, false, options);
+  if (!result.converged) throw core::NumericalError("the direction of the family could not be computed");
+  return direction;
+}
+
+}  // namespace orbweaver::equations

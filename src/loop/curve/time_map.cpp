@@ -1,0 +1,178 @@
+#include "orbweaver/loop/curve/time_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/grid/fourier.hpp"
+
+namespace orbweaver::loop {
+
+namespace {
+
+constexpr double two_pi = 2.0 * std::numbers::pi;
+constexpr double whole = 1e-12;  // turns that differ from a whole number by less are rounding
+
+// cos ks and sin ks, from k to k + 1 by one turn.
+struct Wave {
+  double cosine;
+  double sine;
+  void turn(double c, double s) {
+    const double next = cosine * c - sine * s;
+    sine = sine * c + cosine * s;
+    cosine = next;
+  }
+};
+
+double pulse_density(double kappa, double cosine, double sine) {
+  return kappa / (cosine * cosine + kappa * kappa * sine * sine);
+}
+
+bool is_whole(double turns) { return std::abs(turns - std::round(turns)) < whole; }
+
+// Harmonics 2, 4, ... of the pulse's density are 2 q, 2 q^2, ...; below rounding from this harmonic on.
+double pulse_ratio(double kappa) { return (kappa - 1.0) / (kappa + 1.0); }
+int pulse_harmonics(double kappa) {
+  const double q = std::abs(pulse_ratio(kappa));
+  return q == 0.0 ? 0 : 2 * static_cast<int>(std::ceil(std::log(1e-17) / std::log(q)));
+}
+
+// Both at once: they share the harmonics.
+std::pair<double, double> phase_and_density(const TimeMap& map, double s) {
+  const double sine = std::sin(s);
+  const double cosine = std::cos(s);
+  double phase = s;
+  double density = 1.0;
+  if (map.kappa != 1.0) {
+    phase += std::atan2((map.kappa - 1.0) * sine * cosine, cosine * cosine + map.kappa * sine * sine);
+    density = pulse_density(map.kappa, cosine, sine);
+  }
+  Wave wave{cosine, sine};
+  for (std::size_t n = 0; 2 * n + 1 < map.coefficients.size(); ++n) {
+    const double c = map.coefficients[2 * n];
+    const double d = map.coefficients[2 * n + 1];
+    phase += (c * wave.sine + d * (1.0 - wave.cosine)) / static_cast<double>(n + 1);
+    density += c * wave.cosine + d * wave.sine;
+    wave.turn(cosine, sine);
+  }
+  return {phase, density};
+}
+
+}  // namespace
+
+bool TimeMap::is_identity() const {
+  return kappa == 1.0 && std::all_of(coefficients.begin(), coefficients.end(), [](double c) { return c == 0.0; });
+}
+
+double TimeMap::phase(double s) const { return phase_and_density(*this, s).first; }
+
+double TimeMap::density(double s) const { return phase_and_density(*this, s).second; }
+
+double TimeMap::inverse(double phase_wanted) const {
+  const double turns = std::floor(phase_wanted / two_pi);
+  const double wanted = phase_wanted - two_pi * turns;
+  double low = 0.0;
+  double high = two_pi;
+  double s = wanted;
+  if (coefficients.empty()) {  // tan s = tan(phase) / kappa, on the same branch
+    s = wanted + std::atan2((1.0 / kappa - 1.0) * std::sin(wanted) * std::cos(wanted),
+                            std::cos(wanted) * std::cos(wanted) + std::sin(wanted) * std::sin(wanted) / kappa);
+    return s + two_pi * turns;
+  }
+  double last = two_pi;
+  for (int n = 0; n < 200; ++n) {
+    const auto [here, slope] = phase_and_density(*this, s);
+    const double excess = here - wanted;
+    (excess > 0.0 ? high : low) = s;
+    double next = s - excess / slope;
+    // Newton's steps may go to and fro within the bracket for ever: they must halve.
+    const bool newton = next > low && next < high && std::abs(next - s) <= 0.5 * last;
+    if (!newton) next = 0.5 * (low + high);
+    last = std::abs(next - s);
+    s = next;
+    if (last < 1e-15 || (newton && last < 1e-9)) break;  // Newton's next step would be of the order of its square
+  }
+  return s + two_pi * turns;
+}
+
+bool TimeMap::is_invariant_under_shift(double turns) const {
+  if (kappa != 1.0 && !is_whole(2.0 * turns)) return false;
+  for (std::size_t n = 0; n < coefficients.size(); ++n)
+    if (coefficients[n] != 0.0 && !is_whole(static_cast<double>(n / 2 + 1) * turns)) return false;
+  return true;
+}
+
+TimeMap TimeMap::shifted(double shift) const {
+  if (is_invariant_under_shift(shift / two_pi)) return *this;
+  TimeMap out = *this;
+  if (kappa != 1.0 && !is_whole(2.0 * shift / two_pi)) {
+    const auto harmonics = static_cast<std::size_t>(pulse_harmonics(kappa));
+    out.kappa = 1.0;
+    out.coefficients.resize(std::max(coefficients.size(), 2 * harmonics), 0.0);
+    double power = 2.0;
+    for (std::size_t k = 2; k <= harmonics; k += 2) {
+      power *= pulse_ratio(kappa);
+      out.coefficients[2 * (k - 1)] += power;
+    }
+  }
+  for (std::size_t n = 0; 2 * n + 1 < out.coefficients.size(); ++n) {
+    const double turns = static_cast<double>(n + 1) * (shift / two_pi);
+    const double angle = two_pi * (turns - std::floor(turns));
+    const double c = out.coefficients[2 * n];
+    const double d = out.coefficients[2 * n + 1];
+    out.coefficients[2 * n] = c * std::cos(angle) + d * std::sin(angle);
+    out.coefficients[2 * n + 1] = d * std::cos(angle) - c * std::sin(angle);
+  }
+  return out;
+}
+
+TimeMap TimeMap::reversed() const {
+  TimeMap out = *this;
+  for (std::size_t n = 1; n < out.coefficients.size(); n += 2) out.coefficients[n] = -out.coefficients[n];
+  return out;
+}
+
+std::vector<double> densities(const TimeMap& map, int nodes) {
+  std::vector<double> out(static_cast<std::size_t>(nodes), 1.0);
+  if (!map.coefficients.empty()) {
+    const auto highest = static_cast<int>(map.coefficients.size() / 2);
+    core::require(2 * highest < nodes, "too few nodes for this time map");
+    std::vector<double> modes{1.0};
+    modes.insert(modes.end(), map.coefficients.begin(), map.coefficients.end());
+    FourierGrid::of_size(nodes).synthesize(highest, 1, modes.data(), out.data());
+  }
+  if (map.kappa != 1.0)
+    for (std::size_t j = 0; j < out.size(); ++j) {
+      const double s = two_pi * static_cast<double>(j) / nodes;
+      out[j] += pulse_density(map.kappa, std::cos(s), std::sin(s)) - 1.0;
+    }
+  return out;
+}
+
+int nodes_to_resolve(const TimeMap& map) {
+  return std::max(pulse_harmonics(map.kappa), static_cast<int>(map.coefficients.size()) + 2);
+}
+
+std::vector<double> to_numbers(const TimeMap& map) {
+  if (map.is_identity()) return {};
+  std::vector<double> out{map.kappa};
+  out.insert(out.end(), map.coefficients.begin(), map.coefficients.end());
+  return out;
+}
+
+TimeMap time_map_of(const std::vector<double>& numbers) {
+  if (numbers.empty()) return {};
+  core::require(numbers.size() % 2 == 1, "a time map needs kappa and pairs of coefficients");
+  core::require(std::all_of(numbers.begin(), numbers.end(), [](double v) { return std::isfinite(v); }),
+                "a time map's numbers must be finite");
+  core::require(numbers.front() > 0.0, "a time map's kappa must be positive");
+  TimeMap map{numbers.front(), {numbers.begin() + 1, numbers.end()}};
+  const auto samples = static_cast<int>(16 * (numbers.size() + 1));
+  for (int n = 0; n < samples; ++n)
+    core::require(map.density(two_pi * n / samples) > 0.0, "a time map must run forward everywhere");
+  return map;
+}
+
+}  // namespace orbweaver::loop

@@ -1,0 +1,37 @@
+#include "orbweaver/loop/curve/time_samples.hpp"
+
+#include <algorithm>
+
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/grid/fourier.hpp"
+#include "resampled.hpp"
+
+namespace orbweaver::loop {
+
+TimeSamples time_samples(const Loop& loop, int count) {
+  core::require(count >= 1, "samples in time need a count of at least 1");
+  return {loop.dimension, count, loop.period, loop.winding, resampled(loop, {}, count)};
+}
+
+Loop interpolant(const TimeSamples& samples) {
+  core::require(samples.count >= 4, "a loop's interpolant needs four samples or more");
+  Loop out;
+  out.dimension = samples.dimension;
+  out.cutoff = samples.count % 2 == 0 ? samples.count / 2 - 1 : samples.count / 2;
+  out.period = samples.period;
+  out.winding = samples.winding;
+  out.modes.resize((2 * static_cast<std::size_t>(out.cutoff) + 1) * static_cast<std::size_t>(out.dimension));
+  FourierGrid::of_size(samples.count).analyze(out.cutoff, out.dimension, samples.states.data(), out.modes.data());
+  return out;
+}
+
+Loop resolved_in_time(const Loop& loop) {
+  if (loop.time_map.is_identity()) return loop;
+  const double negligible = std::max(1e-12, 2.0 * tail(loop));
+  for (int count = time_sample_count;; count *= 2) {
+    Loop out = interpolant(time_samples(loop, count));
+    if (tail(out) <= negligible || out.cutoff >= 8 * loop.cutoff) return out;
+  }
+}
+
+}  // namespace orbweaver::loop

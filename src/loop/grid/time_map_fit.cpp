@@ -1,0 +1,182 @@
+#include "orbweaver/loop/grid/time_map_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/grid/fourier.hpp"
+
+namespace orbweaver::loop {
+
+namespace {
+
+constexpr double two_pi = 2.0 * std::numbers::pi;
+constexpr double least_density = 0.02;
+constexpr int ladder_end = 20;  // kappa up to 2^(20/4)
+constexpr int first_order = 4;
+constexpr int last_order = 7;
+
+// Candidates that would need more harmonics than the loop has are no gain: they count as that many.
+TimeMapFit under(const Loop& loop, const TimeMap& map, double tolerance) {
+  return {map, harmonics_above(with_time_map(loop, map, loop.cutoff), tolerance)};
+}
+
+Loop without_tail(const Loop& loop, double tolerance) {
+  return with_cutoff(loop, std::min(loop.cutoff, harmonics_above(loop, tolerance) + 8));
+}
+
+// log(|d^q z/ds^q| / q!) / q at nodes, with k measured in cutoffs so that no power overflows.
+std::vector<double> log_derivative(const Loop& loop, int order, int nodes) {
+  Loop derivative = loop;
+  for (int i = 0; i < loop.dimension; ++i) derivative.cosine(0, i) = 0.0;
+  for (int k = 1; k <= loop.cutoff; ++k) {
+    const double factor = std::pow(static_cast<double>(k) / loop.cutoff, order);
+    for (int i = 0; i < loop.dimension; ++i) {
+      double a = loop.cosine(k, i);
+      double b = loop.sine(k, i);
+      for (int turn = 0; turn < order % 4; ++turn) {
+        std::swap(a, b);
+        b = -b;
+      }
+      derivative.cosine(k, i) = factor * a;
+      derivative.sine(k, i) = factor * b;
+    }
+  }
+  const auto n = static_cast<std::size_t>(nodes);
+  std::vector<double> nodal(static_cast<std::size_t>(loop.dimension) * n);
+  FourierGrid::of_size(nodes).synthesize(loop.cutoff, loop.dimension, derivative.modes.data(), nodal.data());
+  std::vector<double> out(n, 1e-300);
+  for (std::size_t m = 0; m < nodal.size(); ++m) out[m % n] += nodal[m] * nodal[m];
+  for (double& v : out) v = (0.5 * std::log(v) + order * std::log(loop.cutoff) - std::lgamma(order + 1.0)) / order;
+  return out;
+}
+
+// The inverse distance of the nearest singularity in the plane of s, at nodes, scaled to mean 1.
+std::vector<double> inverse_distance(const Loop& loop, int nodes) {
+  std::vector<double> monitor(static_cast<std::size_t>(nodes), 0.0);
+  for (int q = first_order; q <= last_order; ++q) {
+    const std::vector<double> of_order = log_derivative(loop, q, nodes);
+    for (std::size_t j = 0; j < monitor.size(); ++j) monitor[j] += of_order[j] / (last_order - first_order + 1);
+  }
+  double mean = 0.0;
+  for (double& v : monitor) mean += v = std::exp(v);
+  for (double& v : monitor) v *= nodes / mean;
+  return monitor;
+}
+
+// s + integral of (rate - 1) ds from 0, at nodes, for a rate with mean 1.
+std::vector<double> integrated(const std::vector<double>& rate) {
+  const auto nodes = static_cast<int>(rate.size());
+  const int highest = (nodes - 1) / 2;
+  std::vector<double> modes(2 * static_cast<std::size_t>(highest) + 1);
+  FourierGrid::of_size(nodes).analyze(highest, 1, rate.data(), modes.data());
+  modes[0] = 0.0;
+  for (std::size_t k = 1; 2 * k < modes.size(); ++k) {
+    const double a = modes[2 * k - 1];
+    modes[2 * k - 1] = -modes[2 * k] / static_cast<double>(k);
+    modes[2 * k] = a / static_cast<double>(k);
+  }
+  std::vector<double> out(rate.size());
+  FourierGrid::of_size(nodes).synthesize(highest, 1, modes.data(), out.data());
+  const double start = out.front();
+  for (std::size_t j = 0; j < out.size(); ++j) out[j] += two_pi * static_cast<double>(j) / nodes - start;
+  return out;
+}
+
+// What of c cos ks + d sin ks is invariant under one symmetry.
+void make_invariant(const SymmetryElement& g, int k, double& c, double& d) {
+  const int turns = k * g.shift_numerator % g.shift_denominator;
+  if (!g.reversing) {
+    if (turns != 0) c = d = 0.0;
+    return;
+  }
+  const double angle = two_pi * turns / g.shift_denominator;
+  const double reflected_c = c * std::cos(angle) + d * std::sin(angle);
+  const double reflected_d = c * std::sin(angle) - d * std::cos(angle);
+  c = 0.5 * (c + reflected_c);
+  d = 0.5 * (d + reflected_d);
+}
+
+}  // namespace
+
+int harmonics_above(const Loop& loop, double tolerance) {
+  for (int k = loop.cutoff; k >= 1; --k) {
+    double sum = 0.0;
+    for (int i = 0; i < loop.dimension; ++i)
+      sum += loop.cosine(k, i) * loop.cosine(k, i) + loop.sine(k, i) * loop.sine(k, i);
+    if (std::sqrt(sum) > tolerance) return k;
+  }
+  return 0;
+}
+
+TimeMap with_least_density(TimeMap map, double least) {
+  core::require(map.kappa == 1.0 && least < 1.0, "only the coefficients of a time map can be shrunk");
+  if (map.coefficients.empty()) return map;
+  const std::vector<double> density = densities(map, 64 * static_cast<int>(map.coefficients.size()));
+  const double lowest = *std::min_element(density.begin(), density.end());
+  if (lowest < least)
+    for (double& c : map.coefficients) c *= (1.0 - least) / (1.0 - lowest);
+  return map;
+}
+
+TimeMapFit fit_kappa(const Loop& loop, double tolerance) {
+  const Loop shorter = without_tail(loop, tolerance);
+  TimeMapFit best = under(shorter, {}, tolerance);
+  for (const int direction : {1, -1})
+    for (int j = 1; j <= ladder_end; ++j) {
+      const TimeMapFit next = under(shorter, {std::pow(2.0, 0.25 * direction * j), {}}, tolerance);
+      if (next.harmonics < best.harmonics) best = next;
+      if (next.harmonics > 1.3 * best.harmonics) break;
+    }
+  return best;
+}
+
+TimeMapFit fit_general(const Loop& loop, const Isotropy& isotropy, double tolerance, int most) {
+  core::require(most >= 1, "a general time map needs at least one harmonic");
+  const Loop shorter = without_tail(loop, tolerance);
+  if (harmonics_above(shorter, tolerance) == 0) return {};
+  const int nodes = FourierGrid::nodes_at_least(2 * nodes_for(shorter));
+  const std::vector<double> s = integrated(inverse_distance(shorter, nodes));
+  const std::vector<double> weights = densities(loop.time_map, nodes);
+  TimeMap map;
+  for (int k = 1; k <= most; ++k) {
+    double c = 0.0;
+    double d = 0.0;
+    for (std::size_t j = 0; j < s.size(); ++j) {
+      c += weights[j] * std::cos(k * s[j]);
+      d += weights[j] * std::sin(k * s[j]);
+    }
+    for (const SymmetryElement& g : isotropy) make_invariant(g, k, c, d);
+    const double x = std::numbers::pi * k / (most + 1);
+    const double low_pass = 2.0 / nodes * std::sin(x) / x;
+    map.coefficients.push_back(low_pass * c);
+    map.coefficients.push_back(low_pass * d);
+  }
+  return under(shorter, with_least_density(map, least_density), tolerance);
+}
+
+TimeMapFit fit_time_map(const Loop& loop, const Isotropy& isotropy, double tolerance, double pays) {
+  const TimeMapFit own{loop.time_map, harmonics_above(loop, tolerance)};
+  TimeMapFit best = fit_kappa(loop, tolerance);
+  if (!is_invariant(best.map, isotropy)) best = under(without_tail(loop, tolerance), {}, tolerance);
+  const TimeMapFit general = fit_general(loop, isotropy, tolerance);
+  if (general.harmonics < best.harmonics) best = general;
+  return best.harmonics <= pays * own.harmonics ? best : own;
+}
+
+bool is_invariant(const TimeMap& map, const Isotropy& isotropy) {
+  return std::all_of(isotropy.begin(), isotropy.end(), [&](const SymmetryElement& g) {
+    if (!g.reversing) return map.is_invariant_under_shift(g.shift());
+    if (map.kappa != 1.0 && 2 * g.shift_numerator % g.shift_denominator != 0) return false;
+    for (std::size_t n = 0; 2 * n + 1 < map.coefficients.size(); ++n) {
+      double c = map.coefficients[2 * n];
+      double d = map.coefficients[2 * n + 1];
+      make_invariant(g, static_cast<int>(n + 1), c, d);
+      if (std::abs(c - map.coefficients[2 * n]) + std::abs(d - map.coefficients[2 * n + 1]) > 1e-14) return false;
+    }
+    return true;
+  });
+}
+
+}  // namespace orbweaver::loop

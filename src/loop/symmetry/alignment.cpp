@@ -1,0 +1,157 @@
+#include "orbweaver/loop/symmetry/alignment.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/time_samples.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
+#include "orbweaver/loop/symmetry/shift_search.hpp"
+
+namespace orbweaver::loop {
+
+namespace {
+
+constexpr double two_pi = 2.0 * std::numbers::pi;
+constexpr double equally_close = 1e-12;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+struct Candidate {
+  std::string name;
+  bool reversing;
+  Eigen::MatrixXd matrix;
+};
+
+std::vector<Candidate> candidates_of(const systems::Description& system) {
+  const int d = system.dimension();
+  std::vector<Candidate> out{{"1", false, Eigen::MatrixXd::Identity(d, d)}};
+  for (const systems::Symmetry& s : system.equivariances) out.push_back({s.name, false, s.matrix});
+  for (const systems::Symmetry& r : system.reversors) out.push_back({r.name, true, r.matrix});
+  if (system.reversors.empty()) return out;
+  const systems::Symmetry& first = system.reversors.front();
+  for (const systems::Symmetry& s : system.equivariances) {
+    const Eigen::MatrixXd matrix = first.matrix * s.matrix;
+    const auto is_known = [&](const Candidate& c) { return c.reversing && c.matrix.isApprox(matrix, 1e-9); };
+    if (std::none_of(out.begin(), out.end(), is_known)) out.push_back({first.name + s.name, true, matrix});
+  }
+  return out;
+}
+
+// Either way from 0, in periods.
+double length_of(double shift) { return std::abs(shift - std::round(shift)); }
+
+double in_period(double shift) {
+  const double part = shift - std::floor(shift);
+  return part < 1.0 ? part : 0.0;
+}
+
+// The closest shift under one candidate; of equally close ones the smallest.
+Alignment closest(const Candidate& candidate, const Loop& from, const Loop& to, const std::vector<int>& angles) {
+  Alignment best{candidate.name, candidate.reversing, candidate.matrix, 0.0, {}, infinity};
+  const Loop image = transformed(from, candidate.matrix, candidate.reversing, 0.0);
+  if (image.winding != to.winding) return best;
+  const std::vector<ShiftMinimum> minima = shift_minima(image, to, angles);
+  // Correlations know D only to 1e-8 of the loop: what is as close as that is compared by the loops themselves.
+  const double within = minima.front().square + 1e-9 * (1.0 + std::pow(rms_size(to), 2));
+  for (const ShiftMinimum& minimum : minima) {
+    if (minimum.square > within) break;
+    // w(t) = y(t + psi) with y = M^-1 z(+-t): the shift of z counts backwards if reversing.
+    const double shift = in_period(candidate.reversing ? -minimum.shift : minimum.shift);
+    std::vector<double> turns;
+    const double psi = candidate.reversing ? -shift : shift;
+    const double distance = rms_size(difference_at(image, to, angles, psi, &turns));
+    const double gain = best.distance - distance;
+    if (gain > equally_close || (gain > -equally_close && length_of(shift) < length_of(best.shift))) {
+      best.shift = shift;
+      best.turns = turns;
+      best.distance = distance;
+    }
+  }
+  return best;
+}
+
+Alignment closest(const systems::Description& system, const Loop& from, const Loop& to) {
+  Alignment best;
+  for (const Candidate& candidate : candidates_of(system)) {
+    Alignment found = closest(candidate, from, to, system.angles);
+    if (best.name.empty() || found.distance < best.distance - equally_close) best = std::move(found);
+  }
+  return best;
+}
+
+Loop coarse(const Loop& loop) { return loop.time_map.is_identity() ? loop : interpolant(time_samples(loop)); }
+
+}  // namespace
+
+Alignment align(const systems::Description& system, const Loop& from, const Loop& to, double hopeless) {
+  core::require(from.dimension == to.dimension && from.dimension == system.dimension(),
+                "loops of different dimension cannot be aligned");
+  if (std::isfinite(hopeless)) {
+    Alignment best = closest(system, coarse(from), coarse(to));
+    if (best.distance > hopeless || (from.time_map.is_identity() && to.time_map.is_identity())) return best;
+  }
+  return closest(system, resolved_in_time(from), resolved_in_time(to));
+}
+
+Loop aligned(const Loop& from, const Alignment& alignment) {
+  Loop out = transformed(from, alignment.matrix, alignment.reversing, alignment.shift);
+  for (std::size_t i = 0; i < alignment.turns.size(); ++i)
+    out.cosine(0, static_cast<int>(i)) += two_pi * alignment.turns[i];
+  return out;
+}
+
+namespace {
+
+bool winds_by_multiples_of(const Loop& loop, int m) {
+  return std::all_of(loop.winding.begin(), loop.winding.end(), [m](double n) { return std::fmod(n, m) == 0.0; });
+}
+
+// False only where no harmonic but multiples of `prime` can be below `tolerance`: by samples, whatever the time map. A
+// shift by T/prime changes a harmonic by at most twice its size.
+bool may_repeat(const Loop& loop, int prime, double tolerance) {
+  const int step = (time_sample_count + prime - 1) / prime;
+  const TimeSamples samples = time_samples(loop, step * prime);
+  double sum = 0.0;
+  for (int i = 0; i < samples.dimension; ++i)
+    for (int j = 0; j < samples.count; ++j) {
+      const double* z = samples.states.data() + static_cast<std::ptrdiff_t>(i) * samples.count;
+      const double change = z[(j + step) % samples.count] - z[j];
+      sum += change * change;
+    }
+  return std::sqrt(sum / samples.count) <= 4.0 * tolerance;
+}
+
+}  // namespace
+
+int repetitions(const Loop& loop, double tolerance) {
+  const auto may = [&](int prime) { return may_repeat(loop, prime, tolerance); };
+  if (!loop.time_map.is_identity() && !may(2) && !may(3) && !may(5) && !may(7) && !may(11)) return 1;
+  const Loop even = resolved_in_time(loop);
+  for (int m = 12; m > 1; --m) {
+    double sum = 0.0;
+    for (int k = 1; k <= even.cutoff; ++k)
+      for (int i = 0; i < even.dimension && k % m != 0; ++i)
+        sum += 0.5 * (even.cosine(k, i) * even.cosine(k, i) + even.sine(k, i) * even.sine(k, i));
+    if (std::sqrt(sum) <= tolerance && winds_by_multiples_of(even, m)) return m;
+  }
+  return 1;
+}
+
+Loop without_repetition(const Loop& loop, int m) {
+  core::require(m >= 1 && winds_by_multiples_of(loop, m), "a loop goes a whole number of times around a shorter one");
+  if (m == 1) return loop;
+  const Loop even = resolved_in_time(loop);
+  Loop out = with_cutoff(even, std::max(1, even.cutoff / m));
+  out.period = even.period / m;
+  for (double& n : out.winding) n /= m;
+  for (int k = 1; k <= out.cutoff; ++k)
+    for (int i = 0; i < out.dimension; ++i) {
+      out.cosine(k, i) = k * m <= even.cutoff ? even.cosine(k * m, i) : 0.0;
+      out.sine(k, i) = k * m <= even.cutoff ? even.sine(k * m, i) : 0.0;
+    }
+  return out;
+}
+
+}  // namespace orbweaver::loop

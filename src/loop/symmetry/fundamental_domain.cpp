@@ -1,0 +1,88 @@
+#include "orbweaver/loop/symmetry/fundamental_domain.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace orbweaver::loop {
+
+namespace {
+
+using Eigen::MatrixXd;
+
+/// Rows that vanish exactly on the fixed space of `matrix`: sparse where the matrix is diagonal, orthonormal otherwise.
+MatrixXd conditions_of_fixed_space(const MatrixXd& matrix) {
+  const Eigen::Index d = matrix.rows();
+  const MatrixXd moved = matrix - MatrixXd::Identity(d, d);
+  MatrixXd rows(0, d);
+  const auto add = [&rows](const Eigen::RowVectorXd& row) {
+    rows.conservativeResize(rows.rows() + 1, Eigen::NoChange);
+    rows.row(rows.rows() - 1) = row;
+  };
+  if (moved.isDiagonal(1e-12)) {
+    for (Eigen::Index i = 0; i < d; ++i)
+      if (std::abs(moved(i, i)) > 1e-12) add(Eigen::RowVectorXd::Unit(d, i));
+    return rows;
+  }
+  const Eigen::JacobiSVD<MatrixXd> svd(moved, Eigen::ComputeFullV);
+  for (Eigen::Index n = 0; n < d; ++n)
+    if (svd.singularValues()(n) > 1e-9) add(svd.matrixV().col(n).transpose());
+  return rows;
+}
+
+/// g with z(t + T/q) = g z(t), from a symmetry of shift numerator / q.
+MatrixXd least_shift(const SymmetryElement& element) {
+  const int q = element.shift_denominator;
+  MatrixXd power = MatrixXd::Identity(element.matrix.rows(), element.matrix.cols());
+  for (int n = 0; n < q; ++n) {
+    if (n * element.shift_numerator % q == 1 % q) return power;
+    power = element.matrix * power;
+  }
+  return power;
+}
+
+}  // namespace
+
+FundamentalDomain::Ends FundamentalDomain::ends() const {
+  const Eigen::Index d = generator.rows();
+  if (!reversor) return {generator, -MatrixXd::Identity(d, d)};
+  const MatrixXd at_start = conditions_of_fixed_space(*reversor);
+  const MatrixXd at_end = conditions_of_fixed_space(generator * *reversor);
+  const Eigen::Index count = at_start.rows() + at_end.rows();
+  Ends out{MatrixXd::Zero(count, d), MatrixXd::Zero(count, d)};
+  out.left.topRows(at_start.rows()) = at_start;
+  out.right.bottomRows(at_end.rows()) = at_end;
+  return out;
+}
+
+bool FundamentalDomain::expresses(const Isotropy& isotropy) const {
+  return std::all_of(isotropy.begin(), isotropy.end(), [this](const SymmetryElement& element) {
+    if (element.reversing && !reversor) return false;
+    MatrixXd power = element.reversing ? *reversor : MatrixXd::Identity(generator.rows(), generator.cols());
+    for (int n = 0; n < order; ++n) {
+      const double turns = element.shift() - static_cast<double>(n) / order;
+      if (std::abs(turns - std::round(turns)) < 1e-9 && (power - element.matrix).norm() < 1e-9) return true;
+      power = generator * power;
+    }
+    return false;
+  });
+}
+
+bool FundamentalDomain::is_square() const { return ends().left.rows() == generator.rows(); }
+
+FundamentalDomain fundamental_domain(const Isotropy& isotropy, int dimension) {
+  FundamentalDomain domain;
+  domain.generator = MatrixXd::Identity(dimension, dimension);
+  for (const SymmetryElement& element : isotropy) {
+    const int q = element.shift_denominator;
+    const bool proper = element.shift_numerator % q != 0;
+    if (!element.reversing && proper && q > domain.order) {
+      domain.order = q;
+      domain.generator = least_shift(element);
+    } else if (element.reversing && !proper && !domain.reversor) {
+      domain.reversor = element.matrix;
+    }
+  }
+  return domain;
+}
+
+}  // namespace orbweaver::loop

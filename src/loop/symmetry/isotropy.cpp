@@ -1,0 +1,181 @@
+#include "orbweaver/loop/symmetry/isotropy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/symmetry/subspace.hpp"
+
+namespace orbweaver::loop {
+
+namespace {
+
+void apply_matrix(const Eigen::MatrixXd& matrix, Loop& loop) {
+  const auto rows = static_cast<Eigen::Index>(2 * loop.cutoff + 1);
+  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> modes(loop.modes.data(), rows,
+                                                                                           loop.dimension);
+  modes = (modes * matrix.transpose()).eval();
+  Eigen::Map<Eigen::VectorXd> winding(loop.winding.data(), loop.dimension);
+  winding = (matrix * winding).eval();
+}
+
+Loop reversed(const Loop& loop) {
+  Loop out = loop;
+  for (int k = 1; k <= loop.cutoff; ++k)
+    for (int i = 0; i < loop.dimension; ++i) out.sine(k, i) = -loop.sine(k, i);
+  for (double& n : out.winding) n = -n;
+  out.time_map = loop.time_map.reversed();
+  return out;
+}
+
+// Shifts the means of the angles by whole turns to those of `target`.
+void reduce_angles_to(const Loop& target, const std::vector<int>& angles, Loop& loop) {
+  for (const int i : angles) {
+    const double turns = std::round((loop.cosine(0, i) - target.cosine(0, i)) / (2.0 * std::numbers::pi));
+    loop.cosine(0, i) -= 2.0 * std::numbers::pi * turns;
+  }
+}
+
+// Enough harmonics to see every pattern of shifts with denominators up to 12.
+constexpr int pattern_cutoff = 12;
+
+std::optional<SymmetryElement> match(const systems::Symmetry& declared, bool reversing,
+                                     const systems::Description& system, const Loop& loop, double tolerance,
+                                     int max_denominator) {
+  for (int q = 1; q <= max_denominator; ++q)
+    for (int p = 0; p < q; ++p) {
+      if (std::gcd(p, q) != 1) continue;
+      SymmetryElement element{declared.name, reversing, declared.matrix, p, q};
+      if (symmetry_defect(loop, element, system.angles) <= tolerance) return element;
+    }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string to_text(const Isotropy& isotropy) {
+  std::string text;
+  for (const bool reversing : {false, true})
+    for (const SymmetryElement& e : isotropy) {
+      if (e.reversing != reversing) continue;
+      if (!text.empty()) text += ' ';
+      text += e.shift_numerator == 0 ? fmt::format("{}@0", e.name)
+                                     : fmt::format("{}@{}/{}", e.name, e.shift_numerator, e.shift_denominator);
+    }
+  return text;
+}
+
+Loop transformed(const Loop& loop, const Eigen::MatrixXd& matrix, bool reversing, double shift) {
+  core::require(matrix.rows() == loop.dimension, "a symmetry of another dimension cannot act on this loop");
+  // For a symmetry of z both give z back.
+  Loop out = reversing ? reversed(time_shifted(loop, shift)) : time_shifted(loop, shift);
+  apply_matrix(matrix.inverse(), out);
+  return out;
+}
+
+Loop transformed(const Loop& loop, const SymmetryElement& element) {
+  return transformed(loop, element.matrix, element.reversing, element.shift());
+}
+
+double symmetry_defect(const Loop& loop, const SymmetryElement& element, const std::vector<int>& angles) {
+  Loop image = transformed(loop, element);
+  if (image.winding != loop.winding) return std::numeric_limits<double>::infinity();
+  reduce_angles_to(loop, angles, image);
+  return mean_distance(loop, image);
+}
+
+Isotropy find_isotropy(const systems::Description& system, const Loop& loop, double tolerance, int max_denominator) {
+  Isotropy isotropy;
+  const auto size_with = [&loop](const Isotropy& generators) {
+    return Subspace(loop.dimension, pattern_cutoff, generators).size();
+  };
+  const auto consider = [&](const systems::Symmetry& declared, bool reversing) {
+    const auto element = match(declared, reversing, system, loop, tolerance, max_denominator);
+    if (!element) return;
+    Isotropy extended = isotropy;
+    extended.push_back(*element);
+    // A product of the generators so far restricts nothing further.
+    if (size_with(extended) < size_with(isotropy)) isotropy = std::move(extended);
+  };
+  for (const systems::Symmetry& s : system.equivariances) consider(s, false);
+  for (const systems::Symmetry& r : system.reversors) consider(r, true);
+  return isotropy;
+}
+
+namespace {
+
+// z(t + a) = g z(t) and z(t + b) = h z(t) give z(t + b + a) = g h z(t); z(b - t) = h z(t) gives z(b - t + a) = g h z(t);
+// g reversing: z(a - (t + b)) = g h z(t), so that b counts backwards.
+SymmetryElement product(const SymmetryElement& g, const SymmetryElement& h) {
+  SymmetryElement out{"", g.reversing != h.reversing, g.matrix * h.matrix, 0, 1};
+  const int q = std::lcm(g.shift_denominator, h.shift_denominator);
+  const int a = g.shift_numerator * (q / g.shift_denominator);
+  const int b = h.shift_numerator * (q / h.shift_denominator);
+  const int p = (((g.reversing ? a - b : a + b) % q) + q) % q;
+  const int common = std::gcd(p, q);
+  out.shift_numerator = p / common;
+  out.shift_denominator = q / common;
+  return out;
+}
+
+bool is_same(const SymmetryElement& a, const SymmetryElement& b) {
+  return a.reversing == b.reversing && a.shift_numerator == b.shift_numerator &&
+         a.shift_denominator == b.shift_denominator && a.matrix.isApprox(b.matrix, 1e-9);
+}
+
+std::string name_of(const systems::Description& system, const SymmetryElement& element) {
+  if (!element.reversing && element.matrix.isIdentity(1e-9)) return "1";
+  for (const systems::Symmetry& s : element.reversing ? system.reversors : system.equivariances)
+    if (element.matrix.isApprox(s.matrix, 1e-9)) return s.name;
+  return "";
+}
+
+}  // namespace
+
+Isotropy generated_group(const systems::Description& system, const Isotropy& generators) {
+  const int d = system.dimension();
+  Isotropy group{{"1", false, Eigen::MatrixXd::Identity(d, d), 0, 1}};
+  for (std::size_t n = 0; n < group.size(); ++n)
+    for (const SymmetryElement& generator : generators) {
+      SymmetryElement next = product(generator, group[n]);
+      const auto is_next = [&next](const SymmetryElement& known) { return is_same(known, next); };
+      if (std::any_of(group.begin(), group.end(), is_next)) continue;
+      core::require(group.size() < 1000, "these symmetries generate more than 1000");
+      next.name = name_of(system, next);
+      group.push_back(std::move(next));
+    }
+  return group;
+}
+
+std::optional<SymmetryElement> find_map(const systems::Description& system, const Loop& from, const Loop& to,
+                                        double tolerance, int max_denominator) {
+  const auto fits = [&](const SymmetryElement& element) {
+    Loop image = transformed(from, element);
+    if (image.winding != to.winding) return false;
+    reduce_angles_to(to, system.angles, image);
+    return mean_distance(image, to) <= tolerance;
+  };
+  const auto search = [&](const systems::Symmetry& declared, bool reversing) -> std::optional<SymmetryElement> {
+    for (int q = 1; q <= max_denominator; ++q)
+      for (int p = 0; p < q; ++p) {
+        const SymmetryElement element{declared.name, reversing, declared.matrix, p, q};
+        if (std::gcd(p, q) == 1 && fits(element)) return element;
+      }
+    return std::nullopt;
+  };
+  if (auto found = search({"1", Eigen::MatrixXd::Identity(from.dimension, from.dimension)}, false)) return found;
+  for (const systems::Symmetry& s : system.equivariances)
+    if (auto found = search(s, false)) return found;
+  for (const systems::Symmetry& r : system.reversors)
+    if (auto found = search(r, true)) return found;
+  return std::nullopt;
+}
+
+}  // namespace orbweaver::loop

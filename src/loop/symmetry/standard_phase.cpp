@@ -1,0 +1,106 @@
+#include "orbweaver/loop/symmetry/standard_phase.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include "orbweaver/loop/curve/time_samples.hpp"
+#include "orbweaver/loop/grid/fourier.hpp"
+#include "orbweaver/loop/symmetry/shift_search.hpp"
+
+namespace orbweaver::loop {
+
+namespace {
+
+constexpr double two_pi = 2.0 * std::numbers::pi;
+constexpr double rounding = 1e-13;  // of a shift in periods
+
+double in_period(double shift) {
+  const double part = shift - std::floor(shift);
+  return part < 1.0 - rounding ? part : 0.0;
+}
+
+// The state at a point of a reversor's fixed set, angles that wind within [-pi/2, 3 pi/2): on such a set they are 0 or pi.
+std::vector<double> state_to_compare(const Loop& loop, double shift) {
+  std::vector<double> z = state_at(loop, shift * loop.period);
+  for (std::size_t i = 0; i < z.size(); ++i)
+    if (loop.winding[i] != 0.0) z[i] -= two_pi * std::floor(z[i] / two_pi + 0.25);
+  return z;
+}
+
+// True if `a` comes after `b` in the order of the first coordinate that differs.
+bool is_larger(const std::vector<double>& a, const std::vector<double>& b, double tolerance) {
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (std::abs(a[i] - b[i]) > tolerance) return a[i] > b[i];
+  return false;
+}
+
+// s / 2 pi where the periodic part of coordinate i is largest.
+double turns_of_maximum(const Loop& even, int i) {
+  const int nodes = FourierGrid::nodes_at_least(4 * even.cutoff + 2);
+  std::vector<double> modes(2 * static_cast<std::size_t>(even.cutoff) + 1, 0.0);
+  for (int k = 1; k <= even.cutoff; ++k) {
+    modes[2 * static_cast<std::size_t>(k) - 1] = even.cosine(k, i);
+    modes[2 * static_cast<std::size_t>(k)] = even.sine(k, i);
+  }
+  std::vector<double> values(static_cast<std::size_t>(nodes));
+  FourierGrid::of_size(nodes).synthesize(even.cutoff, 1, modes.data(), values.data());
+  const auto highest = std::max_element(values.begin(), values.end()) - values.begin();
+  const double spacing = two_pi / nodes;
+  const double start = spacing * static_cast<double>(highest);
+  double s = start;
+  for (int n = 0; n < 30; ++n) {  // Newton's method on dz/ds, within the neighbouring nodes
+    double slope = 0.0;
+    double curvature = 0.0;
+    for (int k = even.cutoff; k >= 1; --k) {
+      const double c = std::cos(k * s);
+      const double sine = std::sin(k * s);
+      slope += k * (even.sine(k, i) * c - even.cosine(k, i) * sine);
+      curvature -= k * k * (even.cosine(k, i) * c + even.sine(k, i) * sine);
+    }
+    if (curvature == 0.0) break;
+    const double next = std::clamp(s + slope / std::abs(curvature), start - spacing, start + spacing);
+    const double step = std::abs(next - s);
+    s = next;
+    if (step < 1e-15) break;
+  }
+  return s / two_pi;
+}
+
+}  // namespace
+
+std::optional<double> reversor_phase(const systems::Symmetry& reversor, const std::vector<int>& angles,
+                                     const Loop& loop, double tolerance) {
+  const Loop even = resolved_in_time(loop);
+  const Loop image = transformed(even, reversor.matrix, true, 0.0);
+  if (image.winding != even.winding) return std::nullopt;
+  std::optional<double> phase;
+  for (const ShiftMinimum& minimum : shift_minima(image, even, angles)) {
+    // R^-1 z(-(t + psi)) = z(t): the phase is -psi.
+    const double found = in_period(-minimum.shift);
+    if (rms_size(difference_at(image, even, angles, minimum.shift)) <= tolerance && (!phase || found < *phase))
+      phase = found;
+  }
+  return phase;
+}
+
+Loop in_standard_phase(const systems::Description& system, const Loop& loop, const Isotropy& isotropy) {
+  const Isotropy group = generated_group(system, isotropy);
+  for (const systems::Symmetry& reversor : system.reversors)
+    for (const SymmetryElement& element : group) {
+      if (!element.reversing || element.name != reversor.name) continue;
+      const double first = 0.5 * element.shift();
+      const double second = first + 0.5;
+      const double tolerance = 1e-9 * (1.0 + rms_size(loop));
+      const bool take_second = is_larger(state_to_compare(loop, second), state_to_compare(loop, first), tolerance);
+      return time_shifted(loop, take_second ? second : first);
+    }
+  const int coordinate = system.angles.empty() ? 0 : system.angles.front();
+  // A maximum over s is one over time, but for the linear part of an angle that winds.
+  if (loop.winding[static_cast<std::size_t>(coordinate)] == 0.0)
+    return parameter_shifted(loop, turns_of_maximum(loop, coordinate));
+  return time_shifted(loop, turns_of_maximum(resolved_in_time(loop), coordinate));
+}
+
+}  // namespace orbweaver::loop

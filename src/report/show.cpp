@@ -1,0 +1,53 @@
+#include "orbweaver/report/show.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "show_parts.hpp"
+
+namespace orbweaver::report {
+
+const archive::Table& shown_table(const archive::Archive& atlas, const std::string& name) {
+  if (name == "families") return atlas.families();
+  if (name == "orbits") return atlas.orbits();
+  if (name == "crossings") return atlas.crossings();
+  throw core::InputError(
+      fmt::format("cannot show '{}': the tables of an atlas are families, orbits and crossings", name));
+}
+
+void print_summary(std::ostream& out, const archive::Archive& atlas) {
+  const archive::Header& header = atlas.header();
+  const auto whole_range = [&](const char* column) {
+    return range_text(atlas.orbits().reals(column), 0, atlas.orbits().rows());
+  };
+  const std::uint64_t bytes = atlas.mode_values() * sizeof(double);
+  out << fmt::format("{}: {} {}, written by Orbweaver {}\n", atlas.path().string(), archive::atlas_format,
+                     archive::format_version, header.orbweaver_version);
+  out << fmt::format("coordinates  {}\n", fmt::join(header.state_names, ", "));
+  out << fmt::format("families     {}\n", atlas.families().rows());
+  out << fmt::format("orbits       {}\n", atlas.orbits().rows());
+  out << fmt::format("crossings    {}\n", atlas.crossings().rows());
+  out << fmt::format("sections     {}\n", atlas.sections().rows());
+  out << fmt::format("modes        {} values ({:.1f} MB)\n", atlas.mode_values(), static_cast<double>(bytes) / 1e6);
+  out << fmt::format("period       {}\n", whole_range("period"));
+  out << fmt::format("energy       {}\n", whole_range("energy"));
+  if (atlas.families().rows() == 0) return;
+  out << '\n';
+  print_families(out, atlas);
+}
+
+void print_table(std::ostream& out, const archive::Archive& atlas, const std::string& name, TextFormat format) {
+  const archive::Table& table = shown_table(atlas, name);
+  if (format == TextFormat::csv)
+    print_csv(out, atlas.header(), table);
+  else if (format == TextFormat::json)
+    print_json(out, table);
+  else if (name == "families")
+    print_families(out, atlas);
+  else if (name == "crossings")
+    print_crossings(out, atlas);
+  else
+    print_readable(out, atlas.header(), table);
+}
+
+}  // namespace orbweaver::report

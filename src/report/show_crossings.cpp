@@ -1,0 +1,63 @@
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "show_parts.hpp"
+#include "text_grid.hpp"
+
+namespace orbweaver::report {
+
+namespace {
+
+std::vector<std::string> cells_of(const std::vector<double>& values, const char* format) {
+  std::vector<std::string> cells;
+  for (const double value : values) cells.push_back(std::isnan(value) ? "-" : fmt::format(fmt::runtime(format), value));
+  return cells;
+}
+
+std::vector<std::string> cells_of(const std::vector<std::int64_t>& values) {
+  std::vector<std::string> cells;
+  for (const std::int64_t value : values) cells.push_back(value < 0 ? "-" : std::to_string(value));
+  return cells;
+}
+
+std::vector<std::string> families_of(const archive::Archive& atlas) {
+  std::vector<std::string> cells;
+  for (const std::int64_t family : atlas.crossings().integers("family"))
+    cells.push_back(atlas.families().texts("name")[static_cast<std::size_t>(family)]);
+  return cells;
+}
+
+// Names of the families born at each crossing.
+std::vector<std::string> born_at(const archive::Archive& atlas) {
+  std::vector<std::vector<std::string>> names(atlas.crossings().rows());
+  const auto& crossings = atlas.families().integers("crossing");
+  for (std::size_t row = 0; row < crossings.size(); ++row)
+    if (crossings[row] >= 0)
+      names[static_cast<std::size_t>(crossings[row])].push_back(atlas.families().texts("name")[row]);
+  std::vector<std::string> cells;
+  for (const auto& list : names) cells.push_back(list.empty() ? "-" : fmt::format("{}", fmt::join(list, ", ")));
+  return cells;
+}
+
+}  // namespace
+
+void print_crossings(std::ostream& out, const archive::Archive& atlas) {
+  const archive::Table& crossings = atlas.crossings();
+  TextGrid grid;
+  grid.add_column("family", families_of(atlas), false);
+  grid.add_column("period", cells_of(crossings.reals("period"), "{:.10g}"));
+  grid.add_column("energy", cells_of(crossings.reals("energy"), "{:.10g}"));
+  grid.add_column("kind", crossings.texts("kind"), false);
+  grid.add_column("m", cells_of(crossings.integers("multiplicity")));
+  grid.add_column("q", cells_of(crossings.integers("sector_q")));
+  grid.add_column("j", cells_of(crossings.integers("sector_j")));
+  grid.add_column("kernel", cells_of(crossings.integers("kernel_dimension")));
+  grid.add_column("residual", cells_of(crossings.reals("residual"), "{:.1e}"));
+  grid.add_column("test value", cells_of(crossings.reals("test_value"), "{:.8g}"));
+  grid.add_column("born there", born_at(atlas), false);
+  grid.print(out);
+}
+
+}  // namespace orbweaver::report

@@ -1,0 +1,120 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "show_parts.hpp"
+#include "text_grid.hpp"
+
+namespace orbweaver::report {
+
+namespace {
+
+constexpr std::size_t longest_name = 36;
+constexpr std::size_t longest_reason = 250;
+
+struct Node {
+  std::size_t family;
+  std::size_t depth;
+};
+
+class Tree {
+ public:
+  explicit Tree(const std::vector<std::int64_t>& parents) : _children(parents.size()), _is_listed(parents.size()) {
+    for (std::size_t row = 0; row < parents.size(); ++row)
+      if (parents[row] >= 0) _children[static_cast<std::size_t>(parents[row])].push_back(row);
+    for (std::size_t row = 0; row < parents.size(); ++row)
+      if (parents[row] < 0) list(row, 0);
+    // Parents that go round in a circle: not a tree, but nothing is hidden.
+    for (std::size_t row = 0; row < parents.size(); ++row) list(row, 0);
+  }
+
+  [[nodiscard]] const std::vector<Node>& nodes() const { return _nodes; }
+
+ private:
+  void list(std::size_t row, std::size_t depth) {
+    if (_is_listed[row]) return;
+    _is_listed[row] = true;
+    _nodes.push_back({row, depth});
+    for (const std::size_t child : _children[row]) list(child, depth + 1);
+  }
+
+  std::vector<std::vector<std::size_t>> _children;
+  std::vector<bool> _is_listed;
+  std::vector<Node> _nodes;
+};
+
+std::string born_text(const archive::Archive& atlas, std::size_t family) {
+  const std::int64_t crossing = atlas.families().integers("crossing")[family];
+  if (crossing < 0) return "-";
+  const auto row = static_cast<std::size_t>(crossing);
+  return fmt::format("{}, m {}", crossing_text(atlas, row), atlas.crossings().integers("multiplicity")[row]);
+}
+
+std::string end_text(const archive::Archive& atlas, std::size_t family) {
+  const std::string& reason = atlas.families().texts("end_reason")[family];
+  const std::string text = "ended: " + cut(reason, longest_reason);
+  const std::int64_t joined = atlas.families().integers("end_family")[family];
+  const std::int64_t crossing = atlas.families().integers("end_crossing")[family];
+  if (joined < 0) return text;
+  const std::string& name = atlas.families().texts("name")[static_cast<std::size_t>(joined)];
+  if (reason.find(name) != std::string::npos) return text;  // said already
+  const std::string where = crossing < 0 ? "" : " at " + crossing_text(atlas, static_cast<std::size_t>(crossing));
+  return fmt::format("{} -> {}{}", text, name, where);
+}
+
+std::string details(const archive::Archive& atlas, std::size_t family) {
+  std::string text;
+  for (const std::string& part : {atlas.families().texts("isotropy")[family], stability_text(atlas, family)})
+    if (!part.empty()) text += part + "; ";
+  return text + end_text(atlas, family);
+}
+
+std::string range_of(const archive::Archive& atlas, const char* column, std::size_t family) {
+  return range_text(atlas.orbits().reals(column),
+                    static_cast<std::size_t>(atlas.families().integers("first_orbit")[family]),
+                    static_cast<std::size_t>(atlas.families().integers("orbit_count")[family]));
+}
+
+}  // namespace
+
+std::string range_text(const std::vector<double>& values, std::size_t first, std::size_t count) {
+  double low = archive::not_computed;
+  double high = archive::not_computed;
+  for (std::size_t i = first; i < first + count; ++i) {
+    low = std::fmin(low, values[i]);
+    high = std::fmax(high, values[i]);
+  }
+  return std::isnan(low) ? "-" : fmt::format("{:.6g} .. {:.6g}", low, high);
+}
+
+std::string crossing_text(const archive::Archive& atlas, std::size_t crossing) {
+  return fmt::format("{} T {:.6g}", atlas.crossings().texts("kind")[crossing],
+                     atlas.crossings().reals("period")[crossing]);
+}
+
+void print_families(std::ostream& out, const archive::Archive& atlas) {
+  const Tree tree(atlas.families().integers("parent"));
+  std::vector<std::string> names, born, orbits, periods, energies;
+  for (const auto& [family, depth] : tree.nodes()) {
+    names.push_back(cut(std::string(2 * depth, ' ') + atlas.families().texts("name")[family], longest_name));
+    born.push_back(born_text(atlas, family));
+    orbits.push_back(std::to_string(atlas.families().integers("orbit_count")[family]));
+    periods.push_back(range_of(atlas, "period", family));
+    energies.push_back(range_of(atlas, "energy", family));
+  }
+  TextGrid grid;
+  grid.add_column("family", std::move(names), false);
+  grid.add_column("born at", std::move(born), false);
+  grid.add_column("orbits", std::move(orbits));
+  grid.add_column("period", std::move(periods));
+  grid.add_column("energy", std::move(energies));
+  const std::vector<std::string> lines = grid.lines();
+  out << lines.front() << '\n';
+  for (std::size_t i = 0; i < tree.nodes().size(); ++i) {
+    const auto& [family, depth] = tree.nodes()[i];
+    out << lines[i + 1] << '\n';
+    for (const std::string& line : wrap(details(atlas, family), line_width, 2 * depth + 4)) out << line << '\n';
+  }
+}
+
+}  // namespace orbweaver::report

@@ -1,0 +1,51 @@
+#include "orbweaver/report/summary_text.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace orbweaver::report {
+
+namespace {
+
+/// Families that a summary lists; `orbweaver show` lists all.
+constexpr std::size_t most_listed = 60;
+
+std::string line_of(const survey::FamilySummary& f, std::size_t width) {
+  const std::string name = std::string(2 * static_cast<std::size_t>(f.depth), ' ') + f.name;
+  if (f.orbits == 0) return fmt::format("{:<{}}  {:>6}  {:>22}  {:>26}  {}\n", name, width, 0, "-", "-", f.end_reason);
+  return fmt::format("{:<{}}  {:>6}  {:>9.6f} .. {:>9.6f}  {:>11.8f} .. {:>11.8f}  {}\n", name, width, f.orbits,
+                     f.period_from, f.period_to, f.energy_from, f.energy_to, f.end_reason);
+}
+
+}  // namespace
+
+std::string to_text(const survey::Summary& summary) {
+  std::size_t width = 6;
+  for (const survey::FamilySummary& f : summary.families)
+    width = std::max(width, f.name.size() + 2 * static_cast<std::size_t>(f.depth));
+  std::string text =
+      fmt::format("{:<{}}  {:>6}  {:>22}  {:>26}  {}\n", "family", width, "orbits", "period", "energy", "ended by");
+  const std::size_t listed = std::min(summary.families.size(), most_listed);
+  for (std::size_t n = 0; n < listed; ++n) text += line_of(summary.families[n], width);
+  if (listed < summary.families.size())
+    text += fmt::format("... and {} more: orbweaver show {} families\n", summary.families.size() - listed,
+                        summary.atlas.string());
+  for (const std::string& remark : summary.remarks) text += fmt::format("note: {}\n", remark);
+  for (const std::string& failed : summary.failed_tasks) text += fmt::format("failed: {}\n", failed);
+  text += fmt::format("{} families, {} crossings, {} orbits, {} failed", summary.families.size(), summary.crossings,
+                      summary.orbits, summary.failures);
+  if (!summary.peak_memory_mib.empty())
+    text += fmt::format(", {:.2f} s; peak memory per rank: {:.0f} MiB", summary.seconds,
+                        fmt::join(summary.peak_memory_mib, " "));
+  text += "\n";
+  if (summary.archived)
+    text += fmt::format("archive: {}\n", summary.atlas.string());
+  else
+    text += fmt::format("archive: not written (orbweaver consolidate {} makes it of what there is)\n",
+                        summary.atlas.parent_path().string());
+  return text;
+}
+
+}  // namespace orbweaver::report

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace orbweaver::report {
+
+/// Columns of text, aligned: left, or right for numbers.
+class TextGrid {
+ public:
+  void add_column(std::string head, std::vector<std::string> cells, bool right = true);
+  /// The head line and a line a row, without line ends; none without columns.
+  [[nodiscard]] std::vector<std::string> lines() const;
+  void print(std::ostream& out) const;
+
+ private:
+  struct GridColumn {
+    std::string head;
+    std::vector<std::string> cells;
+    bool right;
+  };
+  std::vector<GridColumn> _columns;
+};
+
+/// `text` of at most `width` characters: what is longer is cut and ends in "...".
+[[nodiscard]] std::string cut(const std::string& text, std::size_t width);
+
+/// The words of `text` in lines of at most `width` characters (a longer word has a line of its own), each behind
+/// `indent` spaces.
+[[nodiscard]] std::vector<std::string> wrap(const std::string& text, std::size_t width, std::size_t indent);
+
+}  // namespace orbweaver::report

@@ -1,0 +1,83 @@
+#include "orbweaver/starts/fixed_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <Eigen/Dense>
+
+#include "orbweaver/core/error.hpp"
+
+namespace orbweaver::starts {
+
+namespace {
+
+constexpr double two_pi = 2.0 * std::numbers::pi;
+constexpr double same_point = 1e-7;
+constexpr double longest_step =
+    1.0;  // of Newton, so that it does not leave the neighbourhood of its start for far away
+
+void reduce_angles(const systems::System& system, Eigen::VectorXd& z) {
+  for (const int i : system.description().angles) {
+    z(i) -= two_pi * std::floor(z(i) / two_pi);
+    if (two_pi - z(i) < same_point) z(i) -= two_pi;
+  }
+}
+
+std::optional<Eigen::VectorXd> newton(const systems::System& system, Eigen::VectorXd z) {
+  const Eigen::Index d = z.size();
+  Eigen::VectorXd f(d);
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> a(d, d);
+  const std::vector<double> start(z.begin(), z.end());
+  for (int iteration = 0; iteration < 100; ++iteration) {
+    system.field_jacobian(1, z.data(), f.data(), a.data());
+    if (!f.allFinite() || !a.allFinite()) {
+      if (iteration > 0) return std::nullopt;
+      throw core::NotFiniteError(fmt::format("the vector field of {} is not finite at the grid point ({:.6g})",
+                                             system.description().name, fmt::join(start, ", ")));
+    }
+    Eigen::VectorXd step = a.completeOrthogonalDecomposition().solve(f);
+    if (step.norm() > longest_step) step *= longest_step / step.norm();
+    z -= step;
+    reduce_angles(system, z);
+    if (step.norm() < 1e-15 * (1.0 + z.norm())) break;
+  }
+  system.field(1, z.data(), f.data());
+  if (!(f.norm() < 1e-12 * (1.0 + a.norm()))) return std::nullopt;
+  return z;
+}
+
+}  // namespace
+
+std::vector<std::vector<double>> find_fixed_points(const systems::System& system,
+                                                   const std::vector<std::vector<double>>& grid) {
+  const auto d = static_cast<std::size_t>(system.dimension());
+  core::require(grid.size() <= d, "more grid lists than coordinates");
+  std::size_t starts = 1;
+  for (const std::vector<double>& values : grid) starts *= std::max<std::size_t>(values.size(), 1);
+  std::vector<Eigen::VectorXd> found;
+  for (std::size_t n = 0; n < starts; ++n) {
+    Eigen::VectorXd z = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(d));
+    std::size_t rest = n;
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+      if (grid[i].empty()) continue;
+      z(static_cast<Eigen::Index>(i)) = grid[i][rest % grid[i].size()];
+      rest /= grid[i].size();
+    }
+    std::optional<Eigen::VectorXd> point = newton(system, std::move(z));
+    if (!point) continue;
+    const bool known = std::any_of(found.begin(), found.end(), [&](const Eigen::VectorXd& w) {
+      return (w - *point).norm() < same_point * (1.0 + w.norm());
+    });
+    if (!known) found.push_back(*point);
+  }
+  std::vector<std::vector<double>> points;
+  for (const Eigen::VectorXd& z : found) points.emplace_back(z.begin(), z.end());
+  std::sort(points.begin(), points.end());
+  return points;
+}
+
+}  // namespace orbweaver::starts

@@ -1,0 +1,99 @@
+#include "archive_writer.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "agreement.hpp"
+#include "orbweaver/archive/file/folder_lock.hpp"
+#include "orbweaver/archive/write/consolidate.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/survey/run/version.hpp"
+#include "state/branch_state.hpp"
+#include "state/resume.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+/// Branches that a stop has cut: their rows are kept, and so must the families be.
+void add_unfinished(const std::vector<queue::Task>& tasks, FamilyTree& tree) {
+  for (const queue::Task& task : tasks) {
+    if (task.kind != branch_kind || task.state.empty()) continue;
+    BranchState state = unpack_branch_state(task.state);
+    state.outcome.end_reason = fmt::format("stopped (T = {:.9g})", state.last.loop.period);
+    queue::TaskOutcome outcome;
+    outcome.key = task.key;
+    outcome.payload = pack(state.outcome);
+    tree.add(task, outcome);
+  }
+}
+
+}  // namespace
+
+archive::Header header_of(const scene::Scene& scene, const systems::Description& system) {
+  archive::Header header;
+  header.orbweaver_version = version();
+  header.scene = scene.text;
+  header.state_names = system.state_names;
+  header.winding_names = system.winding_names;
+  header.pairs = system.pairs();
+  header.symplectic = system.symplectic;
+  return header;
+}
+
+void write_archive(const core::Communicator& comm, const scene::Scene& scene, const systems::System& system,
+                   const Checkpoint& standing, FamilyTree& tree, const SweepsEnded& sweeps, Summary& summary) {
+  archive::Records tables;
+  std::vector<std::filesystem::path> segments;
+  on_root(comm, [&] {
+    add_unfinished(standing.unfinished, tree);
+    FamilyTree::Result found = tree.resolve();
+    tables = std::move(found.tables);
+    summary.families = std::move(found.families);
+    for (std::string& failure : found.failures) summary.failed_tasks.push_back(std::move(failure));
+    for (std::string& remark : found.remarks) summary.remarks.push_back(std::move(remark));
+    for (const FamilySummary& family : summary.families) summary.orbits += family.orbits;
+    summary.crossings = static_cast<long>(tables.crossings.size());
+    gather_failed_sweeps(system.description(), sweeps, summary, tables);
+    tables.voided = standing.voided;
+    tables.earlier_scenes = standing.earlier_scenes;
+    const std::filesystem::path folder = state_folder(summary.atlas.parent_path());
+    for (const archive::WrittenSegment& segment : standing.segments) segments.push_back(folder / segment.name);
+  });
+  if (summary.archived)
+    archive::consolidate(comm.get(), segments, summary.atlas, header_of(scene, system.description()), tables);
+  summary.failures = agreed(comm, static_cast<unsigned long>(summary.failed_tasks.size()));
+}
+
+Summary archive_survey(const core::Communicator& comm, const std::filesystem::path& directory) {
+  archive::FolderLock lock;
+  on_root(comm, [&] {
+    if (std::filesystem::exists(state_folder(directory))) lock = archive::FolderLock(state_folder(directory));
+  });
+  Found found = find_checkpoint(comm, state_folder(directory));
+  if (!found.found) throw core::InputError(fmt::format("{} holds no survey with a checkpoint", directory.string()));
+  const std::string text = agreed(comm, found.checkpoint.scene);
+  const scene::Scene scene = scene::parse(text, "the checkpoint's scene");
+  const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  FamilyTree tree(scene, system->description());
+  SweepsEnded sweeps;
+  on_root(comm, [&] {
+    const Stage stage = found.checkpoint.stage;
+    continue_with(scene, state_folder(directory), found.checkpoint, [&](const EndedTask& entry) {
+      if (entry.task.kind == sweep_kind)
+        sweeps.insert_or_assign(entry.task.key, std::pair(entry.task, entry.outcome));
+      else
+        tree.add(entry.task, entry.outcome);
+    });
+    found.checkpoint.stage = stage;
+  });
+  Summary summary;
+  summary.atlas = directory / "atlas.h5";
+  summary.stopped_early = agreed(comm, found.checkpoint.stage != Stage::finished);
+  summary.archived = true;
+  write_archive(comm, scene, *system, found.checkpoint, tree, sweeps, summary);
+  return summary;
+}
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,251 @@
+#include "orbweaver/survey/run/survey.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include "agreement.hpp"
+#include "archive_writer.hpp"
+#include "display.hpp"
+#include "orbweaver/archive/file/folder_lock.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/core/log/log.hpp"
+#include "orbweaver/core/petsc/check.hpp"
+#include "orbweaver/queue/run.hpp"
+#include "orbweaver/queue/stop.hpp"
+#include "orbweaver/survey/run/version.hpp"
+#include "segment_flusher.hpp"
+#include "state/checkpoint_keeper.hpp"
+#include "state/resume.hpp"
+#include "tasks/executor.hpp"
+#include "tasks/recorders.hpp"
+#include "teams.hpp"
+#include "time_limit.hpp"
+#include "tree/bases.hpp"
+#include "tree/family_tree.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double peak_memory_mib() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+void gather_memory(const core::Communicator& comm, Summary& summary) {
+  const double mine = peak_memory_mib();
+  summary.peak_memory_mib.resize(static_cast<std::size_t>(comm.size()));
+  core::check_mpi(MPI_Gather(&mine, 1, MPI_DOUBLE, summary.peak_memory_mib.data(), 1, MPI_DOUBLE, 0, comm.get()),
+                  "MPI_Gather");
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw core::EnvironmentError(fmt::format("cannot create the folder {}: {}: give -o a place where you may write",
+                                             folder.string(), error.message()));
+}
+
+/// A survey from where it stands, which is known on rank 0, to its end or to a stop; by rank 0 and the leaders of teams.
+class Run {
+ public:
+  Run(const core::Communicator& comm, const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
+      const std::filesystem::path& directory, const RunOptions& options, core::Team* team)
+      : _comm(comm),
+        _scene(scene),
+        _system(system),
+        _folder(state_folder(directory)),
+        _header(header_of(scene, system->description())),
+        _member(scene, system, _rows, team),
+        _executor(team, _member),
+        _display(options.display),
+        _time(scene.limits.time, options.walltime),
+        _tree(scene, system->description()) {
+    _queue_options.flush_seconds = scene.output.flush_seconds;
+    _queue_options.flush_rows = scene.output.flush_orbits;
+    if (std::isfinite(scene.limits.task_time)) _queue_options.task_seconds = scene.limits.task_time;
+    _summary.atlas = directory / "atlas.h5";
+  }
+
+  Summary run(bool resume) {
+    begin(resume);
+    try {
+      if (agreed(_comm, _start.stage == Stage::sweeps)) sweep();
+      if (!_summary.stopped_early) follow();
+      end();
+    } catch (const core::EnvironmentError& error) {
+      throw core::EnvironmentError(
+          fmt::format("{}\nThe last checkpoint stands: --resume goes on from it.", error.what()));
+    }
+    _summary.seconds = std::chrono::duration<double>(Clock::now() - _began).count();
+    return std::move(_summary);
+  }
+
+ private:
+  /// Finds where the survey stands; every survey that has begun has a checkpoint.
+  void begin(bool resume) {
+    // On every rank, so that a field that is not finite on the grid is the same error everywhere.
+    std::vector<queue::Task> sweeps;
+    if (!resume) sweeps = sweep_tasks(_scene, *_system);
+    on_root(_comm, [&] {
+      make_folder(_folder);
+      _lock = archive::FolderLock(_folder);
+    });
+    Found found;
+    if (resume) found = find_checkpoint(_comm, _folder);
+    if (!found.found) on_root(_comm, [&] { expect_nothing(resume); });
+    if (resume && !found.found) sweeps = sweep_tasks(_scene, *_system);
+    on_root(_comm, [&] {
+      if (found.found) {
+        _start = std::move(found.checkpoint);
+        continue_with(_scene, _folder, _start, [this](const EndedTask& entry) { restore(entry); });
+        core::log_info(
+            fmt::format("going on: {} segments, {} tasks waiting", _start.segments.size(), _start.unfinished.size()));
+      } else {
+        remove_unlisted(_folder, {});  // of a survey that had not come to a checkpoint
+        _start.scene = _scene.text;
+        _start.unfinished = std::move(sweeps);
+        write_checkpoint(_folder, _start);
+      }
+      _start.orbweaver_version = version();
+    });
+    _keeper.emplace(_folder, _start);
+    _flusher.emplace(_comm, _folder, _header, _rows, _start.segments);
+  }
+
+  /// A survey writes its first checkpoint before anything else.
+  void expect_nothing(bool resume) const {
+    if (std::filesystem::exists(checkpoint_path(_folder)) || std::filesystem::exists(previous_checkpoint_path(_folder)))
+      throw core::InputError(fmt::format("{} already holds a survey, and nothing was changed: --resume goes on with it",
+                                         _folder.parent_path().string()));
+    for (const auto& entry : std::filesystem::directory_iterator(_folder)) {
+      const std::string name = entry.path().filename().string();
+      if (resume && (name.starts_with("segment-") || name.starts_with("journal-")) && !name.ends_with(".part"))
+        throw core::InputError(fmt::format(
+            "{} holds {} and no checkpoint, and nothing was changed: bring the checkpoint back from a copy, or "
+            "give another folder with -o",
+            _folder.string(), name));
+    }
+  }
+
+  void restore(const EndedTask& entry) {
+    if (entry.task.kind == sweep_kind)
+      _sweeps_ended.insert_or_assign(entry.task.key, std::pair(entry.task, entry.outcome));
+    else
+      _tree.add(entry.task, entry.outcome);
+    _known.insert(entry.task.key);
+  }
+
+  void sweep() {
+    SweepRecorder recorder({_display, _time, *_keeper, *_flusher}, _sweeps_ended);
+    const queue::RunSummary swept =
+        queue::run(_comm, _queue_options, std::move(_start.unfinished), _executor, recorder, *_flusher);
+    _start.unfinished.clear();
+    note_stop(swept);
+  }
+
+  void follow() {
+    TreeRecorder recorder({_display, _time, *_keeper, *_flusher}, _tree, std::move(_start.left_out));
+    std::vector<queue::Task> tasks = std::move(_start.unfinished);
+    on_root(_comm, [&] {
+      _keeper->set_stage(Stage::families);
+      for (const queue::Task& task : tasks) _known.insert(task.key);
+      for (const queue::Task& task : recorder.left_out_tasks()) _known.insert(task.key);
+      for (queue::Task& task : branch_tasks(_scene, _system->description(), _sweeps_ended, _summary))
+        if (!_known.contains(task.key)) tasks.push_back(std::move(task));
+    });
+    do {
+      note_stop(queue::run(_comm, _queue_options, std::move(tasks), _executor, recorder, *_flusher));
+      if (_summary.stopped_early) return;
+      tasks.clear();
+      on_root(_comm, [&] { tasks = recorder.wanted_after_all(); });
+    } while (agreed(_comm, !tasks.empty()));
+  }
+
+  void note_stop(const queue::RunSummary& run) {
+    _summary.stopped_early = run.stopped_early;
+    if (!_comm.is_root() || !run.stopped_early) return;
+    if (_time.reached())
+      _summary.remarks.push_back(_time.remark(run));
+    else if (queue::stop_requested())
+      _summary.remarks.push_back(
+          fmt::format("stopped as asked: tasks cut short: {}, not begun: {}", run.stopped, run.waiting - run.stopped));
+    for (const std::string& key : run.put_aside)
+      _summary.remarks.push_back(
+          fmt::format("put aside after limits.task_time = {:g} s: {}", _scene.limits.task_time, key));
+  }
+
+  void end() {
+    // After a signal or the wall time others wait for the machine.
+    _summary.archived = agreed(_comm, !_summary.stopped_early || _time.reached_scene());
+    write_archive(_comm, _scene, *_system, _keeper->last(), _tree, _sweeps_ended, _summary);
+    if (!_summary.stopped_early) on_root(_comm, [&] { _keeper->finish(_summary.failures); });
+  }
+
+  const core::Communicator& _comm;
+  const scene::Scene& _scene;
+  const std::shared_ptr<const systems::System>& _system;
+  std::filesystem::path _folder;
+  archive::Header _header;
+  archive::Records _rows;
+  Executor _member;
+  TeamExecutor _executor;
+  ProgressDisplay _display;
+  TimeLimit _time;
+  FamilyTree _tree;
+  queue::Options _queue_options;
+  archive::FolderLock _lock;  // on rank 0
+  Checkpoint _start;          // on rank 0
+  std::optional<CheckpointKeeper> _keeper;
+  std::optional<SegmentFlusher> _flusher;
+  SweepsEnded _sweeps_ended;
+  std::set<std::string> _known;  // keys of tasks of an earlier run
+  Summary _summary;
+  Clock::time_point _began = Clock::now();
+};
+
+Summary follow_survey(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
+                      core::Team& team) {
+  archive::Records rows;
+  Executor member(scene, system, rows, &team);
+  return follow(team, member, rows);
+}
+
+}  // namespace
+
+Summary run_survey(const core::Communicator& comm, const scene::Scene& scene,
+                   const std::shared_ptr<const systems::System>& system, const std::filesystem::path& directory,
+                   const RunOptions& options) {
+  Teams teams(comm, scene.survey.team_size);
+  Summary summary;
+  if (teams.follows()) {
+    summary = follow_survey(scene, system, *teams.team());
+  } else {
+    try {
+      summary = Run(teams.queue(), scene, system, directory, options, teams.team()).run(options.resume);
+    } catch (...) {
+      dismiss(teams.team(), std::current_exception());
+      throw;
+    }
+    dismiss(teams.team(), summary);
+  }
+  if (comm.size() == 1 && scene.survey.team_size > 1)
+    summary.remarks.push_back(
+        fmt::format("survey.team_size = {} needs more ranks: this one did every task alone", scene.survey.team_size));
+  gather_memory(comm, summary);
+  return summary;
+}
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,7 @@
+#include "orbweaver/survey/run/version.hpp"
+
+namespace orbweaver::survey {
+
+const char* version() { return ORBWEAVER_VERSION; }
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "orbweaver/bifurcation/detector.hpp"
+#include "orbweaver/bifurcation/fold_watch.hpp"
+#include "orbweaver/continuation/branch.hpp"
+#include "orbweaver/continuation/family_curve.hpp"
+#include "orbweaver/queue/task.hpp"
+#include "orbweaver/survey/tasks/work.hpp"
+
+namespace orbweaver::survey {
+
+/// Everything from which a branch goes on after an orbit, to the same bits as without a break.
+struct BranchState {
+  static constexpr const char* payload_name = "branch state";
+  continuation::Frontier frontier;
+  std::vector<continuation::FamilyCurve::Known> known;  ///< the last orbits
+  bifurcation::DetectorState detector;
+  bifurcation::FoldWatch folds;
+  continuation::Orbit last;
+  double before_first = 0.0;
+  int events = 0;
+  BranchOutcome outcome;              ///< so far
+  std::vector<queue::Task> children;  ///< so far
+};
+
+[[nodiscard]] std::string pack(const BranchState& state);
+/// Throws EnvironmentError as the other unpacks do (work.hpp).
+[[nodiscard]] BranchState unpack_branch_state(const std::string& bytes);
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,113 @@
+#include "checkpoint.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <boost/serialization/string.hpp>
+#include <boost/serialization/vector.hpp>
+
+#include "orbweaver/archive/file/sealed_file.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/queue/task_serialization.hpp"
+#include "tasks/payload.hpp"
+
+namespace boost::serialization {
+
+namespace survey = orbweaver::survey;
+
+template <class Archive>
+void serialize(Archive& archive, orbweaver::archive::WrittenSegment& s, unsigned) {
+  archive& s.name& s.bytes& s.orbits& s.sections& s.fingerprint;
+}
+
+template <class Archive>
+void serialize(Archive& archive, orbweaver::archive::VoidedRows& v, unsigned) {
+  archive& v.family_key& v.first_step& v.last_step& v.before_segment;
+}
+
+template <class Archive>
+void serialize(Archive& archive, survey::EndedTask& e, unsigned) {
+  archive& e.task& e.outcome& e.had_children;
+}
+
+template <class Archive>
+void serialize(Archive& archive, survey::JournalFile& j, unsigned) {
+  archive& j.name& j.entries;
+}
+
+template <class Archive>
+void serialize(Archive& archive, survey::Checkpoint& c, unsigned) {
+  archive& c.orbweaver_version& c.scene& c.earlier_scenes& c.stage& c.failures& c.segments& c.journals& c.voided& c
+      .unfinished& c.left_out;
+}
+
+}  // namespace boost::serialization
+
+namespace orbweaver::survey {
+
+namespace {
+
+// Counts up with every change of what the files hold, payloads and states included.
+constexpr std::uint32_t file_version = 1;
+constexpr archive::Seal checkpoint_seal{"ORBWCKP\x1a", file_version};
+constexpr archive::Seal journal_seal{"ORBWJRN\x1a", file_version};
+
+struct Journal {
+  static constexpr const char* payload_name = "journal";
+  std::vector<EndedTask> entries;
+};
+
+template <class Archive>
+void serialize(Archive& archive, Journal& j, unsigned) {
+  archive& j.entries;
+}
+
+/// A file with the right seal that does not hold what it should is wrong input all the same.
+template <class T>
+T unsealed(const std::filesystem::path& path, const archive::Seal& seal) {
+  const std::string bytes = archive::read_sealed(path, seal);
+  try {
+    return from_payload<T>(bytes);
+  } catch (const core::EnvironmentError& error) {
+    throw core::InputError(fmt::format("{}: {}", path.string(), error.what()));
+  }
+}
+
+}  // namespace
+
+std::filesystem::path state_folder(const std::filesystem::path& directory) { return directory / "segments"; }
+std::filesystem::path checkpoint_path(const std::filesystem::path& folder) { return folder / "checkpoint"; }
+std::filesystem::path previous_checkpoint_path(const std::filesystem::path& folder) {
+  return folder / "checkpoint.previous";
+}
+
+void write_checkpoint(const std::filesystem::path& folder, const Checkpoint& checkpoint) {
+  archive::write_sealed_keeping(checkpoint_path(folder), previous_checkpoint_path(folder), checkpoint_seal,
+                                to_payload(checkpoint));
+}
+
+Checkpoint read_checkpoint(const std::filesystem::path& path) { return unsealed<Checkpoint>(path, checkpoint_seal); }
+
+std::size_t next_journal(const Checkpoint& checkpoint) {
+  std::size_t largest = 0;
+  for (const JournalFile& file : checkpoint.journals)
+    largest = std::max(largest, static_cast<std::size_t>(std::stoul(file.name.substr(file.name.find('-') + 1))));
+  return largest + 1;
+}
+
+JournalFile write_journal(const std::filesystem::path& folder, std::size_t number,
+                          const std::vector<EndedTask>& entries) {
+  JournalFile file{fmt::format("journal-{:06}", number), entries.size()};
+  archive::write_sealed(folder / file.name, journal_seal, to_payload(Journal{entries}));
+  return file;
+}
+
+std::vector<EndedTask> read_journal(const std::filesystem::path& folder, const JournalFile& file) {
+  std::vector<EndedTask> entries = unsealed<Journal>(folder / file.name, journal_seal).entries;
+  if (entries.size() != file.entries)
+    throw core::InputError(fmt::format("{}: it should list {} ended tasks and lists {}", (folder / file.name).string(),
+                                       file.entries, entries.size()));
+  return entries;
+}
+
+}  // namespace orbweaver::survey

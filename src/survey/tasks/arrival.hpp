@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+
+#include "orbweaver/bifurcation/symmetry_watch.hpp"
+#include "orbweaver/continuation/family_curve.hpp"
+#include "orbweaver/continuation/orbit.hpp"
+#include "orbweaver/survey/tasks/work.hpp"
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::survey {
+
+/// Where the branch meets a family with more symmetry between two of its orbits, if it does. Beyond that point lie the
+/// images of the orbits before it, or, where the broken part is not turned by the symmetry, the other side of a crossing.
+[[nodiscard]] std::optional<ArrivalRecord> arrival_between(
+    const systems::System& system, continuation::FamilyCurve& family, const bifurcation::SymmetryWatch& watch,
+    const continuation::Orbit& from, const bifurcation::SymmetryWatch::Seen& from_seen, const continuation::Orbit& to,
+    const bifurcation::SymmetryWatch::Seen& to_seen);
+
+/// A loop with few harmonics and s even in time, for comparisons.
+[[nodiscard]] loop::Loop sketch_of(const loop::Loop& loop, int cutoff = 60);
+
+}  // namespace orbweaver::survey

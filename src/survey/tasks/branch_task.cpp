@@ -1,0 +1,265 @@
+#include "branch_task.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "arrival.hpp"
+#include "executor.hpp"
+#include "orbit_row.hpp"
+#include "orbweaver/bifurcation/crossing.hpp"
+#include "orbweaver/bifurcation/family_jump.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/symmetry/fundamental_domain.hpp"
+#include "requested.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+/// Known orbits that a location gets along: the two around the event and their neighbours.
+constexpr std::size_t kept_orbits = 5;
+
+int fundamental_order(const loop::Isotropy& isotropy, int dimension) {
+  return loop::fundamental_domain(isotropy, dimension).order;
+}
+
+continuation::Options options_of(const scene::Scene& scene, const BranchWork& work, core::Team* team) {
+  continuation::Options options = branch_options(scene, team);
+  if (work.amplitude > 0.0) options.start_amplitude = work.amplitude;
+  return options;
+}
+
+}  // namespace
+
+BranchTask::BranchTask(const scene::Scene& scene, std::shared_ptr<const systems::System> system, BranchWork work,
+                       const std::string& state, archive::Records& rows, queue::TaskContext& context, core::Team* team)
+    : _scene(scene),
+      _system(std::move(system)),
+      _work(std::move(work)),
+      _rows(rows),
+      _context(context),
+      _team(team),
+      _options(options_of(scene, _work, team)),
+      _start(start_of(_work, _system->description())),
+      _curve(_system, _start.isotropy, branch_options(scene, team)),
+      _symmetry(_system->description(), _start.isotropy),
+      _functions(bifurcation::test_functions(_system->description(),
+                                             fundamental_order(_start.isotropy, _system->dimension()),
+                                             scene.survey.subharmonics)) {
+  _outcome.key = _work.key;
+  if (bifurcation::passes_two_only_at_folds(_system->description(), _start.isotropy))
+    _options.jumped = [this](const auto& from, const auto& to) { return jumped(from, to); };
+  begin(state);
+}
+
+void BranchTask::begin(const std::string& bytes) {
+  if (bytes.empty()) {
+    _branch.emplace(_system, _start, _options);
+    return;
+  }
+  BranchState state = unpack_branch_state(bytes);
+  _branch.emplace(_system, _start, _options, std::move(state.frontier));
+  for (const continuation::FamilyCurve::Known& known : state.known) _curve.add(known.position, known.loop, kept_orbits);
+  _detector = bifurcation::Detector(std::move(state.detector), {});
+  _folds = state.folds;
+  _seen = bifurcation::SymmetryWatch::see(state.last.loop);
+  _last = std::move(state.last);
+  _before_first = state.before_first;
+  _events = state.events;
+  _outcome = std::move(state.outcome);
+  _children = std::move(state.children);
+}
+
+BranchState BranchTask::state_at(const continuation::Frontier& frontier) const {
+  return {frontier,      _curve.known(), _detector.state(), _folds,   _last.value(),
+          _before_first, _events,        _outcome,          _children};
+}
+
+queue::TaskOutcome BranchTask::run() {
+  continuation::Ending ending;
+  try {
+    ending = follow();
+    if (!_stopped) finish();
+  } catch (const std::exception& error) {  // here, not in the queue, so that the summary still counts the orbits kept
+    ending = {continuation::EndReason::failure, error.what()};
+    if (_outcome.limited_by == 0)
+      _outcome.limited_by = period_limited | energy_limited;  // from its start: where it stands is not known
+  }
+  _outcome.end_reason = _outcome.arrival.empty() || ending.failed()
+                            ? ending.text()
+                            : fmt::format("met a family of more symmetry (T = {:.9g}, E = {:.9g})",
+                                          _outcome.arrival.front().period, _outcome.arrival.front().energy);
+  queue::TaskOutcome done;
+  done.failed = ending.failed();
+  done.reason = ending.failed() ? _outcome.end_reason : "";
+  done.children = std::move(_children);
+  done.payload = pack(_outcome);
+  return done;
+}
+
+continuation::Ending BranchTask::follow() {
+  while (true) {
+    const continuation::Frontier before = _branch->standing();
+    const std::optional<continuation::Orbit> orbit = _branch->advance();
+    if (!orbit) {
+      note_limits(_branch->ending().value(), before);
+      return _branch->ending().value();
+    }
+    // The branch ends with an orbit on a limit, which it would not have under a wider one: no state may hold it.
+    const bool on_limit = orbit->loop.period >= _options.period_limit || _branch->standing().on_energy_limit;
+    if (on_limit) limited_by(period_limited | energy_limited, before);
+    if (!take(*orbit)) return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", orbit->loop.period)};
+    if (on_limit) continue;
+    _stopped = !_context.report({_outcome.orbits, 1, {orbit->loop.period, orbit->energy, orbit->loop.cutoff * 1.0}},
+                                [&] { return pack(state_at(_branch->standing())); });
+    if (_stopped) return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", orbit->loop.period)};
+  }
+}
+
+void BranchTask::note_limits(const continuation::Ending& ending, const continuation::Frontier& before) {
+  using continuation::EndReason;
+  if (_outcome.limited_by != 0) return;  // at the orbit on a limit
+  switch (ending.reason) {
+    case EndReason::step_limit: return limited_by(step_limited, before);
+    case EndReason::period_limit:
+    case EndReason::energy_limit:
+    // On the way to an orbit on a limit, perhaps.
+    case EndReason::cutoff_limit:
+    case EndReason::period_divergence:
+    case EndReason::failure: return limited_by(period_limited | energy_limited, before);
+    default: return;
+  }
+}
+
+void BranchTask::limited_by(int limits, const continuation::Frontier& before) {
+  if (_last) {
+    BranchState state = state_at(before);
+    state.children.clear();  // they are tasks of their own by the time that this is needed
+    state.outcome.limited_by = 0;
+    _outcome.before_limit = pack(state);
+  }
+  _outcome.limited_by = limits;
+}
+
+/// What only the family's end shows, from the stored orbits alone, whatever was probed before.
+void BranchTask::finish() {
+  _curve.forget_found();
+  const auto probing = [this](double position) { return probe(position); };
+  for (const bifurcation::Bracket& b : _detector.finish(probing))
+    add_event({bifurcation::Event::Kind::test_function, _functions[b.function], b.tangency}, b.from, b.to);
+}
+
+/// False where the branch has arrived at another family.
+bool BranchTask::take(const continuation::Orbit& orbit) {
+  if (!_last)
+    _before_first = _work.lineage.crossing.empty() ? 0.0 : continuation::arclength_between(_start.base, orbit.loop);
+  _curve.add(orbit.arclength, orbit.loop, kept_orbits);
+  if (arrive(orbit)) return false;
+  const std::optional<spectrum::Stability>& stability = stability_at(orbit);
+  detect(orbit, stability);
+  if (_last) solve_requested(orbit);
+  store(orbit, stability);
+  _last = orbit;
+  _last_stability = stability;
+  return true;
+}
+
+/// Not computed again for the orbit that was asked for last.
+const std::optional<spectrum::Stability>& BranchTask::stability_at(const continuation::Orbit& orbit) {
+  if (_asked != orbit.loop.modes) {
+    _stability = stability_of(*_system, orbit.loop, _start.isotropy, _team);
+    _asked = orbit.loop.modes;
+  }
+  return _stability;
+}
+
+bool BranchTask::jumped(const continuation::Orbit& from, const continuation::Orbit& to) {
+  if (!_last_stability) _last_stability = stability_of(*_system, _last->loop, _start.isotropy, _team);
+  const std::optional<spectrum::Stability>& after = stability_at(to);
+  return _last_stability && after &&
+         bifurcation::has_jumped(_system, _start.isotropy, branch_options(_scene, _team), {from, *_last_stability},
+                                 {to, *after});
+}
+
+bool BranchTask::arrive(const continuation::Orbit& orbit) {
+  bifurcation::SymmetryWatch::Seen seen = bifurcation::SymmetryWatch::see(orbit.loop);
+  if (_last) {
+    if (const auto arrival = arrival_between(*_system, _curve, _symmetry, *_last, *_seen, orbit, seen))
+      _outcome.arrival.push_back(*arrival);
+  }
+  _seen = std::move(seen);
+  return !_outcome.arrival.empty();
+}
+
+bifurcation::Station BranchTask::station(double position, const std::optional<spectrum::Stability>& stability) const {
+  bifurcation::Station out{position, {}};
+  for (const bifurcation::TestFunction& function : _functions)
+    out.readings.push_back(stability ? bifurcation::evaluate(function, _system->description(), *stability)
+                                     : bifurcation::Reading{archive::not_computed, archive::not_computed});
+  return out;
+}
+
+std::optional<bifurcation::Station> BranchTask::probe(double position) {
+  if (position < _curve.known().front().position) return std::nullopt;  // so far back no orbits are kept
+  const std::optional<continuation::CurvePoint> point = _curve.at(position);
+  if (!point) return std::nullopt;
+  return station(position, stability_of(*_system, point->loop, _start.isotropy, _team));
+}
+
+void BranchTask::detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability) {
+  using Kind = bifurcation::Event::Kind;
+  const auto probing = [this](double position) { return probe(position); };
+  for (const bifurcation::Bracket& b : _detector.advance(station(orbit.arclength, stability), probing))
+    add_event({Kind::test_function, _functions[b.function], b.tangency}, b.from, b.to);
+  for (const bifurcation::Fold& fold : _folds.advance(orbit.arclength, orbit.loop.period, orbit.energy))
+    add_event({fold.quantity == bifurcation::Fold::Quantity::period ? Kind::fold_period : Kind::fold_energy, {}, false},
+              fold.from, fold.to);
+}
+
+void BranchTask::add_event(const bifurcation::Event& event, double from, double to) {
+  // A family's own birth is no event: its index leaves 2 there like a power of the distance, first within its error.
+  const bool at_birth = _work.lineage.depth > 0 && from <= 0.0;
+  if (at_birth && event.kind == bifurcation::Event::Kind::test_function && event.function.sector.q == 1) return;
+  LocateWork work;
+  set_event(work, event);
+  const bool is_fold = event.kind != bifurcation::Event::Kind::test_function;
+  work.key = fmt::format("{}/{:03}.{}", _work.key, _events++,
+                         is_fold ? "fold" : fmt::format("q{}.j{}", event.function.sector.q, event.function.sector.j));
+  work.name = _work.name;
+  work.lineage = _work.lineage;
+  work.isotropy = _work.isotropy;
+  work.before_first = _before_first;
+  for (const continuation::FamilyCurve::Known& known : _curve.known())
+    work.known.push_back({known.position, record_of(known.loop)});
+  work.from = std::max(from, _curve.known().front().position);  // a long way without a sign may begin before
+  work.to = to;
+  _children.push_back(task_of(work));
+}
+
+void BranchTask::solve_requested(const continuation::Orbit& orbit) {
+  for (continuation::Orbit& wanted : requested_orbits(_scene, *_system, _curve, *_last, orbit, _outcome.remarks))
+    store(wanted, stability_of(*_system, wanted.loop, _start.isotropy, _team));
+}
+
+void BranchTask::store(continuation::Orbit orbit, const std::optional<spectrum::Stability>& stability) {
+  const bool first = _outcome.orbits == 0;
+  const double period = orbit.loop.period;
+  _outcome.period_from = first ? period : std::min(_outcome.period_from, period);
+  _outcome.period_to = first ? period : std::max(_outcome.period_to, period);
+  _outcome.energy_from = first ? orbit.energy : std::min(_outcome.energy_from, orbit.energy);
+  _outcome.energy_to = first ? orbit.energy : std::max(_outcome.energy_to, orbit.energy);
+  _outcome.last_period = period;
+  _outcome.last_energy = orbit.energy;
+  _outcome.last_cutoff = orbit.loop.cutoff;
+  // The other side of a crossing: counted backwards from it.
+  orbit.step = _work.lineage.side > 0 ? _outcome.orbits : -1 - _outcome.orbits;
+  orbit.arclength = signed_arclength(_work.lineage, _before_first, orbit.arclength);
+  _rows.orbits.push_back(orbit_row(*_system, _work.lineage.family, orbit, _start.isotropy, stability));
+  ++_outcome.orbits;
+}
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "orbweaver/archive/schema/records.hpp"
+#include "orbweaver/bifurcation/detector.hpp"
+#include "orbweaver/bifurcation/fold_watch.hpp"
+#include "orbweaver/bifurcation/symmetry_watch.hpp"
+#include "orbweaver/continuation/family_curve.hpp"
+#include "orbweaver/queue/executor.hpp"
+#include "orbweaver/scene/scene.hpp"
+#include "orbweaver/survey/tasks/work.hpp"
+#include "state/branch_state.hpp"
+
+namespace orbweaver::survey {
+
+/// Follows one branch: rows of its orbits, of those at requested periods and energies, a task for each event on it, and
+/// its end, also where it meets a more symmetric family. Goes on from a state, or gives it, after any orbit.
+class BranchTask {
+ public:
+  /// `state`: that of queue::Task, possibly empty.
+  BranchTask(const scene::Scene& scene, std::shared_ptr<const systems::System> system, BranchWork work,
+             const std::string& state, archive::Records& rows, queue::TaskContext& context, core::Team* team);
+
+  [[nodiscard]] queue::TaskOutcome run();
+
+ private:
+  void begin(const std::string& state);
+  [[nodiscard]] continuation::Ending follow();
+  [[nodiscard]] BranchState state_at(const continuation::Frontier& frontier) const;
+  void note_limits(const continuation::Ending& ending, const continuation::Frontier& before);
+  void limited_by(int limits, const continuation::Frontier& before);
+  void finish();
+  bool take(const continuation::Orbit& orbit);
+  const std::optional<spectrum::Stability>& stability_at(const continuation::Orbit& orbit);
+  bool jumped(const continuation::Orbit& from, const continuation::Orbit& to);
+  bool arrive(const continuation::Orbit& orbit);
+  void detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability);
+  void add_event(const bifurcation::Event& event, double from, double to);
+  void solve_requested(const continuation::Orbit& orbit);
+  void store(continuation::Orbit orbit, const std::optional<spectrum::Stability>& stability);
+  [[nodiscard]] bifurcation::Station station(double position,
+                                             const std::optional<spectrum::Stability>& stability) const;
+  [[nodiscard]] std::optional<bifurcation::Station> probe(double position);
+
+  const scene::Scene& _scene;
+  std::shared_ptr<const systems::System> _system;
+  BranchWork _work;
+  archive::Records& _rows;
+  queue::TaskContext& _context;
+  core::Team* _team;
+
+  continuation::Options _options;
+  continuation::Start _start;
+  std::optional<continuation::Branch> _branch;
+  continuation::FamilyCurve _curve;
+  bifurcation::SymmetryWatch _symmetry;
+  std::vector<bifurcation::TestFunction> _functions;
+  bifurcation::Detector _detector;
+  bifurcation::FoldWatch _folds;
+  std::optional<continuation::Orbit> _last;
+  std::optional<bifurcation::SymmetryWatch::Seen> _seen;  // of the last orbit
+  std::optional<spectrum::Stability> _last_stability;     // of the last orbit
+  std::vector<double> _asked;                             // modes of the orbit whose stability was asked for last,
+  std::optional<spectrum::Stability> _stability;          // and its stability
+  double _before_first = 0.0;                             // arclength from the crossing to the first orbit
+  int _events = 0;
+  BranchOutcome _outcome;
+  std::vector<queue::Task> _children;
+  bool _stopped = false;
+};
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,86 @@
+#include "executor.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "branch_task.hpp"
+#include "locate_task.hpp"
+#include "orbweaver/bifurcation/small_oscillations.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/starts/sweep.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+// Both directions of a start are one family where a symmetry or a time shift maps loops on one side to those on the other.
+bool directions_are_images(const systems::Description& system, std::span<const double> point,
+                           const starts::NormalMode& mode, int cutoff) {
+  loop::Loop plus = loop::constant_loop(point, mode.period, cutoff);
+  loop::Loop minus = plus;
+  for (std::size_t n = 0; n < plus.modes.size(); ++n) {
+    plus.modes[n] += mode.direction[n];
+    minus.modes[n] -= mode.direction[n];
+  }
+  return loop::find_map(system, plus, minus, 1e-8).has_value();
+}
+
+}  // namespace
+
+continuation::Options branch_options(const scene::Scene& scene, core::Team* team) {
+  continuation::Options options;
+  options.corrector.method = corrector::method_of(scene.continuation.corrector);
+  options.corrector.tolerance = scene.continuation.tolerance;
+  options.corrector.team = team;
+  options.cutoff_from = scene.continuation.cutoff_from;
+  options.cutoff_to = scene.continuation.cutoff_to;
+  options.fixed_step = scene.continuation.fixed_step;
+  options.start_amplitude = scene.continuation.start_amplitude;
+  options.period_limit = scene.limits.period;
+  options.energy_from = scene.limits.energy_from;
+  options.energy_to = scene.limits.energy_to;
+  options.step_limit = scene.limits.steps;
+  options.off_branch_spectrum = scene.survey.spectrum == scene::Spectrum::all;
+  return options;
+}
+
+Executor::Executor(const scene::Scene& scene, std::shared_ptr<const systems::System> system, archive::Records& rows,
+                   core::Team* team)
+    : _scene(scene), _system(std::move(system)), _rows(rows), _team(team) {}
+
+queue::TaskOutcome Executor::execute(const queue::Task& task, queue::TaskContext& context) {
+  if (task.kind == sweep_kind) return sweep(unpack_sweep_work(task.payload));
+  if (task.kind == branch_kind)
+    return BranchTask(_scene, _system, unpack_branch_work(task.payload), task.state, _rows, context, _team).run();
+  if (task.kind == locate_kind) return locate(_scene, _system, unpack_locate_work(task.payload), context, _team);
+  if (task.kind == start_kind) return start(_scene, _system, unpack_start_work(task.payload), _team);
+  throw core::EnvironmentError(fmt::format("no such kind of task: `{}`", task.kind));
+}
+
+queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
+  starts::SweepOptions options;
+  options.period_from = _scene.sweep.period_from;
+  options.period_to = _scene.sweep.period_to;
+  options.step = _scene.sweep.step;
+  const starts::SweepResult result = starts::sweep(*_system, work.point, options);
+  SweepOutcome outcome;
+  outcome.index = work.index;
+  outcome.point = work.point;
+  for (const starts::NormalMode& mode : bifurcation::small_oscillations(*_system, result, options.cutoff)) {
+    FoundMode found;
+    found.period = mode.period;
+    found.direction = mode.direction;
+    found.cutoff = options.cutoff;
+    found.one_direction = directions_are_images(_system->description(), work.point, mode, options.cutoff);
+    found.isotropy = record_of(mode.isotropy);
+    outcome.modes.push_back(std::move(found));
+  }
+  for (const starts::RejectedDip& dip : result.rejected)
+    outcome.rejected.push_back(fmt::format("T = {:.9g}: {}", dip.period, dip.reason));
+  queue::TaskOutcome done;
+  done.payload = pack(outcome);
+  return done;
+}
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+
+#include "orbweaver/archive/schema/records.hpp"
+#include "orbweaver/core/mpi/team.hpp"
+#include "orbweaver/queue/executor.hpp"
+#include "orbweaver/scene/scene.hpp"
+#include "orbweaver/survey/tasks/work.hpp"
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::survey {
+
+/// Does the survey's tasks on a rank; the rows of its orbits wait in `rows` for the next flush.
+class Executor : public queue::Executor {
+ public:
+  /// `team`: ranks that divide the work of a task among them, all executing the same one; may be null.
+  Executor(const scene::Scene& scene, std::shared_ptr<const systems::System> system, archive::Records& rows,
+           core::Team* team = nullptr);
+
+  queue::TaskOutcome execute(const queue::Task& task, queue::TaskContext& context) override;
+
+ private:
+  [[nodiscard]] queue::TaskOutcome sweep(const SweepWork& work) const;
+
+  const scene::Scene& _scene;
+  std::shared_ptr<const systems::System> _system;
+  archive::Records& _rows;
+  core::Team* _team;
+};
+
+/// What the scene says of continuation, as options of a branch.
+[[nodiscard]] continuation::Options branch_options(const scene::Scene& scene, core::Team* team);
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,243 @@
+#include "locate_task.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "arrival.hpp"
+#include "executor.hpp"
+#include "orbweaver/archive/schema/records.hpp"
+#include "orbweaver/bifurcation/crossing.hpp"
+#include "orbweaver/bifurcation/directions.hpp"
+#include "orbweaver/bifurcation/kernel.hpp"
+#include "orbweaver/continuation/orbit.hpp"
+#include "orbweaver/core/error.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+using bifurcation::Event;
+using bifurcation::TestFunction;
+
+std::string kind_of(const Event& event, int multiplicity) {
+  if (event.kind == Event::Kind::fold_period) return "fold-period";
+  if (event.kind == Event::Kind::fold_energy) return "fold-energy";
+  if (event.function.kind == TestFunction::Kind::krein) return "krein";
+  if (event.function.kind == TestFunction::Kind::torus) return "torus";
+  if (multiplicity == 1) return "branch-point";
+  return multiplicity == 2 ? "period-doubling" : "subharmonic";
+}
+
+/// Null vectors that the multipliers at the crossing let expect.
+int expected_dimension(const bifurcation::Crossing& crossing, const bifurcation::Sector& sector) {
+  int pairs = 0;
+  for (std::size_t n = 0; n < crossing.stability.fundamental.size(); ++n) {
+    const double away = std::abs(crossing.stability.fundamental[n] - sector.index());
+    if (away < std::max(1e-6, 10.0 * crossing.stability.fundamental_error[n])) ++pairs;
+  }
+  return std::max(1, pairs) * (sector.q <= 2 ? 1 : 2);
+}
+
+/// The |dz(s = 0)| of a step of length `amplitude` along the direction.
+double change_at_start(const bifurcation::Direction& direction, double amplitude) {
+  loop::Loop step = direction.base;
+  step.modes = direction.modes;
+  std::fill(step.winding.begin(), step.winding.end(), 0.0);
+  double square = 0.0;
+  for (const double v : loop::state_at(step, 0.0)) square += v * v;
+  return amplitude * std::sqrt(square);
+}
+
+/// The run is to stop.
+struct Interrupted {};
+
+class Location {
+ public:
+  Location(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system, const LocateWork& work,
+           queue::TaskContext& context, core::Team* team)
+      : _scene(scene), _system(system), _work(work), _context(context), _team(team), _event(event_of(work)) {
+    _outcome.key = work.key;
+    _outcome.lineage = work.lineage;
+    _outcome.q = work.q;
+    _outcome.j = work.j;
+  }
+
+  queue::TaskOutcome run() {
+    std::string why;
+    continuation::Options options = branch_options(_scene, _team);
+    const loop::Isotropy isotropy = isotropy_of(_work.isotropy, _system->description());
+    continuation::FamilyCurve fast(_system, isotropy, options);
+    add_known(fast);
+    auto crossing = bifurcation::locate(*_system, fast, _event, _work.from, _work.to, why);
+    if (crossing || _event.tangency) return crossing ? located(*crossing, fast) : without_crossing(why);
+    // Newton's method on whole loops is slower, and finds orbits that the fast way misses. Its positions between known
+    // orbits are a little different ones.
+    options.corrector.method = corrector::Method::newton_krylov;
+    continuation::FamilyCurve any(_system, isotropy, options);
+    add_known(any);
+    double from = any.known().front().position;
+    double to = any.known().back().position;
+    for (const continuation::FamilyCurve::Known& known : any.known()) {
+      if (known.position <= _work.from) from = std::max(from, known.position);
+      if (known.position >= _work.to) to = std::min(to, known.position);
+    }
+    crossing = bifurcation::locate(*_system, any, _event, from, to, why);
+    return crossing ? located(*crossing, any) : without_crossing(why);
+  }
+
+ private:
+  /// So that flushes need not wait for the end; a location that is stopped begins again.
+  void report() const {
+    if (!_context.report({})) throw Interrupted();
+  }
+
+  void add_known(continuation::FamilyCurve& family) const {
+    family.before_each([this] { report(); });
+    for (const KnownOrbit& known : _work.known) family.add(known.position, loop_of(known.loop), _work.known.size());
+  }
+
+  queue::TaskOutcome located(const bifurcation::Crossing& crossing, continuation::FamilyCurve& family) {
+    describe(crossing);
+    if (_event.kind == Event::Kind::test_function && _event.function.kind == TestFunction::Kind::sector) try {
+        leave(crossing, family);
+      } catch (const core::NumericalError& error) {  // the crossing itself is located, and stays
+        _failure = error.what();
+      }
+    queue::TaskOutcome done;
+    done.failed = !_failure.empty();
+    done.reason = _failure;
+    done.children = std::move(_starts);
+    done.payload = pack(_outcome);
+    return done;
+  }
+
+  queue::TaskOutcome without_crossing(const std::string& why) {
+    queue::TaskOutcome done;
+    // Only minima that come near zero, and functions that vanish for other reasons, may turn out to be nothing.
+    done.failed = !_event.tangency && why.find("nothing leaves") == std::string::npos;
+    done.reason =
+        fmt::format("the event between arclength {:.6g} and {:.6g} was not located: {}", _work.from, _work.to, why);
+    _outcome.remark = why;
+    done.payload = pack(_outcome);
+    if (!done.failed) done.reason.clear();
+    return done;
+  }
+
+  void describe(const bifurcation::Crossing& crossing) {
+    const loop::Loop& loop = crossing.point.loop;
+    _outcome.arclength = signed_arclength(_work.lineage, _work.before_first, crossing.point.position);
+    _outcome.period = loop.period;
+    _outcome.energy = continuation::energy_of(*_system, loop);
+    _outcome.fundamental_order = crossing.stability.fundamental_order;
+    const bool by_sector =
+        _event.kind == Event::Kind::test_function && _event.function.kind == TestFunction::Kind::sector;
+    _outcome.multiplicity = by_sector ? _event.function.sector.multiplicity(_outcome.fundamental_order) : 1;
+    _outcome.kind = kind_of(_event, _outcome.multiplicity);
+    _outcome.residual = crossing.reading.value;
+    _outcome.test_value = archive::not_computed;
+    if (by_sector) {  // the index itself, and how far it is from the sector's
+      _outcome.residual = bifurcation::index_deviation(crossing.stability, _event.function.sector).value;
+      _outcome.test_value = _event.function.sector.index() + _outcome.residual;
+    }
+    _outcome.kernel_singular_value = archive::not_computed;
+    _outcome.next_singular_value = archive::not_computed;
+    _outcome.kernel_dimension = by_sector ? -1 : 0;  // not computed yet
+    _outcome.state = loop::state_at(loop, 0.0);
+  }
+
+  void leave(const bifurcation::Crossing& crossing, continuation::FamilyCurve& family) {
+    const loop::Isotropy& isotropy = family.isotropy();
+    if (_outcome.multiplicity * _outcome.period > _scene.limits.period * (1.0 + 1e-9)) {
+      _outcome.remark = "orbits born here lie beyond the period limit";
+      _outcome.limited_by = period_limited;
+      return;
+    }
+    const bifurcation::Sector& sector = _event.function.sector;
+    const bool starts = _work.lineage.depth < _scene.survey.depth;
+    if (!starts) _outcome.limited_by = depth_limited;
+    report();
+    const bifurcation::Kernel kernel = bifurcation::kernel_of(*_system, crossing.point, isotropy, sector,
+                                                              expected_dimension(crossing, sector), starts, _team);
+    _outcome.kernel_dimension = kernel.dimension();
+    _outcome.kernel_singular_value = kernel.largest();
+    _outcome.next_singular_value = kernel.next();
+    if (kernel.dimension() == 0) return without_kernel(kernel, family);
+    if (!starts) return;
+    report();
+    int number = 0;
+    for (const bifurcation::Direction& direction :
+         bifurcation::directions(*_system, kernel.base, isotropy, kernel.vectors)) {
+      LeavingRecord leaving;
+      leaving.key = fmt::format("{}/{}", _work.key, number++);
+      leaving.isotropy = record_of(direction.isotropy);
+      leaving.both_sides = direction.both_sides;
+      leaving.base = record_of(sketch_of(direction.base));
+      loop::Loop vector = direction.base;
+      vector.modes = direction.modes;
+      leaving.direction = loop::with_cutoff(vector, leaving.base.cutoff).modes;
+      add_starts(direction, leaving);
+      _outcome.leaving.push_back(std::move(leaving));
+    }
+  }
+
+  void without_kernel(const bifurcation::Kernel& kernel, continuation::FamilyCurve& family) {
+    _outcome.remark = fmt::format("no flat direction besides the family's own (smallest singular value {:.2g})",
+                                  kernel.singular_values.empty() ? archive::not_computed : kernel.singular_values[0]);
+    if (_event.tangency) {  // a minimum that came near zero, but is none
+      _outcome.kind.clear();
+    } else if (_event.function.sector.q == 1 && turns_in_energy(family)) {
+      _outcome.kind = "fold-energy";
+    } else {
+      _failure = _outcome.remark;
+    }
+  }
+
+  [[nodiscard]] bool turns_in_energy(continuation::FamilyCurve& family) const {
+    const auto before = family.at(_work.from, true);
+    const auto after = family.at(_work.to, true);
+    return before && after &&
+           bifurcation::energy_slope(*_system, *before) * bifurcation::energy_slope(*_system, *after) < 0.0;
+  }
+
+  void add_starts(const bifurcation::Direction& direction, const LeavingRecord& leaving) {
+    for (const int side : {1, -1}) {
+      if (side < 0 && !leaving.both_sides) continue;
+      StartWork start;
+      BranchWork& branch = start.branch;
+      branch.key = leaving.key + (leaving.both_sides ? (side > 0 ? "+" : "-") : "");
+      branch.name = fmt::format("{}>{}@{:.4g}{}", _work.name, _outcome.multiplicity, _outcome.period,
+                                leaving.key.substr(_work.key.size()));
+      branch.lineage = {leaving.key, _work.key, _work.lineage.depth + 1, _outcome.multiplicity, side};
+      branch.base = record_of(direction.base);
+      branch.direction = direction.modes;
+      branch.isotropy = leaving.isotropy;
+      branch.amplitude = direction.amplitude > 0.0 ? change_at_start(direction, direction.amplitude) : 0.0;
+      _starts.push_back(task_of(start));
+    }
+  }
+
+  const scene::Scene& _scene;
+  const std::shared_ptr<const systems::System>& _system;
+  const LocateWork& _work;
+  queue::TaskContext& _context;
+  core::Team* _team;
+  Event _event;
+  LocateOutcome _outcome;
+  std::vector<queue::Task> _starts;
+  std::string _failure;
+};
+
+}  // namespace
+
+queue::TaskOutcome locate(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
+                          const LocateWork& work, queue::TaskContext& context, core::Team* team) {
+  try {
+    return Location(scene, system, work, context, team).run();
+  } catch (const Interrupted&) {
+    return {};
+  }
+}
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,49 @@
+#include "orbit_row.hpp"
+
+#include "orbweaver/certificate/certificate.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/symmetry/standard_phase.hpp"
+#include "stability_columns.hpp"
+
+namespace orbweaver::survey {
+
+std::optional<spectrum::Stability> stability_of(const systems::System& system, const loop::Loop& loop,
+                                                const loop::Isotropy& isotropy, core::Team* team) {
+  try {
+    spectrum::FloquetOptions options;
+    options.team = team;
+    return spectrum::floquet(system, loop, isotropy, options);
+  } catch (const core::NumericalError&) {
+    return std::nullopt;
+  }
+}
+
+archive::OrbitRecord orbit_row(const systems::System& system, const std::string& family,
+                               const continuation::Orbit& orbit, const loop::Isotropy& isotropy,
+                               const std::optional<spectrum::Stability>& stability) {
+  const loop::Loop stored = loop::in_standard_phase(system.description(), orbit.loop, isotropy);
+  archive::OrbitRecord row;
+  row.family_key = family;
+  row.step = orbit.step;
+  row.arclength = orbit.arclength;
+  row.period = orbit.loop.period;
+  row.energy = orbit.energy;
+  row.action = orbit.action;
+  row.cutoff = stored.cutoff;
+  row.loss_rms = orbit.loss_rms;
+  row.off_branch_eigenvalue = orbit.off_branch_eigenvalue;
+  row.tail = loop::tail(stored);
+  row.state = loop::state_at(stored, 0.0);
+  row.modes = stored.modes;
+  row.time_map = loop::to_numbers(stored.time_map);
+  for (const int angle : system.description().angles)
+    row.winding.push_back(orbit.loop.winding[static_cast<std::size_t>(angle)]);
+  set_stability(system.description(), stability, row);
+  const certificate::Certificate certificate = certificate::certify(system, stored);
+  row.closure = certificate.closure;
+  row.single_shot = certificate.single_shot;
+  row.energy_drift = certificate.energy_drift;
+  return row;
+}
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "orbweaver/archive/schema/records.hpp"
+#include "orbweaver/continuation/orbit.hpp"
+#include "orbweaver/spectrum/floquet.hpp"
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::survey {
+
+/// Multipliers of an orbit, or none where they cannot be computed. `team` divides the work; may be null.
+[[nodiscard]] std::optional<spectrum::Stability> stability_of(const systems::System& system, const loop::Loop& loop,
+                                                              const loop::Isotropy& isotropy,
+                                                              core::Team* team = nullptr);
+
+/// The row of an accepted orbit, with its certificate; s = 0 as docs/file_format.md has it.
+[[nodiscard]] archive::OrbitRecord orbit_row(const systems::System& system, const std::string& family,
+                                             const continuation::Orbit& orbit, const loop::Isotropy& isotropy,
+                                             const std::optional<spectrum::Stability>& stability);
+
+}  // namespace orbweaver::survey

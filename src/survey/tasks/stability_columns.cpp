@@ -1,0 +1,40 @@
+#include "stability_columns.hpp"
+
+#include <algorithm>
+#include <complex>
+#include <vector>
+
+#include "orbweaver/archive/schema/schema.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+std::vector<double> columns_of(const std::vector<std::complex<double>>& values, bool complex) {
+  std::vector<double> columns;
+  for (const std::complex<double>& value : values) {
+    columns.push_back(value.real());
+    if (complex) columns.push_back(value.imag());
+  }
+  return columns;
+}
+
+}  // namespace
+
+void set_stability(const systems::Description& system, const std::optional<spectrum::Stability>& stability,
+                   archive::OrbitRecord& row) {
+  archive::Header header;
+  header.pairs = system.pairs();
+  header.symplectic = system.symplectic;
+  row.stability.assign(archive::stability_width(header), archive::not_computed);
+  row.fundamental_stability = row.stability;
+  row.stability_error = archive::not_computed;
+  if (!stability) return;
+  const bool complex = archive::has_complex_stability(header);
+  row.stability = columns_of(stability->full, complex);
+  row.fundamental_stability = columns_of(stability->fundamental, complex);
+  if (!stability->full_error.empty())
+    row.stability_error = *std::max_element(stability->full_error.begin(), stability->full_error.end());
+}
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "orbweaver/archive/schema/records.hpp"
+#include "orbweaver/queue/task.hpp"
+#include "orbweaver/scene/scene.hpp"
+#include "orbweaver/survey/run/survey.hpp"
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::survey {
+
+/// Sweeps that have ended, by the key of their task.
+using SweepsEnded = std::map<std::string, std::pair<queue::Task, queue::TaskOutcome>>;
+
+/// A sweep for every equilibrium. Throws InputError if there is none.
+[[nodiscard]] std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::System& system);
+
+/// The families at equilibria in the order of their keys: equilibria sorted, longest period first; no more than the scene
+/// allows. What was passed over is remarked in the summary.
+[[nodiscard]] std::vector<queue::Task> branch_tasks(const scene::Scene& scene, const systems::Description& system,
+                                                    const SweepsEnded& sweeps, Summary& summary);
+
+/// An equilibrium whose sweep failed is a family without orbits, so that the archive says so.
+void gather_failed_sweeps(const systems::Description& system, const SweepsEnded& sweeps, Summary& summary,
+                          archive::Records& tables);
+
+}  // namespace orbweaver::survey

@@ -1,7 +1,0 @@
-#include "orbweaver/survey/version.hpp"
-
-namespace orbweaver::survey {
-
-const char* version() { return ORBWEAVER_VERSION; }
-
-}  // namespace orbweaver::survey

@@ -1,0 +1,196 @@
+#include "orbweaver/equations/collocation.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "loop/samples.hpp"
+#include "orbweaver/equations/orbit_solver.hpp"
+#include "orbweaver/loss/linearization.hpp"
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::equations {
+namespace {
+
+const systems::System& pendulum() {
+  static const auto system = systems::make_system("double_pendulum");
+  return *system;
+}
+
+struct Case {
+  std::string name;
+  bool shift;
+  bool reversor;
+  double kappa;
+};
+
+class Equations : public testing::TestWithParam<Case> {
+ protected:
+  static constexpr int cells = 24;
+  loop::Isotropy isotropy = [this] {
+    loop::Isotropy out;
+    if (GetParam().shift) out.push_back(test::element_of(pendulum().description(), "S", 1, 2));
+    if (GetParam().reversor) out.push_back(test::element_of(pendulum().description(), "R"));
+    return out;
+  }();
+  loop::TimeMap map{GetParam().kappa, {}};
+  Collocation equations{pendulum(),
+                        loop::fundamental_domain(isotropy, 4),
+                        std::vector<double>(4, 0.0),
+                        std::vector<double>(4, 0.0),
+                        cells,
+                        map};
+
+  /// A loop with the symmetries, near nothing in particular.
+  [[nodiscard]] loop::Loop sample() const {
+    loop::Loop base = loop::constant_loop(std::vector<double>(4, 0.0), 7.0, equations.grid().cutoff() - 1);
+    base = test::random_loop_in(loop::Subspace(4, base.cutoff, isotropy), base, 5, 0.4);
+    base.time_map = map;
+    return base;
+  }
+  [[nodiscard]] std::vector<double> point_of(const loop::Loop& loop) const {
+    std::vector<double> u(static_cast<std::size_t>(equations.size()), 0.0);
+    equations.from_loop(loop, u.data());
+    return u;
+  }
+  void set_random_conditions(const std::vector<double>& reference) {
+    equations.set_conditions(test::random_values(static_cast<std::size_t>(equations.borders() * equations.size()), 9),
+                             reference);
+  }
+};
+
+TEST_P(Equations, JacobianIsTheDerivativeOfTheResidual) {
+  const std::vector<double> u = point_of(sample());
+  set_random_conditions(u);
+  equations.factor(u.data());
+  const std::vector<double> v = test::random_values(u.size(), 11);
+  std::vector<double> derivative(u.size());
+  equations.apply_jacobian(v.data(), derivative.data());
+  const double h = 1e-6;
+  std::vector<double> plus = u;
+  std::vector<double> minus = u;
+  for (std::size_t n = 0; n < u.size(); ++n) {
+    plus[n] += h * v[n];
+    minus[n] -= h * v[n];
+  }
+  std::vector<double> above(u.size());
+  std::vector<double> below(u.size());
+  equations.residual(plus.data(), above.data());
+  equations.residual(minus.data(), below.data());
+  for (std::size_t n = 0; n < u.size(); ++n) EXPECT_NEAR(derivative[n], (above[n] - below[n]) / (2.0 * h), 2e-8) << n;
+}
+
+// The box scheme has the same differences and the same borders, and meets the ends exactly.
+TEST_P(Equations, PreconditionerSolvesWhatDoesNotDependOnTheStates) {
+  const std::vector<double> u = point_of(sample());
+  set_random_conditions(u);
+  equations.factor(u.data());
+  std::vector<double> v(u.size(), 0.0);
+  v[static_cast<std::size_t>(equations.period_at())] = 1.0;
+  std::vector<double> r(u.size());
+  equations.apply_jacobian(v.data(), r.data());
+  equations.precondition(r.data());
+  for (std::size_t n = 0; n < u.size(); ++n) EXPECT_NEAR(r[n], v[n], 1e-10) << n;
+}
+
+TEST_P(Equations, QualityIsThatOfTheLoop) {
+  const loop::Loop loop = sample();
+  const std::vector<double> u = point_of(loop);
+  const loss::Linearization linearization(pendulum(), loop, loss::Linearization::Order::residual);
+  const Collocation::Quality quality = equations.quality(u.data());
+  EXPECT_NEAR(quality.loss_rms, std::sqrt(linearization.loss()), 1e-8 * quality.loss_rms);
+  EXPECT_NEAR(quality.amplitude, loop::rms_amplitude(loop), 1e-8 * quality.amplitude);
+  EXPECT_NEAR(quality.size, loop::rms_size(loop), 1e-8 * quality.size);
+}
+
+TEST_P(Equations, LoopsComeBack) {
+  const loop::Loop loop = sample();
+  EXPECT_LT(loop::mean_distance(equations.to_loop(point_of(loop).data()), loop), 1e-13);
+}
+
+TEST_P(Equations, DistanceIsTheArclength) {
+  const loop::Loop loop = sample();
+  loop::Loop other = loop;
+  other.period *= 1.01;
+  for (double& v : other.modes) v *= 1.02;
+  EXPECT_NEAR(equations.distance(point_of(other).data(), point_of(loop).data()),
+              std::hypot(loop::mean_distance(loop, other), 0.01), 1e-9);
+}
+
+TEST_P(Equations, ResamplingKeepsTheCurve) {
+  const loop::Loop loop = sample();
+  const loop::TimeMap sharper{1.3 * GetParam().kappa, {}};
+  const Collocation finer(pendulum(), equations.grid().domain(), equations.centre(), equations.winding(), 96, sharper);
+  const loop::Loop moved = finer.to_loop(finer.resampled(equations, point_of(loop)).data());
+  EXPECT_EQ(moved.time_map.kappa, sharper.kappa);
+  for (const double time : {0.0, 0.7, 2.9, 6.1})
+    for (std::size_t i = 0; i < 4; ++i)
+      EXPECT_NEAR(loop::state_at(moved, time)[i], loop::state_at(loop, time)[i], 1e-10) << time;
+}
+
+INSTANTIATE_TEST_SUITE_P(Collocation, Equations,
+                         testing::Values(Case{"whole", false, false, 1.0}, Case{"shift", true, false, 1.0},
+                                         Case{"mirror", false, true, 1.4}, Case{"both", true, true, 1.0},
+                                         Case{"bothMapped", true, true, 1.4}, Case{"wholeMapped", false, false, 1.4}),
+                         [](const auto& tested) { return tested.param.name; });
+
+/// x^2 + eps x = c, solved with the slope at another point.
+class Square final : public PreconditionedEquations {
+ public:
+  [[nodiscard]] int size() const override { return 3; }
+  void residual(const double* u, double* r) const override {
+    for (int n = 0; n < 3; ++n) r[n] = u[n] * u[n] - (n + 1.0) * scale;
+  }
+  void factor(const double* u) override {
+    ++factors;
+    for (int n = 0; n < 3; ++n) _slope[n] = 2.0 * u[n];
+  }
+  void precondition(double* r) const override {
+    for (int n = 0; n < 3; ++n) r[n] /= _slope[n];
+  }
+  double scale = 1.0;
+  int factors = 0;
+
+ private:
+  double _slope[3] = {};
+};
+
+TEST(OrbitSolver, ConvergesWithAKeptFactorAndRenewsAPoorOne) {
+  Square equations;
+  OrbitSolver solver;
+  std::vector<double> u{1.1, 1.3, 1.6};
+  EXPECT_TRUE(solver.solve(equations, u, false, {}).converged);
+  for (std::size_t n = 0; n < 3; ++n) EXPECT_NEAR(u[n], std::sqrt(n + 1.0), 1e-12);
+  EXPECT_EQ(equations.factors, 1);
+  equations.scale = 1.05;
+  const AndersonSolver::Result kept = solver.solve(equations, u, true, {});
+  EXPECT_TRUE(kept.converged);
+  EXPECT_FALSE(kept.factored);
+  EXPECT_EQ(equations.factors, 1);
+  equations.scale = 400.0;
+  u = {19.0, 29.0, 34.0};
+  const AndersonSolver::Result renewed = solver.solve(equations, u, true, {});
+  EXPECT_TRUE(renewed.converged);
+  EXPECT_TRUE(renewed.factored);
+  EXPECT_EQ(renewed.factor_point.size(), 3u);
+  EXPECT_NEAR(u[2], std::sqrt(1200.0), 1e-10);
+}
+
+TEST(OrbitSolver, SaysWhereItFails) {
+  Square equations;
+  equations.scale = -1.0;
+  OrbitSolver solver;
+  std::vector<double> u{1.0, 1.0, 1.0};
+  const AndersonSolver::Result result = solver.solve(equations, u, false, {});
+  EXPECT_FALSE(result.converged);
+  equations.scale = std::nan("");
+  u = {1.0, 1.0, 1.0};
+  const AndersonSolver::Result undefined = solver.solve(equations, u, false, {});
+  EXPECT_FALSE(undefined.converged);
+  EXPECT_FALSE(undefined.finite);
+}
+
+}  // namespace
+}  // namespace orbweaver::equations

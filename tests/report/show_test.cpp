@@ -1,0 +1,275 @@
+#include <gmock/gmock.h>
+
+#include <sstream>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "archive/sample.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/report/show.hpp"
+
+namespace {
+
+using namespace orbweaver;
+using namespace orbweaver::archive;
+using namespace orbweaver::report;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+Archive sample_atlas(const std::string& folder, const Header& header) {
+  return Archive(test::write_sample_atlas(test::fresh_folder(folder), header, test::sample_records(header)));
+}
+
+std::string shown(const Archive& atlas, const std::string& name, TextFormat format) {
+  std::ostringstream out;
+  print_table(out, atlas, name, format);
+  return out.str();
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(Show, FamiliesAsCsv) {
+  const Archive atlas = sample_atlas("families_csv", test::sample_header());
+  const auto lines = lines_of(shown(atlas, "families", TextFormat::csv));
+  ASSERT_EQ(lines.size(), 6u);
+  EXPECT_EQ(lines[0],
+            "name,parent,crossing,multiplicity,isotropy,first_orbit,orbit_count,end_reason,end_family,end_crossing");
+  EXPECT_EQ(lines[2], "ID1,0,1,1,S@1/2 R@0,12,3,the period reached the scene's limit,-1,-1");
+  EXPECT_EQ(lines[5], "\"Ästhetik \"\"B\"\", 1\",3,2,2,S@1/2 R@0,24,5,the period reached the scene's limit,1,0");
+}
+
+TEST(Show, OrbitsAsCsvSpreadTheirVectorsAndKeepEveryDigit) {
+  Header header = test::sample_header();
+  Records records = test::sample_records(header);
+  records.orbits[9].energy = 0.1;
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("orbits_csv"), header, records));
+  const auto lines = lines_of(shown(atlas, "orbits", TextFormat::csv));
+  ASSERT_EQ(lines.size(), 30u);
+  EXPECT_EQ(lines[0],
+            "family,step,arclength,period,energy,action,parameter,cutoff,loss_rms,off_branch_eigenvalue,stability_0,"
+            "fundamental_stability_0,stability_error,state_θ1,state_w1,closure,single_shot,energy_drift,tail,"
+            "modes_begin,modes_count,time_map_begin,time_map_count,winding_n1");
+  EXPECT_EQ(
+      lines[1],
+      "0,0,0,3.125,0.10000000000000001,0.28125,nan,2,9.9999999999999994e-12,nan,9,9.5,nan,900,-900.015625,nan,nan,"
+      "nan,0.0087890625,0,10,0,5,0");
+}
+
+TEST(Show, OrbitsAsJson) {
+  const Archive atlas = sample_atlas("orbits_json", test::sample_header(1, false));
+  const std::string text = shown(atlas, "orbits", TextFormat::json);
+  const auto lines = lines_of(text);
+  ASSERT_EQ(lines.size(), 31u);
+  EXPECT_EQ(lines.front(), "[");
+  EXPECT_EQ(lines.back(), "]");
+  EXPECT_EQ(
+      lines[2],
+      "  {\"family\": 0, \"step\": 1, \"arclength\": 0.25, \"period\": 3.25, \"energy\": -2.375, \"action\": 0.3125, "
+      "\"parameter\": null, \"cutoff\": 3, \"loss_rms\": 9.9999999999999994e-12, \"off_branch_eigenvalue\": null, "
+      "\"stability\": [[10, -10.015625]], \"fundamental_stability\": [[null, null]], \"stability_error\": null, "
+      "\"state\": [1000, -1000.015625], \"closure\": null, \"single_shot\": null, \"energy_drift\": null, "
+      "\"tail\": 0.009765625, \"modes_begin\": 10, \"modes_count\": 14, \"time_map_begin\": 5, "
+      "\"time_map_count\": 0, \"winding\": [0]},");
+}
+
+TEST(Show, TextsAreEscapedInJson) {
+  const Header header = test::sample_header();
+  Records records = test::sample_records(header);
+  records.families[0].end_reason = "line one\nback\\slash";
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("escapes"), header, records));
+  const std::string text = shown(atlas, "families", TextFormat::json);
+  EXPECT_THAT(text, HasSubstr("\"name\": \"Ästhetik \\\"B\\\", 1\""));
+  EXPECT_THAT(text, HasSubstr("\"line one\\u000aback\\\\slash\""));
+}
+
+TEST(Show, FamiliesReadablyAsATree) {
+  const Header header = test::sample_header();
+  Records records = test::sample_records(header);
+  records.crossings[1].multiplicity = 2;
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("readable"), header, records));
+  EXPECT_EQ(shown(atlas, "families", TextFormat::readable),
+            R"(family             born at                     orbits          period              energy
+In-Phase           -                               12    3.125 .. 4.5    -2.4375 .. -1.75
+    S@1/2 R@0; unstable; ended: the period reached the scene's limit
+  ID1              period-doubling T 6.5, m 1       3     5.25 .. 5.5     -1.375 .. -1.25
+      S@1/2 R@0; unstable; ended: the period reached the scene's limit
+Up-Down            -                                0               -                   -
+    S@1/2 R@0; ended: no first orbit could be found – the Newton iteration stalled
+Out-Phase          -                                9          2 .. 3          -3 .. -2.5
+    S@1/2 R@0; stable T 2 .. 2.25; ended: the period reached the scene's limit
+  Ästhetik "B", 1  branch-point T 5.5, m 2          5  4.625 .. 5.125  -1.6875 .. -1.4375
+      S@1/2 R@0; unstable; ended: the period reached the scene's limit -> ID1 at fold-energy T 4.5
+)");
+}
+
+TEST(Show, CrossingsReadablyWithTheFamiliesBornThere) {
+  const Header header = test::sample_header();
+  Records records = test::sample_records(header);
+  records.families[0].crossing = 0;
+  records.crossings[0].energy = -1.25;
+  records.crossings[0].sector_j = 1;
+  records.crossings[0].sector_q = 4;
+  records.crossings[0].multiplicity = 2;
+  records.crossings[0].residual = -3.5e-12;
+  records.crossings[0].test_value = -2;
+  records.crossings[2].kernel_dimension = -1;
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("crossings"), header, records));
+  EXPECT_EQ(shown(atlas, "crossings", TextFormat::readable),
+            R"(family     period  energy  kind             m  q  j  kernel  residual  test value  born there
+In-Phase      4.5       -  fold-energy      1  1  0       -         -           -  -
+In-Phase      6.5   -1.25  period-doubling  2  4  1       2  -3.5e-12          -2  ID1, Ästhetik "B", 1
+Out-Phase     5.5       -  branch-point     1  1  0       2         -           -  -
+)");
+}
+
+TEST(Show, AnEndThatNamesTheFamilyIsNotToldTwice) {
+  const Header header = test::sample_header();
+  Records records = test::sample_records(header);
+  records.families[0].end_reason = "joined ID1 at T = 4.5";
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("joined"), header, records));
+  EXPECT_THAT(shown(atlas, "families", TextFormat::readable), HasSubstr("ended: joined ID1 at T = 4.5\n"));
+}
+
+TEST(Show, LinesOfTheTreeStayWithin120Characters) {
+  const Header header = test::sample_header();
+  Records records = test::sample_records(header);
+  for (int n = 0; n < 200; ++n) records.families[2].end_reason += fmt::format(", and reason {}", n);
+  records.families[3].name = std::string(80, 'n');
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("long"), header, records));
+  const std::string text = shown(atlas, "families", TextFormat::readable);
+  for (const std::string& line : lines_of(text)) EXPECT_LE(line.size(), 121U) << line;  // one letter has two bytes
+  EXPECT_THAT(text, HasSubstr("\n    reason 3,"));
+  EXPECT_THAT(text, HasSubstr("...\n  ID1 "));
+  EXPECT_THAT(text, HasSubstr("nnnnn... "));
+  EXPECT_THAT(shown(atlas, "families", TextFormat::csv), HasSubstr("and reason 199"));
+}
+
+std::vector<std::string> family_column(const Archive& atlas) {
+  std::vector<std::string> names;
+  for (const std::string& line : lines_of(shown(atlas, "families", TextFormat::readable)))
+    if (line.find("ended:") == std::string::npos)
+      names.push_back(line.substr(0, line.find("  ", line.find_first_not_of(' '))));
+  return names;
+}
+
+TEST(Show, ChildrenStandBehindTheirParentWhateverTheOrderOfKeys) {
+  const Header header = test::sample_header();
+  Records records;
+  const auto add = [&](const char* key, const char* name, const char* parent) {
+    FamilyRecord family;
+    family.key = key;
+    family.name = name;
+    family.parent_key = parent;
+    family.end_reason = "-";
+    records.families.push_back(family);
+  };
+  add("1", "one", "");
+  add("1+", "other side", "");
+  add("1.1", "child", "1");
+  add("1.1.1", "grandchild", "1.1");
+  add("1.2", "second child", "1");
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("order"), header, records));
+  EXPECT_THAT(family_column(atlas),
+              ElementsAre("family", "one", "  child", "    grandchild", "  second child", "other side"));
+  records.families[0].parent_key = "1.1";  // in a circle
+  const Archive circle(test::write_sample_atlas(test::fresh_folder("circle"), header, records));
+  EXPECT_THAT(family_column(circle),
+              ElementsAre("family", "other side", "one", "  child", "    grandchild", "  second child"));
+}
+
+// The one family of five orbits with T = 1 ... 5, these stabilities, and this error bound.
+std::string stability_of(const Header& header, const std::vector<std::vector<double>>& values, double error) {
+  Records records = test::sample_records(header);
+  records.crossings.clear();
+  records.families = {records.families[1]};
+  records.orbits.resize(values.size());
+  records.sections.clear();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    records.orbits[i].period = static_cast<double>(i + 1);
+    records.orbits[i].stability = values[i];
+    records.orbits[i].stability_error = error;
+  }
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("stability"), header, records));
+  const std::string line = lines_of(shown(atlas, "families", TextFormat::readable)).at(2);
+  const std::size_t begin = line.find("; ") + 2;
+  return line.substr(begin, line.find("ended:") - begin);
+}
+
+TEST(Show, StabilityOfOnePairInIntervalsOfThePeriod) {
+  const Header one = test::sample_header();
+  const double nan = not_computed;
+  EXPECT_EQ(stability_of(one, {{1}, {-1.5}, {2.5}, {0}, {-3}}, 1e-9), "stable T 1 .. 2, 4; ");
+  EXPECT_EQ(stability_of(one, {{3}, {1}, {nan}, {1}, {2}}, 1e-9), "stable T 2, 4 .. 5; ");
+  EXPECT_EQ(stability_of(one, {{1}, {-2}, {2}, {0}, {1}}, 1e-9), "stable; ");
+  EXPECT_EQ(stability_of(one, {{3}, {-9}, {4}, {nan}, {7}}, nan), "unstable; ");
+  EXPECT_EQ(stability_of(one, {{2 + 1e-7}, {-2 - 1e-7}, {2.1}, {3}, {4}}, 1e-6), "stable T 1 .. 2; ");
+  EXPECT_EQ(stability_of(one, {{2 + 1e-7}, {-2 - 1e-7}, {2.1}, {3}, {4}}, 1e-8), "unstable; ");
+  EXPECT_EQ(stability_of(one, {{1}, {1}, {1}, {1}, {1}}, 1), "") << "errors too large to tell";
+}
+
+TEST(Show, StabilityChangesAtLocatedCrossings) {
+  const Header header = test::sample_header();
+  Records records = test::sample_records(header);
+  const CrossingRecord some = records.crossings[1];  // of Out-Phase, whose steps are a quarter in arclength
+  records.crossings.clear();
+  for (const auto& [arclength, period, kind] :
+       {std::tuple(-0.45, 2.26, "subharmonic"), std::tuple(-0.4, 2.27, "branch-point"),
+        std::tuple(0.9, 2.9, "krein")}) {
+    records.crossings.push_back(some);
+    records.crossings.back().arclength = arclength;
+    records.crossings.back().period = period;
+    records.crossings.back().kind = kind;
+  }
+  records.crossings.push_back(records.crossings.back());
+  records.crossings.back().family_key = "0001";
+  records.crossings.back().period = 9;
+  for (FamilyRecord& family : records.families) family.crossing = family.end_crossing = -1;
+  records.orbits[8].stability = {0.5};  // the last of Out-Phase, T = 3
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("located"), header, records));
+  EXPECT_THAT(shown(atlas, "families", TextFormat::readable), HasSubstr("; stable T 2 .. 2.27, 2.9 .. 3; "));
+}
+
+TEST(Show, StabilityOfTwoPairsNeedsBoth) {
+  const Header two = test::sample_header(2);
+  EXPECT_EQ(stability_of(two, {{1, 0, 1, 0}, {1, 0, 3, 0}, {3, 0, 1, 0}, {1, 0.5, 1, -0.5}, {0, 0, -1, 0}}, 1e-9),
+            "stable T 1, 5; ");
+}
+
+TEST(Show, StabilityByMultipliersWhereTheFlowIsNotSymplectic) {
+  const Header damped = test::sample_header(1, false);
+  EXPECT_EQ(stability_of(damped, {{0.5, 0.5}, {-1.1, 0}, {0.8, 0.8}, {0, -1}, {1.5, 0}}, 1e-9), "stable T 1, 4; ");
+}
+
+TEST(Show, Summary) {
+  const Archive atlas = sample_atlas("summary", test::sample_header());
+  std::ostringstream out;
+  print_summary(out, atlas);
+  EXPECT_THAT(out.str(), HasSubstr("written by Orbweaver 0.1.0"));
+  EXPECT_THAT(out.str(), HasSubstr("coordinates  θ1, w1\nfamilies     5\norbits       29\ncrossings    3\n"));
+  EXPECT_THAT(out.str(), HasSubstr("period       2 .. 5.5\n"));
+  EXPECT_THAT(out.str(), HasSubstr("\nOut-Phase "));
+}
+
+TEST(Show, AnEmptyAtlasIsShownToo) {
+  const Header header = test::sample_header();
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("empty"), header, {}));
+  EXPECT_EQ(shown(atlas, "orbits", TextFormat::json), "[]\n");
+  EXPECT_EQ(lines_of(shown(atlas, "crossings", TextFormat::csv)).size(), 1u);
+  std::ostringstream out;
+  print_summary(out, atlas);
+  EXPECT_THAT(out.str(), HasSubstr("orbits       0\n"));
+  EXPECT_THAT(out.str(), HasSubstr("period       -\n"));
+}
+
+TEST(Show, AnUnknownTableIsTheUsersError) {
+  const Archive atlas = sample_atlas("unknown", test::sample_header());
+  EXPECT_THROW(static_cast<void>(shown(atlas, "modes", TextFormat::csv)), core::InputError);
+}
+
+}  // namespace

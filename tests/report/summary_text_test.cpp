@@ -1,0 +1,68 @@
+#include <gmock/gmock.h>
+
+#include "orbweaver/report/summary_text.hpp"
+
+namespace {
+
+using namespace orbweaver;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+survey::Summary sample_summary() {
+  survey::Summary summary;
+  summary.families = {
+      {"0000.0000", "In-Phase", "S@1/2 R@0", 35, 8.2094, 30.0, -2.9999, 2.99906644, "period limit (T = 30)", false},
+      {"0001.0000", "A name of great length", "", 2, 5.25, 5.5, 1.0, 1.25, "failure (a NaN at node 3)", true}};
+  summary.remarks = {"no small oscillations around the top"};
+  summary.failed_tasks = {"0001.0000 (A name of great length): failure (a NaN at node 3)"};
+  summary.failures = 1;
+  summary.orbits = 37;
+  summary.crossings = 5;
+  summary.seconds = 12.345;
+  summary.peak_memory_mib = {48.4, 417.2};
+  summary.atlas = "some/folder/atlas.h5";
+  summary.archived = true;
+  return summary;
+}
+
+TEST(SummaryText, SaysEverythingThatItKnows) {
+  const std::string text = report::to_text(sample_summary());
+  EXPECT_THAT(text, AllOf(HasSubstr("In-Phase"), HasSubstr("A name of great length"),
+                          HasSubstr("8.209400 .. 30.000000"), HasSubstr("-2.99990000 ..  2.99906644"),
+                          HasSubstr("period limit (T = 30)"), HasSubstr("failure (a NaN at node 3)")));
+  EXPECT_THAT(
+      text,
+      AllOf(HasSubstr("note: no small oscillations around the top\n"),
+            HasSubstr("failed: 0001.0000 (A name of great length): failure (a NaN at node 3)\n"),
+            HasSubstr("2 families, 5 crossings, 37 orbits, 1 failed, 12.35 s; peak memory per rank: 48 417 MiB\n"),
+            HasSubstr("archive: some/folder/atlas.h5\n")));
+}
+
+TEST(SummaryText, ColumnsAlign) {
+  const std::string text = report::to_text(sample_summary());
+  const std::string head = text.substr(0, text.find('\n'));
+  const std::string first = text.substr(head.size() + 1, text.find('\n', head.size() + 1) - head.size() - 1);
+  EXPECT_EQ(head.find("ended by"), first.find("period limit"));
+  EXPECT_EQ(head.find("orbits") + 6, first.find("35") + 2);
+}
+
+TEST(SummaryText, NothingFoundIsSaidToo) {
+  const std::string text = report::to_text({});
+  EXPECT_THAT(text, HasSubstr("0 families, 0 crossings, 0 orbits, 0 failed"));
+  EXPECT_THAT(text, AllOf(Not(HasSubstr("note:")), Not(HasSubstr("failed:"))));
+}
+
+TEST(SummaryText, ChildrenAreIndented) {
+  survey::Summary summary = sample_summary();
+  summary.families[1].depth = 2;
+  EXPECT_THAT(report::to_text(summary), HasSubstr("\n    A name of great length"));
+}
+
+TEST(SummaryText, AnArchiveOfManyFamiliesIsListedInPart) {
+  survey::Summary summary = sample_summary();
+  summary.families.resize(100, summary.families[0]);
+  EXPECT_THAT(report::to_text(summary), HasSubstr("... and 40 more: orbweaver show some/folder/atlas.h5 families\n"));
+}
+
+}  // namespace

@@ -1,0 +1,69 @@
+#include "orbweaver/starts/fixed_points.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "corrector/oscillator.hpp"
+#include "orbweaver/core/error.hpp"
+
+namespace orbweaver::starts {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+void expect_the_four_equilibria(const std::vector<std::vector<double>>& points) {
+  const double angles[4][2] = {{0, 0}, {0, pi}, {pi, 0}, {pi, pi}};
+  ASSERT_EQ(points.size(), 4u);
+  for (std::size_t n = 0; n < 4; ++n) {
+    ASSERT_EQ(points[n].size(), 4u);
+    EXPECT_NEAR(points[n][0], angles[n][0], 1e-14) << n;
+    EXPECT_NEAR(points[n][1], angles[n][1], 1e-14) << n;
+    EXPECT_NEAR(points[n][2], 0.0, 1e-14) << n;
+    EXPECT_NEAR(points[n][3], 0.0, 1e-14) << n;
+  }
+}
+
+TEST(FixedPoints, OfTheDoublePendulumFromTheScenesGrid) {
+  const double degree = pi / 180.0;
+  expect_the_four_equilibria(
+      find_fixed_points(*systems::make_system("double_pendulum"), {{0.0, 180.0 * degree}, {0.0, 180.0 * degree}}));
+}
+
+TEST(FixedPoints, FromOffsetGuesses) {
+  const auto system = systems::make_system("double_pendulum", {{"m1", 2.0}, {"l2", 0.7}, {"g", 9.81}});
+  expect_the_four_equilibria(find_fixed_points(*system, {{0.2, pi - 0.1}, {-0.15, pi + 0.2}}));
+  // Velocities and whole turns lead to the same four.
+  expect_the_four_equilibria(
+      find_fixed_points(*system, {{2 * pi + 0.1, -pi + 0.1}, {0.1, 3 * pi - 0.1, -2 * pi}, {0.05}, {-0.05, 0.1}}));
+}
+
+TEST(FixedPoints, OfHenonHeiles) {
+  const auto points = find_fixed_points(*systems::make_system("henon_heiles"), {{-1.0, 0.0, 1.0}, {-0.6, 0.1, 1.1}});
+  ASSERT_EQ(points.size(), 4u);  // the origin and the triangle's three saddles
+  const double x = std::sqrt(3.0) / 2.0;
+  const double wanted[4][2] = {{-x, -0.5}, {0.0, 0.0}, {0.0, 1.0}, {x, -0.5}};
+  for (const auto& w : wanted) {
+    const bool found = std::any_of(points.begin(), points.end(),
+                                   [&](const auto& p) { return std::hypot(p[0] - w[0], p[1] - w[1]) < 1e-13; });
+    EXPECT_TRUE(found) << w[0] << " " << w[1];
+  }
+}
+
+TEST(FixedPoints, EmptyGridStartsAtZero) {
+  const auto points = find_fixed_points(*systems::make_system("harmonic_oscillator"), {});
+  ASSERT_EQ(points.size(), 1u);
+  EXPECT_EQ(points[0], (std::vector<double>{0.0, 0.0}));
+}
+
+TEST(FixedPoints, MisuseAndNotFinite) {
+  const auto system = systems::make_system("harmonic_oscillator");
+  EXPECT_THROW(static_cast<void>(find_fixed_points(*system, {{0.0}, {0.0}, {0.0}})), core::MisuseError);
+  const test::Oscillator walled(0.0, 0.5);
+  EXPECT_THROW(static_cast<void>(find_fixed_points(walled, {{1.0}})), core::NotFiniteError);
+  EXPECT_EQ(find_fixed_points(walled, {{0.4}}).size(), 1u);
+}
+
+}  // namespace
+}  // namespace orbweaver::starts

@@ -1,0 +1,211 @@
+#include "orbweaver/starts/sweep.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/starts/fixed_points.hpp"
+#include "spectrum/pendulum_loops.hpp"
+
+namespace orbweaver::starts {
+namespace {
+
+using testing::HasSubstr;
+constexpr double pi = std::numbers::pi;
+
+/// The sweeps of the paper (periods 1 to 12 in steps of 0.01), made once a process.
+const SweepResult& paper_sweep(const std::vector<double>& point) {
+  static std::map<std::vector<double>, SweepResult> swept;
+  if (swept.count(point) == 0) swept[point] = sweep(*systems::make_system("double_pendulum"), point, {});
+  return swept[point];
+}
+
+/// Angular frequencies squared of the small motions about an equilibrium with angles 0 or pi, from the Lagrangian: the
+/// generalised eigenvalues of stiffness against mass; unstable directions are negative.
+Eigen::Vector2d lagrangian_frequencies(const std::map<std::string, double>& p, const std::vector<double>& point) {
+  const double up_1 = std::cos(point[0]);
+  const double up_2 = std::cos(point[1]);
+  const double coupling = p.at("m2") * p.at("l1") * p.at("l2") * up_1 * up_2;
+  Eigen::Matrix2d mass;
+  mass << (p.at("m1") + p.at("m2")) * p.at("l1") * p.at("l1"), coupling, coupling, p.at("m2") * p.at("l2") * p.at("l2");
+  Eigen::Matrix2d stiffness = Eigen::Matrix2d::Zero();
+  stiffness(0, 0) = (p.at("m1") + p.at("m2")) * p.at("g") * p.at("l1") * up_1;
+  stiffness(1, 1) = p.at("m2") * p.at("g") * p.at("l2") * up_2;
+  return Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d>(stiffness, mass).eigenvalues();
+}
+
+class PendulumModes : public testing::TestWithParam<test::PendulumMode> {};
+
+TEST_P(PendulumModes, PeriodsToRounding) {
+  const test::PendulumMode& wanted = GetParam();
+  const SweepResult& result = paper_sweep(wanted.point);
+  const auto mode = std::find_if(result.modes.begin(), result.modes.end(),
+                                 [&](const NormalMode& m) { return std::abs(m.period - wanted.period()) < 0.1; });
+  ASSERT_NE(mode, result.modes.end());
+  EXPECT_NEAR(mode->period, wanted.period(), 1e-12 * wanted.period());
+  EXPECT_NEAR(mode->grid_period, wanted.period(), 0.01);
+  EXPECT_NEAR(std::remainder(mode->grid_period, 0.01), 0.0, 1e-12);
+  EXPECT_LT(mode->residual, 1e-13);
+  EXPECT_EQ(loop::to_text(mode->isotropy), "S@1/2 R@0");
+
+  // |dz(s = 0)| = 1, at rest there: cosines of the angles in the mode's ratio, sines of the velocities that belong to it.
+  loop::Loop direction = loop::constant_loop(wanted.point, wanted.period(), 10);
+  ASSERT_EQ(mode->direction.size(), direction.modes.size());
+  ASSERT_EQ(mode->grid_direction.size(), direction.modes.size());
+  const double scale = 1.0 / std::hypot(1.0, wanted.ratio);
+  const loop::Loop expected = test::linear_loop(wanted, scale, 10);
+  direction.modes = mode->direction;
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_NEAR(direction.cosine(1, i), expected.cosine(1, i), 1e-12) << i;
+    EXPECT_NEAR(direction.sine(1, i), expected.sine(1, i), 1e-12) << i;
+    direction.cosine(1, i) = direction.sine(1, i) = 0.0;
+  }
+  for (const double rest : direction.modes) EXPECT_EQ(rest, 0.0);
+}
+
+TEST_P(PendulumModes, EigenvalueDipsThere) {
+  const SweepResult& result = paper_sweep(GetParam().point);
+  ASSERT_EQ(result.table.size(), 1101u);
+  const auto value_near = [&](double period) {
+    const auto n = static_cast<std::size_t>(std::lround((period - 1.0) / 0.01));
+    EXPECT_NEAR(result.table[n].period, period, 0.006);
+    return result.table[n].eigenvalue;
+  };
+  const double period = GetParam().period();
+  EXPECT_LT(value_near(period), 0.01 * value_near(period - 0.3));
+  EXPECT_LT(value_near(period), 0.01 * value_near(period + 0.3));
+  for (const SweepPoint& point : result.table) EXPECT_GT(point.eigenvalue, -1e-12) << point.period;
+}
+
+INSTANTIATE_TEST_SUITE_P(Sweep, PendulumModes, testing::ValuesIn(test::pendulum_modes()), [](const auto& tested) {
+  std::string name = tested.param.name;
+  std::erase(name, '-');
+  return name;
+});
+
+struct Rejected {
+  double period;
+  std::string reason;
+};
+
+void expect_rejected(const SweepResult& result, const std::vector<Rejected>& wanted) {
+  ASSERT_EQ(result.rejected.size(), wanted.size());
+  for (std::size_t n = 0; n < wanted.size(); ++n) {
+    EXPECT_NEAR(result.rejected[n].period, wanted[n].period, 1e-10);
+    EXPECT_THAT(result.rejected[n].reason, HasSubstr(wanted[n].reason));
+  }
+}
+
+TEST(Sweep, ModesOfEachEquilibrium) {
+  const SweepResult& down = paper_sweep({0, 0, 0, 0});
+  ASSERT_EQ(down.modes.size(), 2u);
+  EXPECT_GT(down.modes[0].period, down.modes[1].period) << "longest period first";
+  const double out = test::out_phase().period();
+  expect_rejected(down, {{2 * out, "2 times around the oscillation with T = 3.40"},
+                         {3 * out, "3 times around the oscillation with T = 3.40"}});
+  const double saddle = test::down_up().period();
+  for (const test::PendulumMode& mode : {test::down_up(), test::up_down()}) {
+    const SweepResult& result = paper_sweep(mode.point);
+    EXPECT_EQ(result.modes.size(), 1u) << mode.name;
+    expect_rejected(result, {{2 * saddle, "2 times around the oscillation with T = 5.283"}});
+    EXPECT_EQ(result.fixed_point, mode.point);
+  }
+  const auto points = find_fixed_points(*systems::make_system("double_pendulum"), {{0.0, pi}, {0.0, pi}});
+  ASSERT_EQ(points.size(), 4u);
+  const SweepResult& up = paper_sweep(points.back());
+  EXPECT_TRUE(up.modes.empty());
+  EXPECT_TRUE(up.rejected.empty());
+  for (const SweepPoint& point : up.table) EXPECT_GT(point.eigenvalue, 1e-3) << point.period;
+}
+
+TEST(Sweep, OtherMassesAndLengths) {
+  const std::vector<std::map<std::string, double>> choices = {
+      {{"m1", 1.0}, {"m2", 3.0}, {"l1", 1.0}, {"l2", 0.5}, {"g", 1.0}},
+      {{"m1", 2.5}, {"m2", 0.4}, {"l1", 0.8}, {"l2", 1.3}, {"g", 2.0}}};
+  for (const auto& parameters : choices) {
+    const auto system = systems::make_system("double_pendulum", parameters);
+    const auto points = find_fixed_points(*system, {{0.0, pi}, {0.0, pi}});
+    ASSERT_EQ(points.size(), 4u);
+    for (const std::vector<double>& point : points) {
+      std::vector<double> wanted;
+      for (const double square : lagrangian_frequencies(parameters, point))
+        if (square > 0.0) wanted.push_back(2.0 * pi / std::sqrt(square));
+      std::sort(wanted.rbegin(), wanted.rend());
+      const SweepResult result = sweep(*system, point, {.period_from = 0.7, .period_to = 9.0, .step = 0.02});
+      ASSERT_EQ(result.modes.size(), wanted.size());
+      for (std::size_t n = 0; n < wanted.size(); ++n) {
+        ASSERT_GT(wanted[n], 0.72);
+        ASSERT_LT(wanted[n], 8.98);
+        EXPECT_NEAR(result.modes[n].period, wanted[n], 1e-12 * wanted[n]);
+      }
+    }
+  }
+}
+
+// The slow mode (T = 7.464672...) lies 0.0147 below four times the fast one: with steps of 0.02 the two dips show as one.
+TEST(Sweep, ADipBehindAMultipleIsFound) {
+  const auto system = systems::make_system("double_pendulum", {{"m2", 3.0}, {"l2", 0.5}});
+  const SweepResult result =
+      sweep(*system, std::vector<double>(4, 0.0), {.period_from = 7.0, .period_to = 8.0, .step = 0.02});
+  ASSERT_EQ(result.modes.size(), 1u);
+  EXPECT_NEAR(result.modes[0].period, 7.46467226254, 1e-10);
+  expect_rejected(result, {{4 * 1.86983807304, "4 times around the oscillation with T = 1.869838"}});
+}
+
+TEST(Sweep, HarmonicOscillatorWithItsMultiples) {
+  const auto system = systems::make_system("harmonic_oscillator", {{"omega", 2.0}});
+  const SweepResult result = sweep(*system, std::vector<double>{0.0, 0.0}, {});
+  ASSERT_EQ(result.modes.size(), 1u);
+  EXPECT_NEAR(result.modes[0].period, pi, 1e-14);
+  EXPECT_EQ(loop::to_text(result.modes[0].isotropy), "S@1/2 R@0");
+  expect_rejected(result, {{2 * pi, "2 times around"}, {3 * pi, "3 times around"}});
+}
+
+TEST(Sweep, ResonanceOfHenonHeilesIsHandedOutWithItsKernel) {
+  const auto system = systems::make_system("henon_heiles");
+  const std::vector<double> origin(4, 0.0);
+  const SweepResult result = sweep(*system, origin, {});
+  EXPECT_TRUE(result.modes.empty());
+  EXPECT_TRUE(result.rejected.empty());
+  ASSERT_EQ(result.degenerate.size(), 1u);
+  const DegenerateMode& mode = result.degenerate.front();
+  EXPECT_NEAR(mode.period, 2 * pi, 1e-13);
+  EXPECT_NEAR(mode.grid_period, 2 * pi, 0.01);
+  ASSERT_EQ(mode.kernel.cols(), 2);
+  EXPECT_LT((mode.kernel.adjoint() * mode.kernel - Eigen::MatrixXcd::Identity(2, 2)).norm(), 1e-13);
+  // Near the origin q'' = -q in both coordinates: p = dq/dt = i q.
+  EXPECT_LT((mode.kernel.bottomRows(2) - std::complex<double>(0, 1) * mode.kernel.topRows(2)).norm(), 1e-12);
+}
+
+TEST(Sweep, RepeatsBitForBit) {
+  const auto system = systems::make_system("double_pendulum");
+  const SweepOptions options{.period_from = 3.0, .period_to = 4.0};
+  const SweepResult first = sweep(*system, std::vector<double>(4, 0.0), options);
+  const SweepResult second = sweep(*system, std::vector<double>(4, 0.0), options);
+  ASSERT_EQ(first.table.size(), 101u);
+  for (std::size_t n = 0; n < first.table.size(); ++n) EXPECT_EQ(first.table[n].eigenvalue, second.table[n].eigenvalue);
+  ASSERT_EQ(first.modes.size(), 1u);
+  EXPECT_EQ(first.modes[0].period, second.modes[0].period);
+  EXPECT_EQ(first.modes[0].direction, second.modes[0].direction);
+}
+
+TEST(Sweep, Misuse) {
+  const auto system = systems::make_system("double_pendulum");
+  const std::vector<double> origin(4, 0.0);
+  EXPECT_THROW(static_cast<void>(sweep(*system, origin, {.period_from = 2.0, .period_to = 2.0})), core::MisuseError);
+  EXPECT_THROW(static_cast<void>(sweep(*system, origin, {.period_from = 3.0, .period_to = 2.0})), core::MisuseError);
+  EXPECT_THROW(static_cast<void>(sweep(*system, origin, {.period_from = 0.0})), core::MisuseError);
+  EXPECT_THROW(static_cast<void>(sweep(*system, origin, {.step = 0.0})), core::MisuseError);
+  EXPECT_THROW(static_cast<void>(sweep(*system, origin, {.step = -0.1})), core::MisuseError);
+  EXPECT_THROW(static_cast<void>(sweep(*system, origin, {.cutoff = 0})), core::MisuseError);
+  EXPECT_THROW(static_cast<void>(sweep(*system, std::vector<double>(3, 0.0), {})), core::MisuseError);
+}
+
+}  // namespace
+}  // namespace orbweaver::starts
