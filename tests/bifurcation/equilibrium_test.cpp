@@ -56,7 +56,7 @@ TEST(Equilibrium, ThreeFamiliesUpToSymmetryLeaveHenonHeiles) {
     EXPECT_EQ(direction.amplitude, 0.0);
     continuation::Options options;
     options.energy_to = 0.1;
-    const test::Trace trace = test::trace_of(system, {direction.base, direction.modes, direction.isotropy}, options);
+    const test::Trace trace = test::trace_of(system, {direction.base, direction.tangent, direction.isotropy}, options);
     EXPECT_EQ(trace.ending.reason, continuation::EndReason::energy_limit) << trace.ending.text();
     ends.push_back(trace.last());
     const loop::Loop& loop = ends.back().loop;
