@@ -15,8 +15,9 @@ std::int64_t index_of(const std::vector<std::string>& keys, const std::string& k
 }
 
 auto order_of(const CrossingRecord& c) {
-  return std::tie(c.family_key, c.arclength, c.sector_q, c.sector_j, c.kind, c.multiplicity, c.kernel_dimension,
-                  c.fundamental_order, c.state);
+  const auto place = std::tie(c.family_key, c.arclength, c.sector_q, c.sector_j);
+  const auto rest = std::tie(c.multiplicity, c.kernel_dimension, c.fundamental_order, c.state);
+  return std::tuple_cat(place, std::tuple(name_of(c.kind)), rest);
 }
 
 // order[new row] = index as given.
@@ -40,7 +41,7 @@ void fill_crossing(Table& table, std::size_t row, const CrossingRecord& crossing
   table.reals("arclength")[row] = crossing.arclength;
   table.reals("period")[row] = crossing.period;
   table.reals("energy")[row] = crossing.energy;
-  table.texts("kind")[row] = crossing.kind;
+  table.texts("kind")[row] = name_of(crossing.kind);
   table.integers("multiplicity")[row] = crossing.multiplicity;
   table.integers("kernel_dimension")[row] = crossing.kernel_dimension;
   table.reals("residual")[row] = crossing.residual;
