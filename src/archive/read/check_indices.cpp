@@ -40,7 +40,7 @@ void expect_mode_counts(const SerialFile& file, const Table& orbits) {
   }
 }
 
-// The families' lots of orbits follow one another and cover the table, so each orbit has one family.
+// The families' ranges of orbits follow one another and cover the table, so each orbit has one family.
 void expect_family_lots(const SerialFile& file, const AtlasTables& tables) {
   const auto& firsts = tables.families.integers("first_orbit");
   const auto& counts = tables.families.integers("orbit_count");
@@ -55,10 +55,10 @@ void expect_family_lots(const SerialFile& file, const AtlasTables& tables) {
                               firsts[i], counts[i], i, next, rows));
     for (const std::int64_t end = next + counts[i]; next < end; ++next)
       if (family[static_cast<std::size_t>(next)] != static_cast<std::int64_t>(i))
-        file.expect(false, fmt::format("has /orbits/family = {} in row {}, which lies in the lot of family {}",
+        file.expect(false, fmt::format("has /orbits/family = {} in row {}, which lies in the range of family {}",
                                        family[static_cast<std::size_t>(next)], next, i));
   }
-  file.expect(next == rows, fmt::format("has {} orbits, of which {} belong to a family's lot", rows, next));
+  file.expect(next == rows, fmt::format("has {} orbits, of which {} belong to a family's range", rows, next));
 }
 
 }  // namespace
