@@ -18,7 +18,6 @@ enum class EndReason {
   failure,            ///< the corrector failed at the smallest step
 };
 
-[[nodiscard]] constexpr EndReason last_of(EndReason) { return EndReason::failure; }
 [[nodiscard]] std::string_view name_of(EndReason reason);
 
 /// A branch's end in a form to print and to store.
