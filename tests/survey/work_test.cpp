@@ -217,8 +217,8 @@ TEST(Payload, EqualWorkHasEqualBytes) { EXPECT_EQ(pack(sample_branch_work()), pa
 
 TEST(Payload, AnotherKindIsRefusedByName) {
   const std::string text = environment_error_of([] { (void)unpack_branch_work(pack(sample_sweep_outcome())); });
-  EXPECT_THAT(text, AllOf(HasSubstr("expected a branch work of version 1"),
-                          HasSubstr("got a sweep outcome of version 1"), HasSubstr("same build")));
+  EXPECT_THAT(text, AllOf(HasSubstr("expected a branch work of version 2"),
+                          HasSubstr("got a sweep outcome of version 2"), HasSubstr("same build")));
 }
 
 TEST(Payload, AnotherVersionIsRefused) {
@@ -230,7 +230,7 @@ TEST(Payload, AnotherVersionIsRefused) {
     archive << name << version;
   }
   const std::string text = environment_error_of([&] { (void)unpack_sweep_work(stream.str()); });
-  EXPECT_THAT(text, HasSubstr("got a sweep work of version 2"));
+  EXPECT_THAT(text, HasSubstr("got a sweep work of version 3"));
 }
 
 TEST(Payload, TornAtAnyByteIsRefused) {
