@@ -11,6 +11,19 @@ namespace orbweaver::bifurcation {
 
 namespace {
 
+/// What surprises is measured in the largest modulus so far, kept between these: near its birth a family's functions are
+/// small, and none is of interest beyond the scale of a stability index.
+constexpr double least_scale = 0.1;
+constexpr double largest_scale = 1.0;
+/// Brent's method closes in on a minimum to this share of the bracket: its square is below rounding of the value there.
+constexpr double minimum_width = 1e-6;
+/// A touching zero is judged relative to the values at the bracket's ends where these are below a tenth.
+constexpr double small_ends = 10.0;
+/// A minimum nearer than this share to the bracket's end may belong to the next bracket, so it is looked for there again.
+constexpr double at_end = 0.01;
+/// A parabola's minimum is examined where it lies below this share of its neighbours (a parabola is a poor model).
+constexpr double deep_enough = 0.5;
+
 using Node = DetectorState::Node;
 
 void sort_by_position(std::vector<Bracket>& brackets) {
@@ -62,7 +75,7 @@ bool Detector::surprising(const std::vector<Station>& grid, std::size_t n) const
   for (std::size_t f = 0; f < _state.watches.size(); ++f) {
     const Reading& here = grid[n].readings[f];
     const Reading& after = grid[n + 1].readings[f];
-    const double allowed = _options.surprise * std::clamp(_state.watches[f].scale, 0.1, 1.0);
+    const double allowed = _options.surprise * std::clamp(_state.watches[f].scale, least_scale, largest_scale);
     if (n == 0) {
       if (std::abs(after.value - here.value) > 2.0 * allowed + here.error + after.error) return true;
       continue;
@@ -115,7 +128,7 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
     return sign * reading.value;
   };
   const double length = right.position - left.position;
-  (void)locate_minimum(size, left.position, right.position, 1e-6 * length, _options.probes);
+  (void)locate_minimum(size, left.position, right.position, minimum_width * length, _options.probes);
   std::sort(nodes.begin(), nodes.end(), [](const Node& a, const Node& b) { return a.position < b.position; });
   double& examined_to = _state.watches[function].examined_to;
   if (crossed) {
@@ -126,12 +139,13 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
   // Relative to the ends: near its birth a family's index leaves 2 like a power of its distance, small but not at a zero.
   const double ends = std::min(std::abs(left.reading.value), std::abs(right.reading.value));
   const auto zero = [&](const Node& node) {
-    return std::abs(node.reading.value) <= std::max(node.reading.error, _options.touch * std::min(1.0, 10.0 * ends));
+    return std::abs(node.reading.value) <=
+           std::max(node.reading.error, _options.touch * std::min(1.0, small_ends * ends));
   };
   const auto least = std::min_element(nodes.begin(), nodes.end(), [](const Node& a, const Node& b) {
     return std::abs(a.reading.value) < std::abs(b.reading.value);
   });
-  if (least->position < right.position - 0.01 * length) examined_to = right.position;
+  if (least->position < right.position - at_end * length) examined_to = right.position;
   if (!zero(*least) || !(least->reading.error <= _options.touch_error)) return;
   if (least == nodes.begin() || least + 1 == nodes.end()) return;
   auto from = least;
@@ -154,7 +168,7 @@ void Detector::look_for_minimum(std::size_t function, const Node& a, const Node&
   const auto [least, most] = std::minmax({sign * a.reading.value, sign * b.reading.value, sign * c.reading.value});
   const Node& beside = vertex.position <= b.position ? a : c;
   const double smaller = sign * (std::abs(beside.reading.value) < std::abs(b.reading.value) ? beside : b).reading.value;
-  if (sign * vertex.value > std::max(most - least, 0.5 * smaller)) return;
+  if (sign * vertex.value > std::max(most - least, deep_enough * smaller)) return;
   examine(function, a.position >= examined_to ? a : b, c, probe, found);
 }
 

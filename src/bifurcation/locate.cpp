@@ -13,6 +13,10 @@ namespace orbweaver::bifurcation {
 
 namespace {
 
+/// Brent's method finds a minimum no closer than the square root of rounding, and half the bracket is no search.
+constexpr double least_share = 1e-8;
+constexpr double largest_share = 0.5;
+
 struct NoValue {};
 
 /// Counts evaluations, and leaves the library's algorithm where there is no value.
@@ -72,7 +76,7 @@ std::optional<Located> locate_minimum(const Along& function, double from, double
   check_interval(from, to, tolerance);
   Counted counted{function};
   const double length = to - from;
-  const double share = std::clamp(tolerance / length, 1e-8, 0.5);
+  const double share = std::clamp(tolerance / length, least_share, largest_share);
   // The library's tolerance is relative to the position, here a number in [0, 1].
   const int bits = 1 + static_cast<int>(std::ceil(-std::log2(share)));
   auto budget = static_cast<std::uintmax_t>(std::max(1, max_evaluations - 1));

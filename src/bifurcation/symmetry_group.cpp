@@ -12,6 +12,10 @@ namespace orbweaver::bifurcation {
 
 namespace {
 
+/// Kernel vectors are orthonormal and an oscillation about an equilibrium is of harmonic 1 to this, or the caller is wrong.
+constexpr double orthonormal = 1e-6;
+constexpr double pure_oscillation = 1e-9;
+
 constexpr double same_matrix = 1e-9;
 constexpr double same_vector = 1e-3;  // kernel vectors are good to kernel_tolerance
 constexpr std::size_t largest_group = 200;
@@ -95,15 +99,15 @@ SymmetryGroup::SymmetryGroup(const systems::Description& system, const loop::Loo
     _kernel.col(c) = Eigen::Map<const Eigen::VectorXd>(v.modes.data(), _kernel.rows());
     vectors.push_back(loop::perturbation(base, v));
   }
-  core::require((_kernel.transpose() * _kernel - Eigen::MatrixXd::Identity(n, n)).norm() < 1e-6,
+  core::require((_kernel.transpose() * _kernel - Eigen::MatrixXd::Identity(n, n)).norm() < orthonormal,
                 "kernel vectors must be orthonormal");
   const int times = repetitions(base, options.symmetry_tolerance);
   _constant = times == 0;
   if (_constant)
     for (const loop::Loop& v : vectors)
-      core::require(
-          repetitions(v, 1e-9) == 1 && loop::rms_amplitude(loop::with_cutoff(v, 1)) > (1.0 - 1e-9) / std::sqrt(2.0),
-          "kernel vectors of an equilibrium must be of harmonic 1");
+      core::require(repetitions(v, pure_oscillation) == 1 &&
+                        loop::rms_amplitude(loop::with_cutoff(v, 1)) > (1.0 - pure_oscillation) / std::sqrt(2.0),
+                    "kernel vectors of an equilibrium must be of harmonic 1");
 
   const std::vector<Spatial> spatial = spatial_group(system);
   _denominator = shared_order(spatial) * std::max(times, 1);

@@ -16,6 +16,9 @@ namespace orbweaver::continuation {
 
 namespace {
 
+/// What is left of a unit vector that the unknowns, or the directions excluded before, contain to rounding.
+constexpr double contained = 1e-8;
+
 // What is perturbed, and what is known to be flat there.
 struct Sector {
   loss::Unknowns unknowns;
@@ -29,7 +32,7 @@ loss::Slice complement(const loss::Unknowns& unknowns, const loop::Loop& loop, c
   Eigen::MatrixXd excluded(size, 0);
   const auto exclude = [&](Eigen::VectorXd direction) {
     for (Eigen::Index c = 0; c < excluded.cols(); ++c) direction -= excluded.col(c).dot(direction) * excluded.col(c);
-    if (direction.norm() < 1e-8) return;
+    if (direction.norm() < contained) return;
     excluded.conservativeResize(Eigen::NoChange, excluded.cols() + 1);
     excluded.col(excluded.cols() - 1) = direction.normalized();
   };

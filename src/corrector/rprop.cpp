@@ -12,13 +12,15 @@ namespace orbweaver::corrector {
 
 namespace {
 
+// The paper's factors are those of Riedmiller and Braun (1993, doi:10.1109/ICNN.1993.298623).
 constexpr double grow = 1.2;
 constexpr double shrink = 0.5;
 constexpr double first_step = 1e-3;
 constexpr double largest_step = 1.0;
-constexpr double smallest_step = 1e-18;
-constexpr int epoch = 50;           // iterations between extrapolations
-constexpr int most_doublings = 40;  // of the extrapolated distance
+constexpr double smallest_step = 1e-18;  // below rounding of any mode
+constexpr int epoch = 50;                // iterations between extrapolations
+constexpr double first_distance = 0.25;  // of the extrapolation, in ways of the last epoch
+constexpr int most_doublings = 40;       // of that distance
 
 struct Rprop {
   bool extrapolate = false;
@@ -80,7 +82,7 @@ PetscErrorCode extrapolate(Tao tao, const Rprop& r, PetscReal* value) {
   PetscReal best = *value;
   PetscReal best_distance = 0.0;
   PetscCall(VecWAXPY(r.direction, -1.0, r.epoch_start, tao->solution));
-  PetscReal distance = 0.25;
+  PetscReal distance = first_distance;
   for (int n = 0; n < most_doublings; ++n, distance *= 2.0) {
     PetscReal trial = 0.0;
     PetscCall(VecWAXPY(r.trial, distance, r.direction, tao->solution));

@@ -12,6 +12,7 @@ namespace orbweaver::equations {
 
 namespace {
 
+// Two or three iterations are the rule (docs/performance.md); next to singular points a few dozen.
 constexpr int restart = 60;
 constexpr int most_iterations = 180;
 

@@ -7,6 +7,9 @@ namespace orbweaver::loss {
 
 namespace {
 
+/// What is left of a condition that earlier ones contain to rounding, relative to its length.
+constexpr double dependent = 1e-12;
+
 // The w of (I - 2vv') H (I - 2vv') = H - v w' - w v' for a symmetric H and a unit vector v.
 template <class Matrix>
 Eigen::VectorXd rank_two_partner(const Matrix& h, const Eigen::VectorXd& v) {
@@ -28,7 +31,7 @@ Slice::Slice(int unknowns, const Eigen::MatrixXd& conditions)
     Eigen::VectorXd v = column;
     v.head(c).setZero();
     const double norm = v.norm();
-    core::require(scale > 0.0 && norm > 1e-12 * scale, "the conditions of a slice must be independent");
+    core::require(scale > 0.0 && norm > dependent * scale, "the conditions of a slice must be independent");
     v(c) += v(c) >= 0.0 ? norm : -norm;
     _reflectors.push_back(v.normalized());
   }

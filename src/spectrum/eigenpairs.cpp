@@ -52,7 +52,8 @@ Eigenpairs smallest_eigenpairs(const core::Handle<Mat>& matrix, const EigenOptio
     core::check(EPSSetWhichEigenpairs(eps.get(), EPS_SMALLEST_REAL), "EPSSetWhichEigenpairs");
   } else {
     // Closer to a singular H, rounding of size eps / shift in the solves drowns all but the smallest pairs.
-    shift_and_invert(eps.get(), -1e-8 * norm);
+    constexpr double safe_shift = 1e-8;  // about sqrt(eps)
+    shift_and_invert(eps.get(), -safe_shift * norm);
     const core::Handle<Vec> start = start_vector(static_cast<int>(size));
     Vec raw = start.get();
     core::check(EPSSetInitialSpace(eps.get(), 1, &raw), "EPSSetInitialSpace");

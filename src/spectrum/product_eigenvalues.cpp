@@ -10,9 +10,14 @@ namespace {
 
 using Complex = std::complex<double>;
 
+/// Factors are multiplied while the product's norm stays below this, so that at most two digits of the small values are lost.
 constexpr double joined_norm = 100.0;
+/// Orthogonal iteration of a product of whole periods: a ratio of 10 takes 14 sweeps.
 constexpr int most_sweeps = 40;
+/// Entries below the diagonal, relative to the frame, that are rounding: the values have parted.
 constexpr double parted = 1e-14;
+/// Moduli closer than this are taken as one, so that the order of a complex pair does not hang on rounding.
+constexpr double same_modulus = 1e-10;
 /// Double eigenvalues that rounding has split take the library's QR iteration over 160 sweeps, where it stops by default.
 constexpr int slow_iterations = 10000;
 
@@ -92,7 +97,7 @@ Eigen::MatrixXd diagonal_block(const Iteration& iteration, Eigen::Index begin, E
 
 bool before(const Complex& a, const Complex& b) {
   const double difference = std::abs(a) - std::abs(b);
-  if (std::abs(difference) > 1e-10 * (std::abs(a) + std::abs(b))) return difference > 0.0;
+  if (std::abs(difference) > same_modulus * (std::abs(a) + std::abs(b))) return difference > 0.0;
   if (a.imag() != b.imag()) return a.imag() > b.imag();
   return a.real() > b.real();
 }

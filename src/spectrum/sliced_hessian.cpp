@@ -11,6 +11,15 @@
 
 namespace orbweaver::spectrum {
 
+namespace {
+
+/// Added to the diagonal where the factorisation fails, relative to |H|: from rounding up to what would show in the
+/// smallest eigenvalues.
+constexpr double first_shift = 1e-15;
+constexpr double largest_shift = 1e-9;
+
+}  // namespace
+
 SlicedHessian::SlicedHessian(const loss::Linearization& linearization, const loss::Unknowns& unknowns,
                              const loss::Slice& slice)
     : _slice(slice), _hessian(loss::assemble_hessian(linearization, unknowns, loss::Curvature::gauss_newton)) {
@@ -24,7 +33,7 @@ void SlicedHessian::factor(const core::Handle<Mat>& reduced) {
   core::check(MatNorm(reduced.get(), NORM_INFINITY, &norm), "MatNorm");
   if (!(norm > 0.0) || !std::isfinite(norm))
     throw core::NumericalError("the Hessian on the slice is zero or not finite");
-  for (_shift = 0.0; _shift <= 1e-9 * norm; _shift = std::max(10.0 * _shift, 1e-15 * norm)) {
+  for (_shift = 0.0; _shift <= largest_shift * norm; _shift = std::max(10.0 * _shift, first_shift * norm)) {
     core::check(MatDuplicate(reduced.get(), MAT_COPY_VALUES, _factor.put()), "MatDuplicate");
     if (_shift > 0.0) core::check(MatShift(_factor.get(), _shift), "MatShift");
     core::check(MatSetOption(_factor.get(), MAT_SPD, PETSC_TRUE), "MatSetOption");
@@ -33,9 +42,9 @@ void SlicedHessian::factor(const core::Handle<Mat>& reduced) {
     if (code != PETSC_ERR_MAT_CH_ZRPVT) core::check(code, "MatCholeskyFactor");
   }
   throw core::NumericalError(fmt::format(
-      "the Hessian on the slice cannot be factored even with 1e-9 |H| = {:.1e} added: the loop is not near a "
+      "the Hessian on the slice cannot be factored even with {:.1e} |H| = {:.1e} added: the loop is not near a "
       "regular point of a family",
-      1e-9 * norm));
+      largest_shift, largest_shift * norm));
 }
 
 Eigen::VectorXd SlicedHessian::solve(const Eigen::VectorXd& right_side) const {

@@ -67,7 +67,7 @@ Eigen::VectorXcd LinearModes::softest(int k, double period) const {
 }
 
 std::vector<LinearModes::Root> LinearModes::roots(int k, double low, double near, double high, int depth) const {
-  constexpr int deepest = 4;
+  constexpr int deepest = 4;  // divisions of a bracket: parts^4 tells periods apart that differ by 1e-6 of it
   constexpr int parts = 40;
   // Singular values of M move no faster than |dM/dT| = 2 pi k / T^2: only those within reach of 0 in the bracket can vanish.
   const double reach = 2.0 * std::numbers::pi * k / (low * low) * (high - low);
@@ -95,7 +95,9 @@ std::vector<LinearModes::Root> LinearModes::roots(int k, double low, double near
 std::optional<LinearModes::Root> LinearModes::bordered_root(int k, double low, double near, double high,
                                                             Eigen::Index borders) const {
   const Border border(matrix(k, near), borders);
-  const double h = 1e-4 * (high - low);
+  constexpr double difference = 1e-4;  // of the bracket: the slope sets the sign and scale of the function only
+  constexpr double vanished = 1e-10;   // of |A|: rounding of M at a root, with room for defective eigenvalues
+  const double h = difference * (high - low);
   const Eigen::MatrixXcd slope = (border.value(matrix(k, near + h)) - border.value(matrix(k, near - h))) / (2.0 * h);
   const Eigen::MatrixXcd inverse_slope = slope.inverse();
   const auto signed_distance = [&](double period) {
@@ -104,14 +106,14 @@ std::optional<LinearModes::Root> LinearModes::bordered_root(int k, double low, d
   const double at_low = signed_distance(low);
   const double at_high = signed_distance(high);
   if (!(at_low * at_high < 0.0)) return std::nullopt;
-  std::uintmax_t evaluations = 100;
+  std::uintmax_t evaluations = 100;  // TOMS 748 needs about ten
   const auto [left, right] = boost::math::tools::toms748_solve(
       signed_distance, low, high, at_low, at_high, boost::math::tools::eps_tolerance<double>(52), evaluations);
   const double period = std::abs(signed_distance(left)) < std::abs(signed_distance(right)) ? left : right;
   const auto svd = singular_vectors(matrix(k, period));
   const Eigen::Index first = svd.singularValues().size() - borders;
   Root out{period, static_cast<int>(borders), svd.singularValues()(first), svd.matrixV().rightCols(borders)};
-  if (out.residual > 1e-10 * scale()) return std::nullopt;
+  if (out.residual > vanished * scale()) return std::nullopt;
   return out;
 }
 

@@ -146,14 +146,18 @@ bool has_small_odd_factors(int n) {
   return n == 1;
 }
 
+// Steps of a fifth to two fifths: few Fourier plans, and an orbit never carries half again what it needs.
+constexpr double least_ratio = 1.22;
+constexpr int largest_nodes = 1 << 22;  // K about two million: 128 MiB of modes for four coordinates
+
 // Greedy: from one allowed 2K + 1 the next is the smallest with ratio >= 1.22 (ratios come out between 1.22 and 1.4).
 const std::vector<int>& allowed_cutoffs() {
   static const std::vector<int> table = [] {
     std::vector<int> cutoffs;
     int last = 3;
     cutoffs.push_back(1);
-    for (int n = 5; n < 1 << 22; n += 2)
-      if (n >= 1.22 * last && has_small_odd_factors(n)) {
+    for (int n = 5; n < largest_nodes; n += 2)
+      if (n >= least_ratio * last && has_small_odd_factors(n)) {
         cutoffs.push_back((n - 1) / 2);
         last = n;
       }

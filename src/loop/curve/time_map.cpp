@@ -13,7 +13,11 @@ namespace orbweaver::loop {
 namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
-constexpr double whole = 1e-12;  // turns that differ from a whole number by less are rounding
+constexpr double below_rounding = 1e-17;  // of a density of mean 1
+constexpr int most_steps = 200;           // of Newton's method: bisection alone needs 53
+constexpr double settled = 1e-15;         // a step in s that no longer changes it
+constexpr double newton_settled = 1e-9;   // Newton's next step would be of the order of its square
+constexpr double whole = 1e-12;           // turns that differ from a whole number by less are rounding
 
 // cos ks and sin ks, from k to k + 1 by one turn.
 struct Wave {
@@ -36,7 +40,7 @@ bool is_whole(double turns) { return std::abs(turns - std::round(turns)) < whole
 double pulse_ratio(double kappa) { return (kappa - 1.0) / (kappa + 1.0); }
 int pulse_harmonics(double kappa) {
   const double q = std::abs(pulse_ratio(kappa));
-  return q == 0.0 ? 0 : 2 * static_cast<int>(std::ceil(std::log(1e-17) / std::log(q)));
+  return q == 0.0 ? 0 : 2 * static_cast<int>(std::ceil(std::log(below_rounding) / std::log(q)));
 }
 
 // Both at once: they share the harmonics.
@@ -82,7 +86,7 @@ double TimeMap::inverse(double phase_wanted) const {
     return s + two_pi * turns;
   }
   double last = two_pi;
-  for (int n = 0; n < 200; ++n) {
+  for (int n = 0; n < most_steps; ++n) {
     const auto [here, slope] = phase_and_density(*this, s);
     const double excess = here - wanted;
     (excess > 0.0 ? high : low) = s;
@@ -92,7 +96,7 @@ double TimeMap::inverse(double phase_wanted) const {
     if (!newton) next = 0.5 * (low + high);
     last = std::abs(next - s);
     s = next;
-    if (last < 1e-15 || (newton && last < 1e-9)) break;  // Newton's next step would be of the order of its square
+    if (last < settled || (newton && last < newton_settled)) break;
   }
   return s + two_pi * turns;
 }

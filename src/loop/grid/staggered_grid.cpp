@@ -14,14 +14,22 @@ namespace orbweaver::loop {
 
 namespace {
 
-/// Above 96 sqrt(copies) cells transforms of the whole loop are faster than dense matrices (docs/performance.md).
-bool matrices_are_faster(int cells, int copies) { return cells * cells <= 96 * 96 * copies; }
+/// Dense filters are faster up to 96 cells, times sqrt(copies) (measured: docs/performance.md).
+constexpr int most_dense_cells = 96;
+/// Entries of symmetry matrices: exact up to products of a few rounded sines and cosines.
+constexpr double same_entry = 1e-12;
+/// Nodal arrays are padded to whole vector registers of four doubles.
+constexpr int padding = 4;
 
-bool is_diagonal_of_signs(const Eigen::MatrixXd& matrix) {
-  return matrix.isDiagonal(1e-12) && (matrix.diagonal().cwiseAbs().array() - 1.0).abs().maxCoeff() < 1e-12;
+bool matrices_are_faster(int cells, int copies) {
+  return cells * cells <= most_dense_cells * most_dense_cells * copies;
 }
 
-int padded(int count) { return (count + 3) / 4 * 4; }
+bool is_diagonal_of_signs(const Eigen::MatrixXd& matrix) {
+  return matrix.isDiagonal(same_entry) && (matrix.diagonal().cwiseAbs().array() - 1.0).abs().maxCoeff() < same_entry;
+}
+
+int padded(int count) { return (count + padding - 1) / padding * padding; }
 
 }  // namespace
 

@@ -12,8 +12,18 @@ namespace orbweaver::loop {
 namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
+/// A fiftieth of the even density at least: below it the slow parts of the orbit would be resolved too coarsely.
 constexpr double least_density = 0.02;
-constexpr int ladder_end = 20;  // kappa up to 2^(20/4)
+/// Pulses are tried in steps of 2^(1/4) up to kappa = 2^(20/4) = 32: densities from 1/32 to 32.
+constexpr int ladder_end = 20;
+constexpr double ladder_step = 0.25;
+/// A pulse that needs so many times the best number of harmonics is past the optimum.
+constexpr double past_optimum = 1.3;
+/// Below the squares of all derivatives: keeps logarithms finite.
+constexpr double tiny_square = 1e-300;
+/// Coefficients of a density of mean 1 that differ by less are rounding.
+constexpr double same_coefficient = 1e-14;
+/// Orders of the derivatives that show the distance of the singularities: lower ones see the orbit's size, higher ones noise.
 constexpr int first_order = 4;
 constexpr int last_order = 7;
 
@@ -46,7 +56,7 @@ std::vector<double> log_derivative(const Loop& loop, int order, int nodes) {
   const auto n = static_cast<std::size_t>(nodes);
   std::vector<double> nodal(static_cast<std::size_t>(loop.dimension) * n);
   FourierGrid::of_size(nodes).synthesize(loop.cutoff, loop.dimension, derivative.modes.data(), nodal.data());
-  std::vector<double> out(n, 1e-300);
+  std::vector<double> out(n, tiny_square);
   for (std::size_t m = 0; m < nodal.size(); ++m) out[m % n] += nodal[m] * nodal[m];
   for (double& v : out) v = (0.5 * std::log(v) + order * std::log(loop.cutoff) - std::lgamma(order + 1.0)) / order;
   return out;
@@ -125,9 +135,9 @@ TimeMapFit fit_kappa(const Loop& loop, double tolerance) {
   TimeMapFit best = under(shorter, {}, tolerance);
   for (const int direction : {1, -1})
     for (int j = 1; j <= ladder_end; ++j) {
-      const TimeMapFit next = under(shorter, {std::pow(2.0, 0.25 * direction * j), {}}, tolerance);
+      const TimeMapFit next = under(shorter, {std::pow(2.0, ladder_step * direction * j), {}}, tolerance);
       if (next.harmonics < best.harmonics) best = next;
-      if (next.harmonics > 1.3 * best.harmonics) break;
+      if (next.harmonics > past_optimum * best.harmonics) break;
     }
   return best;
 }
@@ -173,7 +183,8 @@ bool is_invariant(const TimeMap& map, const Isotropy& isotropy) {
       double c = map.coefficients[2 * n];
       double d = map.coefficients[2 * n + 1];
       make_invariant(g, static_cast<int>(n + 1), c, d);
-      if (std::abs(c - map.coefficients[2 * n]) + std::abs(d - map.coefficients[2 * n + 1]) > 1e-14) return false;
+      if (std::abs(c - map.coefficients[2 * n]) + std::abs(d - map.coefficients[2 * n + 1]) > same_coefficient)
+        return false;
     }
     return true;
   });

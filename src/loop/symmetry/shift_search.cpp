@@ -11,6 +11,11 @@ namespace orbweaver::loop {
 
 namespace {
 
+constexpr double settled = 1e-15;   // a step in the shift that no longer changes it
+constexpr int most_steps = 30;      // of Newton's method from a grid finer than the harmonics: it needs three or four
+constexpr double deep_share = 0.1;  // of the range of D^2: shallower minima are no candidates for the closest
+constexpr double largest_move = 0.05;  // of a period: how far the minimum near a given shift may lie
+
 constexpr double two_pi = 2.0 * std::numbers::pi;
 
 // D^2 as a function of theta = 2 pi psi with its first two derivatives.
@@ -94,13 +99,13 @@ ShiftMinimum refined(const Correlation& correlation, double theta, double reach)
   const double low = theta - reach;
   const double high = theta + reach;
   Correlation::Values here = correlation.at(theta);
-  for (int n = 0; n < 30 && here.curvature != 0.0; ++n) {
+  for (int n = 0; n < most_steps && here.curvature != 0.0; ++n) {
     // Against the slope even where the minimum's curvature is not reached yet.
     const double next = std::clamp(theta - here.slope / std::abs(here.curvature), low, high);
     const double step = std::abs(next - theta);
     theta = next;
     here = correlation.at(theta);
-    if (step < 1e-15) break;
+    if (step < settled) break;
   }
   return {theta / two_pi, std::max(0.0, here.value)};
 }
@@ -117,7 +122,7 @@ std::vector<ShiftMinimum> shift_minima(const Loop& y, const Loop& x, const std::
   std::vector<ShiftMinimum> minima;
   for (std::size_t j = 0; j < n; ++j) {
     const bool is_minimum = coarse[j] <= coarse[(j + n - 1) % n] && coarse[j] < coarse[(j + 1) % n];
-    const bool is_deep = coarse[j] <= coarse[lowest] + 0.1 * (highest - coarse[lowest]);
+    const bool is_deep = coarse[j] <= coarse[lowest] + deep_share * (highest - coarse[lowest]);
     if (j == lowest || (is_minimum && is_deep))
       minima.push_back(refined(correlation, two_pi * static_cast<double>(j) / nodes, two_pi / nodes));
   }
@@ -127,7 +132,7 @@ std::vector<ShiftMinimum> shift_minima(const Loop& y, const Loop& x, const std::
 }
 
 ShiftMinimum shift_minimum_near(const Loop& y, const Loop& x, const std::vector<int>& angles, double shift) {
-  return refined(Correlation(y, x, angles), two_pi * shift, 0.05 * two_pi);
+  return refined(Correlation(y, x, angles), two_pi * shift, largest_move * two_pi);
 }
 
 Loop difference_at(const Loop& y, const Loop& x, const std::vector<int>& angles, double shift,

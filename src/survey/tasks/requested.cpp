@@ -14,6 +14,9 @@ namespace orbweaver::survey {
 
 namespace {
 
+/// Width of the bracket in arclength, relative to 1 + the arclength: rounding of a position.
+constexpr double position_width = 1e-14;
+
 using Value = std::function<double(const loop::Loop&)>;
 
 /// The orbit between the two where `value` is `wanted`.
@@ -23,7 +26,8 @@ std::optional<continuation::CurvePoint> orbit_with(const Value& value, double wa
     const auto point = family.at(position);
     return point ? value(point->loop) - wanted : std::numeric_limits<double>::quiet_NaN();
   };
-  const auto located = bifurcation::locate_root(along, from.arclength, to.arclength, 1e-14 * (1.0 + to.arclength));
+  const auto located =
+      bifurcation::locate_root(along, from.arclength, to.arclength, position_width * (1.0 + to.arclength));
   return located ? family.at(located->position) : std::nullopt;
 }
 
