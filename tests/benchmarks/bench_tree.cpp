@@ -12,6 +12,7 @@
 #include <CLI/CLI.hpp>
 
 #include "orbweaver/scene/scene.hpp"
+#include "orbweaver/survey/tasks/keys.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "survey/tree_outcomes.hpp"
 #include "tree/family_tree.hpp"
@@ -82,14 +83,14 @@ int main(int argc, char** argv) {
   };
   std::printf("families  wanted, us  add, us\n");
   std::vector<std::string> parents{"0000.0000"};
-  add(test::ended(with_orbit(test::base_work()), "period limit", 5, 12));
+  add(test::ended(with_orbit(test::base_work()), continuation::EndReason::period_limit, 5, 12));
   constexpr int places_a_branch = 20;
   int places_before = 0;
   int next_report = std::max(1, families / 8);
   // Every other family does not come to be asked for in time, as where many ranks work: it runs as well, and is dropped.
   for (std::size_t at = 0; at < parents.size() && known < families; ++at) {
     const std::string parent = parents[at];
-    const int depth = static_cast<int>(std::count(parent.begin(), parent.end(), '/')) / 2;
+    const int depth = survey::depth_of(parent);
     const std::vector<test::Place> places = places_on(parent, depth, places_a_branch, places_before);
     for (const test::Place& place : places) add(test::located(place));
     for (int n = 0; n < places_a_branch; ++n)

@@ -12,6 +12,8 @@
 
 #include <fmt/format.h>
 
+#include "orbweaver/survey/tasks/keys.hpp"
+
 namespace {
 
 using namespace orbweaver::survey;
@@ -27,19 +29,21 @@ struct Event {
   std::optional<Meeting> meeting;
 };
 
+std::string crossing_of(const std::string& key) { return key.substr(0, key.rfind('/')); }
+
 Event ends(const std::string& key) {
   const bool two_sided = key.back() == '+' || key.back() == '-';
   Event event{key, {}, {}};
   event.lineage.family = two_sided && key.find('/') != std::string::npos ? key.substr(0, key.size() - 1) : key;
-  event.lineage.crossing = path_above(key);
-  event.lineage.depth = static_cast<int>(std::count(key.begin(), key.end(), '/')) / 2;
+  event.lineage.crossing = crossing_of(key);
+  event.lineage.depth = depth_of(key);
   event.lineage.side = key.back() == '-' ? -1 : 1;
   return event;
 }
 
 Event meets(const std::string& key, const std::string& start, double away) {
   Event event{key, {}, {}};
-  event.meeting = Meeting{path_above(start), side_of(ends(start).lineage), away};
+  event.meeting = Meeting{crossing_of(start), side_of(ends(start).lineage), away};
   return event;
 }
 
@@ -186,7 +190,7 @@ std::vector<Event> random_tree(std::mt19937& random, std::size_t size) {
   for (const std::string& key : ended)
     for (std::size_t n = below(4); n > 1; --n) {
       const std::string& start = keys[below(keys.size())];
-      if (path_above(start).empty()) continue;
+      if (depth_of(start) == 0) continue;
       const Event meeting = meets(key, start, 0.1 * static_cast<double>(below(4)));
       const auto is_known = [&](const Event& event) {
         return event.branch == key && event.meeting && event.meeting->crossing == meeting.meeting->crossing;

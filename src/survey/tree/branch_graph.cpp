@@ -6,20 +6,9 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/survey/tasks/keys.hpp"
 
 namespace orbweaver::survey {
-
-std::string path_above(const std::string& key) {
-  const std::size_t slash = key.rfind('/');
-  return slash == std::string::npos ? "" : key.substr(0, slash);
-}
-
-namespace {
-
-/// Every generation adds a crossing and a direction to the path.
-int depth_of(const std::string& key) { return static_cast<int>(std::count(key.begin(), key.end(), '/')) / 2; }
-
-}  // namespace
 
 BranchGraph::Number BranchGraph::known(const std::string& key) {
   const auto [place, is_new] = _numbers.try_emplace(key, count());
@@ -28,7 +17,7 @@ BranchGraph::Number BranchGraph::known(const std::string& key) {
   _branches.emplace_back();
   at(number).key = key;
   at(number).depth = depth_of(key);
-  const std::string parent = path_above(path_above(key));
+  const std::string parent = parent_of(key);
   if (parent.empty()) return number;
   const Number above = known(parent);
   at(number).parent = above;
@@ -54,7 +43,7 @@ BranchGraph::Number BranchGraph::add_ended(const std::string& key, const Lineage
 BranchGraph::Number BranchGraph::add_candidate(const std::string& key, const Meeting& meeting) {
   const Number number = find(key);
   core::require(number != none && at(number).side != none, "only a branch that has ended may have arrived somewhere");
-  Candidate candidate{meeting, known(path_above(meeting.crossing)), known(meeting.along)};
+  Candidate candidate{meeting, known(branch_of(meeting.crossing)), known(meeting.along)};
   at(candidate.on).visitors.push_back(number);
   std::vector<Candidate>& all = at(number).candidates;
   const auto place = std::upper_bound(all.begin(), all.end(), candidate, [](const Candidate& a, const Candidate& b) {

@@ -27,10 +27,6 @@ struct Meeting {
   double away = 0.0;  ///< of the orbit before, from the direction, in parts of its distance from the crossing
 };
 
-/// The path one step up: of a family or branch the crossing where it was born, of a crossing the branch that it lies on;
-/// empty for a base family.
-[[nodiscard]] std::string path_above(const std::string& key);
-
 /// Who lies on whom, and who may have arrived where: all that pruning looks at. Branches have numbers in the order in which
 /// they came to be known, which decides nothing; `comes_first` does.
 class BranchGraph {

@@ -11,6 +11,7 @@
 
 #include "family_names.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/survey/tasks/keys.hpp"
 
 namespace orbweaver::survey {
 
@@ -35,21 +36,22 @@ std::vector<Family> families_of(const std::vector<FamilySide>& branches) {
 }  // namespace
 
 void FamilyTree::add(const queue::Task& task, const queue::TaskOutcome& outcome) {
-  if (task.kind == branch_kind) {
+  const TaskKind kind = kind_of(task);
+  if (kind == TaskKind::branch) {
     BranchWork work = unpack_branch_work(task.payload);
     EndedBranch branch{std::move(work.lineage), std::move(work.name), std::move(work.isotropy), std::nullopt,
                        outcome.failed,          outcome.reason};
     if (!outcome.payload.empty()) branch.outcome = unpack_branch_outcome(outcome.payload);
     add_branch(task.key, std::move(branch));
-  } else if (task.kind == start_kind && outcome.failed) {
+  } else if (kind == TaskKind::start && outcome.failed) {
     BranchWork work = unpack_start_work(task.payload).branch;
     add_branch(work.key, {std::move(work.lineage), std::move(work.name), std::move(work.isotropy), std::nullopt, true,
                           outcome.reason});
-  } else if (task.kind == locate_kind) {
-    if (outcome.failed) _failures[task.key.substr(task.key.find(' ') + 1)] = outcome.reason;
+  } else if (kind == TaskKind::locate) {
+    if (outcome.failed) _failures[place_of(task.key)] = outcome.reason;
     if (outcome.payload.empty()) return;
     LocateOutcome crossing = unpack_locate_outcome(outcome.payload);
-    if (!crossing.kind.empty()) add_crossing(std::move(crossing));
+    if (crossing.kind) add_crossing(std::move(crossing));
   }
 }
 
@@ -57,9 +59,10 @@ void FamilyTree::add_branch(const std::string& key, EndedBranch branch) {
   std::vector<Meeting> meetings;
   if (branch.outcome) {
     branch.outcome->before_limit = {};  // a journal has it
-    if (!branch.outcome->arrival.empty())
-      meetings = _arrivals.add_branch(key, std::move(branch.outcome->arrival.front()));
-    branch.outcome->arrival.clear();
+    for (ArrivalRecord& arrival : branch.outcome->arrival) {
+      meetings = _arrivals.add_branch(key, arrival);
+      arrival.near = {};
+    }
   }
   const auto [place, is_new] = _branches.try_emplace(key, std::move(branch));
   core::require(is_new, "a branch ends once, and one ended again");
@@ -84,9 +87,10 @@ void FamilyTree::count(const std::vector<std::string>& branches) {
 }
 
 bool FamilyTree::wanted(const queue::Task& task) const {
-  if (task.kind != branch_kind && task.kind != start_kind) return true;
+  const TaskKind kind = kind_of(task);
+  if (kind != TaskKind::branch && kind != TaskKind::start) return true;
   const BranchWork work =
-      task.kind == branch_kind ? unpack_branch_work(task.payload) : unpack_start_work(task.payload).branch;
+      kind == TaskKind::branch ? unpack_branch_work(task.payload) : unpack_start_work(task.payload).branch;
   if (work.lineage.depth == 0) return true;
   return !_pruning.would_be_dropped(work.key, work.lineage) &&
          _limit.has_room({work.lineage.depth, work.key}, work.lineage.family);
@@ -103,7 +107,7 @@ std::vector<FamilySide> FamilyTree::kept_branches() const {
   std::unordered_set<std::string> too_many;
   const auto lies_beyond = [&](const std::string& key) {
     if (too_many.empty()) return false;
-    for (std::string above = path_above(key); !above.empty(); above = path_above(above))
+    for (std::string above = parent_of(key); !above.empty(); above = parent_of(above))
       if (too_many.contains(above)) return true;
     return false;
   };
@@ -129,7 +133,7 @@ FamilyTree::Result FamilyTree::resolve() const {
 
   std::unordered_set<std::string> kept_keys;
   for (const FamilySide branch : kept) kept_keys.insert(branch->first);
-  const auto on_kept = [&](const std::string& crossing) { return kept_keys.contains(path_above(crossing)); };
+  const auto on_kept = [&](const std::string& crossing) { return kept_keys.contains(branch_of(crossing)); };
   std::vector<const LocateOutcome*> crossings;
   for (const auto& [key, crossing] : _crossings)
     if (on_kept(key)) crossings.push_back(&crossing);

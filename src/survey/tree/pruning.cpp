@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/survey/tasks/keys.hpp"
 
 namespace orbweaver::survey {
 
@@ -60,7 +61,7 @@ bool Pruning::is_dropped(const std::string& key) const { return _rounds.back().d
 bool Pruning::would_be_dropped(const std::string& key, const Lineage& lineage) const {
   if (_rounds.empty()) return false;
   const PruningRound& last = _rounds.back();
-  for (std::string above = path_above(path_above(key)); !above.empty(); above = path_above(path_above(above)))
+  for (std::string above = parent_of(key); !above.empty(); above = parent_of(above))
     if (const Number number = _graph->find(above); number != BranchGraph::none) {
       if (last.dropped(number)) return true;
       break;  // it knows of all that it lies on

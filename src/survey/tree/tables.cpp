@@ -9,21 +9,20 @@
 #include <fmt/format.h>
 
 #include "orbweaver/loop/symmetry/isotropy.hpp"
+#include "orbweaver/survey/tree/family_end.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
 
 namespace orbweaver::survey {
 
 namespace {
 
-bool is_fold(const LocateOutcome& crossing) { return crossing.kind.starts_with("fold"); }
-
 /// A fold in energy shows twice: as an extremum and as a zero of the test function of q = 1. The first by key stays.
 class FoldsOnce {
  public:
   /// False for a fold where one of the same kind on the same family has been.
   bool is_new(const LocateOutcome& crossing) {
-    if (!is_fold(crossing)) return true;
-    std::set<double>& places = _places[{crossing.lineage.family, crossing.kind}];
+    if (!is_fold(*crossing.kind)) return true;
+    std::set<double>& places = _places[{crossing.lineage.family, *crossing.kind}];
     const auto is_same = [&](double place) {
       return std::abs(place - crossing.arclength) < same_place * (1.0 + std::abs(crossing.arclength));
     };
@@ -37,7 +36,7 @@ class FoldsOnce {
  private:
   /// Each of the two is located to far less than this in arclength, and other folds lie farther off.
   static constexpr double same_place = 1e-4;
-  std::map<std::pair<std::string, std::string>, std::set<double>> _places;  // arclengths by family and kind
+  std::map<std::pair<std::string, archive::CrossingKind>, std::set<double>> _places;  // arclengths by family and kind
 };
 
 archive::CrossingRecord row_of(const LocateOutcome& crossing) {
@@ -46,7 +45,7 @@ archive::CrossingRecord row_of(const LocateOutcome& crossing) {
   row.arclength = crossing.arclength;
   row.period = crossing.period;
   row.energy = crossing.energy;
-  row.kind = crossing.kind;
+  row.kind = *crossing.kind;
   row.multiplicity = crossing.multiplicity;
   row.kernel_dimension = crossing.kernel_dimension;
   row.residual = crossing.residual;
@@ -103,7 +102,7 @@ void add_families(const std::vector<Family>& families, const Crossings& crossing
     summary.depth = family.lineage.depth;
     for (const FamilySide entry : family.sides) {
       const auto& [key, side] = *entry;
-      std::string reason = side.outcome ? side.outcome->end_reason : fmt::format("failure ({})", side.reason);
+      std::string reason = side.outcome ? end_text(*side.outcome) : failure_text(side.reason);
       if (const Meeting* meeting = arrival(key)) {
         const LocateOutcome& met = crossings.at(meeting->crossing);
         const auto row = crossing_rows.find(met.key);
@@ -111,15 +110,10 @@ void add_families(const std::vector<Family>& families, const Crossings& crossing
         if (row != crossing_rows.end() && name != names.end()) {
           record.end_family_key = met.lineage.family;
           record.end_crossing = row->second;
-          reason = fmt::format("joined {} at T = {:.12g} (crossing at T = {:.12g}, {} times around)", name->second,
-                               met.multiplicity * met.period, met.period, met.multiplicity);
+          reason = joined_text(name->second, met);
         }
       }
-      if (family.sides.size() > 1)
-        record.end_reason += fmt::format("{}{}: {}", record.end_reason.empty() ? "" : "; ",
-                                         side.lineage.side > 0 ? "forwards" : "backwards", reason);
-      else
-        record.end_reason = reason;
+      record.end_reason = record.end_reason.empty() ? reason : both_ends_text(record.end_reason, reason);
       summary.failed = summary.failed || side.failed;
       if (side.failed) tables.failures.push_back(fmt::format("{} ({}): {}", family.key, family.name, side.reason));
       if (side.outcome && side.outcome->orbits > 0) add_orbits(*side.outcome, summary);
