@@ -31,7 +31,7 @@ double microseconds() {
 survey::BranchWork with_orbit(survey::BranchWork work) {
   const std::vector<double> point(4, 0.0);
   work.base = survey::record_of(loop::constant_loop(point, 10.0, 60));
-  work.direction.assign(work.base.modes.size(), 0.1);
+  work.direction.modes.assign(work.base.modes.size(), 0.1);
   return work;
 }
 

@@ -30,13 +30,6 @@ void for_near(const Map& by_period, double period, const Found& found) {
   for (auto at = by_period.lower_bound(period * (1.0 - 2.0 * arrival_window)); at != end; ++at) found(at->second);
 }
 
-/// base + step * direction.
-loop::Loop moved(const loop::Loop& base, const std::vector<double>& direction, double step) {
-  loop::Loop out = base;
-  for (std::size_t n = 0; n < out.modes.size(); ++n) out.modes[n] += step * direction[n];
-  return out;
-}
-
 }  // namespace
 
 std::optional<Meeting> Arrivals::meeting(const ArrivalRecord& arrival, const LocateOutcome& crossing) const {
@@ -47,10 +40,10 @@ std::optional<Meeting> Arrivals::meeting(const ArrivalRecord& arrival, const Loc
   for (const LeavingRecord& leaving : crossing.leaving) {
     const loop::Loop base = loop_of(leaving.base);
     const double distance = loop::align(_system, near, base).distance;
-    const double unit = loop::mean_distance(base, moved(base, leaving.direction, 1.0));
+    const double unit = loop::mean_distance(base, loop::moved(base, leaving.direction, 1.0));
     for (const int side : {1, -1}) {
       if (side < 0 && !leaving.both_sides) continue;
-      const loop::Loop expected = moved(base, leaving.direction, side * distance / unit);
+      const loop::Loop expected = loop::moved(base, leaving.direction, side * distance / unit);
       const double away = loop::align(_system, near, expected).distance / distance;
       if (away < nearest) {
         nearest = away;
