@@ -83,11 +83,11 @@ std::optional<FamilyTree::Meeting> FamilyTree::meeting_of(const Branch& branch, 
   if (!(std::abs(arrival.period / period - 1.0) <= arrival_window &&
         std::abs(arrival.energy - crossing.energy) <= arrival_window * (1.0 + std::abs(crossing.energy))))
     return std::nullopt;
-  const loop::Loop near = loop_of(arrival.near);
+  const loop::Loop& near = arrival.near;
   std::optional<Meeting> best;
   double nearest = 0.4;  // of the distance from the crossing's orbit; other directions are further off
   for (const LeavingRecord& leaving : crossing.leaving) {
-    const loop::Loop base = loop_of(leaving.base);
+    const loop::Loop& base = leaving.base;
     const double distance = loop::align(_system, near, base).distance;
     const double unit = loop::mean_distance(base, moved(base, leaving.direction, 1.0));
     for (const int side : {1, -1}) {
@@ -309,7 +309,7 @@ void FamilyTree::add_families(const std::vector<Family>& families, const Keys& d
     record.key = summary.key = family.key;
     record.name = summary.name = family.name;
     record.multiplicity = family.lineage.multiplicity;
-    record.isotropy = summary.isotropy = loop::to_text(isotropy_of(family.sides.front()->isotropy, _system));
+    record.isotropy = summary.isotropy = loop::to_text(family.sides.front()->isotropy);
     if (family.lineage.depth > 0) {
       const LocateOutcome& born = _crossings.at(family.lineage.crossing);
       record.parent_key = born.lineage.family;

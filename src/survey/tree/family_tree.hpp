@@ -45,7 +45,7 @@ class FamilyTree {
   struct Branch {
     Lineage lineage;
     std::string name;  ///< of a base
-    IsotropyRecord isotropy;
+    loop::Isotropy isotropy;
     std::optional<BranchOutcome> outcome;
     bool failed = false;
     std::string reason;
