@@ -146,7 +146,7 @@ TEST(Message, RefusalsSayWhatIsWrong) {
   std::string newer = bytes;
   newer[8] = static_cast<char>(message_format_version + 1);
   EXPECT_THAT(refusal(newer),
-              AllOf(HasSubstr("format version is 2"), HasSubstr("reads version 1"), HasSubstr("same newer orbweaver")));
+              AllOf(HasSubstr("format version is 3"), HasSubstr("reads version 2"), HasSubstr("same newer orbweaver")));
   bytes.back() = static_cast<char>(bytes.back() ^ 0x10);
   EXPECT_THAT(refusal(bytes), HasSubstr("checksum"));
 }
