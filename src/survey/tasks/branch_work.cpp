@@ -17,7 +17,7 @@ continuation::Start start_of(const BranchWork& work, const systems::Description&
   continuation::Start start;
   start.base = work.base;
   start.direction = work.direction;
-  for (double& v : start.direction) v *= work.lineage.side;
+  start.direction *= work.lineage.side;
   start.isotropy = loop::with_declared_matrices(work.isotropy, system);
   return start;
 }

@@ -6,6 +6,7 @@
 #include "orbweaver/continuation/branch.hpp"
 #include "orbweaver/continuation/ending.hpp"
 #include "orbweaver/core/serialization.hpp"
+#include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/queue/task.hpp"
 #include "orbweaver/survey/tasks/lineage.hpp"
 #include "orbweaver/survey/tasks/task_kind.hpp"
@@ -19,8 +20,8 @@ struct BranchWork {
   std::string key;
   std::string name;  ///< for progress; final names are given at the end
   Lineage lineage;
-  loop::Loop base;                ///< the equilibrium, or the crossing's orbit as many times around as it takes
-  std::vector<double> direction;  ///< in its modes
+  loop::Loop base;          ///< the equilibrium, or the crossing's orbit as many times around as it takes
+  loop::Tangent direction;  ///< in its modes
   loop::Isotropy isotropy;
   double amplitude = 0.0;  ///< |dz(s = 0)| of the first orbit; 0: the scene's
 

@@ -8,6 +8,7 @@
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
 #include "orbweaver/core/serialization.hpp"
+#include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/queue/task.hpp"
 #include "orbweaver/survey/tasks/lineage.hpp"
 #include "orbweaver/survey/tasks/task_kind.hpp"
@@ -40,7 +41,7 @@ struct LeavingRecord {
   loop::Isotropy isotropy;
   bool both_sides = false;
   loop::Loop base;
-  std::vector<double> direction;
+  loop::Tangent direction;
 
   static constexpr int wire_version = 1;
   template <class Archive>

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "orbweaver/core/serialization.hpp"
+#include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/queue/task.hpp"
 
@@ -25,7 +26,7 @@ struct SweepWork {
 /// A family found by a sweep: where and how it starts.
 struct FoundMode {
   double period = 0.0;
-  std::vector<double> direction;  ///< modes of a loop with cutoff `cutoff`
+  loop::Tangent direction;  ///< of a loop with cutoff `cutoff`
   int cutoff = 0;
   loop::Isotropy isotropy;
   bool one_direction = true;  ///< a symmetry maps one direction of the start onto the other
