@@ -79,7 +79,7 @@ inline survey::BranchWork base_work(const std::string& key = "0000.0000", const 
   survey::BranchWork work;
   work.key = work.lineage.family = key;
   work.name = name;
-  work.isotropy = {{"S", "R"}, {0, 1}, {1, 0}, {2, 1}};
+  work.isotropy = {{"S", false, {}, 1, 2}, {"R", true, {}, 0, 1}};
   return work;
 }
 
