@@ -30,7 +30,6 @@ FoundMode sample_mode() {
   return mode;
 }
 
-SweepWork sample_sweep_work() { return {3, {0.0, 3.141592653589793}}; }
 SweepOutcome sample_sweep_outcome() { return {2, {1.5}, {sample_mode(), {}}, {"T = 6.8: twice around", ""}}; }
 BranchWork sample_branch_work() {
   return {"0001.0002/003.q4.j1/0-", "Naïve", sample_lineage(), sample_loop(), {{0.25, -0.5}, {1e-300}},
@@ -59,27 +58,6 @@ LocateWork sample_locate_work() {
   work.to = 1.5;
   return work;
 }
-LocateOutcome sample_locate_outcome() {
-  return {"0001.0002/003.q4.j1",
-          sample_lineage(),
-          1.0,
-          2.0,
-          3.0,
-          archive::CrossingKind::subharmonic,
-          4,
-          2,
-          1e-12,
-          1e-11,
-          0.5,
-          -1e-13,
-          {1.0, 2.0},
-          8,
-          3,
-          2,
-          {{"0001.0002/003.q4.j1/0", sample_isotropy(), true, sample_loop(), {{0.5}, {3.0, -0.75}}}},
-          "a remark"};
-}
-
 template <class Body>
 std::string environment_error_of(const Body& body) {
   try {

@@ -24,7 +24,7 @@ struct LocateWork {
   loop::Isotropy isotropy;
   std::vector<continuation::FamilyCurve::Known> known;
   double before_first = 0.0;  ///< arclength from the crossing where the family was born to its first orbit
-  bifurcation::Event event;
+  bifurcation::Event event{};
   double from = 0.0;
   double to = 0.0;
 
