@@ -11,7 +11,7 @@
 #include <boost/archive/binary_oarchive.hpp>
 
 #include "orbweaver/core/error.hpp"
-#include "serialization.hpp"
+#include "orbweaver/queue/boost_serialization.hpp"
 
 namespace orbweaver::queue {
 

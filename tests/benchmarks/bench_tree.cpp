@@ -30,7 +30,7 @@ double microseconds() {
 /// What a task of a survey carries: a first orbit of 60 harmonics.
 survey::BranchWork with_orbit(survey::BranchWork work) {
   const std::vector<double> point(4, 0.0);
-  work.base = survey::record_of(loop::constant_loop(point, 10.0, 60));
+  work.base = loop::constant_loop(point, 10.0, 60);
   work.direction.modes.assign(work.base.modes.size(), 0.1);
   return work;
 }

@@ -93,7 +93,7 @@ class BranchStates : public ::testing::Test {
     base.key = base.name = base.lineage.family = "0000.0000";
     base.direction = mode.direction;
     base.isotropy = mode.isotropy;
-    base.base = record_of(loop::constant_loop(std::vector<double>(4, 0.0), mode.period, mode.cutoff));
+    base.base = loop::constant_loop(std::vector<double>(4, 0.0), mode.period, mode.cutoff);
     std::vector<queue::Task> remaining{task_of(base)};
     while (!remaining.empty()) {
       const queue::Task task = remaining.back();

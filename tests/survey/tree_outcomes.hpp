@@ -65,21 +65,21 @@ inline std::vector<double> kernel_vector(const Place& place, double angle) {
 inline double angle_of(int number) { return number == 0 ? 0.0 : 0.75 * pi_number; }
 
 /// An orbit on the way to a place, along one of its directions; started elsewhere and mirrored by S.
-inline survey::LoopRecord orbit_near(const Place& place, int number, int side) {
+inline loop::Loop orbit_near(const Place& place, int number, int side) {
   loop::Loop loop = orbit_at(place);
   const std::vector<double> vector = kernel_vector(place, angle_of(number));
   for (std::size_t n = 0; n < loop.modes.size(); ++n) loop.modes[n] += 0.02 * side * vector[n];
   for (double& v : loop.modes) v = -v;
-  return survey::record_of(loop::time_shifted(loop, 0.3));
+  return loop::time_shifted(loop, 0.3);
 }
 
-inline survey::IsotropyRecord isotropy_numbered(int number) { return {{number == 0 ? "R" : "RS"}, {1}, {0}, {1}}; }
+inline loop::Isotropy isotropy_numbered(int number) { return {{number == 0 ? "R" : "RS", true, {}, 0, 1}}; }
 
 inline survey::BranchWork base_work(const std::string& key = "0000.0000", const std::string& name = "In-Phase") {
   survey::BranchWork work;
   work.key = work.lineage.family = key;
   work.name = name;
-  work.isotropy = {{"S", "R"}, {0, 1}, {1, 0}, {2, 1}};
+  work.isotropy = {{"S", false, {}, 1, 2}, {"R", true, {}, 0, 1}};
   return work;
 }
 
@@ -157,7 +157,7 @@ inline Ended located(const Place& place, int directions = 2) {
     leaving.key = place.leaving(number);
     leaving.isotropy = isotropy_numbered(number);
     leaving.both_sides = place.times == 3;
-    leaving.base = survey::record_of(orbit_at(place));
+    leaving.base = orbit_at(place);
     leaving.direction.modes = kernel_vector(place, angle_of(number));
     outcome.leaving.push_back(std::move(leaving));
   }

@@ -7,6 +7,7 @@
 #include "orbweaver/bifurcation/fold_watch.hpp"
 #include "orbweaver/bifurcation/test_functions.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
+#include "orbweaver/core/serialization.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
 #include "orbweaver/systems/system.hpp"
 
@@ -14,9 +15,17 @@ namespace orbweaver::bifurcation {
 
 /// What is to be located: a zero of a test function, or an extremum of the period or the energy.
 struct Event {
-  enum class Kind { test_function, fold_period, fold_energy } kind = Kind::test_function;
+  enum class Kind { test_function, fold_period, fold_energy };
+  [[nodiscard]] friend constexpr Kind last_of(Kind) { return Kind::fold_energy; }
+  Kind kind = Kind::test_function;
   TestFunction function{};  ///< of Kind::test_function
   bool tangency = false;    ///< the function only touches zero
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, kind, function, tangency);
+  }
 };
 
 /// A located event.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "orbweaver/bifurcation/test_functions.hpp"
+#include "orbweaver/core/serialization.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -14,6 +15,12 @@ namespace orbweaver::bifurcation {
 struct Station {
   double position;                ///< along the family (arclength), increasing
   std::vector<Reading> readings;  ///< one a test function, in the caller's order
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, position, readings);
+  }
 };
 
 /// Between `from` and `to` a function changes sign, or (`tangency`) only touches zero.
@@ -38,15 +45,33 @@ struct DetectorState {
   struct Node {
     double position = 0.0;
     Reading reading{};
+
+    static constexpr int wire_version = 1;
+    template <class Archive>
+    void serialize(Archive& archive, unsigned /*version*/) {
+      core::serialize_members(archive, position, reading);
+    }
   };
   struct Watch {
     std::vector<Node> signed_nodes;                                 ///< the last two readings with a sign
     std::optional<Node> undecided;                                  ///< the smallest since without one
     double scale = 0.0;                                             ///< the largest modulus so far
     double examined_to = -std::numeric_limits<double>::infinity();  ///< minima up to here have been looked at
+
+    static constexpr int wire_version = 1;
+    template <class Archive>
+    void serialize(Archive& archive, unsigned /*version*/) {
+      core::serialize_members(archive, signed_nodes, undecided, scale, examined_to);
+    }
   };
   std::vector<Station> stations;  ///< the last two, probed ones included
   std::vector<Watch> watches;     ///< one a test function
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, stations, watches);
+  }
 };
 
 /// Finds the zeros of test functions along a family from stations that come one after the other. Where a step is too

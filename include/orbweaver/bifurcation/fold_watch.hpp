@@ -3,6 +3,8 @@
 #include <limits>
 #include <vector>
 
+#include "orbweaver/core/serialization.hpp"
+
 namespace orbweaver::bifurcation {
 
 /// An extremum of the period or the energy along a family, between two positions.
@@ -26,10 +28,22 @@ class FoldWatch {
     double value = 0.0;
     double scale = 0.0;  ///< largest modulus so far
     int direction = 0;   ///< of the last change
+
+    static constexpr int wire_version = 1;
+    template <class Archive>
+    void serialize(Archive& archive, unsigned /*version*/) {
+      core::serialize_members(archive, before, position, value, scale, direction);
+    }
   };
 
   Turn period;  ///< plain state, for checkpoints
   Turn energy;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, period, energy);
+  }
 };
 
 }  // namespace orbweaver::bifurcation

@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "orbweaver/core/serialization.hpp"
+
 namespace orbweaver::bifurcation {
 
 /// Perturbations v of an orbit with P v = exp(2 pi i j/q) v, P being its fundamental map (spectrum/floquet.hpp).
@@ -15,6 +17,12 @@ struct Sector {
   [[nodiscard]] int multiplicity(int fundamental_order) const;
 
   friend bool operator==(const Sector&, const Sector&) = default;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, q, j);
+  }
 };
 
 /// All sectors with gcd(j, q) = 1 and 0 <= j <= q/2 (j and -j are conjugate) whose multiplicity is at most `subharmonics`,

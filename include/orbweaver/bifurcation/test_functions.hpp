@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "orbweaver/bifurcation/sector.hpp"
+#include "orbweaver/core/serialization.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
 #include "orbweaver/systems/description.hpp"
 
@@ -15,6 +16,12 @@ struct Reading {
 
   /// -1 or 1, or 0 where the value does not exceed its error bound or either is not a number.
   [[nodiscard]] int sign() const;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, value, error);
+  }
 };
 
 /// A continuous function along a family, within [-1, 1], that changes sign where another family may cross.
@@ -24,10 +31,17 @@ struct TestFunction {
     krein,   ///< two pairs of multipliers meet and leave the unit circle, or come back to it (symplectic)
     torus,   ///< a complex pair passes the unit circle (dissipative)
   };
+  [[nodiscard]] friend constexpr Kind last_of(Kind) { return Kind::torus; }
   Kind kind = Kind::sector;
   Sector sector{};  ///< of Kind::sector
 
   friend bool operator==(const TestFunction&, const TestFunction&) = default;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, kind, sector);
+  }
 };
 
 /// What can happen to orbits of the system whose fundamental map has this order: all sectors (for dissipative systems q = 1

@@ -10,6 +10,7 @@
 
 #include "orbweaver/continuation/ending.hpp"
 #include "orbweaver/continuation/orbit.hpp"
+#include "orbweaver/core/serialization.hpp"
 #include "orbweaver/corrector/correct.hpp"
 #include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
@@ -54,6 +55,12 @@ struct Start {
 struct TracePoint {
   std::vector<double> values;
   double parameter = 0.0;  ///< along the branch: the predictor's polynomials run in it
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, values, parameter);
+  }
 };
 
 /// What the fast way keeps from one step to the next.
@@ -63,6 +70,12 @@ struct TraceState {
   std::vector<TracePoint> points;         ///< the last ones, oldest first; the start itself is the very first
   std::vector<double> factor_point;       ///< where the preconditioner was built; empty = to be built anew
   std::vector<double> factor_conditions;  ///< and under which conditions
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, cells, time_map, points, factor_point, factor_conditions);
+  }
 };
 
 /// Everything a step depends on: a step is a pure function of it and of the options.
@@ -80,6 +93,13 @@ struct Frontier {
   TraceState trace;              ///< of the fast way; empty otherwise
   double farthest = 0.0;         ///< largest change of amplitude or relative change of T from orbit 0 so far
   bool on_energy_limit = false;  ///< `orbit` is the last one, at the scene's energy limit
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, orbit, tangent, next_length, last_increment, first, first_energy, first_amplitude,
+                            amplitude, earlier_energy, earlier_period, trace, farthest, on_energy_limit);
+  }
 };
 
 /// One family, traced orbit by orbit in the subspace of its isotropy (paper, section III B).

@@ -3,6 +3,8 @@
 #include <string>
 #include <string_view>
 
+#include "orbweaver/core/serialization.hpp"
+
 namespace orbweaver::continuation {
 
 /// Why a branch ended (docs/mathematics.md, "Ends").
@@ -18,6 +20,7 @@ enum class EndReason {
   failure,            ///< the corrector failed at the smallest step
 };
 
+[[nodiscard]] constexpr EndReason last_of(EndReason) { return EndReason::failure; }
 [[nodiscard]] std::string_view name_of(EndReason reason);
 
 /// A branch's end in a form to print and to store.
@@ -28,6 +31,12 @@ struct Ending {
   [[nodiscard]] bool failed() const { return reason == EndReason::failure; }
   /// "period limit (T = 30)".
   [[nodiscard]] std::string text() const;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, reason, detail);
+  }
 };
 
 }  // namespace orbweaver::continuation

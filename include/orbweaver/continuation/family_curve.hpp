@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "orbweaver/continuation/branch.hpp"
+#include "orbweaver/core/serialization.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/systems/system.hpp"
@@ -48,6 +49,12 @@ class FamilyCurve {
   struct Known {
     double position = 0.0;
     loop::Loop loop;
+
+    static constexpr int wire_version = 1;
+    template <class Archive>
+    void serialize(Archive& archive, unsigned /*version*/) {
+      core::serialize_members(archive, position, loop);
+    }
   };
   [[nodiscard]] const std::vector<Known>& known() const { return _known; }
   [[nodiscard]] const loop::Isotropy& isotropy() const { return _isotropy; }

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "orbweaver/core/serialization.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/systems/system.hpp"
 
@@ -18,6 +19,13 @@ struct Orbit {
   double tail = 0.0;
   int iterations = 0;
   double off_branch_eigenvalue = std::numeric_limits<double>::quiet_NaN();
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, loop, step, arclength, energy, action, loss_rms, tail, iterations,
+                            off_branch_eigenvalue);
+  }
 };
 
 /// Energy of a loop: that of its state at s = 0 (NaN for systems without one).

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "orbweaver/core/serialization.hpp"
+
 namespace orbweaver::queue {
 
 /// How far running work has come.
@@ -12,6 +14,12 @@ struct Progress {
   std::vector<double> values;  ///< a few numbers for the display (period, energy, ...); their meaning is the executor's
 
   friend bool operator==(const Progress&, const Progress&) = default;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, step, rows, values);
+  }
 };
 
 }  // namespace orbweaver::queue

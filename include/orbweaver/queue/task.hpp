@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "orbweaver/core/serialization.hpp"
+
 namespace orbweaver::queue {
 
 /// A piece of work. The queue never looks into `kind` and `payload`; they belong to whoever makes and executes tasks.
@@ -14,6 +16,12 @@ struct Task {
   std::string state{};  ///< how far an earlier attempt has come, in the executor's bytes; empty: from the beginning
 
   friend bool operator==(const Task&, const Task&) = default;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, key, priority, kind, payload, state);
+  }
 };
 
 /// What became of a task. Must be a pure function of the task's key, kind and payload, so that a run depends neither on the
@@ -29,6 +37,12 @@ struct TaskOutcome {
   std::string state{};   ///< filled in by the queue if stopped: where to go on
 
   friend bool operator==(const TaskOutcome&, const TaskOutcome&) = default;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, key, failed, reason, children, payload, stopped, state);
+  }
 };
 
 }  // namespace orbweaver::queue

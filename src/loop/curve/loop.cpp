@@ -54,6 +54,11 @@ void validate(const Loop& loop) {
       "a loop's time map needs a positive kappa and pairs of finite coefficients");
 }
 
+void validate_received(const Loop& loop) {
+  const bool none = loop.dimension == 0 && loop.cutoff == 0 && loop.modes.empty() && loop.winding.empty();
+  if (!none) validate(loop);
+}
+
 std::vector<double> state_at(const Loop& loop, double time) {
   // Reduced by whole turns before it is multiplied by k, so that large times keep their digits.
   const double turns = time / loop.period;

@@ -60,6 +60,22 @@ std::optional<SymmetryElement> match(const systems::Symmetry& declared, bool rev
 
 }  // namespace
 
+Isotropy with_declared_matrices(Isotropy isotropy, const systems::Description& system) {
+  for (SymmetryElement& g : isotropy) {
+    const auto& declared = g.reversing ? system.reversors : system.equivariances;
+    const auto found =
+        std::find_if(declared.begin(), declared.end(), [&](const systems::Symmetry& s) { return s.name == g.name; });
+    if (found == declared.end())
+      throw core::EnvironmentError(
+          fmt::format("a task names the symmetry `{}`, which {} does not declare", g.name, system.name));
+    if (g.shift_denominator < 1)
+      throw core::EnvironmentError(
+          fmt::format("a task names `{}` with the shift {}/{}", g.name, g.shift_numerator, g.shift_denominator));
+    g.matrix = found->matrix;
+  }
+  return isotropy;
+}
+
 std::string to_text(const Isotropy& isotropy) {
   std::string text;
   for (const bool reversing : {false, true})

@@ -7,6 +7,7 @@
 #include "orbweaver/bifurcation/fold_watch.hpp"
 #include "orbweaver/continuation/branch.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
+#include "orbweaver/core/serialization.hpp"
 #include "orbweaver/queue/task.hpp"
 #include "orbweaver/survey/tasks/work.hpp"
 
@@ -24,6 +25,12 @@ struct BranchState {
   int events = 0;
   BranchOutcome outcome;              ///< so far
   std::vector<queue::Task> children;  ///< so far
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, frontier, known, detector, folds, last, before_first, events, outcome, children);
+  }
 };
 
 [[nodiscard]] std::string pack(const BranchState& state);

@@ -3,64 +3,30 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <boost/serialization/string.hpp>
-#include <boost/serialization/vector.hpp>
 
 #include "orbweaver/archive/file/sealed_file.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/queue/task_serialization.hpp"
 #include "tasks/payload.hpp"
-
-namespace boost::serialization {
-
-namespace survey = orbweaver::survey;
-
-template <class Archive>
-void serialize(Archive& archive, orbweaver::archive::WrittenSegment& s, unsigned) {
-  archive& s.name& s.bytes& s.orbits& s.sections& s.fingerprint;
-}
-
-template <class Archive>
-void serialize(Archive& archive, orbweaver::archive::VoidedRows& v, unsigned) {
-  archive& v.family_key& v.first_step& v.last_step& v.before_segment;
-}
-
-template <class Archive>
-void serialize(Archive& archive, survey::EndedTask& e, unsigned) {
-  archive& e.task& e.outcome& e.had_children;
-}
-
-template <class Archive>
-void serialize(Archive& archive, survey::JournalFile& j, unsigned) {
-  archive& j.name& j.entries;
-}
-
-template <class Archive>
-void serialize(Archive& archive, survey::Checkpoint& c, unsigned) {
-  archive& c.orbweaver_version& c.scene& c.earlier_scenes& c.stage& c.failures& c.segments& c.journals& c.voided& c
-      .unfinished& c.left_out;
-}
-
-}  // namespace boost::serialization
 
 namespace orbweaver::survey {
 
 namespace {
 
 // Counts up with every change of what the files hold, payloads and states included.
-constexpr std::uint32_t file_version = 1;
+constexpr std::uint32_t file_version = 2;
 constexpr archive::Seal checkpoint_seal{"ORBWCKP\x1a", file_version};
 constexpr archive::Seal journal_seal{"ORBWJRN\x1a", file_version};
 
 struct Journal {
   static constexpr const char* payload_name = "journal";
   std::vector<EndedTask> entries;
-};
 
-template <class Archive>
-void serialize(Archive& archive, Journal& j, unsigned) {
-  archive& j.entries;
-}
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, entries);
+  }
+};
 
 /// A file with the right seal that does not hold what it should is wrong input all the same.
 template <class T>

@@ -6,6 +6,7 @@
 
 #include "orbweaver/archive/schema/records.hpp"
 #include "orbweaver/archive/write/segment.hpp"
+#include "orbweaver/core/serialization.hpp"
 #include "orbweaver/queue/task.hpp"
 
 namespace orbweaver::survey {
@@ -15,12 +16,24 @@ struct EndedTask {
   queue::Task task;
   queue::TaskOutcome outcome;  ///< without children
   bool had_children = false;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, task, outcome, had_children);
+  }
 };
 
 /// A file of tasks that ended between two flushes, in the order in which they did.
 struct JournalFile {
   std::string name;
   std::size_t entries = 0;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, name, entries);
+  }
 };
 
 /// How far a survey has come.
@@ -29,6 +42,7 @@ enum class Stage {
   families,  ///< following what was found
   finished,  ///< the archive is written
 };
+[[nodiscard]] constexpr Stage last_of(Stage) { return Stage::finished; }
 
 /// Everything from which a survey goes on: with the segments and journals that it lists.
 struct Checkpoint {
@@ -43,6 +57,13 @@ struct Checkpoint {
   std::vector<archive::VoidedRows> voided;
   std::vector<queue::Task> unfinished;  ///< waiting and running ones, with their states
   std::vector<queue::Task> left_out;    ///< not wanted so far
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, orbweaver_version, scene, earlier_scenes, stage, failures, segments, journals,
+                            voided, unfinished, left_out);
+  }
 };
 
 /// Where a survey keeps what it needs to go on: segments, journals, and the last two checkpoints.

@@ -63,7 +63,7 @@ std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuat
   ArrivalRecord record;
   record.period = at_zero(samples, &Sample::period);
   record.energy = at_zero(samples, &Sample::energy);
-  record.near = record_of(sketch_of(near));
+  record.near = sketch_of(near);
   return record;
 }
 

@@ -223,7 +223,7 @@ void BranchTask::add_event(const bifurcation::Event& event, double from, double 
   const bool at_birth = _work.lineage.depth > 0 && from <= 0.0;
   if (at_birth && event.kind == bifurcation::Event::Kind::test_function && event.function.sector.q == 1) return;
   LocateWork work;
-  set_event(work, event);
+  work.event = event;
   const bool is_fold = event.kind != bifurcation::Event::Kind::test_function;
   work.key = event_key(_work.key, _events++,
                        is_fold ? "fold" : fmt::format("q{}.j{}", event.function.sector.q, event.function.sector.j));
@@ -231,8 +231,7 @@ void BranchTask::add_event(const bifurcation::Event& event, double from, double 
   work.lineage = _work.lineage;
   work.isotropy = _work.isotropy;
   work.before_first = _before_first;
-  for (const continuation::FamilyCurve::Known& known : _curve.known())
-    work.known.push_back({known.position, record_of(known.loop)});
+  work.known = _curve.known();
   work.from = std::max(from, _curve.known().front().position);  // a long way without a sign may begin before
   work.to = to;
   _children.push_back(task_of(work));

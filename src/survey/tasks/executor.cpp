@@ -71,7 +71,7 @@ queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
     found.direction = mode.direction;
     found.cutoff = options.cutoff;
     found.one_direction = directions_are_images(_system->description(), work.point, mode, options.cutoff);
-    found.isotropy = record_of(mode.isotropy);
+    found.isotropy = mode.isotropy;
     outcome.modes.push_back(std::move(found));
   }
   for (const starts::RejectedDip& dip : result.rejected)

@@ -48,17 +48,17 @@ class Location {
  public:
   Location(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system, const LocateWork& work,
            queue::TaskContext& context, core::Team* team)
-      : _scene(scene), _system(system), _work(work), _context(context), _team(team), _event(event_of(work)) {
+      : _scene(scene), _system(system), _work(work), _context(context), _team(team), _event(work.event) {
     _outcome.key = work.key;
     _outcome.lineage = work.lineage;
-    _outcome.q = work.q;
-    _outcome.j = work.j;
+    _outcome.q = _event.function.sector.q;
+    _outcome.j = _event.function.sector.j;
   }
 
   queue::TaskOutcome run() {
     bifurcation::NotLocated why;
     continuation::Options options = branch_options(_scene, _team);
-    const loop::Isotropy isotropy = isotropy_of(_work.isotropy, _system->description());
+    const loop::Isotropy isotropy = loop::with_declared_matrices(_work.isotropy, _system->description());
     continuation::FamilyCurve fast(_system, isotropy, options);
     add_known(fast);
     auto crossing = bifurcation::locate(*_system, fast, _event, _work.from, _work.to, why);
@@ -86,7 +86,8 @@ class Location {
 
   void add_known(continuation::FamilyCurve& family) const {
     family.before_each([this] { report(); });
-    for (const KnownOrbit& known : _work.known) family.add(known.position, loop_of(known.loop), _work.known.size());
+    for (const continuation::FamilyCurve::Known& known : _work.known)
+      family.add(known.position, known.loop, _work.known.size());
   }
 
   queue::TaskOutcome located(const bifurcation::Crossing& crossing, continuation::FamilyCurve& family) {
@@ -162,9 +163,9 @@ class Location {
          bifurcation::directions(*_system, kernel.base, isotropy, kernel.vectors)) {
       LeavingRecord leaving;
       leaving.key = fmt::format("{}/{}", _work.key, number++);
-      leaving.isotropy = record_of(direction.isotropy);
+      leaving.isotropy = direction.isotropy;
       leaving.both_sides = direction.both_sides;
-      leaving.base = record_of(sketch_of(direction.base));
+      leaving.base = sketch_of(direction.base);
       leaving.direction = loop::with_cutoff(direction.tangent, leaving.base.cutoff, leaving.base.dimension);
       add_starts(direction, leaving);
       _outcome.leaving.push_back(std::move(leaving));
@@ -199,7 +200,7 @@ class Location {
       branch.name = fmt::format("{}>{}@{:.4g}{}", _work.name, _outcome.multiplicity, _outcome.period,
                                 leaving.key.substr(_work.key.size()));
       branch.lineage = {leaving.key, _work.key, _work.lineage.depth + 1, _outcome.multiplicity, side};
-      branch.base = record_of(direction.base);
+      branch.base = direction.base;
       branch.direction = direction.tangent;
       branch.isotropy = leaving.isotropy;
       branch.amplitude = direction.amplitude > 0.0

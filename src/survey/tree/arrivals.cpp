@@ -34,11 +34,11 @@ void for_near(const Map& by_period, double period, const Found& found) {
 
 std::optional<Meeting> Arrivals::meeting(const ArrivalRecord& arrival, const LocateOutcome& crossing) const {
   if (!within_window(arrival, crossing)) return std::nullopt;
-  const loop::Loop near = loop_of(arrival.near);
+  const loop::Loop& near = arrival.near;
   std::optional<Meeting> best;
   double nearest = farthest_from_direction;
   for (const LeavingRecord& leaving : crossing.leaving) {
-    const loop::Loop base = loop_of(leaving.base);
+    const loop::Loop& base = leaving.base;
     const double distance = loop::align(_system, near, base).distance;
     const double unit = loop::mean_distance(base, loop::moved(base, leaving.direction, 1.0));
     for (const int side : {1, -1}) {

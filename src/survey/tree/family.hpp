@@ -13,7 +13,7 @@ namespace orbweaver::survey {
 struct EndedBranch {
   Lineage lineage;
   std::string name;  ///< of a base family
-  IsotropyRecord isotropy;
+  loop::Isotropy isotropy;
   std::optional<BranchOutcome> outcome;  ///< without loops
   bool failed = false;
   std::string reason;

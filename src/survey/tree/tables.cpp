@@ -93,7 +93,7 @@ void add_families(const std::vector<Family>& families, const Crossings& crossing
     record.key = summary.key = family.key;
     record.name = summary.name = family.name;
     record.multiplicity = family.lineage.multiplicity;
-    record.isotropy = summary.isotropy = loop::to_text(isotropy_of(family.sides.front()->second.isotropy, system));
+    record.isotropy = summary.isotropy = loop::to_text(family.sides.front()->second.isotropy);
     if (family.lineage.depth > 0) {
       const LocateOutcome& born = crossings.at(family.lineage.crossing);
       record.parent_key = born.lineage.family;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "orbweaver/archive/schema/crossing_kind.hpp"
+#include "orbweaver/core/serialization.hpp"
 
 namespace orbweaver::archive {
 
@@ -96,6 +97,12 @@ struct VoidedRows {
   int first_step = std::numeric_limits<int>::min();
   int last_step = std::numeric_limits<int>::max();
   int before_segment = 0;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, family_key, first_step, last_step, before_segment);
+  }
 };
 
 /// Records in any order; tables are sorted by key and step when they are written.

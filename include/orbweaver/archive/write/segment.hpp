@@ -7,6 +7,7 @@
 #include <mpi.h>
 
 #include "orbweaver/archive/schema/records.hpp"
+#include "orbweaver/core/serialization.hpp"
 
 namespace orbweaver::archive {
 
@@ -17,6 +18,12 @@ struct WrittenSegment {
   std::uint64_t orbits = 0;
   std::uint64_t sections = 0;
   std::uint64_t fingerprint = 0;  ///< of which orbits it holds (keys, steps, arclengths, periods), in any order
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, name, bytes, orbits, sections, fingerprint);
+  }
 };
 
 /// Writes the orbits and sections of all ranks together into a new segment file. Collective over `comm`.

@@ -3,9 +3,17 @@
 #include <span>
 #include <vector>
 
+#include "orbweaver/core/serialization.hpp"
 #include "orbweaver/loop/curve/time_map.hpp"
 
 namespace orbweaver::loop {
+
+struct Loop;
+/// Throws MisuseError unless sizes agree, cutoff >= 1, the period is positive and finite, every mode is finite and the
+/// time map consists of finite numbers with kappa > 0.
+void validate(const Loop& loop);
+/// The same for a loop that has been read; none at all, as Loop{} is, will do.
+void validate_received(const Loop& loop);
 
 /// A closed curve in phase space with a period: z(s) = n s + a_0 + sum_k a_k cos ks + b_k sin ks, t = T phi(s)
 /// (paper, section II D, where s = 2 pi t / T; winding numbers n added for angles that turn over).
@@ -23,6 +31,13 @@ struct Loop {
   [[nodiscard]] double& sine(int k, int i) { return modes[index(2 * k, i)]; }
   [[nodiscard]] double sine(int k, int i) const { return modes[index(2 * k, i)]; }
 
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, dimension, cutoff, period, modes, winding, time_map);
+    if constexpr (Archive::is_loading::value) validate_received(*this);
+  }
+
  private:
   [[nodiscard]] std::size_t index(int row, int i) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(dimension) + static_cast<std::size_t>(i);
@@ -32,10 +47,6 @@ struct Loop {
 /// The constant loop at `point` with period `period` and room for `cutoff` harmonics.
 /// Throws MisuseError for an empty point, cutoff < 1 or a period that is not positive and finite.
 [[nodiscard]] Loop constant_loop(std::span<const double> point, double period, int cutoff);
-
-/// Throws MisuseError unless sizes agree, cutoff >= 1, the period is positive and finite, every mode is finite and the
-/// time map consists of finite numbers with kappa > 0.
-void validate(const Loop& loop);
 
 /// z(t) at one time (any real t; size dimension). The one place where a loop is evaluated at a time.
 [[nodiscard]] std::vector<double> state_at(const Loop& loop, double time);

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "orbweaver/core/serialization.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
 
 namespace orbweaver::loop {
@@ -19,6 +20,12 @@ struct Tangent {
   void normalize();
   Tangent& operator*=(double factor);
   bool operator==(const Tangent&) const = default;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, modes, scalars);
+  }
 };
 
 [[nodiscard]] double dot(const Tangent& a, const Tangent& b);
@@ -40,10 +47,5 @@ struct Tangent {
 
 /// |dz(s = 0)| for a step of length 1 times the tangent.
 [[nodiscard]] double change_at_start(const Loop& at, const Tangent& tangent);
-
-template <class Archive>
-void serialize(Archive& archive, Tangent& tangent, unsigned) {
-  archive& tangent.modes& tangent.scalars;
-}
 
 }  // namespace orbweaver::loop

@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "orbweaver/core/serialization.hpp"
+
 namespace orbweaver::loop {
 
 /// How the loop parameter s runs with time, t = T phi(s) (docs/mathematics.md, "Time map"): more of s, and so more of
@@ -33,6 +35,12 @@ struct TimeMap {
   [[nodiscard]] TimeMap reversed() const;
 
   friend bool operator==(const TimeMap&, const TimeMap&) = default;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, kappa, coefficients);
+  }
 };
 
 /// The densities at the nodes s_j = 2 pi j / nodes: the weights of means over time, mean g = (1/nodes) sum_j density_j g_j.

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "orbweaver/core/serialization.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/systems/description.hpp"
 
@@ -19,10 +20,21 @@ struct SymmetryElement {
   int shift_denominator = 1;
 
   [[nodiscard]] double shift() const { return static_cast<double>(shift_numerator) / shift_denominator; }
+
+  /// The matrix does not travel: who receives an element looks it up by its name (with_declared_matrices).
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, name, reversing, shift_numerator, shift_denominator);
+  }
 };
 
 /// The declared symmetries that a loop has: generators of its isotropy group, in the system's order.
 using Isotropy = std::vector<SymmetryElement>;
+
+/// The isotropy as it was received, with the matrices that `system` declares. Throws EnvironmentError for a name that it does
+/// not, and for shifts that are none.
+[[nodiscard]] Isotropy with_declared_matrices(Isotropy isotropy, const systems::Description& system);
 
 /// "S@1/2 R@0": equivariances first, then reversors; empty text for no symmetry.
 [[nodiscard]] std::string to_text(const Isotropy& isotropy);

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <concepts>
+#include <optional>
+#include <type_traits>
+
+namespace orbweaver::core {
+
+// A type that travels between ranks or lies in files lists its members in a `serialize` of its own, in the form that
+// Boost.Serialization calls, and counts in `wire_version` the changes of what they mean:
+//
+//   struct Orbit {
+//     loop::Loop loop;
+//     Kind kind;  // last_of(Kind) stands beside the enum
+//
+//     static constexpr int wire_version = 1;
+//     template <class Archive>
+//     void serialize(Archive& archive, unsigned /*version*/) {
+//       core::serialize_members(archive, loop, kind);
+//     }
+//   };
+//
+// Nothing else lists them. What is added, left out or moved changes the type's layout (layout.hpp), by which the bytes of other
+// builds are refused.
+
+template <class T>
+concept Serialized = requires {
+  { T::wire_version } -> std::convertible_to<int>;
+};
+
+/// An archive that neither writes nor reads, but describes or counts members.
+template <class Archive, class T>
+concept Visits = requires(Archive& archive, T& member) {
+  archive.visit(member);
+};
+
+/// Throws EnvironmentError: `number` is no value of an enum whose last one is `last`.
+[[noreturn]] void refuse_enum(int number, int last);
+
+/// One member: an enum as an int that is checked, an optional one behind a flag, others as the archive does it.
+template <class Archive, class T>
+void serialize_member(Archive& archive, T& member) {
+  if constexpr (Visits<Archive, T>) {
+    archive.visit(member);
+  } else if constexpr (std::is_enum_v<T>) {
+    constexpr int last = static_cast<int>(last_of(T{}));
+    int number = static_cast<int>(member);
+    archive& number;
+    if (number < 0 || number > last) refuse_enum(number, last);
+    if constexpr (Archive::is_loading::value) member = static_cast<T>(number);
+  } else {
+    archive& member;
+  }
+}
+
+template <class Archive, class T>
+void serialize_member(Archive& archive, std::optional<T>& member) {
+  if constexpr (Visits<Archive, std::optional<T>>) {
+    archive.visit(member);
+  } else {
+    bool present = member.has_value();
+    archive& present;
+    if constexpr (Archive::is_loading::value) {
+      member.reset();
+      if (present) member.emplace();
+    }
+    if (present) serialize_member(archive, *member);
+  }
+}
+
+template <class Archive, class... Members>
+void serialize_members(Archive& archive, Members&... members) {
+  (serialize_member(archive, members), ...);
+}
+
+}  // namespace orbweaver::core

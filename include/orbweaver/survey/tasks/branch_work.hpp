@@ -1,0 +1,85 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "orbweaver/continuation/branch.hpp"
+#include "orbweaver/continuation/ending.hpp"
+#include "orbweaver/core/serialization.hpp"
+#include "orbweaver/loop/curve/tangent.hpp"
+#include "orbweaver/queue/task.hpp"
+#include "orbweaver/survey/tasks/lineage.hpp"
+#include "orbweaver/survey/tasks/task_kind.hpp"
+#include "orbweaver/systems/description.hpp"
+
+namespace orbweaver::survey {
+
+/// Follow one family from its start to its end.
+struct BranchWork {
+  static constexpr const char* payload_name = "branch work";
+  std::string key;
+  std::string name;  ///< for progress; final names are given at the end
+  Lineage lineage;
+  loop::Loop base;          ///< the equilibrium, or the crossing's orbit as many times around as it takes
+  loop::Tangent direction;  ///< in its modes
+  loop::Isotropy isotropy;
+  double amplitude = 0.0;  ///< |dz(s = 0)| of the first orbit; 0: the scene's
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, key, name, lineage, base, direction, isotropy, amplitude);
+  }
+};
+
+/// A branch has come to an orbit with more symmetry than its own: a crossing of another family, or of its own.
+struct ArrivalRecord {
+  double period = 0.0;  ///< where it meets, by interpolation
+  double energy = 0.0;
+  loop::Loop near;  ///< an orbit of the branch shortly before
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, period, energy, near);
+  }
+};
+
+struct BranchOutcome {
+  static constexpr const char* payload_name = "branch outcome";
+  std::string key;
+  int orbits = 0;
+  double period_from = 0.0;
+  double period_to = 0.0;
+  double energy_from = 0.0;
+  double energy_to = 0.0;
+  double last_period = 0.0;
+  double last_energy = 0.0;
+  int last_cutoff = 0;
+  continuation::Ending end;
+  std::vector<ArrivalRecord> arrival;  ///< one or none
+  std::vector<std::string> remarks;
+  int limited_by = 0;        ///< Limit: with wider ones the branch would have gone on
+  std::string before_limit;  ///< the state (queue::Task) from which it would, without children; empty: from its start
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, key, orbits, period_from, period_to, energy_from, energy_to, last_period,
+                            last_energy, last_cutoff, end, arrival, remarks, limited_by, before_limit);
+    if constexpr (Archive::is_loading::value) check_limits(limited_by);
+  }
+};
+
+[[nodiscard]] queue::Task task_of(const BranchWork& work);
+
+[[nodiscard]] std::string pack(const BranchWork& work);
+[[nodiscard]] std::string pack(const BranchOutcome& outcome);
+/// Throws EnvironmentError for bytes that hold something else, of another build, or torn.
+[[nodiscard]] BranchWork unpack_branch_work(const std::string& bytes);
+[[nodiscard]] BranchOutcome unpack_branch_outcome(const std::string& bytes);
+
+/// The start that a branch's work describes.
+[[nodiscard]] continuation::Start start_of(const BranchWork& work, const systems::Description& system);
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "orbweaver/core/serialization.hpp"
+#include "orbweaver/loop/curve/tangent.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
+#include "orbweaver/queue/task.hpp"
+
+namespace orbweaver::survey {
+
+/// Look for small oscillations around one equilibrium.
+struct SweepWork {
+  static constexpr const char* payload_name = "sweep work";
+  int index = 0;  ///< of the equilibrium, in sorted order
+  std::vector<double> point;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, index, point);
+  }
+};
+
+/// A family found by a sweep: where and how it starts.
+struct FoundMode {
+  double period = 0.0;
+  loop::Tangent direction;  ///< of a loop with cutoff `cutoff`
+  int cutoff = 0;
+  loop::Isotropy isotropy;
+  bool one_direction = true;  ///< a symmetry maps one direction of the start onto the other
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, period, direction, cutoff, isotropy, one_direction);
+  }
+};
+
+struct SweepOutcome {
+  static constexpr const char* payload_name = "sweep outcome";
+  int index = 0;
+  std::vector<double> point;
+  std::vector<FoundMode> modes;       ///< longest period first
+  std::vector<std::string> rejected;  ///< a sentence a dip
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, index, point, modes, rejected);
+  }
+};
+
+[[nodiscard]] queue::Task task_of(const SweepWork& work);
+
+[[nodiscard]] std::string pack(const SweepWork& work);
+[[nodiscard]] std::string pack(const SweepOutcome& outcome);
+/// Throws EnvironmentError for bytes that hold something else, of another build, or torn.
+[[nodiscard]] SweepWork unpack_sweep_work(const std::string& bytes);
+[[nodiscard]] SweepOutcome unpack_sweep_outcome(const std::string& bytes);
+
+}  // namespace orbweaver::survey

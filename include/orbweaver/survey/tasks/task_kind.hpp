@@ -1,0 +1,23 @@
+#pragma once
+
+#include "orbweaver/queue/task.hpp"
+
+namespace orbweaver::survey {
+
+/// What a task is to do.
+enum class TaskKind { sweep, branch, locate, start };
+/// As in queue::Task::kind.
+[[nodiscard]] const char* name_of(TaskKind kind);
+/// Throws EnvironmentError for a task that is none of ours.
+[[nodiscard]] TaskKind kind_of(const queue::Task& task);
+
+/// Limits of the scene that an outcome may rest on, as bits: with a wider one the task is done again.
+enum Limit : int { period_limited = 1, energy_limited = 2, step_limited = 4, depth_limited = 8 };
+/// Throws EnvironmentError for other bits.
+void check_limits(int limits);
+
+/// Tasks run by depth; within one branches first, then the location of what they crossed, then the starts of what leaves there.
+/// Sweeps come before all.
+[[nodiscard]] int priority_of(TaskKind kind, int depth);
+
+}  // namespace orbweaver::survey

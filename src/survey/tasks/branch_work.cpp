@@ -1,0 +1,25 @@
+#include "orbweaver/survey/tasks/branch_work.hpp"
+
+#include "payload.hpp"
+
+namespace orbweaver::survey {
+
+queue::Task task_of(const BranchWork& work) {
+  return {work.key, priority_of(TaskKind::branch, work.lineage.depth), name_of(TaskKind::branch), pack(work)};
+}
+
+std::string pack(const BranchWork& work) { return to_payload(work); }
+std::string pack(const BranchOutcome& outcome) { return to_payload(outcome); }
+BranchWork unpack_branch_work(const std::string& bytes) { return from_payload<BranchWork>(bytes); }
+BranchOutcome unpack_branch_outcome(const std::string& bytes) { return from_payload<BranchOutcome>(bytes); }
+
+continuation::Start start_of(const BranchWork& work, const systems::Description& system) {
+  continuation::Start start;
+  start.base = work.base;
+  start.direction = work.direction;
+  start.direction *= work.lineage.side;
+  start.isotropy = loop::with_declared_matrices(work.isotropy, system);
+  return start;
+}
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,18 @@
+#include "orbweaver/survey/tasks/locate_work.hpp"
+
+#include "orbweaver/survey/tasks/keys.hpp"
+#include "payload.hpp"
+
+namespace orbweaver::survey {
+
+queue::Task task_of(const LocateWork& work) {
+  return {locate_key(work.key), priority_of(TaskKind::locate, work.lineage.depth), name_of(TaskKind::locate),
+          pack(work)};
+}
+
+std::string pack(const LocateWork& work) { return to_payload(work); }
+std::string pack(const LocateOutcome& outcome) { return to_payload(outcome); }
+LocateWork unpack_locate_work(const std::string& bytes) { return from_payload<LocateWork>(bytes); }
+LocateOutcome unpack_locate_outcome(const std::string& bytes) { return from_payload<LocateOutcome>(bytes); }
+
+}  // namespace orbweaver::survey

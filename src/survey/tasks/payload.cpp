@@ -1,0 +1,63 @@
+#include "payload.hpp"
+
+#include <exception>
+#include <sstream>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "orbweaver/core/error.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+constexpr const char* same_build =
+    "all ranks, and whoever wrote the files of a survey, must be the same build of Orbweaver";
+
+void expect(const PayloadType& type, boost::archive::binary_iarchive& archive) {
+  std::string name;
+  int version = 0;
+  archive >> name >> version;
+  if (name != type.name || version != type.version)
+    throw core::EnvironmentError(fmt::format("expected a {} of version {}, got a {} of version {}: {}", type.name,
+                                             type.version, name, version, same_build));
+  std::uint64_t layout = 0;
+  archive >> layout;
+  if (layout != type.layout)
+    throw core::EnvironmentError(
+        fmt::format("a {} of version {} has other members than here: {}", type.name, type.version, same_build));
+}
+
+}  // namespace
+
+std::string write_payload(const PayloadType& type, const std::function<void(boost::archive::binary_oarchive&)>& write) {
+  std::ostringstream stream;
+  {
+    boost::archive::binary_oarchive archive(stream);
+    const std::string name = type.name;
+    archive << name << type.version << type.layout;
+    write(archive);
+  }
+  return std::move(stream).str();
+}
+
+void read_payload(const PayloadType& type, const std::string& bytes,
+                  const std::function<void(boost::archive::binary_iarchive&)>& read) {
+  try {
+    std::istringstream stream(bytes);
+    boost::archive::binary_iarchive archive(stream);
+    expect(type, archive);
+    read(archive);
+    if (stream.peek() != std::istringstream::traits_type::eof())
+      throw core::EnvironmentError(
+          fmt::format("a {} of {} bytes has more bytes than its own", type.name, bytes.size()));
+  } catch (const core::EnvironmentError&) {
+    throw;
+  } catch (const std::exception& error) {  // foreign bytes may also ask Boost for texts of impossible length
+    throw core::EnvironmentError(
+        fmt::format("a {} of {} bytes cannot be read: {}", type.name, bytes.size(), error.what()));
+  }
+}
+
+}  // namespace orbweaver::survey

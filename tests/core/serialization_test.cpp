@@ -1,0 +1,119 @@
+#include "orbweaver/core/serialization.hpp"
+
+#include <gmock/gmock.h>
+
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/core/layout.hpp"
+#include "support/serialized.hpp"
+
+namespace {
+
+using namespace orbweaver;
+using ::testing::HasSubstr;
+
+enum class Colour { red, green, blue };
+[[nodiscard]] constexpr Colour last_of(Colour) { return Colour::blue; }
+
+struct Part {
+  double value = 0.0;
+  Colour colour = Colour::red;
+
+  static constexpr int wire_version = 3;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, value, colour);
+  }
+};
+
+struct Whole {
+  std::string name;
+  std::vector<Part> parts;
+  std::optional<Colour> colour;
+  bool flag = false;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, name, parts, colour, flag);
+  }
+};
+
+struct Forgetful {
+  Part part;
+  int first = 0;
+  int second = 0;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, part, first);
+  }
+};
+
+struct Repeating {
+  Forgetful forgetful;
+  int first = 0;
+  int second = 0;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, forgetful, first, first);
+  }
+};
+
+/// An archive of one number.
+template <bool loads>
+struct OneNumber {
+  using is_loading = std::bool_constant<loads>;
+  int number = 0;
+  OneNumber& operator&(int& value) {
+    (loads ? value : number) = loads ? number : value;
+    return *this;
+  }
+};
+
+TEST(Serialization, EnumsTravelAsNumbers) {
+  OneNumber<false> out;
+  Colour colour = Colour::green;
+  core::serialize_members(out, colour);
+  EXPECT_EQ(out.number, 1);
+  OneNumber<true> in{2};
+  core::serialize_members(in, colour);
+  EXPECT_EQ(colour, Colour::blue);
+}
+
+TEST(Serialization, NumbersThatAreNoEnumAreRefused) {
+  for (const int number : {-1, 3, 1 << 30}) {
+    OneNumber<true> in{number};
+    Colour colour = Colour::green;
+    EXPECT_THROW(core::serialize_members(in, colour), core::EnvironmentError) << number;
+    EXPECT_EQ(colour, Colour::green);
+    OneNumber<false> out;
+    colour = static_cast<Colour>(number);
+    EXPECT_THROW(core::serialize_members(out, colour), core::EnvironmentError) << number;
+  }
+}
+
+TEST(Layouts, TellWhatIsListedWithAllVersions) {
+  EXPECT_EQ(core::layout_of<Part>(), "{3:f8e2}");
+  EXPECT_EQ(core::layout_of<Whole>(), "{1:s[{3:f8e2}]?e2b1}");
+}
+
+TEST(Completeness, OfTypesThatListAll) {
+  EXPECT_EQ(test::member_count<Part>(), 2);
+  EXPECT_EQ(test::member_count<Whole>(), 4);
+  EXPECT_EQ(test::incomplete_types_in<Whole>(), "");
+}
+
+TEST(Completeness, AForgottenMemberShows) {
+  EXPECT_THAT(test::incomplete_types_in<Forgetful>(), HasSubstr("Forgetful"));
+  EXPECT_THAT(test::incomplete_types_in<Forgetful>(), HasSubstr("3 members to be sent and lists 2"));
+}
+
+TEST(Completeness, ItShowsAtDepthAndWhereAnotherIsListedTwice) {
+  EXPECT_THAT(test::incomplete_types_in<Repeating>(), HasSubstr("Forgetful"));
+  EXPECT_THAT(test::incomplete_types_in<Repeating>(), HasSubstr("Repeating"));
+}
+
+}  // namespace
