@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 #include <fmt/format.h>
 
@@ -49,26 +48,13 @@ Invariants invariants_of(const archive::Archive& atlas, std::size_t row, double 
   return x;
 }
 
-// "period limit (T = 30)" and "joined In-Phase at T = 17.3 (...)" without what is said in columns or with numbers.
-// The archive has no column for the kind yet.
-std::string reason_kind(const std::string& text) {
-  constexpr std::string_view joined = "joined ";
-  if (text.starts_with(joined)) return "joined";
-  return text.substr(0, text.find(" ("));
-}
-
-// A family with two sides says "forwards: ...; backwards: ...".
-std::vector<FamilyEnd> ends_of(const std::string& text, const std::vector<std::int64_t>& steps, std::size_t first,
+std::vector<FamilyEnd> ends_of(const std::string& reason, const std::vector<std::int64_t>& steps, std::size_t first,
                                std::size_t count) {
-  constexpr std::string_view forwards = "forwards: ";
-  constexpr std::string_view backwards = "; backwards: ";
+  const std::vector<survey::EndKind> kinds = survey::ends_in(reason);
   const std::size_t last = count > 0 ? count - 1 : 0;
-  const std::size_t other = text.find(backwards);
-  if (text.starts_with(forwards) && other != std::string::npos)
-    return {{last, reason_kind(text.substr(forwards.size(), other - forwards.size()))},
-            {0, reason_kind(text.substr(other + backwards.size()))}};
+  if (kinds.size() == 2) return {{last, kinds[0]}, {0, kinds[1]}};
   const bool runs_backwards = count > 0 && steps[first] < 0 && steps[first + last] < 0;
-  return {{runs_backwards ? 0 : last, reason_kind(text)}};
+  return {{runs_backwards ? 0 : last, kinds.front()}};
 }
 
 }  // namespace

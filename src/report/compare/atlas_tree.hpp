@@ -1,20 +1,19 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "compare/invariant_curve.hpp"
 #include "orbweaver/archive/read/reader.hpp"
-#include "orbweaver/systems/system.hpp"
+#include "orbweaver/survey/tree/family_end.hpp"
 
 namespace orbweaver::report {
 
 /// One end of a family: where it stopped and why.
 struct FamilyEnd {
   std::size_t orbit = 0;  ///< of the family's orbits, the last on this side
-  std::string reason;     ///< its kind: the text before the first number or name
+  survey::EndKind kind = survey::EndKind::unknown;
 };
 
 struct TreeFamily {

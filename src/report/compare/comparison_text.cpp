@@ -67,7 +67,8 @@ void print_comparison(std::ostream& out, const Comparison& comparison) {
   out << fmt::format("in both: {} families, {} crossings; {} orbits lie on the other's curves, {} loops compared\n",
                      comparison.families, comparison.crossings, comparison.orbits, comparison.loops);
   out << (comparison.same() ? std::string("the same\n")
-                            : fmt::format("{} differences\n", comparison.differences.size()));
+                            : fmt::format("{} {}\n", comparison.differences.size(),
+                                          comparison.differences.size() == 1 ? "difference" : "differences"));
 }
 
 void print_comparison_json(std::ostream& out, const Comparison& comparison) {

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "orbweaver/bifurcation/identity.hpp"
-#include "orbweaver/continuation/ending.hpp"
 #include "orbweaver/loop/symmetry/conjugacy.hpp"
 #include "orbweaver/loop/symmetry/isotropy_text.hpp"
 
@@ -326,14 +325,15 @@ void FamilyDifferences::compare_ends(const Pair& pair) {
   for (std::size_t n = 0; n < ends_b.size(); ++n) {
     const FamilyEnd& a = pair.a.ends[n];
     const FamilyEnd& b = ends_b[n];
-    if (a.reason != b.reason) {
-      add(DifferenceKind::end_reason, pair, fmt::format("ended by '{}' in A, by '{}' in B", a.reason, b.reason));
+    if (a.kind != b.kind) {
+      add(DifferenceKind::end_reason, pair,
+          fmt::format("ended by '{}' in A, by '{}' in B", survey::name_of(a.kind), survey::name_of(b.kind)));
       continue;
     }
     if (!have_orbits) continue;
     // The last orbit has exactly the limit's period or energy.
-    const auto at_limit = [&](continuation::EndReason reason, Invariant invariant) {
-      if (a.reason != continuation::name_of(reason)) return;
+    const auto at_limit = [&](survey::EndKind kind, Invariant invariant) {
+      if (a.kind != kind) return;
       const Invariants& x = pair.a.curve.points()[a.orbit];
       const Invariants& y = pair.b.curve.points()[b.orbit];
       const double by = relative_distance(x, y, invariant);
@@ -344,8 +344,8 @@ void FamilyDifferences::compare_ends(const Pair& pair) {
                         y.value(invariant)),
             by, allowed);
     };
-    at_limit(continuation::EndReason::period_limit, Invariant::period);
-    at_limit(continuation::EndReason::energy_limit, Invariant::energy);
+    at_limit(survey::EndKind::period_limit, Invariant::period);
+    at_limit(survey::EndKind::energy_limit, Invariant::energy);
   }
   if (turned) return;  // the columns hold one of the two
   const auto other_of = [](const std::vector<int>& match, int row) { return row < 0 ? -1 : match[index(row)]; };

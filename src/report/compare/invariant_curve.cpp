@@ -14,7 +14,7 @@ constexpr std::array<Invariant, 3> variables{Invariant::period, Invariant::energ
 /// Nodes on either side of a segment: degree five is the highest that noise of 1e-10 does not spoil at uneven distances.
 constexpr std::size_t widest = 3;
 constexpr std::size_t nearby = 4;          // segments on either side of the last place
-constexpr std::size_t most_searches = 64;  // searches of a whole curve: more orbits off it tell nothing new
+constexpr std::size_t most_failures = 64;  // searches of a whole curve: more orbits off it tell nothing new
 /// Both orbits have errors, and that of the variable moves the place by as much again.
 constexpr double errors_of_both = 3.0;
 /// Of the difference between two polynomials, where neighbours are far apart.
