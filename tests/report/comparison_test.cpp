@@ -54,7 +54,7 @@ void add_orbits(Records& records, const Curve& curve, double spacing) {
   records.orbits.push_back(orbit_of(curve, step, limit));
 }
 
-archive::CrossingRecord crossing_of(const Curve& curve, const std::string& kind, int multiplicity, double s) {
+archive::CrossingRecord crossing_of(const Curve& curve, archive::CrossingKind kind, int multiplicity, double s) {
   const archive::OrbitRecord at = orbit_of(curve, 0, s);
   archive::CrossingRecord crossing;
   crossing.family_key = curve.key;
@@ -93,8 +93,9 @@ Records tree(double spacing = 0.1) {
   Records records;
   records.families = {family_of("0000", "Root", "", -1, 1), family_of("0001", "Other", "", -1, 1),
                       family_of("0000/000/0", "RDa", "0000", 0, 2), family_of("0000/000/1", "RDb", "0000", 0, 2)};
-  records.crossings = {crossing_of(root, "period-doubling", 2, 0.55), crossing_of(root, "branch-point", 1, 1.25),
-                       crossing_of(other_root, "period-doubling", 2, 0.35)};
+  records.crossings = {crossing_of(root, archive::CrossingKind::period_doubling, 2, 0.55),
+                       crossing_of(root, archive::CrossingKind::branch_point, 1, 1.25),
+                       crossing_of(other_root, archive::CrossingKind::period_doubling, 2, 0.35)};
   for (const Curve& curve : {root, other_root, first_twin, second_twin}) add_orbits(records, curve, spacing);
   return records;
 }
@@ -202,8 +203,8 @@ TEST(Comparison, CrossingsHaveAPlace) {
 
 TEST(Comparison, CrossingsAreOfAKindAndASector) {
   for (const auto& change : std::vector<std::function<void(Records&)>>{
-           [](Records& r) { r.crossings[1].kind = "torus"; }, [](Records& r) { r.crossings[1].multiplicity = 3; },
-           [](Records& r) { r.crossings[1].sector_q = 3; }})
+           [](Records& r) { r.crossings[1].kind = archive::CrossingKind::torus; },
+           [](Records& r) { r.crossings[1].multiplicity = 3; }, [](Records& r) { r.crossings[1].sector_q = 3; }})
     EXPECT_THAT(kinds(compared(tree(), changed(change))),
                 ElementsAre(DifferenceKind::crossing_only_in_a, DifferenceKind::crossing_only_in_b));
   for (const auto& change :
