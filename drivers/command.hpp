@@ -24,6 +24,7 @@ struct Command {
 // list of drivers/main.cpp and in drivers/CMakeLists.txt. The function adds a subcommand with its options to `program`;
 // option values live in a shared_ptr that `run` captures.
 Command make_check_command(CLI::App& program);
+Command make_compare_command(CLI::App& program);
 Command make_consolidate_command(CLI::App& program);
 Command make_show_command(CLI::App& program);
 Command make_survey_command(CLI::App& program);

@@ -1,12 +1,13 @@
 #include "failure.hpp"
 
 #include <cstdio>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log.hpp"
-#include "orbweaver/core/petsc/check.hpp"
+#include "orbweaver/core/mpi/collective.hpp"
 
 namespace orbweaver::drivers {
 
@@ -64,20 +65,10 @@ void print_result(const std::string& text) {
 }
 
 void agree(const core::Communicator& comm, const std::function<void()>& stage) {
-  std::exception_ptr error;
-  try {
-    stage();
-  } catch (...) {
-    error = std::current_exception();
-  }
-  const int mine = error ? comm.rank() : comm.size();
-  int reporter = mine;
-  core::check_mpi(MPI_Allreduce(&mine, &reporter, 1, MPI_INT, MPI_MIN, comm.get()), "MPI_Allreduce");
-  if (reporter == comm.size()) return;
-  int status = error ? describe_failure(error).status : 0;
-  core::check_mpi(MPI_Bcast(&status, 1, MPI_INT, reporter, comm.get()), "MPI_Bcast");
-  if (comm.rank() == reporter) throw Agreed(error);
-  throw ReportedElsewhere(status);
+  const std::optional<core::SharedFailure> shared = core::share(comm.get(), core::attempt(stage));
+  if (!shared) return;
+  if (comm.rank() == shared->rank) throw Agreed(shared->failure.error);
+  throw ReportedElsewhere(describe_failure(core::attempt([&] { core::raise(shared->failure); }).error).status);
 }
 
 int run_on_ranks(const core::Communicator& comm, const std::function<int()>& body) {

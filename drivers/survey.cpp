@@ -10,8 +10,8 @@
 #include "duration.hpp"
 #include "failure.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/core/mpi/communicator.hpp"
-#include "orbweaver/core/petsc/check.hpp"
 #include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/report/summary_text.hpp"
 #include "orbweaver/survey/run/survey.hpp"
@@ -65,7 +65,7 @@ int survey_on(const core::Communicator& comm, const Options& options) {
     standing = survey::standing_of(options.directory, scene);
     survey::require_startable(standing, options.directory, options.resume);
   });
-  core::check_mpi(MPI_Bcast(&standing, sizeof standing, MPI_BYTE, 0, comm.get()), "MPI_Bcast");
+  standing = core::agreed(comm.get(), standing);
   if (standing == survey::Standing::finished || standing == survey::Standing::finished_with_failures) {
     const bool failed = standing == survey::Standing::finished_with_failures;
     if (comm.is_root())

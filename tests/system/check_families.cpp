@@ -12,6 +12,7 @@
 #include "orbweaver/archive/read/loop_of.hpp"
 #include "orbweaver/archive/read/reader.hpp"
 #include "orbweaver/bifurcation/identity.hpp"
+#include "orbweaver/loop/symmetry/isotropy_text.hpp"
 #include "orbweaver/core/blas_kernels.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/petsc/session.hpp"
@@ -68,33 +69,6 @@ Box box_of(const std::vector<Point>& points, std::size_t first, std::size_t last
   return box;
 }
 
-// "S@1/2 R@0" back to what it says.
-loop::Isotropy isotropy_of(const systems::Description& system, const std::string& text) {
-  loop::Isotropy out;
-  std::size_t at = 0;
-  while (at < text.size()) {
-    const std::size_t end = std::min(text.find(' ', at), text.size());
-    const std::string word = text.substr(at, end - at);
-    at = end + 1;
-    const std::size_t mark = word.find('@');
-    core::require(mark != std::string::npos, "an isotropy reads like S@1/2 R@0");
-    loop::SymmetryElement element;
-    element.name = word.substr(0, mark);
-    const std::string shift = word.substr(mark + 1);
-    element.shift_numerator = std::stoi(shift);
-    if (const std::size_t slash = shift.find('/'); slash != std::string::npos)
-      element.shift_denominator = std::stoi(shift.substr(slash + 1));
-    if (element.name == "1") element.matrix = Eigen::MatrixXd::Identity(system.dimension(), system.dimension());
-    for (const systems::Symmetry& s : system.equivariances)
-      if (s.name == element.name) element.matrix = s.matrix;
-    for (const systems::Symmetry& r : system.reversors)
-      if (r.name == element.name) element.matrix = r.matrix, element.reversing = true;
-    core::require(element.matrix.size() > 0, "an isotropy names symmetries that the system declares");
-    out.push_back(std::move(element));
-  }
-  return out;
-}
-
 class Check {
  public:
   explicit Check(const char* path) : _atlas(path) {
@@ -102,7 +76,7 @@ class Check {
     _system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
     for (std::size_t n = 0; n < _atlas.families().rows(); ++n) {
       Family family{_atlas.families().texts("name")[n],
-                    isotropy_of(_system->description(), _atlas.families().texts("isotropy")[n]),
+                    loop::isotropy_of(_system->description(), _atlas.families().texts("isotropy")[n]),
                     {},
                     {},
                     {}};

@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include "h5_types.hpp"
+#include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/core/pause.hpp"
 #include "posix_file.hpp"
-#include "write/agree.hpp"
 
 namespace orbweaver::archive {
 
@@ -16,8 +16,8 @@ ParallelFile::ParallelFile(MPI_Comm comm, std::filesystem::path path, const File
     : _comm(comm), _path(std::move(path)), _part(_path.string() + ".part") {
   quiet_h5();
   try {
-    collectively(_comm, [&] {
-      if (rank_of(_comm) == 0) create_layout_file(_part, layout);
+    core::collectively(_comm, [&] {
+      if (core::rank_of(_comm) == 0) create_layout_file(_part, layout);
     });
     open_together();
   } catch (...) {
@@ -33,13 +33,13 @@ ParallelFile::~ParallelFile() {
 void ParallelFile::abandon() noexcept {
   _datasets.clear();
   _file = H5Handle();
-  if (rank_of(_comm) == 0) std::remove(_part.c_str());
+  if (core::rank_of(_comm) == 0) std::remove(_part.c_str());
 }
 
 void ParallelFile::open_together() {
   // Open MPI hangs when opening fails on some ranks only.
-  collectively(_comm, [&] { expect_writable(_part); });
-  collectively(_comm, [&] {
+  core::collectively(_comm, [&] { expect_writable(_part); });
+  core::collectively(_comm, [&] {
     const H5Handle access(check_h5(H5Pcreate(H5P_FILE_ACCESS), "H5Pcreate"), H5Pclose);
     check_h5(H5Pset_fapl_mpio(access.get(), _comm, MPI_INFO_NULL), "H5Pset_fapl_mpio");
     const hid_t file = H5Fopen(_part.c_str(), H5F_ACC_RDWR, access.get());
@@ -48,14 +48,14 @@ void ParallelFile::open_together() {
 }
 
 void ParallelFile::write_table(const Table& mine, std::uint64_t first) {
-  collectively(_comm, [&] {
+  core::collectively(_comm, [&] {
     for (const Column& column : mine.columns())
       write_column(mine.name() + '/' + column.spec.name, column, mine.rows(), first);
   });
 }
 
 void ParallelFile::write_flat(const std::string& name, std::span<const double> mine, std::uint64_t first) {
-  collectively(_comm, [&] { write_rows(name, H5T_NATIVE_DOUBLE, mine.data(), {mine.size()}, first); });
+  core::collectively(_comm, [&] { write_rows(name, H5T_NATIVE_DOUBLE, mine.data(), {mine.size()}, first); });
 }
 
 void ParallelFile::write_column(const std::string& name, const Column& mine, std::uint64_t rows, std::uint64_t first) {
@@ -88,13 +88,13 @@ void ParallelFile::write_rows(const std::string& name, hid_t memory_type, const 
 }
 
 void ParallelFile::publish() {
-  collectively(_comm, [&] {
+  core::collectively(_comm, [&] {
     _datasets.clear();
     _file.close(fmt::format("cannot close '{}'", _part.string()));
   });
-  collectively(_comm, [&] { sync_file(_part); });
-  collectively(_comm, [&] {
-    if (rank_of(_comm) != 0) return;
+  core::collectively(_comm, [&] { sync_file(_part); });
+  core::collectively(_comm, [&] {
+    if (core::rank_of(_comm) != 0) return;
     core::pause_point("publish " + _path.filename().string());
     rename_file(_part, _path);
   });
@@ -104,7 +104,7 @@ void ParallelFile::publish() {
 void agree_on_text_widths(MPI_Comm comm, Table& table) {
   for (Column& column : table.columns())
     if (const auto* texts = std::get_if<std::vector<std::string>>(&column.values))
-      column.spec.text_width = greatest(comm, longest_text(*texts));
+      column.spec.text_width = core::greatest(comm, longest_text(*texts));
 }
 
 }  // namespace orbweaver::archive

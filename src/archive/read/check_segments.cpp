@@ -1,4 +1,5 @@
 #include "orbweaver/archive/read/check_segments.hpp"
+#include "orbweaver/core/mpi/collective.hpp"
 
 #include <algorithm>
 
@@ -6,7 +7,6 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
-#include "write/agree.hpp"
 
 namespace orbweaver::archive {
 
@@ -57,29 +57,29 @@ std::vector<std::string> check_segments(MPI_Comm comm, const std::filesystem::pa
   const core::LogStage stage(core::Stage::archive);
   std::vector<std::string> paths;
   std::vector<Listed> facts;
-  if (rank_of(comm) == 0)
+  if (core::rank_of(comm) == 0)
     for (const WrittenSegment& segment : listed) {
       paths.push_back((folder / segment.name).string());
       facts.push_back({segment.bytes, segment.orbits, segment.sections, segment.fingerprint});
     }
   std::vector<std::string> allowed = scenes;
-  broadcast(comm, paths);
-  broadcast(comm, allowed);
-  facts = gather_rows(comm, facts);  // only rank 0 has any
+  paths = core::agreed(comm, std::move(paths));
+  allowed = core::agreed(comm, std::move(allowed));
+  facts = core::gather_rows(comm, facts);  // only rank 0 has any
 
   std::vector<Complaint> mine;
   std::vector<char> my_text;
-  collectively(comm, [&] {
-    const auto stride = static_cast<std::size_t>(size_of(comm));
-    for (auto i = static_cast<std::size_t>(rank_of(comm)); i < paths.size(); i += stride) {
+  core::collectively(comm, [&] {
+    const auto stride = static_cast<std::size_t>(core::size_of(comm));
+    for (auto i = static_cast<std::size_t>(core::rank_of(comm)); i < paths.size(); i += stride) {
       const std::string text = complaint_about(paths[i], facts[i], allowed);
       if (text.empty()) continue;
       mine.push_back({i, text.size()});
       my_text.insert(my_text.end(), text.begin(), text.end());
     }
   });
-  const std::vector<Complaint> complaints = gather_rows(comm, mine);
-  const std::vector<char> text = gather_rows(comm, my_text);
+  const std::vector<Complaint> complaints = core::gather_rows(comm, mine);
+  const std::vector<char> text = core::gather_rows(comm, my_text);
   std::vector<std::string> by_segment(paths.size());
   auto at = text.begin();
   for (const Complaint& complaint : complaints) {

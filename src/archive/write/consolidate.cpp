@@ -1,8 +1,8 @@
 #include "orbweaver/archive/write/consolidate.hpp"
+#include "orbweaver/core/mpi/collective.hpp"
 
 #include <algorithm>
 
-#include "agree.hpp"
 #include "file/parallel_file.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
 #include "read/row_reader.hpp"
@@ -28,23 +28,22 @@ struct Order {
 Order share_order(MPI_Comm comm, Order order) {
   Header& header = order.header;
   std::vector<std::string> texts{order.output, header.orbweaver_version, header.scene};
-  broadcast(comm, order.segments);
-  broadcast(comm, texts);
-  broadcast(comm, header.state_names);
-  broadcast(comm, header.winding_names);
-  broadcast(comm, order.selection.keys);
-  broadcast(comm, order.selection.left_out);
-  broadcast(comm, order.selection.voided_keys);
-  broadcast(comm, order.selection.earlier_scenes);
-  order.selection.steps = gather_rows(comm, order.selection.steps);  // only rank 0 has any
-  order.selection.voided = gather_rows(comm, order.selection.voided);
+  order.segments = core::agreed(comm, std::move(order.segments));
+  texts = core::agreed(comm, std::move(texts));
+  header.state_names = core::agreed(comm, std::move(header.state_names));
+  header.winding_names = core::agreed(comm, std::move(header.winding_names));
+  order.selection.keys = core::agreed(comm, std::move(order.selection.keys));
+  order.selection.left_out = core::agreed(comm, std::move(order.selection.left_out));
+  order.selection.voided_keys = core::agreed(comm, std::move(order.selection.voided_keys));
+  order.selection.earlier_scenes = core::agreed(comm, std::move(order.selection.earlier_scenes));
+  order.selection.steps = core::gather_rows(comm, order.selection.steps);  // only rank 0 has any
+  order.selection.voided = core::gather_rows(comm, order.selection.voided);
   order.output = texts[0];
   header.orbweaver_version = texts[1];
   header.scene = texts[2];
-  const bool is_root = rank_of(comm) == 0;
-  header.pairs = static_cast<int>(greatest(comm, is_root ? static_cast<std::uint64_t>(header.pairs) : 0));
-  header.symplectic = greatest(comm, is_root && header.symplectic ? 1 : 0) == 1;
-  order.block_values = greatest(comm, is_root ? order.block_values : 0);
+  header.pairs = core::agreed(comm, header.pairs);
+  header.symplectic = core::agreed(comm, header.symplectic);
+  order.block_values = core::agreed(comm, order.block_values);
   return order;
 }
 
@@ -58,8 +57,8 @@ class Blocks {
  public:
   Blocks(MPI_Comm comm, std::vector<std::uint64_t> weight_before, std::uint64_t rank_budget)
       : _weight_before(std::move(weight_before)),
-        _rank(static_cast<std::uint64_t>(rank_of(comm))),
-        _ranks(static_cast<std::uint64_t>(size_of(comm))),
+        _rank(static_cast<std::uint64_t>(core::rank_of(comm))),
+        _ranks(static_cast<std::uint64_t>(core::size_of(comm))),
         _budget(_ranks * std::max<std::uint64_t>(rank_budget, 1)) {}
 
   /// This rank's rows of the next block; false after the last.
@@ -153,7 +152,7 @@ void write_orbits(MPI_Comm comm, ParallelFile& file, const Order& order, const N
     Table block;
     Values modes(numbering, mine, numbering.modes_at, &OrbitRow::modes_begin, &OrbitRow::modes_count);
     Values maps(numbering, mine, numbering.maps_at, &OrbitRow::map_begin, &OrbitRow::map_count);
-    collectively(comm, [&] {
+    core::collectively(comm, [&] {
       block = Table(orbits_spec(order.header), mine.end - mine.begin);
       number_orbits(block, numbering, mine);
       for_each_run(order.segments, sources_of(numbering.orbits, mine), [&](const Run& run) {
@@ -174,7 +173,7 @@ void write_sections(MPI_Comm comm, ParallelFile& file, const Order& order, const
   Blocks blocks(comm, std::move(weight), order.block_values);
   for (Range mine; blocks.next(mine);) {
     Table block;
-    collectively(comm, [&] {
+    core::collectively(comm, [&] {
       block = Table(sections_spec(order.header), mine.end - mine.begin);
       for (std::size_t i = mine.begin; i < mine.end; ++i)
         block.integers("orbit")[i - mine.begin] = numbering.sections[i].orbit;
@@ -187,8 +186,8 @@ void write_sections(MPI_Comm comm, ParallelFile& file, const Order& order, const
 }
 
 void check_input(MPI_Comm comm, const Header& header, const Records& tables, std::size_t segments) {
-  collectively(comm, [&] {
-    if (rank_of(comm) != 0) return;
+  core::collectively(comm, [&] {
+    if (core::rank_of(comm) != 0) return;
     core::require(tables.orbits.empty() && tables.sections.empty(),
                   "consolidate takes orbits and sections from segments: write them with write_segment");
     check_header(header);
@@ -203,7 +202,7 @@ void check_input(MPI_Comm comm, const Header& header, const Records& tables, std
 void consolidate(MPI_Comm comm, const std::vector<std::filesystem::path>& segments, const std::filesystem::path& output,
                  const Header& header, const Records& tables, const ConsolidateOptions& options) {
   const core::LogStage stage(core::Stage::archive);
-  const bool is_root = rank_of(comm) == 0;
+  const bool is_root = core::rank_of(comm) == 0;
   check_input(comm, header, tables, segments.size());
   Order given;
   if (is_root) {
@@ -213,15 +212,15 @@ void consolidate(MPI_Comm comm, const std::vector<std::filesystem::path>& segmen
   const Order order = share_order(comm, std::move(given));
   const Numbering numbering = number_rows(comm, order.segments, order.header, order.selection);
   RootTables root;
-  collectively(comm, [&] {
+  core::collectively(comm, [&] {
     root = make_root_tables(order.header, is_root ? tables : Records{},
                             is_root ? order.selection.keys : std::vector<std::string>{}, numbering);
   });
 
   agree_on_text_widths(comm, root.families);
   agree_on_text_widths(comm, root.crossings);
-  const std::uint64_t families = greatest(comm, root.families.rows());
-  const std::uint64_t crossings = greatest(comm, root.crossings.rows());
+  const std::uint64_t families = core::greatest(comm, root.families.rows());
+  const std::uint64_t crossings = core::greatest(comm, root.crossings.rows());
 
   ParallelFile file(comm, order.output,
                     {atlas_format,

@@ -1,4 +1,5 @@
 #include "numbering.hpp"
+#include "orbweaver/core/mpi/collective.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -6,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "agree.hpp"
 #include "file/segment_file.hpp"
 
 namespace orbweaver::archive {
@@ -151,14 +151,14 @@ std::int64_t Numbering::first_orbit(std::int64_t family) const {
 Numbering number_rows(MPI_Comm comm, const std::vector<std::string>& segments, const Header& header,
                       const Selection& selection) {
   SegmentScan scan(segments, header, selection);
-  collectively(comm, [&] {
-    const auto stride = static_cast<std::size_t>(size_of(comm));
-    for (auto i = static_cast<std::size_t>(rank_of(comm)); i < segments.size(); i += stride) scan.read(i);
+  core::collectively(comm, [&] {
+    const auto stride = static_cast<std::size_t>(core::size_of(comm));
+    for (auto i = static_cast<std::size_t>(core::rank_of(comm)); i < segments.size(); i += stride) scan.read(i);
   });
   Numbering numbering;
-  numbering.orbits = gather_rows(comm, scan.orbits);
-  numbering.sections = gather_rows(comm, scan.sections);
-  collectively(comm, [&] {
+  numbering.orbits = core::gather_rows(comm, scan.orbits);
+  numbering.sections = core::gather_rows(comm, scan.sections);
+  core::collectively(comm, [&] {
     sort_orbits(numbering.orbits, segments, selection.keys);
     sort_sections(numbering.sections, numbering.orbits, segments, selection.keys);
     numbering.modes_at = running_sum(numbering.orbits, &OrbitRow::modes_count);

@@ -1,10 +1,10 @@
 #include "orbweaver/archive/write/segment.hpp"
+#include "orbweaver/core/mpi/collective.hpp"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 
-#include "agree.hpp"
 #include "file/parallel_file.hpp"
 #include "file/segment_file.hpp"
 #include "fingerprint.hpp"
@@ -82,11 +82,11 @@ class Stage {
 
 void write_values(MPI_Comm comm, ParallelFile& file, const std::string& name, const Records& mine, VectorMember member,
                   std::uint64_t first) {
-  const std::uint64_t rounds = greatest(comm, (count_values(mine, member) + staged_values - 1) / staged_values);
+  const std::uint64_t rounds = core::greatest(comm, (count_values(mine, member) + staged_values - 1) / staged_values);
   Stage stage(mine, member);
   for (std::uint64_t round = 0; round < rounds; ++round) {
     std::vector<double> values;
-    collectively(comm, [&] { values = stage.next(); });
+    core::collectively(comm, [&] { values = stage.next(); });
     file.write_flat(name, values, first);
     first += values.size();
   }
@@ -110,8 +110,8 @@ std::vector<std::string> header_texts(const Header& header) {
 void check_input(MPI_Comm comm, const Header& header, const Records& mine) {
   const std::vector<std::string> own = header_texts(header);
   std::vector<std::string> root = own;
-  broadcast(comm, root);
-  collectively(comm, [&] {
+  root = core::agreed(comm, std::move(root));
+  core::collectively(comm, [&] {
     core::require(own == root, "the ranks give different headers to write_segment");
     core::require(mine.families.empty() && mine.crossings.empty() && mine.left_out_keys.empty() &&
                       mine.voided.empty() && mine.earlier_scenes.empty(),
@@ -128,13 +128,13 @@ WrittenSegment write_segment(MPI_Comm comm, const std::filesystem::path& path, c
                              const Records& mine) {
   const core::LogStage stage(core::Stage::archive);
   check_input(comm, header, mine);
-  const Share orbit_rows = share_of(comm, mine.orbits.size());
-  const Share section_rows = share_of(comm, mine.sections.size());
-  const Share modes = share_of(comm, count_values(mine, &OrbitRecord::modes));
-  const Share maps = share_of(comm, count_values(mine, &OrbitRecord::time_map));
+  const core::Share orbit_rows = core::share_of(comm, mine.orbits.size());
+  const core::Share section_rows = core::share_of(comm, mine.sections.size());
+  const core::Share modes = core::share_of(comm, count_values(mine, &OrbitRecord::modes));
+  const core::Share maps = core::share_of(comm, count_values(mine, &OrbitRecord::time_map));
   Table orbits;
   Table sections;
-  collectively(comm, [&] {
+  core::collectively(comm, [&] {
     orbits = orbit_table(header, mine);
     sections = section_table(header, mine);
     fill_ranges(orbits, mine, &OrbitRecord::modes, "modes", modes.first);
@@ -155,11 +155,11 @@ WrittenSegment write_segment(MPI_Comm comm, const std::filesystem::path& path, c
   write_values(comm, file, "time_maps", mine, &OrbitRecord::time_map, maps.first);
   file.publish();
   std::uint64_t bytes = 0;
-  collectively(comm, [&] {
-    if (rank_of(comm) == 0) bytes = std::filesystem::file_size(path);
+  core::collectively(comm, [&] {
+    if (core::rank_of(comm) == 0) bytes = std::filesystem::file_size(path);
   });
-  return {path.filename().string(), greatest(comm, bytes), orbit_rows.total, section_rows.total,
-          share_of(comm, fingerprint_of(mine)).total};
+  return {path.filename().string(), core::greatest(comm, bytes), orbit_rows.total, section_rows.total,
+          core::share_of(comm, fingerprint_of(mine)).total};
 }
 
 SegmentInfo inspect_segment(const std::filesystem::path& path) {

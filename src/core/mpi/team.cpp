@@ -10,13 +10,13 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/mpi/check_mpi.hpp"
+#include "orbweaver/core/mpi/collective.hpp"
 
 namespace orbweaver::core {
 
 struct Team::Problem {
-  enum class Kind : std::uint64_t { none, numerical, not_finite, other, alike };  // alike: fine if all have it
-  Kind kind = Kind::none;
-  std::string text;
+  Failure failure;
+  bool is_alike = false;  ///< fine if all have it
 };
 
 /// What a member says when it meets the others.
@@ -30,6 +30,8 @@ struct Team::Word {
 namespace {
 
 constexpr std::size_t words = 4;
+/// What a word says in place of a FailureKind where the failure is fine if all have it.
+constexpr std::uint64_t alike_word = ~std::uint64_t{0};
 
 /// Sleeps until `request` is done: short at first, then up to 2 ms.
 void wait_asleep(MPI_Request& request) {
@@ -59,25 +61,20 @@ void Team::begin() {
 }
 
 Team::Problem Team::attempt(const std::function<void()>& work) {
+  Failure failure = core::attempt(work);
   try {
-    work();
-    return {};
+    if (failure) raise(failure);
   } catch (const TeamError&) {
     throw;  // met already
-  } catch (const NotFiniteError& error) {
-    return {Problem::Kind::not_finite, error.what()};
-  } catch (const NumericalError& error) {
-    return {Problem::Kind::numerical, error.what()};
-  } catch (const std::exception& error) {
-    return {Problem::Kind::other, error.what()};
   } catch (...) {
-    return {Problem::Kind::other, "something that is not an exception was thrown"};
   }
+  return {std::move(failure)};
 }
 
 void Team::meet(std::string_view place, std::uint64_t digest, const Problem& problem) {
   if (_fallen_apart) throw TeamError(*_fallen_apart);
-  const Word mine{++_step, digest_of(place), digest, static_cast<std::uint64_t>(problem.kind)};
+  const std::uint64_t kind = problem.is_alike ? alike_word : static_cast<std::uint64_t>(problem.failure.kind);
+  const Word mine{++_step, digest_of(place), digest, kind};
   std::vector<Word> all(static_cast<std::size_t>(size()));
   check_mpi(MPI_Allgather(&mine, words, MPI_UINT64_T, all.data(), words, MPI_UINT64_T, comm()), "MPI_Allgather");
   int speaker = -1;  // the first with a problem
@@ -87,18 +84,18 @@ void Team::meet(std::string_view place, std::uint64_t digest, const Problem& pro
     const Word& word = all[static_cast<std::size_t>(m)];
     if (speaker < 0 && word.kind != 0) speaker = m;
     together = together && word.step == all[0].step && word.place == all[0].place && word.digest == all[0].digest;
-    alike = alike && word.kind == static_cast<std::uint64_t>(Problem::Kind::alike);
+    alike = alike && word.kind == alike_word;
   }
   if (together && (speaker < 0 || alike)) return;
   std::string text;
   if (speaker >= 0) {
     char buffer[1024] = {};
-    problem.text.copy(buffer, sizeof buffer - 1);
+    problem.failure.text.copy(buffer, sizeof buffer - 1);
     check_mpi(MPI_Bcast(buffer, sizeof buffer, MPI_CHAR, speaker, comm()), "MPI_Bcast");
     text = buffer;
-    const auto kind = static_cast<Problem::Kind>(all[static_cast<std::size_t>(speaker)].kind);
-    if (together && kind == Problem::Kind::not_finite) throw NotFiniteError(text);
-    if (together && kind == Problem::Kind::numerical) throw NumericalError(text);
+    const auto speakers = static_cast<FailureKind>(all[static_cast<std::size_t>(speaker)].kind);
+    const bool is_numerical = speakers == FailureKind::not_finite || speakers == FailureKind::numerical;
+    if (together && is_numerical) raise({speakers, text, {}});
     text = fmt::format("member {} of a team of {} failed: {}", speaker, size(), text);
   } else {
     text = fmt::format(
@@ -138,7 +135,7 @@ void Team::compare(std::string_view place, std::uint64_t digest) { meet(place, d
 void Team::end(const std::optional<std::string>& error, std::uint64_t digest) {
   if (_fallen_apart) return;
   if (error) digest ^= digest_of(*error);
-  meet("the end of a task", digest, error ? Problem{Problem::Kind::alike, *error} : Problem{});
+  meet("the end of a task", digest, error ? Problem{{FailureKind::other, *error, {}}, true} : Problem{});
 }
 
 void Team::broadcast(std::string& bytes) {

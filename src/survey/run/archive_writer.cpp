@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
-#include "agreement.hpp"
 #include "orbweaver/archive/file/folder_lock.hpp"
 #include "orbweaver/archive/write/consolidate.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/survey/run/version.hpp"
 #include "state/branch_state.hpp"
 #include "state/resume.hpp"
@@ -46,7 +46,7 @@ void write_archive(const core::Communicator& comm, const scene::Scene& scene, co
                    const Checkpoint& standing, FamilyTree& tree, const SweepsEnded& sweeps, Summary& summary) {
   archive::Records tables;
   std::vector<std::filesystem::path> segments;
-  on_root(comm, [&] {
+  core::on_root(comm.get(), [&] {
     add_unfinished(standing.unfinished, tree);
     FamilyTree::Result found = tree.resolve();
     tables = std::move(found.tables);
@@ -63,22 +63,22 @@ void write_archive(const core::Communicator& comm, const scene::Scene& scene, co
   });
   if (summary.archived)
     archive::consolidate(comm.get(), segments, summary.atlas, header_of(scene, system.description()), tables);
-  summary.failures = agreed(comm, static_cast<unsigned long>(summary.failed_tasks.size()));
+  summary.failures = core::agreed(comm.get(), static_cast<unsigned long>(summary.failed_tasks.size()));
 }
 
 Summary archive_survey(const core::Communicator& comm, const std::filesystem::path& directory) {
   archive::FolderLock lock;
-  on_root(comm, [&] {
+  core::on_root(comm.get(), [&] {
     if (std::filesystem::exists(state_folder(directory))) lock = archive::FolderLock(state_folder(directory));
   });
   Found found = find_checkpoint(comm, state_folder(directory));
   if (!found.found) throw core::InputError(fmt::format("{} holds no survey with a checkpoint", directory.string()));
-  const std::string text = agreed(comm, found.checkpoint.scene);
+  const std::string text = core::agreed(comm.get(), found.checkpoint.scene);
   const scene::Scene scene = scene::parse(text, "the checkpoint's scene");
   const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
   FamilyTree tree(scene, system->description());
   SweepsEnded sweeps;
-  on_root(comm, [&] {
+  core::on_root(comm.get(), [&] {
     const Stage stage = found.checkpoint.stage;
     continue_with(scene, state_folder(directory), found.checkpoint, [&](const EndedTask& entry) {
       if (kind_of(entry.task) == TaskKind::sweep)
@@ -90,7 +90,7 @@ Summary archive_survey(const core::Communicator& comm, const std::filesystem::pa
   });
   Summary summary;
   summary.atlas = directory / "atlas.h5";
-  summary.stopped_early = agreed(comm, found.checkpoint.stage != Stage::finished);
+  summary.stopped_early = core::agreed(comm.get(), found.checkpoint.stage != Stage::finished);
   summary.archived = true;
   write_archive(comm, scene, *system, found.checkpoint, tree, sweeps, summary);
   return summary;

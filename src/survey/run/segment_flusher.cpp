@@ -6,9 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "agreement.hpp"
 #include "orbweaver/core/log/log.hpp"
-#include "orbweaver/core/petsc/check.hpp"
+#include "orbweaver/core/mpi/collective.hpp"
 
 namespace orbweaver::survey {
 
@@ -18,14 +17,11 @@ SegmentFlusher::SegmentFlusher(const core::Communicator& comm, std::filesystem::
     : _comm(comm), _folder(std::move(folder)), _header(header), _rows(rows), _written(std::move(written)) {
   for (const archive::WrittenSegment& segment : _written)
     _last_number = std::max(_last_number, std::stoul(segment.name.substr(segment.name.find('-') + 1)));
-  _last_number = agreed(comm, _last_number);
+  _last_number = core::agreed(comm.get(), _last_number);
 }
 
 void SegmentFlusher::flush(int) {
-  const long mine = static_cast<long>(_rows.orbits.size() + _rows.sections.size());
-  long all = 0;
-  core::check_mpi(MPI_Allreduce(&mine, &all, 1, MPI_LONG, MPI_SUM, _comm.get()), "MPI_Allreduce");
-  if (all == 0) return;
+  if (core::share_of(_comm.get(), _rows.orbits.size() + _rows.sections.size()).total == 0) return;
   const std::filesystem::path path = _folder / fmt::format("segment-{:06}.h5", ++_last_number);
   const auto began = std::chrono::steady_clock::now();
   const archive::WrittenSegment written = archive::write_segment(_comm.get(), path, _header, _rows);

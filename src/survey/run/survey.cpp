@@ -11,12 +11,12 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include "agreement.hpp"
 #include "archive_writer.hpp"
 #include "display.hpp"
 #include "orbweaver/archive/file/folder_lock.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log.hpp"
+#include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/core/petsc/check.hpp"
 #include "orbweaver/queue/run.hpp"
 #include "orbweaver/queue/stop.hpp"
@@ -82,7 +82,7 @@ class Run {
   Summary run(bool resume) {
     begin(resume);
     try {
-      if (agreed(_comm, _start.stage == Stage::sweeps)) sweep();
+      if (core::agreed(_comm.get(), _start.stage == Stage::sweeps)) sweep();
       if (!_summary.stopped_early) follow();
       end();
     } catch (const core::EnvironmentError& error) {
@@ -99,15 +99,15 @@ class Run {
     // On every rank, so that a field that is not finite on the grid is the same error everywhere.
     std::vector<queue::Task> sweeps;
     if (!resume) sweeps = sweep_tasks(_scene, *_system);
-    on_root(_comm, [&] {
+    core::on_root(_comm.get(), [&] {
       make_folder(_folder);
       _lock = archive::FolderLock(_folder);
     });
     Found found;
     if (resume) found = find_checkpoint(_comm, _folder);
-    if (!found.found) on_root(_comm, [&] { expect_nothing(resume); });
+    if (!found.found) core::on_root(_comm.get(), [&] { expect_nothing(resume); });
     if (resume && !found.found) sweeps = sweep_tasks(_scene, *_system);
-    on_root(_comm, [&] {
+    core::on_root(_comm.get(), [&] {
       if (found.found) {
         _start = std::move(found.checkpoint);
         continue_with(_scene, _folder, _start, [this](const EndedTask& entry) { restore(entry); });
@@ -159,7 +159,7 @@ class Run {
   void follow() {
     TreeRecorder recorder({_display, _time, *_keeper, *_flusher}, _tree, std::move(_start.left_out));
     std::vector<queue::Task> tasks = std::move(_start.unfinished);
-    on_root(_comm, [&] {
+    core::on_root(_comm.get(), [&] {
       _keeper->set_stage(Stage::families);
       for (const queue::Task& task : tasks) _known.insert(task.key);
       for (const queue::Task& task : recorder.left_out_tasks()) _known.insert(task.key);
@@ -170,8 +170,8 @@ class Run {
       note_stop(queue::run(_comm, _queue_options, std::move(tasks), _executor, recorder, *_flusher));
       if (_summary.stopped_early) return;
       tasks.clear();
-      on_root(_comm, [&] { tasks = recorder.wanted_after_all(); });
-    } while (agreed(_comm, !tasks.empty()));
+      core::on_root(_comm.get(), [&] { tasks = recorder.wanted_after_all(); });
+    } while (core::agreed(_comm.get(), !tasks.empty()));
   }
 
   void note_stop(const queue::RunSummary& run) {
@@ -189,9 +189,9 @@ class Run {
 
   void end() {
     // After a signal or the wall time others wait for the machine.
-    _summary.archived = agreed(_comm, !_summary.stopped_early || _time.reached_scene());
+    _summary.archived = core::agreed(_comm.get(), !_summary.stopped_early || _time.reached_scene());
     write_archive(_comm, _scene, *_system, _keeper->last(), _tree, _sweeps_ended, _summary);
-    if (!_summary.stopped_early) on_root(_comm, [&] { _keeper->finish(_summary.failures); });
+    if (!_summary.stopped_early) core::on_root(_comm.get(), [&] { _keeper->finish(_summary.failures); });
   }
 
   const core::Communicator& _comm;

@@ -10,9 +10,9 @@
 #include "orbweaver/archive/read/check_segments.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log.hpp"
+#include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/scene/differences.hpp"
 #include "reopen.hpp"
-#include "run/agreement.hpp"
 
 namespace orbweaver::survey {
 
@@ -61,12 +61,12 @@ Found find_checkpoint(const core::Communicator& comm, const std::filesystem::pat
   for (const std::filesystem::path& path : {checkpoint_path(folder), previous_checkpoint_path(folder)}) {
     std::optional<Checkpoint> candidate;
     bool there = false;
-    on_root(comm, [&] {
+    core::on_root(comm.get(), [&] {
       there = std::filesystem::exists(path);
       if (there) candidate = readable(folder, path, problems);
     });
-    any |= agreed(comm, there);
-    if (!agreed(comm, candidate.has_value())) continue;
+    any |= core::agreed(comm.get(), there);
+    if (!core::agreed(comm.get(), candidate.has_value())) continue;
     std::vector<std::string> scenes;
     if (candidate) {
       scenes = candidate->earlier_scenes;
@@ -79,7 +79,7 @@ Found find_checkpoint(const core::Communicator& comm, const std::filesystem::pat
       continue;
     }
     Found found{true, candidate ? std::move(*candidate) : Checkpoint{}};
-    on_root(comm, [&] {
+    core::on_root(comm.get(), [&] {
       for (const std::string& problem : problems) core::log_warning(problem);
       if (path != checkpoint_path(folder)) {
         core::log_warning("going on from the checkpoint before the last one");
@@ -90,7 +90,7 @@ Found find_checkpoint(const core::Communicator& comm, const std::filesystem::pat
     return found;
   }
   if (!any) return {};
-  const std::string why = agreed(comm, fmt::format("{}", fmt::join(problems, "\n  ")));
+  const std::string why = core::agreed(comm.get(), fmt::format("{}", fmt::join(problems, "\n  ")));
   throw core::InputError(
       fmt::format("the survey in {} cannot go on; nothing was changed:\n  {}\nbring the missing or damaged files back "
                   "from a copy, or "

@@ -11,25 +11,6 @@ constexpr std::string_view joined_name = "joined";
 constexpr std::string_view forwards_mark = "forwards: ";
 constexpr std::string_view backwards_mark = "; backwards: ";
 
-std::string_view name_of(EndKind kind) {
-  using continuation::EndReason;
-  switch (kind) {
-    case EndKind::period_limit: return name_of(EndReason::period_limit);
-    case EndKind::energy_limit: return name_of(EndReason::energy_limit);
-    case EndKind::step_limit: return name_of(EndReason::step_limit);
-    case EndKind::cutoff_limit: return name_of(EndReason::cutoff_limit);
-    case EndKind::period_divergence: return name_of(EndReason::period_divergence);
-    case EndKind::fixed_point: return name_of(EndReason::fixed_point);
-    case EndKind::closed_loop: return name_of(EndReason::closed_loop);
-    case EndKind::stopped: return name_of(EndReason::stopped);
-    case EndKind::failure: return name_of(EndReason::failure);
-    case EndKind::met: return met_name;
-    case EndKind::joined: return joined_name;
-    case EndKind::unknown: break;
-  }
-  return "unknown";
-}
-
 EndKind end_in(std::string_view text) {
   for (int n = 0; n < static_cast<int>(EndKind::unknown); ++n)
     if (const auto kind = static_cast<EndKind>(n); text.starts_with(name_of(kind))) return kind;
@@ -37,6 +18,25 @@ EndKind end_in(std::string_view text) {
 }
 
 }  // namespace
+
+std::string_view name_of(EndKind kind) {
+  using continuation::EndReason;
+  switch (kind) {
+    case EndKind::period_limit: return continuation::name_of(EndReason::period_limit);
+    case EndKind::energy_limit: return continuation::name_of(EndReason::energy_limit);
+    case EndKind::step_limit: return continuation::name_of(EndReason::step_limit);
+    case EndKind::cutoff_limit: return continuation::name_of(EndReason::cutoff_limit);
+    case EndKind::period_divergence: return continuation::name_of(EndReason::period_divergence);
+    case EndKind::fixed_point: return continuation::name_of(EndReason::fixed_point);
+    case EndKind::closed_loop: return continuation::name_of(EndReason::closed_loop);
+    case EndKind::stopped: return continuation::name_of(EndReason::stopped);
+    case EndKind::failure: return continuation::name_of(EndReason::failure);
+    case EndKind::met: return met_name;
+    case EndKind::joined: return joined_name;
+    case EndKind::unknown: break;
+  }
+  return "unknown";
+}
 
 std::string end_text(const BranchOutcome& outcome) {
   if (outcome.arrival.empty() || outcome.end.failed()) return outcome.end.text();

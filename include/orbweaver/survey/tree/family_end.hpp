@@ -25,6 +25,9 @@ enum class EndKind {
   unknown,  ///< of an archive from another version
 };
 
+/// "period limit", "joined".
+[[nodiscard]] std::string_view name_of(EndKind kind);
+
 // Texts of ends, for people and for the column end_reason of /families.
 
 /// "period limit (T = 30)", "met a family of more symmetry (T = 8, E = 1)".

@@ -1,0 +1,52 @@
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include "command.hpp"
+#include "orbweaver/core/petsc/session.hpp"
+#include "orbweaver/report/compare/comparison.hpp"
+#include "orbweaver/report/compare/comparison_text.hpp"
+
+namespace orbweaver::drivers {
+
+namespace {
+
+struct CommandOptions {
+  std::filesystem::path a;
+  std::filesystem::path b;
+  report::CompareOptions compare;
+  bool json = false;
+};
+
+int compare(const CommandOptions& options, const Invocation& invocation) {
+  const core::Session session(invocation.petsc_options);
+  const archive::Archive a(options.a);
+  const archive::Archive b(options.b);
+  const report::Comparison comparison = report::compare(a, b, options.compare);
+  (options.json ? report::print_comparison_json : report::print_comparison)(std::cout, comparison);
+  std::cout.flush();
+  if (!std::cout) throw core::EnvironmentError("cannot write to the standard output: is the disk full?");
+  return comparison.same() ? 0 : static_cast<int>(core::ExitStatus::goal_missed);
+}
+
+}  // namespace
+
+Command make_compare_command(CLI::App& program) {
+  CLI::App* parser = program.add_subcommand("compare", "Say what differs between two atlases, as trees of families");
+  auto options = std::make_shared<CommandOptions>();
+  parser->add_option("A", options->a, "The atlas.h5 of a survey")->required();
+  parser->add_option("B", options->b, "Another one")->required();
+  parser->add_option("--tolerance", options->compare.tolerance, "Relative deviation that does not count")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  parser->add_option("--loops", options->compare.loops, "Orbits of each family whose loops are compared")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  parser->add_flag("--strict-names", options->compare.strict_names, "Families with another name differ");
+  parser->add_flag("--json", options->json, "As JSON");
+  return {parser, [options](const Invocation& invocation) { return compare(*options, invocation); }};
+}
+
+}  // namespace orbweaver::drivers

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "compare/invariant_curve.hpp"
+#include "orbweaver/archive/read/reader.hpp"
+#include "orbweaver/survey/tree/family_end.hpp"
+
+namespace orbweaver::report {
+
+/// One end of a family: where it stopped and why.
+struct FamilyEnd {
+  std::size_t orbit = 0;  ///< of the family's orbits, the last on this side
+  survey::EndKind kind = survey::EndKind::unknown;
+};
+
+struct TreeFamily {
+  std::string name;
+  int parent = -1;
+  int crossing = -1;
+  int multiplicity = 1;
+  std::string isotropy;
+  int end_family = -1;
+  int end_crossing = -1;
+  std::size_t first_orbit = 0;
+  std::vector<double> arclengths;
+  InvariantCurve curve;
+  std::vector<FamilyEnd> ends;  ///< one, or two: forwards, backwards
+  std::vector<int> crossings;   ///< rows of those that lie on it
+
+  [[nodiscard]] std::size_t orbits() const { return arclengths.size(); }
+};
+
+struct TreeCrossing {
+  std::string kind;
+  int family = -1;
+  int multiplicity = 1;
+  int kernel_dimension = 0;
+  int sector_j = 0;
+  int sector_q = 1;
+  int fundamental_order = 1;
+  double period = 0.0;
+  double energy = 0.0;
+  double energy_scale = 0.0;  ///< action/period of the family's orbit nearest to it; NaN: no energy
+  std::vector<int> children;  ///< rows of the families born there
+};
+
+/// An atlas as a tree. Rows are those of the archive.
+struct AtlasTree {
+  AtlasTree(const archive::Archive& atlas, double tolerance);
+
+  const archive::Archive& atlas;
+  std::vector<TreeFamily> families;
+  std::vector<TreeCrossing> crossings;
+  std::vector<int> roots;  ///< families without a parent
+};
+
+/// "period-doubling T 8.44293"
+[[nodiscard]] std::string place_text(const TreeCrossing& crossing);
+
+}  // namespace orbweaver::report

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "compare/atlas_tree.hpp"
+#include "compare/loop_check.hpp"
+
+namespace orbweaver::report {
+
+/// What two atlases have in common. Rows of families and crossings; -1: nothing.
+struct TreeMatch {
+  std::vector<int> family_of_a;  ///< row in B of each family of A
+  std::vector<int> family_of_b;
+  std::vector<int> crossing_of_a;
+  std::vector<int> crossing_of_b;
+  std::vector<bool> is_born_elsewhere;  ///< families of A that were matched by their orbits alone
+};
+
+/// Matches families down from the roots: roots with roots; then, at each crossing that both have, the families born there
+/// with one another, by the share of orbits that lie on the other's curve; their loops decide where several share most of
+/// them. What is left is matched with anything that shares its orbits, wherever it was born.
+[[nodiscard]] TreeMatch match_trees(const AtlasTree& a, const AtlasTree& b, const LoopCheck& loops);
+
+}  // namespace orbweaver::report

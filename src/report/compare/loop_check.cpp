@@ -1,0 +1,72 @@
+#include "compare/loop_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "orbweaver/archive/read/loop_of.hpp"
+#include "orbweaver/bifurcation/identity.hpp"
+#include "orbweaver/loop/symmetry/alignment.hpp"
+#include "orbweaver/loop/symmetry/isotropy_text.hpp"
+
+namespace orbweaver::report {
+
+namespace {
+
+/// Orbits that are tried before two families count as different: Newton's method may fail beside one.
+constexpr int most_tries = 3;
+
+continuation::Orbit orbit_of(const AtlasTree& tree, const TreeFamily& family, std::size_t orbit,
+                             const systems::Description& system) {
+  const std::size_t row = family.first_orbit + orbit;
+  continuation::Orbit out;
+  out.loop = archive::loop_of(tree.atlas, row, system.angles);
+  out.energy = tree.atlas.orbits().reals("energy")[row];
+  out.action = tree.atlas.orbits().reals("action")[row];
+  return out;
+}
+
+}  // namespace
+
+LoopAnswer LoopCheck::ask(const OrbitBeside& x) const {
+  const systems::Description& system = _system->description();
+  const bifurcation::IdentityOptions options;
+  const continuation::Orbit orbit = orbit_of(x.own, x.family, x.orbit, system);
+  const continuation::Orbit a = orbit_of(x.other, x.beside, x.segment, system);
+  const continuation::Orbit b = orbit_of(x.other, x.beside, x.segment + 1, system);
+  const double allowed = options.tolerance * (1.0 + loop::rms_size(orbit.loop));
+  // Where both were followed with the same steps it is one of the two, and nothing need be corrected.
+  for (const continuation::Orbit* node : {&a, &b}) {
+    const double in_period = std::abs(orbit.loop.period / node->loop.period - 1.0);
+    if (in_period > allowed) continue;
+    const double distance = std::hypot(in_period, loop::align(system, orbit.loop, node->loop, allowed).distance);
+    if (distance <= allowed) return {true, distance, allowed, "the same orbit"};
+  }
+  const bifurcation::Comparison found =
+      bifurcation::same_family(*_system, a, b, loop::isotropy_of(system, x.beside.isotropy), orbit, options);
+  return {found.same, found.distance, allowed, found.detail};
+}
+
+std::vector<LoopCheck::Sample> LoopCheck::sample(const AtlasTree& own, const TreeFamily& family, const AtlasTree& other,
+                                                 const TreeFamily& beside, const std::vector<CurveFit>& fits,
+                                                 int count) const {
+  std::vector<Sample> samples;
+  if (!can_compare() || beside.orbits() < 2) return samples;
+  std::vector<std::size_t> placed;
+  for (std::size_t n = 0; n < fits.size(); ++n)
+    if (fits[n].fits()) placed.push_back(n);
+  const std::size_t chosen = std::min(placed.size(), static_cast<std::size_t>(std::max(0, count)));
+  for (std::size_t c = 0; c < chosen; ++c) {
+    const std::size_t n = placed[(2 * c + 1) * placed.size() / (2 * chosen)];
+    samples.push_back({n, ask({own, family, n, other, beside, fits[n].segment})});
+  }
+  return samples;
+}
+
+bool LoopCheck::are_same(const AtlasTree& a, const TreeFamily& family_a, const AtlasTree& b,
+                         const TreeFamily& family_b) const {
+  const std::vector<CurveFit> fits = fit_all(family_b.curve, family_a.curve.points());
+  const std::vector<Sample> samples = sample(a, family_a, b, family_b, fits, most_tries);
+  return samples.empty() || std::any_of(samples.begin(), samples.end(), [](const Sample& s) { return s.answer.same; });
+}
+
+}  // namespace orbweaver::report

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "compare/atlas_tree.hpp"
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::report {
+
+/// What the loop of an orbit says of its place on a family.
+struct LoopAnswer {
+  bool same = false;
+  double distance = 0.0;  ///< from the family, as bifurcation::Comparison measures it
+  double allowed = 0.0;   ///< bifurcation::IdentityOptions::tolerance, times 1 + rms size
+  std::string detail;
+};
+
+/// An orbit of one of two atlases beside a family of the other.
+struct OrbitBeside {
+  const AtlasTree& own;
+  const TreeFamily& family;
+  std::size_t orbit;
+  const AtlasTree& other;
+  const TreeFamily& beside;
+  std::size_t segment;  ///< between its orbits segment and segment + 1
+};
+
+/// Holds loops of one atlas against families of the other.
+class LoopCheck {
+ public:
+  /// `system`: null where the scene's is not known here; then no loop is compared.
+  explicit LoopCheck(std::shared_ptr<const systems::System> system) : _system(std::move(system)) {}
+
+  [[nodiscard]] bool can_compare() const { return _system != nullptr; }
+  [[nodiscard]] const systems::Description* description() const { return _system ? &_system->description() : nullptr; }
+
+  /// Requires can_compare().
+  [[nodiscard]] LoopAnswer ask(const OrbitBeside& x) const;
+
+  /// `count` orbits of `family`, evenly among those that have a place on `other` (`fits`: of all its orbits).
+  struct Sample {
+    std::size_t orbit = 0;
+    LoopAnswer answer;
+  };
+  [[nodiscard]] std::vector<Sample> sample(const AtlasTree& own, const TreeFamily& family, const AtlasTree& other,
+                                           const TreeFamily& beside, const std::vector<CurveFit>& fits,
+                                           int count) const;
+
+  /// Whether two families that share their invariants are the same: true as soon as one of a few orbits says so, and where
+  /// that cannot be found out.
+  [[nodiscard]] bool are_same(const AtlasTree& a, const TreeFamily& family_a, const AtlasTree& b,
+                              const TreeFamily& family_b) const;
+
+ private:
+  std::shared_ptr<const systems::System> _system;
+};
+
+}  // namespace orbweaver::report

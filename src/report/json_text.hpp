@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+namespace orbweaver::report {
+
+/// The text in quotes, with escapes.
+[[nodiscard]] std::string json_text(const std::string& text);
+
+/// All digits; `null` for what is no finite number.
+[[nodiscard]] std::string json_number(double value);
+
+}  // namespace orbweaver::report

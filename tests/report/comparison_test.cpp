@@ -1,0 +1,341 @@
+#include "orbweaver/report/compare/comparison.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <numbers>
+#include <sstream>
+
+#include <gmock/gmock.h>
+
+#include "archive/sample.hpp"
+#include "orbweaver/report/compare/comparison_text.hpp"
+
+namespace {
+
+using namespace orbweaver;
+using archive::Records;
+using report::Comparison;
+using report::DifferenceKind;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+constexpr double limit = 2.0;  // of s along every family
+
+/// A family as a curve: T = from + s; energy and action are parabolas in s.
+struct Curve {
+  std::string key;
+  double period;
+  double energy;
+  double bend;
+};
+
+archive::OrbitRecord orbit_of(const Curve& curve, int step, double s) {
+  archive::OrbitRecord orbit;
+  orbit.family_key = curve.key;
+  orbit.step = step;
+  orbit.arclength = s;
+  orbit.period = curve.period + s;
+  orbit.energy = curve.energy + 0.3 * s + curve.bend * s * s;
+  orbit.action = 1.0 + curve.energy + s + 0.1 * s * s;
+  orbit.cutoff = 1;
+  orbit.stability = {2.0 * std::cos(s)};
+  orbit.state = {0.0, 0.0};
+  orbit.modes = std::vector<double>(6, 0.0);
+  orbit.winding = {0.0};
+  return orbit;
+}
+
+void add_orbits(Records& records, const Curve& curve, double spacing) {
+  int step = 0;
+  for (double s = 0.0; s < limit - 1e-9; s += spacing) records.orbits.push_back(orbit_of(curve, step++, s));
+  records.orbits.push_back(orbit_of(curve, step, limit));
+}
+
+archive::CrossingRecord crossing_of(const Curve& curve, archive::CrossingKind kind, int multiplicity, double s) {
+  const archive::OrbitRecord at = orbit_of(curve, 0, s);
+  archive::CrossingRecord crossing;
+  crossing.family_key = curve.key;
+  crossing.arclength = s;
+  crossing.period = at.period;
+  crossing.energy = at.energy;
+  crossing.kind = kind;
+  crossing.multiplicity = multiplicity;
+  crossing.kernel_dimension = multiplicity;
+  crossing.state = {0.0, 0.0};
+  crossing.sector_j = multiplicity - 1;
+  crossing.sector_q = multiplicity;
+  return crossing;
+}
+
+archive::FamilyRecord family_of(const std::string& key, const std::string& name, const std::string& parent,
+                                int crossing, int multiplicity) {
+  archive::FamilyRecord family;
+  family.key = key;
+  family.name = name;
+  family.parent_key = parent;
+  family.crossing = crossing;
+  family.multiplicity = multiplicity;
+  family.isotropy = parent.empty() ? "S@1/2 R@0" : "R@0";
+  family.end_reason = "step limit (100 steps)";
+  return family;
+}
+
+const Curve root{"0000", 6.0, -1.0, 0.1};
+const Curve other_root{"0001", 5.5, 0.5, 0.1};
+const Curve first_twin{"0000/000/0", 13.1, -0.8, 0.05};
+const Curve second_twin{"0000/000/1", 13.1, -0.8, 0.07};
+
+/// Two families at equilibria; on the first a period doubling where twins are born and a branch point.
+Records tree(double spacing = 0.1) {
+  Records records;
+  records.families = {family_of("0000", "Root", "", -1, 1), family_of("0001", "Other", "", -1, 1),
+                      family_of("0000/000/0", "RDa", "0000", 0, 2), family_of("0000/000/1", "RDb", "0000", 0, 2)};
+  records.crossings = {crossing_of(root, archive::CrossingKind::period_doubling, 2, 0.55),
+                       crossing_of(root, archive::CrossingKind::branch_point, 1, 1.25),
+                       crossing_of(other_root, archive::CrossingKind::period_doubling, 2, 0.35)};
+  for (const Curve& curve : {root, other_root, first_twin, second_twin}) add_orbits(records, curve, spacing);
+  return records;
+}
+
+archive::Archive written(const std::string& name, const Records& records,
+                         const archive::Header& header = test::sample_header()) {
+  return archive::Archive(test::write_sample_atlas(test::fresh_folder(name), header, records));
+}
+
+Comparison compared(const Records& a, const Records& b, const report::CompareOptions& options = {}) {
+  return report::compare(written("a", a), written("b", b), options);
+}
+
+std::vector<DifferenceKind> kinds(const Comparison& comparison) {
+  std::vector<DifferenceKind> out;
+  for (const report::Difference& difference : comparison.differences) out.push_back(difference.kind);
+  return out;
+}
+
+Records changed(const std::function<void(Records&)>& change) {
+  Records records = tree();
+  change(records);
+  return records;
+}
+
+TEST(Comparison, OtherStepsAreNoDifference) {
+  const Comparison same = compared(tree(0.1), tree(0.1));
+  EXPECT_THAT(same.differences, IsEmpty());
+  const Comparison finer = compared(tree(0.1), tree(0.013));
+  EXPECT_THAT(finer.differences, IsEmpty());
+  EXPECT_EQ(finer.families, 4);
+  EXPECT_EQ(finer.crossings, 3);
+  EXPECT_EQ(finer.orbits, finer.a.orbits + finer.b.orbits);
+  EXPECT_THAT(finer.largest, Not(IsEmpty()));
+}
+
+TEST(Comparison, ExchangedLettersOfTwinsAreARenaming) {
+  const Records exchanged = changed([](Records& records) {
+    for (archive::OrbitRecord& orbit : records.orbits) {
+      if (orbit.family_key == first_twin.key)
+        orbit.family_key = second_twin.key;
+      else if (orbit.family_key == second_twin.key)
+        orbit.family_key = first_twin.key;
+    }
+  });
+  const Comparison loose = compared(tree(), exchanged);
+  EXPECT_TRUE(loose.same());
+  ASSERT_THAT(loose.renamed, SizeIs(2));
+  EXPECT_EQ(loose.renamed[0].a, "RDa");
+  EXPECT_EQ(loose.renamed[0].b, "RDb");
+  report::CompareOptions strict;
+  strict.strict_names = true;
+  EXPECT_THAT(kinds(compared(tree(), exchanged, strict)), ElementsAre(DifferenceKind::name, DifferenceKind::name));
+}
+
+TEST(Comparison, RootsAreMatchedByTheirOrbits) {
+  const Records exchanged = changed([](Records& records) {
+    records.families[0].name = "Other";
+    records.families[1].name = "Root";
+  });
+  const Comparison comparison = compared(tree(), exchanged);
+  EXPECT_TRUE(comparison.same());
+  EXPECT_THAT(comparison.renamed, SizeIs(2));
+}
+
+TEST(Comparison, SaysWhatIsInOneOnly) {
+  const Records without = changed([](Records& records) {
+    records.families.pop_back();
+    std::erase_if(records.orbits, [](const auto& orbit) { return orbit.family_key == second_twin.key; });
+  });
+  const Comparison more = compared(tree(), without);
+  EXPECT_THAT(kinds(more), ElementsAre(DifferenceKind::only_in_a));
+  EXPECT_EQ(more.differences[0].family_a, "RDb");
+  EXPECT_THAT(more.differences[0].text, HasSubstr("born on Root at period-doubling T 6.55, 21 orbits"));
+  EXPECT_THAT(kinds(compared(without, tree())), ElementsAre(DifferenceKind::only_in_b));
+}
+
+TEST(Comparison, SaysWhereAFamilyWasBornElsewhere) {
+  const Records moved = changed([](Records& records) {
+    records.families[3].crossing = 2;
+    records.families[3].parent_key = "0001";
+  });
+  const Comparison comparison = compared(tree(), moved);
+  EXPECT_THAT(kinds(comparison), ElementsAre(DifferenceKind::birth));
+  EXPECT_THAT(comparison.differences[0].text, HasSubstr("born on Root at period-doubling T 6.55 in A, on Other at"));
+}
+
+TEST(Comparison, CrossingsHaveAPlace) {
+  const auto moved_by = [](double part) {
+    return changed([part](Records& records) { records.crossings[1].period *= 1.0 + part; });
+  };
+  EXPECT_TRUE(compared(tree(), moved_by(5e-10)).same());
+  const Comparison comparison = compared(tree(), moved_by(1e-7));
+  EXPECT_THAT(kinds(comparison), ElementsAre(DifferenceKind::crossing_place));
+  EXPECT_NEAR(comparison.differences[0].by, 1e-7, 1e-9);
+  EXPECT_EQ(comparison.differences[0].family_a, "Root");
+  report::CompareOptions loose;
+  loose.tolerance = 1e-6;
+  EXPECT_TRUE(compared(tree(), moved_by(1e-7), loose).same());
+  EXPECT_THAT(kinds(compared(tree(), changed([](Records& r) { r.crossings[1].energy += 1e-6; }))),
+              ElementsAre(DifferenceKind::crossing_place));
+  EXPECT_THAT(kinds(compared(tree(), moved_by(0.05))),
+              ElementsAre(DifferenceKind::crossing_only_in_a, DifferenceKind::crossing_only_in_b));
+}
+
+TEST(Comparison, CrossingsAreOfAKindAndASector) {
+  for (const auto& change : std::vector<std::function<void(Records&)>>{
+           [](Records& r) { r.crossings[1].kind = archive::CrossingKind::torus; },
+           [](Records& r) { r.crossings[1].multiplicity = 3; }, [](Records& r) { r.crossings[1].sector_q = 3; }})
+    EXPECT_THAT(kinds(compared(tree(), changed(change))),
+                ElementsAre(DifferenceKind::crossing_only_in_a, DifferenceKind::crossing_only_in_b));
+  for (const auto& change :
+       std::vector<std::function<void(Records&)>>{[](Records& r) { r.crossings[1].kernel_dimension = 2; },
+                                                  [](Records& r) { r.crossings[1].fundamental_order = 2; }})
+    EXPECT_THAT(kinds(compared(tree(), changed(change))), ElementsAre(DifferenceKind::crossing_kernel));
+}
+
+TEST(Comparison, EndsAreOfAKind) {
+  const auto ended = [](const std::string& reason) {
+    return changed([reason](Records& records) { records.families[1].end_reason = reason; });
+  };
+  EXPECT_TRUE(compared(tree(), ended("step limit (7 steps)")).same());
+  const Comparison comparison = compared(tree(), ended("cutoff limit (K = 4096)"));
+  EXPECT_THAT(kinds(comparison), ElementsAre(DifferenceKind::end_reason));
+  EXPECT_THAT(comparison.differences[0].text, HasSubstr("'step limit' in A, by 'cutoff limit' in B"));
+}
+
+TEST(Comparison, EndsAtALimitHaveAPlace) {
+  const auto limited_at = [](double period) {
+    return changed([period](Records& records) {
+      records.families[1].end_reason = "period limit (T = 7.5)";
+      for (archive::OrbitRecord& orbit : records.orbits)
+        if (orbit.family_key == other_root.key && orbit.arclength == limit)
+          orbit = orbit_of(other_root, orbit.step, period - other_root.period);
+    });
+  };
+  EXPECT_TRUE(compared(limited_at(7.5), limited_at(7.5)).same());
+  EXPECT_THAT(kinds(compared(limited_at(7.5), limited_at(7.49))), ElementsAre(DifferenceKind::end_place));
+}
+
+TEST(Comparison, EndsAreAtACrossing) {
+  const auto joined = [](int crossing) {
+    return changed([crossing](Records& records) {
+      records.families[2].end_reason = "joined Root at T = 7 (crossing at T = 7, 1 times around)";
+      records.families[2].end_family_key = root.key;
+      records.families[2].end_crossing = crossing;
+    });
+  };
+  EXPECT_TRUE(compared(joined(1), joined(1)).same());
+  const Comparison comparison = compared(joined(1), joined(0));
+  EXPECT_THAT(kinds(comparison), ElementsAre(DifferenceKind::end_target));
+  EXPECT_THAT(comparison.differences[0].text, HasSubstr("joined Root at branch-point T 7.25 in A"));
+}
+
+TEST(Comparison, OneMayGoFurther) {
+  const Records shorter = changed([](Records& records) {
+    std::erase_if(records.orbits, [](const archive::OrbitRecord& orbit) {
+      return orbit.family_key == other_root.key && orbit.arclength > 1.45;
+    });
+  });
+  const Comparison comparison = compared(tree(), shorter);
+  EXPECT_THAT(kinds(comparison), ElementsAre(DifferenceKind::range));
+  EXPECT_THAT(comparison.differences[0].text, HasSubstr("goes 6 orbits further in A, to T = 7.5"));
+  // One step more or less is a matter of the steps.
+  EXPECT_TRUE(compared(tree(), changed([](Records& records) {
+                         std::erase_if(records.orbits, [](const archive::OrbitRecord& orbit) {
+                           return orbit.family_key == other_root.key && orbit.arclength > 1.95;
+                         });
+                       }))
+                  .same());
+}
+
+TEST(Comparison, OrbitsLieOnACurve) {
+  const auto off_by = [](double part, auto value) {
+    return changed([part, value](Records& records) {
+      for (archive::OrbitRecord& orbit : records.orbits)
+        if (orbit.family_key == other_root.key && orbit.step == 7) value(orbit) += part;
+    });
+  };
+  const auto energy = [](archive::OrbitRecord& orbit) -> double& { return orbit.energy; };
+  const auto action = [](archive::OrbitRecord& orbit) -> double& { return orbit.action; };
+  const auto stability = [](archive::OrbitRecord& orbit) -> double& { return orbit.stability[0]; };
+  EXPECT_TRUE(compared(tree(), off_by(1e-11, energy)).same());
+  for (const Comparison& comparison : {compared(tree(), off_by(1e-6, energy)), compared(tree(), off_by(1e-6, action)),
+                                       compared(tree(), off_by(1e-5, stability))}) {
+    ASSERT_FALSE(comparison.same());
+    for (const DifferenceKind kind : kinds(comparison)) EXPECT_EQ(kind, DifferenceKind::orbits);
+    EXPECT_EQ(comparison.differences[0].family_a, "Other");
+  }
+}
+
+TEST(Comparison, FamiliesHaveAnIsotropy) {
+  EXPECT_THAT(kinds(compared(tree(), changed([](Records& r) { r.families[2].isotropy = "RS@0"; }))),
+              ElementsAre(DifferenceKind::isotropy));
+}
+
+TEST(Comparison, OtherCoordinatesAreTheOnlyDifference) {
+  archive::Header header = test::sample_header();
+  header.state_names = {"q", "p"};
+  const Comparison comparison = report::compare(written("a", tree()), written("b", tree(0.3), header));
+  EXPECT_THAT(kinds(comparison), ElementsAre(DifferenceKind::system));
+  EXPECT_THAT(comparison.differences[0].text, HasSubstr("q, p in B"));
+}
+
+TEST(Comparison, OtherParametersAreAnotherSystem) {
+  const auto with_mass = [](const std::string& name, int mass) {
+    archive::Header header = test::sample_header();
+    header.scene = "system: {name: double_pendulum, parameters: {m1: " + std::to_string(mass) +
+                   "}}\nstarts: {fixed_points: {grid: [[0], [0]]}}\n";
+    return written(name, {}, header);
+  };
+  EXPECT_TRUE(report::compare(with_mass("a", 2), with_mass("b", 2)).same());
+  const Comparison comparison = report::compare(with_mass("a", 2), with_mass("b", 3));
+  EXPECT_THAT(kinds(comparison), ElementsAre(DifferenceKind::system));
+  EXPECT_THAT(comparison.differences[0].text, HasSubstr("m1 = 3"));
+}
+
+TEST(Comparison, AnotherSceneIsANote) {
+  archive::Header header = test::sample_header();
+  header.scene += "limits: {period: 10}\n";
+  header.orbweaver_version = "0.2.0";
+  const Comparison comparison = report::compare(written("a", tree()), written("b", tree(), header));
+  EXPECT_TRUE(comparison.same());
+  EXPECT_THAT(comparison.notes,
+              ElementsAre(HasSubstr("loops are not compared"), HasSubstr("scenes differ"), HasSubstr("0.2.0")));
+}
+
+TEST(Comparison, IsPrinted) {
+  Comparison comparison = compared(tree(), changed([](Records& r) { r.crossings[1].period += 1e-6; }));
+  std::ostringstream text;
+  report::print_comparison(text, comparison);
+  EXPECT_THAT(text.str(), HasSubstr("\nRoot\n    branch-point T 7.25: period is 7.25 in A, 7.250001 in B"));
+  EXPECT_THAT(text.str(), HasSubstr("period of crossings"));
+  EXPECT_THAT(text.str(), HasSubstr("\n1 difference\n"));
+  std::ostringstream json;
+  comparison.differences[0].text = "say \"why\"";
+  report::print_comparison_json(json, comparison);
+  EXPECT_THAT(json.str(), HasSubstr("\"same\": false"));
+  EXPECT_THAT(json.str(), HasSubstr(R"({"kind": "crossing-place", "family_a": "Root", "family_b": "Root", )"));
+  EXPECT_THAT(json.str(), HasSubstr(R"("text": "say \"why\"", "by": 1.37)"));
+}
+
+}  // namespace
