@@ -24,6 +24,27 @@ if(ORBWEAVER_SANITIZE)
   target_link_options(orbweaver_build_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
+# PETSc's pkg-config file asks for it, and a precompiled header wants the same macros in all sources.
+target_compile_definitions(orbweaver_build_flags INTERFACE _FORTIFY_SOURCE=2)
+
+# Headers of others that most sources include, read once (docs/building.md). Sources include what they use all the same. No header
+# whose code every object would then hold, as that of CLI11 with its virtual functions.
+set(ORBWEAVER_COMMON_HEADERS
+  <algorithm> <array> <chrono> <cmath> <complex> <cstddef> <cstdint> <filesystem> <fstream> <functional> <limits> <map> <memory>
+  <numbers> <numeric> <optional> <set> <span> <sstream> <string> <string_view> <tuple> <utility> <variant> <vector>
+  <Eigen/Dense> <fmt/format.h> <fmt/ranges.h>)
+if(ORBWEAVER_PRECOMPILED_HEADERS)
+  file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/precompiled.cpp" CONTENT "")
+  add_library(orbweaver_precompiled OBJECT "${PROJECT_BINARY_DIR}/precompiled.cpp")
+  target_link_libraries(orbweaver_precompiled PRIVATE orbweaver_build_flags Eigen3::Eigen fmt::fmt)
+  target_precompile_headers(orbweaver_precompiled PRIVATE ${ORBWEAVER_COMMON_HEADERS})
+endif()
+function(orbweaver_precompiled_headers target)
+  if(ORBWEAVER_PRECOMPILED_HEADERS)
+    target_precompile_headers(${target} REUSE_FROM orbweaver_precompiled)
+  endif()
+endfunction()
+
 # orbweaver_layer(<name> [EXCEPT folder ...] [DEPENDS layer-or-library ...])
 # One static library a layer: target orbweaver_<name>, alias orbweaver::<name>, of every .cpp in the layer's folder and its
 # subfolders. Private headers are named by their path from that folder.
@@ -38,6 +59,7 @@ function(orbweaver_layer name)
     add_library(orbweaver_${name} STATIC ${sources})
     set(scope PUBLIC)
     target_link_libraries(orbweaver_${name} PRIVATE orbweaver_build_flags)
+    orbweaver_precompiled_headers(orbweaver_${name})
     target_include_directories(orbweaver_${name} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}")
   else()
     add_library(orbweaver_${name} INTERFACE)

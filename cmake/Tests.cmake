@@ -12,6 +12,13 @@ set(ORBWEAVER_TEST_ENVIRONMENT
   "ASAN_OPTIONS=fast_unwind_on_malloc=0"
   "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/cmake/lsan.supp")
 
+# As orbweaver_precompiled, with GoogleMock.
+if(ORBWEAVER_PRECOMPILED_HEADERS)
+  add_library(orbweaver_test_precompiled OBJECT EXCLUDE_FROM_ALL "${PROJECT_BINARY_DIR}/precompiled.cpp")
+  target_link_libraries(orbweaver_test_precompiled PRIVATE orbweaver_build_flags Eigen3::Eigen fmt::fmt GTest::gmock)
+  target_precompile_headers(orbweaver_test_precompiled PRIVATE ${ORBWEAVER_COMMON_HEADERS} <gmock/gmock.h> <gtest/gtest.h>)
+endif()
+
 # orbweaver_test(<name> LAYER <layer> SOURCES ... [DEPENDS ...] [RANKS 1 2 3] [TIMEOUT seconds] [LABELS ...])
 # A GoogleTest program. Without RANKS it runs alone; with RANKS it runs under mpirun once for each rank count.
 # SESSION links a main that starts MPI, PETSc and SLEPc around the tests, as RANKS does; with WITHOUT_PETSC that one starts MPI only.
@@ -27,6 +34,10 @@ function(orbweaver_test name)
     target_link_libraries(${target} PRIVATE GTest::gmock GTest::gtest_main)
   endif()
   target_link_libraries(${target} PRIVATE orbweaver_build_flags ${TEST_DEPENDS})
+  if(ORBWEAVER_PRECOMPILED_HEADERS)
+    target_link_libraries(${target} PRIVATE Eigen3::Eigen)
+    target_precompile_headers(${target} REUSE_FROM orbweaver_test_precompiled)
+  endif()
   target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/tests")
   target_compile_definitions(${target} PRIVATE
     ORBWEAVER_SOURCE_DIR="${PROJECT_SOURCE_DIR}" ORBWEAVER_BINARY_DIR="${PROJECT_BINARY_DIR}")

@@ -140,7 +140,7 @@ FamilyTree::Result FamilyTree::resolve() const {
 
   const std::map<std::string, int> rows = add_crossings(crossings, result);
   add_families(
-      families, _crossings, rows, [this](const std::string& key) { return _pruning.arrival(key); }, _system, result);
+      families, _crossings, rows, [this](const std::string& key) { return _pruning.arrival(key); }, result);
   std::unordered_set<std::string> kept_families;
   for (const Family& family : families) kept_families.insert(family.key);
   std::set<std::string> left_out;

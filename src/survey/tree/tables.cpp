@@ -83,8 +83,7 @@ std::map<std::string, int> add_crossings(const std::vector<const LocateOutcome*>
 
 void add_families(const std::vector<Family>& families, const Crossings& crossings,
                   const std::map<std::string, int>& crossing_rows,
-                  const std::function<const Meeting*(const std::string&)>& arrival, const systems::Description& system,
-                  TreeTables& tables) {
+                  const std::function<const Meeting*(const std::string&)>& arrival, TreeTables& tables) {
   std::map<std::string, std::string> names;
   for (const Family& family : families) names[family.key] = family.name;
   for (const Family& family : families) {

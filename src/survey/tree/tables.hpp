@@ -29,7 +29,6 @@ struct TreeTables {
 /// Adds a row for every family. `arrival` says where the branch with a key has arrived; null if nowhere.
 void add_families(const std::vector<Family>& families, const Crossings& crossings,
                   const std::map<std::string, int>& crossing_rows,
-                  const std::function<const Meeting*(const std::string&)>& arrival, const systems::Description& system,
-                  TreeTables& tables);
+                  const std::function<const Meeting*(const std::string&)>& arrival, TreeTables& tables);
 
 }  // namespace orbweaver::survey
