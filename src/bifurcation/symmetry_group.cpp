@@ -12,7 +12,6 @@ namespace orbweaver::bifurcation {
 
 namespace {
 
-constexpr double same_matrix = 1e-9;
 constexpr double same_vector = 1e-3;  // kernel vectors are good to kernel_tolerance
 constexpr std::size_t largest_group = 200;
 
@@ -20,24 +19,23 @@ struct Spatial {
   std::string name;
   bool reversing;
   int declared;
-  Eigen::MatrixXd matrix;
+  systems::AffineMap map;
 };
 
 // The identity, what the system declares, and all products.
-std::vector<Spatial> spatial_group(const systems::Description& system) {
-  const int d = system.dimension();
-  std::vector<Spatial> group{{"1", false, -1, Eigen::MatrixXd::Identity(d, d)}};
+std::vector<Spatial> spatial_group(const systems::Structure& system) {
+  std::vector<Spatial> group{{"1", false, -1, systems::AffineMap::identity(system.dimension)}};
   for (std::size_t n = 0; n < system.equivariances.size(); ++n)
-    group.push_back({system.equivariances[n].name, false, static_cast<int>(n), system.equivariances[n].matrix});
+    group.push_back({system.equivariances[n].name, false, static_cast<int>(n), system.equivariances[n].map});
   for (std::size_t n = 0; n < system.reversors.size(); ++n)
-    group.push_back({system.reversors[n].name, true, static_cast<int>(n), system.reversors[n].matrix});
+    group.push_back({system.reversors[n].name, true, static_cast<int>(n), system.reversors[n].map});
   const std::size_t generators = group.size();
   for (std::size_t n = 0; n < group.size(); ++n)
     for (std::size_t g = 1; g < generators; ++g) {
       const bool reversing = group[n].reversing != group[g].reversing;
-      const Eigen::MatrixXd product = group[n].matrix * group[g].matrix;
+      const systems::AffineMap product = group[n].map * group[g].map;
       const bool known = std::any_of(group.begin(), group.end(), [&](const Spatial& s) {
-        return s.reversing == reversing && (s.matrix - product).norm() < same_matrix;
+        return s.reversing == reversing && s.map.is_same(product, system.angles);
       });
       if (known) continue;
       core::require(group.size() < largest_group, "the declared symmetries of a system must generate a finite group");
@@ -47,11 +45,12 @@ std::vector<Spatial> spatial_group(const systems::Description& system) {
   return group;
 }
 
-int order_of(const Eigen::MatrixXd& matrix) {
-  Eigen::MatrixXd power = matrix;
+int order_of(const systems::AffineMap& map, const std::vector<int>& angles) {
+  const auto identity = systems::AffineMap::identity(map.dimension());
+  systems::AffineMap power = map;
   int order = 1;
-  while (!power.isIdentity(same_matrix)) {
-    power *= matrix;
+  while (!power.is_same(identity, angles)) {
+    power = power * map;
     ++order;
   }
   return order;
@@ -59,9 +58,9 @@ int order_of(const Eigen::MatrixXd& matrix) {
 
 // Shifts of symmetries are multiples of T/m over the order of their matrix (and of quarters, as in isotropies), the loop
 // being an orbit m times around.
-int shared_order(const std::vector<Spatial>& group) {
+int shared_order(const std::vector<Spatial>& group, const std::vector<int>& angles) {
   int order = 4;
-  for (const Spatial& s : group) order = std::lcm(order, order_of(s.matrix));
+  for (const Spatial& s : group) order = std::lcm(order, order_of(s.map, angles));
   return order;
 }
 
@@ -91,7 +90,7 @@ bool Action::maps(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const 
   return (matrix * from - to).norm() < same_vector;
 }
 
-SymmetryGroup::SymmetryGroup(const systems::Description& system, const loop::Loop& base,
+SymmetryGroup::SymmetryGroup(const systems::Structure& system, const loop::Loop& base,
                              const std::vector<std::vector<double>>& kernel, const DirectionOptions& options) {
   const auto n = static_cast<Eigen::Index>(kernel.size());
   _kernel.resize(static_cast<Eigen::Index>(base.modes.size()), n);
@@ -113,15 +112,15 @@ SymmetryGroup::SymmetryGroup(const systems::Description& system, const loop::Loo
           "kernel vectors of an equilibrium must be of harmonic 1");
 
   const std::vector<Spatial> spatial = spatial_group(system);
-  _denominator = shared_order(spatial) * std::max(times, 1);
+  _denominator = shared_order(spatial, system.angles) * std::max(times, 1);
   for (const Spatial& s : spatial)
     for (int shift = 0; shift < _denominator; ++shift) {
       const int divisor = std::gcd(shift, _denominator);
-      const loop::SymmetryElement element{s.name, s.reversing, s.matrix, shift / divisor, _denominator / divisor};
+      const loop::SymmetryElement element{s.name, s.reversing, s.map, shift / divisor, _denominator / divisor};
       if (loop::symmetry_defect(base, element, system.angles) > options.symmetry_tolerance) continue;
       Eigen::MatrixXd images(_kernel.rows(), n);
       for (Eigen::Index c = 0; c < n; ++c) {
-        const loop::Loop image = loop::transformed(vectors[static_cast<std::size_t>(c)], element);
+        const loop::Loop image = loop::transformed_perturbation(vectors[static_cast<std::size_t>(c)], element);
         images.col(c) = Eigen::Map<const Eigen::VectorXd>(image.modes.data(), _kernel.rows());
       }
       const Eigen::MatrixXd action = _kernel.transpose() * images;

@@ -21,7 +21,7 @@ struct Action {
 /// allows. A constant loop allows every shift: the actions then hold a finite part of these, and comparisons all of them.
 class SymmetryGroup {
  public:
-  SymmetryGroup(const systems::Description& system, const loop::Loop& base,
+  SymmetryGroup(const systems::Structure& system, const loop::Loop& base,
                 const std::vector<std::vector<double>>& kernel, const DirectionOptions& options);
 
   [[nodiscard]] const std::vector<Action>& actions() const { return _actions; }

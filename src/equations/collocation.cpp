@@ -21,7 +21,7 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 bool Collocation::applies(const systems::System& system, const loop::FundamentalDomain& domain) {
   if (!ChunkedBox::of_dimension(system.dimension()) || !domain.is_square()) return false;
-  return domain.reversor.has_value() || system.description().conservative;
+  return domain.reversor.has_value() || system.structure().conservative();
 }
 
 Collocation::Collocation(const systems::System& system, const loop::FundamentalDomain& domain,
@@ -102,7 +102,7 @@ void Collocation::residual(const double* u, double* r) const {
   const double scale = _grid.spacing() * u[period_at()] / two_pi;
   if (_borders > 1) {
     const double mu = u[period_at() + 1];
-    _system.energy_gradients(at(m), _z.data(), _gradient.data());
+    _system.conserved_gradients(0, at(m), _z.data(), _gradient.data());
     for (std::size_t q = 0; q < _f.size(); ++q) _f[q] += mu * _gradient[q];
   }
   for (int i = 0; i < d; ++i) {
@@ -142,7 +142,7 @@ void Collocation::factor(const double* u) {
     }
   }
   _jacobian_rms = std::sqrt(square / m);
-  if (_borders > 1) _system.energy_gradients(at(m), _z.data(), _gradient.data());
+  if (_borders > 1) _system.conserved_gradients(0, at(m), _z.data(), _gradient.data());
   for (int i = 0; i < d; ++i)
     for (int j = 0; j < m; ++j) {
       const double c = scale * _density[at(j)];

@@ -18,16 +18,16 @@ struct Element {
   Eigen::MatrixXd matrix;
 };
 
-bool keeps_energy(const systems::System& system, const std::vector<double>& state, const Eigen::MatrixXd& matrix) {
-  if (!system.description().conservative) return true;
+bool keeps_energy(const systems::System& system, const std::vector<double>& state, const systems::AffineMap& map) {
+  if (!system.structure().conservative()) return true;
   const Eigen::VectorXd z = Eigen::Map<const Eigen::VectorXd>(state.data(), static_cast<Eigen::Index>(state.size()));
-  const Eigen::VectorXd image = matrix * z;
+  const Eigen::VectorXd image = map(z);
   Eigen::VectorXd here(z.size());
   Eigen::VectorXd there(z.size());
   const std::size_t d = state.size();
-  system.energy_gradient(state, {here.data(), d});
-  system.energy_gradient({image.data(), d}, {there.data(), d});
-  return (matrix.transpose() * there - here).norm() < 1e-6 * here.norm();
+  system.conserved_gradient(0, state, {here.data(), d});
+  system.conserved_gradient(0, {image.data(), d}, {there.data(), d});
+  return (map.matrix.transpose() * there - here).norm() < 1e-6 * here.norm();
 }
 
 /// Whether nodes equidistant in s stay such nodes under the element: the time map must share its symmetry.
@@ -85,7 +85,7 @@ FundamentalGroup fundamental_group(const systems::System& system, const loop::Lo
     if (!keeps_nodes(loop.time_map, element)) continue;
     if (element.reversing) {
       if (!result.reversor) result.reversor = element;
-    } else if (keeps_energy(system, state, element.matrix)) {
+    } else if (keeps_energy(system, state, element.map)) {
       shifts.push_back(&element);
       denominator = std::lcm(denominator, element.shift_denominator);
     }
@@ -93,7 +93,7 @@ FundamentalGroup fundamental_group(const systems::System& system, const loop::Lo
   std::vector<Element> generators;
   for (const loop::SymmetryElement* element : shifts) {
     const int shift = element->shift_numerator * (denominator / element->shift_denominator);
-    generators.push_back({sum_modulo(shift, 0, denominator), element->matrix});
+    generators.push_back({sum_modulo(shift, 0, denominator), element->map.matrix});
   }
   const std::vector<Element> group = closure(generators, denominator, d);
   int least = denominator;

@@ -31,8 +31,8 @@ class Equations : public testing::TestWithParam<Case> {
   static constexpr int cells = 24;
   loop::Isotropy isotropy = [this] {
     loop::Isotropy out;
-    if (GetParam().shift) out.push_back(test::element_of(pendulum().description(), "S", 1, 2));
-    if (GetParam().reversor) out.push_back(test::element_of(pendulum().description(), "R"));
+    if (GetParam().shift) out.push_back(test::element_of(pendulum().structure(), "S", 1, 2));
+    if (GetParam().reversor) out.push_back(test::element_of(pendulum().structure(), "R"));
     return out;
   }();
   loop::TimeMap map{GetParam().kappa, {}};

@@ -168,7 +168,7 @@ TEST(Domain, TakesTheLeastShift) {
   Isotropy isotropy = threefold().isotropy;
   isotropy[0].shift_numerator = 2;  // C moves by two thirds of a period, so C^2 by one third
   const FundamentalDomain domain = fundamental_domain(isotropy, 4);
-  EXPECT_LT((domain.generator - isotropy[0].matrix * isotropy[0].matrix).norm(), 1e-14);
+  EXPECT_LT((domain.generator - isotropy[0].map.matrix * isotropy[0].map.matrix).norm(), 1e-14);
 }
 
 TEST(Domain, TooFewCellsAreRefused) { EXPECT_THROW(StaggeredGrid(fundamental_domain({}, 2), 1), core::MisuseError); }

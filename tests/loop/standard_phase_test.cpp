@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "loop/samples.hpp"
+#include "support/stated_system.hpp"
 
 namespace orbweaver::loop {
 namespace {
@@ -15,8 +16,8 @@ using test::element_of;
 const double irrational = std::sqrt(2.0) / 7.0;
 constexpr double pi = std::numbers::pi;
 
-const systems::Description& pendulum() { return systems::describe_system("double_pendulum"); }
-const systems::Description& galaxy() { return systems::describe_system("henon_heiles"); }
+const systems::Structure& pendulum() { return test::structure_of("double_pendulum"); }
+const systems::Structure& galaxy() { return test::structure_of("henon_heiles"); }
 
 Loop loop_with(const Isotropy& isotropy, const std::vector<double>& mean = {0.0, 0.0, 0.0, 0.0}) {
   return test::random_loop_in(Subspace(4, 8, isotropy), constant_loop(mean, 5.0, 8), 71);

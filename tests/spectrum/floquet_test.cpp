@@ -39,7 +39,7 @@ loop::Loop first_oscillation(int dimension, int cutoff = 3) {
 }
 
 loop::Isotropy isotropy_of(const systems::System& system, const loop::Loop& loop) {
-  return loop::find_isotropy(system.description(), loop, 1e-9);
+  return loop::find_isotropy(system.structure(), loop, 1e-9);
 }
 
 void expect_value(std::complex<double> value, double error, std::complex<double> truth, double relative) {
@@ -292,7 +292,7 @@ TEST(PendulumIndex, NewtonStepOfARoughLoopLeadsToTheOrbit) {
       const spectrum::Chain chain = spectrum::make_chain(*system, stepper, rough, group, 8 * rough.cutoff);
       const auto index = [&](const spectrum::Chain& along) {
         const spectrum::TransverseFlow flow = spectrum::transverse_flow(*system, along, group);
-        return spectrum::floquet_indices(system->description(), flow, group.order).fundamental[0].real();
+        return spectrum::floquet_indices(system->structure(), flow, group.order).fundamental[0].real();
       };
       const spectrum::OrbitCorrection correction = spectrum::orbit_correction(chain, group, true);
       const double factor = 1e-7 / correction.states.cwiseAbs().maxCoeff();
@@ -388,7 +388,7 @@ std::vector<loop::Loop> henon_orbits(const std::shared_ptr<const systems::System
   start.direction = direction.modes;
   loop::Loop small = start.base;
   for (std::size_t n = 0; n < small.modes.size(); ++n) small.modes[n] += 1e-3 * start.direction[n];
-  for (const loop::SymmetryElement& element : loop::find_isotropy(system->description(), small, 1e-9))
+  for (const loop::SymmetryElement& element : loop::find_isotropy(system->structure(), small, 1e-9))
     if (element.name == "S" || element.name == "R")
       if (element.shift_numerator == 0) start.isotropy.push_back(element);
   std::vector<loop::Loop> loops;

@@ -6,6 +6,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/survey/tasks/work.hpp"
 #include "orbweaver/systems/system.hpp"
+#include "support/stated_system.hpp"
 #include "tasks/payload.hpp"
 
 namespace {
@@ -15,7 +16,7 @@ using namespace orbweaver::survey;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-const systems::Description& pendulum() { return systems::describe_system("double_pendulum"); }
+const systems::Structure& pendulum() { return test::structure_of("double_pendulum"); }
 
 IsotropyRecord sample_isotropy() { return {{"S", "R"}, {0, 1}, {1, 0}, {2, 1}}; }
 Lineage sample_lineage() { return {"0001.0002/003.q4.j1/0", "0001.0002/003.q4.j1", 1, 2, -1}; }
@@ -254,14 +255,14 @@ TEST(Payload, ForeignBytesAreRefused) {
 }
 
 TEST(WorkIsotropy, TravelsWithItsMatrices) {
-  const loop::Isotropy isotropy{{"S", false, pendulum().equivariances[0].matrix, 1, 2},
-                                {"RS", true, pendulum().reversors[1].matrix, 3, 4}};
+  const loop::Isotropy isotropy{{"S", false, pendulum().equivariances[0].map, 1, 2},
+                                {"RS", true, pendulum().reversors[1].map, 3, 4}};
   const loop::Isotropy back = isotropy_of(record_of(isotropy), pendulum());
   ASSERT_EQ(back.size(), 2U);
   EXPECT_EQ(loop::to_text(back), loop::to_text(isotropy));
   for (std::size_t n = 0; n < 2; ++n) {
     EXPECT_EQ(back[n].reversing, isotropy[n].reversing);
-    EXPECT_EQ(back[n].matrix, isotropy[n].matrix);
+    EXPECT_EQ(back[n].map.matrix, isotropy[n].map.matrix);
   }
 }
 

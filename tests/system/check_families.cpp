@@ -69,7 +69,7 @@ Box box_of(const std::vector<Point>& points, std::size_t first, std::size_t last
 }
 
 // "S@1/2 R@0" back to what it says.
-loop::Isotropy isotropy_of(const systems::Description& system, const std::string& text) {
+loop::Isotropy isotropy_of(const systems::Structure& system, const std::string& text) {
   loop::Isotropy out;
   std::size_t at = 0;
   while (at < text.size()) {
@@ -84,12 +84,12 @@ loop::Isotropy isotropy_of(const systems::Description& system, const std::string
     element.shift_numerator = std::stoi(shift);
     if (const std::size_t slash = shift.find('/'); slash != std::string::npos)
       element.shift_denominator = std::stoi(shift.substr(slash + 1));
-    if (element.name == "1") element.matrix = Eigen::MatrixXd::Identity(system.dimension(), system.dimension());
+    if (element.name == "1") element.map = systems::AffineMap::identity(system.dimension);
     for (const systems::Symmetry& s : system.equivariances)
-      if (s.name == element.name) element.matrix = s.matrix;
+      if (s.name == element.name) element.map = s.map;
     for (const systems::Symmetry& r : system.reversors)
-      if (r.name == element.name) element.matrix = r.matrix, element.reversing = true;
-    core::require(element.matrix.size() > 0, "an isotropy names symmetries that the system declares");
+      if (r.name == element.name) element.map = r.map, element.reversing = true;
+    core::require(element.map.dimension() > 0, "an isotropy names symmetries that the system declares");
     out.push_back(std::move(element));
   }
   return out;
@@ -102,7 +102,7 @@ class Check {
     _system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
     for (std::size_t n = 0; n < _atlas.families().rows(); ++n) {
       Family family{_atlas.families().texts("name")[n],
-                    isotropy_of(_system->description(), _atlas.families().texts("isotropy")[n]),
+                    isotropy_of(_system->structure(), _atlas.families().texts("isotropy")[n]),
                     {},
                     {},
                     {}};
@@ -176,12 +176,12 @@ class Check {
 
   [[nodiscard]] continuation::Orbit orbit_of(const Point& point) const {
     continuation::Orbit orbit;
-    orbit.loop = archive::loop_of(_atlas, point.row, _system->description().angles);
+    orbit.loop = archive::loop_of(_atlas, point.row, _system->structure().angles);
     orbit.energy = point.values[1];
     orbit.action = point.values[2];
-    const systems::Description& system = _system->description();
+    const systems::Structure& system = _system->structure();
     if (point.moved && !system.equivariances.empty())
-      orbit.loop = loop::transformed(orbit.loop, system.equivariances.front().matrix, false, 0.0);
+      orbit.loop = loop::transformed(orbit.loop, system.equivariances.front().map, false, 0.0);
     if (point.moved) orbit.loop = loop::time_shifted(orbit.loop, 0.3183);
     return orbit;
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <span>
 
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/systems/system.hpp"
@@ -20,7 +21,10 @@ struct Orbit {
   double off_branch_eigenvalue = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Energy of a loop: that of its state at s = 0 (NaN for systems without one).
+/// The first conserved quantity at a state; NaN for systems without one.
+[[nodiscard]] double energy_at(const systems::System& system, std::span<const double> state);
+
+/// Energy of a loop: that of its state at s = 0.
 [[nodiscard]] double energy_of(const systems::System& system, const loop::Loop& loop);
 
 /// Action over one period: T times the mean over time of p . dq/dt, on the loss's nodes (spectrally accurate).

@@ -21,20 +21,19 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 struct Candidate {
   std::string name;
   bool reversing;
-  Eigen::MatrixXd matrix;
+  systems::AffineMap map;
 };
 
-std::vector<Candidate> candidates_of(const systems::Description& system) {
-  const int d = system.dimension();
-  std::vector<Candidate> out{{"1", false, Eigen::MatrixXd::Identity(d, d)}};
-  for (const systems::Symmetry& s : system.equivariances) out.push_back({s.name, false, s.matrix});
-  for (const systems::Symmetry& r : system.reversors) out.push_back({r.name, true, r.matrix});
+std::vector<Candidate> candidates_of(const systems::Structure& system) {
+  std::vector<Candidate> out{{"1", false, systems::AffineMap::identity(system.dimension)}};
+  for (const systems::Symmetry& s : system.equivariances) out.push_back({s.name, false, s.map});
+  for (const systems::Symmetry& r : system.reversors) out.push_back({r.name, true, r.map});
   if (system.reversors.empty()) return out;
   const systems::Symmetry& first = system.reversors.front();
   for (const systems::Symmetry& s : system.equivariances) {
-    const Eigen::MatrixXd matrix = first.matrix * s.matrix;
-    const auto is_known = [&](const Candidate& c) { return c.reversing && c.matrix.isApprox(matrix, 1e-9); };
-    if (std::none_of(out.begin(), out.end(), is_known)) out.push_back({first.name + s.name, true, matrix});
+    const systems::AffineMap map = first.map * s.map;
+    const auto is_known = [&](const Candidate& c) { return c.reversing && c.map.is_same(map, system.angles); };
+    if (std::none_of(out.begin(), out.end(), is_known)) out.push_back({first.name + s.name, true, map});
   }
   return out;
 }
@@ -49,8 +48,8 @@ double in_period(double shift) {
 
 // The closest shift under one candidate; of equally close ones the smallest.
 Alignment closest(const Candidate& candidate, const Loop& from, const Loop& to, const std::vector<int>& angles) {
-  Alignment best{candidate.name, candidate.reversing, candidate.matrix, 0.0, {}, infinity};
-  const Loop image = transformed(from, candidate.matrix, candidate.reversing, 0.0);
+  Alignment best{candidate.name, candidate.reversing, candidate.map, 0.0, {}, infinity};
+  const Loop image = transformed(from, candidate.map, candidate.reversing, 0.0);
   if (image.winding != to.winding) return best;
   const std::vector<ShiftMinimum> minima = shift_minima(image, to, angles);
   // Correlations know D only to 1e-8 of the loop: what is as close as that is compared by the loops themselves.
@@ -72,7 +71,7 @@ Alignment closest(const Candidate& candidate, const Loop& from, const Loop& to, 
   return best;
 }
 
-Alignment closest(const systems::Description& system, const Loop& from, const Loop& to) {
+Alignment closest(const systems::Structure& system, const Loop& from, const Loop& to) {
   Alignment best;
   for (const Candidate& candidate : candidates_of(system)) {
     Alignment found = closest(candidate, from, to, system.angles);
@@ -85,8 +84,8 @@ Loop coarse(const Loop& loop) { return loop.time_map.is_identity() ? loop : inte
 
 }  // namespace
 
-Alignment align(const systems::Description& system, const Loop& from, const Loop& to, double hopeless) {
-  core::require(from.dimension == to.dimension && from.dimension == system.dimension(),
+Alignment align(const systems::Structure& system, const Loop& from, const Loop& to, double hopeless) {
+  core::require(from.dimension == to.dimension && from.dimension == system.dimension,
                 "loops of different dimension cannot be aligned");
   if (std::isfinite(hopeless)) {
     Alignment best = closest(system, coarse(from), coarse(to));
@@ -96,7 +95,7 @@ Alignment align(const systems::Description& system, const Loop& from, const Loop
 }
 
 Loop aligned(const Loop& from, const Alignment& alignment) {
-  Loop out = transformed(from, alignment.matrix, alignment.reversing, alignment.shift);
+  Loop out = transformed(from, alignment.map, alignment.reversing, alignment.shift);
   for (std::size_t i = 0; i < alignment.turns.size(); ++i)
     out.cosine(0, static_cast<int>(i)) += two_pi * alignment.turns[i];
   return out;

@@ -32,10 +32,10 @@ MatrixXd conditions_of_fixed_space(const MatrixXd& matrix) {
 /// g with z(t + T/q) = g z(t), from a symmetry of shift numerator / q.
 MatrixXd least_shift(const SymmetryElement& element) {
   const int q = element.shift_denominator;
-  MatrixXd power = MatrixXd::Identity(element.matrix.rows(), element.matrix.cols());
+  MatrixXd power = MatrixXd::Identity(element.map.matrix.rows(), element.map.matrix.cols());
   for (int n = 0; n < q; ++n) {
     if (n * element.shift_numerator % q == 1 % q) return power;
-    power = element.matrix * power;
+    power = element.map.matrix * power;
   }
   return power;
 }
@@ -60,7 +60,7 @@ bool FundamentalDomain::expresses(const Isotropy& isotropy) const {
     MatrixXd power = element.reversing ? *reversor : MatrixXd::Identity(generator.rows(), generator.cols());
     for (int n = 0; n < order; ++n) {
       const double turns = element.shift() - static_cast<double>(n) / order;
-      if (std::abs(turns - std::round(turns)) < 1e-9 && (power - element.matrix).norm() < 1e-9) return true;
+      if (std::abs(turns - std::round(turns)) < 1e-9 && (power - element.map.matrix).norm() < 1e-9) return true;
       power = generator * power;
     }
     return false;
@@ -79,7 +79,7 @@ FundamentalDomain fundamental_domain(const Isotropy& isotropy, int dimension) {
       domain.order = q;
       domain.generator = least_shift(element);
     } else if (element.reversing && !proper && !domain.reversor) {
-      domain.reversor = element.matrix;
+      domain.reversor = element.map.matrix;
     }
   }
   return domain;

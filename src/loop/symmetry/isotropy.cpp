@@ -26,6 +26,12 @@ void apply_matrix(const Eigen::MatrixXd& matrix, Loop& loop) {
   winding = (matrix * winding).eval();
 }
 
+void apply(const systems::AffineMap& map, Loop& loop) {
+  apply_matrix(map.matrix, loop);
+  if (map.is_linear()) return;
+  for (int i = 0; i < loop.dimension; ++i) loop.cosine(0, i) += map.offset(i);
+}
+
 Loop reversed(const Loop& loop) {
   Loop out = loop;
   for (int k = 1; k <= loop.cutoff; ++k)
@@ -47,12 +53,12 @@ void reduce_angles_to(const Loop& target, const std::vector<int>& angles, Loop& 
 constexpr int pattern_cutoff = 12;
 
 std::optional<SymmetryElement> match(const systems::Symmetry& declared, bool reversing,
-                                     const systems::Description& system, const Loop& loop, double tolerance,
+                                     const systems::Structure& system, const Loop& loop, double tolerance,
                                      int max_denominator) {
   for (int q = 1; q <= max_denominator; ++q)
     for (int p = 0; p < q; ++p) {
       if (std::gcd(p, q) != 1) continue;
-      SymmetryElement element{declared.name, reversing, declared.matrix, p, q};
+      SymmetryElement element{declared.name, reversing, declared.map, p, q};
       if (symmetry_defect(loop, element, system.angles) <= tolerance) return element;
     }
   return std::nullopt;
@@ -72,16 +78,20 @@ std::string to_text(const Isotropy& isotropy) {
   return text;
 }
 
-Loop transformed(const Loop& loop, const Eigen::MatrixXd& matrix, bool reversing, double shift) {
-  core::require(matrix.rows() == loop.dimension, "a symmetry of another dimension cannot act on this loop");
+Loop transformed(const Loop& loop, const systems::AffineMap& map, bool reversing, double shift) {
+  core::require(map.dimension() == loop.dimension, "a symmetry of another dimension cannot act on this loop");
   // For a symmetry of z both give z back.
   Loop out = reversing ? reversed(time_shifted(loop, shift)) : time_shifted(loop, shift);
-  apply_matrix(matrix.inverse(), out);
+  apply(map.inverse(), out);
   return out;
 }
 
 Loop transformed(const Loop& loop, const SymmetryElement& element) {
-  return transformed(loop, element.matrix, element.reversing, element.shift());
+  return transformed(loop, element.map, element.reversing, element.shift());
+}
+
+Loop transformed_perturbation(const Loop& perturbation, const SymmetryElement& element) {
+  return transformed(perturbation, element.map.matrix, element.reversing, element.shift());
 }
 
 double symmetry_defect(const Loop& loop, const SymmetryElement& element, const std::vector<int>& angles) {
@@ -91,7 +101,7 @@ double symmetry_defect(const Loop& loop, const SymmetryElement& element, const s
   return mean_distance(loop, image);
 }
 
-Isotropy find_isotropy(const systems::Description& system, const Loop& loop, double tolerance, int max_denominator) {
+Isotropy find_isotropy(const systems::Structure& system, const Loop& loop, double tolerance, int max_denominator) {
   Isotropy isotropy;
   const auto size_with = [&loop](const Isotropy& generators) {
     return Subspace(loop.dimension, pattern_cutoff, generators).size();
@@ -114,7 +124,7 @@ namespace {
 // z(t + a) = g z(t) and z(t + b) = h z(t) give z(t + b + a) = g h z(t); z(b - t) = h z(t) gives z(b - t + a) = g h z(t);
 // g reversing: z(a - (t + b)) = g h z(t), so that b counts backwards.
 SymmetryElement product(const SymmetryElement& g, const SymmetryElement& h) {
-  SymmetryElement out{"", g.reversing != h.reversing, g.matrix * h.matrix, 0, 1};
+  SymmetryElement out{"", g.reversing != h.reversing, g.map * h.map, 0, 1};
   const int q = std::lcm(g.shift_denominator, h.shift_denominator);
   const int a = g.shift_numerator * (q / g.shift_denominator);
   const int b = h.shift_numerator * (q / h.shift_denominator);
@@ -125,27 +135,27 @@ SymmetryElement product(const SymmetryElement& g, const SymmetryElement& h) {
   return out;
 }
 
-bool is_same(const SymmetryElement& a, const SymmetryElement& b) {
+bool is_same(const SymmetryElement& a, const SymmetryElement& b, const std::vector<int>& angles) {
   return a.reversing == b.reversing && a.shift_numerator == b.shift_numerator &&
-         a.shift_denominator == b.shift_denominator && a.matrix.isApprox(b.matrix, 1e-9);
+         a.shift_denominator == b.shift_denominator && a.map.is_same(b.map, angles);
 }
 
-std::string name_of(const systems::Description& system, const SymmetryElement& element) {
-  if (!element.reversing && element.matrix.isIdentity(1e-9)) return "1";
+std::string name_of(const systems::Structure& system, const SymmetryElement& element) {
+  const auto identity = systems::AffineMap::identity(system.dimension);
+  if (!element.reversing && element.map.is_same(identity, system.angles)) return "1";
   for (const systems::Symmetry& s : element.reversing ? system.reversors : system.equivariances)
-    if (element.matrix.isApprox(s.matrix, 1e-9)) return s.name;
+    if (element.map.is_same(s.map, system.angles)) return s.name;
   return "";
 }
 
 }  // namespace
 
-Isotropy generated_group(const systems::Description& system, const Isotropy& generators) {
-  const int d = system.dimension();
-  Isotropy group{{"1", false, Eigen::MatrixXd::Identity(d, d), 0, 1}};
+Isotropy generated_group(const systems::Structure& system, const Isotropy& generators) {
+  Isotropy group{{"1", false, systems::AffineMap::identity(system.dimension), 0, 1}};
   for (std::size_t n = 0; n < group.size(); ++n)
     for (const SymmetryElement& generator : generators) {
       SymmetryElement next = product(generator, group[n]);
-      const auto is_next = [&next](const SymmetryElement& known) { return is_same(known, next); };
+      const auto is_next = [&](const SymmetryElement& known) { return is_same(known, next, system.angles); };
       if (std::any_of(group.begin(), group.end(), is_next)) continue;
       core::require(group.size() < 1000, "these symmetries generate more than 1000");
       next.name = name_of(system, next);
@@ -154,7 +164,7 @@ Isotropy generated_group(const systems::Description& system, const Isotropy& gen
   return group;
 }
 
-std::optional<SymmetryElement> find_map(const systems::Description& system, const Loop& from, const Loop& to,
+std::optional<SymmetryElement> find_map(const systems::Structure& system, const Loop& from, const Loop& to,
                                         double tolerance, int max_denominator) {
   const auto fits = [&](const SymmetryElement& element) {
     Loop image = transformed(from, element);
@@ -165,12 +175,12 @@ std::optional<SymmetryElement> find_map(const systems::Description& system, cons
   const auto search = [&](const systems::Symmetry& declared, bool reversing) -> std::optional<SymmetryElement> {
     for (int q = 1; q <= max_denominator; ++q)
       for (int p = 0; p < q; ++p) {
-        const SymmetryElement element{declared.name, reversing, declared.matrix, p, q};
+        const SymmetryElement element{declared.name, reversing, declared.map, p, q};
         if (std::gcd(p, q) == 1 && fits(element)) return element;
       }
     return std::nullopt;
   };
-  if (auto found = search({"1", Eigen::MatrixXd::Identity(from.dimension, from.dimension)}, false)) return found;
+  if (auto found = search({"1", systems::AffineMap::identity(from.dimension)}, false)) return found;
   for (const systems::Symmetry& s : system.equivariances)
     if (auto found = search(s, false)) return found;
   for (const systems::Symmetry& r : system.reversors)

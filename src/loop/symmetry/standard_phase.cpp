@@ -73,7 +73,7 @@ double turns_of_maximum(const Loop& even, int i) {
 std::optional<double> reversor_phase(const systems::Symmetry& reversor, const std::vector<int>& angles,
                                      const Loop& loop, double tolerance) {
   const Loop even = resolved_in_time(loop);
-  const Loop image = transformed(even, reversor.matrix, true, 0.0);
+  const Loop image = transformed(even, reversor.map, true, 0.0);
   if (image.winding != even.winding) return std::nullopt;
   std::optional<double> phase;
   for (const ShiftMinimum& minimum : shift_minima(image, even, angles)) {
@@ -85,7 +85,7 @@ std::optional<double> reversor_phase(const systems::Symmetry& reversor, const st
   return phase;
 }
 
-Loop in_standard_phase(const systems::Description& system, const Loop& loop, const Isotropy& isotropy) {
+Loop in_standard_phase(const systems::Structure& system, const Loop& loop, const Isotropy& isotropy) {
   const Isotropy group = generated_group(system, isotropy);
   for (const systems::Symmetry& reversor : system.reversors)
     for (const SymmetryElement& element : group) {

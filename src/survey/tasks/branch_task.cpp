@@ -44,14 +44,13 @@ BranchTask::BranchTask(const scene::Scene& scene, std::shared_ptr<const systems:
       _context(context),
       _team(team),
       _options(options_of(scene, _work, team)),
-      _start(start_of(_work, _system->description())),
+      _start(start_of(_work, _system->structure())),
       _curve(_system, _start.isotropy, branch_options(scene, team)),
-      _symmetry(_system->description(), _start.isotropy),
-      _functions(bifurcation::test_functions(_system->description(),
-                                             fundamental_order(_start.isotropy, _system->dimension()),
-                                             scene.survey.subharmonics)) {
+      _symmetry(_system->structure(), _start.isotropy),
+      _functions(bifurcation::test_functions(
+          _system->structure(), fundamental_order(_start.isotropy, _system->dimension()), scene.survey.subharmonics)) {
   _outcome.key = _work.key;
-  if (bifurcation::passes_two_only_at_folds(_system->description(), _start.isotropy))
+  if (bifurcation::passes_two_only_at_folds(_system->structure(), _start.isotropy))
     _options.jumped = [this](const auto& from, const auto& to) { return jumped(from, to); };
   begin(state);
 }
@@ -198,7 +197,7 @@ bool BranchTask::arrive(const continuation::Orbit& orbit) {
 bifurcation::Station BranchTask::station(double position, const std::optional<spectrum::Stability>& stability) const {
   bifurcation::Station out{position, {}};
   for (const bifurcation::TestFunction& function : _functions)
-    out.readings.push_back(stability ? bifurcation::evaluate(function, _system->description(), *stability)
+    out.readings.push_back(stability ? bifurcation::evaluate(function, _system->structure(), *stability)
                                      : bifurcation::Reading{archive::not_computed, archive::not_computed});
   return out;
 }

@@ -15,11 +15,10 @@ namespace {
 constexpr int kinds_a_depth = 3;
 int priority_of(int depth, int kind) { return 1 + kinds_a_depth * depth + kind; }
 
-const Eigen::MatrixXd& declared_matrix(const systems::Description& system, const std::string& name, bool reversing) {
+const systems::AffineMap& declared_map(const systems::Structure& system, const std::string& name, bool reversing) {
   for (const systems::Symmetry& s : reversing ? system.reversors : system.equivariances)
-    if (s.name == name) return s.matrix;
-  throw core::EnvironmentError(
-      fmt::format("a task names the symmetry `{}`, which {} does not declare", name, system.name));
+    if (s.name == name) return s.map;
+  throw core::EnvironmentError(fmt::format("a task names the symmetry `{}`, which the system does not declare", name));
 }
 
 }  // namespace
@@ -50,11 +49,11 @@ IsotropyRecord record_of(const loop::Isotropy& isotropy) {
   return record;
 }
 
-loop::Isotropy isotropy_of(const IsotropyRecord& record, const systems::Description& system) {
+loop::Isotropy isotropy_of(const IsotropyRecord& record, const systems::Structure& system) {
   loop::Isotropy isotropy;
   for (std::size_t n = 0; n < record.names.size(); ++n) {
     const bool reversing = record.reversing.at(n) != 0;
-    isotropy.push_back({record.names[n], reversing, declared_matrix(system, record.names[n], reversing),
+    isotropy.push_back({record.names[n], reversing, declared_map(system, record.names[n], reversing),
                         record.shift_numerators.at(n), record.shift_denominators.at(n)});
   }
   return isotropy;
@@ -109,7 +108,7 @@ LocateWork unpack_locate_work(const std::string& bytes) { return from_payload<Lo
 LocateOutcome unpack_locate_outcome(const std::string& bytes) { return from_payload<LocateOutcome>(bytes); }
 StartWork unpack_start_work(const std::string& bytes) { return from_payload<StartWork>(bytes); }
 
-continuation::Start start_of(const BranchWork& work, const systems::Description& system) {
+continuation::Start start_of(const BranchWork& work, const systems::Structure& system) {
   continuation::Start start;
   start.base = loop_of(work.base);
   start.direction = work.direction;

@@ -12,7 +12,7 @@
 #include "orbweaver/scene/scene.hpp"
 #include "orbweaver/survey/run/survey.hpp"
 #include "orbweaver/survey/tasks/work.hpp"
-#include "orbweaver/systems/description.hpp"
+#include "orbweaver/systems/structure.hpp"
 
 namespace orbweaver::survey {
 
@@ -26,7 +26,7 @@ namespace orbweaver::survey {
 /// only, not on when they came.
 class FamilyTree {
  public:
-  FamilyTree(const scene::Scene& scene, const systems::Description& system) : _scene(scene), _system(system) {}
+  FamilyTree(const scene::Scene& scene, const systems::Structure& system) : _scene(scene), _system(system) {}
 
   /// A task has ended: done, failed or stopped.
   void add(const queue::Task& task, const queue::TaskOutcome& outcome);
@@ -77,7 +77,7 @@ class FamilyTree {
                     const std::map<std::string, int>& crossing_index, Result& result) const;
 
   const scene::Scene& _scene;
-  const systems::Description& _system;
+  const systems::Structure& _system;
   std::map<std::string, Branch> _branches;            // by key
   std::map<std::string, LocateOutcome> _crossings;    // by key
   std::set<std::pair<double, std::string>> _leaving;  // those where families leave, by the period of the born orbits

@@ -7,7 +7,7 @@
 #include <Eigen/Dense>
 
 #include "orbweaver/loop/curve/loop.hpp"
-#include "orbweaver/systems/description.hpp"
+#include "orbweaver/systems/structure.hpp"
 
 namespace orbweaver::loop {
 
@@ -16,7 +16,7 @@ namespace orbweaver::loop {
 struct Alignment {
   std::string name;  ///< "1", or that of the declared symmetry; "RC" for the first reversor R times C
   bool reversing = false;
-  Eigen::MatrixXd matrix;
+  systems::AffineMap map;
   double shift = 0.0;         ///< part of the period, in [0, 1)
   std::vector<double> turns;  ///< added to each coordinate afterwards, in whole turns of 2 pi (0 but for angles)
   double distance = std::numeric_limits<double>::infinity();  ///< sqrt of the mean over time of |w - to|^2
@@ -27,7 +27,7 @@ struct Alignment {
 /// shift either way, among those equally close to 1e-12. The shift is a minimum of the distance to rounding. Where not
 /// even 119 harmonics of the loops in time come closer than `hopeless`, that distance is returned. Infinite distance if the
 /// loops wind otherwise under every symmetry. Throws MisuseError if dimensions differ.
-[[nodiscard]] Alignment align(const systems::Description& system, const Loop& from, const Loop& to,
+[[nodiscard]] Alignment align(const systems::Structure& system, const Loop& from, const Loop& to,
                               double hopeless = std::numeric_limits<double>::infinity());
 
 /// `from` (or a neighbour of it, with the same phase convention) moved by an alignment.

@@ -6,7 +6,7 @@
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/continuation/branch.hpp"
 #include "orbweaver/queue/task.hpp"
-#include "orbweaver/systems/description.hpp"
+#include "orbweaver/systems/structure.hpp"
 
 namespace orbweaver::survey {
 
@@ -40,7 +40,7 @@ struct IsotropyRecord {
 };
 [[nodiscard]] IsotropyRecord record_of(const loop::Isotropy& isotropy);
 /// With the matrices that `system` declares. Throws EnvironmentError for a name that it does not.
-[[nodiscard]] loop::Isotropy isotropy_of(const IsotropyRecord& record, const systems::Description& system);
+[[nodiscard]] loop::Isotropy isotropy_of(const IsotropyRecord& record, const systems::Structure& system);
 
 /// Look for small oscillations around one equilibrium.
 struct SweepWork {
@@ -207,6 +207,6 @@ struct StartWork {
 [[nodiscard]] StartWork unpack_start_work(const std::string& bytes);
 
 /// The start that a branch's work describes.
-[[nodiscard]] continuation::Start start_of(const BranchWork& work, const systems::Description& system);
+[[nodiscard]] continuation::Start start_of(const BranchWork& work, const systems::Structure& system);
 
 }  // namespace orbweaver::survey
