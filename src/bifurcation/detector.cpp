@@ -162,15 +162,16 @@ void Detector::take(std::size_t function, const Node& node, const Probe& probe, 
   Watch& watch = _state.watches[function];
   if (node.reading.sign() == 0) {
     const double size = std::abs(node.reading.value);
-    if (node.reading.error <= _options.touch_error && (!watch.faint || size < std::abs(watch.faint->reading.value)))
-      watch.faint = node;
+    if (node.reading.error <= _options.touch_error &&
+        (!watch.undecided || size < std::abs(watch.undecided->reading.value)))
+      watch.undecided = node;
     return;
   }
   std::vector<Node>& last = watch.signed_nodes;
   if (!last.empty()) {
     if (last.back().reading.sign() != node.reading.sign())
       found.push_back({function, last.back().position, node.position, false});
-    else if (watch.faint)
+    else if (watch.undecided)
       examine(function, last.back(), node, probe, found);
   }
   if (last.size() == 2) {
@@ -178,7 +179,7 @@ void Detector::take(std::size_t function, const Node& node, const Probe& probe, 
     last.erase(last.begin());
   }
   last.push_back(node);
-  watch.faint.reset();
+  watch.undecided.reset();
 }
 
 std::vector<Bracket> Detector::advance(const Station& next, const Probe& probe) {

@@ -43,7 +43,7 @@ void Coordinator::serve() {
   while (!_over) {
     bool busy = receive_some();
     busy |= pass_on_stop();
-    busy |= mind_deadlines();
+    busy |= check_deadlines();
     busy |= advance_flush();
     busy |= hand_out();
     _ledger.tick();
@@ -71,10 +71,10 @@ bool Coordinator::pass_on_stop() {
   return true;
 }
 
-bool Coordinator::mind_deadlines() {
-  if (const auto deaf = _deadlines.deaf()) {
+bool Coordinator::check_deadlines() {
+  if (const auto rank = _deadlines.unresponsive()) {
     // It cannot be asked to take part in an orderly end.
-    core::log_error(deaf_text(_task_of[static_cast<std::size_t>(*deaf)], *deaf, _options.task_seconds));
+    core::log_error(unresponsive_text(_task_of[static_cast<std::size_t>(*rank)], *rank, _options.task_seconds));
     MPI_Abort(_comm.get(), static_cast<int>(core::ExitStatus::environment_failed));
   }
   const std::vector<int> workers = _deadlines.overdue();
@@ -213,7 +213,7 @@ void Coordinator::part(const std::string& error) {
   while (goodbyes < _comm.size() - 1 || _channel.sending()) {
     const auto received = _channel.poll();
     if (!received) {
-      mind_deadlines();
+      check_deadlines();
       backoff.wait();
       continue;
     }

@@ -27,7 +27,7 @@ class Coordinator {
   bool receive_some();
   bool pass_on_stop();
   bool advance_flush();
-  bool mind_deadlines();
+  bool check_deadlines();
   bool hand_out();
   [[nodiscard]] bool work_over() const;
   void flush_together();

@@ -32,7 +32,7 @@ std::vector<int> Deadlines::overdue() {
   return workers;
 }
 
-std::optional<int> Deadlines::deaf() const {
+std::optional<int> Deadlines::unresponsive() const {
   for (std::size_t rank = 0; rank < _of.size() && _seconds > 0; ++rank)
     if (_of[rank].told && _of[rank].seconds() >= 2 * _seconds) return static_cast<int>(rank);
   return std::nullopt;

@@ -23,7 +23,7 @@ class Deadlines {
   [[nodiscard]] std::vector<int> overdue();
   [[nodiscard]] bool told(int worker) const { return _of[static_cast<std::size_t>(worker)].told; }
   /// A worker who was told and has not ended its task in time.
-  [[nodiscard]] std::optional<int> deaf() const;
+  [[nodiscard]] std::optional<int> unresponsive() const;
 
  private:
   struct Watch {

@@ -30,7 +30,7 @@ TaskOutcome execute_guarded(Executor& executor, const Task& task, TaskContext& c
   return outcome;
 }
 
-std::string deaf_text(const std::string& key, int rank, double task_seconds) {
+std::string unresponsive_text(const std::string& key, int rank, double task_seconds) {
   return fmt::format(
       "task {} on rank {} was to end after {:g} s and has not done so in the same time again; ending the program: what "
       "the "

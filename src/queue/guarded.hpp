@@ -15,7 +15,7 @@ namespace orbweaver::queue {
 [[nodiscard]] TaskOutcome execute_guarded(Executor& executor, const Task& task, TaskContext& context);
 
 /// What a program says before it ends because a task neither ends nor reports.
-[[nodiscard]] std::string deaf_text(const std::string& key, int rank, double task_seconds);
+[[nodiscard]] std::string unresponsive_text(const std::string& key, int rank, double task_seconds);
 
 /// A debug line on a task that has ended here: how long it took, the longest time it let pass without a report (s), bytes in
 /// and out, and its children.

@@ -55,8 +55,8 @@ void Watchdog::watch() {
   std::unique_lock lock(_mutex);
   while (!_woken.wait_for(lock, interval, [this] { return _over; })) {
     static_cast<void>(_deadlines.overdue());
-    if (!_deadlines.deaf()) continue;
-    core::log_error(deaf_text(_key, 0, _seconds));
+    if (!_deadlines.unresponsive()) continue;
+    core::log_error(unresponsive_text(_key, 0, _seconds));
     std::_Exit(static_cast<int>(core::ExitStatus::environment_failed));  // the task's thread will not end by itself
   }
 }

@@ -1,4 +1,4 @@
-// check_tree ATLAS [--failures N] [--bases N]: whether the families of a survey make a sound tree (tree_problems.hpp).
+// check_tree ATLAS [--failures N] [--base-families N]: whether the families of a survey make a sound tree (tree_problems.hpp).
 // Ends with 1 and a line a problem where they do not.
 #include <cstdio>
 #include <cstdlib>
@@ -16,13 +16,13 @@ int main(int argc, char** argv) {
     const std::string word = argv[i];
     if (word == "--failures")
       options.failures = static_cast<std::size_t>(std::atoi(argv[i + 1]));
-    else if (word == "--bases")
-      options.bases = std::atoi(argv[i + 1]);
+    else if (word == "--base-families")
+      options.base_families = std::atoi(argv[i + 1]);
     else
       understood = false;
   }
   if (!understood) {
-    std::fputs("usage: check_tree ATLAS [--failures N] [--bases N]\n", stderr);
+    std::fputs("usage: check_tree ATLAS [--failures N] [--base-families N]\n", stderr);
     return 2;
   }
   const archive::Archive atlas(argv[1]);

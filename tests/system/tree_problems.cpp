@@ -35,7 +35,7 @@ class Tree {
   void check(const TreeOptions& options) {
     check_names();
     check_ends(options.failures);
-    check_bases(options.bases);
+    check_base_families(options.base_families);
     for (std::size_t family = 0; family < _families.rows(); ++family) {
       check_ancestors(family);
       check_birth(family);
@@ -85,7 +85,7 @@ class Tree {
     if (failed.size() > allowed) _problems.insert(_problems.end(), failed.begin(), failed.end());
   }
 
-  void check_bases(int expected) {
+  void check_base_families(int expected) {
     const auto& parents = _families.integers("parent");
     const auto found = std::count_if(parents.begin(), parents.end(), [](std::int64_t row) { return row < 0; });
     expect(expected < 0 || found == expected, "{} families have no parent, where {} were expected", found, expected);

@@ -41,7 +41,7 @@ struct DetectorState {
   };
   struct Watch {
     std::vector<Node> signed_nodes;                                 ///< the last two readings with a sign
-    std::optional<Node> faint;                                      ///< the smallest since without one
+    std::optional<Node> undecided;                                  ///< the smallest since without one
     double scale = 0.0;                                             ///< the largest modulus so far
     double examined_to = -std::numeric_limits<double>::infinity();  ///< minima up to here have been looked at
   };

@@ -16,7 +16,7 @@ struct AtlasTables {
 };
 
 /// Throws InputError, naming dataset and row, for an index outside its table, modes outside /modes or of a number that
-/// does not fit the cutoff, and families whose lots of orbits do not agree with /orbits/family.
+/// does not fit the cutoff, and families whose ranges of orbits do not agree with /orbits/family.
 void check_indices(const SerialFile& file, const AtlasTables& tables);
 
 }  // namespace orbweaver::archive

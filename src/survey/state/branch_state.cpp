@@ -61,10 +61,10 @@ void serialize(Archive& archive, bifurcation::DetectorState::Node& n, unsigned) 
 
 template <class Archive>
 void serialize(Archive& archive, bifurcation::DetectorState::Watch& w, unsigned) {
-  bool has_faint = w.faint.has_value();
-  archive& w.signed_nodes& has_faint;
-  if (has_faint && !w.faint) w.faint.emplace();
-  if (has_faint) archive&* w.faint;
+  bool has_undecided = w.undecided.has_value();
+  archive& w.signed_nodes& has_undecided;
+  if (has_undecided && !w.undecided) w.undecided.emplace();
+  if (has_undecided) archive&* w.undecided;
   archive& w.scale& w.examined_to;
 }
 

@@ -16,7 +16,7 @@ class SerialFile;
 class Archive {
  public:
   /// Opens and checks everything but the numbers: format and version, that all columns of docs/file_format.md exist
-  /// with the right type, shape and equal lengths, and that every index and every lot of modes lies within its table.
+  /// with the right type, shape and equal lengths, and that every index and every range of modes lies within its table.
   /// Throws InputError that says what is wrong, where, and what to do.
   explicit Archive(const std::filesystem::path& path);
   Archive(Archive&&) noexcept;

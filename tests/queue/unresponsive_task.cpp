@@ -12,10 +12,10 @@ namespace {
 
 using namespace orbweaver;
 
-class Deaf final : public queue::Executor {
+class Unresponsive final : public queue::Executor {
  public:
   queue::TaskOutcome execute(const queue::Task& task, queue::TaskContext&) override {
-    if (task.key == "deaf") std::this_thread::sleep_for(std::chrono::hours(1));
+    if (task.key == "unresponsive") std::this_thread::sleep_for(std::chrono::hours(1));
     return {};
   }
 };
@@ -35,10 +35,10 @@ int main(int argc, char** argv) {
     queue::Options options;
     options.task_seconds = 0.5;
     options.flush_seconds = 0.1;
-    Deaf executor;
+    Unresponsive executor;
     Nothing flusher;
     queue::Observer nobody;
-    queue::run(comm, options, {{"a", 0, "", ""}, {"deaf", 1, "", ""}, {"z", 2, "", ""}}, executor, nobody, flusher);
+    queue::run(comm, options, {{"a", 0, "", ""}, {"unresponsive", 1, "", ""}, {"z", 2, "", ""}}, executor, nobody, flusher);
   }
   MPI_Finalize();
   return 0;
