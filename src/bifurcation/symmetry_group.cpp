@@ -13,36 +13,14 @@ namespace orbweaver::bifurcation {
 namespace {
 
 constexpr double same_vector = 1e-3;  // kernel vectors are good to kernel_tolerance
-constexpr std::size_t largest_group = 200;
 
-struct Spatial {
-  std::string name;
-  bool reversing;
-  int declared;
-  systems::AffineMap map;
-};
-
-// The identity, what the system declares, and all products.
-std::vector<Spatial> spatial_group(const systems::Structure& system) {
-  std::vector<Spatial> group{{"1", false, -1, systems::AffineMap::identity(system.dimension)}};
-  for (std::size_t n = 0; n < system.equivariances.size(); ++n)
-    group.push_back({system.equivariances[n].name, false, static_cast<int>(n), system.equivariances[n].map});
-  for (std::size_t n = 0; n < system.reversors.size(); ++n)
-    group.push_back({system.reversors[n].name, true, static_cast<int>(n), system.reversors[n].map});
-  const std::size_t generators = group.size();
-  for (std::size_t n = 0; n < group.size(); ++n)
-    for (std::size_t g = 1; g < generators; ++g) {
-      const bool reversing = group[n].reversing != group[g].reversing;
-      const systems::AffineMap product = group[n].map * group[g].map;
-      const bool known = std::any_of(group.begin(), group.end(), [&](const Spatial& s) {
-        return s.reversing == reversing && s.map.is_same(product, system.angles);
-      });
-      if (known) continue;
-      core::require(group.size() < largest_group, "the declared symmetries of a system must generate a finite group");
-      const std::size_t unnamed = reversing ? system.reversors.size() : system.equivariances.size();
-      group.push_back({group[n].name + group[g].name, reversing, static_cast<int>(unnamed), product});
-    }
-  return group;
+// The element's place among the system's equivariances or reversors; -1: the identity; their number: a product of some.
+int declared_place(const systems::Structure& structure, const loop::SymmetryElement& element) {
+  if (!element.reversing && element.name == "1") return -1;
+  const auto& list = element.reversing ? structure.reversors : structure.equivariances;
+  const auto found =
+      std::find_if(list.begin(), list.end(), [&](const systems::Symmetry& s) { return s.name == element.name; });
+  return static_cast<int>(found - list.begin());
 }
 
 int order_of(const systems::AffineMap& map, const std::vector<int>& angles) {
@@ -58,9 +36,9 @@ int order_of(const systems::AffineMap& map, const std::vector<int>& angles) {
 
 // Shifts of symmetries are multiples of T/m over the order of their matrix (and of quarters, as in isotropies), the loop
 // being an orbit m times around.
-int shared_order(const std::vector<Spatial>& group, const std::vector<int>& angles) {
+int shared_order(const loop::Isotropy& group, const std::vector<int>& angles) {
   int order = 4;
-  for (const Spatial& s : group) order = std::lcm(order, order_of(s.map, angles));
+  for (const loop::SymmetryElement& s : group) order = std::lcm(order, order_of(s.map, angles));
   return order;
 }
 
@@ -111,9 +89,9 @@ SymmetryGroup::SymmetryGroup(const systems::Structure& system, const loop::Loop&
           repetitions(v, 1e-9) == 1 && loop::rms_amplitude(loop::with_cutoff(v, 1)) > (1.0 - 1e-9) / std::sqrt(2.0),
           "kernel vectors of an equilibrium must be of harmonic 1");
 
-  const std::vector<Spatial> spatial = spatial_group(system);
+  const loop::Isotropy spatial = loop::SymmetryGroup::of_space(system).elements();
   _denominator = shared_order(spatial, system.angles) * std::max(times, 1);
-  for (const Spatial& s : spatial)
+  for (const loop::SymmetryElement& s : spatial)
     for (int shift = 0; shift < _denominator; ++shift) {
       const int divisor = std::gcd(shift, _denominator);
       const loop::SymmetryElement element{s.name, s.reversing, s.map, shift / divisor, _denominator / divisor};
@@ -123,6 +101,7 @@ SymmetryGroup::SymmetryGroup(const systems::Structure& system, const loop::Loop&
         const loop::Loop image = loop::transformed_perturbation(vectors[static_cast<std::size_t>(c)], element);
         images.col(c) = Eigen::Map<const Eigen::VectorXd>(image.modes.data(), _kernel.rows());
       }
+      const int declared = declared_place(system, s);
       const Eigen::MatrixXd action = _kernel.transpose() * images;
       const double gap = (images - _kernel * action).norm();
       const double skew = (action.transpose() * action - Eigen::MatrixXd::Identity(n, n)).norm();
@@ -131,8 +110,8 @@ SymmetryGroup::SymmetryGroup(const systems::Structure& system, const loop::Loop&
             fmt::format("the symmetry {} of the orbit does not map its kernel (dimension {}) to itself: off by {:.2g}, "
                         "isometric to {:.2g}; the kernel is incomplete, inaccurate or not transverse to the time shift",
                         loop::to_text({element}), n, gap, skew));
-      _actions.push_back({element, s.declared, action});
-      if (_constant && s.declared < 0 && 4 * shift == _denominator) _quarter = action;
+      _actions.push_back({element, declared, action});
+      if (_constant && declared < 0 && 4 * shift == _denominator) _quarter = action;
     }
 }
 

@@ -11,6 +11,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/symmetry/shift_search.hpp"
+#include "orbweaver/loop/symmetry/symmetry_group.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -65,7 +66,7 @@ std::string to_text(const Gained& gained) {
 SymmetryWatch::SymmetryWatch(const systems::Structure& system, const loop::Isotropy& own, int largest_order)
     : _system(system), _own(own) {
   core::require(largest_order >= 1, "a symmetry watch needs orders of 1 or more");
-  const loop::Isotropy group = loop::generated_group(system, own);
+  const loop::Isotropy group = loop::SymmetryGroup(system, own).elements();
   std::vector<systems::Symmetry> symmetries{{"1", systems::AffineMap::identity(system.dimension)}};
   symmetries.insert(symmetries.end(), system.equivariances.begin(), system.equivariances.end());
   for (const systems::Symmetry& s : symmetries) {
@@ -167,10 +168,10 @@ class SymmetryWatch::Correlation {
 
 // Elements of the group that `gained` and the own isotropy generate; a reversor doubles it, whatever its phase.
 std::size_t SymmetryWatch::generated_with(const Gained& gained) const {
-  if (gained.reversing) return 2 * loop::generated_group(_system, _own).size();
+  if (gained.reversing) return 2 * loop::SymmetryGroup(_system, _own).elements().size();
   loop::Isotropy generators = _own;
   generators.push_back({gained.name, false, gained.map, gained.shift_numerator, gained.shift_denominator});
-  return loop::generated_group(_system, generators).size();
+  return loop::SymmetryGroup(_system, generators).elements().size();
 }
 
 std::vector<Gained> SymmetryWatch::all_passed(const Seen& from, const Seen& to) const {

@@ -32,6 +32,7 @@ Collocation::Collocation(const systems::System& system, const loop::FundamentalD
       _centre(std::move(centre)),
       _winding(std::move(winding)),
       _borders(domain.reversor ? 1 : 2),
+      _keeps_mean(domain.coordinates_with_mean()),
       _ends(domain.ends()),
       _box(ChunkedBox::of_dimension(system.dimension())) {
   core::require(cells % ChunkedBox::lanes == 0, "the cells of a domain must fill the lanes of the box scheme");
@@ -70,12 +71,7 @@ void Collocation::set_conditions(std::span<const double> weights, std::span<cons
   std::copy(reference.begin(), reference.end(), _reference.begin());
 }
 
-bool Collocation::keeps_mean(int coordinate) const {
-  const loop::FundamentalDomain& domain = _grid.domain();
-  const bool shifted = domain.order > 1 && domain.generator(coordinate, coordinate) < 0.5;
-  const bool mirrored = domain.reversor && (*domain.reversor)(coordinate, coordinate) < 0.5;
-  return !shifted && !mirrored;
-}
+bool Collocation::keeps_mean(int coordinate) const { return _keeps_mean[at(coordinate)]; }
 
 void Collocation::midpoint_states(const double* u) const {
   const int m = cells();

@@ -37,7 +37,7 @@ class Equations : public testing::TestWithParam<Case> {
   }();
   loop::TimeMap map{GetParam().kappa, {}};
   Collocation equations{pendulum(),
-                        loop::fundamental_domain(isotropy, 4),
+                        loop::fundamental_domain(pendulum().structure(), isotropy),
                         std::vector<double>(4, 0.0),
                         std::vector<double>(4, 0.0),
                         cells,

@@ -29,36 +29,6 @@ const systems::Symmetry& reversor(const char* name) {
   throw std::invalid_argument(name);
 }
 
-std::vector<std::string> texts(const Isotropy& group) {
-  std::vector<std::string> out;
-  for (const SymmetryElement& e : group) out.push_back(to_text({e}));
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
-using Texts = std::vector<std::string>;
-
-TEST(GeneratedGroup, HoldsAllProducts) {
-  EXPECT_EQ(texts(generated_group(pendulum(), {})), Texts{"1@0"});
-  EXPECT_EQ(texts(generated_group(pendulum(), {element_of(pendulum(), "S", 1, 2), element_of(pendulum(), "R")})),
-            (Texts{"1@0", "R@0", "RS@1/2", "S@1/2"}));
-  EXPECT_EQ(texts(generated_group(pendulum(), {element_of(pendulum(), "S", 1, 4)})),
-            (Texts{"1@0", "1@1/2", "S@1/4", "S@3/4"}));
-  EXPECT_EQ(texts(generated_group(pendulum(), {element_of(pendulum(), "R", 1, 4), element_of(pendulum(), "RS", 3, 4)})),
-            (Texts{"1@0", "R@1/4", "RS@3/4", "S@1/2"}));
-  EXPECT_EQ(generated_group(galaxy(), {element_of(galaxy(), "C", 1, 3), element_of(galaxy(), "RS")}).size(), 6u);
-}
-
-// Each element of the group is a symmetry of any loop that has the generators.
-TEST(GeneratedGroup, HoldsForTheLoop) {
-  for (const Isotropy& generators : {Isotropy{element_of(galaxy(), "C", 1, 3), element_of(galaxy(), "RS")},
-                                     Isotropy{element_of(galaxy(), "S", 1, 4), element_of(galaxy(), "R", 1, 3)}}) {
-    const Loop loop = loop_with(generators);
-    for (const SymmetryElement& e : generated_group(galaxy(), generators))
-      EXPECT_LT(symmetry_defect(loop, e, {}), 1e-13) << to_text({e});
-  }
-}
-
 TEST(ReversorPhase, MayBeAnyNumber) {
   for (const char* name : {"R", "RS"}) {
     const Loop loop = loop_with({element_of(pendulum(), name)});

@@ -9,6 +9,7 @@
 #include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/loop/symmetry/shift_search.hpp"
+#include "orbweaver/loop/symmetry/symmetry_group.hpp"
 
 namespace orbweaver::loop {
 
@@ -17,26 +18,6 @@ namespace {
 constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr double equally_close = 1e-12;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-struct Candidate {
-  std::string name;
-  bool reversing;
-  systems::AffineMap map;
-};
-
-std::vector<Candidate> candidates_of(const systems::Structure& system) {
-  std::vector<Candidate> out{{"1", false, systems::AffineMap::identity(system.dimension)}};
-  for (const systems::Symmetry& s : system.equivariances) out.push_back({s.name, false, s.map});
-  for (const systems::Symmetry& r : system.reversors) out.push_back({r.name, true, r.map});
-  if (system.reversors.empty()) return out;
-  const systems::Symmetry& first = system.reversors.front();
-  for (const systems::Symmetry& s : system.equivariances) {
-    const systems::AffineMap map = first.map * s.map;
-    const auto is_known = [&](const Candidate& c) { return c.reversing && c.map.is_same(map, system.angles); };
-    if (std::none_of(out.begin(), out.end(), is_known)) out.push_back({first.name + s.name, true, map});
-  }
-  return out;
-}
 
 // Either way from 0, in periods.
 double length_of(double shift) { return std::abs(shift - std::round(shift)); }
@@ -47,7 +28,7 @@ double in_period(double shift) {
 }
 
 // The closest shift under one candidate; of equally close ones the smallest.
-Alignment closest(const Candidate& candidate, const Loop& from, const Loop& to, const std::vector<int>& angles) {
+Alignment closest(const SymmetryElement& candidate, const Loop& from, const Loop& to, const std::vector<int>& angles) {
   Alignment best{candidate.name, candidate.reversing, candidate.map, 0.0, {}, infinity};
   const Loop image = transformed(from, candidate.map, candidate.reversing, 0.0);
   if (image.winding != to.winding) return best;
@@ -73,7 +54,8 @@ Alignment closest(const Candidate& candidate, const Loop& from, const Loop& to, 
 
 Alignment closest(const systems::Structure& system, const Loop& from, const Loop& to) {
   Alignment best;
-  for (const Candidate& candidate : candidates_of(system)) {
+  const SymmetryGroup group = SymmetryGroup::of_space(system);
+  for (const SymmetryElement& candidate : group.elements()) {
     Alignment found = closest(candidate, from, to, system.angles);
     if (best.name.empty() || found.distance < best.distance - equally_close) best = std::move(found);
   }

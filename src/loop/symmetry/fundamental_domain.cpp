@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "orbweaver/loop/symmetry/symmetry_group.hpp"
+
 namespace orbweaver::loop {
 
 namespace {
@@ -27,17 +29,6 @@ MatrixXd conditions_of_fixed_space(const MatrixXd& matrix) {
   for (Eigen::Index n = 0; n < d; ++n)
     if (svd.singularValues()(n) > 1e-9) add(svd.matrixV().col(n).transpose());
   return rows;
-}
-
-/// g with z(t + T/q) = g z(t), from a symmetry of shift numerator / q.
-MatrixXd least_shift(const SymmetryElement& element) {
-  const int q = element.shift_denominator;
-  MatrixXd power = MatrixXd::Identity(element.map.matrix.rows(), element.map.matrix.cols());
-  for (int n = 0; n < q; ++n) {
-    if (n * element.shift_numerator % q == 1 % q) return power;
-    power = element.map.matrix * power;
-  }
-  return power;
 }
 
 }  // namespace
@@ -67,21 +58,28 @@ bool FundamentalDomain::expresses(const Isotropy& isotropy) const {
   });
 }
 
+std::vector<bool> FundamentalDomain::coordinates_with_mean() const {
+  const Eigen::Index d = generator.rows();
+  MatrixXd mean = MatrixXd::Zero(d, d);
+  MatrixXd power = MatrixXd::Identity(d, d);
+  for (int n = 0; n < order; ++n) {
+    mean += power / order;
+    power = generator * power;
+  }
+  if (reversor) mean = 0.5 * (mean + *reversor * mean);
+  std::vector<bool> out;
+  for (Eigen::Index i = 0; i < d; ++i) out.push_back(mean.row(i).norm() > 1e-9);
+  return out;
+}
+
 bool FundamentalDomain::is_square() const { return ends().left.rows() == generator.rows(); }
 
-FundamentalDomain fundamental_domain(const Isotropy& isotropy, int dimension) {
+FundamentalDomain fundamental_domain(const systems::Structure& structure, const Isotropy& isotropy) {
+  const SymmetryGroup group(structure, isotropy);
   FundamentalDomain domain;
-  domain.generator = MatrixXd::Identity(dimension, dimension);
-  for (const SymmetryElement& element : isotropy) {
-    const int q = element.shift_denominator;
-    const bool proper = element.shift_numerator % q != 0;
-    if (!element.reversing && proper && q > domain.order) {
-      domain.order = q;
-      domain.generator = least_shift(element);
-    } else if (element.reversing && !proper && !domain.reversor) {
-      domain.reversor = element.map.matrix;
-    }
-  }
+  domain.order = group.order();
+  domain.generator = group.generator().matrix;
+  if (const SymmetryElement* reversor = group.reversor_at_start()) domain.reversor = reversor->map.matrix;
   return domain;
 }
 

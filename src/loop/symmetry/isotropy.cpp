@@ -119,51 +119,6 @@ Isotropy find_isotropy(const systems::Structure& system, const Loop& loop, doubl
   return isotropy;
 }
 
-namespace {
-
-// z(t + a) = g z(t) and z(t + b) = h z(t) give z(t + b + a) = g h z(t); z(b - t) = h z(t) gives z(b - t + a) = g h z(t);
-// g reversing: z(a - (t + b)) = g h z(t), so that b counts backwards.
-SymmetryElement product(const SymmetryElement& g, const SymmetryElement& h) {
-  SymmetryElement out{"", g.reversing != h.reversing, g.map * h.map, 0, 1};
-  const int q = std::lcm(g.shift_denominator, h.shift_denominator);
-  const int a = g.shift_numerator * (q / g.shift_denominator);
-  const int b = h.shift_numerator * (q / h.shift_denominator);
-  const int p = (((g.reversing ? a - b : a + b) % q) + q) % q;
-  const int common = std::gcd(p, q);
-  out.shift_numerator = p / common;
-  out.shift_denominator = q / common;
-  return out;
-}
-
-bool is_same(const SymmetryElement& a, const SymmetryElement& b, const std::vector<int>& angles) {
-  return a.reversing == b.reversing && a.shift_numerator == b.shift_numerator &&
-         a.shift_denominator == b.shift_denominator && a.map.is_same(b.map, angles);
-}
-
-std::string name_of(const systems::Structure& system, const SymmetryElement& element) {
-  const auto identity = systems::AffineMap::identity(system.dimension);
-  if (!element.reversing && element.map.is_same(identity, system.angles)) return "1";
-  for (const systems::Symmetry& s : element.reversing ? system.reversors : system.equivariances)
-    if (element.map.is_same(s.map, system.angles)) return s.name;
-  return "";
-}
-
-}  // namespace
-
-Isotropy generated_group(const systems::Structure& system, const Isotropy& generators) {
-  Isotropy group{{"1", false, systems::AffineMap::identity(system.dimension), 0, 1}};
-  for (std::size_t n = 0; n < group.size(); ++n)
-    for (const SymmetryElement& generator : generators) {
-      SymmetryElement next = product(generator, group[n]);
-      const auto is_next = [&](const SymmetryElement& known) { return is_same(known, next, system.angles); };
-      if (std::any_of(group.begin(), group.end(), is_next)) continue;
-      core::require(group.size() < 1000, "these symmetries generate more than 1000");
-      next.name = name_of(system, next);
-      group.push_back(std::move(next));
-    }
-  return group;
-}
-
 std::optional<SymmetryElement> find_map(const systems::Structure& system, const Loop& from, const Loop& to,
                                         double tolerance, int max_denominator) {
   const auto fits = [&](const SymmetryElement& element) {

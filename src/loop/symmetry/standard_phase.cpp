@@ -8,6 +8,7 @@
 #include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
 #include "orbweaver/loop/symmetry/shift_search.hpp"
+#include "orbweaver/loop/symmetry/symmetry_group.hpp"
 
 namespace orbweaver::loop {
 
@@ -86,9 +87,9 @@ std::optional<double> reversor_phase(const systems::Symmetry& reversor, const st
 }
 
 Loop in_standard_phase(const systems::Structure& system, const Loop& loop, const Isotropy& isotropy) {
-  const Isotropy group = generated_group(system, isotropy);
+  const SymmetryGroup group(system, isotropy);
   for (const systems::Symmetry& reversor : system.reversors)
-    for (const SymmetryElement& element : group) {
+    for (const SymmetryElement& element : group.elements()) {
       if (!element.reversing || element.name != reversor.name) continue;
       const double first = 0.5 * element.shift();
       const double second = first + 0.5;

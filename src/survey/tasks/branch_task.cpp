@@ -13,7 +13,7 @@
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/bifurcation/family_jump.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/loop/symmetry/fundamental_domain.hpp"
+#include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "requested.hpp"
 
 namespace orbweaver::survey {
@@ -22,10 +22,6 @@ namespace {
 
 /// Known orbits that a location gets along: the two around the event and their neighbours.
 constexpr std::size_t kept_orbits = 5;
-
-int fundamental_order(const loop::Isotropy& isotropy, int dimension) {
-  return loop::fundamental_domain(isotropy, dimension).order;
-}
 
 continuation::Options options_of(const scene::Scene& scene, const BranchWork& work, core::Team* team) {
   continuation::Options options = branch_options(scene, team);
@@ -47,8 +43,9 @@ BranchTask::BranchTask(const scene::Scene& scene, std::shared_ptr<const systems:
       _start(start_of(_work, _system->structure())),
       _curve(_system, _start.isotropy, branch_options(scene, team)),
       _symmetry(_system->structure(), _start.isotropy),
-      _functions(bifurcation::test_functions(
-          _system->structure(), fundamental_order(_start.isotropy, _system->dimension()), scene.survey.subharmonics)) {
+      _functions(bifurcation::test_functions(_system->structure(),
+                                             loop::SymmetryGroup(_system->structure(), _start.isotropy).order(),
+                                             scene.survey.subharmonics)) {
   _outcome.key = _work.key;
   if (bifurcation::passes_two_only_at_folds(_system->structure(), _start.isotropy))
     _options.jumped = [this](const auto& from, const auto& to) { return jumped(from, to); };

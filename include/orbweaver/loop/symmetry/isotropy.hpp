@@ -46,10 +46,6 @@ using Isotropy = std::vector<SymmetryElement>;
 [[nodiscard]] Isotropy find_isotropy(const systems::Structure& system, const Loop& loop, double tolerance,
                                      int max_denominator = 4);
 
-/// All that `generators` generate, with shifts in [0, 1): the identity "1@0" first, declared symmetries under their names,
-/// others under none. Throws MisuseError where that are more than 1000.
-[[nodiscard]] Isotropy generated_group(const systems::Structure& system, const Isotropy& generators);
-
 /// A declared symmetry of `system` (or the identity, named "1") with a time shift p/q, q <= `max_denominator`, that maps
 /// `from` to `to` within `tolerance` (mean distance, angles modulo 2 pi); none if there is none.
 [[nodiscard]] std::optional<SymmetryElement> find_map(const systems::Structure& system, const Loop& from,
