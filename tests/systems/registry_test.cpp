@@ -39,14 +39,16 @@ TEST(Registry, KnowsItsSystemsByTheirNames) {
 TEST(Registry, WhatSystemsSayIsConsistent) {
   for (const std::string& name : system_names()) {
     SCOPED_TRACE(name);
-    const Description& description = describe_system(name);
-    EXPECT_FALSE(description.title.empty());
-    EXPECT_GT(structure.dimension(), 0);
-    EXPECT_EQ(std::set<std::string>(description.state_names.begin(), description.state_names.end()).size(),
-              info.state_names.size());
-    EXPECT_EQ(structure.angles.size(), description.winding_names.size());
-    for (const int angle : structure.angles) EXPECT_LT(angle, structure.dimension());
-    for (const Parameter& parameter : description.parameters) {
+    const ModelInfo& info = model_info(name);
+    const auto system = make_system(name);
+    const Structure& structure = system->structure();
+    EXPECT_FALSE(info.title.empty());
+    EXPECT_GT(structure.dimension, 0);
+    EXPECT_EQ(std::set<std::string>(info.state_names.begin(), info.state_names.end()).size(), info.state_names.size());
+    EXPECT_EQ(info.state_names.size(), static_cast<std::size_t>(structure.dimension));
+    EXPECT_EQ(structure.angles.size(), system->winding_names().size());
+    for (const int angle : structure.angles) EXPECT_LT(angle, structure.dimension);
+    for (const Parameter& parameter : info.parameters) {
       EXPECT_LE(parameter.lower, parameter.standard);
       EXPECT_LE(parameter.standard, parameter.upper);
       EXPECT_FALSE(parameter.meaning.empty());
