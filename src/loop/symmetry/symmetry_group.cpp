@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <numeric>
+#include <string>
 #include <utility>
 
 #include "orbweaver/core/error.hpp"
@@ -20,7 +21,7 @@ constexpr std::size_t largest_group = 1000;
 // z(t + a) = g z(t) and z(t + b) = h z(t) give z(t + b + a) = g h z(t); z(b - t) = h z(t) gives z(b - t + a) = g h z(t);
 // g reversing: z(a - (t + b)) = g h z(t), so that b counts backwards.
 SymmetryElement product(const SymmetryElement& g, const SymmetryElement& h) {
-  SymmetryElement out{g.name + (h.name == "1" ? "" : h.name), g.reversing != h.reversing, g.map * h.map, 0, 1};
+  SymmetryElement out{"", g.reversing != h.reversing, g.map * h.map, 0, 1};
   const int q = std::lcm(g.shift_denominator, h.shift_denominator);
   const int a = g.shift_numerator * (q / g.shift_denominator);
   const int b = h.shift_numerator * (q / h.shift_denominator);
@@ -36,11 +37,13 @@ bool is_same(const SymmetryElement& a, const SymmetryElement& b, const std::vect
          a.shift_denominator == b.shift_denominator && a.map.is_same(b.map, angles);
 }
 
-void name_as_declared(const systems::Structure& structure, SymmetryElement& element) {
+/// That of the declared symmetry, or of the identity; else `otherwise`.
+std::string name_of(const systems::Structure& structure, const SymmetryElement& element, const std::string& otherwise) {
   const auto identity = AffineMap::identity(structure.dimension);
-  if (!element.reversing && element.map.is_same(identity, structure.angles)) element.name = "1";
+  if (!element.reversing && element.map.is_same(identity, structure.angles)) return "1";
   for (const systems::Symmetry& s : element.reversing ? structure.reversors : structure.equivariances)
-    if (element.map.is_same(s.map, structure.angles)) element.name = s.name;
+    if (element.map.is_same(s.map, structure.angles)) return s.name;
+  return otherwise;
 }
 
 AffineMap power(const AffineMap& map, int exponent) {
@@ -82,7 +85,7 @@ void SymmetryGroup::close(const systems::Structure& structure, const Isotropy& g
       const auto is_next = [&](const SymmetryElement& known) { return is_same(known, next, _angles); };
       if (std::any_of(_elements.begin(), _elements.end(), is_next)) continue;
       core::require(_elements.size() < largest_group, "these symmetries generate more than 1000");
-      name_as_declared(structure, next);
+      next.name = name_of(structure, next, generator.name + _elements[n].name);
       _elements.push_back(std::move(next));
     }
 }
