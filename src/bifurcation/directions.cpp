@@ -9,10 +9,10 @@
 #include <fmt/format.h>
 
 #include "fixed_spaces.hpp"
+#include "kernel_actions.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "search.hpp"
-#include "symmetry_group.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -30,7 +30,7 @@ struct Rank {
   [[nodiscard]] auto tie() const { return std::tie(reversor, phase, kept); }
 };
 
-Rank rank_of(const SymmetryGroup& group, const systems::Structure& system, const Eigen::VectorXd& v) {
+Rank rank_of(const KernelActions& group, const systems::Structure& system, const Eigen::VectorXd& v) {
   Rank rank;
   for (const Action& a : group.actions()) {
     if (!a.maps(v, v)) continue;
@@ -64,18 +64,18 @@ loop::Loop moved(loop::Loop base, const std::vector<double>& modes, double ampli
 }
 
 // One of the born orbits' isotropies: what base and direction have in common.
-loop::Isotropy isotropy_along(const systems::Structure& system, const SymmetryGroup& group, const loop::Loop& base,
+loop::Isotropy isotropy_along(const systems::Structure& system, const KernelActions& group, const loop::Loop& base,
                               const std::vector<double>& modes, const DirectionOptions& options) {
   return loop::find_isotropy(system, moved(base, modes, 0.1), 10.0 * options.symmetry_tolerance, group.denominator());
 }
 
-bool has_other_sides(const SymmetryGroup& group, const Eigen::VectorXd& v) {
+bool has_other_sides(const KernelActions& group, const Eigen::VectorXd& v) {
   return !group.constant() &&
          std::none_of(group.actions().begin(), group.actions().end(), [&](const Action& a) { return a.maps(v, -v); });
 }
 
 // The direction of a fixed line: made exactly symmetric, started where the reversor has phase 0.
-Direction direction_along(const systems::Structure& system, const SymmetryGroup& group, const loop::Loop& base,
+Direction direction_along(const systems::Structure& system, const KernelActions& group, const loop::Loop& base,
                           const Eigen::VectorXd& v, const DirectionOptions& options) {
   loop::Loop vector = base;
   std::fill(vector.winding.begin(), vector.winding.end(), 0.0);
@@ -106,7 +106,7 @@ Direction direction_along(const systems::Structure& system, const SymmetryGroup&
 
 // The lines that a symmetry group fixes; about an equilibrium also the oscillations (planes that time shifts turn) that
 // equivariances alone single out.
-std::vector<Eigen::VectorXd> fixed_lines(const SymmetryGroup& group) {
+std::vector<Eigen::VectorXd> fixed_lines(const KernelActions& group) {
   std::vector<Eigen::MatrixXd> matrices;
   for (const Action& a : group.actions()) matrices.push_back(a.matrix);
   const std::vector<Eigen::MatrixXd> spaces = fixed_spaces(matrices, group.dimension());
@@ -125,7 +125,7 @@ std::vector<Eigen::VectorXd> fixed_lines(const SymmetryGroup& group) {
 }
 
 // One of each set of images, the one of lowest rank.
-std::vector<Eigen::VectorXd> representatives(const SymmetryGroup& group, const systems::Structure& system,
+std::vector<Eigen::VectorXd> representatives(const KernelActions& group, const systems::Structure& system,
                                              const std::vector<Eigen::VectorXd>& lines) {
   std::vector<std::pair<Rank, Eigen::VectorXd>> ranked;
   for (const Eigen::VectorXd& v : lines) ranked.emplace_back(rank_of(group, system, v), v);
@@ -139,7 +139,7 @@ std::vector<Eigen::VectorXd> representatives(const SymmetryGroup& group, const s
 }
 
 // How many of a plane's symmetries are rotations: q of the sector e^{2 pi i j / q}.
-int rotations(const SymmetryGroup& group) {
+int rotations(const KernelActions& group) {
   std::vector<Eigen::MatrixXd> distinct;
   for (const Action& a : group.actions())
     if (a.matrix.determinant() > 0.0 && std::none_of(distinct.begin(), distinct.end(), [&](const Eigen::MatrixXd& m) {
@@ -160,7 +160,7 @@ std::vector<double> search_amplitudes(int q, const loop::Loop& base, bool consta
   return out;
 }
 
-std::vector<Direction> searched(const systems::System& system, const SymmetryGroup& group, const loop::Loop& base,
+std::vector<Direction> searched(const systems::System& system, const KernelActions& group, const loop::Loop& base,
                                 const std::vector<Eigen::VectorXd>& lines, const DirectionOptions& options) {
   const bool plane = group.dimension() == 2;
   const int q = plane ? rotations(group) : 1;
@@ -206,7 +206,7 @@ std::vector<Direction> directions(const systems::System& system, const loop::Loo
   core::require(base.time_map.is_identity(), "directions need a base loop that runs evenly in time");
   core::require(!kernel.empty() && kernel.size() <= largest_kernel, "directions need a kernel of dimension 1 to 8");
   const systems::Structure& structure = system.structure();
-  const SymmetryGroup group(structure, base, kernel, options);
+  const KernelActions group(structure, base, kernel, options);
   for (const loop::SymmetryElement& g : isotropy)
     if (std::none_of(group.actions().begin(), group.actions().end(),
                      [&](const Action& a) { return a.element.name == g.name; }))

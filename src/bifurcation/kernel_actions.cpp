@@ -1,4 +1,4 @@
-#include "symmetry_group.hpp"
+#include "kernel_actions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/symmetry/symmetry_group.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -68,7 +69,7 @@ bool Action::maps(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const 
   return (matrix * from - to).norm() < same_vector;
 }
 
-SymmetryGroup::SymmetryGroup(const systems::Structure& system, const loop::Loop& base,
+KernelActions::KernelActions(const systems::Structure& system, const loop::Loop& base,
                              const std::vector<std::vector<double>>& kernel, const DirectionOptions& options) {
   const auto n = static_cast<Eigen::Index>(kernel.size());
   _kernel.resize(static_cast<Eigen::Index>(base.modes.size()), n);
@@ -115,17 +116,17 @@ SymmetryGroup::SymmetryGroup(const systems::Structure& system, const loop::Loop&
     }
 }
 
-std::vector<double> SymmetryGroup::modes_of(const Eigen::VectorXd& coordinates) const {
+std::vector<double> KernelActions::modes_of(const Eigen::VectorXd& coordinates) const {
   const Eigen::VectorXd v = _kernel * coordinates;
   return {v.begin(), v.end()};
 }
 
-Eigen::VectorXd SymmetryGroup::coordinates_of(std::span<const double> modes) const {
+Eigen::VectorXd KernelActions::coordinates_of(std::span<const double> modes) const {
   // `modes` may have more harmonics than the kernel.
   return _kernel.transpose() * Eigen::Map<const Eigen::VectorXd>(modes.data(), _kernel.rows());
 }
 
-int SymmetryGroup::image(const Eigen::VectorXd& from, const Eigen::VectorXd& to, double tolerance) const {
+int KernelActions::image(const Eigen::VectorXd& from, const Eigen::VectorXd& to, double tolerance) const {
   const double least = 1.0 - 0.5 * tolerance * tolerance;
   bool opposite = false;
   for (const Action& action : _actions) {
