@@ -9,6 +9,7 @@
 
 #include "orbweaver/bifurcation/test_functions.hpp"
 #include "orbweaver/core/error.hpp"
+#include "support/stated_system.hpp"
 
 namespace {
 

@@ -9,6 +9,7 @@
 #include "loop/samples.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loss/linearization.hpp"
+#include "support/stated_system.hpp"
 
 namespace orbweaver::loss {
 namespace {
