@@ -73,14 +73,11 @@ std::optional<Located> extremum(const systems::System& system, continuation::Fam
 
 }  // namespace
 
-double period_slope(const continuation::CurvePoint& point) { return point.tangent_period; }
+double period_slope(const continuation::CurvePoint& point) { return point.tangent.period(); }
 
 double energy_slope(const systems::System& system, const continuation::CurvePoint& point) {
-  loop::Loop tangent = point.loop;
-  tangent.modes = point.tangent_modes;
-  std::fill(tangent.winding.begin(), tangent.winding.end(), 0.0);
   const std::vector<double> state = loop::state_at(point.loop, 0.0);
-  const std::vector<double> change = loop::state_at(tangent, 0.0);
+  const std::vector<double> change = loop::state_at(loop::perturbation(point.loop, point.tangent), 0.0);
   std::vector<double> gradient(state.size());
   system.conserved_gradient(0, state, gradient);
   double slope = 0.0;

@@ -30,9 +30,9 @@ std::vector<Bounded> indices_of(const systems::Structure& system, const spectrum
   const std::size_t count = count_of(system);
   if (stability.fundamental.size() != static_cast<std::size_t>(system.pairs()) ||
       stability.fundamental_error.size() != stability.fundamental.size())
-    throw core::MisuseError(
-        fmt::format("test functions of {}: expected {} multipliers with error bounds, got {} with {}", system.name,
-                    system.pairs(), stability.fundamental.size(), stability.fundamental_error.size()));
+    throw core::MisuseError(fmt::format("test functions: expected {} multipliers with error bounds, got {} with {}",
+                                        system.pairs(), stability.fundamental.size(),
+                                        stability.fundamental_error.size()));
   std::vector<Bounded> indices(count);
   for (std::size_t i = 0; i < count; ++i) indices[i] = {stability.fundamental[i], stability.fundamental_error[i]};
   return indices;

@@ -23,7 +23,7 @@ inline continuation::Start slowest_oscillation(const OscillatorChain& chain, dou
     oscillation.modes[static_cast<std::size_t>(2 * n + i)] = amplitude;               // cos s
     oscillation.modes[static_cast<std::size_t>(5 * n + i)] = -frequency * amplitude;  // sin s
   }
-  start.direction = oscillation.modes;
+  start.direction.modes = oscillation.modes;
   const systems::Structure& structure = chain.structure();
   start.isotropy = {{"S", false, structure.equivariances[0].map, 1, 2}, {"R", true, structure.reversors[0].map, 0, 1}};
   return start;

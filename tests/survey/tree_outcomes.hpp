@@ -158,7 +158,7 @@ inline Ended located(const Place& place, int directions = 2) {
     leaving.isotropy = isotropy_numbered(number);
     leaving.both_sides = place.times == 3;
     leaving.base = survey::record_of(orbit_at(place));
-    leaving.direction = kernel_vector(place, angle_of(number));
+    leaving.direction.modes = kernel_vector(place, angle_of(number));
     outcome.leaving.push_back(std::move(leaving));
   }
   return {task_of(work), {"locate " + place.key, false, "", {}, pack(outcome), false}};

@@ -17,13 +17,9 @@ namespace {
 // Both directions of a start are one family where a symmetry or a time shift maps loops on one side to those on the other.
 bool directions_are_images(const systems::Structure& system, std::span<const double> point,
                            const starts::NormalMode& mode, int cutoff) {
-  loop::Loop plus = loop::constant_loop(point, mode.period, cutoff);
-  loop::Loop minus = plus;
-  for (std::size_t n = 0; n < plus.modes.size(); ++n) {
-    plus.modes[n] += mode.direction[n];
-    minus.modes[n] -= mode.direction[n];
-  }
-  return loop::find_map(system, plus, minus, 1e-8).has_value();
+  const loop::Loop base = loop::constant_loop(point, mode.period, cutoff);
+  return loop::find_map(system, loop::moved(base, mode.direction, 1.0), loop::moved(base, mode.direction, -1.0), 1e-8)
+      .has_value();
 }
 
 }  // namespace

@@ -41,16 +41,6 @@ int expected_dimension(const bifurcation::Crossing& crossing, const bifurcation:
   return std::max(1, pairs) * (sector.q <= 2 ? 1 : 2);
 }
 
-/// The |dz(s = 0)| of a step of length `amplitude` along the direction.
-double change_at_start(const bifurcation::Direction& direction, double amplitude) {
-  loop::Loop step = direction.base;
-  step.modes = direction.modes;
-  std::fill(step.winding.begin(), step.winding.end(), 0.0);
-  double square = 0.0;
-  for (const double v : loop::state_at(step, 0.0)) square += v * v;
-  return amplitude * std::sqrt(square);
-}
-
 /// The run is to stop.
 struct Interrupted {};
 
@@ -175,9 +165,7 @@ class Location {
       leaving.isotropy = record_of(direction.isotropy);
       leaving.both_sides = direction.both_sides;
       leaving.base = record_of(sketch_of(direction.base));
-      loop::Loop vector = direction.base;
-      vector.modes = direction.modes;
-      leaving.direction = loop::with_cutoff(vector, leaving.base.cutoff).modes;
+      leaving.direction = loop::with_cutoff(direction.tangent, leaving.base.cutoff, leaving.base.dimension);
       add_starts(direction, leaving);
       _outcome.leaving.push_back(std::move(leaving));
     }
@@ -212,9 +200,11 @@ class Location {
                                 leaving.key.substr(_work.key.size()));
       branch.lineage = {leaving.key, _work.key, _work.lineage.depth + 1, _outcome.multiplicity, side};
       branch.base = record_of(direction.base);
-      branch.direction = direction.modes;
+      branch.direction = direction.tangent;
       branch.isotropy = leaving.isotropy;
-      branch.amplitude = direction.amplitude > 0.0 ? change_at_start(direction, direction.amplitude) : 0.0;
+      branch.amplitude = direction.amplitude > 0.0
+                             ? direction.amplitude * loop::change_at_start(direction.base, direction.tangent)
+                             : 0.0;
       _starts.push_back(task_of(start));
     }
   }

@@ -23,8 +23,8 @@ double share_along(const continuation::Start& start, const loop::Loop& orbit) {
   double moved = 0.0;
   for (std::size_t n = 0; n < there.modes.size(); ++n) {
     const double step = there.modes[n] - base.modes[n];
-    along += step * start.direction[n];
-    length += start.direction[n] * start.direction[n];
+    along += step * start.direction.modes[n];
+    length += start.direction.modes[n] * start.direction.modes[n];
     moved += step * step;
   }
   return moved > 0.0 ? along / std::sqrt(length * moved) : 0.0;

@@ -132,7 +132,7 @@ continuation::Start start_of(const BranchWork& work, const systems::Structure& s
   continuation::Start start;
   start.base = loop_of(work.base);
   start.direction = work.direction;
-  for (double& v : start.direction) v *= work.lineage.side;
+  start.direction *= work.lineage.side;
   start.isotropy = isotropy_of(work.isotropy, system);
   return start;
 }

@@ -54,7 +54,7 @@ std::vector<queue::Task> branch_tasks(const scene::Scene& scene, const systems::
       tasks.push_back(task_of(work));
       work.key = work.lineage.family = branch_key + "-";
       work.name += " (other side)";
-      for (double& v : work.direction) v = -v;
+      work.direction *= -1.0;
       tasks.push_back(task_of(work));
     }
   }

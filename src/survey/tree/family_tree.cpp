@@ -33,13 +33,6 @@ std::string letter_of(int multiplicity) {
   return multiplicity == 2 ? "D" : fmt::format("T{}", multiplicity);
 }
 
-/// base + step * direction.
-loop::Loop moved(const loop::Loop& base, const std::vector<double>& direction, double step) {
-  loop::Loop out = base;
-  for (std::size_t n = 0; n < out.modes.size(); ++n) out.modes[n] += step * direction[n];
-  return out;
-}
-
 }  // namespace
 
 /// A family with its branches: one, or one a side.
@@ -89,10 +82,10 @@ std::optional<FamilyTree::Meeting> FamilyTree::meeting_of(const Branch& branch, 
   for (const LeavingRecord& leaving : crossing.leaving) {
     const loop::Loop base = loop_of(leaving.base);
     const double distance = loop::align(_system, near, base).distance;
-    const double unit = loop::mean_distance(base, moved(base, leaving.direction, 1.0));
+    const double unit = loop::mean_distance(base, loop::moved(base, leaving.direction, 1.0));
     for (const int side : {1, -1}) {
       if (side < 0 && !leaving.both_sides) continue;
-      const loop::Loop expected = moved(base, leaving.direction, side * distance / unit);
+      const loop::Loop expected = loop::moved(base, leaving.direction, side * distance / unit);
       const double away = loop::align(_system, near, expected).distance / distance;
       if (away < nearest) {
         nearest = away;

@@ -7,6 +7,7 @@
 #include "orbweaver/archive/schema/crossing_kind.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/continuation/branch.hpp"
+#include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/queue/task.hpp"
 #include "orbweaver/systems/structure.hpp"
 
@@ -55,7 +56,7 @@ struct SweepWork {
 /// A family found by a sweep: where and how it starts.
 struct FoundMode {
   double period = 0.0;
-  std::vector<double> direction;  ///< modes of a loop with cutoff `cutoff`
+  loop::Tangent direction;  ///< of a loop with cutoff `cutoff`
   int cutoff = 0;
   IsotropyRecord isotropy;
   bool one_direction = true;  ///< a symmetry maps one direction of the start onto the other
@@ -86,8 +87,8 @@ struct BranchWork {
   std::string key;
   std::string name;  ///< for progress; final names are given at the end
   Lineage lineage;
-  LoopRecord base;                ///< the equilibrium, or the crossing's orbit as many times around as it takes
-  std::vector<double> direction;  ///< in its modes
+  LoopRecord base;          ///< the equilibrium, or the crossing's orbit as many times around as it takes
+  loop::Tangent direction;  ///< in its modes
   IsotropyRecord isotropy;
   double amplitude = 0.0;  ///< |dz(s = 0)| of the first orbit; 0: the scene's
 };
@@ -149,7 +150,7 @@ struct LeavingRecord {
   IsotropyRecord isotropy;
   bool both_sides = false;
   LoopRecord base;
-  std::vector<double> direction;
+  loop::Tangent direction;
 };
 
 struct LocateOutcome {
