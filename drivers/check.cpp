@@ -25,19 +25,15 @@ void print_group(const std::string& title, const Lines& lines) {
   for (const auto& [label, text] : lines) fmt::print("  {:<14}{}\n", label, text);
 }
 
-bool is_angle(const systems::Description& system, std::size_t coordinate) {
-  return std::count(system.angles.begin(), system.angles.end(), static_cast<int>(coordinate)) > 0;
-}
-
 std::string in_degrees(double radians) { return fmt::format("{:.6g} deg", radians / std::numbers::pi * 180.0); }
 
-std::string value_text(const systems::Description& system, std::size_t coordinate, double value) {
-  return is_angle(system, coordinate) ? in_degrees(value) : fmt::format("{:.6g}", value);
+std::string value_text(const systems::System& system, std::size_t coordinate, double value) {
+  return system.structure().is_angle(coordinate) ? in_degrees(value) : fmt::format("{:.6g}", value);
 }
 
-std::string parameter_text(const systems::Description& system, const std::string& name, double value) {
-  std::vector<systems::Parameter> known = system.parameters;
-  for (const systems::Effect& effect : system.effects)
+std::string parameter_text(const systems::System& system, const std::string& name, double value) {
+  std::vector<systems::Parameter> known = system.info().parameters;
+  for (const systems::Effect& effect : system.info().effects)
     known.insert(known.end(), effect.parameters.begin(), effect.parameters.end());
   const auto found =
       std::find_if(known.begin(), known.end(), [&](const systems::Parameter& p) { return p.name == name; });
@@ -45,17 +41,16 @@ std::string parameter_text(const systems::Description& system, const std::string
   return fmt::format("{} = {}{} ({})", name, value, found->unit == "1" ? "" : " " + found->unit, found->meaning);
 }
 
-void print_system(const scene::Scene& scene, const systems::Description& system) {
+void print_system(const scene::Scene& scene, const systems::System& system) {
   std::vector<std::string> coordinates, parameters;
-  for (std::size_t i = 0; i < system.state_names.size(); ++i)
-    coordinates.push_back(system.state_names[i] + (is_angle(system, i) ? " (angle)" : ""));
-  const auto bound = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  for (std::size_t i = 0; i < system.info().state_names.size(); ++i)
+    coordinates.push_back(system.info().state_names[i] + (system.structure().is_angle(i) ? " (angle)" : ""));
   Lines lines{{"coordinates", fmt::format("{}", fmt::join(coordinates, ", "))}};
-  for (const auto& [name, value] : bound->parameters())
+  for (const auto& [name, value] : system.parameters())
     lines.emplace_back(lines.size() == 1 ? "parameters" : "", parameter_text(system, name, value));
   const auto& effects = scene.system.effects;
   lines.emplace_back("effects", effects.empty() ? "none" : fmt::format("{}", fmt::join(effects, ", ")));
-  print_group(fmt::format("System: {} ({})", system.title, system.name), lines);
+  print_group(fmt::format("System: {} ({})", system.info().title, system.info().name), lines);
 }
 
 std::string name_list(const scene::FixedPoints& points, const std::vector<std::string>& names) {
@@ -67,15 +62,15 @@ std::string name_list(const scene::FixedPoints& points, const std::vector<std::s
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-void print_starts(const scene::Scene& scene, const systems::Description& system) {
+void print_starts(const scene::Scene& scene, const systems::System& system) {
   const scene::FixedPoints& points = scene.fixed_points;
   std::size_t count = 1;
   std::vector<std::string> axes;
-  for (std::size_t i = 0; i < system.state_names.size(); ++i) {
+  for (std::size_t i = 0; i < system.info().state_names.size(); ++i) {
     const std::vector<double> values = i < points.grid.size() ? points.grid[i] : std::vector<double>{0.0};
     std::vector<std::string> texts;
     for (const double value : values) texts.push_back(value_text(system, i, value));
-    axes.push_back(fmt::format("{} = {}", system.state_names[i], fmt::join(texts, ", ")));
+    axes.push_back(fmt::format("{} = {}", system.info().state_names[i], fmt::join(texts, ", ")));
     count *= values.size();
   }
   Lines lines{{"equilibria", fmt::format("Newton's method from {} point{}: {}", count, count == 1 ? "" : "s",
@@ -150,14 +145,15 @@ void print_events(const scene::Scene& scene) {
                                                                  {"energies", value_list("E", scene.events.energies)}});
 }
 
-std::string section_text(const scene::Scene& scene, const systems::Description& system) {
+std::string section_text(const scene::Scene& scene, const systems::System& system) {
   if (scene.section.coordinate.empty()) return "none";
-  const auto place = std::find(system.state_names.begin(), system.state_names.end(), scene.section.coordinate);
-  const auto index = static_cast<std::size_t>(place - system.state_names.begin());
+  const auto place =
+      std::find(system.info().state_names.begin(), system.info().state_names.end(), scene.section.coordinate);
+  const auto index = static_cast<std::size_t>(place - system.info().state_names.begin());
   return fmt::format("{} = {}", scene.section.coordinate, value_text(system, index, scene.section.value));
 }
 
-void print_outputs(const scene::Scene& scene, const systems::Description& system) {
+void print_outputs(const scene::Scene& scene, const systems::System& system) {
   print_group(
       "Output",
       {{"section", section_text(scene, system)},
@@ -177,7 +173,8 @@ int check(const SceneOptions& options, const Invocation& invocation) {
         fmt::format("check: expected no PETSc options, got `{}`; it computes nothing, so drop `--` and what follows",
                     fmt::join(invocation.petsc_options, " ")));
   const scene::Scene scene = options.load();
-  const systems::Description& system = systems::describe_system(scene.system.name);
+  const auto bound = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  const systems::System& system = *bound;
   fmt::print("{}: a valid scene, \"{}\"\n", options.file.string(), scene.name);
   print_system(scene, system);
   print_starts(scene, system);

@@ -39,7 +39,7 @@ class EventFunction {
       if (_event.kind == Event::Kind::test_function) return std::nullopt;
     }
     if (_event.kind == Event::Kind::test_function)
-      out.reading = evaluate(_event.function, _system.description(), out.stability);
+      out.reading = evaluate(_event.function, _system.structure(), out.stability);
     else if (_event.kind == Event::Kind::fold_period)
       out.reading = {period_slope(out.point), 0.0};
     else
@@ -79,7 +79,7 @@ double energy_slope(const systems::System& system, const continuation::CurvePoin
   const std::vector<double> state = loop::state_at(point.loop, 0.0);
   const std::vector<double> change = loop::state_at(loop::perturbation(point.loop, point.tangent), 0.0);
   std::vector<double> gradient(state.size());
-  system.energy_gradient(state, gradient);
+  system.conserved_gradient(0, state, gradient);
   double slope = 0.0;
   for (std::size_t i = 0; i < state.size(); ++i) slope += gradient[i] * change[i];
   return slope;
@@ -127,7 +127,7 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
     return std::nullopt;
   }
   if (event.kind == Event::Kind::test_function &&
-      !is_event(event.function, system.description(), crossing->stability, event.tangency)) {
+      !is_event(event.function, system.structure(), crossing->stability, event.tangency)) {
     why = {.reason = NotLocated::Reason::no_event, .position = located->position};
     return std::nullopt;
   }

@@ -9,10 +9,10 @@
 #include <fmt/format.h>
 
 #include "fixed_spaces.hpp"
+#include "kernel_actions.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "search.hpp"
-#include "symmetry_group.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -30,7 +30,7 @@ struct Rank {
   [[nodiscard]] auto tie() const { return std::tie(reversor, phase, kept); }
 };
 
-Rank rank_of(const SymmetryGroup& group, const systems::Description& system, const Eigen::VectorXd& v) {
+Rank rank_of(const KernelActions& group, const systems::Structure& system, const Eigen::VectorXd& v) {
   Rank rank;
   for (const Action& a : group.actions()) {
     if (!a.maps(v, v)) continue;
@@ -59,25 +59,26 @@ double upward(const loop::Loop& direction) {
 }
 
 // One of the born orbits' isotropies: what base and direction have in common.
-loop::Isotropy isotropy_along(const systems::Description& system, const SymmetryGroup& group, const loop::Loop& base,
+loop::Isotropy isotropy_along(const systems::Structure& system, const KernelActions& group, const loop::Loop& base,
                               const loop::Tangent& along, const DirectionOptions& options) {
   return loop::find_isotropy(system, loop::moved(base, along, 0.1), 10.0 * options.symmetry_tolerance,
                              group.denominator());
 }
 
-bool has_other_sides(const SymmetryGroup& group, const Eigen::VectorXd& v) {
+bool has_other_sides(const KernelActions& group, const Eigen::VectorXd& v) {
   return !group.constant() &&
          std::none_of(group.actions().begin(), group.actions().end(), [&](const Action& a) { return a.maps(v, -v); });
 }
 
 // The direction of a fixed line: made exactly symmetric, started where the reversor has phase 0.
-Direction direction_along(const systems::Description& system, const SymmetryGroup& group, const loop::Loop& base,
+Direction direction_along(const systems::Structure& system, const KernelActions& group, const loop::Loop& base,
                           const Eigen::VectorXd& v, const DirectionOptions& options) {
   const loop::Loop vector = loop::perturbation(base, group.vector_at(v));
   loop::Loop mean = vector;
   std::fill(mean.modes.begin(), mean.modes.end(), 0.0);
   for (const Action& a : group.actions())
-    if (a.maps(v, v)) mean = loop::moved(std::move(mean), {loop::transformed(vector, a.element).modes, {}}, 1.0);
+    if (a.maps(v, v))
+      mean = loop::moved(std::move(mean), {loop::transformed_perturbation(vector, a.element).modes, {}}, 1.0);
 
   const Rank rank = rank_of(group, system, v);
   double start = 0.0;
@@ -101,7 +102,7 @@ Direction direction_along(const systems::Description& system, const SymmetryGrou
 
 // The lines that a symmetry group fixes; about an equilibrium also the oscillations (planes that time shifts turn) that
 // equivariances alone single out.
-std::vector<Eigen::VectorXd> fixed_lines(const SymmetryGroup& group) {
+std::vector<Eigen::VectorXd> fixed_lines(const KernelActions& group) {
   std::vector<Eigen::MatrixXd> matrices;
   for (const Action& a : group.actions()) matrices.push_back(a.matrix);
   const std::vector<Eigen::MatrixXd> spaces = fixed_spaces(matrices, group.dimension());
@@ -120,7 +121,7 @@ std::vector<Eigen::VectorXd> fixed_lines(const SymmetryGroup& group) {
 }
 
 // One of each set of images, the one of lowest rank.
-std::vector<Eigen::VectorXd> representatives(const SymmetryGroup& group, const systems::Description& system,
+std::vector<Eigen::VectorXd> representatives(const KernelActions& group, const systems::Structure& system,
                                              const std::vector<Eigen::VectorXd>& lines) {
   std::vector<std::pair<Rank, Eigen::VectorXd>> ranked;
   for (const Eigen::VectorXd& v : lines) ranked.emplace_back(rank_of(group, system, v), v);
@@ -134,7 +135,7 @@ std::vector<Eigen::VectorXd> representatives(const SymmetryGroup& group, const s
 }
 
 // How many of a plane's symmetries are rotations: q of the sector e^{2 pi i j / q}.
-int rotations(const SymmetryGroup& group) {
+int rotations(const KernelActions& group) {
   std::vector<Eigen::MatrixXd> distinct;
   for (const Action& a : group.actions())
     if (a.matrix.determinant() > 0.0 && std::none_of(distinct.begin(), distinct.end(), [&](const Eigen::MatrixXd& m) {
@@ -155,14 +156,14 @@ std::vector<double> search_amplitudes(int q, const loop::Loop& base, bool consta
   return out;
 }
 
-std::vector<Direction> searched(const systems::System& system, const SymmetryGroup& group, const loop::Loop& base,
+std::vector<Direction> searched(const systems::System& system, const KernelActions& group, const loop::Loop& base,
                                 const std::vector<Eigen::VectorXd>& lines, const DirectionOptions& options) {
   const bool plane = group.dimension() == 2;
   const int q = plane ? rotations(group) : 1;
   // What every vector of the kernel keeps: that of one without symmetry.
   const Eigen::VectorXd generic = Eigen::VectorXd::LinSpaced(group.dimension(), 1.0, std::sqrt(2.0)).array().sin();
   const loop::Isotropy kept =
-      isotropy_along(system.description(), group, base, group.vector_at(generic.normalized()), options);
+      isotropy_along(system.structure(), group, base, group.vector_at(generic.normalized()), options);
   const double nudge = plane ? 0.2 * std::numbers::pi / q : 0.03;
   const int expected = plane && q > 2 ? (q % 2 == 0 ? 2 : 1) : 0;
   SearchResult best;
@@ -188,7 +189,7 @@ std::vector<Direction> searched(const systems::System& system, const SymmetryGro
   std::vector<Direction> out;
   for (const FoundOrbit& orbit : best.found)
     out.push_back({base, group.vector_at(orbit.coordinates),
-                   loop::find_isotropy(system.description(), orbit.loop, 1e-2 * amplitude, group.denominator()),
+                   loop::find_isotropy(system.structure(), orbit.loop, 1e-2 * amplitude, group.denominator()),
                    has_other_sides(group, orbit.coordinates), amplitude});
   return out;
 }
@@ -200,8 +201,8 @@ std::vector<Direction> directions(const systems::System& system, const loop::Loo
   loop::validate(base);
   core::require(base.time_map.is_identity(), "directions need a base loop that runs evenly in time");
   core::require(!kernel.empty() && kernel.size() <= largest_kernel, "directions need a kernel of dimension 1 to 8");
-  const systems::Description& description = system.description();
-  const SymmetryGroup group(description, base, kernel, options);
+  const systems::Structure& structure = system.structure();
+  const KernelActions group(structure, base, kernel, options);
   for (const loop::SymmetryElement& g : isotropy)
     if (std::none_of(group.actions().begin(), group.actions().end(),
                      [&](const Action& a) { return a.element.name == g.name; }))
@@ -209,9 +210,9 @@ std::vector<Direction> directions(const systems::System& system, const loop::Loo
           fmt::format("the base loop of a kernel does not have the symmetry {} of its orbit to "
                       "{:.2g}, with any phase that its other symmetries allow",
                       g.name, options.symmetry_tolerance));
-  const std::vector<Eigen::VectorXd> lines = representatives(group, description, fixed_lines(group));
+  const std::vector<Eigen::VectorXd> lines = representatives(group, structure, fixed_lines(group));
   std::vector<Direction> out;
-  for (const Eigen::VectorXd& v : lines) out.push_back(direction_along(description, group, base, v, options));
+  for (const Eigen::VectorXd& v : lines) out.push_back(direction_along(structure, group, base, v, options));
   // A single oscillation, a single vector, and a plane with rotations and reflections have no others.
   const bool complete = kernel.size() == 1 || (kernel.size() == 2 && group.constant()) ||
                         (kernel.size() == 2 && !lines.empty() && rotations(group) > 2);

@@ -32,7 +32,7 @@ double along_chord(const continuation::CurvePoint& at, const loop::Loop& from, c
 
 }  // namespace
 
-bool passes_two_only_at_folds(const systems::Description& system, const loop::Isotropy& isotropy) {
+bool passes_two_only_at_folds(const systems::Structure& system, const loop::Isotropy& isotropy) {
   return system.symplectic &&
          std::none_of(isotropy.begin(), isotropy.end(), [](const loop::SymmetryElement& e) { return e.reversing; });
 }
@@ -40,8 +40,8 @@ bool passes_two_only_at_folds(const systems::Description& system, const loop::Is
 bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
                 const continuation::Options& options, const KnownStability& from, const KnownStability& to) {
   const TestFunction two{TestFunction::Kind::sector, {1, 0}};
-  const int before = evaluate(two, system->description(), from.stability).sign();
-  const int after = evaluate(two, system->description(), to.stability).sign();
+  const int before = evaluate(two, system->structure(), from.stability).sign();
+  const int after = evaluate(two, system->structure(), to.stability).sign();
   if (before * after >= 0) return false;
   continuation::FamilyCurve step(system, isotropy, options);
   step.add(0.0, from.orbit.loop);

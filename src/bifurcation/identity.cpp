@@ -129,10 +129,10 @@ Comparison apart(double distance, double position, std::string detail) {
 }
 
 Comparison compare(const systems::System& system, Chord chord, const loop::Loop& x, const IdentityOptions& options) {
-  const systems::Description& description = system.description();
+  const systems::Structure& structure = system.structure();
   const double length = chord.length();
   const double tolerance = options.tolerance * (1.0 + loop::rms_size(x));
-  loop::Alignment alignment = loop::align(description, x, chord.first(), 2.0 * length + tolerance);
+  loop::Alignment alignment = loop::align(structure, x, chord.first(), 2.0 * length + tolerance);
   if (alignment.distance > 2.0 * length + tolerance)
     return apart(alignment.distance, std::nan(""), "far from the neighbours");
   loop::Loop nearest = chord.first();
@@ -149,7 +149,7 @@ Comparison compare(const systems::System& system, Chord chord, const loop::Loop&
       return apart(alignment.distance, position,
                    fmt::format("no orbit beside it: {} {}", corrector::name_of(result.outcome), result.detail));
     nearest = result.loop;
-    alignment = loop::align(description, x, nearest);
+    alignment = loop::align(structure, x, nearest);
     const double before = distance;
     distance = distance_between(x, nearest, alignment.distance);
     if (distance <= tolerance) {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "orbweaver/continuation/off_branch.hpp"
-#include "orbweaver/loop/symmetry/fundamental_domain.hpp"
+#include "orbweaver/loop/symmetry/symmetry_group.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -26,25 +26,22 @@ struct Split {
   std::vector<std::vector<int>> signs;  ///< the sectors that the kernel can lie in
 };
 
-Split split_of(const loop::Isotropy& isotropy, int dimension, const Sector& sector, int multiplicity) {
-  const loop::FundamentalDomain domain = loop::fundamental_domain(isotropy, dimension);
-  const int turns = domain.order * multiplicity;  // least shifts in the repeated loop
+Split split_of(const loop::SymmetryGroup& group, const Sector& sector, int multiplicity) {
+  const int turns = group.order() * multiplicity;  // least shifts in the repeated loop
   Split split;
   split.signs.emplace_back();
   if (turns % 2 == 0) {
-    split.involutions.push_back({"half turn", false, power_of(domain.generator, turns / 2), 1, 2});
+    split.involutions.push_back({"half turn", false, power_of(group.generator().matrix, turns / 2), 1, 2});
     // The least shift turns the kernel by 2 pi j/q.
     const double angle = 2.0 * std::numbers::pi * sector.j * (turns / 2) / sector.q;
     split.signs.front().push_back(std::cos(angle) > 0.0 ? 1 : -1);
   }
-  for (const loop::SymmetryElement& e : isotropy) {
-    if (!e.reversing || e.shift_numerator % e.shift_denominator != 0) continue;
-    split.involutions.push_back(e);
+  if (const loop::SymmetryElement* reversor = group.reversor_at_start()) {
+    split.involutions.push_back(*reversor);
     std::vector<int> other = split.signs.front();
     split.signs.front().push_back(1);
     other.push_back(-1);
     split.signs.push_back(std::move(other));
-    break;
   }
   return split;
 }
@@ -82,8 +79,8 @@ double Kernel::next() const {
 
 Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& point, const loop::Isotropy& isotropy,
                  const Sector& sector, int expected, bool even_in_time, core::Team* team, double largest) {
-  const loop::FundamentalDomain domain = loop::fundamental_domain(isotropy, system.dimension());
-  const int multiplicity = sector.multiplicity(domain.order);
+  const loop::SymmetryGroup group(system.structure(), isotropy);
+  const int multiplicity = sector.multiplicity(group.order());
   Kernel kernel;
   loop::Tangent tangent = point.tangent;
   if (even_in_time || multiplicity > 1) {
@@ -93,7 +90,7 @@ Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& 
   } else {
     kernel.base = point.loop;
   }
-  const Split split = split_of(isotropy, system.dimension(), sector, multiplicity);
+  const Split split = split_of(group, sector, multiplicity);
   spectrum::TripletOptions options;
   options.count = split.signs.size() > 1 && expected > 1 ? expected / 2 + 1 : expected + 1;
   options.tolerance = 1e-6;  // of the vectors: starts are corrected; values come out to its square

@@ -28,7 +28,7 @@ double halton(int n, int base) {
 struct Search {
   const systems::System& system;
   const loop::Loop& base;
-  const SymmetryGroup& group;
+  const KernelActions& group;
   const loop::Isotropy& isotropy;
   double amplitude;
   const corrector::Options& options;
@@ -84,7 +84,7 @@ struct Search {
 
 }  // namespace
 
-SearchResult search_directions(const systems::System& system, const loop::Loop& base, const SymmetryGroup& group,
+SearchResult search_directions(const systems::System& system, const loop::Loop& base, const KernelActions& group,
                                const loop::Isotropy& isotropy, std::vector<Eigen::VectorXd> starts, double partner,
                                double amplitude, double nudge, const std::vector<Eigen::VectorXd>& known,
                                const corrector::Options& options) {

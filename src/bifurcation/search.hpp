@@ -4,7 +4,7 @@
 
 #include <Eigen/Dense>
 
-#include "symmetry_group.hpp"
+#include "kernel_actions.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -24,7 +24,7 @@ struct SearchResult {
 /// plane and if `partner` is not 0, from that angle beside each one found: extrema of the reduced action alternate, and one
 /// kind of them may be reached from very near only. Each is sought once more from `nudge` radians beside it.
 [[nodiscard]] SearchResult search_directions(const systems::System& system, const loop::Loop& base,
-                                             const SymmetryGroup& group, const loop::Isotropy& isotropy,
+                                             const KernelActions& group, const loop::Isotropy& isotropy,
                                              std::vector<Eigen::VectorXd> starts, double partner, double amplitude,
                                              double nudge, const std::vector<Eigen::VectorXd>& known,
                                              const corrector::Options& options);

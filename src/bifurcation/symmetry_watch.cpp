@@ -11,6 +11,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/symmetry/shift_search.hpp"
+#include "orbweaver/loop/symmetry/symmetry_group.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -41,10 +42,10 @@ void reduce(const std::vector<int>& angles, Eigen::VectorXd& of_a, Eigen::Vector
   }
 }
 
-bool generates(const loop::Isotropy& group, const Gained& gained) {
+bool generates(const loop::Isotropy& group, const Gained& gained, const std::vector<int>& angles) {
   return std::any_of(group.begin(), group.end(), [&](const loop::SymmetryElement& e) {
     return !e.reversing && e.shift_numerator == gained.shift_numerator &&
-           e.shift_denominator == gained.shift_denominator && e.matrix.isApprox(gained.matrix, 1e-9);
+           e.shift_denominator == gained.shift_denominator && e.map.is_same(gained.map, angles);
   });
 }
 
@@ -62,21 +63,20 @@ std::string to_text(const Gained& gained) {
   return fmt::format("{}@{}/{}", gained.name, gained.shift_numerator, gained.shift_denominator);
 }
 
-SymmetryWatch::SymmetryWatch(const systems::Description& system, const loop::Isotropy& own, int largest_order)
+SymmetryWatch::SymmetryWatch(const systems::Structure& system, const loop::Isotropy& own, int largest_order)
     : _system(system), _own(own) {
   core::require(largest_order >= 1, "a symmetry watch needs orders of 1 or more");
-  const loop::Isotropy group = loop::generated_group(system, own);
-  const int d = system.dimension();
-  std::vector<systems::Symmetry> symmetries{{"1", Eigen::MatrixXd::Identity(d, d)}};
+  const loop::Isotropy group = loop::SymmetryGroup(system, own).elements();
+  std::vector<systems::Symmetry> symmetries{{"1", systems::AffineMap::identity(system.dimension)}};
   symmetries.insert(symmetries.end(), system.equivariances.begin(), system.equivariances.end());
   for (const systems::Symmetry& s : symmetries) {
     const bool is_identity = &s == &symmetries.front();  // 1@p/q generates 1@1/q
     Shifted shifted{s, {}};
     for (int q = is_identity ? 2 : 1; q <= largest_order; ++q)
       for (int p = 0; p < q; ++p) {
-        Gained candidate{s.name, false, s.matrix, p, q, 0.0};
+        Gained candidate{s.name, false, s.map, p, q, 0.0};
         const bool is_new = is_identity ? p == 1 : std::gcd(p, q) == 1;
-        if (is_new && !generates(group, candidate)) shifted.candidates.push_back(std::move(candidate));
+        if (is_new && !generates(group, candidate, system.angles)) shifted.candidates.push_back(std::move(candidate));
       }
     _equivariances.push_back(std::move(shifted));
   }
@@ -92,7 +92,7 @@ SymmetryWatch::Seen SymmetryWatch::see(const loop::Loop& loop) {
 }
 
 // The coefficients of M^-1 z(t + T shift) - z(t), or of M^-1 z(-t - T shift) - z(t) for a reversor.
-Eigen::MatrixXcd SymmetryWatch::broken_part(const Gained& gained, const Eigen::MatrixXd& inverse, const Seen& orbit,
+Eigen::MatrixXcd SymmetryWatch::broken_part(const Gained& gained, const systems::AffineMap& inverse, const Seen& orbit,
                                             double shift) const {
   const Eigen::MatrixXcd& z = orbit.coefficients;
   Eigen::MatrixXcd image = gained.reversing ? Eigen::MatrixXcd(z.conjugate()) : z;
@@ -101,16 +101,18 @@ Eigen::MatrixXcd SymmetryWatch::broken_part(const Gained& gained, const Eigen::M
   const std::complex<double> step = std::polar(1.0, two_pi * shift);
   std::complex<double> wave = 1.0;
   for (Eigen::Index k = 1; k < image.cols(); ++k) image.col(k) *= wave *= step;
-  return inverse * image - z;
+  Eigen::MatrixXcd broken = inverse.matrix * image - z;
+  if (!inverse.is_linear()) broken.col(0) += inverse.offset.cast<std::complex<double>>();
+  return broken;
 }
 
 SymmetryWatch::Products SymmetryWatch::compare(const Gained& gained, const Seen& a, const Seen& b) const {
-  const Eigen::MatrixXd inverse = gained.matrix.inverse();
+  const systems::AffineMap inverse = gained.map.inverse();
   double shift_of_a = shift_of(gained);
   double shift_of_b = shift_of_a;
   if (gained.reversing) {  // R^-1 z(T phi - t) = y(t - T phi); the phase of B is the one near that of A
     shift_of_a = -gained.phase;
-    const loop::Loop image = loop::transformed(b.loop, gained.matrix, true, 0.0);
+    const loop::Loop image = loop::transformed(b.loop, gained.map, true, 0.0);
     shift_of_b = loop::shift_minimum_near(image, b.loop, _system.angles, shift_of_a).shift;
   }
   Eigen::MatrixXcd broken_a = broken_part(gained, inverse, a, shift_of_a);
@@ -127,10 +129,10 @@ SymmetryWatch::Products SymmetryWatch::compare(const Gained& gained, const Seen&
 // |A||B|, which decides where nothing is gained.
 class SymmetryWatch::Correlation {
  public:
-  Correlation(const Eigen::MatrixXd& inverse, const Seen& a, const Seen& b, const std::vector<int>& angles)
+  Correlation(const systems::AffineMap& inverse, const Seen& a, const Seen& b, const std::vector<int>& angles)
       : _inverse(inverse), _a(a), _b(b), _angles(angles), _sums(a.coefficients.cols()) {
-    const Eigen::MatrixXcd image_a = inverse * a.coefficients;
-    const Eigen::MatrixXcd image_b = inverse * b.coefficients;
+    const Eigen::MatrixXcd image_a = inverse.matrix * a.coefficients;
+    const Eigen::MatrixXcd image_b = inverse.matrix * b.coefficients;
     for (Eigen::Index k = 1; k < _sums.size(); ++k) {
       _unshifted += image_b.col(k).dot(image_a.col(k)).real() + b.coefficients.col(k).dot(a.coefficients.col(k)).real();
       _sums(k) = b.coefficients.col(k).dot(image_a.col(k)) + a.coefficients.col(k).dot(image_b.col(k));
@@ -142,8 +144,8 @@ class SymmetryWatch::Correlation {
     const Eigen::VectorXd turn = two_pi * shift * winding;
     const Eigen::VectorXd mean_a = _a.coefficients.col(0).real();
     const Eigen::VectorXd mean_b = _b.coefficients.col(0).real();
-    Eigen::VectorXd broken_a = _inverse * (mean_a + turn) - mean_a;
-    Eigen::VectorXd broken_b = _inverse * (mean_b + turn) - mean_b;
+    Eigen::VectorXd broken_a = _inverse(mean_a + turn) - mean_a;
+    Eigen::VectorXd broken_b = _inverse(mean_b + turn) - mean_b;
     reduce(_angles, broken_a, broken_b);
     double mixed = _unshifted + broken_a.dot(broken_b);
     const std::complex<double> step = std::polar(1.0, two_pi * shift);
@@ -156,7 +158,7 @@ class SymmetryWatch::Correlation {
   }
 
  private:
-  const Eigen::MatrixXd& _inverse;
+  const systems::AffineMap& _inverse;
   const Seen& _a;
   const Seen& _b;
   const std::vector<int>& _angles;
@@ -166,10 +168,10 @@ class SymmetryWatch::Correlation {
 
 // Elements of the group that `gained` and the own isotropy generate; a reversor doubles it, whatever its phase.
 std::size_t SymmetryWatch::generated_with(const Gained& gained) const {
-  if (gained.reversing) return 2 * loop::generated_group(_system, _own).size();
+  if (gained.reversing) return 2 * loop::SymmetryGroup(_system, _own).elements().size();
   loop::Isotropy generators = _own;
-  generators.push_back({gained.name, false, gained.matrix, gained.shift_numerator, gained.shift_denominator});
-  return loop::generated_group(_system, generators).size();
+  generators.push_back({gained.name, false, gained.map, gained.shift_numerator, gained.shift_denominator});
+  return loop::SymmetryGroup(_system, generators).elements().size();
 }
 
 std::vector<Gained> SymmetryWatch::all_passed(const Seen& from, const Seen& to) const {
@@ -186,19 +188,19 @@ std::vector<Gained> SymmetryWatch::all_passed(const Seen& from, const Seen& to) 
   };
   const double rounding = 1e-13 * (from.size * from.size + to.size * to.size);
   for (const auto& [symmetry, candidates] : _equivariances) {
-    if (!keeps_winding(symmetry.matrix, 1.0)) continue;
-    const Eigen::MatrixXd inverse = symmetry.matrix.inverse();
+    if (!keeps_winding(symmetry.map.matrix, 1.0)) continue;
+    const systems::AffineMap inverse = symmetry.map.inverse();
     const Correlation correlation(inverse, from, to, _system.angles);
     for (const Gained& candidate : candidates)
       if (correlation.at(shift_of(candidate)) <= rounding) consider(candidate);
   }
   for (const systems::Symmetry& r : _reversors) {
-    if (!keeps_winding(r.matrix, -1.0)) continue;
-    const loop::Loop image = loop::transformed(from.loop, r.matrix, true, 0.0);
+    if (!keeps_winding(r.map.matrix, -1.0)) continue;
+    const loop::Loop image = loop::transformed(from.loop, r.map, true, 0.0);
     std::vector<loop::ShiftMinimum> minima = loop::shift_minima(image, from.loop, _system.angles);
     if (minima.size() > phases) minima.resize(phases);
     for (const loop::ShiftMinimum& minimum : minima)
-      consider({r.name, true, r.matrix, 0, 1, -minimum.shift + std::ceil(minimum.shift)});
+      consider({r.name, true, r.map, 0, 1, -minimum.shift + std::ceil(minimum.shift)});
   }
   std::stable_sort(found.begin(), found.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
   std::vector<Gained> out;

@@ -22,17 +22,17 @@ struct Bounded {
 };
 
 /// Nontrivial stability indices or multipliers of an orbit.
-std::size_t count_of(const systems::Description& system) {
-  return static_cast<std::size_t>(system.pairs() - (system.conservative && !system.symplectic ? 1 : 0));
+std::size_t count_of(const systems::Structure& system) {
+  return static_cast<std::size_t>(system.pairs() - (system.conservative() && !system.symplectic ? 1 : 0));
 }
 
-std::vector<Bounded> indices_of(const systems::Description& system, const spectrum::Stability& stability) {
+std::vector<Bounded> indices_of(const systems::Structure& system, const spectrum::Stability& stability) {
   const std::size_t count = count_of(system);
   if (stability.fundamental.size() != static_cast<std::size_t>(system.pairs()) ||
       stability.fundamental_error.size() != stability.fundamental.size())
-    throw core::MisuseError(
-        fmt::format("test functions of {}: expected {} multipliers with error bounds, got {} with {}", system.name,
-                    system.pairs(), stability.fundamental.size(), stability.fundamental_error.size()));
+    throw core::MisuseError(fmt::format("test functions: expected {} multipliers with error bounds, got {} with {}",
+                                        system.pairs(), stability.fundamental.size(),
+                                        stability.fundamental_error.size()));
   std::vector<Bounded> indices(count);
   for (std::size_t i = 0; i < count; ++i) indices[i] = {stability.fundamental[i], stability.fundamental_error[i]};
   return indices;
@@ -67,7 +67,7 @@ std::vector<Bounded> over_pairs(const std::vector<Bounded>& indices, const Facto
   return factors;
 }
 
-std::vector<Bounded> factors_of(const TestFunction& function, const systems::Description& system,
+std::vector<Bounded> factors_of(const TestFunction& function, const systems::Structure& system,
                                 const std::vector<Bounded>& indices) {
   if (function.kind == Kind::krein) return over_pairs(indices, distance_squared);
   if (function.kind == Kind::torus)
@@ -79,7 +79,7 @@ std::vector<Bounded> factors_of(const TestFunction& function, const systems::Des
   return factors;
 }
 
-void check_listed(const TestFunction& function, const systems::Description& system) {
+void check_listed(const TestFunction& function, const systems::Structure& system) {
   core::require(function.kind != Kind::krein || system.symplectic, "krein is a test function of symplectic systems");
   core::require(function.kind != Kind::torus || !system.symplectic, "torus is a test function of dissipative systems");
   core::require(function.kind != Kind::sector || system.symplectic || function.sector.q <= 2,
@@ -93,7 +93,7 @@ int Reading::sign() const {
   return value > 0.0 ? 1 : -1;
 }
 
-std::vector<TestFunction> test_functions(const systems::Description& system, int fundamental_order, int subharmonics) {
+std::vector<TestFunction> test_functions(const systems::Structure& system, int fundamental_order, int subharmonics) {
   std::vector<TestFunction> functions;
   const std::size_t count = count_of(system);
   if (count == 0) return functions;
@@ -103,8 +103,7 @@ std::vector<TestFunction> test_functions(const systems::Description& system, int
   return functions;
 }
 
-Reading evaluate(const TestFunction& function, const systems::Description& system,
-                 const spectrum::Stability& stability) {
+Reading evaluate(const TestFunction& function, const systems::Structure& system, const spectrum::Stability& stability) {
   check_listed(function, system);
   const std::vector<Bounded> factors = factors_of(function, system, indices_of(system, stability));
   Bounded result{1.0, 0.0};
@@ -113,7 +112,7 @@ Reading evaluate(const TestFunction& function, const systems::Description& syste
   return {result.value.real(), result.error + rounding};
 }
 
-bool is_event(const TestFunction& function, const systems::Description& system, const spectrum::Stability& stability,
+bool is_event(const TestFunction& function, const systems::Structure& system, const spectrum::Stability& stability,
               bool tangency) {
   check_listed(function, system);
   if (function.kind == Kind::sector) return true;

@@ -53,10 +53,10 @@ double closure_of(const systems::System& system, const loop::Loop& loop, const s
 }
 
 double energy_drift_of(const systems::System& system, const std::vector<State>& states) {
-  if (!system.description().conservative) return std::numeric_limits<double>::quiet_NaN();
-  const double start = system.energy(states.front());
+  if (!system.structure().conservative()) return std::numeric_limits<double>::quiet_NaN();
+  const double start = system.conserved(0, states.front());
   double largest = 0.0;
-  for (const State& state : states) largest = std::max(largest, std::abs(system.energy(state) - start));
+  for (const State& state : states) largest = std::max(largest, std::abs(system.conserved(0, state) - start));
   return largest;
 }
 

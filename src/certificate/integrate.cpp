@@ -32,7 +32,7 @@ double norm(const State& values) {
 
 [[noreturn]] void fail(const systems::System& system, double reached, double time, const char* reason) {
   throw core::NumericalError(fmt::format("integration of '{}' over a time of {} stopped at t = {}: {}",
-                                         system.description().name, time, reached, reason));
+                                         system.info().name, time, reached, reason));
 }
 
 void require_usable(const systems::System& system, const State& state, double time, double tolerance) {

@@ -369,7 +369,7 @@ class CollocationBranch final : public Branch::Implementation {
 
 std::unique_ptr<Branch::Implementation> make_collocation_branch(std::shared_ptr<const systems::System> system,
                                                                 const Start& start, const Options& options) {
-  loop::FundamentalDomain domain = loop::fundamental_domain(start.isotropy, system->dimension());
+  loop::FundamentalDomain domain = loop::fundamental_domain(system->structure(), start.isotropy);
   if (!domain.expresses(start.isotropy) || !Collocation::applies(*system, domain)) return nullptr;
   return std::make_unique<CollocationBranch>(std::move(system), start, options, std::move(domain));
 }

@@ -146,7 +146,7 @@ class CollocationInterval final : public CurveInterval {
 }  // namespace
 
 std::unique_ptr<CurveInterval> make_collocation_interval(const IntervalOf& of) {
-  loop::FundamentalDomain domain = loop::fundamental_domain(of.isotropy, of.system.dimension());
+  loop::FundamentalDomain domain = loop::fundamental_domain(of.system.structure(), of.isotropy);
   if (!domain.expresses(of.isotropy) || !Collocation::applies(of.system, domain)) return nullptr;
   return std::make_unique<CollocationInterval>(of, std::move(domain));
 }

@@ -283,7 +283,7 @@ double PointCorrector::energy() const {
   std::vector<double> z(_modes.modes.begin(), _modes.modes.begin() + _modes.dimension);
   for (int k = _modes.cutoff; k >= 1; --k)
     for (std::size_t i = 0; i < d; ++i) z[i] += _modes.cosine(k, static_cast<int>(i));
-  return _system.energy(z);
+  return energy_at(_system, z);
 }
 
 }  // namespace orbweaver::continuation

@@ -21,7 +21,7 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 bool Collocation::applies(const systems::System& system, const loop::FundamentalDomain& domain) {
   if (!ChunkedBox::of_dimension(system.dimension()) || !domain.is_square()) return false;
-  return domain.reversor.has_value() || system.description().conservative;
+  return domain.reversor.has_value() || system.structure().conservative();
 }
 
 Collocation::Collocation(const systems::System& system, const loop::FundamentalDomain& domain,
@@ -32,6 +32,7 @@ Collocation::Collocation(const systems::System& system, const loop::FundamentalD
       _centre(std::move(centre)),
       _winding(std::move(winding)),
       _borders(domain.reversor ? 1 : 2),
+      _keeps_mean(domain.coordinates_with_mean()),
       _ends(domain.ends()),
       _box(ChunkedBox::of_dimension(system.dimension())) {
   core::require(cells % ChunkedBox::lanes == 0, "the cells of a domain must fill the lanes of the box scheme");
@@ -70,12 +71,7 @@ void Collocation::set_conditions(std::span<const double> weights, std::span<cons
   std::copy(reference.begin(), reference.end(), _reference.begin());
 }
 
-bool Collocation::keeps_mean(int coordinate) const {
-  const loop::FundamentalDomain& domain = _grid.domain();
-  const bool shifted = domain.order > 1 && domain.generator(coordinate, coordinate) < 0.5;
-  const bool mirrored = domain.reversor && (*domain.reversor)(coordinate, coordinate) < 0.5;
-  return !shifted && !mirrored;
-}
+bool Collocation::keeps_mean(int coordinate) const { return _keeps_mean[at(coordinate)]; }
 
 void Collocation::midpoint_states(const double* u) const {
   const int m = cells();
@@ -102,7 +98,7 @@ void Collocation::residual(const double* u, double* r) const {
   const double scale = _grid.spacing() * u[period_at()] / two_pi;
   if (_borders > 1) {
     const double mu = u[period_at() + 1];
-    _system.energy_gradients(at(m), _z.data(), _gradient.data());
+    _system.conserved_gradients(0, at(m), _z.data(), _gradient.data());
     for (std::size_t q = 0; q < _f.size(); ++q) _f[q] += mu * _gradient[q];
   }
   for (int i = 0; i < d; ++i) {
@@ -142,7 +138,7 @@ void Collocation::factor(const double* u) {
     }
   }
   _jacobian_rms = std::sqrt(square / m);
-  if (_borders > 1) _system.energy_gradients(at(m), _z.data(), _gradient.data());
+  if (_borders > 1) _system.conserved_gradients(0, at(m), _z.data(), _gradient.data());
   for (int i = 0; i < d; ++i)
     for (int j = 0; j < m; ++j) {
       const double c = scale * _density[at(j)];

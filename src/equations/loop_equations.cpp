@@ -15,7 +15,7 @@ namespace {
 
 std::vector<double> energy_gradients(const systems::System& system, std::size_t nodes, const std::vector<double>& z) {
   std::vector<double> out(z.size());
-  system.energy_gradients(nodes, z.data(), out.data());
+  system.conserved_gradients(0, nodes, z.data(), out.data());
   return out;
 }
 
@@ -118,7 +118,7 @@ LoopEquations::~LoopEquations() = default;
 bool LoopEquations::are_square(const systems::System& system, const loss::Unknowns& unknowns,
                                const loop::Subspace& image, const loss::Slice& slice) {
   const int more = unfoldings(unknowns, image, slice);
-  return image.size() == unknowns.subspace.size() && (more == 0 || (more == 1 && system.description().conservative));
+  return image.size() == unknowns.subspace.size() && (more == 0 || (more == 1 && system.structure().conservative()));
 }
 
 // _nodal times the density of the time map.

@@ -91,8 +91,7 @@ void Linearization::check_finite(const systems::System& system, std::span<const 
   throw core::NotFiniteError(fmt::format(
       "the {} of {} is not finite ({}) at t = {:.6g} of a loop with T = {:.6g}, state ({:.6g}); the loop left the "
       "region where the system is defined: start from another guess or take smaller steps",
-      what, system.description().name, *bad, _period * static_cast<double>(node) / _nodes, _period,
-      fmt::join(state, ", ")));
+      what, system.info().name, *bad, _period * static_cast<double>(node) / _nodes, _period, fmt::join(state, ", ")));
 }
 
 void Linearization::require_order(Order order) const {

@@ -35,17 +35,16 @@ double deviation_degrees(const systems::System& system, const std::vector<double
 
 std::vector<EquilibriumReport> sweep_report(const scene::Scene& scene) {
   const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
-  const systems::Description& description = system->description();
   starts::SweepOptions options;
   options.period_from = scene.sweep.period_from;
   options.period_to = scene.sweep.period_to;
   options.step = scene.sweep.step;
   std::vector<EquilibriumReport> reports;
   for (const std::vector<double>& point : starts::find_fixed_points(*system, scene.fixed_points.grid)) {
-    EquilibriumReport report{point, survey::point_text(description, point), starts::sweep(*system, point, options), {}};
+    EquilibriumReport report{point, survey::point_text(*system, point), starts::sweep(*system, point, options), {}};
     for (const starts::NormalMode& mode : bifurcation::small_oscillations(*system, report.sweep, options.cutoff))
       report.modes.push_back(
-          {survey::base_family_name(scene, description, point, static_cast<int>(reports.size()),
+          {survey::base_family_name(scene, *system, point, static_cast<int>(reports.size()),
                                     static_cast<int>(report.modes.size())),
            mode.period, mode.grid_period, deviation_degrees(*system, point, mode.direction, mode.period),
            deviation_degrees(*system, point, mode.grid_direction, mode.grid_period), loop::to_text(mode.isotropy)});

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <set>
 
 #include <fmt/format.h>
@@ -54,7 +55,8 @@ std::string list_text(const Items& items, const Text& text) {
 // All keys of a scene with their values, the ones it does not give included.
 class Values {
  public:
-  explicit Values(const Scene& scene) : _system(systems::describe_system(scene.system.name)) {
+  explicit Values(const Scene& scene)
+      : _system(systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects)) {
     add("name", scene.name);
     add_system(scene.system);
     add_starts(scene);
@@ -95,7 +97,7 @@ class Values {
   void add_starts(const Scene& scene) {
     const FixedPoints& points = scene.fixed_points;
     auto grid = points.grid;
-    if (!grid.empty()) grid.resize(_system.state_names.size(), {0.0});
+    if (!grid.empty()) grid.resize(_system->info().state_names.size(), {0.0});
     std::size_t index = 0;
     add("starts.fixed_points.grid", list_text(grid, [&](const std::vector<double>& values) {
           const std::size_t coordinate = index++;
@@ -131,22 +133,21 @@ class Values {
   }
 
   [[nodiscard]] std::size_t index_of(const std::string& coordinate) const {
-    const auto& names = _system.state_names;
+    const auto& names = _system->info().state_names;
     return static_cast<std::size_t>(std::find(names.begin(), names.end(), coordinate) - names.begin());
   }
 
   [[nodiscard]] std::string coordinate_text(double value, std::size_t coordinate) const {
-    const bool is_angle = std::count(_system.angles.begin(), _system.angles.end(), static_cast<int>(coordinate)) > 0;
-    return is_angle ? degrees_text(value) : text_of(value);
+    return _system->structure().is_angle(coordinate) ? degrees_text(value) : text_of(value);
   }
 
   [[nodiscard]] std::string point_text(std::vector<double> point) const {
-    point.resize(_system.state_names.size(), 0.0);
+    point.resize(_system->info().state_names.size(), 0.0);
     std::size_t index = 0;
     return list_text(point, [&](double value) { return coordinate_text(value, index++); });
   }
 
-  const systems::Description& _system;
+  std::shared_ptr<const systems::System> _system;
   std::vector<Value> _values;
 };
 

@@ -17,18 +17,14 @@ constexpr double most_grid_points = 1e6;
 constexpr std::string_view grid_example = "[[0, 180], [0, 180]]";
 constexpr std::string_view names_example = "{[0, 180]: [Down-Up]}";
 
-bool is_angle(const systems::Description& system, std::size_t coordinate) {
-  return std::count(system.angles.begin(), system.angles.end(), static_cast<int>(coordinate)) > 0;
-}
-
 bool same_value(double a, double b, bool angle) {
   return angle ? std::abs(std::remainder(a - b, 2 * std::numbers::pi)) < 1e-9 : a == b;
 }
 
-bool same_point(const systems::Description& system, const std::vector<double>& a, const std::vector<double>& b) {
+bool same_point(const systems::System& system, const std::vector<double>& a, const std::vector<double>& b) {
   const auto at = [](const std::vector<double>& point, std::size_t i) { return i < point.size() ? point[i] : 0.0; };
   for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i)
-    if (!same_value(at(a, i), at(b, i), is_angle(system, i))) return false;
+    if (!same_value(at(a, i), at(b, i), system.structure().is_angle(i))) return false;
   return true;
 }
 
@@ -37,22 +33,22 @@ double read_value(const Field& field, bool angle) {
   return angle ? radians(value) : value;
 }
 
-void check_size(const Field& field, std::size_t size, const systems::Description& system) {
-  if (size == 0 || size > system.state_names.size())
+void check_size(const Field& field, std::size_t size, const systems::System& system) {
+  if (size == 0 || size > system.info().state_names.size())
     field.fail(fmt::format("1 to {} entries, for the coordinates {} in this order", system.dimension(),
-                           fmt::join(system.state_names, ", ")),
+                           fmt::join(system.info().state_names, ", ")),
                fmt::format("{}", size), "leave trailing coordinates out to have them 0");
 }
 
-void read_grid(const Field& field, const systems::Description& system, FixedPoints& points) {
+void read_grid(const Field& field, const systems::System& system, FixedPoints& points) {
   const std::vector<Field> coordinates = field.list(grid_example);
   check_size(field, coordinates.size(), system);
   double count = 1;
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     std::vector<double> values;
     for (const Field& item : coordinates[i].list("[0, 180]")) {
-      const double value = read_value(item, is_angle(system, i));
-      const auto same = [&](double other) { return same_value(value, other, is_angle(system, i)); };
+      const double value = read_value(item, system.structure().is_angle(i));
+      const auto same = [&](double other) { return same_value(value, other, system.structure().is_angle(i)); };
       if (std::any_of(values.begin(), values.end(), same))
         item.fail("a value that the list does not hold yet", item.got() + " again (angles count modulo 360)",
                   "remove one");
@@ -66,15 +62,16 @@ void read_grid(const Field& field, const systems::Description& system, FixedPoin
     field.fail(fmt::format("at most {} grid points", most_grid_points), fmt::format("{}", count), "thin the lists out");
 }
 
-std::vector<double> read_point(const Field& key, const systems::Description& system) {
+std::vector<double> read_point(const Field& key, const systems::System& system) {
   const std::vector<Field> coordinates = key.list("[0, 180]");
   check_size(key, coordinates.size(), system);
   std::vector<double> point;
-  for (const Field& coordinate : coordinates) point.push_back(read_value(coordinate, is_angle(system, point.size())));
+  for (const Field& coordinate : coordinates)
+    point.push_back(read_value(coordinate, system.structure().is_angle(point.size())));
   return point;
 }
 
-void read_names(const Field& field, const systems::Description& system, FixedPoints& points) {
+void read_names(const Field& field, const systems::System& system, FixedPoints& points) {
   std::set<std::string> used;
   for (const Field::Entry& entry : field.entries(names_example, true)) {
     FixedPoints::Names named{.point = read_point(entry.key, system), .names = {}};
@@ -121,7 +118,7 @@ void read_letters(const Field& field, FixedPoints& points) {
 
 }  // namespace
 
-void read_fixed_points(const Field& field, const systems::Description& system, FixedPoints& points) {
+void read_fixed_points(const Field& field, const systems::System& system, FixedPoints& points) {
   const Keys keys(field, {"grid", "names", "letters"}, "fixed_points: {grid: [[0, 180], [0, 180]]}");
   if (const auto grid = keys.find("grid")) read_grid(*grid, system, points);
   if (const auto names = keys.find("names")) read_names(*names, system, points);

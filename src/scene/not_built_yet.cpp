@@ -11,8 +11,8 @@ std::vector<std::string> not_built_yet(const Scene& scene) {
   const auto say = [&](bool asked, const std::string& sentence) {
     if (asked) sentences.push_back(sentence);
   };
-  const systems::Description& system = systems::describe_system(scene.system.name);
-  say(!system.conservative || !scene.system.effects.empty(),
+  const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  say(!system->structure().conservative() || !scene.system.effects.empty(),
       "system: continuation of systems without a conserved energy, or with effects, is not built yet.");
   say(!scene.section.coordinate.empty(),
       fmt::format("section: crossings of the Poincare section {} = {:g} are not computed yet.",

@@ -23,7 +23,7 @@ Field require_key(const Keys& keys, const Field& root, const std::string& key, s
   root.fail(fmt::format("the key `{}`", key), "a scene without it", fmt::format("add for example `{}`", example));
 }
 
-void read_starts(const Field& field, const systems::Description& system, Scene& scene) {
+void read_starts(const Field& field, const systems::System& system, Scene& scene) {
   const Keys keys(field, {"fixed_points", "sweep"}, "starts: {fixed_points: {grid: [[0, 180], [0, 180]]}}");
   if (const auto points = keys.find("fixed_points")) read_fixed_points(*points, system, scene.fixed_points);
   if (const auto sweep = keys.find("sweep")) read_sweep(*sweep, scene.sweep);
@@ -34,7 +34,8 @@ Scene read_scene(const Field& root) {
                   smallest_scene);
   Scene scene;
   read_system(require_key(keys, root, "system", "system: {name: double_pendulum}"), scene.system);
-  const systems::Description& system = systems::describe_system(scene.system.name);
+  const auto bound = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  const systems::System& system = *bound;
   scene.name = scene.system.name;
   if (const auto name = keys.find("name")) scene.name = name->text("double-pendulum");
   read_starts(require_key(keys, root, "starts", "starts: {fixed_points: {grid: [[0, 180], [0, 180]]}}"), system, scene);

@@ -76,18 +76,19 @@ void read_events(const Field& field, Events& events) {
   if (const auto energies = keys.find("energies")) events.energies = energies->numbers({.example = "0.5"});
 }
 
-void read_section(const Field& field, const systems::Description& system, Section& section) {
+void read_section(const Field& field, const systems::System& system, Section& section) {
   const Keys keys(field, {"coordinate", "value"}, "section: {coordinate: w1, value: 0}");
+  const std::vector<std::string>& names = system.info().state_names;
   const auto coordinate = keys.find("coordinate");
   if (!coordinate)
     field.fail("the section's `coordinate`", "a section without it", "name one of the system's coordinates");
-  section.coordinate = coordinate->choice(system.state_names);
+  section.coordinate = coordinate->choice(names);
   const auto value = keys.find("value");
   if (!value) return;
   section.value = value->number({.example = "0"});
-  const auto place = std::find(system.state_names.begin(), system.state_names.end(), section.coordinate);
-  const auto index = static_cast<int>(place - system.state_names.begin());
-  if (std::count(system.angles.begin(), system.angles.end(), index) > 0) section.value = radians(section.value);
+  const auto place = std::find(names.begin(), names.end(), section.coordinate);
+  if (system.structure().is_angle(static_cast<std::size_t>(place - names.begin())))
+    section.value = radians(section.value);
 }
 
 void read_output(const Field& field, Output& output) {

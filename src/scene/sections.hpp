@@ -1,7 +1,7 @@
 #pragma once
 
 #include "orbweaver/scene/scene.hpp"
-#include "orbweaver/systems/description.hpp"
+#include "orbweaver/systems/system.hpp"
 #include "reader.hpp"
 
 namespace orbweaver::scene {
@@ -9,13 +9,13 @@ namespace orbweaver::scene {
 // One reader a section of a scene; each fills its struct and leaves the defaults of absent keys alone. All throw
 // core::InputError as Field does.
 void read_system(const Field& field, SystemChoice& system);
-void read_fixed_points(const Field& field, const systems::Description& system, FixedPoints& points);
+void read_fixed_points(const Field& field, const systems::System& system, FixedPoints& points);
 void read_sweep(const Field& field, Sweep& sweep);
 void read_continuation(const Field& field, Continuation& continuation);
 void read_survey(const Field& field, Survey& survey);
 void read_limits(const Field& field, Limits& limits);
 void read_events(const Field& field, Events& events);
-void read_section(const Field& field, const systems::Description& system, Section& section);
+void read_section(const Field& field, const systems::System& system, Section& section);
 void read_output(const Field& field, Output& output);
 
 /// The parameters that the system has with the effects chosen.

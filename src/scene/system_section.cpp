@@ -9,9 +9,9 @@
 namespace orbweaver::scene {
 
 std::vector<systems::Parameter> known_parameters(const SystemChoice& choice) {
-  const systems::Description& description = systems::describe_system(choice.name);
-  std::vector<systems::Parameter> known = description.parameters;
-  for (const systems::Effect& effect : description.effects)
+  const systems::ModelInfo& info = systems::model_info(choice.name);
+  std::vector<systems::Parameter> known = info.parameters;
+  for (const systems::Effect& effect : info.effects)
     if (std::count(choice.effects.begin(), choice.effects.end(), effect.name) > 0)
       known.insert(known.end(), effect.parameters.begin(), effect.parameters.end());
   return known;
@@ -30,7 +30,7 @@ void ask_system(const Field& field, const SystemChoice& choice) {
 
 void read_effects(const Field& field, SystemChoice& choice) {
   std::vector<std::string> known;
-  for (const systems::Effect& effect : systems::describe_system(choice.name).effects) known.push_back(effect.name);
+  for (const systems::Effect& effect : systems::model_info(choice.name).effects) known.push_back(effect.name);
   for (const Field& item : field.list("[]")) {
     if (known.empty())
       item.fail(fmt::format("no effects, for the system {} has none", choice.name), item.got(), "remove it");

@@ -93,8 +93,8 @@ FloquetIndices indices_of(const Eigen::VectorXd& numbers, FloquetIndices sizes) 
 /// factor m. They are enlarged sixteenfold and the response divided by four, which covers an eigenvalue about to
 /// split, whose response grows with the root only.
 template <class Change>
-void add_probes(const systems::Description& system, const TransverseFlow& flow, int order,
-                const FloquetIndices& indices, const Change& change, core::Team* team, Stability& stability) {
+void add_probes(const systems::Structure& system, const TransverseFlow& flow, int order, const FloquetIndices& indices,
+                const Change& change, core::Team* team, Stability& stability) {
   constexpr int probes = 4;
   constexpr double enlarged = 16.0;
   constexpr double divided = 0.25;
@@ -120,7 +120,7 @@ void add_probes(const systems::Description& system, const TransverseFlow& flow, 
 }
 
 /// Bounds what the chain's truncation errors do to the indices; returns the rounding's share if it comes with it.
-TraceError add_truncation(const systems::Description& system, const Chain& chain, const TransverseFlow& flow, int order,
+TraceError add_truncation(const systems::Structure& system, const Chain& chain, const TransverseFlow& flow, int order,
                           const FloquetIndices& indices, core::Team* team, Stability& stability) {
   if (is_single_pair(system, flow)) {
     const TraceError error = error_of_trace(chain, flow);
@@ -134,7 +134,7 @@ TraceError add_truncation(const systems::Description& system, const Chain& chain
   return {};
 }
 
-void add_rounding_probes(const systems::Description& system, const Chain& chain, const TransverseFlow& flow, int order,
+void add_rounding_probes(const systems::Structure& system, const Chain& chain, const TransverseFlow& flow, int order,
                          const FloquetIndices& indices, core::Team* team, Stability& stability) {
   const auto change = [&](Eigen::Index m, const auto& random) {
     const double scale = rounding_of(chain, m) * flow.factors.col(m).norm();
@@ -149,12 +149,12 @@ void add_rounding_probes(const systems::Description& system, const Chain& chain,
 void add_orbit_error(const systems::System& system, const Chain& chain, const FundamentalGroup& group,
                      const FloquetIndices& indices, core::Team* team, Stability& stability) {
   constexpr double visible = 1e-7;
-  const OrbitCorrection correction = orbit_correction(chain, group, system.description().conservative);
+  const OrbitCorrection correction = orbit_correction(chain, group, system.structure().conservative());
   const double size = std::max(correction.states.cwiseAbs().maxCoeff(), std::abs(correction.stretch));
   if (size == 0.0) return;
   const double factor = std::max(1.0, visible / size);
   const TransverseFlow flow = transverse_flow(system, corrected(system, chain, correction, factor, team), group, team);
-  add_distances(indices, floquet_indices(system.description(), flow, group.order), orbit_safety / factor, stability);
+  add_distances(indices, floquet_indices(system.structure(), flow, group.order), orbit_safety / factor, stability);
 }
 
 bool moves(const loop::Loop& loop) {
@@ -199,18 +199,18 @@ struct Integrated {
 
 Integrated integrated(const systems::System& system, const loop::Loop& loop, const FundamentalGroup& group,
                       const FloquetOptions& options, core::Team* team) {
-  const systems::Description& description = system.description();
+  const systems::Structure& structure = system.structure();
   VariationalStep stepper(system);
   Integrated result;
   int least = options.least_segments;
   for (int refinement = 0;; ++refinement) {
     result.chain = make_chain(system, stepper, loop, group, least, team);
     result.flow = transverse_flow(system, result.chain, group, team);
-    result.indices = floquet_indices(description, result.flow, group.order);
+    result.indices = floquet_indices(structure, result.flow, group.order);
     check_finite(result.indices.full, loop);
     result.stability = without_errors(result.indices, group.order);
     result.trace =
-        add_truncation(description, result.chain, result.flow, group.order, result.indices, team, result.stability);
+        add_truncation(structure, result.chain, result.flow, group.order, result.indices, team, result.stability);
     const double error = largest_relative(result.stability.fundamental, result.stability.fundamental_error);
     if (error <= options.tolerance || refinement >= options.refinements) return result;
     const double finer = std::min(2.0, 1.1 * std::pow(error / options.tolerance, 1.0 / 8.0));
@@ -229,20 +229,20 @@ Stability floquet(const systems::System& system, const loop::Loop& loop, const l
   loop::validate(loop);
   core::require(loop.dimension == system.dimension(), "Floquet multipliers: the loop is not of the system's dimension");
   core::require(moves(loop), "Floquet multipliers need an orbit that moves; this loop is constant");
-  const systems::Description& description = system.description();
+  const systems::Structure& structure = system.structure();
   const FundamentalGroup group = fundamental_group(system, loop, isotropy);
-  if (loop.dimension == (description.conservative ? 2 : 1)) return without_errors({}, group.order);
+  if (loop.dimension == (structure.conservative() ? 2 : 1)) return without_errors({}, group.order);
   core::Team* const team = core::worth_dividing(options.team, loop.dimension);
   auto [chain, flow, indices, trace, stability] = integrated(system, loop, group, options, team);
   add_orbit_error(system, chain, group, indices, team, stability);
-  if (is_single_pair(description, flow)) {
+  if (is_single_pair(structure, flow)) {
     stability.fundamental_error[0] += trace.rounding;
     stability.full_error[0] =
         repeated_index_error(stability.fundamental[0].real(), stability.fundamental_error[0], group.order);
   } else {
-    add_rounding_probes(description, chain, flow, group.order, indices, team, stability);
+    add_rounding_probes(structure, chain, flow, group.order, indices, team, stability);
   }
-  if (description.conservative && !description.symplectic) {
+  if (structure.conservative() && !structure.symplectic) {
     stability.full.emplace_back(1.0);
     stability.full_error.push_back(0.0);
     stability.fundamental.emplace_back(1.0);

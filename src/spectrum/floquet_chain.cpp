@@ -116,8 +116,8 @@ struct Carriers {
 
   explicit Carriers(const FundamentalGroup& group) {
     if (!group.reversor) return;
-    forward.push_back(group.reversor->matrix);
-    backward.push_back(group.reversor->matrix.inverse());
+    forward.push_back(group.reversor->map.matrix);
+    backward.push_back(group.reversor->map.matrix.inverse());
     for (int n = 1; n < group.order; ++n) {
       forward.push_back(group.inverse * forward.back());
       backward.push_back(backward.back() * group.generator);
@@ -231,8 +231,8 @@ void evaluate_field(const systems::System& system, Chain& chain) {
   RowMajor a(d * d, count);
   system.field_jacobian(static_cast<std::size_t>(count), z.data(), f.data(), a.data());
   chain.fields = f;
-  if (system.description().conservative) {
-    system.energy_gradients(static_cast<std::size_t>(count), z.data(), f.data());
+  if (system.structure().conservative()) {
+    system.conserved_gradients(0, static_cast<std::size_t>(count), z.data(), f.data());
     chain.gradients = f;
   }
   chain.jacobians.resize(d * d, count);

@@ -54,11 +54,11 @@ std::vector<Eigen::MatrixXd> factors_of(const TransverseFlow& flow, int repeated
 
 }  // namespace
 
-bool is_single_pair(const systems::Description& system, const TransverseFlow& flow) {
+bool is_single_pair(const systems::Structure& system, const TransverseFlow& flow) {
   return system.symplectic && flow.dimension() == 2 && sign_of(flow.around) != 0;
 }
 
-FloquetIndices floquet_indices(const systems::Description& system, const TransverseFlow& flow, int order) {
+FloquetIndices floquet_indices(const systems::Structure& system, const TransverseFlow& flow, int order) {
   FloquetIndices result;
   if (system.symplectic && flow.dimension() == 2)
     result.fundamental = {trace_of_product(flow)};

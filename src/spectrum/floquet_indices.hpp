@@ -3,7 +3,7 @@
 #include <complex>
 #include <vector>
 
-#include "orbweaver/systems/description.hpp"
+#include "orbweaver/systems/structure.hpp"
 #include "transverse_flow.hpp"
 
 namespace orbweaver::spectrum {
@@ -16,10 +16,10 @@ struct FloquetIndices {
 
 /// True where g^p is plus or minus the unit map of a plane: the index is a trace, the full one its Chebyshev
 /// polynomial.
-[[nodiscard]] bool is_single_pair(const systems::Description& system, const TransverseFlow& flow);
+[[nodiscard]] bool is_single_pair(const systems::Structure& system, const TransverseFlow& flow);
 
 /// The trace for a single pair, orthogonal iteration otherwise.
-[[nodiscard]] FloquetIndices floquet_indices(const systems::Description& system, const TransverseFlow& flow, int order);
+[[nodiscard]] FloquetIndices floquet_indices(const systems::Structure& system, const TransverseFlow& flow, int order);
 
 /// Bound on the full index's error if the fundamental one's (of modulus |k|) is `error`.
 [[nodiscard]] double repeated_index_error(double k, double error, int order);

@@ -164,7 +164,7 @@ TransverseFlow reduced(const Chain& chain, const FundamentalGroup& group, core::
 
 TransverseFlow transverse_flow(const systems::System& system, const Chain& chain, const FundamentalGroup& group,
                                core::Team* team) {
-  if (!system.description().conservative) return reduced<Eigen::Dynamic, 1>(chain, group, team);
+  if (!system.structure().conservative()) return reduced<Eigen::Dynamic, 1>(chain, group, team);
   if (chain.dimension() == 4) return reduced<4, 2>(chain, group, team);
   return reduced<Eigen::Dynamic, 2>(chain, group, team);
 }

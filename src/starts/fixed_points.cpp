@@ -21,7 +21,7 @@ constexpr double longest_step =
     1.0;  // of Newton, so that it does not leave the neighbourhood of its start for far away
 
 void reduce_angles(const systems::System& system, Eigen::VectorXd& z) {
-  for (const int i : system.description().angles) {
+  for (const int i : system.structure().angles) {
     z(i) -= two_pi * std::floor(z(i) / two_pi);
     if (two_pi - z(i) < same_point) z(i) -= two_pi;
   }
@@ -37,7 +37,7 @@ std::optional<Eigen::VectorXd> newton(const systems::System& system, Eigen::Vect
     if (!f.allFinite() || !a.allFinite()) {
       if (iteration > 0) return std::nullopt;
       throw core::NotFiniteError(fmt::format("the vector field of {} is not finite at the grid point ({:.6g})",
-                                             system.description().name, fmt::join(start, ", ")));
+                                             system.info().name, fmt::join(start, ", ")));
     }
     Eigen::VectorXd step = a.completeOrthogonalDecomposition().solve(f);
     if (step.norm() > longest_step) step *= longest_step / step.norm();

@@ -38,10 +38,10 @@ Sample sample(const systems::System& system, std::span<const double> fixed_point
 
 // A phase e^{i alpha} of the mode v so that s = 0 lies on the fixed set of the system's first reversor that the mode
 // has, else at the largest first coordinate; the sign so that the first coordinate that moves does so upwards.
-Eigen::VectorXcd with_standard_phase(const systems::Description& system, Eigen::VectorXcd v) {
+Eigen::VectorXcd with_standard_phase(const systems::Structure& system, Eigen::VectorXcd v) {
   v.normalize();
   for (const systems::Symmetry& r : system.reversors) {
-    const Eigen::VectorXcd image = r.matrix.cast<std::complex<double>>() * v.conjugate();
+    const Eigen::VectorXcd image = r.map.matrix.cast<std::complex<double>>() * v.conjugate();
     const std::complex<double> phase = v.dot(image);  // image = phase * v if the mode is reversible
     if (std::abs(std::abs(phase) - 1.0) > 1e-9 || (image - phase * v).norm() > 1e-8) continue;
     v *= std::sqrt(phase);
@@ -64,7 +64,7 @@ loop::Tangent direction_of(const Eigen::VectorXcd& v, int cutoff) {
   return {loop.modes, {}};
 }
 
-loop::Isotropy isotropy_of(const systems::Description& system, std::span<const double> fixed_point, double period,
+loop::Isotropy isotropy_of(const systems::Structure& system, std::span<const double> fixed_point, double period,
                            const loop::Tangent& direction, int cutoff) {
   const loop::Loop loop = loop::moved(loop::constant_loop(fixed_point, period, cutoff), direction, 1.0);
   return loop::find_isotropy(system, loop, 1e-7);
@@ -72,14 +72,14 @@ loop::Isotropy isotropy_of(const systems::Description& system, std::span<const d
 
 NormalMode normal_mode(const systems::System& system, std::span<const double> fixed_point, const LinearModes& linear,
                        const LinearModes::Root& root, double grid_period, int cutoff) {
-  const systems::Description& description = system.description();
+  const systems::Structure& structure = system.structure();
   NormalMode mode;
   mode.period = root.period;
   mode.grid_period = grid_period;
   mode.residual = root.residual;
-  mode.direction = direction_of(with_standard_phase(description, root.kernel.col(0)), cutoff);
-  mode.grid_direction = direction_of(with_standard_phase(description, linear.softest(1, grid_period)), cutoff);
-  mode.isotropy = isotropy_of(description, fixed_point, mode.period, mode.direction, cutoff);
+  mode.direction = direction_of(with_standard_phase(structure, root.kernel.col(0)), cutoff);
+  mode.grid_direction = direction_of(with_standard_phase(structure, linear.softest(1, grid_period)), cutoff);
+  mode.isotropy = isotropy_of(structure, fixed_point, mode.period, mode.direction, cutoff);
   return mode;
 }
 

@@ -24,42 +24,55 @@ const Named* find_named(const std::vector<Named>& list, const std::string& name)
   return found == list.end() ? nullptr : &*found;
 }
 
-std::vector<Parameter> allowed_parameters(const Description& description, const std::vector<std::string>& effects) {
-  std::vector<Parameter> allowed = description.parameters;
+std::vector<Parameter> allowed_parameters(const ModelInfo& info, const std::vector<std::string>& effects) {
+  std::vector<Parameter> allowed = info.parameters;
   for (const std::string& name : effects) {
-    const Effect* effect = find_named(description.effects, name);
+    const Effect* effect = find_named(info.effects, name);
     if (effect == nullptr)
-      throw core::InputError(fmt::format("system '{}' has no effect '{}'; its effects are: {}", description.name, name,
-                                         names_of(description.effects)));
+      throw core::InputError(
+          fmt::format("system '{}' has no effect '{}'; its effects are: {}", info.name, name, names_of(info.effects)));
     if (std::count(effects.begin(), effects.end(), name) > 1)
       throw core::InputError(
-          fmt::format("effect '{}' of system '{}' is asked for twice; name it once", name, description.name));
+          fmt::format("effect '{}' of system '{}' is asked for twice; name it once", name, info.name));
     allowed.insert(allowed.end(), effect->parameters.begin(), effect->parameters.end());
   }
   return allowed;
 }
 
-[[noreturn]] void refuse_parameter(const Description& description, const std::vector<Parameter>& allowed,
+[[noreturn]] void refuse_parameter(const ModelInfo& info, const std::vector<Parameter>& allowed,
                                    const std::string& name) {
-  for (const Effect& effect : description.effects)
+  for (const Effect& effect : info.effects)
     if (find_named(effect.parameters, name) != nullptr)
       throw core::InputError(
           fmt::format("parameter '{}' of system '{}' belongs to the effect '{}', which is not asked for; "
                       "add it to the effects or leave the parameter out",
-                      name, description.name, effect.name));
-  throw core::InputError(fmt::format("system '{}' has no parameter '{}'; its parameters are: {}", description.name,
-                                     name, names_of(allowed)));
+                      name, info.name, effect.name));
+  throw core::InputError(
+      fmt::format("system '{}' has no parameter '{}'; its parameters are: {}", info.name, name, names_of(allowed)));
 }
 
-void check_value(const Description& description, const Parameter& parameter, double value) {
+void check_value(const ModelInfo& info, const Parameter& parameter, double value) {
   const bool above = parameter.lower_open ? value > parameter.lower : value >= parameter.lower;
   if (std::isfinite(value) && above && value <= parameter.upper) return;
   throw core::InputError(fmt::format("parameter '{}' ({}) of system '{}' must be a finite number with {}; {} came",
-                                     parameter.name, parameter.meaning, description.name, range_text(parameter),
-                                     value));
+                                     parameter.name, parameter.meaning, info.name, range_text(parameter), value));
 }
 
 }  // namespace
+
+void check(const Structure& structure, const ModelInfo& info, int dimension, int quantities) {
+  const auto d = static_cast<std::size_t>(dimension);
+  core::require(structure.dimension == dimension && info.state_names.size() == d && info.winding_names.size() == d,
+                "a model, its structure and its names have as many coordinates");
+  core::require(static_cast<int>(structure.conserved.size()) <= quantities,
+                "a model needs a function for every conserved quantity of its structure");
+  for (const int i : structure.angles)
+    core::require(i >= 0 && i < dimension && !info.winding_names[static_cast<std::size_t>(i)].empty(),
+                  "an angle is a coordinate whose winding number has a name");
+  for (const auto* symmetries : {&structure.equivariances, &structure.reversors})
+    for (const Symmetry& s : *symmetries)
+      core::require(s.map.dimension() == dimension, "a symmetry acts on as many coordinates as its model has");
+}
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
@@ -76,17 +89,16 @@ std::string range_text(const Parameter& parameter) {
   return text + unit;
 }
 
-std::map<std::string, double> bind_parameters(const Description& description,
-                                              const std::map<std::string, double>& given,
-                                              const std::vector<std::string>& effects) {
-  const std::vector<Parameter> allowed = allowed_parameters(description, effects);
-  std::map<std::string, double> bound;
-  for (const Parameter& parameter : allowed) bound[parameter.name] = parameter.standard;
+Bound bound_to(const ModelInfo& info, const std::map<std::string, double>& given,
+               const std::vector<std::string>& effects) {
+  const std::vector<Parameter> allowed = allowed_parameters(info, effects);
+  Bound bound{{}, effects};
+  for (const Parameter& parameter : allowed) bound.parameters[parameter.name] = parameter.standard;
   for (const auto& [name, value] : given) {
     const Parameter* parameter = find_named(allowed, name);
-    if (parameter == nullptr) refuse_parameter(description, allowed, name);
-    check_value(description, *parameter, value);
-    bound[name] = value;
+    if (parameter == nullptr) refuse_parameter(info, allowed, name);
+    check_value(info, *parameter, value);
+    bound.parameters[name] = value;
   }
   return bound;
 }

@@ -4,16 +4,21 @@
 #include <string>
 #include <vector>
 
-#include "orbweaver/systems/description.hpp"
+#include "bound.hpp"
+#include "orbweaver/systems/model_info.hpp"
+#include "orbweaver/systems/structure.hpp"
 
 namespace orbweaver::systems {
 
-/// Every parameter of the system and of the effects asked for, by name: what was given, and the standard values for the
-/// rest. Throws core::InputError on an unknown or repeated effect, an unknown parameter, one whose effect is not asked
+/// The effects asked for, and every parameter of the system and of them by name: what was given, and the standard values
+/// for the rest. Throws core::InputError on an unknown or repeated effect, an unknown parameter, one whose effect is not asked
 /// for, and a value that is not finite or out of range; the message says what is known or allowed.
-[[nodiscard]] std::map<std::string, double> bind_parameters(const Description& description,
-                                                            const std::map<std::string, double>& given,
-                                                            const std::vector<std::string>& effects);
+[[nodiscard]] Bound bound_to(const ModelInfo& info, const std::map<std::string, double>& given,
+                             const std::vector<std::string>& effects);
+
+/// Throws core::MisuseError unless the structure fits its model: sizes, angles with names for their windings, no more
+/// conserved quantities than functions for them.
+void check(const Structure& structure, const ModelInfo& info, int dimension, int quantities);
 
 /// "a, b, c", or "none" where the list is empty.
 [[nodiscard]] std::string joined(const std::vector<std::string>& names);

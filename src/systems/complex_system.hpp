@@ -12,8 +12,8 @@ class ComplexSystem : public System {
  public:
   /// f at one state; `z` and `f` have size dimension.
   virtual void complex_field(const std::complex<double>* z, std::complex<double>* f) const = 0;
-  /// The energy at one state.
-  [[nodiscard]] virtual std::complex<double> complex_energy(const std::complex<double>* z) const = 0;
+  /// Conserved quantity k at one state.
+  [[nodiscard]] virtual std::complex<double> complex_conserved(int k, const std::complex<double>* z) const = 0;
 };
 
 }  // namespace orbweaver::systems

@@ -12,14 +12,12 @@ namespace orbweaver::systems {
 class DoublePendulum {
  public:
   static constexpr int dimension = 4;
-  static Description describe();
+  static constexpr int quantities = 1;
+  static ModelInfo info();
+  static Structure structure(const Bound& bound);
 
-  explicit DoublePendulum(const std::map<std::string, double>& parameters)
-      : _m1(parameters.at("m1")),
-        _m2(parameters.at("m2")),
-        _l1(parameters.at("l1")),
-        _l2(parameters.at("l2")),
-        _g(parameters.at("g")) {}
+  explicit DoublePendulum(const Bound& bound)
+      : _m1(bound["m1"]), _m2(bound["m2"]), _l1(bound["l1"]), _l2(bound["l2"]), _g(bound["g"]) {}
 
   template <class S>
   void field(const S* z, S* f) const {
@@ -42,8 +40,8 @@ class DoublePendulum {
     f[3] = pull_2 * share * (1.0 / _l2);
   }
 
-  template <class S>
-  S energy(const S* z) const {
+  template <int, class S>
+  S conserved(const S* z) const {
     using std::cos;
     const S height = cos(z[0]) * ((_m1 + _m2) * _l1) + cos(z[1]) * (_m2 * _l2);
     return action_density(z) * 0.5 - height * _g;
@@ -65,28 +63,34 @@ class DoublePendulum {
   double _g;
 };
 
-Description DoublePendulum::describe() {
+ModelInfo DoublePendulum::info() {
   constexpr double inf = std::numeric_limits<double>::infinity();
-  const Eigen::Matrix4d reverse = Eigen::Vector4d(1, 1, -1, -1).asDiagonal();
-  const Eigen::Matrix4d mirror = -Eigen::Matrix4d::Identity();
-  Description description;
-  description.name = "double_pendulum";
-  description.title = "Ideal double pendulum";
-  description.state_names = {"th1", "th2", "w1", "w2"};
-  description.angles = {0, 1};
-  description.winding_names = {"n1", "n2"};
-  description.parameters = {
+  ModelInfo info;
+  info.name = "double_pendulum";
+  info.title = "Ideal double pendulum";
+  info.state_names = {"th1", "th2", "w1", "w2"};
+  info.winding_names = {"n1", "n2", "", ""};
+  info.parameters = {
       {"m1", 1.0, 0.0, inf, true, "kg", "mass of the inner bob"},
       {"m2", 1.0, 0.0, inf, true, "kg", "mass of the outer bob"},
       {"l1", 1.0, 0.0, inf, true, "m", "length of the inner rod"},
       {"l2", 1.0, 0.0, inf, true, "m", "length of the outer rod"},
       {"g", 1.0, 0.0, inf, true, "m/s^2", "gravity"},
   };
-  description.equivariances = {{"S", mirror}};
-  description.reversors = {{"R", reverse}, {"RS", -reverse}};
-  description.conservative = true;
-  description.symplectic = true;
-  return description;
+  return info;
+}
+
+Structure DoublePendulum::structure(const Bound&) {
+  const Eigen::Matrix4d reverse = Eigen::Vector4d(1, 1, -1, -1).asDiagonal();
+  const Eigen::Matrix4d mirror = -Eigen::Matrix4d::Identity();
+  Structure structure;
+  structure.dimension = dimension;
+  structure.angles = {0, 1};
+  structure.conserved = {"energy"};
+  structure.equivariances = {{"S", mirror}};
+  structure.reversors = {{"R", reverse}, {"RS", -reverse}};
+  structure.symplectic = true;
+  return structure;
 }
 
 template struct Registered<DoublePendulum>;

@@ -8,9 +8,11 @@ namespace orbweaver::systems {
 class HarmonicOscillator {
  public:
   static constexpr int dimension = 2;
-  static Description describe();
+  static constexpr int quantities = 1;
+  static ModelInfo info();
+  static Structure structure(const Bound& bound);
 
-  explicit HarmonicOscillator(const std::map<std::string, double>& parameters) : _omega(parameters.at("omega")) {}
+  explicit HarmonicOscillator(const Bound& bound) : _omega(bound["omega"]) {}
 
   template <class S>
   void field(const S* z, S* f) const {
@@ -18,8 +20,8 @@ class HarmonicOscillator {
     f[1] = z[0] * (-_omega * _omega);
   }
 
-  template <class S>
-  S energy(const S* z) const {
+  template <int, class S>
+  S conserved(const S* z) const {
     return (z[1] * z[1] + z[0] * z[0] * (_omega * _omega)) * 0.5;
   }
 
@@ -32,20 +34,26 @@ class HarmonicOscillator {
   double _omega;
 };
 
-Description HarmonicOscillator::describe() {
+ModelInfo HarmonicOscillator::info() {
+  ModelInfo info;
+  info.name = "harmonic_oscillator";
+  info.title = "Harmonic oscillator";
+  info.state_names = {"q", "p"};
+  info.winding_names = {"", ""};
+  info.parameters = {{"omega", 1.0, 0.0, std::numeric_limits<double>::infinity(), true, "rad/s", "angular frequency"}};
+  return info;
+}
+
+Structure HarmonicOscillator::structure(const Bound&) {
   const Eigen::Matrix2d reverse = Eigen::Vector2d(1, -1).asDiagonal();
   const Eigen::Matrix2d mirror = -Eigen::Matrix2d::Identity();
-  Description description;
-  description.name = "harmonic_oscillator";
-  description.title = "Harmonic oscillator";
-  description.state_names = {"q", "p"};
-  description.parameters = {
-      {"omega", 1.0, 0.0, std::numeric_limits<double>::infinity(), true, "rad/s", "angular frequency"}};
-  description.equivariances = {{"S", mirror}};
-  description.reversors = {{"R", reverse}, {"RS", -reverse}};
-  description.conservative = true;
-  description.symplectic = true;
-  return description;
+  Structure structure;
+  structure.dimension = dimension;
+  structure.conserved = {"energy"};
+  structure.equivariances = {{"S", mirror}};
+  structure.reversors = {{"R", reverse}, {"RS", -reverse}};
+  structure.symplectic = true;
+  return structure;
 }
 
 template struct Registered<HarmonicOscillator>;

@@ -11,9 +11,11 @@ namespace orbweaver::systems {
 class HenonHeiles {
  public:
   static constexpr int dimension = 4;
-  static Description describe();
+  static constexpr int quantities = 1;
+  static ModelInfo info();
+  static Structure structure(const Bound& bound);
 
-  explicit HenonHeiles(const std::map<std::string, double>&) {}
+  explicit HenonHeiles(const Bound&) {}
 
   template <class S>
   void field(const S* z, S* f) const {
@@ -23,8 +25,8 @@ class HenonHeiles {
     f[3] = z[1] * z[1] - z[0] * z[0] - z[1];
   }
 
-  template <class S>
-  S energy(const S* z) const {
+  template <int, class S>
+  S conserved(const S* z) const {
     const S square_x = z[0] * z[0];
     const S square_y = z[1] * z[1];
     return (action_density(z) + square_x + square_y) * 0.5 + square_x * z[1] - square_y * z[1] * (1.0 / 3.0);
@@ -48,24 +50,31 @@ Eigen::Matrix4d on_phase_space(const Eigen::Matrix2d& plane) {
 
 }  // namespace
 
-Description HenonHeiles::describe() {
+ModelInfo HenonHeiles::info() {
+  ModelInfo info;
+  info.name = "henon_heiles";
+  info.title = "Henon-Heiles system";
+  info.state_names = {"x", "y", "px", "py"};
+  info.winding_names = {"", "", "", ""};
+  return info;
+}
+
+Structure HenonHeiles::structure(const Bound&) {
   Eigen::Matrix2d third_turn;
   third_turn << -0.5, -0.5 * std::numbers::sqrt3, 0.5 * std::numbers::sqrt3, -0.5;
   const Eigen::Matrix4d c = on_phase_space(third_turn);
   const Eigen::Matrix4d cc = on_phase_space(third_turn.transpose());
   const Eigen::Matrix4d s = Eigen::Vector4d(-1, 1, -1, 1).asDiagonal();
   const Eigen::Matrix4d r = Eigen::Vector4d(1, 1, -1, -1).asDiagonal();
-  Description description;
-  description.name = "henon_heiles";
-  description.title = "Henon-Heiles system";
-  description.state_names = {"x", "y", "px", "py"};
-  description.equivariances = {{"C", c}, {"CC", cc}, {"S", s}, {"SC", s * c}, {"SCC", s * cc}};
+  Structure structure;
+  structure.dimension = dimension;
+  structure.conserved = {"energy"};
+  structure.equivariances = {{"C", c}, {"CC", cc}, {"S", s}, {"SC", s * c}, {"SCC", s * cc}};
   // R C and R CC reverse time too, but are no involutions and fix only the origin: no orbit starts on their fixed
   // space.
-  description.reversors = {{"R", r}, {"RS", r * s}, {"RSC", r * s * c}, {"RSCC", r * s * cc}};
-  description.conservative = true;
-  description.symplectic = true;
-  return description;
+  structure.reversors = {{"R", r}, {"RS", r * s}, {"RSC", r * s * c}, {"RSCC", r * s * cc}};
+  structure.symplectic = true;
+  return structure;
 }
 
 template struct Registered<HenonHeiles>;

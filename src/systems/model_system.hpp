@@ -3,26 +3,38 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <type_traits>
+#include <utility>
 
+#include "checks.hpp"
 #include "complex_system.hpp"
 #include "orbweaver/ad/derivatives.hpp"
+#include "orbweaver/core/error.hpp"
 #include "registered.hpp"
 
 namespace orbweaver::systems {
 
 /// Adapts a model to the System interface, with derivatives by AD, over nodes in SIMD lanes. A model has
 ///   static constexpr int dimension;
-///   static Description describe();
-///   explicit Model(const std::map<std::string, double>& parameters);   // every parameter, checked
+///   static constexpr int quantities;                          // functions that can be conserved
+///   static ModelInfo info();
+///   static Structure structure(const Bound& bound);           // what holds with these parameters and effects
+///   explicit Model(const Bound& bound);
 ///   template <class S> void field(const S* z, S* f) const;
-///   template <class S> S energy(const S* z) const;           // NaN where there is none
-///   template <class S> S action_density(const S* z) const;   // NaN where there is none
+///   template <int K, class S> S conserved(const S* z) const;  // quantity K of the structure, K < quantities
+///   template <class S> S action_density(const S* z) const;    // NaN where there is none
+/// and, if its structure may name guards,
+///   double guard(int k, const double* z) const;
 template <class Model>
 class ModelSystem final : public ComplexSystem {
  public:
-  explicit ModelSystem(const std::map<std::string, double>& parameters) : _model(parameters), _parameters(parameters) {}
+  explicit ModelSystem(const Bound& bound)
+      : _model(bound), _structure(Model::structure(bound)), _parameters(bound.parameters) {
+    check(_structure, Registered<Model>::info(), Model::dimension, Model::quantities);
+  }
 
-  [[nodiscard]] const Description& description() const override { return Registered<Model>::describe(); }
+  [[nodiscard]] const ModelInfo& info() const override { return Registered<Model>::info(); }
+  [[nodiscard]] const Structure& structure() const override { return _structure; }
   [[nodiscard]] const std::map<std::string, double>& parameters() const override { return _parameters; }
 
   void field(std::size_t nodes, const double* z, double* f) const override {
@@ -50,20 +62,33 @@ class ModelSystem final : public ComplexSystem {
     });
   }
 
-  void energy_gradients(std::size_t nodes, const double* z, double* gradients) const override {
-    const auto energy_of = [this]<class S>(const S* state) { return _model.template energy<S>(state); };
-    for_each_group(nodes, [=](std::size_t j, std::size_t count) {
-      const auto result = ad::value_gradient<Model::dimension>(energy_of, load(nodes, j, count, z).data());
-      store(nodes, j, count, result.gradient, gradients);
+  void conserved_gradients(int k, std::size_t nodes, const double* z, double* gradients) const override {
+    with_quantity(k, [&]<int K>(std::integral_constant<int, K>) {
+      const auto quantity = [this]<class S>(const S* state) { return _model.template conserved<K, S>(state); };
+      for_each_group(nodes, [=](std::size_t j, std::size_t count) {
+        const auto result = ad::value_gradient<Model::dimension>(quantity, load(nodes, j, count, z).data());
+        store(nodes, j, count, result.gradient, gradients);
+      });
     });
   }
 
-  [[nodiscard]] double energy(std::span<const double> z) const override {
-    return _model.template energy<double>(z.data());
+  [[nodiscard]] double conserved(int k, std::span<const double> z) const override {
+    double value = 0.0;
+    with_quantity(k, [&]<int K>(std::integral_constant<int, K>) { value = _model.template conserved<K>(z.data()); });
+    return value;
   }
 
-  void energy_gradient(std::span<const double> z, std::span<double> gradient) const override {
-    energy_gradients(1, z.data(), gradient.data());
+  void conserved_gradient(int k, std::span<const double> z, std::span<double> gradient) const override {
+    conserved_gradients(k, 1, z.data(), gradient.data());
+  }
+
+  [[nodiscard]] double guard(int k, std::span<const double> z) const override {
+    if constexpr (requires { _model.guard(k, z.data()); }) {
+      core::require(k >= 0 && k < static_cast<int>(_structure.guards.size()), "the structure names no such guard");
+      return _model.guard(k, z.data());
+    } else {
+      return System::guard(k, z);
+    }
   }
 
   [[nodiscard]] double action_density(std::span<const double> z) const override {
@@ -72,8 +97,10 @@ class ModelSystem final : public ComplexSystem {
 
   void complex_field(const std::complex<double>* z, std::complex<double>* f) const override { _model.field(z, f); }
 
-  [[nodiscard]] std::complex<double> complex_energy(const std::complex<double>* z) const override {
-    return _model.energy(z);
+  [[nodiscard]] std::complex<double> complex_conserved(int k, const std::complex<double>* z) const override {
+    std::complex<double> value;
+    with_quantity(k, [&]<int K>(std::integral_constant<int, K>) { value = _model.template conserved<K>(z); });
+    return value;
   }
 
  private:
@@ -87,6 +114,17 @@ class ModelSystem final : public ComplexSystem {
       model.field(z, f);
     }
   };
+
+  /// Calls `evaluate` with k as a constant.
+  template <class Evaluate>
+  void with_quantity(int k, const Evaluate& evaluate) const {
+    core::require(k >= 0 && k < static_cast<int>(_structure.conserved.size()),
+                  "the structure names no such conserved quantity");
+    [&]<int... K>(std::integer_sequence<int, K...>) {
+      static_cast<void>(((k == K && (evaluate(std::integral_constant<int, K>{}), true)) || ...));
+    }
+    (std::make_integer_sequence<int, Model::quantities>{});
+  }
 
   // One body serves full groups and the last one, so that a node's bits do not depend on where it stands.
   template <class Evaluate>
@@ -114,18 +152,19 @@ class ModelSystem final : public ComplexSystem {
 
   Model _model;
   Field _field{_model};
+  Structure _structure;
   std::map<std::string, double> _parameters;
 };
 
 template <class Model>
-const Description& Registered<Model>::describe() {
-  static const Description description = Model::describe();
-  return description;
+const ModelInfo& Registered<Model>::info() {
+  static const ModelInfo info = Model::info();
+  return info;
 }
 
 template <class Model>
-std::shared_ptr<const System> Registered<Model>::make(const std::map<std::string, double>& parameters) {
-  return std::make_shared<const ModelSystem<Model>>(parameters);
+std::shared_ptr<const System> Registered<Model>::make(const Bound& bound) {
+  return std::make_shared<const ModelSystem<Model>>(bound);
 }
 
 }  // namespace orbweaver::systems

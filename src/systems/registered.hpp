@@ -1,9 +1,8 @@
 #pragma once
 
-#include <map>
 #include <memory>
-#include <string>
 
+#include "bound.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::systems {
@@ -12,9 +11,8 @@ namespace orbweaver::systems {
 /// so that the registry only has to name the model.
 template <class Model>
 struct Registered {
-  static const Description& describe();
-  /// `parameters` holds every parameter, checked.
-  static std::shared_ptr<const System> make(const std::map<std::string, double>& parameters);
+  static const ModelInfo& info();
+  static std::shared_ptr<const System> make(const Bound& bound);
 };
 
 }  // namespace orbweaver::systems

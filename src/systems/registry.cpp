@@ -11,12 +11,12 @@
 namespace orbweaver::systems {
 
 struct RegistryLine {
-  const Description& (*describe)();
-  std::shared_ptr<const System> (*make)(const std::map<std::string, double>& parameters);
+  const ModelInfo& (*info)();
+  std::shared_ptr<const System> (*make)(const Bound& bound);
 };
 
 template <class Model>
-constexpr RegistryLine line{&Registered<Model>::describe, &Registered<Model>::make};
+constexpr RegistryLine line{&Registered<Model>::info, &Registered<Model>::make};
 
 // One line a system; `class` declares the model, which is defined in its own file.
 constexpr std::array registry{
@@ -29,7 +29,7 @@ namespace {
 
 const RegistryLine& find_line(const std::string& name) {
   const auto found = std::find_if(registry.begin(), registry.end(),
-                                  [&](const RegistryLine& candidate) { return candidate.describe().name == name; });
+                                  [&](const RegistryLine& candidate) { return candidate.info().name == name; });
   if (found == registry.end())
     throw core::InputError(fmt::format("there is no system '{}'; the systems are: {}", name, joined(system_names())));
   return *found;
@@ -39,16 +39,16 @@ const RegistryLine& find_line(const std::string& name) {
 
 std::vector<std::string> system_names() {
   std::vector<std::string> names;
-  for (const RegistryLine& candidate : registry) names.push_back(candidate.describe().name);
+  for (const RegistryLine& candidate : registry) names.push_back(candidate.info().name);
   return names;
 }
 
-const Description& describe_system(const std::string& name) { return find_line(name).describe(); }
+const ModelInfo& model_info(const std::string& name) { return find_line(name).info(); }
 
 std::shared_ptr<const System> make_system(const std::string& name, const std::map<std::string, double>& parameters,
                                           const std::vector<std::string>& effects) {
   const RegistryLine& found = find_line(name);
-  return found.make(bind_parameters(found.describe(), parameters, effects));
+  return found.make(bound_to(found.info(), parameters, effects));
 }
 
 }  // namespace orbweaver::systems

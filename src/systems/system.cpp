@@ -1,16 +1,28 @@
 #include "orbweaver/systems/system.hpp"
 
+#include "orbweaver/core/error.hpp"
+
 namespace orbweaver::systems {
 
-void System::energy_gradients(std::size_t nodes, const double* z, double* gradients) const {
+std::vector<std::string> System::winding_names() const {
+  std::vector<std::string> names;
+  for (const int i : structure().angles) names.push_back(info().winding_names.at(static_cast<std::size_t>(i)));
+  return names;
+}
+
+void System::conserved_gradients(int k, std::size_t nodes, const double* z, double* gradients) const {
   const auto d = static_cast<std::size_t>(dimension());
   std::vector<double> state(d);
   std::vector<double> gradient(d);
   for (std::size_t j = 0; j < nodes; ++j) {
     for (std::size_t i = 0; i < d; ++i) state[i] = z[i * nodes + j];
-    energy_gradient(state, gradient);
+    conserved_gradient(k, state, gradient);
     for (std::size_t i = 0; i < d; ++i) gradients[i * nodes + j] = gradient[i];
   }
+}
+
+double System::guard(int, std::span<const double>) const {
+  throw core::MisuseError("this system has no such guard: ask for those that its structure names");
 }
 
 }  // namespace orbweaver::systems

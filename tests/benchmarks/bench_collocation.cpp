@@ -21,7 +21,7 @@ struct Problem {
     }
     const continuation::TraceState& trace = branch.frontier().trace;
     equations = std::make_unique<equations::Collocation>(
-        *start.system, loop::fundamental_domain(start.start.isotropy, start.start.base.dimension),
+        *start.system, loop::fundamental_domain(start.system->structure(), start.start.isotropy),
         std::vector<double>(4, 0.0), std::vector<double>(4, 0.0), trace.cells, trace.time_map);
     const std::vector<double>& orbit = trace.points.back().values;
     std::vector<double> conditions(orbit.size(), 0.0);

@@ -110,7 +110,8 @@ void second_derivatives_lanes(benchmark::State& state) {
   });
 }
 void energy_gradients_lanes(benchmark::State& state) {
-  nodal(state, [](const systems::System& s, double* f, double*) { s.energy_gradients(nodes, states().data(), f); });
+  nodal(state,
+        [](const systems::System& s, double* f, double*) { s.conserved_gradients(0, nodes, states().data(), f); });
 }
 
 template <class Function>

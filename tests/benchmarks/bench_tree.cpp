@@ -14,6 +14,7 @@
 #include "orbweaver/scene/scene.hpp"
 #include "orbweaver/survey/tasks/keys.hpp"
 #include "orbweaver/systems/system.hpp"
+#include "support/stated_system.hpp"
 #include "survey/tree_outcomes.hpp"
 #include "tree/family_tree.hpp"
 
@@ -65,7 +66,7 @@ int main(int argc, char** argv) {
       "system: {name: double_pendulum}\nstarts: {fixed_points: {grid: [[0, 180], [0, 180]]}}\nlimits: {families: "
       "1000000}\n",
       "the scene of a benchmark");
-  survey::FamilyTree tree(scene, systems::describe_system("double_pendulum"));
+  survey::FamilyTree tree(scene, test::structure_of("double_pendulum"));
   Times recent;
   int known = 0;
   const auto add = [&](const test::Ended& ended) {

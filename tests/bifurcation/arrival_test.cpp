@@ -12,7 +12,7 @@ namespace {
 using test::Branching;
 
 SymmetryWatch watch_of(const Branching& branch) {
-  return SymmetryWatch(test::pendulum()->description(), branch.isotropy);
+  return SymmetryWatch(test::pendulum()->structure(), branch.isotropy);
 }
 
 void expect_one_arrival(const Branching& branch, const std::string& text) {
@@ -45,7 +45,7 @@ TEST(Arrival, OfADoubledBrakeOrbitGainsAQuarter) { expect_one_arrival(test::in_p
 // The base family passes its own crossings without gaining anything.
 TEST(Arrival, OfTheBaseFamilyThereIsNone) {
   const auto& orbits = test::family_to_twelve(test::in_phase()).orbits;
-  const SymmetryWatch watch(test::pendulum()->description(), test::pendulum_isotropy(*test::pendulum()));
+  const SymmetryWatch watch(test::pendulum()->structure(), test::pendulum_isotropy(*test::pendulum()));
   for (std::size_t n = 0; n + 1 < orbits.size(); ++n)
     EXPECT_FALSE(watch.passed(orbits[n].loop, orbits[n + 1].loop).has_value()) << "T = " << orbits[n].loop.period;
 }

@@ -53,18 +53,18 @@ void expect_events(std::vector<test::Event> found, std::vector<Expected> expecte
 
 spectrum::Stability stability_of(const PlaneFamily& system, double action) {
   const loop::Loop loop = system.circle(action);
-  return spectrum::floquet(system, loop, loop::find_isotropy(system.description(), loop, 1e-9));
+  return spectrum::floquet(system, loop, loop::find_isotropy(system.structure(), loop, 1e-9));
 }
 
 /// Along the circles of a plane family, from one action to another in three step sizes.
 void expect_along(const PlaneFamily& system, double from, double to, const std::vector<Expected>& expected) {
   const auto stability_at = [&](double action) { return stability_of(system, action); };
   const int order = stability_at(from).fundamental_order;
-  const auto functions = bifurcation::test_functions(system.description(), order, subharmonics);
+  const auto functions = bifurcation::test_functions(system.structure(), order, subharmonics);
   for (const int steps : {11, 37}) {
     SCOPED_TRACE(testing::Message() << steps << " steps");
     const test::Detection found =
-        test::detect(system.description(), stability_at, functions, evenly(from, to, steps), 1e-11);
+        test::detect(system.structure(), stability_at, functions, evenly(from, to, steps), 1e-11);
     EXPECT_LE(found.probes, most_probes);
     expect_events(found.events, expected, 1e-9);
   }
@@ -153,12 +153,12 @@ TEST(ClosedForms, MeetingOffTheCircleIsNoKreinCollision) {
 }
 
 template <class MakeStability>
-void expect_for_parameters(const systems::Description& description, const MakeStability& stability_at, double from,
+void expect_for_parameters(const systems::Structure& structure, const MakeStability& stability_at, double from,
                            double to, const std::vector<Expected>& expected) {
-  const auto functions = bifurcation::test_functions(description, 1, subharmonics);
+  const auto functions = bifurcation::test_functions(structure, 1, subharmonics);
   for (const int steps : {11, 37}) {
     SCOPED_TRACE(testing::Message() << steps << " steps");
-    const test::Detection found = test::detect(description, stability_at, functions, evenly(from, to, steps), 1e-11);
+    const test::Detection found = test::detect(structure, stability_at, functions, evenly(from, to, steps), 1e-11);
     EXPECT_LE(found.probes, most_probes);
     expect_events(found.events, expected, 1e-9);
   }
@@ -170,7 +170,7 @@ TEST(ClosedForms, HopfCyclePassesOneSidewise) {
   loop::Loop loop = loop::constant_loop(std::vector<double>(3, 0.0), 2 * pi, 3);
   loop.cosine(1, 0) = loop.sine(1, 1) = std::sqrt(growth);
   const auto stability_at = [&](double s) { return spectrum::floquet(test::HopfCycle(growth, -s), loop, {}); };
-  expect_for_parameters(test::HopfCycle(growth, 0.0).description(), stability_at, -0.4, 0.9,
+  expect_for_parameters(test::HopfCycle(growth, 0.0).structure(), stability_at, -0.4, 0.9,
                         {{sector(1, 0), 0.0}, {torus, 0.6, false, false}});
 }
 
@@ -179,7 +179,7 @@ TEST(ClosedForms, CycleWithATwistedBandDoublesItsPeriod) {
   const auto stability_at = [](double s) {
     return spectrum::floquet(test::PlaneCycle(s, 0.1, 0.5), test::PlaneCycle::cycle(), {});
   };
-  expect_for_parameters(test::PlaneCycle(0.0, 0.1, 0.5).description(), stability_at, -0.33, 0.31,
+  expect_for_parameters(test::PlaneCycle(0.0, 0.1, 0.5).structure(), stability_at, -0.33, 0.31,
                         {{sector(2, 1), -0.1}, {torus, 0.0, false, false}, {sector(2, 1), 0.1}});
 }
 
@@ -189,7 +189,7 @@ TEST(ClosedForms, CycleWithATurningPlaneGrowsATorus) {
     const auto stability_at = [d](double s) {
       return spectrum::floquet(test::PlaneCycle(s, d, 0.2), test::PlaneCycle::cycle(), {});
     };
-    expect_for_parameters(test::PlaneCycle(0.0, d, 0.2).description(), stability_at, -0.33, 0.31, {{torus, 0.0}});
+    expect_for_parameters(test::PlaneCycle(0.0, d, 0.2).structure(), stability_at, -0.33, 0.31, {{torus, 0.0}});
   }
 }
 

@@ -14,36 +14,23 @@
 #include "orbweaver/spectrum/floquet.hpp"
 #include "orbweaver/spectrum/sliced_hessian.hpp"
 #include "orbweaver/starts/sweep.hpp"
+#include "support/delegating_system.hpp"
 
 namespace orbweaver::test {
 
 /// Another system's field and energy under other declared symmetries.
-class Declaring final : public systems::System {
+class Declaring final : public DelegatingSystem {
  public:
   Declaring(std::shared_ptr<const systems::System> system, std::vector<systems::Symmetry> equivariances,
             std::vector<systems::Symmetry> reversors)
-      : _system(std::move(system)), _description(_system->description()) {
-    _description.equivariances = std::move(equivariances);
-    _description.reversors = std::move(reversors);
+      : DelegatingSystem(std::move(system)), _structure(whole().structure()) {
+    _structure.equivariances = std::move(equivariances);
+    _structure.reversors = std::move(reversors);
   }
-  [[nodiscard]] const systems::Description& description() const override { return _description; }
-  [[nodiscard]] const std::map<std::string, double>& parameters() const override { return _system->parameters(); }
-  void field(std::size_t nodes, const double* z, double* f) const override { _system->field(nodes, z, f); }
-  void field_jacobian(std::size_t nodes, const double* z, double* f, double* jacobian) const override {
-    _system->field_jacobian(nodes, z, f, jacobian);
-  }
-  void second_derivatives(std::size_t nodes, const double* z, const double* weights, double* out) const override {
-    _system->second_derivatives(nodes, z, weights, out);
-  }
-  [[nodiscard]] double energy(std::span<const double> z) const override { return _system->energy(z); }
-  void energy_gradient(std::span<const double> z, std::span<double> gradient) const override {
-    _system->energy_gradient(z, gradient);
-  }
-  [[nodiscard]] double action_density(std::span<const double> z) const override { return _system->action_density(z); }
+  [[nodiscard]] const systems::Structure& structure() const override { return _structure; }
 
  private:
-  std::shared_ptr<const systems::System> _system;
-  systems::Description _description;
+  systems::Structure _structure;
 };
 
 /// What directions start from: an orbit `times` around with its null vectors besides the time shift and the tangent.

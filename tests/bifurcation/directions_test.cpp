@@ -35,12 +35,12 @@ double along(const Direction& direction, const loop::Loop& loop) {
 
 /// How far a loop is from every symmetry of this name, whatever its phase.
 double least_defect(const loop::Loop& loop, const std::string& name) {
-  const systems::Description& system = test::pendulum()->description();
+  const systems::Structure& system = test::pendulum()->structure();
   double least = 1e9;
   for (const bool reversing : {false, true})
     for (const systems::Symmetry& s : reversing ? system.reversors : system.equivariances)
       for (int p = 0; p < 64 && s.name == name; ++p)
-        least = std::min(least, loop::symmetry_defect(loop, {name, reversing, s.matrix, p, 64}, system.angles));
+        least = std::min(least, loop::symmetry_defect(loop, {name, reversing, s.map, p, 64}, system.angles));
   return least;
 }
 
@@ -53,7 +53,7 @@ void expect_born(const Direction& direction, double amplitude, const std::string
   EXPECT_LT(std::abs(born.loop.period - direction.base.period), 10.0 * amplitude * amplitude + 1e-9);
   EXPECT_LT(certificate::certify(*test::pendulum(), born.loop).closure, 1e-9);
   EXPECT_EQ(
-      loop::to_text(loop::find_isotropy(test::pendulum()->description(), born.loop, 1e-2 * std::abs(amplitude), 16)),
+      loop::to_text(loop::find_isotropy(test::pendulum()->structure(), born.loop, 1e-2 * std::abs(amplitude), 16)),
       loop::to_text(direction.isotropy));
 }
 
@@ -99,7 +99,7 @@ TEST(Directions, DoNotDependOnWhereTheOrbitStartsNorOnTheBasisOfTheKernel) {
     const auto born = [](const Direction& d) {
       return born_orbit(*test::pendulum(), d.base, d.tangent, d.isotropy, 1e-2).loop;
     };
-    EXPECT_TRUE(loop::find_map(test::pendulum()->description(), born(wanted[n]), born(found[n]), 1e-8, 16).has_value());
+    EXPECT_TRUE(loop::find_map(test::pendulum()->structure(), born(wanted[n]), born(found[n]), 1e-8, 16).has_value());
     EXPECT_NEAR(born(found[n]).period, born(wanted[n]).period, 1e-10);
   }
 }

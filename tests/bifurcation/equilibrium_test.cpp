@@ -73,14 +73,14 @@ TEST(Equilibrium, ThreeFamiliesUpToSymmetryLeaveHenonHeiles) {
       EXPECT_GT(mean, std::min(a.loop.period, b.loop.period) - rounding);
       EXPECT_LT(mean, std::max(a.loop.period, b.loop.period) + rounding);
     }
-    const loop::Isotropy here = loop::find_isotropy(system->description(), loop, 1e-6, 12);
+    const loop::Isotropy here = loop::find_isotropy(system->structure(), loop, 1e-6, 12);
     EXPECT_EQ(loop::to_text(here), loop::to_text(direction.isotropy));
   }
   EXPECT_NEAR(ends[0].loop.period, straight_line_period(0.1), 1e-11);
   for (std::size_t a = 0; a < ends.size(); ++a)
     for (std::size_t b = 0; b < a; ++b) {
       EXPECT_GT(std::abs(ends[a].loop.period - ends[b].loop.period), 1e-3);
-      EXPECT_FALSE(loop::find_map(system->description(), ends[a].loop, ends[b].loop, 1e-2, 12).has_value());
+      EXPECT_FALSE(loop::find_map(system->structure(), ends[a].loop, ends[b].loop, 1e-2, 12).has_value());
     }
   EXPECT_LT(std::abs(loop::state_at(ends[0].loop, 1.0)[0]), 1e-12);
   EXPECT_GT(std::abs(loop::state_at(ends[1].loop, 0.0)[0]), 0.1);
@@ -90,8 +90,8 @@ TEST(Equilibrium, ThreeFamiliesUpToSymmetryLeaveHenonHeiles) {
 /// Families from the origin: along an axis (2), along a diagonal (2), and loops (2, one up to reversal).
 class CoupledOscillators final : public test::PointSystem {
  public:
-  CoupledOscillators(systems::Description description, double coupling, double quartic = 1.0)
-      : PointSystem(std::move(description)), _coupling(coupling), _quartic(quartic) {}
+  CoupledOscillators(systems::Structure structure, double coupling, double quartic = 1.0)
+      : PointSystem(std::move(structure)), _coupling(coupling), _quartic(quartic) {}
 
   [[nodiscard]] Eigen::VectorXd field_at(const Eigen::VectorXd& z) const override {
     const Eigen::Vector4d g = gradient_at(z);
@@ -109,15 +109,14 @@ class CoupledOscillators final : public test::PointSystem {
     return Eigen::Vector4d(z(0) + _quartic * std::pow(z(0), 3) + _coupling * z(0) * z(1) * z(1),
                            z(1) + _quartic * std::pow(z(1), 3) + _coupling * z(1) * z(0) * z(0), z(2), z(3));
   }
-  [[nodiscard]] double energy(std::span<const double> z) const override {
+  [[nodiscard]] double conserved(int, std::span<const double> z) const override {
     return (z[0] * z[0] + z[1] * z[1] + z[2] * z[2] + z[3] * z[3]) / 2 +
            _quartic * (std::pow(z[0], 4) + std::pow(z[1], 4)) / 4 + _coupling * z[0] * z[0] * z[1] * z[1] / 2;
   }
 
   enum class Says { all, reversor, nothing };
-  [[nodiscard]] static systems::Description described(Says says) {
-    systems::Description d = test::description_of({"q1", "q2", "p1", "p2"});
-    d.conservative = d.symplectic = true;
+  [[nodiscard]] static systems::Structure described(Says says) {
+    systems::Structure d = test::structure_of(4, true, true);
     const Eigen::Matrix4d reverse = Eigen::Vector4d(1, 1, -1, -1).asDiagonal();
     if (says != Says::nothing) d.reversors = {{"R", reverse}};
     if (says != Says::all) return d;
@@ -182,7 +181,7 @@ TEST(Equilibrium, AContinuumOfDirectionsIsLeftOut) {
   const CoupledOscillators bare(CoupledOscillators::described(CoupledOscillators::Says::nothing), 1.0);
   EXPECT_EQ(kinds(directions_at_origin(bare)), (std::vector<std::string>{"loop", "other loop"}));
   // Two uncoupled linear oscillators: nothing is isolated.
-  EXPECT_THROW(static_cast<void>(directions_at_origin(CoupledOscillators(bare.description(), 0.0, 0.0))),
+  EXPECT_THROW(static_cast<void>(directions_at_origin(CoupledOscillators(bare.structure(), 0.0, 0.0))),
                core::NumericalError);
 }
 

@@ -7,6 +7,7 @@
 
 #include "continuation/families.hpp"
 #include "orbweaver/ad/derivatives.hpp"
+#include "support/delegating_system.hpp"
 
 namespace {
 
@@ -17,15 +18,13 @@ using continuation::Orbit;
 
 /// The double pendulum with charged joints in a magnetic field: the generalised force B (w2, -w1) does no work, keeps S
 /// and breaks both reversors.
-class MagneticPendulum final : public systems::System {
+class MagneticPendulum final : public test::DelegatingSystem {
  public:
-  explicit MagneticPendulum(double strength) : _force{strength}, _description(test::pendulum()->description()) {
-    _description.reversors.clear();
+  explicit MagneticPendulum(double strength)
+      : DelegatingSystem(test::pendulum()), _force{strength}, _structure(whole().structure()) {
+    _structure.reversors.clear();
   }
-  [[nodiscard]] const systems::Description& description() const override { return _description; }
-  [[nodiscard]] const std::map<std::string, double>& parameters() const override {
-    return test::pendulum()->parameters();
-  }
+  [[nodiscard]] const systems::Structure& structure() const override { return _structure; }
   void field(std::size_t nodes, const double* z, double* f) const override {
     test::pendulum()->field(nodes, z, f);
     add(nodes, z, f, nullptr);
@@ -40,13 +39,6 @@ class MagneticPendulum final : public systems::System {
       const auto added = ad::second_derivatives<4>(_force, at(nodes, n, z).data(), at(nodes, n, weights).data());
       for (std::size_t i = 0; i < 16; ++i) out[i * nodes + n] += added[i];
     }
-  }
-  [[nodiscard]] double energy(std::span<const double> z) const override { return test::pendulum()->energy(z); }
-  void energy_gradient(std::span<const double> z, std::span<double> gradient) const override {
-    test::pendulum()->energy_gradient(z, gradient);
-  }
-  [[nodiscard]] double action_density(std::span<const double> z) const override {
-    return test::pendulum()->action_density(z);
   }
 
  private:
@@ -77,7 +69,7 @@ class MagneticPendulum final : public systems::System {
   }
 
   Force _force;
-  systems::Description _description;
+  systems::Structure _structure;
 };
 
 loop::Isotropy without_reversors() {
@@ -200,11 +192,11 @@ TEST(Jumps, FamiliesThatCrossArePassedInTheEnd) {
 }
 
 TEST(Jumps, IsToldFromTheIndexOnlyWhereNothingCanBreak) {
-  const systems::Description& pendulum = test::pendulum()->description();
+  const systems::Structure& pendulum = test::pendulum()->structure();
   EXPECT_TRUE(bifurcation::passes_two_only_at_folds(pendulum, without_reversors()));
   EXPECT_TRUE(bifurcation::passes_two_only_at_folds(pendulum, {}));
   EXPECT_FALSE(bifurcation::passes_two_only_at_folds(pendulum, test::pendulum_isotropy(*test::pendulum())));
-  systems::Description damped = pendulum;
+  systems::Structure damped = pendulum;
   damped.symplectic = false;
   EXPECT_FALSE(bifurcation::passes_two_only_at_folds(damped, {}));
 }

@@ -18,7 +18,7 @@ using test::measured;
 const double irrational = std::sqrt(2.0) / 7.0;
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-const systems::Description& pendulum() { return test::pendulum()->description(); }
+const systems::Structure& pendulum() { return test::pendulum()->structure(); }
 loop::Isotropy isotropy() { return test::pendulum_isotropy(*test::pendulum()); }
 
 Comparison compare(const Orbit& a, const Orbit& b, const loop::Isotropy& own, const loop::Loop& x) {
@@ -36,8 +36,8 @@ Comparison compare_loops(const Orbit& a, const Orbit& b, const loop::Isotropy& o
 std::vector<loop::Loop> images_of(const loop::Loop& x) {
   std::vector<loop::Loop> out{x, loop::time_shifted(x, irrational), loop::time_shifted(x, 0.25)};
   for (const systems::Symmetry& s : pendulum().equivariances)
-    out.push_back(loop::transformed(x, s.matrix, false, irrational));
-  for (const systems::Symmetry& r : pendulum().reversors) out.push_back(loop::transformed(x, r.matrix, true, 0.3));
+    out.push_back(loop::transformed(x, s.map, false, irrational));
+  for (const systems::Symmetry& r : pendulum().reversors) out.push_back(loop::transformed(x, r.map, true, 0.3));
   out.push_back(loop::repeated(loop::time_shifted(loop::evenly_in_time(x), irrational), 2));
   out.push_back(x);
   out.back().cosine(0, 1) -= 4.0 * std::numbers::pi;

@@ -31,8 +31,8 @@ void expect_crossings(const test::PendulumMode& mode, const std::vector<Crossing
   };
   std::vector<double> periods;
   for (const continuation::Orbit& orbit : family.orbits) periods.push_back(orbit.loop.period);
-  const auto functions = bifurcation::test_functions(system->description(), 2, 4);
-  const test::Detection found = test::detect(system->description(), stability_at, functions, periods, 1e-11);
+  const auto functions = bifurcation::test_functions(system->structure(), 2, 4);
+  const test::Detection found = test::detect(system->structure(), stability_at, functions, periods, 1e-11);
   ASSERT_EQ(found.events.size(), expected.size());
   for (std::size_t n = 0; n < expected.size(); ++n) {
     EXPECT_EQ(found.events[n].function, (TestFunction{TestFunction::Kind::sector, {expected[n].q, expected[n].j}}));

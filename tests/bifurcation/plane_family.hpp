@@ -77,15 +77,10 @@ class PlaneFamily final : public PointSystem {
     }
     return matrix;
   }
-  static systems::Description describe(Eigen::Index transverse, bool turned) {
-    std::vector<std::string> names{"q", "p"};
-    for (Eigen::Index n = 1; n <= transverse / 2; ++n)
-      for (const char* letter : {"x", "y"}) names.push_back(letter + std::to_string(n));
-    systems::Description description = description_of(names);
-    description.conservative = true;
-    description.symplectic = true;
-    if (turned) description.equivariances = {{"S", -Eigen::MatrixXd::Identity(2 + transverse, 2 + transverse)}};
-    return description;
+  static systems::Structure describe(Eigen::Index transverse, bool turned) {
+    systems::Structure structure = structure_of(static_cast<int>(2 + transverse), true, true);
+    if (turned) structure.equivariances = {{"S", -Eigen::MatrixXd::Identity(2 + transverse, 2 + transverse)}};
+    return structure;
   }
   Forms _forms;
 };
@@ -95,8 +90,7 @@ class PlaneFamily final : public PointSystem {
 /// has constant coefficients: the multipliers are -exp(2 pi (s +- sqrt(d^2 - (turn - 1/2)^2))).
 class PlaneCycle final : public PointSystem {
  public:
-  PlaneCycle(double s, double d, double turn)
-      : PointSystem(description_of({"u", "v", "w1", "w2"})), _s(s), _d(d), _turn(turn) {}
+  PlaneCycle(double s, double d, double turn) : PointSystem(structure_of(4)), _s(s), _d(d), _turn(turn) {}
 
   [[nodiscard]] Eigen::VectorXd field_at(const Eigen::VectorXd& z) const override {
     const double pull = 1.0 - z[0] * z[0] - z[1] * z[1];

@@ -15,7 +15,7 @@ using test::Crossing;
 /// A double pendulum that says only some of its symmetries: "S", "S R" or nothing.
 std::shared_ptr<const systems::System> declaring(const std::shared_ptr<const systems::System>& system, bool mirror) {
   return std::make_shared<test::Declaring>(
-      system, mirror ? system->description().equivariances : std::vector<systems::Symmetry>{},
+      system, mirror ? system->structure().equivariances : std::vector<systems::Symmetry>{},
       std::vector<systems::Symmetry>{});
 }
 
@@ -166,7 +166,7 @@ std::vector<continuation::Orbit> first_two(const Direction& direction) {
   std::vector<continuation::Orbit> orbits =
       test::trace_of(test::pendulum(), {direction.base, direction.tangent, direction.isotropy}, options).orbits;
   for (continuation::Orbit& orbit : orbits)
-    orbit.loop = loop::in_standard_phase(test::pendulum()->description(), orbit.loop, direction.isotropy);
+    orbit.loop = loop::in_standard_phase(test::pendulum()->structure(), orbit.loop, direction.isotropy);
   return orbits;
 }
 
@@ -209,7 +209,7 @@ TEST_P(WithoutReversors, TwoFamiliesOfEvenOrderLeaveHalfAnAngleApart) {
   for (int turn = 0; turn < q; ++turn) images.push_back(loop::time_shifted(v, turn / static_cast<double>(q)).modes);
   const std::vector<double> parts = overlaps(found[0].tangent, images);
   EXPECT_NEAR(std::acos(*std::max_element(parts.begin(), parts.end())), 0.5 * angle, 0.1 * angle);
-  EXPECT_FALSE(loop::find_map(test::pendulum()->description(), born[0].loop, born[1].loop, 1e-3, q).has_value());
+  EXPECT_FALSE(loop::find_map(test::pendulum()->structure(), born[0].loop, born[1].loop, 1e-3, q).has_value());
 
   // So weakly is the angle held that Newton's method may go from a point near the first orbit of the one to that of the
   // other (with the phases of the archive it does, for q = 8). They are not one family for that.

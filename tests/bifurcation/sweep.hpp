@@ -28,7 +28,7 @@ struct Detection {
 };
 
 /// Runs the detector over the stations and locates what it brackets.
-inline Detection detect(const systems::Description& system, const StabilityAt& stability_at,
+inline Detection detect(const systems::Structure& system, const StabilityAt& stability_at,
                         const std::vector<bifurcation::TestFunction>& functions, const std::vector<double>& positions,
                         double tolerance) {
   using namespace bifurcation;

@@ -8,6 +8,7 @@
 
 #include "loop/samples.hpp"
 #include "orbweaver/core/error.hpp"
+#include "support/stated_system.hpp"
 
 namespace orbweaver::bifurcation {
 namespace {
@@ -16,8 +17,8 @@ using test::element_of;
 
 const double irrational = std::sqrt(2.0) / 7.0;
 
-const systems::Description& pendulum() { return systems::describe_system("double_pendulum"); }
-const systems::Description& galaxy() { return systems::describe_system("henon_heiles"); }
+const systems::Structure& pendulum() { return test::structure_of("double_pendulum"); }
+const systems::Structure& galaxy() { return test::structure_of("henon_heiles"); }
 
 loop::Loop plus(const loop::Loop& base, double epsilon, const loop::Loop& v) {
   loop::Loop out = base;
@@ -32,7 +33,7 @@ loop::Loop in_subspace(const loop::Isotropy& isotropy, const std::vector<int>& s
 }
 
 struct Pitchfork {
-  systems::Description system;
+  systems::Structure system;
   loop::Isotropy own;
   loop::Loop base;
   loop::Loop v;

@@ -9,6 +9,7 @@
 
 #include "orbweaver/bifurcation/test_functions.hpp"
 #include "orbweaver/core/error.hpp"
+#include "support/stated_system.hpp"
 
 namespace {
 
@@ -18,14 +19,6 @@ using Kind = TestFunction::Kind;
 using Complex = std::complex<double>;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-systems::Description description_of(int dimension, bool conservative, bool symplectic) {
-  systems::Description description;
-  description.state_names.resize(static_cast<std::size_t>(dimension));
-  description.conservative = conservative;
-  description.symplectic = symplectic;
-  return description;
-}
 
 spectrum::Stability stability_of(std::vector<Complex> values, double error) {
   spectrum::Stability stability;
@@ -70,38 +63,38 @@ TEST(Sectors, IndexIsTwiceTheCosine) {
 }
 
 TEST(TestFunctions, ListedAreThoseWithSomethingToSay) {
-  EXPECT_TRUE(test_functions(description_of(2, true, true), 2, 4).empty());
-  EXPECT_TRUE(test_functions(description_of(1, false, false), 1, 4).empty());
-  EXPECT_TRUE(test_functions(description_of(2, true, false), 1, 4).empty());
-  const auto pendulum = test_functions(description_of(4, true, true), 2, 4);
+  EXPECT_TRUE(test_functions(test::structure_of(2, true, true), 2, 4).empty());
+  EXPECT_TRUE(test_functions(test::structure_of(1, false, false), 1, 4).empty());
+  EXPECT_TRUE(test_functions(test::structure_of(2, true, false), 1, 4).empty());
+  const auto pendulum = test_functions(test::structure_of(4, true, true), 2, 4);
   EXPECT_EQ(pendulum.size(), 7u);
   EXPECT_EQ(sectors_of(pendulum), sectors(2, 4));
-  const auto three = test_functions(description_of(6, true, true), 1, 4);
+  const auto three = test_functions(test::structure_of(6, true, true), 1, 4);
   EXPECT_EQ(three.size(), 5u);
   EXPECT_EQ(three.back().kind, Kind::krein);
-  const auto dissipative = test_functions(description_of(3, false, false), 1, 4);
+  const auto dissipative = test_functions(test::structure_of(3, false, false), 1, 4);
   EXPECT_EQ(sectors_of(dissipative), (std::vector<Sector>{{1, 0}, {2, 1}}));
   ASSERT_EQ(dissipative.size(), 3u);
   EXPECT_EQ(dissipative.back().kind, Kind::torus);
-  EXPECT_EQ(test_functions(description_of(2, false, false), 1, 1).size(), 1u);
-  EXPECT_EQ(test_functions(description_of(3, true, false), 1, 4).size(), 2u);
+  EXPECT_EQ(test_functions(test::structure_of(2, false, false), 1, 1).size(), 1u);
+  EXPECT_EQ(test_functions(test::structure_of(3, true, false), 1, 4).size(), 2u);
 }
 
 TEST(TestFunctions, SignTellsTheSideOfTheSector) {
-  const auto one = description_of(4, true, true);
+  const auto one = test::structure_of(4, true, true);
   const TestFunction quarter{Kind::sector, {4, 1}};
   EXPECT_DOUBLE_EQ(evaluate(quarter, one, stability_of({0.5}, 0.0)).value, 0.2);
   EXPECT_EQ(evaluate(quarter, one, stability_of({0.5}, 0.1)).sign(), 1);
   EXPECT_EQ(evaluate(quarter, one, stability_of({-0.5}, 0.1)).sign(), -1);
   EXPECT_EQ(evaluate(quarter, one, stability_of({1e17}, 1e5)).sign(), 1);
-  const auto two = description_of(6, true, true);
+  const auto two = test::structure_of(6, true, true);
   EXPECT_EQ(evaluate(quarter, two, stability_of({-5.0, -0.5}, 0.1)).sign(), 1);
   EXPECT_EQ(evaluate(quarter, two, stability_of({-5.0, 0.5}, 0.1)).sign(), -1);
   EXPECT_EQ(evaluate(quarter, two, stability_of({Complex(-1, 0.2), Complex(-1, -0.2)}, 1e-9)).sign(), 1);
 }
 
 TEST(TestFunctions, NoSignBelowTheErrorOrWithoutAValue) {
-  const auto one = description_of(4, true, true);
+  const auto one = test::structure_of(4, true, true);
   const TestFunction quarter{Kind::sector, {4, 1}};
   EXPECT_EQ(evaluate(quarter, one, stability_of({0.05}, 0.051)).sign(), 0);
   EXPECT_EQ(evaluate(quarter, one, stability_of({nan}, 0.1)).sign(), 0);
@@ -111,8 +104,8 @@ TEST(TestFunctions, NoSignBelowTheErrorOrWithoutAValue) {
 }
 
 /// Changes every index by its error bound, in both directions, and compares.
-void expect_bounded(const TestFunction& function, const systems::Description& system,
-                    const std::vector<Complex>& values, double error, double tightness) {
+void expect_bounded(const TestFunction& function, const systems::Structure& system, const std::vector<Complex>& values,
+                    double error, double tightness) {
   const Reading reading = evaluate(function, system, stability_of(values, error));
   double largest = 0.0;
   for (unsigned pattern = 0; pattern < 1u << values.size(); ++pattern) {
@@ -126,10 +119,10 @@ void expect_bounded(const TestFunction& function, const systems::Description& sy
 }
 
 TEST(TestFunctions, ErrorCoversWhatTheIndicesHaveWrong) {
-  const auto one = description_of(4, true, true);
-  const auto two = description_of(6, true, true);
-  const auto three = description_of(8, true, true);
-  const auto dissipative = description_of(4, false, false);
+  const auto one = test::structure_of(4, true, true);
+  const auto two = test::structure_of(6, true, true);
+  const auto three = test::structure_of(8, true, true);
+  const auto dissipative = test::structure_of(4, false, false);
   for (const double error : {1e-6, 1e-3, 0.1}) {
     expect_bounded({Kind::sector, {4, 1}}, one, {-0.3}, error, 2.4);  // slope 2/2.3^2, bound 2/2.3
     for (const Sector& sector : sectors(2, 4)) {
@@ -145,7 +138,7 @@ TEST(TestFunctions, ErrorCoversWhatTheIndicesHaveWrong) {
 }
 
 TEST(TestFunctions, ValuesStayWithinOne) {
-  const auto two = description_of(6, true, true);
+  const auto two = test::structure_of(6, true, true);
   for (const Complex a : {Complex(0.0), Complex(2.0), Complex(-1e9), Complex(0.1, 2.0), Complex(-3.0, 50.0)})
     for (const Complex b : {std::conj(a), Complex(1e12), Complex(-2.0)}) {
       if (a.imag() != 0.0 && b != std::conj(a)) continue;
@@ -155,7 +148,7 @@ TEST(TestFunctions, ValuesStayWithinOne) {
 }
 
 TEST(TestFunctions, KreinChangesSignWhereTwoIndicesBecomeComplex) {
-  const auto three = description_of(8, true, true);
+  const auto three = test::structure_of(8, true, true);
   const TestFunction krein{Kind::krein, {}};
   for (const double other : {0.4, 1e4}) {
     EXPECT_EQ(evaluate(krein, three, stability_of({0.61, 0.60, other}, 1e-9)).sign(), 1);
@@ -167,7 +160,7 @@ TEST(TestFunctions, KreinChangesSignWhereTwoIndicesBecomeComplex) {
 }
 
 TEST(TestFunctions, TorusIsForComplexPairs) {
-  const auto three = description_of(4, false, false);
+  const auto three = test::structure_of(4, false, false);
   const TestFunction torus{Kind::torus, {}};
   const auto pair = [](double modulus) {
     return stability_of({std::polar(modulus, 1.2), std::polar(modulus, -1.2), 0.3}, 1e-9);
@@ -178,17 +171,18 @@ TEST(TestFunctions, TorusIsForComplexPairs) {
 }
 
 TEST(TestFunctions, MultiplierOfTheEnergyIsLeftOut) {
-  const auto system = description_of(4, true, false);
+  const auto system = test::structure_of(4, true, false);
   for (const TestFunction& function : test_functions(system, 1, 4)) {
     const Reading reading = evaluate(function, system, stability_of({1.5, 0.5, 1.0}, 1e-9));
     EXPECT_NE(reading.sign(), 0);
-    EXPECT_EQ(reading.value, evaluate(function, description_of(3, false, false), stability_of({1.5, 0.5}, 1e-9)).value);
+    EXPECT_EQ(reading.value,
+              evaluate(function, test::structure_of(3, false, false), stability_of({1.5, 0.5}, 1e-9)).value);
   }
 }
 
 TEST(TestFunctions, MisuseIsRefused) {
-  const auto one = description_of(4, true, true);
-  const auto dissipative = description_of(3, false, false);
+  const auto one = test::structure_of(4, true, true);
+  const auto dissipative = test::structure_of(3, false, false);
   EXPECT_THROW((void)evaluate({Kind::sector, {1, 0}}, one, stability_of({0.5, 0.6}, 0.1)), core::MisuseError);
   EXPECT_THROW((void)evaluate({Kind::torus, {}}, one, stability_of({0.5}, 0.1)), core::MisuseError);
   EXPECT_THROW((void)evaluate({Kind::krein, {}}, dissipative, stability_of({0.5, 0.6}, 0.1)), core::MisuseError);

@@ -116,7 +116,7 @@ Start circles(const systems::System& system) {
   circle.cosine(1, 0) = 1.0;
   circle.sine(1, 1) = -1.0;
   Start start{loop::constant_loop(std::vector<double>{0.0, 0.0}, 2.0 * std::numbers::pi, 10), circle.modes, {}};
-  start.isotropy = loop::find_isotropy(system.description(), circle, 1e-9);
+  start.isotropy = loop::find_isotropy(system.structure(), circle, 1e-9);
   return start;
 }
 

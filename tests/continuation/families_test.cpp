@@ -64,17 +64,18 @@ TEST_P(Families, OrbitsAreThoseOfTheDenseSolver) {
 
 TEST_P(Families, EnergyIsConstantAlongEveryLoop) {
   for (const Orbit& orbit : family().orbits) {
-    const double energy = test::pendulum()->energy(loop::state_at(orbit.loop, 0.0));
+    const double energy = test::pendulum()->conserved(0, loop::state_at(orbit.loop, 0.0));
     EXPECT_EQ(orbit.energy, energy);
     for (int n = 1; n < 40; ++n)
-      EXPECT_NEAR(test::pendulum()->energy(loop::state_at(orbit.loop, orbit.loop.period * n / 40.0)), energy, 2e-11)
+      EXPECT_NEAR(test::pendulum()->conserved(0, loop::state_at(orbit.loop, orbit.loop.period * n / 40.0)), energy,
+                  2e-11)
           << "T = " << orbit.loop.period << ", n = " << n;
   }
 }
 
 TEST_P(Families, KeepTheirIsotropyAndBeginAtRest) {
   for (const Orbit& orbit : family().orbits) {
-    EXPECT_EQ(loop::to_text(loop::find_isotropy(test::pendulum()->description(), orbit.loop, 1e-12)), "S@1/2 R@0");
+    EXPECT_EQ(loop::to_text(loop::find_isotropy(test::pendulum()->structure(), orbit.loop, 1e-12)), "S@1/2 R@0");
     const std::vector<double> z = loop::state_at(orbit.loop, 0.0);
     EXPECT_EQ(z[2], 0.0);
     EXPECT_EQ(z[3], 0.0);

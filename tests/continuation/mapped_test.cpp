@@ -22,7 +22,7 @@ TEST(MappedOrbit, HasTheSameEnergyActionAndArclength) {
       EXPECT_NEAR(energy_of(*test::pendulum(), mapped_b), energy_of(*test::pendulum(), b), 1e-12) << mode.name;
       EXPECT_NEAR(arclength_between(mapped_a, mapped_b), arclength_between(a, b), 1e-12) << mode.name;
       EXPECT_NEAR(arclength_between(mapped_a, b), arclength_between(a, b), 1e-12) << mode.name;
-      EXPECT_EQ(loop::to_text(loop::find_isotropy(test::pendulum()->description(), mapped_b, 1e-9)), "S@1/2 R@0");
+      EXPECT_EQ(loop::to_text(loop::find_isotropy(test::pendulum()->structure(), mapped_b, 1e-9)), "S@1/2 R@0");
     }
   }
 }

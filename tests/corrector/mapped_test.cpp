@@ -43,7 +43,9 @@ struct PinnedPeriod {
     return corrector::correct(*system, guess, unknowns, loss::Slice(unknowns.size(), conditions), {.method = method},
                               Eigen::VectorXd(conditions.col(0)));
   }
-  [[nodiscard]] double energy_of(const loop::Loop& loop) const { return system->energy(loop::state_at(loop, 0.0)); }
+  [[nodiscard]] double energy_of(const loop::Loop& loop) const {
+    return system->conserved(0, loop::state_at(loop, 0.0));
+  }
 
   std::shared_ptr<const systems::System> system = systems::make_system("double_pendulum");
   loop::Loop guess;

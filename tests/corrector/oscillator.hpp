@@ -3,25 +3,15 @@
 #include <cmath>
 #include <limits>
 
-#include "orbweaver/systems/system.hpp"
+#include "support/stated_system.hpp"
 
 namespace orbweaver::test {
 
 /// q' = p, p' = -q - damping p, reversible for damping 0; the field is NaN where q > wall.
-class Oscillator final : public systems::System {
+class Oscillator final : public StatedSystem {
  public:
   explicit Oscillator(double damping, double wall = std::numeric_limits<double>::infinity())
-      : _damping(damping), _wall(wall) {
-    _description.name = "test_oscillator";
-    _description.state_names = {"q", "p"};
-    _description.equivariances = {{"S", -Eigen::Matrix2d::Identity()}};
-    _description.reversors = {{"R", Eigen::Matrix2d(Eigen::Vector2d(1, -1).asDiagonal())}};
-    _description.conservative = true;
-    _description.symplectic = true;
-  }
-
-  [[nodiscard]] const systems::Description& description() const override { return _description; }
-  [[nodiscard]] const std::map<std::string, double>& parameters() const override { return _parameters; }
+      : StatedSystem(described(), "test_oscillator"), _damping(damping), _wall(wall) {}
 
   void field(std::size_t nodes, const double* z, double* f) const override {
     for (std::size_t j = 0; j < nodes; ++j) {
@@ -38,8 +28,10 @@ class Oscillator final : public systems::System {
   void second_derivatives(std::size_t nodes, const double*, const double*, double* contracted) const override {
     for (std::size_t n = 0; n < 4 * nodes; ++n) contracted[n] = 0.0;
   }
-  [[nodiscard]] double energy(std::span<const double> z) const override { return 0.5 * (z[0] * z[0] + z[1] * z[1]); }
-  void energy_gradient(std::span<const double> z, std::span<double> gradient) const override {
+  [[nodiscard]] double conserved(int, std::span<const double> z) const override {
+    return 0.5 * (z[0] * z[0] + z[1] * z[1]);
+  }
+  void conserved_gradient(int, std::span<const double> z, std::span<double> gradient) const override {
     gradient[0] = z[0];
     gradient[1] = z[1];
   }
@@ -48,8 +40,12 @@ class Oscillator final : public systems::System {
  private:
   double _damping;
   double _wall;
-  systems::Description _description;
-  std::map<std::string, double> _parameters;
+  static systems::Structure described() {
+    systems::Structure structure = structure_of(2, true, true);
+    structure.equivariances = {{"S", -Eigen::Matrix2d::Identity()}};
+    structure.reversors = {{"R", Eigen::Matrix2d(Eigen::Vector2d(1, -1).asDiagonal())}};
+    return structure;
+  }
 };
 
 }  // namespace orbweaver::test

@@ -36,7 +36,7 @@ struct CircleGuess {
     loop.sine(1, 1) = -1.0;
     return loop;
   }
-  [[nodiscard]] loop::Isotropy isotropy() const { return loop::find_isotropy(system.description(), circle(1.0), 1e-9); }
+  [[nodiscard]] loop::Isotropy isotropy() const { return loop::find_isotropy(system.structure(), circle(1.0), 1e-9); }
   [[nodiscard]] Eigen::VectorXd amplitude() const {
     Eigen::VectorXd out = Eigen::VectorXd::Zero(unknowns.size());
     unknowns.subspace.project(guess.modes, std::span(out.data(), static_cast<std::size_t>(unknowns.subspace.size())));

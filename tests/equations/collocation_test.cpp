@@ -31,13 +31,13 @@ class Equations : public testing::TestWithParam<Case> {
   static constexpr int cells = 24;
   loop::Isotropy isotropy = [this] {
     loop::Isotropy out;
-    if (GetParam().shift) out.push_back(test::element_of(pendulum().description(), "S", 1, 2));
-    if (GetParam().reversor) out.push_back(test::element_of(pendulum().description(), "R"));
+    if (GetParam().shift) out.push_back(test::element_of(pendulum().structure(), "S", 1, 2));
+    if (GetParam().reversor) out.push_back(test::element_of(pendulum().structure(), "R"));
     return out;
   }();
   loop::TimeMap map{GetParam().kappa, {}};
   Collocation equations{pendulum(),
-                        loop::fundamental_domain(isotropy, 4),
+                        loop::fundamental_domain(pendulum().structure(), isotropy),
                         std::vector<double>(4, 0.0),
                         std::vector<double>(4, 0.0),
                         cells,

@@ -86,7 +86,7 @@ TEST_P(InSectors, AreTheProjectedJacobianWithItsBorders) {
     for (int node = 0; node < l.nodes(); ++node) {
       const double s = 2.0 * std::numbers::pi * node / l.nodes();
       state = loop::state_at(problem.loop, problem.loop.period * s / (2.0 * std::numbers::pi));
-      problem.system->energy_gradient(state, gradient);
+      problem.system->conserved_gradient(0, state, gradient);
       for (int i = 0; i < 4; ++i) nodal(i * l.nodes() + node) = gradient[static_cast<std::size_t>(i)];
     }
     nodal /= std::sqrt(static_cast<double>(l.nodes()));

@@ -7,6 +7,7 @@
 #include "loop/samples.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/time_samples.hpp"
+#include "support/stated_system.hpp"
 
 namespace orbweaver::loop {
 namespace {
@@ -16,8 +17,8 @@ using test::two_pi;
 
 const double irrational = std::sqrt(2.0) / 7.0;
 
-const systems::Description& pendulum() { return systems::describe_system("double_pendulum"); }
-const systems::Description& galaxy() { return systems::describe_system("henon_heiles"); }
+const systems::Structure& pendulum() { return test::structure_of("double_pendulum"); }
+const systems::Structure& galaxy() { return test::structure_of("henon_heiles"); }
 
 Loop sample() { return test::random_loop(4, 14, 61); }
 
@@ -28,7 +29,7 @@ Loop rotation() {
 }
 
 // `from` must be brought to `to` exactly, by the symmetry `name`; returns the alignment.
-Alignment expect_same(const systems::Description& system, const Loop& from, const Loop& to, const std::string& name) {
+Alignment expect_same(const systems::Structure& system, const Loop& from, const Loop& to, const std::string& name) {
   const Alignment found = align(system, from, to);
   EXPECT_EQ(found.name, name);
   EXPECT_LT(found.distance, 1e-12) << name;
@@ -75,15 +76,14 @@ TEST(Alignment, FindsAnyTimeShift) {
 }
 
 TEST(Alignment, FindsEverySymmetry) {
-  for (const systems::Description* system : {&pendulum(), &galaxy()}) {
+  for (const systems::Structure* system : {&pendulum(), &galaxy()}) {
     for (const systems::Symmetry& s : system->equivariances) {
-      const Alignment found =
-          expect_same(*system, sample(), transformed(sample(), s.matrix, false, irrational), s.name);
+      const Alignment found = expect_same(*system, sample(), transformed(sample(), s.map, false, irrational), s.name);
       EXPECT_NEAR(found.shift, irrational, 1e-14) << s.name;
       EXPECT_FALSE(found.reversing);
     }
     for (const systems::Symmetry& r : system->reversors) {
-      const Alignment found = expect_same(*system, sample(), transformed(sample(), r.matrix, true, irrational), r.name);
+      const Alignment found = expect_same(*system, sample(), transformed(sample(), r.map, true, irrational), r.name);
       EXPECT_NEAR(found.shift, irrational, 1e-14) << r.name;
       EXPECT_TRUE(found.reversing);
     }
@@ -92,12 +92,12 @@ TEST(Alignment, FindsEverySymmetry) {
 
 // R C is no declared reversor of Henon and Heiles' system, but a symmetry all the same.
 TEST(Alignment, FindsReversorsTimesEquivariances) {
-  const Eigen::MatrixXd rc = element_of(galaxy(), "R").matrix * element_of(galaxy(), "C").matrix;
+  const systems::AffineMap rc = element_of(galaxy(), "R").map * element_of(galaxy(), "C").map;
   expect_same(galaxy(), sample(), transformed(sample(), rc, true, 0.3), "RC");
 }
 
 TEST(Alignment, ActsModuloTheLatticeOfAngles) {
-  Loop to = transformed(sample(), element_of(pendulum(), "S").matrix, false, irrational);
+  Loop to = transformed(sample(), element_of(pendulum(), "S").map, false, irrational);
   to.cosine(0, 0) += two_pi;
   to.cosine(0, 1) -= 3.0 * two_pi;
   const Alignment found = expect_same(pendulum(), sample(), to, "S");
@@ -110,9 +110,9 @@ TEST(Alignment, FollowsTheWinding) {
   expect_same(pendulum(), rotation(), time_shifted(rotation(), irrational), "1");
   expect_same(pendulum(), rotation(), time_shifted(rotation(), 0.8), "1");
   for (const char* name : {"R", "RS"})
-    expect_same(pendulum(), rotation(), transformed(rotation(), element_of(pendulum(), name).matrix, true, irrational),
+    expect_same(pendulum(), rotation(), transformed(rotation(), element_of(pendulum(), name).map, true, irrational),
                 name);
-  expect_same(pendulum(), rotation(), transformed(rotation(), element_of(pendulum(), "S").matrix, false, 0.7), "S");
+  expect_same(pendulum(), rotation(), transformed(rotation(), element_of(pendulum(), "S").map, false, 0.7), "S");
   EXPECT_EQ(align(pendulum(), rotation(), sample()).distance, std::numeric_limits<double>::infinity());
   EXPECT_EQ(align(pendulum(), sample(), rotation()).distance, std::numeric_limits<double>::infinity());
 }
@@ -120,7 +120,7 @@ TEST(Alignment, FollowsTheWinding) {
 TEST(Alignment, LetsTimeMapsAndCutoffsDiffer) {
   const Loop shifted = time_shifted(rotation(), irrational);
   const Loop mapped = with_time_map(rotation(), {1.3, {}}, 70);
-  const Loop other = with_time_map(transformed(shifted, element_of(pendulum(), "RS").matrix, true, 0.0),
+  const Loop other = with_time_map(transformed(shifted, element_of(pendulum(), "RS").map, true, 0.0),
                                    {1.2, {0.1, 0.05, 0.0, 0.1}}, 120);
   expect_same(pendulum(), mapped, shifted, "1");
   expect_same(pendulum(), mapped, other, "RS");
@@ -161,7 +161,7 @@ TEST(Alignment, OfASymmetricOrbitTakesTheFirstSymmetryAndTheSmallestShift) {
   const Isotropy both{element_of(pendulum(), "S", 1, 2), element_of(pendulum(), "R")};
   const Loop loop = test::random_loop_in(Subspace(4, 8, both), constant_loop(std::vector<double>(4), 5.0, 8), 65);
   EXPECT_NEAR(expect_same(pendulum(), loop, loop, "1").shift, 0.0, 1e-14);
-  const Loop mirrored = transformed(loop, element_of(pendulum(), "S").matrix, false, 0.0);
+  const Loop mirrored = transformed(loop, element_of(pendulum(), "S").map, false, 0.0);
   EXPECT_NEAR(expect_same(pendulum(), loop, mirrored, "1").shift, 0.5, 1e-14);
   for (const int m : {2, 3, 5})
     for (const double shift : {0.12, 0.43, 0.78, irrational}) {

@@ -5,14 +5,15 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/symmetry/isotropy_text.hpp"
 #include "orbweaver/systems/system.hpp"
+#include "support/stated_system.hpp"
 
 namespace orbweaver::loop {
 namespace {
 
-const systems::Description& pendulum() { return systems::describe_system("double_pendulum"); }
-const systems::Description& galaxy() { return systems::describe_system("henon_heiles"); }
+const systems::Structure& pendulum() { return test::structure_of("double_pendulum"); }
+const systems::Structure& galaxy() { return test::structure_of("henon_heiles"); }
 
-bool conjugate(const systems::Description& system, const std::string& a, const std::string& b) {
+bool conjugate(const systems::Structure& system, const std::string& a, const std::string& b) {
   return are_conjugate(system, isotropy_of(system, a), isotropy_of(system, b));
 }
 
@@ -40,11 +41,11 @@ TEST(Conjugacy, AllowsAnotherPhase) {
 
 TEST(Conjugacy, AllowsASymmetryOfTheSystem) {
   EXPECT_TRUE(conjugate(galaxy(), "C@1/3", "C@2/3"));  // a reflection, or time running backwards
-  const systems::Description& system = galaxy();
+  const systems::Structure& system = galaxy();
   for (const systems::Symmetry& s : system.equivariances)
     for (const systems::Symmetry& other : system.equivariances) {
-      const bool alike = (s.matrix.determinant() > 0.0) == (other.matrix.determinant() > 0.0) &&
-                         std::abs(s.matrix.trace() - other.matrix.trace()) < 1e-9;
+      const bool alike = (s.map.matrix.determinant() > 0.0) == (other.map.matrix.determinant() > 0.0) &&
+                         std::abs(s.map.matrix.trace() - other.map.matrix.trace()) < 1e-9;
       EXPECT_EQ(conjugate(system, s.name + "@0", other.name + "@0"), alike) << s.name << ' ' << other.name;
     }
 }

@@ -2,6 +2,7 @@
 
 #include "loop/samples.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
+#include "support/stated_system.hpp"
 
 namespace orbweaver::loop {
 namespace {
@@ -10,7 +11,7 @@ using test::element_of;
 
 constexpr double tolerance = 1e-9;
 
-const systems::Description& pendulum() { return systems::describe_system("double_pendulum"); }
+const systems::Structure& pendulum() { return test::structure_of("double_pendulum"); }
 
 Loop sample() { return test::random_loop(4, 6, 51); }
 

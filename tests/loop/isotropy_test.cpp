@@ -7,6 +7,7 @@
 
 #include "loop/samples.hpp"
 #include "orbweaver/core/error.hpp"
+#include "support/stated_system.hpp"
 
 namespace orbweaver::loop {
 namespace {
@@ -16,15 +17,15 @@ using test::element_of;
 constexpr double tolerance = 1e-9;
 constexpr double pi = std::numbers::pi;
 
-const systems::Description& pendulum() { return systems::describe_system("double_pendulum"); }
-const systems::Description& galaxy() { return systems::describe_system("henon_heiles"); }
+const systems::Structure& pendulum() { return test::structure_of("double_pendulum"); }
+const systems::Structure& galaxy() { return test::structure_of("henon_heiles"); }
 
 // A random loop about `mean` that has exactly the given symmetries.
 Loop loop_with(const Isotropy& isotropy, const std::vector<double>& mean = {0.0, 0.0, 0.0, 0.0}) {
   return test::random_loop_in(Subspace(4, 8, isotropy), constant_loop(mean, 5.0, 8), 41);
 }
 
-std::string found(const systems::Description& system, const Loop& loop, int max_denominator = 4) {
+std::string found(const systems::Structure& system, const Loop& loop, int max_denominator = 4) {
   return to_text(find_isotropy(system, loop, tolerance, max_denominator));
 }
 
@@ -129,8 +130,8 @@ TEST(Isotropy, TransformedLoopIsTheElementsImage) {
     };
     const std::vector<double> later = state_at(loop, t + 1.0);
     const std::vector<double> back = state_at(loop, 0.75 - t);
-    EXPECT_LT((image(turned, c.matrix) - Eigen::Map<const Eigen::VectorXd>(later.data(), 4)).norm(), 1e-13);
-    EXPECT_LT((image(reversed, r.matrix) - Eigen::Map<const Eigen::VectorXd>(back.data(), 4)).norm(), 1e-13);
+    EXPECT_LT((image(turned, c.map.matrix) - Eigen::Map<const Eigen::VectorXd>(later.data(), 4)).norm(), 1e-13);
+    EXPECT_LT((image(reversed, r.map.matrix) - Eigen::Map<const Eigen::VectorXd>(back.data(), 4)).norm(), 1e-13);
   }
   EXPECT_THROW(static_cast<void>(transformed(test::random_loop(2, 3, 1), c)), core::MisuseError);
 }

@@ -6,6 +6,7 @@
 
 #include "loop/samples.hpp"
 #include "orbweaver/core/error.hpp"
+#include "support/stated_system.hpp"
 
 namespace orbweaver::loop {
 namespace {
@@ -149,7 +150,7 @@ TEST(MappedLoop, ShiftOfTheParameterMovesTheCurve) {
 }
 
 TEST(MappedLoop, SymmetriesAreSeenUnderAMap) {
-  const systems::Description& pendulum = systems::describe_system("double_pendulum");
+  const systems::Structure& pendulum = test::structure_of("double_pendulum");
   const std::vector<Isotropy> groups{{test::element_of(pendulum, "S", 1, 2), test::element_of(pendulum, "R")},
                                      {test::element_of(pendulum, "R", 1, 4)},
                                      {test::element_of(pendulum, "RS", 1, 2)},

@@ -52,12 +52,12 @@ inline loop::Loop random_loop_in(const loop::Subspace& subspace, const loop::Loo
 }
 
 /// The declared symmetry `name` of a system with a time shift.
-inline loop::SymmetryElement element_of(const systems::Description& system, const std::string& name, int numerator = 0,
+inline loop::SymmetryElement element_of(const systems::Structure& system, const std::string& name, int numerator = 0,
                                         int denominator = 1) {
   for (const systems::Symmetry& s : system.equivariances)
-    if (s.name == name) return {name, false, s.matrix, numerator, denominator};
+    if (s.name == name) return {name, false, s.map, numerator, denominator};
   for (const systems::Symmetry& r : system.reversors)
-    if (r.name == name) return {name, true, r.matrix, numerator, denominator};
+    if (r.name == name) return {name, true, r.map, numerator, denominator};
   throw std::invalid_argument("no symmetry " + name);
 }
 

@@ -9,6 +9,7 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/symmetry/subspace.hpp"
+#include "support/stated_system.hpp"
 
 namespace orbweaver::loop {
 namespace {
@@ -40,10 +41,15 @@ Case threefold() {
   return {"threefold", 4, {{"C", false, turn, 1, 3}, {"M", true, reverse, 0, 1}}, 6};
 }
 
+Case sixfold() {
+  Case out = threefold();
+  return {"sixfold", 4, {{"S", false, -Eigen::Matrix4d::Identity(), 1, 2}, out.isotropy.front()}, 6};
+}
+
 class Staggered : public testing::TestWithParam<std::tuple<Case, int>> {
  protected:
   const Case& tested = std::get<0>(GetParam());
-  FundamentalDomain domain = fundamental_domain(tested.isotropy, tested.dimension);
+  FundamentalDomain domain = fundamental_domain(test::structure_of(tested.dimension), tested.isotropy);
   StaggeredGrid grid{domain, std::get<1>(GetParam())};
 
   /// Random modes of decreasing size with the symmetries, up to one below the grid's highest harmonic.
@@ -136,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(
     Loop, Staggered,
     testing::Combine(testing::Values(Case{"none", 4, {}, 1}, Case{"shift", 4, of_pendulum(true, false), 2},
                                      Case{"mirror", 4, of_pendulum(false, true), 2},
-                                     Case{"both", 4, of_pendulum(true, true), 4}, threefold()),
+                                     Case{"both", 4, of_pendulum(true, true), 4}, threefold(), sixfold()),
                      testing::Values(12, 64, 200)),
     [](const auto& tested) { return std::get<0>(tested.param).name + std::to_string(std::get<1>(tested.param)); });
 
@@ -144,34 +150,36 @@ TEST(Domain, ReversorsElsewhereAreNotUsed) {
   Isotropy isotropy = of_pendulum(false, true);
   isotropy[0].shift_numerator = 1;
   isotropy[0].shift_denominator = 4;
-  EXPECT_EQ(fundamental_domain(isotropy, 4).copies(), 1);
+  EXPECT_EQ(fundamental_domain(test::structure_of(4), isotropy).copies(), 1);
 }
 
 TEST(Domain, KnowsWhatItDoesNotExpress) {
   for (const bool shift : {true, false})
     for (const bool reversor : {true, false}) {
       const Isotropy isotropy = of_pendulum(shift, reversor);
-      EXPECT_TRUE(fundamental_domain(isotropy, 4).expresses(isotropy));
+      EXPECT_TRUE(fundamental_domain(test::structure_of(4), isotropy).expresses(isotropy));
     }
-  EXPECT_TRUE(fundamental_domain(threefold().isotropy, 4).expresses(threefold().isotropy));
+  EXPECT_TRUE(fundamental_domain(test::structure_of(4), threefold().isotropy).expresses(threefold().isotropy));
   Isotropy elsewhere = of_pendulum(true, true);
   elsewhere[1].shift_numerator = 1;
   elsewhere[1].shift_denominator = 4;
-  EXPECT_FALSE(fundamental_domain(elsewhere, 4).expresses(elsewhere));
+  EXPECT_FALSE(fundamental_domain(test::structure_of(4), elsewhere).expresses(elsewhere));
   Isotropy spatial = of_pendulum(true, false);
   spatial[0].shift_numerator = 0;
   spatial[0].shift_denominator = 1;
-  EXPECT_FALSE(fundamental_domain(spatial, 4).expresses(spatial));
+  EXPECT_FALSE(fundamental_domain(test::structure_of(4), spatial).expresses(spatial));
 }
 
 TEST(Domain, TakesTheLeastShift) {
   Isotropy isotropy = threefold().isotropy;
   isotropy[0].shift_numerator = 2;  // C moves by two thirds of a period, so C^2 by one third
-  const FundamentalDomain domain = fundamental_domain(isotropy, 4);
-  EXPECT_LT((domain.generator - isotropy[0].matrix * isotropy[0].matrix).norm(), 1e-14);
+  const FundamentalDomain domain = fundamental_domain(test::structure_of(4), isotropy);
+  EXPECT_LT((domain.generator - isotropy[0].map.matrix * isotropy[0].map.matrix).norm(), 1e-14);
 }
 
-TEST(Domain, TooFewCellsAreRefused) { EXPECT_THROW(StaggeredGrid(fundamental_domain({}, 2), 1), core::MisuseError); }
+TEST(Domain, TooFewCellsAreRefused) {
+  EXPECT_THROW(StaggeredGrid(fundamental_domain(test::structure_of(2), {}), 1), core::MisuseError);
+}
 
 }  // namespace
 }  // namespace orbweaver::loop

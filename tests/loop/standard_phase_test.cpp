@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "loop/samples.hpp"
+#include "support/stated_system.hpp"
 
 namespace orbweaver::loop {
 namespace {
@@ -15,8 +16,8 @@ using test::element_of;
 const double irrational = std::sqrt(2.0) / 7.0;
 constexpr double pi = std::numbers::pi;
 
-const systems::Description& pendulum() { return systems::describe_system("double_pendulum"); }
-const systems::Description& galaxy() { return systems::describe_system("henon_heiles"); }
+const systems::Structure& pendulum() { return test::structure_of("double_pendulum"); }
+const systems::Structure& galaxy() { return test::structure_of("henon_heiles"); }
 
 Loop loop_with(const Isotropy& isotropy, const std::vector<double>& mean = {0.0, 0.0, 0.0, 0.0}) {
   return test::random_loop_in(Subspace(4, 8, isotropy), constant_loop(mean, 5.0, 8), 71);
@@ -26,36 +27,6 @@ const systems::Symmetry& reversor(const char* name) {
   for (const systems::Symmetry& r : pendulum().reversors)
     if (r.name == name) return r;
   throw std::invalid_argument(name);
-}
-
-std::vector<std::string> texts(const Isotropy& group) {
-  std::vector<std::string> out;
-  for (const SymmetryElement& e : group) out.push_back(to_text({e}));
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
-using Texts = std::vector<std::string>;
-
-TEST(GeneratedGroup, HoldsAllProducts) {
-  EXPECT_EQ(texts(generated_group(pendulum(), {})), Texts{"1@0"});
-  EXPECT_EQ(texts(generated_group(pendulum(), {element_of(pendulum(), "S", 1, 2), element_of(pendulum(), "R")})),
-            (Texts{"1@0", "R@0", "RS@1/2", "S@1/2"}));
-  EXPECT_EQ(texts(generated_group(pendulum(), {element_of(pendulum(), "S", 1, 4)})),
-            (Texts{"1@0", "1@1/2", "S@1/4", "S@3/4"}));
-  EXPECT_EQ(texts(generated_group(pendulum(), {element_of(pendulum(), "R", 1, 4), element_of(pendulum(), "RS", 3, 4)})),
-            (Texts{"1@0", "R@1/4", "RS@3/4", "S@1/2"}));
-  EXPECT_EQ(generated_group(galaxy(), {element_of(galaxy(), "C", 1, 3), element_of(galaxy(), "RS")}).size(), 6u);
-}
-
-// Each element of the group is a symmetry of any loop that has the generators.
-TEST(GeneratedGroup, HoldsForTheLoop) {
-  for (const Isotropy& generators : {Isotropy{element_of(galaxy(), "C", 1, 3), element_of(galaxy(), "RS")},
-                                     Isotropy{element_of(galaxy(), "S", 1, 4), element_of(galaxy(), "R", 1, 3)}}) {
-    const Loop loop = loop_with(generators);
-    for (const SymmetryElement& e : generated_group(galaxy(), generators))
-      EXPECT_LT(symmetry_defect(loop, e, {}), 1e-13) << to_text({e});
-  }
 }
 
 TEST(ReversorPhase, MayBeAnyNumber) {

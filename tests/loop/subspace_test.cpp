@@ -9,6 +9,7 @@
 
 #include "loop/samples.hpp"
 #include "orbweaver/core/error.hpp"
+#include "support/stated_system.hpp"
 
 namespace orbweaver::loop {
 namespace {
@@ -16,8 +17,8 @@ namespace {
 using test::element_of;
 using test::random_values;
 
-const systems::Description& pendulum() { return systems::describe_system("double_pendulum"); }
-const systems::Description& galaxy() { return systems::describe_system("henon_heiles"); }
+const systems::Structure& pendulum() { return test::structure_of("double_pendulum"); }
+const systems::Structure& galaxy() { return test::structure_of("henon_heiles"); }
 
 // Basis vectors as columns over all modes.
 Eigen::MatrixXd basis_matrix(const Subspace& subspace) {
@@ -151,7 +152,7 @@ TEST(Subspace, LoopsInItHaveTheSymmetryAtEveryTime) {
   const Isotropy isotropy{element_of(galaxy(), "C", 1, 3)};
   const Subspace subspace(4, 8, isotropy);
   const Loop loop = test::random_loop_in(subspace, constant_loop(std::vector<double>(4, 0.0), 3.0, 8), 31);
-  const Eigen::MatrixXd& c = isotropy.front().matrix;
+  const Eigen::MatrixXd& c = isotropy.front().map.matrix;
   for (const double t : {0.0, 0.37, 1.9, 2.71}) {
     const std::vector<double> now = state_at(loop, t);
     const std::vector<double> later = state_at(loop, t + loop.period / 3.0);

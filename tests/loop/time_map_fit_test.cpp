@@ -6,6 +6,7 @@
 
 #include "loop/samples.hpp"
 #include "orbweaver/core/error.hpp"
+#include "support/stated_system.hpp"
 
 namespace orbweaver::loop {
 namespace {
@@ -21,7 +22,7 @@ Loop unmapped(const TimeMap& map, const Isotropy& isotropy = {}) {
 }
 
 Isotropy of_pendulum() {
-  const systems::Description& pendulum = systems::describe_system("double_pendulum");
+  const systems::Structure& pendulum = test::structure_of("double_pendulum");
   return {test::element_of(pendulum, "S", 1, 2), test::element_of(pendulum, "R")};
 }
 
@@ -71,7 +72,7 @@ TEST(TimeMapFit, IsInvariantUnderTheIsotropy) {
   const Loop any = unmapped({1.0, {0.6, 0.3}});
   EXPECT_FALSE(is_invariant(fit_general(any, {}, tolerance).map, group));
   EXPECT_TRUE(is_invariant(fit_general(any, group, tolerance).map, group));
-  const systems::Description& pendulum = systems::describe_system("double_pendulum");
+  const systems::Structure& pendulum = test::structure_of("double_pendulum");
   const Isotropy quarter{test::element_of(pendulum, "R", 1, 4)};
   EXPECT_TRUE(is_invariant(fit_general(any, quarter, tolerance).map, quarter));
   EXPECT_TRUE(is_invariant(fit_time_map(even, quarter, tolerance).map, quarter));

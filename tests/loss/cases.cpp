@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "loop/samples.hpp"
+#include "support/stated_system.hpp"
 
 namespace orbweaver::test {
 
@@ -27,7 +28,7 @@ Case symmetric_case(const std::string& system, const loop::Isotropy& isotropy, c
 }
 
 loop::Isotropy of_pendulum() {
-  const systems::Description& pendulum = systems::describe_system("double_pendulum");
+  const systems::Structure& pendulum = test::structure_of("double_pendulum");
   return {element_of(pendulum, "S", 1, 2), element_of(pendulum, "R")};
 }
 
@@ -36,7 +37,7 @@ Case mapped(Case sample, const loop::TimeMap& map) {
   return sample;
 }
 
-loop::Isotropy of_rotation() { return {element_of(systems::describe_system("henon_heiles"), "C", 1, 3)}; }
+loop::Isotropy of_rotation() { return {element_of(test::structure_of("henon_heiles"), "C", 1, 3)}; }
 
 }  // namespace
 

@@ -9,6 +9,7 @@
 #include "loop/samples.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loss/linearization.hpp"
+#include "support/stated_system.hpp"
 
 namespace orbweaver::loss {
 namespace {
@@ -19,16 +20,10 @@ using Order = Linearization::Order;
 constexpr double limit = 0.9;
 
 // dq/dt = p, dp/dt = -q; where q > limit one of the functions gives `bad` instead.
-class Fenced final : public systems::System {
+class Fenced final : public test::StatedSystem {
  public:
   enum class Where { field, jacobian, second };
-  Fenced(Where where, double bad) : _where(where), _bad(bad) {
-    _description.name = "fenced";
-    _description.state_names = {"q", "p"};
-  }
-
-  [[nodiscard]] const systems::Description& description() const override { return _description; }
-  [[nodiscard]] const std::map<std::string, double>& parameters() const override { return _parameters; }
+  Fenced(Where where, double bad) : StatedSystem(test::structure_of(2), "fenced"), _where(where), _bad(bad) {}
 
   void field(std::size_t nodes, const double* z, double* f) const override {
     for (std::size_t j = 0; j < nodes; ++j) {
@@ -52,17 +47,9 @@ class Fenced final : public systems::System {
         contracted[m * nodes + j] = _where == Where::second && z[j] > limit ? _bad : 0.0;
   }
 
-  [[nodiscard]] double energy(std::span<const double>) const override { return 0.0; }
-  void energy_gradient(std::span<const double>, std::span<double> gradient) const override {
-    gradient[0] = gradient[1] = 0.0;
-  }
-  [[nodiscard]] double action_density(std::span<const double>) const override { return 0.0; }
-
  private:
   Where _where;
   double _bad;
-  systems::Description _description;
-  std::map<std::string, double> _parameters;
 };
 
 loop::Loop circle(double radius) {

@@ -7,6 +7,7 @@
 #include "orbweaver/loop/grid/fourier.hpp"
 #include "orbweaver/loss/dense.hpp"
 #include "orbweaver/loss/matrices.hpp"
+#include "support/stated_system.hpp"
 
 namespace orbweaver::loss {
 namespace {
@@ -24,8 +25,8 @@ struct Sample {
 };
 
 std::vector<Sample> samples() {
-  const systems::Description& pendulum = systems::describe_system("double_pendulum");
-  const systems::Description& galaxy = systems::describe_system("henon_heiles");
+  const systems::Structure& pendulum = test::structure_of("double_pendulum");
+  const systems::Structure& galaxy = test::structure_of("henon_heiles");
   const std::vector<double> origin(4, 0.0);
   const std::vector<double> inverted{0.0, std::numbers::pi, 0.0, 0.0};
   return {{"double_pendulum", {element_of(pendulum, "S", 1, 2), element_of(pendulum, "R")}, origin},
@@ -124,7 +125,7 @@ TEST(Symmetry, LossIsTheSameForEveryImage) {
   const auto system = systems::make_system("henon_heiles");
   const loop::Loop loop = test::random_loop(4, 6, 73);
   const double loss = Linearization(*system, loop, Linearization::Order::residual).loss();
-  const systems::Description& galaxy = system->description();
+  const systems::Structure& galaxy = system->structure();
   for (const char* name : {"C", "CC", "S", "SC", "SCC", "R", "RS", "RSC", "RSCC"}) {
     const loop::Loop image = loop::transformed(loop, element_of(galaxy, name, 1, 5));
     EXPECT_NEAR(Linearization(*system, image, Linearization::Order::residual).loss(), loss, 1e-13 * loss) << name;

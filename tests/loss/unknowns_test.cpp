@@ -4,6 +4,7 @@
 
 #include "loop/samples.hpp"
 #include "orbweaver/core/error.hpp"
+#include "support/stated_system.hpp"
 
 namespace orbweaver::loss {
 namespace {
@@ -25,7 +26,7 @@ TEST(Unknowns, CountTheirPeriod) {
 }
 
 TEST(Unknowns, DifferenceUndoesMoved) {
-  const loop::Isotropy mirror{test::element_of(systems::describe_system("henon_heiles"), "C", 1, 3)};
+  const loop::Isotropy mirror{test::element_of(test::structure_of("henon_heiles"), "C", 1, 3)};
   const Unknowns unknowns{Subspace(4, 5, mirror), true};
   const Loop base = test::random_loop(4, 5, 92);
   const std::vector<double> u = test::random_values(static_cast<std::size_t>(unknowns.size()), 93);
@@ -50,7 +51,7 @@ TEST(Unknowns, LetThePeriodBecomeAnything) {
 }
 
 TEST(Unknowns, DifferenceIsAProjection) {
-  const loop::Isotropy mirror{test::element_of(systems::describe_system("double_pendulum"), "S", 1, 2)};
+  const loop::Isotropy mirror{test::element_of(test::structure_of("double_pendulum"), "S", 1, 2)};
   const Unknowns unknowns{Subspace(4, 5, mirror), false};
   const Loop from = test::random_loop(4, 5, 94);
   const Loop to = test::random_loop(4, 5, 95);
@@ -80,7 +81,7 @@ TEST(Unknowns, TimeShiftDirectionIsTheDerivativeOfATimeShift) {
 
 // A reversor fixes the phase: no time shift keeps it.
 TEST(Unknowns, ReversibleSubspaceHasNoTimeShift) {
-  const systems::Description& pendulum = systems::describe_system("double_pendulum");
+  const systems::Structure& pendulum = test::structure_of("double_pendulum");
   const loop::Isotropy brake{test::element_of(pendulum, "R")};
   const Unknowns unknowns{Subspace(4, 5, brake), true};
   const Loop loop =

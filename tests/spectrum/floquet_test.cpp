@@ -17,6 +17,7 @@
 #include "orbit_correction.hpp"
 #include "orbweaver/continuation/branch.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/symmetry/fundamental_domain.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
 #include "spectrum/pendulum_loops.hpp"
 #include "spectrum/point_systems.hpp"
@@ -39,7 +40,7 @@ loop::Loop first_oscillation(int dimension, int cutoff = 3) {
 }
 
 loop::Isotropy isotropy_of(const systems::System& system, const loop::Loop& loop) {
-  return loop::find_isotropy(system.description(), loop, 1e-9);
+  return loop::find_isotropy(system.structure(), loop, 1e-9);
 }
 
 void expect_value(std::complex<double> value, double error, std::complex<double> truth, double relative) {
@@ -72,6 +73,65 @@ TEST(Floquet, SecondOscillatorTurnsByItsFrequency) {
     EXPECT_EQ(half.fundamental_order, 2);
     expect_value(half.full[0], half.full_error[0], 2.0 * std::cos(2 * pi * omega), 1e-11);
     expect_value(half.fundamental[0], half.fundamental_error[0], -2.0 * std::cos(pi * omega), 1e-11);
+  }
+}
+
+/// A particle in the plane under the force -(1 + r^2) q, state x, y, px, py; a half turn S and a third of a turn C are
+/// declared. On the circle r = a it turns at w^2 = 1 + a^2, and oscillates across it at v^2 = 4 + 6 a^2.
+class RoundBowl final : public test::PointSystem {
+ public:
+  RoundBowl() : PointSystem(described()) {}
+
+  [[nodiscard]] Eigen::VectorXd field_at(const Eigen::VectorXd& z) const override {
+    const Eigen::Vector4d g = gradient_at(z);
+    return Eigen::Vector4d(g(2), g(3), -g(0), -g(1));
+  }
+  [[nodiscard]] Eigen::MatrixXd jacobian_at(const Eigen::VectorXd& z) const override {
+    const Eigen::Vector2d q = z.head<2>();
+    Eigen::Matrix4d a = Eigen::Matrix4d::Zero();
+    a.topRightCorner<2, 2>().setIdentity();
+    a.bottomLeftCorner<2, 2>() = -(1.0 + q.squaredNorm()) * Eigen::Matrix2d::Identity() - 2.0 * q * q.transpose();
+    return a;
+  }
+  [[nodiscard]] Eigen::VectorXd gradient_at(const Eigen::VectorXd& z) const override {
+    Eigen::Vector4d g = z;
+    g.head<2>() *= 1.0 + z.head<2>().squaredNorm();
+    return g;
+  }
+  [[nodiscard]] static loop::Loop circle(double radius) {
+    const double turning = std::sqrt(1.0 + radius * radius);
+    loop::Loop loop = loop::constant_loop(std::vector<double>(4, 0.0), 2 * pi / turning, 3);
+    loop.cosine(1, 0) = loop.sine(1, 1) = radius;
+    loop.sine(1, 2) = -radius * turning;
+    loop.cosine(1, 3) = radius * turning;
+    return loop;
+  }
+
+ private:
+  static systems::Structure described() {
+    systems::Structure structure = test::structure_of(4, true, true);
+    const double c = std::cos(2 * pi / 3);
+    const double s = std::sin(2 * pi / 3);
+    Eigen::Matrix4d turn = Eigen::Matrix4d::Zero();
+    turn.topLeftCorner<2, 2>() << c, -s, s, c;
+    turn.bottomRightCorner<2, 2>() = turn.topLeftCorner<2, 2>();
+    structure.equivariances = {{"S", -Eigen::Matrix4d::Identity()}, {"C", turn}};
+    return structure;
+  }
+};
+
+TEST(Floquet, TheLeastShiftIsThatOfAProduct) {
+  const RoundBowl system;
+  for (const double radius : {0.4, 1.3}) {
+    const loop::Loop loop = RoundBowl::circle(radius);
+    const loop::Isotropy isotropy = isotropy_of(system, loop);
+    EXPECT_EQ(loop::to_text(isotropy), "S@1/2 C@1/3");
+    EXPECT_EQ(loop::fundamental_domain(system.structure(), isotropy).order, 6);
+    const Stability stability = floquet(system, loop, isotropy);
+    EXPECT_EQ(stability.fundamental_order, 6);
+    const double phase = loop.period * std::sqrt(4.0 + 6.0 * radius * radius);
+    expect_value(stability.full[0], stability.full_error[0], 2.0 * std::cos(phase), 1e-10);
+    expect_value(stability.fundamental[0], stability.fundamental_error[0], 2.0 * std::cos(phase / 6.0), 1e-10);
   }
 }
 
@@ -292,7 +352,7 @@ TEST(PendulumIndex, NewtonStepOfARoughLoopLeadsToTheOrbit) {
       const spectrum::Chain chain = spectrum::make_chain(*system, stepper, rough, group, 8 * rough.cutoff);
       const auto index = [&](const spectrum::Chain& along) {
         const spectrum::TransverseFlow flow = spectrum::transverse_flow(*system, along, group);
-        return spectrum::floquet_indices(system->description(), flow, group.order).fundamental[0].real();
+        return spectrum::floquet_indices(system->structure(), flow, group.order).fundamental[0].real();
       };
       const spectrum::OrbitCorrection correction = spectrum::orbit_correction(chain, group, true);
       const double factor = 1e-7 / correction.states.cwiseAbs().maxCoeff();
@@ -387,7 +447,7 @@ std::vector<loop::Loop> henon_orbits(const std::shared_ptr<const systems::System
   direction.sine(1, 3) = -1.0;
   start.direction.modes = direction.modes;
   const loop::Loop small = loop::moved(start.base, start.direction, 1e-3);
-  for (const loop::SymmetryElement& element : loop::find_isotropy(system->description(), small, 1e-9))
+  for (const loop::SymmetryElement& element : loop::find_isotropy(system->structure(), small, 1e-9))
     if (element.name == "S" || element.name == "R")
       if (element.shift_numerator == 0) start.isotropy.push_back(element);
   std::vector<loop::Loop> loops;

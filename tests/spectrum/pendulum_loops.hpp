@@ -49,7 +49,7 @@ inline loop::Loop linear_loop(const PendulumMode& mode, double amplitude, int cu
 
 /// S@1/2 R@0: the isotropy of all four families.
 inline loop::Isotropy pendulum_isotropy(const systems::System& system) {
-  return loop::find_isotropy(system.description(), linear_loop(in_phase(), 0.1, 1), 1e-9);
+  return loop::find_isotropy(system.structure(), linear_loop(in_phase(), 0.1, 1), 1e-9);
 }
 
 }  // namespace orbweaver::test

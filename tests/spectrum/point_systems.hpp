@@ -3,25 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
-#include <map>
 #include <span>
-#include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "orbweaver/systems/system.hpp"
+#include "support/stated_system.hpp"
 
 namespace orbweaver::test {
 
 /// A system given state by state, with a Jacobian written by hand; for tests whose multipliers are known by pencil.
-class PointSystem : public systems::System {
+class PointSystem : public StatedSystem {
  public:
-  explicit PointSystem(systems::Description description) : _description(std::move(description)) {}
-
-  [[nodiscard]] const systems::Description& description() const override { return _description; }
-  [[nodiscard]] const std::map<std::string, double>& parameters() const override { return _parameters; }
+  explicit PointSystem(systems::Structure structure) : StatedSystem(std::move(structure)) {}
 
   [[nodiscard]] virtual Eigen::VectorXd field_at(const Eigen::VectorXd& z) const = 0;
   [[nodiscard]] virtual Eigen::MatrixXd jacobian_at(const Eigen::VectorXd& z) const = 0;
@@ -39,19 +32,10 @@ class PointSystem : public systems::System {
       scatter(nodes, j, Eigen::Map<const Eigen::VectorXd>(matrix.data(), matrix.size()), jacobian);
     }
   }
-  void second_derivatives(std::size_t, const double*, const double*, double*) const override {
-    throw std::logic_error("second derivatives are not used by Floquet multipliers");
-  }
-  [[nodiscard]] double energy(std::span<const double>) const override {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-  void energy_gradient(std::span<const double> z, std::span<double> gradient) const override {
+  void conserved_gradient(int, std::span<const double> z, std::span<double> gradient) const override {
     const Eigen::VectorXd value =
         gradient_at(Eigen::Map<const Eigen::VectorXd>(z.data(), static_cast<Eigen::Index>(z.size())));
     std::copy(value.data(), value.data() + value.size(), gradient.begin());
-  }
-  [[nodiscard]] double action_density(std::span<const double>) const override {
-    return std::numeric_limits<double>::quiet_NaN();
   }
 
  private:
@@ -63,17 +47,7 @@ class PointSystem : public systems::System {
   static void scatter(std::size_t nodes, std::size_t j, const Eigen::VectorXd& values, double* out) {
     for (Eigen::Index i = 0; i < values.size(); ++i) out[static_cast<std::size_t>(i) * nodes + j] = values[i];
   }
-
-  systems::Description _description;
-  std::map<std::string, double> _parameters;
 };
-
-inline systems::Description description_of(std::vector<std::string> states) {
-  systems::Description description;
-  description.name = "test";
-  description.state_names = std::move(states);
-  return description;
-}
 
 /// q_i'' = -stiffness_i q_i, uncoupled: state q_0, p_0, q_1, p_1, ... A negative stiffness is a saddle.
 class Oscillators final : public PointSystem {
@@ -98,20 +72,14 @@ class Oscillators final : public PointSystem {
   }
 
  private:
-  static systems::Description describe(std::size_t count) {
-    std::vector<std::string> names;
-    for (std::size_t n = 0; n < count; ++n) {
-      for (const char* letter : {"q", "p"}) names.emplace_back(letter).append(std::to_string(n));
-    }
-    systems::Description description = description_of(names);
+  static systems::Structure describe(std::size_t count) {
+    systems::Structure structure = structure_of(static_cast<int>(2 * count), true, true);
     const auto d = static_cast<Eigen::Index>(2 * count);
-    description.equivariances = {{"S", -Eigen::MatrixXd::Identity(d, d)}};
+    structure.equivariances = {{"S", -Eigen::MatrixXd::Identity(d, d)}};
     Eigen::MatrixXd reversor = Eigen::MatrixXd::Identity(d, d);
     for (Eigen::Index i = 1; i < d; i += 2) reversor(i, i) = -1.0;
-    description.reversors = {{"R", reversor}};
-    description.conservative = true;
-    description.symplectic = true;
-    return description;
+    structure.reversors = {{"R", reversor}};
+    return structure;
   }
   std::vector<double> _stiffness;
 };
@@ -135,10 +103,10 @@ class HopfCycle final : public PointSystem {
   }
 
  private:
-  static systems::Description describe() {
-    systems::Description description = description_of({"x", "y", "z"});
-    description.equivariances = {{"S", Eigen::Vector3d(-1, -1, 1).asDiagonal()}};
-    return description;
+  static systems::Structure describe() {
+    systems::Structure structure = structure_of(3);
+    structure.equivariances = {{"S", Eigen::Matrix3d(Eigen::Vector3d(-1, -1, 1).asDiagonal())}};
+    return structure;
   }
   double _growth;
   double _decay;
@@ -160,11 +128,7 @@ class SymmetricTop final : public PointSystem {
   [[nodiscard]] Eigen::VectorXd gradient_at(const Eigen::VectorXd& z) const override { return z; }
 
  private:
-  static systems::Description describe() {
-    systems::Description description = description_of({"a", "b", "c"});
-    description.conservative = true;
-    return description;
-  }
+  static systems::Structure describe() { return structure_of(3, true); }
   double _s;
 };
 

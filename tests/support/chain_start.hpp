@@ -24,9 +24,8 @@ inline continuation::Start slowest_oscillation(const OscillatorChain& chain, dou
     oscillation.modes[static_cast<std::size_t>(5 * n + i)] = -frequency * amplitude;  // sin s
   }
   start.direction.modes = oscillation.modes;
-  const systems::Description& description = chain.description();
-  start.isotropy = {{"S", false, description.equivariances[0].matrix, 1, 2},
-                    {"R", true, description.reversors[0].matrix, 0, 1}};
+  const systems::Structure& structure = chain.structure();
+  start.isotropy = {{"S", false, structure.equivariances[0].map, 1, 2}, {"R", true, structure.reversors[0].map, 0, 1}};
   return start;
 }
 

@@ -2,12 +2,10 @@
 
 #include <cmath>
 #include <cstddef>
-#include <map>
 #include <span>
-#include <string>
 #include <vector>
 
-#include "orbweaver/systems/system.hpp"
+#include "support/stated_system.hpp"
 
 namespace orbweaver::test {
 
@@ -17,13 +15,12 @@ namespace orbweaver::test {
 ///
 /// i = 0 .. N with q_0 = q_(N+1) = 0 in the last sum; c the coupling. State q_1 .. q_N, p_1 .. p_N: dimension 2 N.
 /// Small oscillations have the frequencies sqrt(1 + 4 c sin(k pi / (2 N + 2))^2), k = 1 .. N.
-class OscillatorChain : public systems::System {
+class OscillatorChain : public StatedSystem {
  public:
   explicit OscillatorChain(int particles, double coupling = 0.1)
-      : _n(static_cast<std::size_t>(particles)), _coupling(coupling), _description(describe(particles)) {}
-
-  [[nodiscard]] const systems::Description& description() const override { return _description; }
-  [[nodiscard]] const std::map<std::string, double>& parameters() const override { return _parameters; }
+      : StatedSystem(describe(particles), "oscillator_chain"),
+        _n(static_cast<std::size_t>(particles)),
+        _coupling(coupling) {}
 
   void field(std::size_t nodes, const double* z, double* f) const override {
     for (std::size_t i = 0; i < _n; ++i)
@@ -78,7 +75,7 @@ class OscillatorChain : public systems::System {
         }
       }
   }
-  [[nodiscard]] double energy(std::span<const double> z) const override {
+  [[nodiscard]] double conserved(int, std::span<const double> z) const override {
     double sum = 0.0;
     for (std::size_t i = 0; i <= _n; ++i) {
       const double q = i < _n ? z[i] : 0.0;
@@ -88,7 +85,7 @@ class OscillatorChain : public systems::System {
     }
     return sum;
   }
-  void energy_gradient(std::span<const double> z, std::span<double> gradient) const override {
+  void conserved_gradient(int, std::span<const double> z, std::span<double> gradient) const override {
     std::vector<double> f(2 * _n);
     field(1, z.data(), f.data());
     for (std::size_t i = 0; i < _n; ++i) {
@@ -106,25 +103,18 @@ class OscillatorChain : public systems::System {
   [[nodiscard]] double force(double stretch) const { return _coupling * stretch + stretch * stretch * stretch; }
   [[nodiscard]] double stiffness(double stretch) const { return _coupling + 3.0 * stretch * stretch; }
 
-  static systems::Description describe(int particles) {
-    systems::Description description;
-    description.name = "oscillator_chain";
-    for (const char* letter : {"q", "p"})
-      for (int i = 1; i <= particles; ++i) description.state_names.emplace_back(letter).append(std::to_string(i));
+  static systems::Structure describe(int particles) {
+    systems::Structure structure = structure_of(2 * particles, true, true);
     const Eigen::Index d = 2 * particles;
-    description.equivariances = {{"S", -Eigen::MatrixXd::Identity(d, d)}};
+    structure.equivariances = {{"S", -Eigen::MatrixXd::Identity(d, d)}};
     Eigen::MatrixXd reversor = Eigen::MatrixXd::Identity(d, d);
     reversor.bottomRightCorner(particles, particles) *= -1.0;
-    description.reversors = {{"R", reversor}, {"RS", -reversor}};
-    description.conservative = true;
-    description.symplectic = true;
-    return description;
+    structure.reversors = {{"R", reversor}, {"RS", -reversor}};
+    return structure;
   }
 
   std::size_t _n;
   double _coupling;
-  systems::Description _description;
-  std::map<std::string, double> _parameters;
 };
 
 }  // namespace orbweaver::test

@@ -11,6 +11,7 @@
 #include "orbweaver/archive/read/reader.hpp"
 #include "orbweaver/report/summary_text.hpp"
 #include "orbweaver/survey/run/survey.hpp"
+#include "support/delegating_system.hpp"
 #include "survey/scenes.hpp"
 
 namespace {
@@ -22,37 +23,26 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 /// The pendulum with a field that is spoilt by `spoil(nodes, th1, th2, f)` at some states.
-class SpoiltPendulum final : public systems::System {
+class SpoiltPendulum final : public test::DelegatingSystem {
  public:
   using Spoil = std::function<void(std::size_t nodes, double th1, double th2, double& f)>;
-  explicit SpoiltPendulum(Spoil spoil) : _spoil(std::move(spoil)) {}
+  explicit SpoiltPendulum(Spoil spoil)
+      : DelegatingSystem(systems::make_system("double_pendulum")), _spoil(std::move(spoil)) {}
 
-  [[nodiscard]] const systems::Description& description() const override { return _whole->description(); }
-  [[nodiscard]] const std::map<std::string, double>& parameters() const override { return _whole->parameters(); }
   void field(std::size_t nodes, const double* z, double* f) const override {
-    _whole->field(nodes, z, f);
+    whole().field(nodes, z, f);
     spoil(nodes, z, f);
   }
   void field_jacobian(std::size_t nodes, const double* z, double* f, double* jacobian) const override {
-    _whole->field_jacobian(nodes, z, f, jacobian);
+    whole().field_jacobian(nodes, z, f, jacobian);
     spoil(nodes, z, f);
   }
-  void second_derivatives(std::size_t nodes, const double* z, const double* weights,
-                          double* contracted) const override {
-    _whole->second_derivatives(nodes, z, weights, contracted);
-  }
-  [[nodiscard]] double energy(std::span<const double> z) const override { return _whole->energy(z); }
-  void energy_gradient(std::span<const double> z, std::span<double> gradient) const override {
-    _whole->energy_gradient(z, gradient);
-  }
-  [[nodiscard]] double action_density(std::span<const double> z) const override { return _whole->action_density(z); }
 
  private:
   void spoil(std::size_t nodes, const double* z, double* f) const {
     for (std::size_t j = 0; j < nodes; ++j) _spoil(nodes, z[j], z[nodes + j], f[2 * nodes + j]);
   }
 
-  std::shared_ptr<const systems::System> _whole = systems::make_system("double_pendulum");
   Spoil _spoil;
 };
 

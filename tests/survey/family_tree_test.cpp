@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/systems/system.hpp"
+#include "support/stated_system.hpp"
 #include "survey/scenes.hpp"
 #include "survey/tree_outcomes.hpp"
 
@@ -27,7 +28,7 @@ using ::testing::StartsWith;
 constexpr int first = std::numeric_limits<int>::min();
 constexpr int last = std::numeric_limits<int>::max();
 
-const systems::Description& pendulum() { return systems::describe_system("double_pendulum"); }
+const systems::Structure& pendulum() { return test::structure_of("double_pendulum"); }
 
 const Place p{"0000.0000/000.q4.j1", 8.0, 1.0};
 const Place q{"0000.0000/001.q4.j1", 9.0, 2.0};

@@ -12,7 +12,7 @@ using namespace orbweaver;
 constexpr double pi = std::numbers::pi;
 
 std::string named(const scene::Scene& scene, const std::vector<double>& point, int mode, int index = 0) {
-  return survey::base_family_name(scene, systems::describe_system("double_pendulum"), point, index, mode);
+  return survey::base_family_name(scene, *systems::make_system("double_pendulum"), point, index, mode);
 }
 
 scene::Scene scene_with_names() {
@@ -52,7 +52,7 @@ TEST(Naming, CountsWhereTheSceneGivesNoName) {
 }
 
 TEST(Naming, PointsAreTextInDegreesForAngles) {
-  EXPECT_EQ(survey::point_text(systems::describe_system("double_pendulum"), {pi, -1e-15, 0.5, 0.0}),
+  EXPECT_EQ(survey::point_text(*systems::make_system("double_pendulum"), {pi, -1e-15, 0.5, 0.0}),
             "th1 = 180 deg, th2 = 0 deg, w1 = 0.5, w2 = 0");
 }
 

@@ -26,7 +26,7 @@ TEST(StabilityColumns, OnePairIsOneRealIndex) {
   const double omega = 0.37;
   const test::Oscillators system({1.0, omega * omega});
   archive::OrbitRecord row;
-  survey::set_stability(system.description(), survey::stability_of(system, oscillation(4), {}), row);
+  survey::set_stability(system.structure(), survey::stability_of(system, oscillation(4), {}), row);
   ASSERT_EQ(row.stability.size(), 1U);
   EXPECT_NEAR(row.stability[0], 2.0 * std::cos(2 * pi * omega), row.stability_error);
   EXPECT_EQ(row.fundamental_stability, row.stability);
@@ -37,7 +37,7 @@ TEST(StabilityColumns, SeveralPairsAreComplexAndShareTheLargestBound) {
   const double omega = 0.37;
   const test::Oscillators system({1.0, omega * omega, -0.25});
   archive::OrbitRecord row;
-  survey::set_stability(system.description(), survey::stability_of(system, oscillation(6), {}), row);
+  survey::set_stability(system.structure(), survey::stability_of(system, oscillation(6), {}), row);
   ASSERT_EQ(row.stability.size(), 4U);
   EXPECT_NEAR(row.stability[0], 2.0 * std::cosh(pi), row.stability_error);
   EXPECT_NEAR(row.stability[2], 2.0 * std::cos(2 * pi * omega), row.stability_error);
@@ -54,7 +54,7 @@ TEST(StabilityColumns, MultipliersOfADissipativeSystem) {
   loop.cosine(1, 0) = std::sqrt(growth);
   loop.sine(1, 1) = std::sqrt(growth);
   archive::OrbitRecord row;
-  survey::set_stability(system.description(), survey::stability_of(system, loop, {}), row);
+  survey::set_stability(system.structure(), survey::stability_of(system, loop, {}), row);
   ASSERT_EQ(row.stability.size(), 4U);
   EXPECT_NEAR(row.stability[0], std::exp(-4 * pi * growth), row.stability_error);
   EXPECT_NEAR(row.stability[2], std::exp(-2 * pi), row.stability_error);
@@ -64,7 +64,7 @@ TEST(StabilityColumns, WhatCannotBeComputedIsNaN) {
   const test::Oscillators system({1.0, std::numeric_limits<double>::quiet_NaN()});
   archive::OrbitRecord row;
   row.stability_error = 0.0;
-  survey::set_stability(system.description(), survey::stability_of(system, oscillation(4), {}), row);
+  survey::set_stability(system.structure(), survey::stability_of(system, oscillation(4), {}), row);
   ASSERT_EQ(row.stability.size(), 1U);
   EXPECT_TRUE(std::isnan(row.stability[0]));
   EXPECT_TRUE(std::isnan(row.fundamental_stability[0]));

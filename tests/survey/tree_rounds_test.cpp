@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "orbweaver/systems/system.hpp"
+#include "support/stated_system.hpp"
 #include "survey/scenes.hpp"
 #include "survey/tree_outcomes.hpp"
 #include "tasks/recorders.hpp"
@@ -33,7 +34,7 @@ class TreeRounds : public ::testing::Test {
   }
 
   scene::Scene scene = quick_scene({});
-  FamilyTree tree{scene, systems::describe_system("double_pendulum")};
+  FamilyTree tree{scene, test::structure_of("double_pendulum")};
 };
 
 // P's family ends at Q, where Q's is the same from the other end. Both have a crossing at one place of theirs, a family born

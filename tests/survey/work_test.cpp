@@ -5,6 +5,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/survey/tasks/work.hpp"
 #include "orbweaver/systems/system.hpp"
+#include "support/stated_system.hpp"
 #include "tasks/payload.hpp"
 
 namespace {
@@ -14,7 +15,7 @@ using namespace orbweaver::survey;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-const systems::Description& pendulum() { return systems::describe_system("double_pendulum"); }
+const systems::Structure& pendulum() { return test::structure_of("double_pendulum"); }
 
 loop::Isotropy sample_isotropy() { return {{"S", false, {}, 1, 2}, {"R", true, {}, 0, 1}}; }
 Lineage sample_lineage() { return {"0001.0002/003.q4.j1/0", "0001.0002/003.q4.j1", 1, 2, -1}; }
@@ -111,16 +112,16 @@ TEST(Payload, ForeignBytesAreRefused) {
 
 TEST(WorkIsotropy, IsSentByNameAndGetsItsMatricesBack) {
   BranchWork work;
-  work.isotropy = {{"S", false, pendulum().equivariances[0].matrix, 1, 2},
-                   {"RS", true, pendulum().reversors[1].matrix, 3, 4}};
+  work.isotropy = {{"S", false, pendulum().equivariances[0].map, 1, 2},
+                   {"RS", true, pendulum().reversors[1].map, 3, 4}};
   const loop::Isotropy received = unpack_branch_work(pack(work)).isotropy;
-  EXPECT_EQ(received.at(0).matrix.size(), 0);
+  EXPECT_EQ(received.at(0).map.dimension(), 0);
   const loop::Isotropy back = loop::with_declared_matrices(received, pendulum());
   ASSERT_EQ(back.size(), 2U);
   EXPECT_EQ(loop::to_text(back), loop::to_text(work.isotropy));
   for (std::size_t n = 0; n < 2; ++n) {
     EXPECT_EQ(back[n].reversing, work.isotropy[n].reversing);
-    EXPECT_EQ(back[n].matrix, work.isotropy[n].matrix);
+    EXPECT_EQ(back[n].map.matrix, work.isotropy[n].map.matrix);
   }
 }
 

@@ -76,7 +76,7 @@ class Check {
     _system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
     for (std::size_t n = 0; n < _atlas.families().rows(); ++n) {
       Family family{_atlas.families().texts("name")[n],
-                    loop::isotropy_of(_system->description(), _atlas.families().texts("isotropy")[n]),
+                    loop::isotropy_of(_system->structure(), _atlas.families().texts("isotropy")[n]),
                     {},
                     {},
                     {}};
@@ -150,12 +150,12 @@ class Check {
 
   [[nodiscard]] continuation::Orbit orbit_of(const Point& point) const {
     continuation::Orbit orbit;
-    orbit.loop = archive::loop_of(_atlas, point.row, _system->description().angles);
+    orbit.loop = archive::loop_of(_atlas, point.row, _system->structure().angles);
     orbit.energy = point.values[1];
     orbit.action = point.values[2];
-    const systems::Description& system = _system->description();
+    const systems::Structure& system = _system->structure();
     if (point.moved && !system.equivariances.empty())
-      orbit.loop = loop::transformed(orbit.loop, system.equivariances.front().matrix, false, 0.0);
+      orbit.loop = loop::transformed(orbit.loop, system.equivariances.front().map, false, 0.0);
     if (point.moved) orbit.loop = loop::time_shifted(orbit.loop, 0.3183);
     return orbit;
   }

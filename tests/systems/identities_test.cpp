@@ -20,12 +20,10 @@ constexpr int samples = 25;
 class Identities : public testing::TestWithParam<std::string> {
  protected:
   std::mt19937 generator{2024};
-  const Description& description = describe_system(GetParam());
-  const std::size_t dimension = static_cast<std::size_t>(description.dimension());
+  const ModelInfo& info = model_info(GetParam());
+  const std::size_t dimension = info.state_names.size();
 
-  std::shared_ptr<const System> random_system() {
-    return make_system(GetParam(), random_parameters(description, generator));
-  }
+  std::shared_ptr<const System> random_system() { return make_system(GetParam(), random_parameters(info, generator)); }
   std::vector<double> random_state() { return random_numbers(dimension, generator); }
 
   static Eigen::VectorXd field(const System& system, const Eigen::VectorXd& z) {
@@ -101,33 +99,38 @@ TEST_P(Identities, SecondDerivativesAreDerivativesOfTheJacobian) {
   }
 }
 
-TEST_P(Identities, EnergyGradientAgreesWithComplexStep) {
+TEST_P(Identities, GradientsOfConservedQuantitiesAgreeWithComplexStep) {
   constexpr double h = 1e-200;
   for (int sample = 0; sample < samples; ++sample) {
     const auto system = random_system();
     const auto& complex_system = dynamic_cast<const ComplexSystem&>(*system);
     const auto z = random_state();
-    std::vector<double> gradient(dimension);
-    system->energy_gradient(z, gradient);
-    for (std::size_t l = 0; l < dimension; ++l) {
-      std::vector<Complex> shifted(z.begin(), z.end());
-      shifted[l] += Complex(0.0, h);
-      const Complex energy = complex_system.complex_energy(shifted.data());
-      EXPECT_NEAR(gradient[l], energy.imag() / h, 1e-13 * (1.0 + largest(gradient)));
-      EXPECT_NEAR(system->energy(z), energy.real(), 1e-13 * (1.0 + std::abs(energy.real())));
+    for (int k = 0; k < static_cast<int>(system->structure().conserved.size()); ++k) {
+      std::vector<double> gradient(dimension);
+      system->conserved_gradient(k, z, gradient);
+      for (std::size_t l = 0; l < dimension; ++l) {
+        std::vector<Complex> shifted(z.begin(), z.end());
+        shifted[l] += Complex(0.0, h);
+        const Complex value = complex_system.complex_conserved(k, shifted.data());
+        EXPECT_NEAR(gradient[l], value.imag() / h, 1e-13 * (1.0 + largest(gradient)));
+        EXPECT_NEAR(system->conserved(k, z), value.real(), 1e-13 * (1.0 + std::abs(value.real())));
+      }
     }
   }
 }
 
-TEST_P(Identities, ConservativeFieldsKeepTheirEnergy) {
-  ASSERT_TRUE(description.conservative) << "the registry has no other systems yet: say here what holds for the new one";
+TEST_P(Identities, ConservedQuantitiesAreConserved) {
   for (int sample = 0; sample < samples; ++sample) {
     const auto system = random_system();
+    ASSERT_TRUE(system->structure().conservative())
+        << "the registry has no other systems yet: say here what holds for the new one";
     const auto z = random_state();
-    std::vector<double> gradient(dimension);
-    system->energy_gradient(z, gradient);
     const Eigen::VectorXd f = field(*system, vector(z));
-    EXPECT_NEAR(vector(gradient).dot(f), 0.0, 1e-14 * vector(gradient).norm() * f.norm());
+    for (int k = 0; k < static_cast<int>(system->structure().conserved.size()); ++k) {
+      std::vector<double> gradient(dimension);
+      system->conserved_gradient(k, z, gradient);
+      EXPECT_NEAR(vector(gradient).dot(f), 0.0, 1e-14 * vector(gradient).norm() * f.norm());
+    }
   }
 }
 
@@ -136,8 +139,8 @@ TEST_P(Identities, EquivariancesCarryTheFieldAlong) {
     const auto system = random_system();
     const Eigen::VectorXd z = vector(random_state());
     const Eigen::VectorXd f = field(*system, z);
-    for (const Symmetry& s : description.equivariances)
-      EXPECT_LT((field(*system, s.matrix * z) - s.matrix * f).norm(), 1e-14 * (1.0 + f.norm())) << s.name;
+    for (const Symmetry& s : system->structure().equivariances)
+      EXPECT_LT((field(*system, s.map(z)) - s.map.matrix * f).norm(), 1e-14 * (1.0 + f.norm())) << s.name;
   }
 }
 
@@ -146,8 +149,8 @@ TEST_P(Identities, ReversorsTurnTheFieldBack) {
     const auto system = random_system();
     const Eigen::VectorXd z = vector(random_state());
     const Eigen::VectorXd f = field(*system, z);
-    for (const Symmetry& r : description.reversors)
-      EXPECT_LT((field(*system, r.matrix * z) + r.matrix * f).norm(), 1e-14 * (1.0 + f.norm())) << r.name;
+    for (const Symmetry& r : system->structure().reversors)
+      EXPECT_LT((field(*system, r.map(z)) + r.map.matrix * f).norm(), 1e-14 * (1.0 + f.norm())) << r.name;
   }
 }
 
@@ -157,8 +160,9 @@ TEST_P(Identities, ActionDensityIsTwiceTheKineticEnergy) {
     const auto z = random_state();
     auto at_rest = z;
     for (std::size_t i = dimension / 2; i < dimension; ++i) at_rest[i] = 0.0;
-    const double kinetic = system->energy(z) - system->energy(at_rest);
-    EXPECT_NEAR(system->action_density(z), 2.0 * kinetic, 1e-13 * (1.0 + std::abs(system->energy(at_rest)) + kinetic));
+    const double kinetic = system->conserved(0, z) - system->conserved(0, at_rest);
+    EXPECT_NEAR(system->action_density(z), 2.0 * kinetic,
+                1e-13 * (1.0 + std::abs(system->conserved(0, at_rest)) + kinetic));
   }
 }
 
@@ -204,7 +208,7 @@ TEST_P(Identities, NodesDoNotSeeEachOther) {
   const auto evaluate = [&](std::size_t nodes, const std::vector<double>& z, const std::vector<double>& weights) {
     std::vector<double> out((3 * d + 2 * d * d) * nodes);
     system->field(nodes, z.data(), out.data());
-    system->energy_gradients(nodes, z.data(), &out[d * nodes]);
+    system->conserved_gradients(0, nodes, z.data(), &out[d * nodes]);
     system->field_jacobian(nodes, z.data(), &out[2 * d * nodes], &out[3 * d * nodes]);
     system->second_derivatives(nodes, z.data(), weights.data(), &out[(3 * d + d * d) * nodes]);
     return out;
@@ -213,7 +217,7 @@ TEST_P(Identities, NodesDoNotSeeEachOther) {
   const auto weight = random_state();
   const auto alone = evaluate(1, state, weight);
   std::vector<double> gradient(d);
-  system->energy_gradient(state, gradient);
+  system->conserved_gradient(0, state, gradient);
   for (std::size_t i = 0; i < d; ++i) EXPECT_EQ(alone[d + i], gradient[i]);
   for (std::size_t nodes = 1; nodes <= most; ++nodes) {
     for (std::size_t place = 0; place < nodes; ++place) {

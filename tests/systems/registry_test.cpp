@@ -20,59 +20,62 @@ using testing::ThrowsMessage;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// No registered system has effects yet; the checks are those of every system that will.
-Description driven_pendulum() {
-  Description description;
-  description.name = "driven_pendulum";
-  description.state_names = {"th", "w"};
-  description.parameters = {{"l", 1.0, 0.0, infinity, true, "m", "length"},
-                            {"detuning", 0.0, -1.0, 1.0, false, "1", "offset"}};
-  description.effects = {{"friction", "drag at the pivot", {{"c", 0.1, 0.0, 2.0, false, "1/s", "damping rate"}}},
-                         {"drive", "a periodic torque", {{"a", 0.5, 0.0, infinity, false, "N m", "amplitude"}}}};
-  return description;
+ModelInfo driven_pendulum() {
+  ModelInfo info;
+  info.name = "driven_pendulum";
+  info.state_names = {"th", "w"};
+  info.parameters = {{"l", 1.0, 0.0, infinity, true, "m", "length"},
+                     {"detuning", 0.0, -1.0, 1.0, false, "1", "offset"}};
+  info.effects = {{"friction", "drag at the pivot", {{"c", 0.1, 0.0, 2.0, false, "1/s", "damping rate"}}},
+                  {"drive", "a periodic torque", {{"a", 0.5, 0.0, infinity, false, "N m", "amplitude"}}}};
+  return info;
 }
 
 TEST(Registry, KnowsItsSystemsByTheirNames) {
   EXPECT_THAT(system_names(), testing::ElementsAre("double_pendulum", "harmonic_oscillator", "henon_heiles"));
-  for (const std::string& name : system_names()) EXPECT_EQ(describe_system(name).name, name);
+  for (const std::string& name : system_names()) EXPECT_EQ(model_info(name).name, name);
 }
 
-TEST(Registry, DescriptionsAreConsistent) {
+TEST(Registry, WhatSystemsSayIsConsistent) {
   for (const std::string& name : system_names()) {
     SCOPED_TRACE(name);
-    const Description& description = describe_system(name);
-    EXPECT_FALSE(description.title.empty());
-    EXPECT_GT(description.dimension(), 0);
-    EXPECT_EQ(std::set<std::string>(description.state_names.begin(), description.state_names.end()).size(),
-              description.state_names.size());
-    EXPECT_EQ(description.angles.size(), description.winding_names.size());
-    for (const int angle : description.angles) EXPECT_LT(angle, description.dimension());
-    for (const Parameter& parameter : description.parameters) {
+    const ModelInfo& info = model_info(name);
+    const auto system = make_system(name);
+    const Structure& structure = system->structure();
+    EXPECT_FALSE(info.title.empty());
+    EXPECT_GT(structure.dimension, 0);
+    EXPECT_EQ(std::set<std::string>(info.state_names.begin(), info.state_names.end()).size(), info.state_names.size());
+    EXPECT_EQ(info.state_names.size(), static_cast<std::size_t>(structure.dimension));
+    EXPECT_EQ(structure.angles.size(), system->winding_names().size());
+    for (const int angle : structure.angles) EXPECT_LT(angle, structure.dimension);
+    for (const Parameter& parameter : info.parameters) {
       EXPECT_LE(parameter.lower, parameter.standard);
       EXPECT_LE(parameter.standard, parameter.upper);
       EXPECT_FALSE(parameter.meaning.empty());
       EXPECT_FALSE(parameter.unit.empty());
     }
-    const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(description.dimension(), description.dimension());
-    for (const Symmetry& s : description.equivariances) {
-      EXPECT_EQ(s.matrix.rows(), description.dimension()) << s.name;
-      EXPECT_EQ(s.matrix.cols(), description.dimension()) << s.name;
-      EXPECT_GT((s.matrix - identity).norm(), 0.1) << s.name << " is the identity";
+    const auto identity = AffineMap::identity(structure.dimension);
+    for (const Symmetry& s : structure.equivariances) {
+      EXPECT_EQ(s.map.matrix.rows(), structure.dimension) << s.name;
+      EXPECT_EQ(s.map.matrix.cols(), structure.dimension) << s.name;
+      EXPECT_EQ(s.map.offset.size(), structure.dimension) << s.name;
+      EXPECT_FALSE(s.map.is_same(identity, structure.angles)) << s.name << " is the identity";
     }
-    for (const Symmetry& r : description.reversors)
-      EXPECT_LT((r.matrix.lazyProduct(r.matrix) - identity).norm(), 1e-14) << r.name << " is no involution";
+    for (const Symmetry& r : structure.reversors)
+      EXPECT_TRUE((r.map * r.map).is_same(identity, structure.angles)) << r.name << " is no involution";
   }
 }
 
 TEST(Registry, EquivariancesFormAGroupWithTheIdentity) {
   for (const std::string& name : system_names()) {
-    const Description& description = describe_system(name);
-    std::vector<Eigen::MatrixXd> group{Eigen::MatrixXd::Identity(description.dimension(), description.dimension())};
-    for (const Symmetry& s : description.equivariances) group.push_back(s.matrix);
+    const auto system = make_system(name);
+    const Structure& structure = system->structure();
+    std::vector<AffineMap> group{AffineMap::identity(structure.dimension)};
+    for (const Symmetry& s : structure.equivariances) group.push_back(s.map);
     for (const auto& a : group)
       for (const auto& b : group) {
-        const Eigen::MatrixXd product = a.lazyProduct(b);
-        const auto matches = std::count_if(group.begin(), group.end(), [&](const Eigen::MatrixXd& member) {
-          return (member - product).norm() < 1e-14;
+        const auto matches = std::count_if(group.begin(), group.end(), [&](const AffineMap& member) {
+          return member.is_same(a * b, structure.angles);
         });
         EXPECT_EQ(matches, 1) << name;
       }
@@ -80,19 +83,20 @@ TEST(Registry, EquivariancesFormAGroupWithTheIdentity) {
 }
 
 TEST(Registry, HenonHeilesHasTheTriangleGroup) {
-  const Description& description = describe_system("henon_heiles");
-  EXPECT_EQ(description.equivariances.size(), 5U);
-  EXPECT_EQ(description.reversors.size(), 4U);
+  const auto system = make_system("henon_heiles");
+  const Structure& structure = system->structure();
+  EXPECT_EQ(structure.equivariances.size(), 5U);
+  EXPECT_EQ(structure.reversors.size(), 4U);
 }
 
 TEST(Registry, StandardValuesAreFilledIn) {
   const auto system = make_system("double_pendulum", {{"m2", 3.5}, {"g", 9.81}});
   const std::map<std::string, double> expected{{"m1", 1.0}, {"m2", 3.5}, {"l1", 1.0}, {"l2", 1.0}, {"g", 9.81}};
   EXPECT_EQ(system->parameters(), expected);
-  EXPECT_EQ(system->description().state_names, (std::vector<std::string>{"th1", "th2", "w1", "w2"}));
-  EXPECT_EQ(system->description().angles, (std::vector<int>{0, 1}));
+  EXPECT_EQ(system->info().state_names, (std::vector<std::string>{"th1", "th2", "w1", "w2"}));
+  EXPECT_EQ(system->structure().angles, (std::vector<int>{0, 1}));
   EXPECT_EQ(system->dimension(), 4);
-  EXPECT_EQ(system->description().pairs(), 1);
+  EXPECT_EQ(system->structure().pairs(), 1);
 }
 
 TEST(Registry, ParametersReachTheField) {
@@ -107,7 +111,7 @@ TEST(Registry, UnknownSystemIsRefused) {
   const auto expected = ThrowsMessage<core::InputError>(
       AllOf(HasSubstr("'tripple_pendulum'"), HasSubstr("double_pendulum, harmonic_oscillator, henon_heiles")));
   EXPECT_THAT([] { (void)make_system("tripple_pendulum"); }, expected);
-  EXPECT_THAT([] { (void)describe_system("tripple_pendulum"); }, expected);
+  EXPECT_THAT([] { (void)model_info("tripple_pendulum"); }, expected);
 }
 
 TEST(Registry, UnknownParameterIsRefused) {
@@ -126,7 +130,7 @@ TEST(Registry, UnknownEffectIsRefused) {
   EXPECT_THAT(([] { (void)make_system("double_pendulum", {}, {"friction"}); }),
               ThrowsMessage<core::InputError>(
                   AllOf(HasSubstr("double_pendulum"), HasSubstr("'friction'"), HasSubstr("its effects are: none"))));
-  EXPECT_THAT(([] { (void)bind_parameters(driven_pendulum(), {}, {"frction"}); }),
+  EXPECT_THAT(([] { (void)bound_to(driven_pendulum(), {}, {"frction"}); }),
               ThrowsMessage<core::InputError>(AllOf(HasSubstr("'frction'"), HasSubstr("friction, drive"))));
 }
 
@@ -151,28 +155,29 @@ TEST(Registry, ValuesOutOfRangeAreRefused) {
 }
 
 TEST(Registry, ClosedAndOpenBoundsAreToldApart) {
-  EXPECT_EQ(bind_parameters(driven_pendulum(), {{"detuning", -1.0}}, {}).at("detuning"), -1.0);
-  EXPECT_EQ(bind_parameters(driven_pendulum(), {{"detuning", 1.0}}, {}).at("detuning"), 1.0);
+  EXPECT_EQ(bound_to(driven_pendulum(), {{"detuning", -1.0}}, {})["detuning"], -1.0);
+  EXPECT_EQ(bound_to(driven_pendulum(), {{"detuning", 1.0}}, {})["detuning"], 1.0);
   EXPECT_THAT(([] {
-                (void)bind_parameters(driven_pendulum(), {{"detuning", 1.0000001}}, {});
+                (void)bound_to(driven_pendulum(), {{"detuning", 1.0000001}}, {});
               }),
               ThrowsMessage<core::InputError>(HasSubstr("-1 <= detuning <= 1;")));
 }
 
 TEST(Registry, EffectsBringTheirParameters) {
-  const auto bound = bind_parameters(driven_pendulum(), {{"c", 0.25}}, {"friction"});
-  EXPECT_EQ(bound, (std::map<std::string, double>{{"l", 1.0}, {"detuning", 0.0}, {"c", 0.25}}));
+  const auto bound = bound_to(driven_pendulum(), {{"c", 0.25}}, {"friction"});
+  EXPECT_EQ(bound.effects, std::vector<std::string>{"friction"});
+  EXPECT_EQ(bound.parameters, (std::map<std::string, double>{{"l", 1.0}, {"detuning", 0.0}, {"c", 0.25}}));
   EXPECT_THAT(
       ([] {
-        (void)bind_parameters(driven_pendulum(), {{"c", 0.25}}, {"drive"});
+        (void)bound_to(driven_pendulum(), {{"c", 0.25}}, {"drive"});
       }),
       ThrowsMessage<core::InputError>(AllOf(HasSubstr("'c'"), HasSubstr("effect 'friction', which is not asked for"))));
   EXPECT_THAT(([] {
-                (void)bind_parameters(driven_pendulum(), {{"c", 2.5}}, {"friction"});
+                (void)bound_to(driven_pendulum(), {{"c", 2.5}}, {"friction"});
               }),
               ThrowsMessage<core::InputError>(HasSubstr("0 <= c <= 2 1/s; 2.5 came")));
   EXPECT_THAT(([] {
-                (void)bind_parameters(driven_pendulum(), {}, {"drive", "drive"});
+                (void)bound_to(driven_pendulum(), {}, {"drive", "drive"});
               }),
               ThrowsMessage<core::InputError>(HasSubstr("asked for twice")));
 }

@@ -11,10 +11,10 @@
 namespace orbweaver::systems {
 
 /// Every parameter drawn between half and twice its standard value (all systems so far allow that).
-inline std::map<std::string, double> random_parameters(const Description& description, std::mt19937& generator) {
+inline std::map<std::string, double> random_parameters(const ModelInfo& info, std::mt19937& generator) {
   std::uniform_real_distribution<double> factor(0.5, 2.0);
   std::map<std::string, double> parameters;
-  for (const Parameter& parameter : description.parameters)
+  for (const Parameter& parameter : info.parameters)
     parameters[parameter.name] = parameter.standard * factor(generator);
   return parameters;
 }

@@ -5,7 +5,7 @@
 #include "orbweaver/continuation/branch.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
-#include "orbweaver/systems/description.hpp"
+#include "orbweaver/systems/structure.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::bifurcation {
@@ -13,7 +13,7 @@ namespace orbweaver::bifurcation {
 /// True for families of a symplectic system whose orbits no reversor maps to themselves. A multiplier 1 of the
 /// fundamental map has an eigenvector that keeps all symmetries then, so that along such a family an index passes 2
 /// only where the energy turns (docs/mathematics.md, "Families that nearly cross").
-[[nodiscard]] bool passes_two_only_at_folds(const systems::Description& system, const loop::Isotropy& isotropy);
+[[nodiscard]] bool passes_two_only_at_folds(const systems::Structure& system, const loop::Isotropy& isotropy);
 
 /// An orbit with its stability.
 struct KnownStability {

@@ -8,7 +8,7 @@
 
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
-#include "orbweaver/systems/description.hpp"
+#include "orbweaver/systems/structure.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -16,7 +16,7 @@ namespace orbweaver::bifurcation {
 struct Gained {
   std::string name;  ///< "1" for the identity
   bool reversing = false;
-  Eigen::MatrixXd matrix;
+  systems::AffineMap map;
   int shift_numerator = 0;  ///< p and q of z(t + T p/q) = M z(t); a reversor's phase is any number instead
   int shift_denominator = 1;
   double phase =
@@ -36,7 +36,7 @@ struct Gained {
 /// orbits that those resolve. Orbits A and B are neighbours of one branch, with its phase convention.
 class SymmetryWatch {
  public:
-  SymmetryWatch(const systems::Description& system, const loop::Isotropy& own, int largest_order = 12);
+  SymmetryWatch(const systems::Structure& system, const loop::Isotropy& own, int largest_order = 12);
 
   /// An orbit as the watch sees it: the harmonics of its 240 samples in time. Worth keeping from one step to the next.
   struct Seen {
@@ -63,12 +63,12 @@ class SymmetryWatch {
  private:
   struct Products;
   class Correlation;
-  [[nodiscard]] Eigen::MatrixXcd broken_part(const Gained& gained, const Eigen::MatrixXd& inverse, const Seen& orbit,
+  [[nodiscard]] Eigen::MatrixXcd broken_part(const Gained& gained, const systems::AffineMap& inverse, const Seen& orbit,
                                              double shift) const;
   [[nodiscard]] Products compare(const Gained& gained, const Seen& a, const Seen& b) const;
   [[nodiscard]] std::size_t generated_with(const Gained& gained) const;
 
-  systems::Description _system;
+  systems::Structure _system;
   loop::Isotropy _own;
   struct Shifted {  // one matrix with all its shifts
     systems::Symmetry symmetry;

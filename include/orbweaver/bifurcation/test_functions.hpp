@@ -5,7 +5,7 @@
 #include "orbweaver/bifurcation/sector.hpp"
 #include "orbweaver/core/serialization.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
-#include "orbweaver/systems/description.hpp"
+#include "orbweaver/systems/structure.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -46,7 +46,7 @@ struct TestFunction {
 
 /// What can happen to orbits of the system whose fundamental map has this order: all sectors (for dissipative systems q = 1
 /// and 2), then krein (two pairs or more) or torus (two multipliers or more). Empty where no multiplier is nontrivial.
-[[nodiscard]] std::vector<TestFunction> test_functions(const systems::Description& system, int fundamental_order,
+[[nodiscard]] std::vector<TestFunction> test_functions(const systems::Structure& system, int fundamental_order,
                                                        int subharmonics);
 
 /// The function at an orbit with `stability.fundamental` (stability indices k_i, or multipliers mu_i):
@@ -55,13 +55,13 @@ struct TestFunction {
 ///   torus      prod_{i<j} (mu_i mu_j - 1)/(1 + |mu_i mu_j|)
 /// with the error that follows from `fundamental_error`. A conserved energy's multiplier 1 is left out.
 /// Throws MisuseError if the number of multipliers is not the system's.
-[[nodiscard]] Reading evaluate(const TestFunction& function, const systems::Description& system,
+[[nodiscard]] Reading evaluate(const TestFunction& function, const systems::Structure& system,
                                const spectrum::Stability& stability);
 
 /// Whether a zero of the function, located at an orbit with this stability, is what the function is for. No continuous
 /// function can tell: krein vanishes as well where two pairs meet off the unit circle (k_i = k_j outside [-2, 2]) and,
 /// touching zero (`tangency`), where two pairs pass one another; torus where mu_i mu_j = 1 with both real.
-[[nodiscard]] bool is_event(const TestFunction& function, const systems::Description& system,
+[[nodiscard]] bool is_event(const TestFunction& function, const systems::Structure& system,
                             const spectrum::Stability& stability, bool tangency);
 
 }  // namespace orbweaver::bifurcation

@@ -94,6 +94,7 @@ class Collocation final : public PreconditionedEquations {
   std::vector<double> _density;  // at the midpoints
   std::vector<double> _node_density;
   std::vector<double> _node_weights;
+  std::vector<bool> _keeps_mean;
   loop::FundamentalDomain::Ends _ends;
   std::vector<double> _weights;
   std::vector<double> _reference;

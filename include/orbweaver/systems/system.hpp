@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "orbweaver/systems/description.hpp"
+#include "orbweaver/systems/model_info.hpp"
+#include "orbweaver/systems/structure.hpp"
 
 namespace orbweaver::systems {
 
@@ -23,10 +24,15 @@ class System {
   System(const System&) = delete;
   System& operator=(const System&) = delete;
 
-  [[nodiscard]] virtual const Description& description() const = 0;
+  /// What could be asked of its model.
+  [[nodiscard]] virtual const ModelInfo& info() const = 0;
+  /// What holds with these parameters and effects.
+  [[nodiscard]] virtual const Structure& structure() const = 0;
   /// Bound value of every parameter, by name (defaults filled in).
   [[nodiscard]] virtual const std::map<std::string, double>& parameters() const = 0;
-  [[nodiscard]] int dimension() const { return description().dimension(); }
+  [[nodiscard]] int dimension() const { return structure().dimension; }
+  /// One an angle of the structure.
+  [[nodiscard]] std::vector<std::string> winding_names() const;
 
   /// f at each node. `z`, `f`: dimension x nodes.
   virtual void field(std::size_t nodes, const double* z, double* f) const = 0;
@@ -37,12 +43,14 @@ class System {
   virtual void second_derivatives(std::size_t nodes, const double* z, const double* weights,
                                   double* contracted) const = 0;
 
-  /// Conserved energy at one state (size dimension); NaN where the system has none.
-  [[nodiscard]] virtual double energy(std::span<const double> z) const = 0;
+  /// Conserved quantity k (of structure().conserved) at one state (size dimension). Throws MisuseError if there is none.
+  [[nodiscard]] virtual double conserved(int k, std::span<const double> z) const = 0;
   /// Its gradient at one state; `gradient` has size dimension.
-  virtual void energy_gradient(std::span<const double> z, std::span<double> gradient) const = 0;
+  virtual void conserved_gradient(int k, std::span<const double> z, std::span<double> gradient) const = 0;
   /// The same at each node; `gradients`: dimension x nodes.
-  virtual void energy_gradients(std::size_t nodes, const double* z, double* gradients) const;
+  virtual void conserved_gradients(int k, std::size_t nodes, const double* z, double* gradients) const;
+  /// Guard k (of structure().guards) at one state. Throws MisuseError if there is none.
+  [[nodiscard]] virtual double guard(int k, std::span<const double> z) const;
   /// p . dq/dt at one state, whose time integral over a period is the action; NaN where the system has none.
   [[nodiscard]] virtual double action_density(std::span<const double> z) const = 0;
 };
@@ -50,8 +58,8 @@ class System {
 /// Names of all registered systems.
 [[nodiscard]] std::vector<std::string> system_names();
 
-/// Description of the system `name`. Throws core::InputError naming the known ones.
-[[nodiscard]] const Description& describe_system(const std::string& name);
+/// What may be asked of the system `name`. Throws core::InputError naming the known ones.
+[[nodiscard]] const ModelInfo& model_info(const std::string& name);
 
 /// Binds parameters and effects. Throws core::InputError on an unknown system, parameter or effect, or a value out of
 /// range, saying what is known or allowed.

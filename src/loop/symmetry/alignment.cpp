@@ -9,6 +9,7 @@
 #include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/loop/symmetry/shift_search.hpp"
+#include "orbweaver/loop/symmetry/symmetry_group.hpp"
 
 namespace orbweaver::loop {
 
@@ -17,27 +18,6 @@ namespace {
 constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr double equally_close = 1e-12;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-struct Candidate {
-  std::string name;
-  bool reversing;
-  Eigen::MatrixXd matrix;
-};
-
-std::vector<Candidate> candidates_of(const systems::Description& system) {
-  const int d = system.dimension();
-  std::vector<Candidate> out{{"1", false, Eigen::MatrixXd::Identity(d, d)}};
-  for (const systems::Symmetry& s : system.equivariances) out.push_back({s.name, false, s.matrix});
-  for (const systems::Symmetry& r : system.reversors) out.push_back({r.name, true, r.matrix});
-  if (system.reversors.empty()) return out;
-  const systems::Symmetry& first = system.reversors.front();
-  for (const systems::Symmetry& s : system.equivariances) {
-    const Eigen::MatrixXd matrix = first.matrix * s.matrix;
-    const auto is_known = [&](const Candidate& c) { return c.reversing && c.matrix.isApprox(matrix, 1e-9); };
-    if (std::none_of(out.begin(), out.end(), is_known)) out.push_back({first.name + s.name, true, matrix});
-  }
-  return out;
-}
 
 // Either way from 0, in periods.
 double length_of(double shift) { return std::abs(shift - std::round(shift)); }
@@ -48,9 +28,9 @@ double in_period(double shift) {
 }
 
 // The closest shift under one candidate; of equally close ones the smallest.
-Alignment closest(const Candidate& candidate, const Loop& from, const Loop& to, const std::vector<int>& angles) {
-  Alignment best{candidate.name, candidate.reversing, candidate.matrix, 0.0, {}, infinity};
-  const Loop image = transformed(from, candidate.matrix, candidate.reversing, 0.0);
+Alignment closest(const SymmetryElement& candidate, const Loop& from, const Loop& to, const std::vector<int>& angles) {
+  Alignment best{candidate.name, candidate.reversing, candidate.map, 0.0, {}, infinity};
+  const Loop image = transformed(from, candidate.map, candidate.reversing, 0.0);
   if (image.winding != to.winding) return best;
   const std::vector<ShiftMinimum> minima = shift_minima(image, to, angles);
   // Correlations know D only to 1e-8 of the loop: what is as close as that is compared by the loops themselves.
@@ -72,9 +52,10 @@ Alignment closest(const Candidate& candidate, const Loop& from, const Loop& to, 
   return best;
 }
 
-Alignment closest(const systems::Description& system, const Loop& from, const Loop& to) {
+Alignment closest(const systems::Structure& system, const Loop& from, const Loop& to) {
   Alignment best;
-  for (const Candidate& candidate : candidates_of(system)) {
+  const SymmetryGroup group = SymmetryGroup::of_space(system);
+  for (const SymmetryElement& candidate : group.elements()) {
     Alignment found = closest(candidate, from, to, system.angles);
     if (best.name.empty() || found.distance < best.distance - equally_close) best = std::move(found);
   }
@@ -85,8 +66,8 @@ Loop coarse(const Loop& loop) { return loop.time_map.is_identity() ? loop : inte
 
 }  // namespace
 
-Alignment align(const systems::Description& system, const Loop& from, const Loop& to, double hopeless) {
-  core::require(from.dimension == to.dimension && from.dimension == system.dimension(),
+Alignment align(const systems::Structure& system, const Loop& from, const Loop& to, double hopeless) {
+  core::require(from.dimension == to.dimension && from.dimension == system.dimension,
                 "loops of different dimension cannot be aligned");
   if (std::isfinite(hopeless)) {
     Alignment best = closest(system, coarse(from), coarse(to));
@@ -96,7 +77,7 @@ Alignment align(const systems::Description& system, const Loop& from, const Loop
 }
 
 Loop aligned(const Loop& from, const Alignment& alignment) {
-  Loop out = transformed(from, alignment.matrix, alignment.reversing, alignment.shift);
+  Loop out = transformed(from, alignment.map, alignment.reversing, alignment.shift);
   for (std::size_t i = 0; i < alignment.turns.size(); ++i)
     out.cosine(0, static_cast<int>(i)) += two_pi * alignment.turns[i];
   return out;

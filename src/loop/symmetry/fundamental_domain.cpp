@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "orbweaver/loop/symmetry/symmetry_group.hpp"
+
 namespace orbweaver::loop {
 
 namespace {
@@ -29,17 +31,6 @@ MatrixXd conditions_of_fixed_space(const MatrixXd& matrix) {
   return rows;
 }
 
-/// g with z(t + T/q) = g z(t), from a symmetry of shift numerator / q.
-MatrixXd least_shift(const SymmetryElement& element) {
-  const int q = element.shift_denominator;
-  MatrixXd power = MatrixXd::Identity(element.matrix.rows(), element.matrix.cols());
-  for (int n = 0; n < q; ++n) {
-    if (n * element.shift_numerator % q == 1 % q) return power;
-    power = element.matrix * power;
-  }
-  return power;
-}
-
 }  // namespace
 
 FundamentalDomain::Ends FundamentalDomain::ends() const {
@@ -60,28 +51,35 @@ bool FundamentalDomain::expresses(const Isotropy& isotropy) const {
     MatrixXd power = element.reversing ? *reversor : MatrixXd::Identity(generator.rows(), generator.cols());
     for (int n = 0; n < order; ++n) {
       const double turns = element.shift() - static_cast<double>(n) / order;
-      if (std::abs(turns - std::round(turns)) < 1e-9 && (power - element.matrix).norm() < 1e-9) return true;
+      if (std::abs(turns - std::round(turns)) < 1e-9 && (power - element.map.matrix).norm() < 1e-9) return true;
       power = generator * power;
     }
     return false;
   });
 }
 
+std::vector<bool> FundamentalDomain::coordinates_with_mean() const {
+  const Eigen::Index d = generator.rows();
+  MatrixXd mean = MatrixXd::Zero(d, d);
+  MatrixXd power = MatrixXd::Identity(d, d);
+  for (int n = 0; n < order; ++n) {
+    mean += power / order;
+    power = generator * power;
+  }
+  if (reversor) mean = 0.5 * (mean + *reversor * mean);
+  std::vector<bool> out;
+  for (Eigen::Index i = 0; i < d; ++i) out.push_back(mean.row(i).norm() > 1e-9);
+  return out;
+}
+
 bool FundamentalDomain::is_square() const { return ends().left.rows() == generator.rows(); }
 
-FundamentalDomain fundamental_domain(const Isotropy& isotropy, int dimension) {
+FundamentalDomain fundamental_domain(const systems::Structure& structure, const Isotropy& isotropy) {
+  const SymmetryGroup group(structure, isotropy);
   FundamentalDomain domain;
-  domain.generator = MatrixXd::Identity(dimension, dimension);
-  for (const SymmetryElement& element : isotropy) {
-    const int q = element.shift_denominator;
-    const bool proper = element.shift_numerator % q != 0;
-    if (!element.reversing && proper && q > domain.order) {
-      domain.order = q;
-      domain.generator = least_shift(element);
-    } else if (element.reversing && !proper && !domain.reversor) {
-      domain.reversor = element.matrix;
-    }
-  }
+  domain.order = group.order();
+  domain.generator = group.generator().matrix;
+  if (const SymmetryElement* reversor = group.reversor_at_start()) domain.reversor = reversor->map.matrix;
   return domain;
 }
 

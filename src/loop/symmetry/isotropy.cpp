@@ -26,6 +26,12 @@ void apply_matrix(const Eigen::MatrixXd& matrix, Loop& loop) {
   winding = (matrix * winding).eval();
 }
 
+void apply(const systems::AffineMap& map, Loop& loop) {
+  apply_matrix(map.matrix, loop);
+  if (map.is_linear()) return;
+  for (int i = 0; i < loop.dimension; ++i) loop.cosine(0, i) += map.offset(i);
+}
+
 Loop reversed(const Loop& loop) {
   Loop out = loop;
   for (int k = 1; k <= loop.cutoff; ++k)
@@ -47,12 +53,12 @@ void reduce_angles_to(const Loop& target, const std::vector<int>& angles, Loop& 
 constexpr int pattern_cutoff = 12;
 
 std::optional<SymmetryElement> match(const systems::Symmetry& declared, bool reversing,
-                                     const systems::Description& system, const Loop& loop, double tolerance,
+                                     const systems::Structure& system, const Loop& loop, double tolerance,
                                      int max_denominator) {
   for (int q = 1; q <= max_denominator; ++q)
     for (int p = 0; p < q; ++p) {
       if (std::gcd(p, q) != 1) continue;
-      SymmetryElement element{declared.name, reversing, declared.matrix, p, q};
+      SymmetryElement element{declared.name, reversing, declared.map, p, q};
       if (symmetry_defect(loop, element, system.angles) <= tolerance) return element;
     }
   return std::nullopt;
@@ -60,18 +66,18 @@ std::optional<SymmetryElement> match(const systems::Symmetry& declared, bool rev
 
 }  // namespace
 
-Isotropy with_declared_matrices(Isotropy isotropy, const systems::Description& system) {
+Isotropy with_declared_matrices(Isotropy isotropy, const systems::Structure& system) {
   for (SymmetryElement& g : isotropy) {
     const auto& declared = g.reversing ? system.reversors : system.equivariances;
     const auto found =
         std::find_if(declared.begin(), declared.end(), [&](const systems::Symmetry& s) { return s.name == g.name; });
     if (found == declared.end())
       throw core::EnvironmentError(
-          fmt::format("a task names the symmetry `{}`, which {} does not declare", g.name, system.name));
+          fmt::format("a task names the symmetry `{}`, which the system does not declare", g.name));
     if (g.shift_denominator < 1)
       throw core::EnvironmentError(
           fmt::format("a task names `{}` with the shift {}/{}", g.name, g.shift_numerator, g.shift_denominator));
-    g.matrix = found->matrix;
+    g.map = found->map;
   }
   return isotropy;
 }
@@ -88,16 +94,20 @@ std::string to_text(const Isotropy& isotropy) {
   return text;
 }
 
-Loop transformed(const Loop& loop, const Eigen::MatrixXd& matrix, bool reversing, double shift) {
-  core::require(matrix.rows() == loop.dimension, "a symmetry of another dimension cannot act on this loop");
+Loop transformed(const Loop& loop, const systems::AffineMap& map, bool reversing, double shift) {
+  core::require(map.dimension() == loop.dimension, "a symmetry of another dimension cannot act on this loop");
   // For a symmetry of z both give z back.
   Loop out = reversing ? reversed(time_shifted(loop, shift)) : time_shifted(loop, shift);
-  apply_matrix(matrix.inverse(), out);
+  apply(map.inverse(), out);
   return out;
 }
 
 Loop transformed(const Loop& loop, const SymmetryElement& element) {
-  return transformed(loop, element.matrix, element.reversing, element.shift());
+  return transformed(loop, element.map, element.reversing, element.shift());
+}
+
+Loop transformed_perturbation(const Loop& perturbation, const SymmetryElement& element) {
+  return transformed(perturbation, element.map.matrix, element.reversing, element.shift());
 }
 
 double symmetry_defect(const Loop& loop, const SymmetryElement& element, const std::vector<int>& angles) {
@@ -107,7 +117,7 @@ double symmetry_defect(const Loop& loop, const SymmetryElement& element, const s
   return mean_distance(loop, image);
 }
 
-Isotropy find_isotropy(const systems::Description& system, const Loop& loop, double tolerance, int max_denominator) {
+Isotropy find_isotropy(const systems::Structure& system, const Loop& loop, double tolerance, int max_denominator) {
   Isotropy isotropy;
   const auto size_with = [&loop](const Isotropy& generators) {
     return Subspace(loop.dimension, pattern_cutoff, generators).size();
@@ -125,52 +135,7 @@ Isotropy find_isotropy(const systems::Description& system, const Loop& loop, dou
   return isotropy;
 }
 
-namespace {
-
-// z(t + a) = g z(t) and z(t + b) = h z(t) give z(t + b + a) = g h z(t); z(b - t) = h z(t) gives z(b - t + a) = g h z(t);
-// g reversing: z(a - (t + b)) = g h z(t), so that b counts backwards.
-SymmetryElement product(const SymmetryElement& g, const SymmetryElement& h) {
-  SymmetryElement out{"", g.reversing != h.reversing, g.matrix * h.matrix, 0, 1};
-  const int q = std::lcm(g.shift_denominator, h.shift_denominator);
-  const int a = g.shift_numerator * (q / g.shift_denominator);
-  const int b = h.shift_numerator * (q / h.shift_denominator);
-  const int p = (((g.reversing ? a - b : a + b) % q) + q) % q;
-  const int common = std::gcd(p, q);
-  out.shift_numerator = p / common;
-  out.shift_denominator = q / common;
-  return out;
-}
-
-bool is_same(const SymmetryElement& a, const SymmetryElement& b) {
-  return a.reversing == b.reversing && a.shift_numerator == b.shift_numerator &&
-         a.shift_denominator == b.shift_denominator && a.matrix.isApprox(b.matrix, 1e-9);
-}
-
-std::string name_of(const systems::Description& system, const SymmetryElement& element) {
-  if (!element.reversing && element.matrix.isIdentity(1e-9)) return "1";
-  for (const systems::Symmetry& s : element.reversing ? system.reversors : system.equivariances)
-    if (element.matrix.isApprox(s.matrix, 1e-9)) return s.name;
-  return "";
-}
-
-}  // namespace
-
-Isotropy generated_group(const systems::Description& system, const Isotropy& generators) {
-  const int d = system.dimension();
-  Isotropy group{{"1", false, Eigen::MatrixXd::Identity(d, d), 0, 1}};
-  for (std::size_t n = 0; n < group.size(); ++n)
-    for (const SymmetryElement& generator : generators) {
-      SymmetryElement next = product(generator, group[n]);
-      const auto is_next = [&next](const SymmetryElement& known) { return is_same(known, next); };
-      if (std::any_of(group.begin(), group.end(), is_next)) continue;
-      core::require(group.size() < 1000, "these symmetries generate more than 1000");
-      next.name = name_of(system, next);
-      group.push_back(std::move(next));
-    }
-  return group;
-}
-
-std::optional<SymmetryElement> find_map(const systems::Description& system, const Loop& from, const Loop& to,
+std::optional<SymmetryElement> find_map(const systems::Structure& system, const Loop& from, const Loop& to,
                                         double tolerance, int max_denominator) {
   const auto fits = [&](const SymmetryElement& element) {
     Loop image = transformed(from, element);
@@ -181,12 +146,12 @@ std::optional<SymmetryElement> find_map(const systems::Description& system, cons
   const auto search = [&](const systems::Symmetry& declared, bool reversing) -> std::optional<SymmetryElement> {
     for (int q = 1; q <= max_denominator; ++q)
       for (int p = 0; p < q; ++p) {
-        const SymmetryElement element{declared.name, reversing, declared.matrix, p, q};
+        const SymmetryElement element{declared.name, reversing, declared.map, p, q};
         if (std::gcd(p, q) == 1 && fits(element)) return element;
       }
     return std::nullopt;
   };
-  if (auto found = search({"1", Eigen::MatrixXd::Identity(from.dimension, from.dimension)}, false)) return found;
+  if (auto found = search({"1", systems::AffineMap::identity(from.dimension)}, false)) return found;
   for (const systems::Symmetry& s : system.equivariances)
     if (auto found = search(s, false)) return found;
   for (const systems::Symmetry& r : system.reversors)

@@ -8,6 +8,7 @@
 #include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
 #include "orbweaver/loop/symmetry/shift_search.hpp"
+#include "orbweaver/loop/symmetry/symmetry_group.hpp"
 
 namespace orbweaver::loop {
 
@@ -73,7 +74,7 @@ double turns_of_maximum(const Loop& even, int i) {
 std::optional<double> reversor_phase(const systems::Symmetry& reversor, const std::vector<int>& angles,
                                      const Loop& loop, double tolerance) {
   const Loop even = resolved_in_time(loop);
-  const Loop image = transformed(even, reversor.matrix, true, 0.0);
+  const Loop image = transformed(even, reversor.map, true, 0.0);
   if (image.winding != even.winding) return std::nullopt;
   std::optional<double> phase;
   for (const ShiftMinimum& minimum : shift_minima(image, even, angles)) {
@@ -85,10 +86,10 @@ std::optional<double> reversor_phase(const systems::Symmetry& reversor, const st
   return phase;
 }
 
-Loop in_standard_phase(const systems::Description& system, const Loop& loop, const Isotropy& isotropy) {
-  const Isotropy group = generated_group(system, isotropy);
+Loop in_standard_phase(const systems::Structure& system, const Loop& loop, const Isotropy& isotropy) {
+  const SymmetryGroup group(system, isotropy);
   for (const systems::Symmetry& reversor : system.reversors)
-    for (const SymmetryElement& element : group) {
+    for (const SymmetryElement& element : group.elements()) {
       if (!element.reversing || element.name != reversor.name) continue;
       const double first = 0.5 * element.shift();
       const double second = first + 0.5;

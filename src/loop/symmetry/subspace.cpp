@@ -15,8 +15,8 @@ constexpr double zero_weight = 1e-14;
 
 // g acting on (a_k, b_k), a vector of 2 x dimension (of dimension alone for k = 0).
 Eigen::MatrixXd harmonic_action(const SymmetryElement& g, int k) {
-  const Eigen::Index d = g.matrix.rows();
-  const Eigen::MatrixXd inverse = g.matrix.inverse();
+  const Eigen::Index d = g.map.matrix.rows();
+  const Eigen::MatrixXd inverse = g.map.matrix.inverse();
   if (k == 0) return inverse;
   // The phase is reduced before the trigonometric functions, so that k and k + q give the same bits.
   const int turns = (k * (g.shift_numerator % g.shift_denominator)) % g.shift_denominator;
@@ -72,7 +72,8 @@ Subspace::Subspace(int dimension, int cutoff, const Isotropy& isotropy, std::spa
   core::require(dimension >= 1 && cutoff >= 1, "a subspace needs at least one coordinate and one harmonic");
   core::require(signs.empty() || signs.size() == isotropy.size(), "a sign a generator of the isotropy is needed");
   for (const SymmetryElement& g : isotropy)
-    core::require(g.matrix.rows() == dimension && g.matrix.cols() == dimension, "a symmetry of another dimension");
+    core::require(g.map.matrix.rows() == dimension && g.map.matrix.cols() == dimension,
+                  "a symmetry of another dimension");
   const int pattern = period_of_pattern(isotropy);
   std::map<int, Eigen::MatrixXd> known;
   for (int k = 0; k <= cutoff; ++k) {

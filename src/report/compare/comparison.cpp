@@ -35,7 +35,7 @@ std::string text_of(const systems::System& system, const std::vector<std::string
   std::vector<std::string> words;
   for (const auto& [name, value] : system.parameters()) words.push_back(fmt::format("{} = {}", name, value));
   words.insert(words.end(), effects.begin(), effects.end());
-  return fmt::format("{} ({})", system.description().name, fmt::join(words, ", "));
+  return fmt::format("{} ({})", system.info().name, fmt::join(words, ", "));
 }
 
 // What makes the two atlases ones of different systems; empty: nothing.

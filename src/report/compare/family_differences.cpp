@@ -147,7 +147,7 @@ void FamilyDifferences::compare_birth(const Pair& pair) {
     add(DifferenceKind::birth, pair,
         fmt::format("goes {} times around its parent in A, {} times in B", pair.a.multiplicity, pair.b.multiplicity));
   if (pair.a.isotropy == pair.b.isotropy) return;
-  const systems::Description* system = _loops.description();
+  const systems::Structure* system = _loops.structure();
   if (system != nullptr && loop::are_conjugate(*system, loop::isotropy_of(*system, pair.a.isotropy),
                                                loop::isotropy_of(*system, pair.b.isotropy)))
     return;

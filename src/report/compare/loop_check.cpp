@@ -16,7 +16,7 @@ namespace {
 constexpr int most_tries = 3;
 
 continuation::Orbit orbit_of(const AtlasTree& tree, const TreeFamily& family, std::size_t orbit,
-                             const systems::Description& system) {
+                             const systems::Structure& system) {
   const std::size_t row = family.first_orbit + orbit;
   continuation::Orbit out;
   out.loop = archive::loop_of(tree.atlas, row, system.angles);
@@ -28,7 +28,7 @@ continuation::Orbit orbit_of(const AtlasTree& tree, const TreeFamily& family, st
 }  // namespace
 
 LoopAnswer LoopCheck::ask(const OrbitBeside& x) const {
-  const systems::Description& system = _system->description();
+  const systems::Structure& system = _system->structure();
   const bifurcation::IdentityOptions options;
   const continuation::Orbit orbit = orbit_of(x.own, x.family, x.orbit, system);
   const continuation::Orbit a = orbit_of(x.other, x.beside, x.segment, system);

@@ -35,7 +35,7 @@ class LoopCheck {
   explicit LoopCheck(std::shared_ptr<const systems::System> system) : _system(std::move(system)) {}
 
   [[nodiscard]] bool can_compare() const { return _system != nullptr; }
-  [[nodiscard]] const systems::Description* description() const { return _system ? &_system->description() : nullptr; }
+  [[nodiscard]] const systems::Structure* structure() const { return _system ? &_system->structure() : nullptr; }
 
   /// Requires can_compare().
   [[nodiscard]] LoopAnswer ask(const OrbitBeside& x) const;

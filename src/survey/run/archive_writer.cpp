@@ -31,14 +31,14 @@ void add_unfinished(const std::vector<queue::Task>& tasks, FamilyTree& tree) {
 
 }  // namespace
 
-archive::Header header_of(const scene::Scene& scene, const systems::Description& system) {
+archive::Header header_of(const scene::Scene& scene, const systems::System& system) {
   archive::Header header;
   header.orbweaver_version = version();
   header.scene = scene.text;
-  header.state_names = system.state_names;
-  header.winding_names = system.winding_names;
-  header.pairs = system.pairs();
-  header.symplectic = system.symplectic;
+  header.state_names = system.info().state_names;
+  header.winding_names = system.winding_names();
+  header.pairs = system.structure().pairs();
+  header.symplectic = system.structure().symplectic;
   return header;
 }
 
@@ -55,14 +55,14 @@ void write_archive(const core::Communicator& comm, const scene::Scene& scene, co
     for (std::string& remark : found.remarks) summary.remarks.push_back(std::move(remark));
     for (const FamilySummary& family : summary.families) summary.orbits += family.orbits;
     summary.crossings = static_cast<long>(tables.crossings.size());
-    gather_failed_sweeps(system.description(), sweeps, summary, tables);
+    gather_failed_sweeps(system, sweeps, summary, tables);
     tables.voided = standing.voided;
     tables.earlier_scenes = standing.earlier_scenes;
     const std::filesystem::path folder = state_folder(summary.atlas.parent_path());
     for (const archive::WrittenSegment& segment : standing.segments) segments.push_back(folder / segment.name);
   });
   if (summary.archived)
-    archive::consolidate(comm.get(), segments, summary.atlas, header_of(scene, system.description()), tables);
+    archive::consolidate(comm.get(), segments, summary.atlas, header_of(scene, system), tables);
   summary.failures = core::agreed(comm.get(), static_cast<unsigned long>(summary.failed_tasks.size()));
 }
 
@@ -76,7 +76,7 @@ Summary archive_survey(const core::Communicator& comm, const std::filesystem::pa
   const std::string text = core::agreed(comm.get(), found.checkpoint.scene);
   const scene::Scene scene = scene::parse(text, "the checkpoint's scene");
   const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
-  FamilyTree tree(scene, system->description());
+  FamilyTree tree(scene, system->structure());
   SweepsEnded sweeps;
   core::on_root(comm.get(), [&] {
     const Stage stage = found.checkpoint.stage;

@@ -67,12 +67,12 @@ class Run {
         _scene(scene),
         _system(system),
         _folder(state_folder(directory)),
-        _header(header_of(scene, system->description())),
+        _header(header_of(scene, *system)),
         _member(scene, system, _rows, team),
         _executor(team, _member),
         _display(options.display),
         _time(scene.limits.time, options.walltime),
-        _tree(scene, system->description()) {
+        _tree(scene, system->structure()) {
     _queue_options.flush_seconds = scene.output.flush_seconds;
     _queue_options.flush_rows = scene.output.flush_orbits;
     if (std::isfinite(scene.limits.task_time)) _queue_options.task_seconds = scene.limits.task_time;
@@ -163,7 +163,7 @@ class Run {
       _keeper->set_stage(Stage::families);
       for (const queue::Task& task : tasks) _known.insert(task.key);
       for (const queue::Task& task : recorder.left_out_tasks()) _known.insert(task.key);
-      for (queue::Task& task : base_family_tasks(_scene, _system->description(), _sweeps_ended, _summary))
+      for (queue::Task& task : base_family_tasks(_scene, *_system, _sweeps_ended, _summary))
         if (!_known.contains(task.key)) tasks.push_back(std::move(task));
     });
     do {

@@ -13,7 +13,7 @@
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/bifurcation/family_jump.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/loop/symmetry/fundamental_domain.hpp"
+#include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "orbweaver/survey/tasks/keys.hpp"
 #include "requested.hpp"
 
@@ -23,10 +23,6 @@ namespace {
 
 /// Known orbits that a location gets along: the two around the event and their neighbours.
 constexpr std::size_t kept_orbits = 5;
-
-int fundamental_order(const loop::Isotropy& isotropy, int dimension) {
-  return loop::fundamental_domain(isotropy, dimension).order;
-}
 
 continuation::Options options_of(const scene::Scene& scene, const BranchWork& work, core::Team* team) {
   continuation::Options options = branch_options(scene, team);
@@ -45,14 +41,14 @@ BranchTask::BranchTask(const scene::Scene& scene, std::shared_ptr<const systems:
       _context(context),
       _team(team),
       _options(options_of(scene, _work, team)),
-      _start(start_of(_work, _system->description())),
+      _start(start_of(_work, _system->structure())),
       _curve(_system, _start.isotropy, branch_options(scene, team)),
-      _symmetry(_system->description(), _start.isotropy),
-      _functions(bifurcation::test_functions(_system->description(),
-                                             fundamental_order(_start.isotropy, _system->dimension()),
+      _symmetry(_system->structure(), _start.isotropy),
+      _functions(bifurcation::test_functions(_system->structure(),
+                                             loop::SymmetryGroup(_system->structure(), _start.isotropy).order(),
                                              scene.survey.subharmonics)) {
   _outcome.key = _work.key;
-  if (bifurcation::passes_two_only_at_folds(_system->description(), _start.isotropy))
+  if (bifurcation::passes_two_only_at_folds(_system->structure(), _start.isotropy))
     _options.jumped = [this](const auto& from, const auto& to) { return jumped(from, to); };
   begin(state);
 }
@@ -196,7 +192,7 @@ bool BranchTask::arrive(const continuation::Orbit& orbit) {
 bifurcation::Station BranchTask::station(double position, const std::optional<spectrum::Stability>& stability) const {
   bifurcation::Station out{position, {}};
   for (const bifurcation::TestFunction& function : _functions)
-    out.readings.push_back(stability ? bifurcation::evaluate(function, _system->description(), *stability)
+    out.readings.push_back(stability ? bifurcation::evaluate(function, _system->structure(), *stability)
                                      : bifurcation::Reading{archive::not_computed, archive::not_computed});
   return out;
 }

@@ -13,7 +13,7 @@ std::string pack(const BranchOutcome& outcome) { return to_payload(outcome); }
 BranchWork unpack_branch_work(const std::string& bytes) { return from_payload<BranchWork>(bytes); }
 BranchOutcome unpack_branch_outcome(const std::string& bytes) { return from_payload<BranchOutcome>(bytes); }
 
-continuation::Start start_of(const BranchWork& work, const systems::Description& system) {
+continuation::Start start_of(const BranchWork& work, const systems::Structure& system) {
   continuation::Start start;
   start.base = work.base;
   start.direction = work.direction;

@@ -15,7 +15,7 @@ namespace orbweaver::survey {
 namespace {
 
 // Both directions of a start are one family where a symmetry or a time shift maps loops on one side to those on the other.
-bool directions_are_images(const systems::Description& system, std::span<const double> point,
+bool directions_are_images(const systems::Structure& system, std::span<const double> point,
                            const starts::NormalMode& mode, int cutoff) {
   const loop::Loop base = loop::constant_loop(point, mode.period, cutoff);
   return loop::find_map(system, loop::moved(base, mode.direction, 1.0), loop::moved(base, mode.direction, -1.0), 1e-8)
@@ -70,7 +70,7 @@ queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
     found.period = mode.period;
     found.direction = mode.direction;
     found.cutoff = options.cutoff;
-    found.one_direction = directions_are_images(_system->description(), work.point, mode, options.cutoff);
+    found.one_direction = directions_are_images(_system->structure(), work.point, mode, options.cutoff);
     found.isotropy = mode.isotropy;
     outcome.modes.push_back(std::move(found));
   }

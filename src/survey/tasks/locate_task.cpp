@@ -58,7 +58,7 @@ class Location {
   queue::TaskOutcome run() {
     bifurcation::NotLocated why;
     continuation::Options options = branch_options(_scene, _team);
-    const loop::Isotropy isotropy = loop::with_declared_matrices(_work.isotropy, _system->description());
+    const loop::Isotropy isotropy = loop::with_declared_matrices(_work.isotropy, _system->structure());
     continuation::FamilyCurve fast(_system, isotropy, options);
     add_known(fast);
     auto crossing = bifurcation::locate(*_system, fast, _event, _work.from, _work.to, why);

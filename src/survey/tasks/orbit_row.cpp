@@ -21,7 +21,7 @@ std::optional<spectrum::Stability> stability_of(const systems::System& system, c
 archive::OrbitRecord orbit_row(const systems::System& system, const std::string& family,
                                const continuation::Orbit& orbit, const loop::Isotropy& isotropy,
                                const std::optional<spectrum::Stability>& stability) {
-  const loop::Loop stored = loop::in_standard_phase(system.description(), orbit.loop, isotropy);
+  const loop::Loop stored = loop::in_standard_phase(system.structure(), orbit.loop, isotropy);
   archive::OrbitRecord row;
   row.family_key = family;
   row.step = orbit.step;
@@ -36,9 +36,9 @@ archive::OrbitRecord orbit_row(const systems::System& system, const std::string&
   row.state = loop::state_at(stored, 0.0);
   row.modes = stored.modes;
   row.time_map = loop::to_numbers(stored.time_map);
-  for (const int angle : system.description().angles)
+  for (const int angle : system.structure().angles)
     row.winding.push_back(orbit.loop.winding[static_cast<std::size_t>(angle)]);
-  set_stability(system.description(), stability, row);
+  set_stability(system.structure(), stability, row);
   const certificate::Certificate certificate = certificate::certify(system, stored);
   row.closure = certificate.closure;
   row.single_shot = certificate.single_shot;

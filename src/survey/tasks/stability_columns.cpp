@@ -21,7 +21,7 @@ std::vector<double> columns_of(const std::vector<std::complex<double>>& values, 
 
 }  // namespace
 
-void set_stability(const systems::Description& system, const std::optional<spectrum::Stability>& stability,
+void set_stability(const systems::Structure& system, const std::optional<spectrum::Stability>& stability,
                    archive::OrbitRecord& row) {
   archive::Header header;
   header.pairs = system.pairs();

@@ -34,7 +34,7 @@ double share_along(const continuation::Start& start, const loop::Loop& orbit) {
 
 queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
                          const StartWork& work, core::Team* team) {
-  const continuation::Start begin = start_of(work.branch, system->description());
+  const continuation::Start begin = start_of(work.branch, system->structure());
   continuation::Options options = branch_options(scene, team);
   const double first = work.branch.amplitude > 0.0 ? work.branch.amplitude : options.start_amplitude;
   std::optional<std::string> why;

@@ -8,7 +8,7 @@
 
 #include "branch_graph.hpp"
 #include "orbweaver/survey/tasks/work.hpp"
-#include "orbweaver/systems/description.hpp"
+#include "orbweaver/systems/structure.hpp"
 
 namespace orbweaver::survey {
 
@@ -17,7 +17,7 @@ namespace orbweaver::survey {
 /// once, when the second of them is added, and found among the others by period.
 class Arrivals {
  public:
-  explicit Arrivals(const systems::Description& system) : _system(system) {}
+  explicit Arrivals(const systems::Structure& system) : _system(system) {}
 
   /// A branch has arrived somewhere: the crossings known so far where it may be.
   std::vector<Meeting> add_branch(const std::string& key, ArrivalRecord arrival);
@@ -32,7 +32,7 @@ class Arrivals {
   /// The nearest direction of the crossing, if any is near.
   [[nodiscard]] std::optional<Meeting> meeting(const ArrivalRecord& arrival, const LocateOutcome& crossing) const;
 
-  const systems::Description& _system;
+  const systems::Structure& _system;
   std::multimap<double, Arrived> _arrived;          // by the period where they meet
   std::multimap<double, LocateOutcome> _crossings;  // by the period of the born orbits
 };

@@ -23,7 +23,7 @@ std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::S
   return tasks;
 }
 
-std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const systems::Description& system,
+std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const systems::System& system,
                                            const SweepsEnded& sweeps, Summary& summary) {
   std::vector<queue::Task> tasks;
   for (const auto& [key, ended] : sweeps) {
@@ -66,7 +66,7 @@ std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const syst
   return tasks;
 }
 
-void gather_failed_sweeps(const systems::Description& system, const SweepsEnded& sweeps, Summary& summary,
+void gather_failed_sweeps(const systems::System& system, const SweepsEnded& sweeps, Summary& summary,
                           archive::Records& tables) {
   for (const auto& [key, ended] : sweeps) {
     const auto& [task, outcome] = ended;

@@ -9,7 +9,7 @@
 #include "family_limit.hpp"
 #include "orbweaver/queue/task.hpp"
 #include "orbweaver/scene/scene.hpp"
-#include "orbweaver/systems/description.hpp"
+#include "orbweaver/systems/structure.hpp"
 #include "pruning.hpp"
 #include "tables.hpp"
 
@@ -24,7 +24,7 @@ namespace orbweaver::survey {
 /// depends on tasks and outcomes only, not on when they came.
 class FamilyTree {
  public:
-  FamilyTree(const scene::Scene& scene, const systems::Description& system)
+  FamilyTree(const scene::Scene& scene, const systems::Structure& system)
       : _scene(scene), _system(system), _arrivals(system), _limit(scene.limits.families) {}
 
   /// A task has ended: done, failed or stopped. Throws MisuseError if its branch or crossing had before.
@@ -44,7 +44,7 @@ class FamilyTree {
   [[nodiscard]] std::vector<FamilySide> kept_branches() const;
 
   const scene::Scene& _scene;
-  const systems::Description& _system;
+  const systems::Structure& _system;
   EndedBranches _branches;
   Crossings _crossings;                          // without loops
   std::map<std::string, std::string> _failures;  // of locations: by the crossing's key

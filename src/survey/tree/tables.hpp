@@ -9,7 +9,7 @@
 #include "family.hpp"
 #include "orbweaver/archive/schema/records.hpp"
 #include "orbweaver/survey/run/survey.hpp"
-#include "orbweaver/systems/description.hpp"
+#include "orbweaver/systems/structure.hpp"
 
 namespace orbweaver::survey {
 

@@ -7,27 +7,27 @@
 #include <Eigen/Dense>
 
 #include "orbweaver/loop/curve/loop.hpp"
-#include "orbweaver/systems/description.hpp"
+#include "orbweaver/systems/structure.hpp"
 
 namespace orbweaver::loop {
 
 /// What brings one loop closest to another: w(t) = M^-1 z(t + T shift), or M^-1 z(T shift - t) if reversing (as
 /// `transformed`), and whole turns of the angles.
 struct Alignment {
-  std::string name;  ///< "1", or that of the declared symmetry; "RC" for the first reversor R times C
+  std::string name;  ///< "1", that of the declared symmetry, or "RC" for the product of two
   bool reversing = false;
-  Eigen::MatrixXd matrix;
+  systems::AffineMap map;
   double shift = 0.0;         ///< part of the period, in [0, 1)
   std::vector<double> turns;  ///< added to each coordinate afterwards, in whole turns of 2 pi (0 but for angles)
   double distance = std::numeric_limits<double>::infinity();  ///< sqrt of the mean over time of |w - to|^2
 };
 
-/// The identity, equivariance or reversing symmetry (reversors, and the first of them times an equivariance) and the time
-/// shift that bring `from` closest to `to`, periods scaled to one: the first in the system's order, with the smallest
-/// shift either way, among those equally close to 1e-12. The shift is a minimum of the distance to rounding. Where not
-/// even 119 harmonics of the loops in time come closer than `hopeless`, that distance is returned. Infinite distance if the
-/// loops wind otherwise under every symmetry. Throws MisuseError if dimensions differ.
-[[nodiscard]] Alignment align(const systems::Description& system, const Loop& from, const Loop& to,
+/// The element of the group that the declared symmetries generate, and the time shift, that bring `from` closest to `to`,
+/// periods scaled to one: the first in the group's order, with the smallest shift either way, among those equally close to
+/// 1e-12. The shift is a minimum of the distance to rounding. Where not even 119 harmonics of the loops in time come closer
+/// than `hopeless`, that distance is returned. Infinite distance if the loops wind otherwise under every symmetry. Throws
+/// MisuseError if dimensions differ.
+[[nodiscard]] Alignment align(const systems::Structure& system, const Loop& from, const Loop& to,
                               double hopeless = std::numeric_limits<double>::infinity());
 
 /// `from` (or a neighbour of it, with the same phase convention) moved by an alignment.

@@ -27,11 +27,14 @@ struct FundamentalDomain {
   [[nodiscard]] Ends ends() const;
   /// True if every element of `isotropy` is a product of the generator and the reversor: the domain then has all of it.
   [[nodiscard]] bool expresses(const Isotropy& isotropy) const;
+  /// False for coordinates whose mean over the loop the symmetries make zero (relative to a point that they keep).
+  [[nodiscard]] std::vector<bool> coordinates_with_mean() const;
   /// True if there are as many end conditions as coordinates: the domain is then a boundary value problem.
   [[nodiscard]] bool is_square() const;
 };
 
-/// The domain of the largest order among the shifts in `isotropy`; reversors with another shift than 0 are not used.
-[[nodiscard]] FundamentalDomain fundamental_domain(const Isotropy& isotropy, int dimension);
+/// The domain of the group that `isotropy` generates; reversors with another shift than 0 are not used. What stands on it is
+/// relative to a point that the symmetries map to itself, so that only their matrices are needed.
+[[nodiscard]] FundamentalDomain fundamental_domain(const systems::Structure& structure, const Isotropy& isotropy);
 
 }  // namespace orbweaver::loop

@@ -6,16 +6,17 @@
 
 #include "orbweaver/core/serialization.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
-#include "orbweaver/systems/description.hpp"
+#include "orbweaver/systems/structure.hpp"
 
 namespace orbweaver::loop {
 
-/// One spatio-temporal symmetry of a loop, acting modulo the lattice of the angles' windings.
-/// Equivariance S@p/q: z(t + T p/q) = S z(t). Reversor R@p/q: z(T p/q - t) = R z(t).
+/// One spatio-temporal symmetry of a loop, acting modulo whole turns of the angles.
+/// Equivariance S@p/q: z(t + T p/q) = S z(t). Reversor R@p/q: z(T p/q - t) = R z(t). The maps are affine; perturbations of
+/// the loop, and what stands relative to a point that they map to itself, see their matrices only.
 struct SymmetryElement {
   std::string name;
   bool reversing = false;
-  Eigen::MatrixXd matrix;  ///< dimension x dimension
+  systems::AffineMap map;
   int shift_numerator = 0;
   int shift_denominator = 1;
 
@@ -34,7 +35,7 @@ using Isotropy = std::vector<SymmetryElement>;
 
 /// The isotropy as it was received, with the matrices that `system` declares. Throws EnvironmentError for a name that it does
 /// not, and for shifts that are none.
-[[nodiscard]] Isotropy with_declared_matrices(Isotropy isotropy, const systems::Description& system);
+[[nodiscard]] Isotropy with_declared_matrices(Isotropy isotropy, const systems::Structure& system);
 
 /// "S@1/2 R@0": equivariances first, then reversors; empty text for no symmetry.
 [[nodiscard]] std::string to_text(const Isotropy& isotropy);
@@ -43,7 +44,10 @@ using Isotropy = std::vector<SymmetryElement>;
 [[nodiscard]] Loop transformed(const Loop& loop, const SymmetryElement& element);
 
 /// The same for any time shift, in parts of the period: w(t) = M^-1 z(t + T shift), or M^-1 z(T shift - t) if `reversing`.
-[[nodiscard]] Loop transformed(const Loop& loop, const Eigen::MatrixXd& matrix, bool reversing, double shift);
+[[nodiscard]] Loop transformed(const Loop& loop, const systems::AffineMap& map, bool reversing, double shift);
+
+/// `element` applied to a perturbation of a loop: by its matrix alone.
+[[nodiscard]] Loop transformed_perturbation(const Loop& perturbation, const SymmetryElement& element);
 
 /// How far `element` is from being a symmetry of the loop: mean distance of z and g z, angles modulo 2 pi.
 [[nodiscard]] double symmetry_defect(const Loop& loop, const SymmetryElement& element, const std::vector<int>& angles);
@@ -51,16 +55,12 @@ using Isotropy = std::vector<SymmetryElement>;
 /// Generators of the isotropy of `loop`: the declared symmetries of `system` that hold to `tolerance` with a time shift
 /// p/q, q <= `max_denominator` (the smallest that holds), products of earlier ones left out. s = 0 must already lie on
 /// the reversor's fixed set for a reversor to be seen at shift 0.
-[[nodiscard]] Isotropy find_isotropy(const systems::Description& system, const Loop& loop, double tolerance,
+[[nodiscard]] Isotropy find_isotropy(const systems::Structure& system, const Loop& loop, double tolerance,
                                      int max_denominator = 4);
-
-/// All that `generators` generate, with shifts in [0, 1): the identity "1@0" first, declared symmetries under their names,
-/// others under none. Throws MisuseError where that are more than 1000.
-[[nodiscard]] Isotropy generated_group(const systems::Description& system, const Isotropy& generators);
 
 /// A declared symmetry of `system` (or the identity, named "1") with a time shift p/q, q <= `max_denominator`, that maps
 /// `from` to `to` within `tolerance` (mean distance, angles modulo 2 pi); none if there is none.
-[[nodiscard]] std::optional<SymmetryElement> find_map(const systems::Description& system, const Loop& from,
+[[nodiscard]] std::optional<SymmetryElement> find_map(const systems::Structure& system, const Loop& from,
                                                       const Loop& to, double tolerance, int max_denominator = 4);
 
 }  // namespace orbweaver::loop

@@ -5,7 +5,7 @@
 
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
-#include "orbweaver/systems/description.hpp"
+#include "orbweaver/systems/structure.hpp"
 
 namespace orbweaver::loop {
 
@@ -20,6 +20,6 @@ namespace orbweaver::loop {
 /// that of its two points where the first coordinate is largest (of equal ones the next; angles that wind are compared
 /// modulo 2 pi). Otherwise at the maximum of the first angle, or of the first coordinate of a system without angles, less
 /// the linear part if it winds.
-[[nodiscard]] Loop in_standard_phase(const systems::Description& system, const Loop& loop, const Isotropy& isotropy);
+[[nodiscard]] Loop in_standard_phase(const systems::Structure& system, const Loop& loop, const Isotropy& isotropy);
 
 }  // namespace orbweaver::loop

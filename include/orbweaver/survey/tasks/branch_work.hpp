@@ -10,7 +10,7 @@
 #include "orbweaver/queue/task.hpp"
 #include "orbweaver/survey/tasks/lineage.hpp"
 #include "orbweaver/survey/tasks/task_kind.hpp"
-#include "orbweaver/systems/description.hpp"
+#include "orbweaver/systems/structure.hpp"
 
 namespace orbweaver::survey {
 
@@ -80,6 +80,6 @@ struct BranchOutcome {
 [[nodiscard]] BranchOutcome unpack_branch_outcome(const std::string& bytes);
 
 /// The start that a branch's work describes.
-[[nodiscard]] continuation::Start start_of(const BranchWork& work, const systems::Description& system);
+[[nodiscard]] continuation::Start start_of(const BranchWork& work, const systems::Structure& system);
 
 }  // namespace orbweaver::survey

@@ -17,11 +17,11 @@ struct Action {
   [[nodiscard]] bool maps(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const;
 };
 
-/// All spatio-temporal symmetries of a loop: declared symmetries and their products with the time shifts that the loop
-/// allows. A constant loop allows every shift: the actions then hold a finite part of these, and comparisons all of them.
-class SymmetryGroup {
+/// All spatio-temporal symmetries of a loop, and how they act on a kernel: the group that the declared symmetries generate
+/// with the time shifts that the loop allows. A constant loop allows every shift: the actions then hold a finite part of these, and comparisons all of them.
+class KernelActions {
  public:
-  SymmetryGroup(const systems::Description& system, const loop::Loop& base, const std::vector<loop::Tangent>& kernel,
+  KernelActions(const systems::Structure& system, const loop::Loop& base, const std::vector<loop::Tangent>& kernel,
                 const DirectionOptions& options);
 
   [[nodiscard]] const std::vector<Action>& actions() const { return _actions; }

@@ -1,4 +1,4 @@
-#include "symmetry_group.hpp"
+#include "kernel_actions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/symmetry/symmetry_group.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -16,46 +17,23 @@ namespace {
 constexpr double orthonormal = 1e-6;
 constexpr double pure_oscillation = 1e-9;
 
-constexpr double same_matrix = 1e-9;
 constexpr double same_vector = 1e-3;  // kernel vectors are good to kernel_tolerance
-constexpr std::size_t largest_group = 200;
 
-struct Spatial {
-  std::string name;
-  bool reversing;
-  int declared;
-  Eigen::MatrixXd matrix;
-};
-
-// The identity, what the system declares, and all products.
-std::vector<Spatial> spatial_group(const systems::Description& system) {
-  const int d = system.dimension();
-  std::vector<Spatial> group{{"1", false, -1, Eigen::MatrixXd::Identity(d, d)}};
-  for (std::size_t n = 0; n < system.equivariances.size(); ++n)
-    group.push_back({system.equivariances[n].name, false, static_cast<int>(n), system.equivariances[n].matrix});
-  for (std::size_t n = 0; n < system.reversors.size(); ++n)
-    group.push_back({system.reversors[n].name, true, static_cast<int>(n), system.reversors[n].matrix});
-  const std::size_t generators = group.size();
-  for (std::size_t n = 0; n < group.size(); ++n)
-    for (std::size_t g = 1; g < generators; ++g) {
-      const bool reversing = group[n].reversing != group[g].reversing;
-      const Eigen::MatrixXd product = group[n].matrix * group[g].matrix;
-      const bool known = std::any_of(group.begin(), group.end(), [&](const Spatial& s) {
-        return s.reversing == reversing && (s.matrix - product).norm() < same_matrix;
-      });
-      if (known) continue;
-      core::require(group.size() < largest_group, "the declared symmetries of a system must generate a finite group");
-      const std::size_t unnamed = reversing ? system.reversors.size() : system.equivariances.size();
-      group.push_back({group[n].name + group[g].name, reversing, static_cast<int>(unnamed), product});
-    }
-  return group;
+// The element's place among the system's equivariances or reversors; -1: the identity; their number: a product of some.
+int declared_place(const systems::Structure& structure, const loop::SymmetryElement& element) {
+  if (!element.reversing && element.name == "1") return -1;
+  const auto& list = element.reversing ? structure.reversors : structure.equivariances;
+  const auto found =
+      std::find_if(list.begin(), list.end(), [&](const systems::Symmetry& s) { return s.name == element.name; });
+  return static_cast<int>(found - list.begin());
 }
 
-int order_of(const Eigen::MatrixXd& matrix) {
-  Eigen::MatrixXd power = matrix;
+int order_of(const systems::AffineMap& map, const std::vector<int>& angles) {
+  const auto identity = systems::AffineMap::identity(map.dimension());
+  systems::AffineMap power = map;
   int order = 1;
-  while (!power.isIdentity(same_matrix)) {
-    power *= matrix;
+  while (!power.is_same(identity, angles)) {
+    power = power * map;
     ++order;
   }
   return order;
@@ -63,9 +41,9 @@ int order_of(const Eigen::MatrixXd& matrix) {
 
 // Shifts of symmetries are multiples of T/m over the order of their matrix (and of quarters, as in isotropies), the loop
 // being an orbit m times around.
-int shared_order(const std::vector<Spatial>& group) {
+int shared_order(const loop::Isotropy& group, const std::vector<int>& angles) {
   int order = 4;
-  for (const Spatial& s : group) order = std::lcm(order, order_of(s.matrix));
+  for (const loop::SymmetryElement& s : group) order = std::lcm(order, order_of(s.map, angles));
   return order;
 }
 
@@ -88,7 +66,7 @@ bool Action::maps(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const 
   return (matrix * from - to).norm() < same_vector;
 }
 
-SymmetryGroup::SymmetryGroup(const systems::Description& system, const loop::Loop& base,
+KernelActions::KernelActions(const systems::Structure& system, const loop::Loop& base,
                              const std::vector<loop::Tangent>& kernel, const DirectionOptions& options) {
   const auto n = static_cast<Eigen::Index>(kernel.size());
   _kernel.resize(static_cast<Eigen::Index>(base.modes.size()), n);
@@ -109,18 +87,19 @@ SymmetryGroup::SymmetryGroup(const systems::Description& system, const loop::Loo
                         loop::rms_amplitude(loop::with_cutoff(v, 1)) > (1.0 - pure_oscillation) / std::sqrt(2.0),
                     "kernel vectors of an equilibrium must be of harmonic 1");
 
-  const std::vector<Spatial> spatial = spatial_group(system);
-  _denominator = shared_order(spatial) * std::max(times, 1);
-  for (const Spatial& s : spatial)
+  const loop::Isotropy spatial = loop::SymmetryGroup::of_space(system).elements();
+  _denominator = shared_order(spatial, system.angles) * std::max(times, 1);
+  for (const loop::SymmetryElement& s : spatial)
     for (int shift = 0; shift < _denominator; ++shift) {
       const int divisor = std::gcd(shift, _denominator);
-      const loop::SymmetryElement element{s.name, s.reversing, s.matrix, shift / divisor, _denominator / divisor};
+      const loop::SymmetryElement element{s.name, s.reversing, s.map, shift / divisor, _denominator / divisor};
       if (loop::symmetry_defect(base, element, system.angles) > options.symmetry_tolerance) continue;
       Eigen::MatrixXd images(_kernel.rows(), n);
       for (Eigen::Index c = 0; c < n; ++c) {
-        const loop::Loop image = loop::transformed(vectors[static_cast<std::size_t>(c)], element);
+        const loop::Loop image = loop::transformed_perturbation(vectors[static_cast<std::size_t>(c)], element);
         images.col(c) = Eigen::Map<const Eigen::VectorXd>(image.modes.data(), _kernel.rows());
       }
+      const int declared = declared_place(system, s);
       const Eigen::MatrixXd action = _kernel.transpose() * images;
       const double gap = (images - _kernel * action).norm();
       const double skew = (action.transpose() * action - Eigen::MatrixXd::Identity(n, n)).norm();
@@ -129,22 +108,22 @@ SymmetryGroup::SymmetryGroup(const systems::Description& system, const loop::Loo
             fmt::format("the symmetry {} of the orbit does not map its kernel (dimension {}) to itself: off by {:.2g}, "
                         "isometric to {:.2g}; the kernel is incomplete, inaccurate or not transverse to the time shift",
                         loop::to_text({element}), n, gap, skew));
-      _actions.push_back({element, s.declared, action});
-      if (_constant && s.declared < 0 && 4 * shift == _denominator) _quarter = action;
+      _actions.push_back({element, declared, action});
+      if (_constant && declared < 0 && 4 * shift == _denominator) _quarter = action;
     }
 }
 
-loop::Tangent SymmetryGroup::vector_at(const Eigen::VectorXd& coordinates) const {
+loop::Tangent KernelActions::vector_at(const Eigen::VectorXd& coordinates) const {
   const Eigen::VectorXd v = _kernel * coordinates;
   return {{v.begin(), v.end()}, {}};
 }
 
-Eigen::VectorXd SymmetryGroup::coordinates_of(std::span<const double> modes) const {
+Eigen::VectorXd KernelActions::coordinates_of(std::span<const double> modes) const {
   // `modes` may have more harmonics than the kernel.
   return _kernel.transpose() * Eigen::Map<const Eigen::VectorXd>(modes.data(), _kernel.rows());
 }
 
-int SymmetryGroup::image(const Eigen::VectorXd& from, const Eigen::VectorXd& to, double tolerance) const {
+int KernelActions::image(const Eigen::VectorXd& from, const Eigen::VectorXd& to, double tolerance) const {
   const double least = 1.0 - 0.5 * tolerance * tolerance;
   bool opposite = false;
   for (const Action& action : _actions) {

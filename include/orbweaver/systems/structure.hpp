@@ -1,0 +1,37 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "orbweaver/systems/affine_map.hpp"
+
+namespace orbweaver::systems {
+
+/// A symmetry of phase space, acting modulo 2 pi on the angles.
+struct Symmetry {
+  std::string name;  ///< "S", "R", "RS": as it appears in an isotropy
+  AffineMap map;
+};
+
+/// What holds for a system with its parameter values and effects. Everything that other layers do depends on this and
+/// on the field alone.
+struct Structure {
+  int dimension = 0;
+  std::vector<int> angles;              ///< indices of the coordinates that live on a circle of 2 pi and may wind
+  std::vector<std::string> conserved;   ///< names of the conserved quantities; values and gradients are System's
+  std::vector<std::string> guards;      ///< names of the positive functions whose zeros orbits must not meet
+  std::vector<Symmetry> equivariances;  ///< S with f(S z) = S' f(z) (S': its matrix), identity excluded
+  std::vector<Symmetry> reversors;  ///< R with f(R z) = -R' f(z), in the order in which they are preferred for s = 0
+  bool symplectic = false;          ///< multipliers come in pairs mu, 1/mu
+
+  [[nodiscard]] bool is_angle(std::size_t coordinate) const {
+    return std::find(angles.begin(), angles.end(), static_cast<int>(coordinate)) != angles.end();
+  }
+  [[nodiscard]] bool conservative() const { return !conserved.empty(); }
+  /// Number of nontrivial stability indices of an orbit (pairs of multipliers).
+  [[nodiscard]] int pairs() const { return symplectic ? dimension / 2 - 1 : dimension - 1; }
+};
+
+}  // namespace orbweaver::systems

@@ -1,0 +1,90 @@
+// About another origin, where all symmetries are affine, a survey finds the same tree.
+#include <cmath>
+#include <map>
+#include <memory>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "support/translated_system.hpp"
+#include "survey/atlas.hpp"
+
+namespace {
+
+using namespace orbweaver;
+using test::Atlas;
+
+struct Pair {
+  survey::Summary here;
+  survey::Summary there;
+};
+
+Pair surveys(const core::Communicator& comm, const std::string& name, const scene::Scene& here,
+             const scene::Scene& there, const Eigen::VectorXd& offset) {
+  const auto system = systems::make_system(here.system.name, here.system.parameters, here.system.effects);
+  const auto moved = std::make_shared<const test::TranslatedSystem>(system, offset);
+  Pair out;
+  out.here = test::run(comm, here, name);
+  const auto folder = test::fresh_folder(name + "_moved" + std::to_string(comm.size()), comm.get());
+  out.there = survey::run_survey(comm, there, moved, folder, {});
+  return out;
+}
+
+void expect_same(const Pair& pair) {
+  EXPECT_EQ(pair.here.failures, 0U);
+  EXPECT_EQ(pair.there.failures, 0U);
+  std::map<std::string, survey::FamilySummary> expected;
+  for (const survey::FamilySummary& family : pair.here.families) expected.emplace(family.name, family);
+  ASSERT_EQ(pair.there.families.size(), expected.size());
+  for (const survey::FamilySummary& found : pair.there.families) {
+    SCOPED_TRACE(found.name);
+    ASSERT_TRUE(expected.contains(found.name));
+    const survey::FamilySummary& family = expected.at(found.name);
+    EXPECT_EQ(found.isotropy, family.isotropy);
+    EXPECT_EQ(found.depth, family.depth);
+    EXPECT_NEAR(found.period_to, family.period_to, 1e-7);
+    EXPECT_NEAR(found.energy_to, family.energy_to, 1e-7);
+  }
+  const Atlas here(pair.here.atlas);
+  const Atlas there(pair.there.atlas);
+  ASSERT_EQ(there.crossings().rows(), here.crossings().rows());
+  EXPECT_GT(here.crossings().rows(), 0U);
+  for (std::size_t row = 0; row < here.crossings().rows(); ++row) {
+    const auto owner = static_cast<std::size_t>(here.crossings().integers("family")[row]);
+    const std::string& family = here.families().texts("name")[owner];
+    const auto found =
+        there.crossing(family, here.crossings().texts("kind")[row], here.crossings().reals("period")[row]);
+    ASSERT_TRUE(found.has_value()) << family << ", T = " << here.crossings().reals("period")[row];
+    EXPECT_NEAR(there.crossings().reals("period")[*found], here.crossings().reals("period")[row], 1e-8) << family;
+    EXPECT_EQ(there.born_at(*found), here.born_at(row)) << family;
+  }
+}
+
+TEST(Translated, HenonHeiles) {
+  const core::Communicator comm;
+  const std::string file = ORBWEAVER_SOURCE_DIR "/drivers/scenes/henon_heiles.yaml";
+  const std::string sweep = "starts.sweep.step=0.05";
+  const std::string shallow = "survey.subharmonics=2";
+  const Pair pair =
+      surveys(comm, "triangle", scene::load(file, {sweep, shallow}),
+              scene::load(file, {sweep, shallow, "starts.fixed_points.grid=[[3], [-7], [0.5], [1.25]]",
+                                 "starts.fixed_points.names={[3, -7, 0.5, 1.25]: [Straight, Curved, Loop]}"}),
+              Eigen::Vector4d(3.0, -7.0, 0.5, 1.25));
+  if (comm.is_root()) expect_same(pair);
+}
+
+// Angles: the mirror S maps th to 60 deg - th and 270 deg - th, modulo whole turns.
+TEST(Translated, DoublePendulum) {
+  const core::Communicator comm;
+  const std::vector<std::string> both{"survey.depth=1", "survey.subharmonics=2", "limits.period=11"};
+  std::vector<std::string> moved = both;
+  moved.emplace_back("starts.fixed_points.grid=[[30, 210], [135, 315]]");
+  moved.emplace_back(
+      "starts.fixed_points.names={[30, 135]: [In-Phase, Out-Phase], [30, 315]: [Down-Up], [210, 135]: [Up-Down]}");
+  const double degree = std::numbers::pi / 180.0;
+  const Pair pair = surveys(comm, "turned", test::quick_scene(both), test::quick_scene(moved),
+                            Eigen::Vector4d(30.0 * degree, 135.0 * degree, 0.0, 0.0));
+  if (comm.is_root()) expect_same(pair);
+}
+
+}  // namespace

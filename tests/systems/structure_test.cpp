@@ -1,0 +1,213 @@
+// What holds depends on parameter values and effects, and the system evaluates what its structure names.
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "model_system.hpp"
+#include "systems/samples.hpp"
+
+namespace orbweaver::systems {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// A particle in the plane on two springs, H = (px^2 + py^2 + a x^2 + b y^2) / 2, with friction as an effect. Equal
+/// springs have a mirror more, and conserve the angular momentum too.
+class Springs {
+ public:
+  static constexpr int dimension = 4;
+  static constexpr int quantities = 2;
+
+  static ModelInfo info() {
+    ModelInfo info;
+    info.name = "springs";
+    info.title = "Two springs";
+    info.state_names = {"x", "y", "px", "py"};
+    info.winding_names = {"", "", "", ""};
+    info.parameters = {{"a", 1.0, 0.0, infinity, true, "1/s^2", "stiffness in x"},
+                       {"b", 2.0, 0.0, infinity, true, "1/s^2", "stiffness in y"}};
+    info.effects = {{"friction", "drag", {{"c", 0.25, 0.0, infinity, false, "1/s", "damping rate"}}}};
+    return info;
+  }
+
+  static Structure structure(const Bound& bound) {
+    const Eigen::Matrix4d reverse = Eigen::Vector4d(1, 1, -1, -1).asDiagonal();
+    const Eigen::Matrix4d mirror = Eigen::Vector4d(-1, 1, -1, 1).asDiagonal();
+    Eigen::Matrix4d swap = Eigen::Matrix4d::Zero();
+    swap(0, 1) = swap(1, 0) = swap(2, 3) = swap(3, 2) = 1.0;
+    Structure structure;
+    structure.dimension = dimension;
+    structure.guards = {"distance to (1, 0)", "speed"};
+    structure.equivariances = {{"S", mirror}};
+    const bool equal = bound["a"] == bound["b"];
+    if (equal) structure.equivariances.push_back({"X", swap});
+    if (bound.has("friction")) return structure;
+    structure.reversors = {{"R", reverse}};
+    structure.conserved = {"energy"};
+    if (equal) structure.conserved.emplace_back("angular momentum");
+    structure.symplectic = true;
+    return structure;
+  }
+
+  explicit Springs(const Bound& bound)
+      : _a(bound["a"]), _b(bound["b"]), _friction(bound.has("friction") ? bound["c"] : 0.0) {}
+
+  template <class S>
+  void field(const S* z, S* f) const {
+    f[0] = z[2];
+    f[1] = z[3];
+    f[2] = -(z[0] * _a) - z[2] * _friction;
+    f[3] = -(z[1] * _b) - z[3] * _friction;
+  }
+
+  template <int K, class S>
+  S conserved(const S* z) const {
+    if constexpr (K == 0)
+      return (z[2] * z[2] + z[3] * z[3] + z[0] * z[0] * _a + z[1] * z[1] * _b) * 0.5;
+    else
+      return z[0] * z[3] - z[1] * z[2];
+  }
+
+  template <class S>
+  S action_density(const S* z) const {
+    return z[2] * z[2] + z[3] * z[3];
+  }
+
+  [[nodiscard]] double guard(int k, const double* z) const {
+    return k == 0 ? std::hypot(z[0] - 1.0, z[1]) : std::hypot(z[2], z[3]);
+  }
+
+ private:
+  double _a;
+  double _b;
+  double _friction;
+};
+
+std::shared_ptr<const System> springs(const std::map<std::string, double>& given,
+                                      const std::vector<std::string>& effects = {}) {
+  return Registered<Springs>::make(bound_to(Springs::info(), given, effects));
+}
+
+std::vector<std::string> names_of(const std::vector<Symmetry>& symmetries) {
+  std::vector<std::string> names;
+  for (const Symmetry& s : symmetries) names.push_back(s.name);
+  return names;
+}
+
+using Names = std::vector<std::string>;
+
+TEST(Structure, DependsOnParameterValues) {
+  const auto unequal = springs({});
+  EXPECT_EQ(unequal->structure().conserved, Names{"energy"});
+  EXPECT_EQ(names_of(unequal->structure().equivariances), Names{"S"});
+  const auto equal = springs({{"a", 2.0}});
+  EXPECT_EQ(equal->structure().conserved, (Names{"energy", "angular momentum"}));
+  EXPECT_EQ(names_of(equal->structure().equivariances), (Names{"S", "X"}));
+  EXPECT_EQ(unequal->info().name, equal->info().name);
+}
+
+TEST(Structure, DependsOnEffects) {
+  const auto damped = springs({{"a", 2.0}, {"c", 0.5}}, {"friction"});
+  EXPECT_FALSE(damped->structure().conservative());
+  EXPECT_FALSE(damped->structure().symplectic);
+  EXPECT_EQ(damped->structure().pairs(), 3);
+  EXPECT_TRUE(damped->structure().reversors.empty());
+  EXPECT_EQ(names_of(damped->structure().equivariances), (Names{"S", "X"}));
+  EXPECT_EQ(damped->parameters().at("c"), 0.5);
+  const std::vector<double> z{0.5, 0.25, 1.0, 3.0};
+  std::vector<double> f(4);
+  damped->field(1, z.data(), f.data());
+  EXPECT_EQ(f[2], -1.5);
+  EXPECT_THROW((void)damped->conserved(0, z), core::MisuseError);
+}
+
+TEST(Structure, EachConservedQuantityHasItsOwnValueAndGradient) {
+  const auto system = springs({{"a", 2.0}});
+  const std::vector<double> z{0.5, 0.25, 1.0, 3.0};
+  EXPECT_EQ(system->conserved(0, z), 0.5 * (1.0 + 9.0 + 2.0 * 0.25 + 2.0 * 0.0625));
+  EXPECT_EQ(system->conserved(1, z), 0.5 * 3.0 - 0.25);
+  std::vector<double> gradient(4);
+  system->conserved_gradient(0, z, gradient);
+  EXPECT_EQ(gradient, (std::vector<double>{1.0, 0.5, 1.0, 3.0}));
+  system->conserved_gradient(1, z, gradient);
+  EXPECT_EQ(gradient, (std::vector<double>{3.0, -1.0, -0.25, 0.5}));
+  EXPECT_THROW((void)system->conserved(2, z), core::MisuseError);
+  EXPECT_THROW((void)springs({})->conserved(1, z), core::MisuseError);
+}
+
+TEST(Structure, HoldsForTheField) {
+  std::mt19937 generator{7};
+  for (const auto& system : {springs({}), springs({{"a", 2.0}}), springs({{"a", 2.0}}, {"friction"})}) {
+    const std::vector<double> state = random_numbers(4, generator);
+    const Eigen::VectorXd z = Eigen::Map<const Eigen::VectorXd>(state.data(), 4);
+    const auto field = [&](const Eigen::VectorXd& at) {
+      Eigen::VectorXd f(4);
+      system->field(1, at.data(), f.data());
+      return f;
+    };
+    for (const Symmetry& s : system->structure().equivariances)
+      EXPECT_LT((field(s.map(z)) - s.map.matrix * field(z)).norm(), 1e-14) << s.name;
+    for (const Symmetry& r : system->structure().reversors)
+      EXPECT_LT((field(r.map(z)) + r.map.matrix * field(z)).norm(), 1e-14) << r.name;
+    for (int k = 0; k < static_cast<int>(system->structure().conserved.size()); ++k) {
+      Eigen::VectorXd gradient(4);
+      system->conserved_gradient(k, state, {gradient.data(), 4});
+      EXPECT_NEAR(gradient.dot(field(z)), 0.0, 1e-14) << system->structure().conserved[static_cast<std::size_t>(k)];
+    }
+  }
+}
+
+TEST(Structure, GuardsAreFunctionsOfTheState) {
+  const auto system = springs({});
+  EXPECT_EQ(system->structure().guards, (Names{"distance to (1, 0)", "speed"}));
+  const std::vector<double> z{1.0, 0.5, 3.0, 4.0};
+  EXPECT_EQ(system->guard(0, z), 0.5);
+  EXPECT_EQ(system->guard(1, z), 5.0);
+  EXPECT_THROW((void)system->guard(2, z), core::MisuseError);
+  EXPECT_THROW((void)make_system("henon_heiles")->guard(0, z), core::MisuseError);
+}
+
+TEST(Structure, OnesThatDoNotFitTheirModelAreRefused) {
+  const ModelInfo info = Springs::info();
+  const Structure good = springs({})->structure();
+  EXPECT_NO_THROW(check(good, info, 4, 2));
+  Structure bad = good;
+  bad.dimension = 5;
+  EXPECT_THROW(check(bad, info, 4, 2), core::MisuseError);
+  bad = good;
+  bad.angles = {0};  // its winding number has no name
+  EXPECT_THROW(check(bad, info, 4, 2), core::MisuseError);
+  bad = good;
+  bad.reversors.push_back({"Q", Eigen::Matrix2d::Identity()});
+  EXPECT_THROW(check(bad, info, 4, 2), core::MisuseError);
+  EXPECT_THROW(check(good, info, 4, 0), core::MisuseError);
+}
+
+TEST(AffineMap, ComposesAndInverts) {
+  const Eigen::Matrix2d turn = (Eigen::Matrix2d() << 0, -1, 1, 0).finished();
+  const AffineMap about{turn, Eigen::Vector2d(5.0, 1.0)};  // a quarter turn about (2, 3)
+  EXPECT_EQ(about(Eigen::Vector2d(2.0, 3.0)), Eigen::VectorXd(Eigen::Vector2d(2.0, 3.0)));
+  const AffineMap half = about * about;
+  EXPECT_EQ(half(Eigen::Vector2d(0.0, 0.0)), Eigen::VectorXd(Eigen::Vector2d(4.0, 6.0)));
+  EXPECT_LT((about.inverse()(about(Eigen::Vector2d(0.3, 0.7))) - Eigen::Vector2d(0.3, 0.7)).norm(), 1e-15);
+  EXPECT_TRUE((half * half).is_same(AffineMap::identity(2), {}));
+  EXPECT_FALSE(half.is_linear());
+  EXPECT_THROW(AffineMap(Eigen::MatrixXd::Identity(2, 2), Eigen::VectorXd::Zero(3)), core::MisuseError);
+}
+
+TEST(AffineMap, IsTheSameModuloWholeTurnsOfAngles) {
+  const Eigen::Matrix2d identity = Eigen::Matrix2d::Identity();
+  const AffineMap turned{identity, Eigen::Vector2d(4.0 * std::acos(-1.0), 0.0)};
+  EXPECT_TRUE(turned.is_same(identity, {0}));
+  const AffineMap third{identity, Eigen::Vector2d(2.0, 0.0)};
+  EXPECT_FALSE(third.is_same(identity, {0}));
+}
+
+}  // namespace
+
+template struct Registered<Springs>;
+
+}  // namespace orbweaver::systems
