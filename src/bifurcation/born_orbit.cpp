@@ -10,13 +10,12 @@ namespace orbweaver::bifurcation {
 
 namespace {
 
-corrector::Result correct_pinned(const systems::System& system, const loop::Loop& base,
-                                 const std::vector<double>& modes, const loop::Isotropy& isotropy, double amplitude,
-                                 const corrector::Options& options) {
+corrector::Result correct_pinned(const systems::System& system, const loop::Loop& base, const loop::Tangent& along,
+                                 const loop::Isotropy& isotropy, double amplitude, const corrector::Options& options) {
   const loss::Unknowns unknowns{loop::Subspace(base.dimension, base.cutoff, isotropy), true};
   Eigen::MatrixXd conditions = Eigen::MatrixXd::Zero(unknowns.size(), 2);
-  unknowns.subspace.project(modes,
-                            std::span(conditions.col(0).data(), static_cast<std::size_t>(unknowns.subspace.size())));
+  const std::vector<double> pinned = unknowns.coordinates_of({along.modes, {}});  // T is free
+  conditions.col(0) = Eigen::Map<const Eigen::VectorXd>(pinned.data(), unknowns.size());
   const Eigen::VectorXd move = amplitude * conditions.col(0);
   const loop::Loop guess = unknowns.moved(base, {move.data(), static_cast<std::size_t>(move.size())});
   // About an equilibrium only the small oscillation itself has a phase.
@@ -32,17 +31,17 @@ corrector::Result correct_pinned(const systems::System& system, const loop::Loop
 
 }  // namespace
 
-corrector::Result born_orbit(const systems::System& system, const loop::Loop& base, const std::vector<double>& modes,
+corrector::Result born_orbit(const systems::System& system, const loop::Loop& base, const loop::Tangent& along,
                              const loop::Isotropy& isotropy, double amplitude, const corrector::Options& options) {
   constexpr int most_raises = 4;
-  core::require(modes.size() == base.modes.size(), "a direction needs the size of its base loop's modes");
+  core::require(along.modes.size() == base.modes.size(), "a direction needs the size of its base loop's modes");
   loop::Loop from = base;
-  std::vector<double> direction = modes;
+  loop::Tangent direction = along;
   for (int raises = 0;; ++raises) {
     corrector::Result result = correct_pinned(system, from, direction, isotropy, amplitude, options);
     if (result.outcome != corrector::Outcome::under_resolved || raises == most_raises) return result;
     from = loop::with_cutoff(base, loop::next_cutoff(from.cutoff));
-    direction.resize(from.modes.size(), 0.0);
+    direction = loop::with_cutoff(std::move(direction), from.cutoff, from.dimension);
   }
 }
 

@@ -58,15 +58,11 @@ double upward(const loop::Loop& direction) {
   return 1.0;
 }
 
-loop::Loop moved(loop::Loop base, const std::vector<double>& modes, double amplitude) {
-  for (std::size_t n = 0; n < modes.size(); ++n) base.modes[n] += amplitude * modes[n];
-  return base;
-}
-
 // One of the born orbits' isotropies: what base and direction have in common.
 loop::Isotropy isotropy_along(const systems::Description& system, const SymmetryGroup& group, const loop::Loop& base,
-                              const std::vector<double>& modes, const DirectionOptions& options) {
-  return loop::find_isotropy(system, moved(base, modes, 0.1), 10.0 * options.symmetry_tolerance, group.denominator());
+                              const loop::Tangent& along, const DirectionOptions& options) {
+  return loop::find_isotropy(system, loop::moved(base, along, 0.1), 10.0 * options.symmetry_tolerance,
+                             group.denominator());
 }
 
 bool has_other_sides(const SymmetryGroup& group, const Eigen::VectorXd& v) {
@@ -77,13 +73,11 @@ bool has_other_sides(const SymmetryGroup& group, const Eigen::VectorXd& v) {
 // The direction of a fixed line: made exactly symmetric, started where the reversor has phase 0.
 Direction direction_along(const systems::Description& system, const SymmetryGroup& group, const loop::Loop& base,
                           const Eigen::VectorXd& v, const DirectionOptions& options) {
-  loop::Loop vector = base;
-  std::fill(vector.winding.begin(), vector.winding.end(), 0.0);
-  vector.modes = group.modes_of(v);
+  const loop::Loop vector = loop::perturbation(base, group.vector_at(v));
   loop::Loop mean = vector;
   std::fill(mean.modes.begin(), mean.modes.end(), 0.0);
   for (const Action& a : group.actions())
-    if (a.maps(v, v)) mean = moved(std::move(mean), loop::transformed(vector, a.element).modes, 1.0);
+    if (a.maps(v, v)) mean = loop::moved(std::move(mean), {loop::transformed(vector, a.element).modes, {}}, 1.0);
 
   const Rank rank = rank_of(group, system, v);
   double start = 0.0;
@@ -98,8 +92,9 @@ Direction direction_along(const systems::Description& system, const SymmetryGrou
   double length = 0.0;
   for (const double c : mean.modes) length += c * c;
   const double scale = upward(mean) / std::sqrt(length);
-  for (const double c : mean.modes) out.modes.push_back(scale * c);
-  out.isotropy = isotropy_along(system, group, out.base, out.modes, options);
+  out.tangent.modes = mean.modes;
+  out.tangent *= scale;
+  out.isotropy = isotropy_along(system, group, out.base, out.tangent, options);
   out.both_sides = has_other_sides(group, v);
   return out;
 }
@@ -167,7 +162,7 @@ std::vector<Direction> searched(const systems::System& system, const SymmetryGro
   // What every vector of the kernel keeps: that of one without symmetry.
   const Eigen::VectorXd generic = Eigen::VectorXd::LinSpaced(group.dimension(), 1.0, std::sqrt(2.0)).array().sin();
   const loop::Isotropy kept =
-      isotropy_along(system.description(), group, base, group.modes_of(generic.normalized()), options);
+      isotropy_along(system.description(), group, base, group.vector_at(generic.normalized()), options);
   const double nudge = plane ? 0.2 * std::numbers::pi / q : 0.03;
   const int expected = plane && q > 2 ? (q % 2 == 0 ? 2 : 1) : 0;
   SearchResult best;
@@ -192,7 +187,7 @@ std::vector<Direction> searched(const systems::System& system, const SymmetryGro
   if (best.not_isolated > 0 || static_cast<int>(best.found.size()) < expected) core::log_warning(seen);
   std::vector<Direction> out;
   for (const FoundOrbit& orbit : best.found)
-    out.push_back({base, group.modes_of(orbit.coordinates),
+    out.push_back({base, group.vector_at(orbit.coordinates),
                    loop::find_isotropy(system.description(), orbit.loop, 1e-2 * amplitude, group.denominator()),
                    has_other_sides(group, orbit.coordinates), amplitude});
   return out;
@@ -201,7 +196,7 @@ std::vector<Direction> searched(const systems::System& system, const SymmetryGro
 }  // namespace
 
 std::vector<Direction> directions(const systems::System& system, const loop::Loop& base, const loop::Isotropy& isotropy,
-                                  const std::vector<std::vector<double>>& kernel, const DirectionOptions& options) {
+                                  const std::vector<loop::Tangent>& kernel, const DirectionOptions& options) {
   loop::validate(base);
   core::require(base.time_map.is_identity(), "directions need a base loop that runs evenly in time");
   core::require(!kernel.empty() && kernel.size() <= largest_kernel, "directions need a kernel of dimension 1 to 8");
@@ -230,7 +225,7 @@ std::vector<Direction> equilibrium_directions(const systems::System& system, std
                                               const DirectionOptions& options) {
   const loop::Loop base = loop::constant_loop(point, period, cutoff);
   core::require(kernel.rows() == base.dimension, "oscillations need the dimension of the equilibrium");
-  std::vector<std::vector<double>> vectors;
+  std::vector<loop::Tangent> vectors;
   for (Eigen::Index c = 0; c < kernel.cols(); ++c)
     for (const std::complex<double> phase : {std::complex<double>(1.0, 0.0), std::complex<double>(0.0, 1.0)}) {
       loop::Loop v = base;
@@ -239,7 +234,7 @@ std::vector<Direction> equilibrium_directions(const systems::System& system, std
         v.cosine(1, i) = (phase * kernel(i, c)).real();
         v.sine(1, i) = -(phase * kernel(i, c)).imag();
       }
-      vectors.push_back(v.modes);
+      vectors.push_back({v.modes, {}});
     }
   return directions(system, base, {}, vectors, options);
 }

@@ -14,19 +14,19 @@ namespace {
 
 /// Cosine of the angle between the family's direction at `at` and the chord from `from` to `to`, all under one time map.
 double along_chord(const continuation::CurvePoint& at, const loop::Loop& from, const loop::Loop& to) {
-  const std::size_t size = std::min({at.tangent_modes.size(), from.modes.size(), to.modes.size()});
+  const std::size_t size = std::min({at.tangent.modes.size(), from.modes.size(), to.modes.size()});
   double product = 0.0;
   double chord = 0.0;
   double tangent = 0.0;
   for (std::size_t n = 0; n < size; ++n) {
     const double weight = n < static_cast<std::size_t>(from.dimension) ? 1.0 : 0.5;
     const double change = to.modes[n] - from.modes[n];
-    product += weight * at.tangent_modes[n] * change;
+    product += weight * at.tangent.modes[n] * change;
     chord += weight * change * change;
-    tangent += weight * at.tangent_modes[n] * at.tangent_modes[n];
+    tangent += weight * at.tangent.modes[n] * at.tangent.modes[n];
   }
   const double change = (to.period - from.period) / from.period;
-  const double slope = at.tangent_period / from.period;
+  const double slope = at.tangent.period() / from.period;
   return (product + slope * change) / std::sqrt((chord + change * change) * (tangent + slope * slope));
 }
 

@@ -85,13 +85,11 @@ Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& 
   const loop::FundamentalDomain domain = loop::fundamental_domain(isotropy, system.dimension());
   const int multiplicity = sector.multiplicity(domain.order);
   Kernel kernel;
-  loop::Loop tangent = point.loop;
-  tangent.modes = point.tangent_modes;
-  std::fill(tangent.winding.begin(), tangent.winding.end(), 0.0);
+  loop::Tangent tangent = point.tangent;
   if (even_in_time || multiplicity > 1) {
     const loop::Loop even = loop::evenly_in_time(point.loop);
     kernel.base = loop::repeated(even, multiplicity);
-    tangent = loop::repeated(loop::with_time_map(tangent, {}, even.cutoff), multiplicity);
+    tangent = loop::repeated(even, loop::with_time_map(point.loop, tangent, {}, even.cutoff), multiplicity);
   } else {
     kernel.base = point.loop;
   }
@@ -105,8 +103,7 @@ Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& 
   std::vector<OffBranchTriplet> all;
   for (const std::vector<int>& signs : split.signs)
     for (OffBranchTriplet& t :
-         continuation::sector_triplets(system, kernel.base, split.involutions, signs, tangent.modes,
-                                       point.tangent_period * multiplicity, options))
+         continuation::sector_triplets(system, kernel.base, split.involutions, signs, tangent, options))
       all.push_back(std::move(t));
   std::stable_sort(all.begin(), all.end(), [](const OffBranchTriplet& a, const OffBranchTriplet& b) {
     return a.singular_value < b.singular_value;
@@ -114,10 +111,8 @@ Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& 
   for (const OffBranchTriplet& t : all) kernel.singular_values.push_back(t.singular_value);
   const int dimension = dimension_of(kernel.singular_values, expected, largest);
   for (int n = 0; n < dimension; ++n) {
-    std::vector<double> v = std::move(all[static_cast<std::size_t>(n)].modes);
-    double square = 0.0;
-    for (const double c : v) square += c * c;
-    for (double& c : v) c /= std::sqrt(square);
+    loop::Tangent v{std::move(all[static_cast<std::size_t>(n)].direction.modes), {}};
+    v.normalize();
     kernel.vectors.push_back(std::move(v));
   }
   return kernel;

@@ -49,7 +49,7 @@ struct Search {
   template <class Unwanted>
   [[nodiscard]] std::optional<FoundOrbit> settle(Eigen::VectorXd pinned, const Unwanted& unwanted) const {
     for (int pins = 0; pins < most_pins; ++pins) {
-      const corrector::Result result = born_orbit(system, base, group.modes_of(pinned), isotropy, amplitude, options);
+      const corrector::Result result = born_orbit(system, base, group.vector_at(pinned), isotropy, amplitude, options);
       const auto direction = direction_of(result.loop);
       if (!direction) return std::nullopt;
       const double tilt = (*direction - pinned).norm();

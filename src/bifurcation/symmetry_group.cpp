@@ -78,13 +78,6 @@ int repetitions(const loop::Loop& loop, double tolerance) {
   return divisor;
 }
 
-loop::Loop perturbation(const loop::Loop& base, const std::vector<double>& modes) {
-  loop::Loop out = base;
-  out.modes = modes;
-  std::fill(out.winding.begin(), out.winding.end(), 0.0);
-  return out;
-}
-
 }  // namespace
 
 bool Action::maps(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const {
@@ -92,15 +85,15 @@ bool Action::maps(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const 
 }
 
 SymmetryGroup::SymmetryGroup(const systems::Description& system, const loop::Loop& base,
-                             const std::vector<std::vector<double>>& kernel, const DirectionOptions& options) {
+                             const std::vector<loop::Tangent>& kernel, const DirectionOptions& options) {
   const auto n = static_cast<Eigen::Index>(kernel.size());
   _kernel.resize(static_cast<Eigen::Index>(base.modes.size()), n);
   std::vector<loop::Loop> vectors;
   for (Eigen::Index c = 0; c < n; ++c) {
-    const std::vector<double>& v = kernel[static_cast<std::size_t>(c)];
-    core::require(v.size() == base.modes.size(), "kernel vectors need the size of the base loop's modes");
-    _kernel.col(c) = Eigen::Map<const Eigen::VectorXd>(v.data(), _kernel.rows());
-    vectors.push_back(perturbation(base, v));
+    const loop::Tangent& v = kernel[static_cast<std::size_t>(c)];
+    core::require(v.modes.size() == base.modes.size(), "kernel vectors need the size of the base loop's modes");
+    _kernel.col(c) = Eigen::Map<const Eigen::VectorXd>(v.modes.data(), _kernel.rows());
+    vectors.push_back(loop::perturbation(base, v));
   }
   core::require((_kernel.transpose() * _kernel - Eigen::MatrixXd::Identity(n, n)).norm() < 1e-6,
                 "kernel vectors must be orthonormal");
@@ -137,9 +130,9 @@ SymmetryGroup::SymmetryGroup(const systems::Description& system, const loop::Loo
     }
 }
 
-std::vector<double> SymmetryGroup::modes_of(const Eigen::VectorXd& coordinates) const {
+loop::Tangent SymmetryGroup::vector_at(const Eigen::VectorXd& coordinates) const {
   const Eigen::VectorXd v = _kernel * coordinates;
-  return {v.begin(), v.end()};
+  return {{v.begin(), v.end()}, {}};
 }
 
 Eigen::VectorXd SymmetryGroup::coordinates_of(std::span<const double> modes) const {

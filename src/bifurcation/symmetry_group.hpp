@@ -21,8 +21,8 @@ struct Action {
 /// allows. A constant loop allows every shift: the actions then hold a finite part of these, and comparisons all of them.
 class SymmetryGroup {
  public:
-  SymmetryGroup(const systems::Description& system, const loop::Loop& base,
-                const std::vector<std::vector<double>>& kernel, const DirectionOptions& options);
+  SymmetryGroup(const systems::Description& system, const loop::Loop& base, const std::vector<loop::Tangent>& kernel,
+                const DirectionOptions& options);
 
   [[nodiscard]] const std::vector<Action>& actions() const { return _actions; }
   [[nodiscard]] bool constant() const { return _constant; }
@@ -31,8 +31,8 @@ class SymmetryGroup {
   [[nodiscard]] int denominator() const { return _denominator; }
   /// The shift by a quarter of the period, for constant loops.
   [[nodiscard]] const Eigen::MatrixXd& quarter() const { return _quarter; }
-  /// Modes of the kernel vector with these coordinates, and back.
-  [[nodiscard]] std::vector<double> modes_of(const Eigen::VectorXd& coordinates) const;
+  /// The kernel vector with these coordinates, and back.
+  [[nodiscard]] loop::Tangent vector_at(const Eigen::VectorXd& coordinates) const;
   [[nodiscard]] Eigen::VectorXd coordinates_of(std::span<const double> modes) const;
   /// +1 if a symmetry maps `from` to `to`, -1 if only to -`to`, 0 if neither; unit vectors, as far apart as `tolerance`.
   [[nodiscard]] int image(const Eigen::VectorXd& from, const Eigen::VectorXd& to, double tolerance) const;

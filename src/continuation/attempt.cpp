@@ -10,26 +10,6 @@
 
 namespace orbweaver::continuation {
 
-double Direction::norm() const {
-  double sum = period * period;
-  for (const double v : modes) sum += v * v;
-  return std::sqrt(sum);
-}
-
-Direction with_cutoff(Direction direction, int cutoff, int dimension) {
-  direction.modes.resize((2 * static_cast<std::size_t>(cutoff) + 1) * static_cast<std::size_t>(dimension), 0.0);
-  return direction;
-}
-
-double state_change(const loop::Loop& loop, const Direction& direction) {
-  loop::Loop perturbation = loop;
-  perturbation.modes = direction.modes;
-  std::fill(perturbation.winding.begin(), perturbation.winding.end(), 0.0);
-  double sum = 0.0;
-  for (const double v : loop::state_at(perturbation, 0.0)) sum += v * v;
-  return std::sqrt(sum);
-}
-
 Eigen::MatrixXd conditions_at(const loop::Loop& guess, const loss::Unknowns& unknowns, const Eigen::VectorXd& normal) {
   std::vector<double> shift = unknowns.time_shift_direction(guess);
   const Eigen::Map<const Eigen::VectorXd> direction(shift.data(), static_cast<Eigen::Index>(shift.size()));
@@ -51,13 +31,11 @@ Eigen::VectorXd without_shift(const Eigen::MatrixXd& conditions) {
 
 }  // namespace
 
-Attempt correct_along(const systems::System& system, const loop::Loop& base, const Direction& direction, double length,
-                      const loop::Isotropy& isotropy, const corrector::Options& options) {
+Attempt correct_along(const systems::System& system, const loop::Loop& base, const loop::Tangent& direction,
+                      double length, const loop::Isotropy& isotropy, const corrector::Options& options) {
   const loss::Unknowns unknowns{loop::Subspace(base.dimension, base.cutoff, isotropy), true};
-  const auto coordinates = static_cast<std::size_t>(unknowns.subspace.size());
-  Eigen::VectorXd normal(unknowns.size());
-  unknowns.subspace.project(direction.modes, std::span(normal.data(), coordinates));
-  normal(unknowns.size() - 1) = direction.period;
+  const std::vector<double> along = unknowns.coordinates_of(direction);
+  Eigen::VectorXd normal = Eigen::Map<const Eigen::VectorXd>(along.data(), unknowns.size());
   normal.normalize();
   const Eigen::VectorXd move = length * normal;
   Attempt attempt;
@@ -75,9 +53,7 @@ Attempt correct_along(const systems::System& system, const loop::Loop& base, con
   if (!attempt.result.converged()) return attempt;
   const Eigen::VectorXd& tangent = attempt.result.flat_direction.value();
   attempt.turning = std::acos(std::clamp(tangent.dot(normal), -1.0, 1.0));
-  attempt.tangent.modes.assign(base.modes.size(), 0.0);
-  unknowns.subspace.add_to(std::span<const double>(tangent.data(), coordinates), attempt.tangent.modes);
-  attempt.tangent.period = tangent(unknowns.size() - 1);
+  attempt.tangent = unknowns.tangent_of(std::span(tangent.data(), static_cast<std::size_t>(tangent.size())));
   return attempt;
 }
 

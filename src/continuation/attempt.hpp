@@ -1,32 +1,16 @@
 #pragma once
 
-#include <vector>
-
 #include "orbweaver/continuation/branch.hpp"
 #include "orbweaver/corrector/correct.hpp"
 #include "orbweaver/loss/unknowns.hpp"
 
 namespace orbweaver::continuation {
 
-/// A direction in loop space: perturbation of the modes and of the period.
-struct Direction {
-  std::vector<double> modes;
-  double period = 0.0;
-
-  [[nodiscard]] double norm() const;
-};
-
-/// The direction for a loop with another cutoff: padded with zeros or truncated.
-[[nodiscard]] Direction with_cutoff(Direction direction, int cutoff, int dimension);
-
-/// |dz(s = 0)| when a loop moves by a direction (in its own length, not a unit one).
-[[nodiscard]] double state_change(const loop::Loop& loop, const Direction& direction);
-
 /// One predicted and corrected orbit.
 struct Attempt {
   corrector::Result result;
-  Direction tangent;     ///< unit flat direction at the result, on the side of the one it was predicted along
-  double turning = 0.0;  ///< angle between the two, radians
+  loop::Tangent tangent;  ///< unit flat direction at the result, on the side of the one it was predicted along
+  double turning = 0.0;   ///< angle between the two, radians
 };
 
 /// The conditions under which `guess` is corrected: the step orthogonal to `normal`, and orthogonal to the time shift where
@@ -36,8 +20,9 @@ struct Attempt {
 
 /// Predicts base + length * direction / |direction| and corrects it with the step held orthogonal to the direction, in
 /// the subspace of `isotropy` (paper, section III B).
-[[nodiscard]] Attempt correct_along(const systems::System& system, const loop::Loop& base, const Direction& direction,
-                                    double length, const loop::Isotropy& isotropy, const corrector::Options& options);
+[[nodiscard]] Attempt correct_along(const systems::System& system, const loop::Loop& base,
+                                    const loop::Tangent& direction, double length, const loop::Isotropy& isotropy,
+                                    const corrector::Options& options);
 
 /// What the last harmonics of a loop may weigh.
 [[nodiscard]] double tail_limit(const loop::Loop& loop, const Options& options);

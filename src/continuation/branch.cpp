@@ -97,10 +97,9 @@ std::optional<Ending> Branch::Implementation::end_at(const Orbit& orbit) const {
 
 Branch::Branch(std::shared_ptr<const systems::System> system, const Start& start, Options options) {
   loop::validate(start.base);
-  core::require(start.direction.size() == start.base.modes.size(),
+  core::require(start.direction.modes.size() == start.base.modes.size(),
                 "a start's direction needs the size of its base loop's modes");
-  core::require(std::any_of(start.direction.begin(), start.direction.end(), [](double v) { return v != 0.0; }),
-                "a start's direction must not be zero");
+  core::require(start.direction.norm() > 0.0, "a start's direction must not be zero");
   core::require(options.predictor_order >= 1, "a predictor needs a polynomial of degree 1 or more");
   core::require(loop::is_invariant(start.base.time_map, start.isotropy),
                 "the time map of a start must have the symmetries of its isotropy");

@@ -76,13 +76,11 @@ class CollocationBranch final : public Branch::Implementation {
 
   /// The start's direction as a loop of unit |dz(s = 0)| (or unit length where z(s = 0) does not move).
   [[nodiscard]] loop::Loop start_direction() const {
-    loop::Loop direction = start.base;
-    direction.modes = start.direction;
-    std::fill(direction.winding.begin(), direction.winding.end(), 0.0);
+    loop::Loop direction = loop::perturbation(start.base, start.direction);
     double square = 0.0;
     for (const double v : loop::state_at(direction, 0.0)) square += v * v;
     double length = 0.0;
-    for (const double v : start.direction) length += v * v;
+    for (const double v : start.direction.modes) length += v * v;
     const double unit = square > 1e-16 * length ? std::sqrt(square) : std::sqrt(length);
     for (double& v : direction.modes) v /= unit;
     return direction;
@@ -304,7 +302,7 @@ class CollocationBranch final : public Branch::Implementation {
     orbit.tail = loop::tail(orbit.loop);
     orbit.iterations = trial.iterations;
     keep(orbit, begun() ? e.distance(trial.values.data(), last_point().values.data()) : 0.0, trial.quality.amplitude);
-    frontier.tangent_modes.clear();
+    frontier.tangent = {};
     std::vector<TracePoint>& points = state().points;
     // The length that the step has come out with: a parameter of its own would drift from extrapolation to extrapolation.
     const std::vector<double>& before = last_point().values;
@@ -314,8 +312,7 @@ class CollocationBranch final : public Branch::Implementation {
     if (points.size() > kept) points.erase(points.begin());
     if (options.off_branch_spectrum) {
       complete_frontier();
-      frontier.orbit.off_branch_eigenvalue =
-          off_branch_eigenvalue(*system, here(), start.isotropy, frontier.tangent_modes, frontier.tangent_period);
+      frontier.orbit.off_branch_eigenvalue = off_branch_eigenvalue(*system, here(), start.isotropy, frontier.tangent);
     }
     const Orbit accepted = frontier.orbit;
     coarsen(trial);
@@ -345,7 +342,7 @@ class CollocationBranch final : public Branch::Implementation {
   }
 
   void complete_frontier() override {
-    if (!begun() || !frontier.tangent_modes.empty()) return;
+    if (!begun() || !frontier.tangent.empty()) return;
     const Collocation& own = equations();
     std::vector<double> tangent =
         direction_here(extrapolate(state().points, options.predictor_order, last_point().parameter));
@@ -357,15 +354,12 @@ class CollocationBranch final : public Branch::Implementation {
       tangent = before.resampled(own, tangent);
       grid = &before.grid();
     }
-    frontier.tangent_modes.resize((2 * static_cast<std::size_t>(grid->cutoff()) + 1) *
-                                  static_cast<std::size_t>(own.dimension()));
-    grid->to_modes(tangent.data(), frontier.tangent_modes.data());
-    frontier.tangent_modes.resize(here().modes.size(), 0.0);
-    frontier.tangent_period = tangent[tangent.size() - static_cast<std::size_t>(own.borders())];
-    double square = frontier.tangent_period * frontier.tangent_period;
-    for (const double v : frontier.tangent_modes) square += v * v;
-    for (double& v : frontier.tangent_modes) v /= std::sqrt(square);
-    frontier.tangent_period /= std::sqrt(square);
+    loop::Tangent& out = frontier.tangent;
+    out.modes.resize((2 * static_cast<std::size_t>(grid->cutoff()) + 1) * static_cast<std::size_t>(own.dimension()));
+    grid->to_modes(tangent.data(), out.modes.data());
+    out = loop::with_cutoff(std::move(out), here().cutoff, here().dimension);
+    out.scalars = {tangent[tangent.size() - static_cast<std::size_t>(own.borders())]};
+    out.normalize();
   }
 
   PointCorrector _points;

@@ -41,7 +41,7 @@ class CollocationInterval final : public CurveInterval {
 
   std::optional<CurvePoint> at(double position, bool with_tangent) override {
     const auto known = std::find_if(_found.begin(), _found.end(), [&](const CurvePoint& point) {
-      return point.position == position && (!with_tangent || !point.tangent_modes.empty());
+      return point.position == position && (!with_tangent || !point.tangent.empty());
     });
     if (known != _found.end()) return *known;
     std::optional<Trial> trial = solve(position);
@@ -50,7 +50,7 @@ class CollocationInterval final : public CurveInterval {
       trial = solve(position);
     }
     if (!trial) return std::nullopt;
-    CurvePoint found{position, _points.modes(), {}, 0.0};
+    CurvePoint found{position, _points.modes(), {}};
     if (with_tangent) set_tangent(trial->values, found);
     points().push_back({std::move(trial->values), position});
     _found.push_back(found);
@@ -126,13 +126,10 @@ class CollocationInterval final : public CurveInterval {
     } catch (const core::NumericalError&) {
       // Next to a crossing the linear system is singular: the chord's direction stands.
     }
-    point.tangent_modes.resize(point.loop.modes.size());
-    e.grid().to_modes(tangent.data(), point.tangent_modes.data());
-    point.tangent_period = tangent[static_cast<std::size_t>(e.period_at())];
-    double square = point.tangent_period * point.tangent_period;
-    for (const double v : point.tangent_modes) square += v * v;
-    for (double& v : point.tangent_modes) v /= std::sqrt(square);
-    point.tangent_period /= std::sqrt(square);
+    point.tangent.modes.resize(point.loop.modes.size());
+    e.grid().to_modes(tangent.data(), point.tangent.modes.data());
+    point.tangent.scalars = {tangent[static_cast<std::size_t>(e.period_at())]};
+    point.tangent.normalize();
   }
 
   const systems::System& _system;

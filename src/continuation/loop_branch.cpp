@@ -26,9 +26,7 @@ bool inverted(const loop::Loop& from, const loop::Loop& to) {
 struct LoopBranch final : Branch::Implementation {
   using Implementation::Implementation;
 
-  [[nodiscard]] Direction tangent() const { return {frontier.tangent_modes, frontier.tangent_period}; }
-
-  Attempt correct(const loop::Loop& base, const Direction& direction, double length) const {
+  Attempt correct(const loop::Loop& base, const loop::Tangent& direction, double length) const {
     return correct_along(*system, base, direction, length, start.isotropy, options.corrector);
   }
 
@@ -43,10 +41,8 @@ struct LoopBranch final : Branch::Implementation {
     orbit.iterations = attempt.result.iterations;
     keep(orbit, begun() ? arclength_between(here(), loop) : 0.0, loop::rms_amplitude(loop));
     if (options.off_branch_spectrum)
-      frontier.orbit.off_branch_eigenvalue =
-          off_branch_eigenvalue(*system, loop, start.isotropy, attempt.tangent.modes, attempt.tangent.period);
-    frontier.tangent_modes = attempt.tangent.modes;
-    frontier.tangent_period = attempt.tangent.period;
+      frontier.orbit.off_branch_eigenvalue = off_branch_eigenvalue(*system, loop, start.isotropy, attempt.tangent);
+    frontier.tangent = attempt.tangent;
     const Orbit accepted = frontier.orbit;
     lower_cutoff();
     return accepted;
@@ -63,7 +59,7 @@ struct LoopBranch final : Branch::Implementation {
 
   void resize(int cutoff) {
     frontier.orbit.loop = loop::with_cutoff(here(), cutoff);
-    frontier.tangent_modes = with_cutoff(tangent(), cutoff, here().dimension).modes;
+    frontier.tangent = loop::with_cutoff(std::move(frontier.tangent), cutoff, here().dimension);
   }
 
   std::optional<Orbit> first_orbit() override {
@@ -73,8 +69,8 @@ struct LoopBranch final : Branch::Implementation {
     double amplitude = options.start_amplitude;
     while (true) {
       const loop::Loop base = loop::with_cutoff(start.base, cutoff);
-      const Direction direction = with_cutoff({start.direction, 0.0}, cutoff, base.dimension);
-      const double change = state_change(base, direction);
+      const loop::Tangent direction = loop::with_cutoff(start.direction, cutoff, base.dimension);
+      const double change = loop::change_at_start(base, direction);
       const double length =
           amplitude * direction.norm() / (change > 1e-8 * direction.norm() ? change : direction.norm());
       const Attempt attempt = correct(base, direction, length);
@@ -103,7 +99,8 @@ struct LoopBranch final : Branch::Implementation {
   [[nodiscard]] double length_to_try() const {
     if (!options.fixed_step) return std::min(frontier.next_length, options.largest_step);
     // Where z(s = 0) hardly moves (a fold of it, a divergence) the step in loop space is bounded all the same.
-    const double length = *options.fixed_step * tangent().norm() / std::max(state_change(here(), tangent()), 1e-12);
+    const double length = *options.fixed_step * frontier.tangent.norm() /
+                          std::max(loop::change_at_start(here(), frontier.tangent), 1e-12);
     return std::min(length, 5.0 * options.largest_step);
   }
 
@@ -113,7 +110,7 @@ struct LoopBranch final : Branch::Implementation {
     double length = std::min(std::max(length_to_try(), least), at_most);
     int raises = 0;
     while (true) {
-      const Attempt attempt = correct(here(), tangent(), length);
+      const Attempt attempt = correct(here(), frontier.tangent, length);
       if (should_raise(attempt.result, raises)) {
         const int cutoff = loop::next_cutoff(here().cutoff);
         if (cutoff > options.cutoff_to)
@@ -172,19 +169,13 @@ struct LoopBranch final : Branch::Implementation {
   }
 
   // The flat direction of a result as a direction in loop space, on the side of the one so far.
-  [[nodiscard]] Direction tangent_of(const corrector::Result& result) const {
-    const Direction before = with_cutoff(tangent(), result.loop.cutoff, here().dimension);
+  [[nodiscard]] loop::Tangent tangent_of(const corrector::Result& result) const {
+    loop::Tangent before = loop::with_cutoff(frontier.tangent, result.loop.cutoff, here().dimension);
     if (!result.flat_direction) return before;
     const loss::Unknowns unknowns{loop::Subspace(result.loop.dimension, result.loop.cutoff, start.isotropy), true};
-    Direction found{std::vector<double>(result.loop.modes.size(), 0.0), (*result.flat_direction)(unknowns.size() - 1)};
-    unknowns.subspace.add_to(
-        std::span<const double>(result.flat_direction->data(), static_cast<std::size_t>(unknowns.subspace.size())),
-        found.modes);
-    double side = found.period * before.period;
-    for (std::size_t n = 0; n < found.modes.size(); ++n) side += found.modes[n] * before.modes[n];
-    if (side >= 0.0) return found;
-    for (double& v : found.modes) v = -v;
-    found.period = -found.period;
+    loop::Tangent found =
+        unknowns.tangent_of({result.flat_direction->data(), static_cast<std::size_t>(result.flat_direction->size())});
+    if (!(loop::dot(found, before) >= 0.0)) found *= -1.0;
     return found;
   }
 
@@ -197,7 +188,7 @@ struct LoopBranch final : Branch::Implementation {
     Attempt attempt = beyond;
     for (int n = 0; n < 60 && std::abs(high_value) > 1e-13 * (1.0 + std::abs(wanted)); ++n) {
       const double trial = (low * high_value - high * low_value) / (high_value - low_value);
-      attempt = correct(here(), tangent(), trial);
+      attempt = correct(here(), frontier.tangent, trial);
       if (attempt.result.outcome == corrector::Outcome::under_resolved &&
           loop::next_cutoff(here().cutoff) <= options.cutoff_to) {
         resize(loop::next_cutoff(here().cutoff));

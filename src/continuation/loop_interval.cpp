@@ -30,7 +30,7 @@ class LoopInterval final : public CurveInterval {
 
   std::optional<CurvePoint> at(double position, bool) override {
     for (const CurvePoint& point : _points)
-      if (point.position == position && !point.tangent_modes.empty()) return point;
+      if (point.position == position && !point.tangent.empty()) return point;
     while (true) {
       const loss::Unknowns unknowns{loop::Subspace(_first.dimension, _first.cutoff, _isotropy), true};
       const std::vector<double> chord_values = unknowns.difference(_first, _last);
@@ -64,11 +64,8 @@ class LoopInterval final : public CurveInterval {
       point.loop = result.loop;
       const Eigen::VectorXd& tangent = result.flat_direction.value();
       const double side = tangent.dot(chord) < 0.0 ? -1.0 : 1.0;
-      point.tangent_modes.assign(guess.modes.size(), 0.0);
-      unknowns.subspace.add_to(std::span(tangent.data(), static_cast<std::size_t>(unknowns.subspace.size())),
-                               point.tangent_modes);
-      for (double& v : point.tangent_modes) v *= side;
-      point.tangent_period = side * tangent(unknowns.size() - 1);
+      point.tangent = unknowns.tangent_of(std::span(tangent.data(), static_cast<std::size_t>(tangent.size())));
+      point.tangent *= side;
       std::erase_if(_points, [&](const CurvePoint& p) { return p.position == position; });
       _points.push_back(point);
       return point;
@@ -79,7 +76,8 @@ class LoopInterval final : public CurveInterval {
   void set_cutoff(int cutoff) {
     for (CurvePoint& point : _points) {
       point.loop = loop::with_cutoff(point.loop, cutoff);
-      if (!point.tangent_modes.empty()) point.tangent_modes.resize(point.loop.modes.size(), 0.0);
+      if (!point.tangent.empty())
+        point.tangent = loop::with_cutoff(std::move(point.tangent), cutoff, point.loop.dimension);
       if (point.position == _from) _first = point.loop;
       if (point.position == _to) _last = point.loop;
     }

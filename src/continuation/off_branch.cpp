@@ -24,8 +24,7 @@ struct Sector {
 };
 
 // The complement of the family's tangent and of the time shift, as far as the unknowns contain them.
-loss::Slice complement(const loss::Unknowns& unknowns, const loop::Loop& loop, std::span<const double> tangent_modes,
-                       double tangent_period) {
+loss::Slice complement(const loss::Unknowns& unknowns, const loop::Loop& loop, const loop::Tangent& tangent) {
   const int size = unknowns.size();
   Eigen::MatrixXd excluded(size, 0);
   const auto exclude = [&](Eigen::VectorXd direction) {
@@ -34,11 +33,8 @@ loss::Slice complement(const loss::Unknowns& unknowns, const loop::Loop& loop, s
     excluded.conservativeResize(Eigen::NoChange, excluded.cols() + 1);
     excluded.col(excluded.cols() - 1) = direction.normalized();
   };
-  Eigen::VectorXd tangent = Eigen::VectorXd::Zero(size);
-  unknowns.subspace.project(tangent_modes,
-                            std::span(tangent.data(), static_cast<std::size_t>(unknowns.subspace.size())));
-  if (unknowns.period) tangent(size - 1) = tangent_period;
-  exclude(tangent);
+  const std::vector<double> along = unknowns.coordinates_of(tangent);
+  exclude(Eigen::Map<const Eigen::VectorXd>(along.data(), size));
   const std::vector<double> shift = unknowns.time_shift_direction(loop);
   const double amplitude = loop::rms_amplitude(loop);
   if (amplitude > 0.0) exclude(Eigen::Map<const Eigen::VectorXd>(shift.data(), size) / amplitude);
@@ -46,12 +42,11 @@ loss::Slice complement(const loss::Unknowns& unknowns, const loop::Loop& loop, s
 }
 
 // All sign patterns of the generators, or the unrestricted space where they do not split the modes completely.
-std::vector<Sector> sectors_of(const loop::Loop& loop, const loop::Isotropy& isotropy,
-                               std::span<const double> tangent_modes, double tangent_period) {
+std::vector<Sector> sectors_of(const loop::Loop& loop, const loop::Isotropy& isotropy, const loop::Tangent& tangent) {
   std::vector<Sector> sectors;
   const auto add = [&](loop::Subspace subspace, std::vector<int> signs, bool period) {
     loss::Unknowns unknowns{std::move(subspace), period};
-    loss::Slice slice = complement(unknowns, loop, tangent_modes, tangent_period);
+    loss::Slice slice = complement(unknowns, loop, tangent);
     if (slice.free() > 0) sectors.push_back({std::move(unknowns), std::move(signs), std::move(slice)});
   };
   int covered = 0;
@@ -90,11 +85,8 @@ std::vector<OffBranchTriplet> triplets_in(const systems::System& system, const l
   for (std::size_t n = 0; n < found.values.size(); ++n) {
     OffBranchTriplet t;
     t.singular_value = found.values[n];
-    t.modes.assign(loop.modes.size(), 0.0);
     const Eigen::VectorXd v = found.right.col(static_cast<Eigen::Index>(n));
-    sector.unknowns.subspace.add_to(std::span(v.data(), static_cast<std::size_t>(sector.unknowns.subspace.size())),
-                                    t.modes);
-    if (sector.unknowns.period) t.period = v(v.size() - 1);
+    t.direction = sector.unknowns.tangent_of(std::span(v.data(), static_cast<std::size_t>(v.size())));
     t.signs = sector.signs;
     t.residual = found.residuals[n];
     t.left_residual = found.left_residuals[n];
@@ -106,10 +98,10 @@ std::vector<OffBranchTriplet> triplets_in(const systems::System& system, const l
 }  // namespace
 
 std::vector<OffBranchTriplet> off_branch_triplets(const systems::System& system, const loop::Loop& loop,
-                                                  const loop::Isotropy& isotropy, std::span<const double> tangent_modes,
-                                                  double tangent_period, const spectrum::TripletOptions& options) {
+                                                  const loop::Isotropy& isotropy, const loop::Tangent& tangent,
+                                                  const spectrum::TripletOptions& options) {
   std::vector<OffBranchTriplet> all;
-  for (const Sector& sector : sectors_of(loop, isotropy, tangent_modes, tangent_period))
+  for (const Sector& sector : sectors_of(loop, isotropy, tangent))
     for (OffBranchTriplet& t : triplets_in(system, loop, sector, options)) all.push_back(std::move(t));
   std::stable_sort(all.begin(), all.end(), [](const OffBranchTriplet& a, const OffBranchTriplet& b) {
     return a.singular_value < b.singular_value;
@@ -120,34 +112,30 @@ std::vector<OffBranchTriplet> off_branch_triplets(const systems::System& system,
 
 std::vector<OffBranchTriplet> sector_triplets(const systems::System& system, const loop::Loop& loop,
                                               const loop::Isotropy& isotropy, const std::vector<int>& signs,
-                                              std::span<const double> tangent_modes, double tangent_period,
-                                              const spectrum::TripletOptions& options) {
+                                              const loop::Tangent& tangent, const spectrum::TripletOptions& options) {
   const bool all_kept = std::all_of(signs.begin(), signs.end(), [](int sign) { return sign > 0; });
   loss::Unknowns unknowns{loop::Subspace(loop.dimension, loop.cutoff, isotropy, signs), all_kept};
   if (unknowns.subspace.size() == 0) return {};
-  loss::Slice slice = complement(unknowns, loop, tangent_modes, tangent_period);
+  loss::Slice slice = complement(unknowns, loop, tangent);
   if (slice.free() == 0) return {};
   return triplets_in(system, loop, {std::move(unknowns), signs, std::move(slice)}, options);
 }
 
 double off_branch_eigenvalue(const systems::System& system, const loop::Loop& loop, const loop::Isotropy& isotropy,
-                             std::span<const double> tangent_modes, double tangent_period, int krylov_from) {
+                             const loop::Tangent& tangent, int krylov_from) {
   if (!loop.time_map.is_identity()) {
     const loop::Loop even = loop::evenly_in_time(loop);
-    loop::Loop tangent = loop;
-    tangent.modes.assign(tangent_modes.begin(), tangent_modes.end());
-    std::fill(tangent.winding.begin(), tangent.winding.end(), 0.0);
-    tangent = loop::with_time_map(tangent, {}, even.cutoff);
-    return off_branch_eigenvalue(system, even, isotropy, tangent.modes, tangent_period, krylov_from);
+    return off_branch_eigenvalue(system, even, isotropy, loop::with_time_map(loop, tangent, {}, even.cutoff),
+                                 krylov_from);
   }
   if (static_cast<int>(loop.modes.size()) >= krylov_from) {
-    const Sector whole = sectors_of(loop, {}, tangent_modes, tangent_period).front();
+    const Sector whole = sectors_of(loop, {}, tangent).front();
     if (equations::LoopEquations::are_square(system, whole.unknowns, whole.unknowns.subspace.image(), whole.slice))
       return matrix_free_eigenvalue(system, loop, whole);
   }
   const loss::Linearization linearization(system, loop, loss::Linearization::Order::jacobian);
   double smallest = std::numeric_limits<double>::infinity();
-  for (const Sector& sector : sectors_of(loop, isotropy, tangent_modes, tangent_period)) {
+  for (const Sector& sector : sectors_of(loop, isotropy, tangent)) {
     const core::Handle<Mat> reduced = sector.slice.reduce_symmetric(
         loss::assemble_hessian(linearization, sector.unknowns, loss::Curvature::gauss_newton));
     smallest = std::min(smallest, spectrum::smallest_eigenpairs(reduced, {.count = 1}).values.front());

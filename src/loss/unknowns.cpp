@@ -7,7 +7,7 @@ namespace orbweaver::loss {
 
 namespace {
 
-std::span<const double> coordinates_of(const Unknowns& unknowns, std::span<const double> u) {
+std::span<const double> in_subspace(const Unknowns& unknowns, std::span<const double> u) {
   return u.first(static_cast<std::size_t>(unknowns.subspace.size()));
 }
 
@@ -28,7 +28,7 @@ loop::Loop Unknowns::moved(const loop::Loop& base, std::span<const double> u) co
   core::require(static_cast<int>(u.size()) == size(), "one value an unknown is needed");
   core::require(base.cutoff == subspace.cutoff(), "the loop and the subspace have different cutoffs");
   loop::Loop out = base;
-  subspace.add_to(coordinates_of(*this, u), out.modes);
+  subspace.add_to(in_subspace(*this, u), out.modes);
   if (period) out.period += u.back();
   return out;
 }
@@ -42,6 +42,22 @@ std::vector<double> Unknowns::difference(const loop::Loop& from, const loop::Loo
   subspace.project(modes, std::span(u).first(static_cast<std::size_t>(subspace.size())));
   if (period) u.back() = to.period - from.period;
   return u;
+}
+
+std::vector<double> Unknowns::coordinates_of(const loop::Tangent& tangent) const {
+  std::vector<double> u(static_cast<std::size_t>(size()));
+  subspace.project(tangent.modes, std::span(u).first(static_cast<std::size_t>(subspace.size())));
+  if (period) u.back() = tangent.period();
+  return u;
+}
+
+loop::Tangent Unknowns::tangent_of(std::span<const double> u) const {
+  core::require(static_cast<int>(u.size()) == size(), "one value an unknown is needed");
+  const int modes = (2 * subspace.cutoff() + 1) * subspace.dimension();
+  loop::Tangent out{std::vector<double>(static_cast<std::size_t>(modes), 0.0), {}};
+  subspace.add_to(in_subspace(*this, u), out.modes);
+  if (period) out.scalars.push_back(u.back());
+  return out;
 }
 
 std::vector<double> Unknowns::time_shift_direction(const loop::Loop& loop) const {

@@ -20,11 +20,11 @@ constexpr double table_step = 0.5 * degree;  // the paper's
 
 // How far the flow returns beside its start after a small step along a direction of unit length at s = 0, in degrees.
 double deviation_degrees(const systems::System& system, const std::vector<double>& point,
-                         const std::vector<double>& direction, double period) {
+                         const loop::Tangent& direction, double period) {
   std::vector<double> start = point;
   const std::size_t d = point.size();
   for (std::size_t i = 0; i < d; ++i)
-    start[i] += table_step * direction[d + i];  // a_1: the only cosine of a normal mode
+    start[i] += table_step * direction.modes[d + i];  // a_1: the only cosine of a normal mode
   const std::vector<double> end = certificate::integrate(system, start, period, 1e-13);
   double sum = 0.0;
   for (std::size_t i = 0; i < d; ++i) sum += (end[i] - start[i]) * (end[i] - start[i]);

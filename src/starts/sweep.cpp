@@ -54,20 +54,19 @@ Eigen::VectorXcd with_standard_phase(const systems::Description& system, Eigen::
 }
 
 // z = Re(v e^{is}) as modes, scaled to |dz(s = 0)| = 1.
-std::vector<double> direction_of(const Eigen::VectorXcd& v, int cutoff) {
+loop::Tangent direction_of(const Eigen::VectorXcd& v, int cutoff) {
   loop::Loop loop = loop::constant_loop(std::vector<double>(static_cast<std::size_t>(v.size()), 0.0), 1.0, cutoff);
   const double scale = v.real().norm() > 1e-9 ? 1.0 / v.real().norm() : 1.0;
   for (int i = 0; i < loop.dimension; ++i) {
     loop.cosine(1, i) = scale * v(i).real();
     loop.sine(1, i) = -scale * v(i).imag();
   }
-  return loop.modes;
+  return {loop.modes, {}};
 }
 
 loop::Isotropy isotropy_of(const systems::Description& system, std::span<const double> fixed_point, double period,
-                           const std::vector<double>& direction, int cutoff) {
-  loop::Loop loop = loop::constant_loop(fixed_point, period, cutoff);
-  for (std::size_t n = 0; n < loop.modes.size(); ++n) loop.modes[n] += direction[n];
+                           const loop::Tangent& direction, int cutoff) {
+  const loop::Loop loop = loop::moved(loop::constant_loop(fixed_point, period, cutoff), direction, 1.0);
   return loop::find_isotropy(system, loop, 1e-7);
 }
 

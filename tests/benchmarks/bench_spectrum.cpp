@@ -73,13 +73,12 @@ struct OnFamily {
     return result;
   }
   [[nodiscard]] std::vector<continuation::OffBranchTriplet> triplets(const corrector::Result& at) const {
-    std::vector<double> modes(loop.modes.size(), 0.0);
     const Eigen::VectorXd& t = at.flat_direction.value();
-    unknowns.subspace.add_to(std::span(t.data(), static_cast<std::size_t>(unknowns.subspace.size())), modes);
+    const loop::Tangent tangent = unknowns.tangent_of(std::span(t.data(), static_cast<std::size_t>(t.size())));
     spectrum::TripletOptions options;
     options.count = 2;
     options.krylov_from = 1;
-    return continuation::off_branch_triplets(*orbit.system, at.loop, isotropy, modes, t(t.size() - 1), options);
+    return continuation::off_branch_triplets(*orbit.system, at.loop, isotropy, tangent, options);
   }
 
   const FamilyOrbit& orbit;

@@ -60,9 +60,8 @@ Times do_task(const std::shared_ptr<const test::OscillatorChain>& chain, core::T
     (void)timed(times.rest, [&] { return certificate::certify(*chain, orbit.loop); });
   }
   const continuation::Frontier& at = branch.frontier();
-  (void)timed(times.triplets, [&] {
-    return continuation::sector_triplets(*chain, at.orbit.loop, {}, {}, at.tangent_modes, at.tangent_period, triplets);
-  });
+  (void)timed(times.triplets,
+              [&] { return continuation::sector_triplets(*chain, at.orbit.loop, {}, {}, at.tangent, triplets); });
   return times;
 }
 

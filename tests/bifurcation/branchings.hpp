@@ -52,15 +52,14 @@ struct Branching {
   std::vector<continuation::Orbit> after;   ///< nearest first
 };
 
-inline Branching both_sides(const loop::Loop& crossing, const std::vector<double>& kernel,
-                            const loop::Isotropy& isotropy) {
+inline Branching both_sides(const loop::Loop& crossing, const loop::Tangent& kernel, const loop::Isotropy& isotropy) {
   Branching out{isotropy, crossing, {}, {}};
   continuation::Options options;
   options.step_limit = 6;
   options.start_amplitude = 0.02;
   continuation::Start start{crossing, kernel, isotropy};
   out.after = trace_of(pendulum(), start, options).orbits;
-  for (double& v : start.direction) v = -v;
+  start.direction *= -1.0;
   out.before = trace_of(pendulum(), start, options).orbits;
   std::reverse(out.before.begin(), out.before.end());
   return out;

@@ -49,7 +49,7 @@ class Declaring final : public systems::System {
 /// What directions start from: an orbit `times` around with its null vectors besides the time shift and the tangent.
 struct Crossing {
   loop::Loop base;
-  std::vector<std::vector<double>> kernel;
+  std::vector<loop::Tangent> kernel;
 };
 
 inline Crossing crossing_at(const systems::System& system, const loop::Loop& orbit, const loop::Isotropy& isotropy,
@@ -67,18 +67,14 @@ inline Crossing crossing_at(const systems::System& system, const loop::Loop& orb
   const loss::Linearization linearization(system, orbit, loss::Linearization::Order::jacobian);
   const Eigen::VectorXd flat =
       spectrum::SlicedHessian(linearization, unknowns, loss::Slice(unknowns.size(), normal)).flat_direction(pinned);
-  loop::Loop tangent = orbit;
-  std::fill(tangent.modes.begin(), tangent.modes.end(), 0.0);
-  std::fill(tangent.winding.begin(), tangent.winding.end(), 0.0);
-  unknowns.subspace.add_to(std::span(flat.data(), static_cast<std::size_t>(unknowns.subspace.size())), tangent.modes);
+  const loop::Tangent tangent = unknowns.tangent_of(std::span(flat.data(), static_cast<std::size_t>(flat.size())));
   Crossing out{loop::repeated(orbit, times), {}};
-  const auto found =
-      continuation::off_branch_triplets(system, out.base, {}, loop::repeated(tangent, times).modes,
-                                        times * flat(flat.size() - 1), {.count = dimension + 1, .multiple = true});
+  const auto found = continuation::off_branch_triplets(system, out.base, {}, loop::repeated(orbit, tangent, times),
+                                                       {.count = dimension + 1, .multiple = true});
   for (const continuation::OffBranchTriplet& t : found)
     if (t.singular_value < 1e-6 * found.back().singular_value) {
-      EXPECT_LT(std::abs(t.period), 1e-6);
-      out.kernel.push_back(t.modes);
+      EXPECT_LT(std::abs(t.direction.period()), 1e-6);
+      out.kernel.push_back(t.direction);
     }
   EXPECT_EQ(out.kernel.size(), static_cast<std::size_t>(dimension))
       << found[0].singular_value << " " << found[1].singular_value;

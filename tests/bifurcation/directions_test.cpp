@@ -28,8 +28,8 @@ const test::Crossing& doubling() {
 /// Part of loop - base along a direction of unit length.
 double along(const Direction& direction, const loop::Loop& loop) {
   double sum = 0.0;
-  for (std::size_t n = 0; n < direction.modes.size(); ++n)
-    sum += direction.modes[n] * (loop.modes[n] - direction.base.modes[n]);
+  for (std::size_t n = 0; n < direction.tangent.modes.size(); ++n)
+    sum += direction.tangent.modes[n] * (loop.modes[n] - direction.base.modes[n]);
   return sum;
 }
 
@@ -46,7 +46,7 @@ double least_defect(const loop::Loop& loop, const std::string& name) {
 
 void expect_born(const Direction& direction, double amplitude, const std::string& broken) {
   const corrector::Result born =
-      born_orbit(*test::pendulum(), direction.base, direction.modes, direction.isotropy, amplitude);
+      born_orbit(*test::pendulum(), direction.base, direction.tangent, direction.isotropy, amplitude);
   ASSERT_TRUE(born.converged()) << born.detail;
   EXPECT_NEAR(along(direction, born.loop), amplitude, 1e-9 * std::abs(amplitude));
   EXPECT_GT(least_defect(born.loop, broken), 0.1 * std::abs(amplitude));
@@ -66,12 +66,12 @@ TEST(Directions, TwoFamiliesLeaveADoublingPoint) {
     EXPECT_FALSE(direction.both_sides);
     EXPECT_EQ(direction.amplitude, 0.0);
     double square = 0.0;
-    for (const double v : direction.modes) square += v * v;
+    for (const double v : direction.tangent.modes) square += v * v;
     EXPECT_NEAR(square, 1.0, 1e-12);
     for (const double amplitude : {1e-3, 1e-6}) expect_born(direction, amplitude, "S");
     // The first coordinate that moves at s = 0 does so upwards.
     loop::Loop v = direction.base;
-    v.modes = direction.modes;
+    v.modes = direction.tangent.modes;
     const std::vector<double> move = loop::state_at(v, 0.0);
     EXPECT_GT(*std::find_if(move.begin(), move.end(), [](double c) { return std::abs(c) > 1e-6; }), 0.0);
   }
@@ -89,15 +89,15 @@ TEST(Directions, DoNotDependOnWhereTheOrbitStartsNorOnTheBasisOfTheKernel) {
   for (const double angle : {0.4, 0.4 + std::numbers::pi / 2}) {
     loop::Loop v = doubling().base;
     for (std::size_t n = 0; n < v.modes.size(); ++n)
-      v.modes[n] = std::cos(angle) * doubling().kernel[0][n] + std::sin(angle) * doubling().kernel[1][n];
-    shifted.kernel.push_back(loop::time_shifted(v, 3.0 / 8.0).modes);
+      v.modes[n] = std::cos(angle) * doubling().kernel[0].modes[n] + std::sin(angle) * doubling().kernel[1].modes[n];
+    shifted.kernel.push_back({loop::time_shifted(v, 3.0 / 8.0).modes, {}});
   }
   const std::vector<Direction> found = directions(*test::pendulum(), shifted.base, both(), shifted.kernel);
   ASSERT_EQ(found.size(), 2u);
   for (std::size_t n = 0; n < 2; ++n) {
     EXPECT_EQ(loop::to_text(found[n].isotropy), loop::to_text(wanted[n].isotropy));
     const auto born = [](const Direction& d) {
-      return born_orbit(*test::pendulum(), d.base, d.modes, d.isotropy, 1e-2).loop;
+      return born_orbit(*test::pendulum(), d.base, d.tangent, d.isotropy, 1e-2).loop;
     };
     EXPECT_TRUE(loop::find_map(test::pendulum()->description(), born(wanted[n]), born(found[n]), 1e-8, 16).has_value());
     EXPECT_NEAR(born(found[n]).period, born(wanted[n]).period, 1e-10);
@@ -106,16 +106,16 @@ TEST(Directions, DoNotDependOnWhereTheOrbitStartsNorOnTheBasisOfTheKernel) {
 
 // A kernel that is good to 1e-6 gives directions that have the born orbits' symmetries to rounding.
 TEST(Directions, AreExactlySymmetric) {
-  std::vector<std::vector<double>> rough = doubling().kernel;
-  for (std::size_t n = 0; n < rough[0].size(); ++n) {
-    rough[0][n] += 1e-7 * std::sin(static_cast<double>(n));
-    rough[1][n] += 1e-7 * std::cos(static_cast<double>(n));
+  std::vector<loop::Tangent> rough = doubling().kernel;
+  for (std::size_t n = 0; n < rough[0].modes.size(); ++n) {
+    rough[0].modes[n] += 1e-7 * std::sin(static_cast<double>(n));
+    rough[1].modes[n] += 1e-7 * std::cos(static_cast<double>(n));
   }
   for (const Direction& direction : directions(*test::pendulum(), doubling().base, both(), rough)) {
     const loop::Subspace kept(4, direction.base.cutoff, direction.isotropy);
     std::vector<double> part(static_cast<std::size_t>(kept.size()));
-    kept.project(direction.modes, part);
-    std::vector<double> rest = direction.modes;
+    kept.project(direction.tangent.modes, part);
+    std::vector<double> rest = direction.tangent.modes;
     for (double& c : part) c = -c;
     kept.add_to(part, rest);
     double square = 0.0;
@@ -139,12 +139,12 @@ TEST(Directions, OneFamilyOfTheSamePeriodLosesTheReversors) {
 
 TEST(Directions, RefuseWhatIsNoKernel) {
   const test::Crossing& d = doubling();
-  const auto call = [&](const loop::Loop& base, std::vector<std::vector<double>> kernel) {
+  const auto call = [&](const loop::Loop& base, std::vector<loop::Tangent> kernel) {
     return directions(*test::pendulum(), base, both(), kernel);
   };
   EXPECT_THROW(static_cast<void>(call(d.base, {})), core::MisuseError);
   EXPECT_THROW(static_cast<void>(call(d.base, {d.kernel[0], d.kernel[0]})), core::MisuseError);
-  EXPECT_THROW(static_cast<void>(call(d.base, {std::vector<double>(4, 0.5)})), core::MisuseError);
+  EXPECT_THROW(static_cast<void>(call(d.base, {{std::vector<double>(4, 0.5), {}}})), core::MisuseError);
   // Half of the kernel: the half map leads out of it.
   EXPECT_THROW(static_cast<void>(call(d.base, {d.kernel[0]})), core::NumericalError);
   loop::Loop crooked = d.base;

@@ -56,7 +56,7 @@ TEST(Equilibrium, ThreeFamiliesUpToSymmetryLeaveHenonHeiles) {
     EXPECT_EQ(direction.amplitude, 0.0);
     continuation::Options options;
     options.energy_to = 0.1;
-    const test::Trace trace = test::trace_of(system, {direction.base, direction.modes, direction.isotropy}, options);
+    const test::Trace trace = test::trace_of(system, {direction.base, direction.tangent, direction.isotropy}, options);
     EXPECT_EQ(trace.ending.reason, continuation::EndReason::energy_limit) << trace.ending.text();
     ends.push_back(trace.last());
     const loop::Loop& loop = ends.back().loop;
@@ -139,7 +139,7 @@ std::vector<std::string> kinds(const std::vector<Direction>& directions) {
   std::vector<std::string> out;
   for (const Direction& d : directions) {
     loop::Loop v = d.base;
-    v.modes = d.modes;
+    v.modes = d.tangent.modes;
     const std::complex<double> first(v.cosine(1, 0), -v.sine(1, 0));
     const std::complex<double> second(v.cosine(1, 1), -v.sine(1, 1));
     if (std::min(std::abs(first), std::abs(second)) < 0.02)

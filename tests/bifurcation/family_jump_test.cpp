@@ -172,7 +172,7 @@ TEST_P(FamilyJump, AFoldInTheEnergyIsNone) {
   continuation::Start back{last.loop, {}, without_reversors()};
   const loop::Loop towards = loop::with_cutoff(before.loop, last.loop.cutoff);
   for (std::size_t n = 0; n < towards.modes.size(); ++n)
-    back.direction.push_back(towards.modes[n] - last.loop.modes[n]);
+    back.direction.modes.push_back(towards.modes[n] - last.loop.modes[n]);
   Followed held(system, back, true);
   EXPECT_EQ(held.ending.reason, continuation::EndReason::period_limit) << held.ending.text();
   ASSERT_EQ(held.passing_two().size(), 1U);

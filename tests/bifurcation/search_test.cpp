@@ -39,11 +39,11 @@ Crossing crossing_of(const test::Family& family, double index, int times) {
 }
 
 /// The largest |part| of the direction along those of `lines`, all started at the same instant.
-std::vector<double> overlaps(const std::vector<double>& modes, const std::vector<std::vector<double>>& lines) {
+std::vector<double> overlaps(const loop::Tangent& tangent, const std::vector<std::vector<double>>& lines) {
   std::vector<double> out;
   for (const std::vector<double>& line : lines) {
     double sum = 0.0;
-    for (std::size_t n = 0; n < modes.size(); ++n) sum += modes[n] * line[n];
+    for (std::size_t n = 0; n < tangent.modes.size(); ++n) sum += tangent.modes[n] * line[n];
     out.push_back(std::abs(sum));
   }
   return out;
@@ -54,7 +54,7 @@ std::vector<std::vector<double>> images(const Crossing& crossing, const std::vec
   std::vector<std::vector<double>> out;
   for (const Direction& direction : known) {
     loop::Loop v = direction.base;
-    v.modes = direction.modes;
+    v.modes = direction.tangent.modes;
     // Find the start of the direction's base on the crossing's.
     for (int p = 0; p < 16 * times; ++p) {
       const double shift = p / (16.0 * times);
@@ -79,7 +79,7 @@ void expect_same_by_search(const test::Family& family, const Crossing& crossing,
   for (const Direction& direction : found) {
     EXPECT_GT(direction.amplitude, 0.0);
     EXPECT_EQ(loop::to_text(direction.isotropy), isotropy);
-    const std::vector<double> parts = overlaps(direction.modes, lines);
+    const std::vector<double> parts = overlaps(direction.tangent, lines);
     EXPECT_GT(*std::max_element(parts.begin(), parts.end()), std::cos(0.02));
     EXPECT_EQ(direction.both_sides, known.front().both_sides);
   }
@@ -130,10 +130,10 @@ TEST(Search, FindsTheOneFamilyOfOrderThree) {
   expect_same_by_search(family, crossing, 3, true, 1, "S@1/2");
   // The born orbits start where the first coordinate is largest, wherever the crossing's orbit starts.
   Crossing later{loop::time_shifted(crossing.base, 0.5), {}};
-  for (const std::vector<double>& v : crossing.kernel) {
+  for (const loop::Tangent& v : crossing.kernel) {
     loop::Loop vector = crossing.base;
-    vector.modes = v;
-    later.kernel.push_back(loop::time_shifted(vector, 0.5).modes);
+    vector.modes = v.modes;
+    later.kernel.push_back({loop::time_shifted(vector, 0.5).modes, {}});
   }
   EXPECT_LT(loop::state_at(later.base, 0.0)[0], -0.1);
   const std::vector<Direction> again = directions(*system, later.base, family.isotropy, later.kernel);
@@ -149,7 +149,7 @@ const test::Family& without_reversors() {
     const loop::Loop orbit = longer.at_period(longer.orbits.back().loop, 10.416773281973249);
     const Crossing crossing = test::crossing_at(*test::pendulum(), orbit, longer.isotropy, 1, 1);
     const Direction start = directions(*test::pendulum(), crossing.base, longer.isotropy, crossing.kernel).at(0);
-    return test::family_from(test::pendulum(), {start.base, start.modes, start.isotropy}, 10.6);
+    return test::family_from(test::pendulum(), {start.base, start.tangent, start.isotropy}, 10.6);
   }();
   return family;
 }
@@ -157,14 +157,14 @@ const test::Family& without_reversors() {
 /// The first orbits of a born family as a survey starts it, at the phases of the archive.
 std::vector<continuation::Orbit> first_two(const Direction& direction) {
   loop::Loop step = direction.base;
-  step.modes = direction.modes;
+  step.modes = direction.tangent.modes;
   double square = 0.0;
   for (const double v : loop::state_at(step, 0.0)) square += v * v;
   continuation::Options options;
   options.start_amplitude = direction.amplitude * std::sqrt(square);
   options.step_limit = 2;
   std::vector<continuation::Orbit> orbits =
-      test::trace_of(test::pendulum(), {direction.base, direction.modes, direction.isotropy}, options).orbits;
+      test::trace_of(test::pendulum(), {direction.base, direction.tangent, direction.isotropy}, options).orbits;
   for (continuation::Orbit& orbit : orbits)
     orbit.loop = loop::in_standard_phase(test::pendulum()->description(), orbit.loop, direction.isotropy);
   return orbits;
@@ -186,28 +186,28 @@ TEST_P(WithoutReversors, TwoFamiliesOfEvenOrderLeaveHalfAnAngleApart) {
     EXPECT_EQ(loop::to_text(direction.isotropy), "");
     EXPECT_FALSE(direction.both_sides);
     EXPECT_GE(direction.amplitude, std::pow(1e-6, 1.0 / (q - 2)) - 1e-12);
-    born.push_back(born_orbit(*test::pendulum(), direction.base, direction.modes, {}, direction.amplitude));
+    born.push_back(born_orbit(*test::pendulum(), direction.base, direction.tangent, {}, direction.amplitude));
     ASSERT_TRUE(born.back().converged()) << born.back().detail;
     EXPECT_LT(certificate::certify(*test::pendulum(), born.back().loop).closure, 1e-9);
     // A quarter further out the direction is still the same: an angle that nothing fixes would drift.
     const corrector::Result further =
-        born_orbit(*test::pendulum(), direction.base, direction.modes, {}, 1.25 * direction.amplitude);
+        born_orbit(*test::pendulum(), direction.base, direction.tangent, {}, 1.25 * direction.amplitude);
     ASSERT_TRUE(further.converged()) << further.detail;
-    for (const std::vector<double>& v : crossing.kernel) {
+    for (const loop::Tangent& v : crossing.kernel) {
       double near = 0.0;
       double far = 0.0;
-      for (std::size_t n = 0; n < v.size(); ++n) {
-        near += v[n] * (born.back().loop.modes[n] - crossing.base.modes[n]) / direction.amplitude;
-        far += v[n] * (further.loop.modes[n] - crossing.base.modes[n]) / (1.25 * direction.amplitude);
+      for (std::size_t n = 0; n < v.modes.size(); ++n) {
+        near += v.modes[n] * (born.back().loop.modes[n] - crossing.base.modes[n]) / direction.amplitude;
+        far += v.modes[n] * (further.loop.modes[n] - crossing.base.modes[n]) / (1.25 * direction.amplitude);
       }
       EXPECT_NEAR(near, far, 0.1 * angle);
     }
   }
   loop::Loop v = crossing.base;
-  v.modes = found[1].modes;
+  v.modes = found[1].tangent.modes;
   std::vector<std::vector<double>> images;
   for (int turn = 0; turn < q; ++turn) images.push_back(loop::time_shifted(v, turn / static_cast<double>(q)).modes);
-  const std::vector<double> parts = overlaps(found[0].modes, images);
+  const std::vector<double> parts = overlaps(found[0].tangent, images);
   EXPECT_NEAR(std::acos(*std::max_element(parts.begin(), parts.end())), 0.5 * angle, 0.1 * angle);
   EXPECT_FALSE(loop::find_map(test::pendulum()->description(), born[0].loop, born[1].loop, 1e-3, q).has_value());
 
@@ -232,7 +232,7 @@ TEST(Search, GoesFurtherOutWhereTheAngleIsHardlyFixed) {
   EXPECT_NEAR(branch_point.base.period, 6.1475153497, 1e-8);
   const Direction start = directions(*test::pendulum(), branch_point.base, family.isotropy, branch_point.kernel).at(0);
   EXPECT_EQ(loop::to_text(start.isotropy), "S@1/2");
-  const test::Family born = test::family_from(test::pendulum(), {start.base, start.modes, start.isotropy}, 6.148);
+  const test::Family born = test::family_from(test::pendulum(), {start.base, start.tangent, start.isotropy}, 6.148);
   const Crossing crossing = crossing_of(born, 1.0, 3);
   const std::vector<Direction> found = directions(*test::pendulum(), crossing.base, born.isotropy, crossing.kernel);
   ASSERT_EQ(found.size(), 2u);
@@ -240,7 +240,7 @@ TEST(Search, GoesFurtherOutWhereTheAngleIsHardlyFixed) {
     EXPECT_GT(direction.amplitude, 0.05);
     EXPECT_FALSE(direction.both_sides);
     const corrector::Result orbit =
-        born_orbit(*test::pendulum(), direction.base, direction.modes, direction.isotropy, direction.amplitude);
+        born_orbit(*test::pendulum(), direction.base, direction.tangent, direction.isotropy, direction.amplitude);
     ASSERT_TRUE(orbit.converged()) << orbit.detail;
     EXPECT_LT(certificate::certify(*test::pendulum(), orbit.loop).closure, 1e-9);
   }

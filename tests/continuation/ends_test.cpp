@@ -20,10 +20,9 @@ Start downwards(const test::Trace& family, double period) {
   const corrector::Result upper = test::orbit_at(family, period);
   const corrector::Result lower = test::orbit_at(family, period - 0.02);
   EXPECT_TRUE(upper.converged() && lower.converged());
-  Start start{upper.loop, std::vector<double>(upper.loop.modes.size(), 0.0),
-              test::pendulum_isotropy(*test::pendulum())};
-  const loop::Loop shorter = loop::with_cutoff(lower.loop, upper.loop.cutoff);
-  for (std::size_t n = 0; n < start.direction.size(); ++n) start.direction[n] = shorter.modes[n] - upper.loop.modes[n];
+  Start start{upper.loop, {}, test::pendulum_isotropy(*test::pendulum())};
+  start.direction.modes = loop::with_cutoff(lower.loop, upper.loop.cutoff).modes;
+  for (std::size_t n = 0; n < upper.loop.modes.size(); ++n) start.direction.modes[n] -= upper.loop.modes[n];
   return start;
 }
 
@@ -152,9 +151,9 @@ TEST(Ends, NamesDiffer) {
 
 TEST(Ends, MisuseThrows) {
   Start start = test::start_of(test::in_phase());
-  start.direction.pop_back();
+  start.direction.modes.pop_back();
   EXPECT_THROW(Branch(test::pendulum(), start, {}), core::MisuseError);
-  start.direction.assign(start.base.modes.size(), 0.0);
+  start.direction.modes.assign(start.base.modes.size(), 0.0);
   EXPECT_THROW(Branch(test::pendulum(), start, {}), core::MisuseError);
   EXPECT_THROW(Branch(test::pendulum(), test::start_of(test::in_phase()), {.predictor_order = 0}), core::MisuseError);
   start = test::start_of(test::in_phase());

@@ -20,8 +20,8 @@ inline std::shared_ptr<const systems::System> pendulum() {
 inline continuation::Start start_of(const PendulumMode& mode, int cutoff = 10) {
   continuation::Start start;
   start.base = loop::constant_loop(mode.point, mode.period(), cutoff);
-  start.direction = linear_loop(mode, 1.0, cutoff).modes;
-  for (std::size_t i = 0; i < 4; ++i) start.direction[i] = 0.0;
+  start.direction.modes = linear_loop(mode, 1.0, cutoff).modes;
+  for (std::size_t i = 0; i < 4; ++i) start.direction.modes[i] = 0.0;
   start.isotropy = pendulum_isotropy(*pendulum());
   return start;
 }

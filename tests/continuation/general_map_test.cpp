@@ -45,8 +45,8 @@ TEST_P(GeneralMaps, LeaveTheTangentAsItIs) {
   Start start;
   start.base = orbits[orbits.size() - 6].loop;
   start.isotropy = less_symmetry(GetParam());
-  start.direction = loop::with_cutoff(orbits[orbits.size() - 5].loop, start.base.cutoff).modes;
-  for (std::size_t n = 0; n < start.direction.size(); ++n) start.direction[n] -= start.base.modes[n];
+  start.direction.modes = loop::with_cutoff(orbits[orbits.size() - 5].loop, start.base.cutoff).modes;
+  for (std::size_t n = 0; n < start.base.modes.size(); ++n) start.direction.modes[n] -= start.base.modes[n];
   Branch branch(test::pendulum(), start, {.general_map_cells = 192});
   const Orbit orbit = branch.advance().value();
   const Frontier& frontier = branch.frontier();
@@ -59,9 +59,9 @@ TEST_P(GeneralMaps, LeaveTheTangentAsItIs) {
   };
   const std::vector<double> above = beside(orbit.loop.period + h);
   const std::vector<double> below = beside(orbit.loop.period - h);
-  ASSERT_EQ(frontier.tangent_modes.size(), orbit.loop.modes.size());
+  ASSERT_EQ(frontier.tangent.modes.size(), orbit.loop.modes.size());
   for (std::size_t n = 0; n < above.size(); ++n)
-    ASSERT_NEAR((above[n] - below[n]) / (2.0 * h), frontier.tangent_modes[n] / frontier.tangent_period, 1e-5) << n;
+    ASSERT_NEAR((above[n] - below[n]) / (2.0 * h), frontier.tangent.modes[n] / frontier.tangent.period(), 1e-5) << n;
 }
 
 INSTANTIATE_TEST_SUITE_P(Continuation, GeneralMaps, testing::Bool(),

@@ -17,19 +17,18 @@ namespace {
 /// An orbit of a family with the direction in which the family goes on.
 struct OnFamily {
   loop::Loop loop;
-  std::vector<double> tangent_modes;
-  double tangent_period = 0.0;
+  loop::Tangent tangent;
 
   [[nodiscard]] double off_branch_eigenvalue(const loop::Isotropy& isotropy) const {
-    return continuation::off_branch_eigenvalue(*test::pendulum(), loop, isotropy, tangent_modes, tangent_period);
+    return continuation::off_branch_eigenvalue(*test::pendulum(), loop, isotropy, tangent);
   }
   [[nodiscard]] double off_branch_eigenvalue(int krylov_from) const {
     return continuation::off_branch_eigenvalue(*test::pendulum(), loop, test::pendulum_isotropy(*test::pendulum()),
-                                               tangent_modes, tangent_period, krylov_from);
+                                               tangent, krylov_from);
   }
   [[nodiscard]] std::vector<OffBranchTriplet> triplets(const spectrum::TripletOptions& options, bool split) const {
     const loop::Isotropy isotropy = split ? test::pendulum_isotropy(*test::pendulum()) : loop::Isotropy{};
-    return off_branch_triplets(*test::pendulum(), loop, isotropy, tangent_modes, tangent_period, options);
+    return off_branch_triplets(*test::pendulum(), loop, isotropy, tangent, options);
   }
   [[nodiscard]] double off_branch_eigenvalue() const {
     return off_branch_eigenvalue(test::pendulum_isotropy(*test::pendulum()));
@@ -44,10 +43,7 @@ OnFamily at_period(const test::PendulumMode& mode, double period) {
   const loss::Linearization linearization(*test::pendulum(), orbit.loop, loss::Linearization::Order::jacobian);
   const Eigen::VectorXd flat =
       spectrum::SlicedHessian(linearization, unknowns, loss::Slice(unknowns.size(), normal)).flat_direction(normal);
-  OnFamily out{orbit.loop, std::vector<double>(orbit.loop.modes.size(), 0.0), flat(flat.size() - 1)};
-  unknowns.subspace.add_to(std::span(flat.data(), static_cast<std::size_t>(unknowns.subspace.size())),
-                           out.tangent_modes);
-  return out;
+  return {orbit.loop, unknowns.tangent_of(std::span(flat.data(), static_cast<std::size_t>(flat.size())))};
 }
 
 /// The same number by brute force: H over all coefficients and T, the two known flat directions projected out and moved
@@ -58,10 +54,7 @@ double by_dense_projection(const OnFamily& orbit) {
   const Eigen::MatrixXd j = test::to_dense(loss::assemble_jacobian(linearization, unknowns));
   const Eigen::MatrixXd h = 2.0 * j.transpose() * j;
   Eigen::MatrixXd flat(unknowns.size(), 2);
-  std::vector<double> tangent(static_cast<std::size_t>(unknowns.size()));
-  unknowns.subspace.project(orbit.tangent_modes,
-                            std::span(tangent).first(static_cast<std::size_t>(unknowns.subspace.size())));
-  tangent.back() = orbit.tangent_period;
+  const std::vector<double> tangent = unknowns.coordinates_of(orbit.tangent);
   const std::vector<double> shift = unknowns.time_shift_direction(orbit.loop);
   for (int n = 0; n < unknowns.size(); ++n) {
     flat(n, 0) = tangent[static_cast<std::size_t>(n)];
@@ -102,10 +95,8 @@ TEST(OffBranchEigenvalue, DoesNotDependOnTheTimeMap) {
   const OnFamily orbit = at_period(test::in_phase(), 8.5);
   const double even = orbit.off_branch_eigenvalue();
   for (const loop::TimeMap& map : {loop::TimeMap{1.5, {}}, loop::TimeMap{1.0, {0.0, 0.0, 0.2, 0.0}}}) {
-    loop::Loop tangent = orbit.loop;
-    tangent.modes = orbit.tangent_modes;
-    const OnFamily mapped{loop::with_time_map(orbit.loop, map, 77), loop::with_time_map(tangent, map, 77).modes,
-                          orbit.tangent_period};
+    const OnFamily mapped{loop::with_time_map(orbit.loop, map, 77),
+                          loop::with_time_map(orbit.loop, orbit.tangent, map, 77)};
     EXPECT_NEAR(mapped.off_branch_eigenvalue(), even, 1e-6 * even);
   }
 }
@@ -145,16 +136,14 @@ TEST(OffBranchTriplets, AreDirections) {
   const OnFamily orbit = at_period(test::in_phase(), 9.0);
   const loss::Linearization linearization(*test::pendulum(), orbit.loop, loss::Linearization::Order::jacobian);
   const loss::Unknowns all{loop::Subspace::unrestricted(4, orbit.loop.cutoff), true};
-  const auto whole = [&](std::span<const double> modes, double period) {
-    Eigen::VectorXd out(all.size());
-    all.subspace.project(modes, std::span(out.data(), modes.size()));
-    out(out.size() - 1) = period;
-    return out;
+  const auto whole = [&](const loop::Tangent& t) {
+    const std::vector<double> u = all.coordinates_of(t);
+    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(u.data(), all.size()));
   };
-  const Eigen::VectorXd tangent = whole(orbit.tangent_modes, orbit.tangent_period).normalized();
+  const Eigen::VectorXd tangent = whole(orbit.tangent).normalized();
   const std::vector<double> shift = all.time_shift_direction(orbit.loop);
   for (const OffBranchTriplet& t : orbit.triplets({.count = 6}, true)) {
-    const Eigen::VectorXd v = whole(t.modes, t.period);
+    const Eigen::VectorXd v = whole(t.direction);
     EXPECT_NEAR(v.norm(), 1.0, 1e-12);
     EXPECT_LT(std::abs(v.dot(tangent)), 1e-12);
     EXPECT_LT(std::abs(v.dot(Eigen::Map<const Eigen::VectorXd>(shift.data(), v.size()))), 1e-12);
@@ -165,8 +154,8 @@ TEST(OffBranchTriplets, AreDirections) {
     ASSERT_EQ(t.signs.size(), 2u);
     const loop::Subspace sector(4, orbit.loop.cutoff, test::pendulum_isotropy(*test::pendulum()), t.signs);
     Eigen::VectorXd inside(sector.size());
-    sector.project(t.modes, std::span(inside.data(), static_cast<std::size_t>(inside.size())));
-    EXPECT_NEAR(inside.squaredNorm() + t.period * t.period, 1.0, 1e-12);
+    sector.project(t.direction.modes, std::span(inside.data(), static_cast<std::size_t>(inside.size())));
+    EXPECT_NEAR(inside.squaredNorm() + t.direction.period() * t.direction.period(), 1.0, 1e-12);
   }
 }
 
@@ -176,7 +165,7 @@ TEST(OffBranchTriplets, BreakASymmetryWhereAFamilyOfTheSamePeriodCrosses) {
   EXPECT_LT(found[0].singular_value, 1e-10);
   EXPECT_GT(found[1].singular_value, 1e-3);
   EXPECT_EQ(found[0].signs, (std::vector<int>{1, -1}));
-  EXPECT_EQ(found[0].period, 0.0);
+  EXPECT_EQ(found[0].direction.period(), 0.0);
 }
 
 // At a crossing a second direction is flat: the eigenvalue, quadratic in the distance, falls to rounding.

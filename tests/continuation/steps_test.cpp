@@ -19,19 +19,12 @@ double state_distance(const loop::Loop& a, const loop::Loop& b) {
   return std::sqrt(square);
 }
 
-loop::Loop moved_along(const loop::Loop& loop, const Frontier& frontier, double length) {
-  loop::Loop out = loop;
-  for (std::size_t n = 0; n < out.modes.size(); ++n) out.modes[n] += length * frontier.tangent_modes[n];
-  out.period += length * frontier.tangent_period;
-  return out;
-}
-
 /// What of a - b lies along the tangent.
 double along_tangent(const loop::Loop& a, const loop::Loop& b, const Frontier& frontier) {
-  double sum = (a.period - b.period) * frontier.tangent_period;
+  double sum = (a.period - b.period) * frontier.tangent.period();
   const loop::Loop padded = loop::with_cutoff(b, a.cutoff);
-  for (std::size_t n = 0; n < frontier.tangent_modes.size(); ++n)
-    sum += (a.modes[n] - padded.modes[n]) * frontier.tangent_modes[n];
+  for (std::size_t n = 0; n < frontier.tangent.modes.size(); ++n)
+    sum += (a.modes[n] - padded.modes[n]) * frontier.tangent.modes[n];
   return sum;
 }
 
@@ -47,8 +40,8 @@ TEST(FixedStep, PredictsHalfADegree) {
       const std::optional<Orbit> orbit = branch.advance();
       if (!orbit) break;
       const loop::Loop& here = before.orbit.loop;
-      const double length = half_degree / state_distance(here, moved_along(here, before, 1.0));
-      const loop::Loop predicted = moved_along(here, before, length);
+      const double length = half_degree / state_distance(here, loop::moved(here, before.tangent, 1.0));
+      const loop::Loop predicted = loop::moved(here, before.tangent, length);
       EXPECT_NEAR(state_distance(here, predicted), half_degree, 1e-12);
       const double change = state_distance(predicted, orbit->loop);
       EXPECT_LT(change, 0.02 * half_degree) << orbit->step;
@@ -139,10 +132,8 @@ TEST(Frontiers, AreConsistent) {
     EXPECT_EQ(frontier.orbit.energy, orbit->energy);
     EXPECT_EQ(frontier.orbit.loop.period, orbit->loop.period);
     EXPECT_LT(loop::mean_distance(frontier.orbit.loop, orbit->loop), 1e-13);
-    ASSERT_EQ(frontier.tangent_modes.size(), frontier.orbit.loop.modes.size());
-    double square = frontier.tangent_period * frontier.tangent_period;
-    for (const double entry : frontier.tangent_modes) square += entry * entry;
-    EXPECT_NEAR(square, 1.0, 1e-12);
+    ASSERT_EQ(frontier.tangent.modes.size(), frontier.orbit.loop.modes.size());
+    EXPECT_NEAR(frontier.tangent.norm(), 1.0, 1e-12);
     EXPECT_GT(frontier.next_length, 0.0);
     if (before) {
       EXPECT_NEAR(frontier.last_increment, arclength_between(before->loop, orbit->loop), 1e-12);
@@ -168,7 +159,7 @@ TEST(Frontiers, TangentPointsAlongTheFamily) {
   const loop::Loop below =
       loop::with_cutoff(orbit_at_period(*test::pendulum(), here, isotropy, here.period - h, {}).loop, here.cutoff);
   for (std::size_t n = 0; n < here.modes.size(); ++n)
-    EXPECT_NEAR((above.modes[n] - below.modes[n]) / (2.0 * h), frontier.tangent_modes[n] / frontier.tangent_period,
+    EXPECT_NEAR((above.modes[n] - below.modes[n]) / (2.0 * h), frontier.tangent.modes[n] / frontier.tangent.period(),
                 1e-5)
         << n;
 }

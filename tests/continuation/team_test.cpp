@@ -80,17 +80,15 @@ TEST(Teams, FindTheSameSingularTriplets) {
   const Frontier& at = traced.frontier;
   spectrum::TripletOptions options;
   options.count = 2;
-  const auto alone = off_branch_triplets(*system, at.orbit.loop, {}, at.tangent_modes, at.tangent_period, options);
+  const auto alone = off_branch_triplets(*system, at.orbit.loop, {}, at.tangent, options);
   options.team = &team;
-  const auto shared = off_branch_triplets(*system, at.orbit.loop, {}, at.tangent_modes, at.tangent_period, options);
+  const auto shared = off_branch_triplets(*system, at.orbit.loop, {}, at.tangent, options);
   ASSERT_EQ(shared.size(), 2U);
   for (std::size_t n = 0; n < 2; ++n) {
     EXPECT_NEAR(shared[n].singular_value, alone[n].singular_value, 1e-9 * alone[n].singular_value);
-    double product = 0.0;
-    for (std::size_t m = 0; m < alone[n].modes.size(); ++m) product += shared[n].modes[m] * alone[n].modes[m];
-    EXPECT_NEAR(product + shared[n].period * alone[n].period, 1.0, 1e-9);
-    const auto* bytes = reinterpret_cast<const char*>(shared[n].modes.data());
-    team.compare("triplet", core::digest_of({bytes, sizeof(double) * shared[n].modes.size()}));
+    EXPECT_NEAR(loop::dot(shared[n].direction, alone[n].direction), 1.0, 1e-9);
+    const auto* bytes = reinterpret_cast<const char*>(shared[n].direction.modes.data());
+    team.compare("triplet", core::digest_of({bytes, sizeof(double) * shared[n].direction.modes.size()}));
   }
 }
 

@@ -182,8 +182,8 @@ std::vector<continuation::Orbit> orbits_of(const std::shared_ptr<const systems::
 std::vector<continuation::Orbit> family_to_thirty(const test::PendulumMode& mode) {
   continuation::Start start;
   start.base = loop::constant_loop(mode.point, mode.period(), 10);
-  start.direction = test::linear_loop(mode, 1.0, 10).modes;
-  std::fill_n(start.direction.begin(), 4, 0.0);
+  start.direction.modes = test::linear_loop(mode, 1.0, 10).modes;
+  std::fill_n(start.direction.modes.begin(), 4, 0.0);
   start.isotropy = test::pendulum_isotropy(*pendulum());
   continuation::Options options;
   options.fit_time_map = false;
@@ -385,9 +385,8 @@ std::vector<loop::Loop> henon_orbits(const std::shared_ptr<const systems::System
   loop::Loop direction = start.base;
   direction.cosine(1, 1) = 1.0;
   direction.sine(1, 3) = -1.0;
-  start.direction = direction.modes;
-  loop::Loop small = start.base;
-  for (std::size_t n = 0; n < small.modes.size(); ++n) small.modes[n] += 1e-3 * start.direction[n];
+  start.direction.modes = direction.modes;
+  const loop::Loop small = loop::moved(start.base, start.direction, 1e-3);
   for (const loop::SymmetryElement& element : loop::find_isotropy(system->description(), small, 1e-9))
     if (element.name == "S" || element.name == "R")
       if (element.shift_numerator == 0) start.isotropy.push_back(element);

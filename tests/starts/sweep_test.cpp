@@ -56,11 +56,11 @@ TEST_P(PendulumModes, PeriodsToRounding) {
 
   // |dz(s = 0)| = 1, at rest there: cosines of the angles in the mode's ratio, sines of the velocities that belong to it.
   loop::Loop direction = loop::constant_loop(wanted.point, wanted.period(), 10);
-  ASSERT_EQ(mode->direction.size(), direction.modes.size());
-  ASSERT_EQ(mode->grid_direction.size(), direction.modes.size());
+  ASSERT_EQ(mode->direction.modes.size(), direction.modes.size());
+  ASSERT_EQ(mode->grid_direction.modes.size(), direction.modes.size());
   const double scale = 1.0 / std::hypot(1.0, wanted.ratio);
   const loop::Loop expected = test::linear_loop(wanted, scale, 10);
-  direction.modes = mode->direction;
+  direction.modes = mode->direction.modes;
   for (int i = 0; i < 4; ++i) {
     EXPECT_NEAR(direction.cosine(1, i), expected.cosine(1, i), 1e-12) << i;
     EXPECT_NEAR(direction.sine(1, i), expected.sine(1, i), 1e-12) << i;

@@ -23,10 +23,9 @@ double degrees_between(const std::vector<double>& a, const std::vector<double>& 
 }
 
 /// A step of some degrees of phase space along a direction, integrated for a period: how far it ends from its start.
-double deviation(const systems::System& system, const std::vector<double>& point, const std::vector<double>& direction,
+double deviation(const systems::System& system, const std::vector<double>& point, const loop::Tangent& direction,
                  double period, double degrees = 0.5) {
-  loop::Loop loop = loop::constant_loop(point, period, 10);
-  for (std::size_t n = 0; n < direction.size(); ++n) loop.modes[n] += degrees * degree * direction[n];
+  const loop::Loop loop = loop::moved(loop::constant_loop(point, period, 10), direction, degrees * degree);
   const std::vector<double> start = loop::state_at(loop, 0.0);
   EXPECT_NEAR(degrees_between(start, point), degrees, 1e-12);
   return degrees_between(certificate::integrate(system, start, period, 1e-14), start);

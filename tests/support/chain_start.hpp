@@ -23,7 +23,7 @@ inline continuation::Start slowest_oscillation(const OscillatorChain& chain, dou
     oscillation.modes[static_cast<std::size_t>(2 * n + i)] = amplitude;               // cos s
     oscillation.modes[static_cast<std::size_t>(5 * n + i)] = -frequency * amplitude;  // sin s
   }
-  start.direction = oscillation.modes;
+  start.direction.modes = oscillation.modes;
   const systems::Description& description = chain.description();
   start.isotropy = {{"S", false, description.equivariances[0].matrix, 1, 2},
                     {"R", true, description.reversors[0].matrix, 0, 1}};

@@ -24,7 +24,7 @@ LoopRecord sample_loop() { return {2, 1, 3.5, {1.0, 2.0, 3.0, 4.0, 5.0, 6.0}, {0
 FoundMode sample_mode() {
   FoundMode mode;
   mode.period = 3.25;
-  mode.direction = {0.5, -0.25, 1e-300, 7.0};
+  mode.direction = {{0.5, -0.25, 1e-300, 7.0}, {-1e300, 0.125}};
   mode.cutoff = 13;
   mode.isotropy = sample_isotropy();
   mode.one_direction = false;
@@ -34,7 +34,8 @@ FoundMode sample_mode() {
 SweepWork sample_sweep_work() { return {3, {0.0, 3.141592653589793}}; }
 SweepOutcome sample_sweep_outcome() { return {2, {1.5}, {sample_mode(), {}}, {"T = 6.8: twice around", ""}}; }
 BranchWork sample_branch_work() {
-  return {"0001.0002/003.q4.j1/0-", "Naïve", sample_lineage(), sample_loop(), {0.25, -0.5}, sample_isotropy(), 0.125};
+  return {"0001.0002/003.q4.j1/0-", "Naïve", sample_lineage(), sample_loop(), {{0.25, -0.5}, {1e-300}},
+          sample_isotropy(),        0.125};
 }
 BranchOutcome sample_branch_outcome() {
   return {"0001.0000",
@@ -46,7 +47,7 @@ BranchOutcome sample_branch_outcome() {
           30.0,
           2.5,
           562,
-          "period limit (T = 30)",
+          {continuation::EndReason::period_limit, "T = 30"},
           {{8.5, -1.5, sample_loop()}},
           {"a remark"},
           period_limited,
@@ -65,7 +66,7 @@ LocateOutcome sample_locate_outcome() {
           1.0,
           2.0,
           3.0,
-          "subharmonic",
+          archive::CrossingKind::subharmonic,
           4,
           2,
           1e-12,
@@ -76,7 +77,7 @@ LocateOutcome sample_locate_outcome() {
           8,
           3,
           2,
-          {{"0001.0002/003.q4.j1/0", sample_isotropy(), true, sample_loop(), {0.5}}},
+          {{"0001.0002/003.q4.j1/0", sample_isotropy(), true, sample_loop(), {{0.5}, {3.0, -0.75}}}},
           "a remark"};
 }
 
@@ -203,7 +204,7 @@ TEST(Payload, BranchOutcomeTravels) {
   EXPECT_EQ(back.last_period, sent.last_period);
   EXPECT_EQ(back.last_energy, sent.last_energy);
   EXPECT_EQ(back.last_cutoff, sent.last_cutoff);
-  EXPECT_EQ(back.end_reason, sent.end_reason);
+  EXPECT_EQ(back.end.text(), sent.end.text());
   ASSERT_EQ(back.arrival.size(), 1U);
   EXPECT_EQ(back.arrival[0].period, 8.5);
   EXPECT_EQ(back.arrival[0].energy, -1.5);
@@ -216,8 +217,8 @@ TEST(Payload, EqualWorkHasEqualBytes) { EXPECT_EQ(pack(sample_branch_work()), pa
 
 TEST(Payload, AnotherKindIsRefusedByName) {
   const std::string text = environment_error_of([] { (void)unpack_branch_work(pack(sample_sweep_outcome())); });
-  EXPECT_THAT(text, AllOf(HasSubstr("expected a branch work of version 1"),
-                          HasSubstr("got a sweep outcome of version 1"), HasSubstr("same build")));
+  EXPECT_THAT(text, AllOf(HasSubstr("expected a branch work of version 2"),
+                          HasSubstr("got a sweep outcome of version 2"), HasSubstr("same build")));
 }
 
 TEST(Payload, AnotherVersionIsRefused) {
@@ -229,7 +230,7 @@ TEST(Payload, AnotherVersionIsRefused) {
     archive << name << version;
   }
   const std::string text = environment_error_of([&] { (void)unpack_sweep_work(stream.str()); });
-  EXPECT_THAT(text, HasSubstr("got a sweep work of version 2"));
+  EXPECT_THAT(text, HasSubstr("got a sweep work of version 3"));
 }
 
 TEST(Payload, TornAtAnyByteIsRefused) {
@@ -278,13 +279,13 @@ TEST(WorkStart, PointsAlongOrAgainstTheFoundDirection) {
   BranchWork work;
   const std::vector<double> point{0.0, 3.0, 0.0, 0.0};
   work.base = record_of(loop::constant_loop(point, 5.0, 1));
-  for (int n = 0; n < 12; ++n) work.direction.push_back(n);
+  for (int n = 0; n < 12; ++n) work.direction.modes.push_back(n);
   work.lineage.side = -1;
   const continuation::Start start = start_of(work, pendulum());
   EXPECT_EQ(start.base.period, 5.0);
   EXPECT_EQ(start.base.cosine(0, 1), 3.0);
-  ASSERT_EQ(start.direction.size(), 12U);
-  for (int n = 0; n < 12; ++n) EXPECT_EQ(start.direction[static_cast<std::size_t>(n)], -n);
+  ASSERT_EQ(start.direction.modes.size(), 12U);
+  for (int n = 0; n < 12; ++n) EXPECT_EQ(start.direction.modes[static_cast<std::size_t>(n)], -n);
 }
 
 TEST(WorkTasks, SweepsComeFirstAndKeysSortByNumber) {
@@ -294,8 +295,8 @@ TEST(WorkTasks, SweepsComeFirstAndKeysSortByNumber) {
   EXPECT_LT(second.key, tenth.key);
   EXPECT_LT(tenth.priority, branch.priority);
   EXPECT_EQ(branch.key, "0001.0002/003.q4.j1/0-");
-  EXPECT_EQ(branch.kind, branch_kind);
-  EXPECT_EQ(second.kind, sweep_kind);
+  EXPECT_EQ(kind_of(branch), TaskKind::branch);
+  EXPECT_EQ(kind_of(second), TaskKind::sweep);
 }
 
 TEST(WorkTasks, BranchesThenCrossingsThenStartsThenDeeperBranches) {

@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 
 #include "orbweaver/corrector/correct.hpp"
-#include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/systems/system.hpp"
 
@@ -14,13 +14,14 @@ namespace orbweaver::bifurcation {
 
 /// One direction in which a family leaves a crossing.
 struct Direction {
-  loop::Loop base;  ///< the crossing's orbit as the born family sees it: m times around, started where the born
-                    ///< orbits' reversor, if they have one, has phase 0
-  std::vector<double> modes;  ///< in the modes of `base`, unit length
-  loop::Isotropy isotropy;    ///< of the born orbits (and of base): generators as loop::find_isotropy gives them
-  bool both_sides = false;    ///< true: -modes leads to other orbits; false: a symmetry or time shift maps the sides
-  double amplitude = 0.0;     ///< 0: exact, any amplitude leads there; else found by a search at this amplitude, below
-                              ///< which the loss hardly tells neighbouring directions apart
+  loop::Loop base;          ///< the crossing's orbit as the born family sees it: m times around, started where the born
+                            ///< orbits' reversor, if they have one, has phase 0
+  loop::Tangent tangent;    ///< in the modes of `base`, unit length
+  loop::Isotropy isotropy;  ///< of the born orbits (and of base): generators as loop::find_isotropy gives them
+  bool both_sides =
+      false;               ///< true: the opposite leads to other orbits; false: a symmetry or time shift maps the sides
+  double amplitude = 0.0;  ///< 0: exact, any amplitude leads there; else found by a search at this amplitude, below
+                           ///< which the loss hardly tells neighbouring directions apart
 };
 
 struct DirectionOptions {
@@ -35,12 +36,12 @@ struct DirectionOptions {
 ///
 /// base: the crossing's orbit gone around m times (identity time map), or the constant loop at an equilibrium.
 /// isotropy: generators of the crossing's orbit; base must have each of them, whatever its shift.
-/// kernel: orthonormal null vectors, (2K + 1) x dimension each; at an equilibrium of harmonic 1 alone, both phases of each
+/// kernel: null vectors with orthonormal modes; at an equilibrium of harmonic 1 alone, both phases of each
 /// oscillation. Throws MisuseError for sizes that disagree or vectors that are not orthonormal, NumericalError where the
 /// symmetries do not map the kernel to itself isometrically, or where directions are not isolated (a continuum).
 [[nodiscard]] std::vector<Direction> directions(const systems::System& system, const loop::Loop& base,
                                                 const loop::Isotropy& isotropy,
-                                                const std::vector<std::vector<double>>& kernel,
+                                                const std::vector<loop::Tangent>& kernel,
                                                 const DirectionOptions& options = {});
 
 /// The same at an equilibrium where several oscillations Re(v e^{is}) share one period; `kernel` holds a v a column.
@@ -49,10 +50,10 @@ struct DirectionOptions {
                                                             const Eigen::MatrixXcd& kernel, int cutoff,
                                                             const DirectionOptions& options = {});
 
-/// The orbit at base + amplitude * modes + u, u orthogonal to modes and to the time shift: never the base's own family,
-/// which is orthogonal to modes too. More harmonics are taken where the orbit needs them.
+/// The orbit at base + amplitude * along + u, u orthogonal to `along` and to the time shift: never the base's own family,
+/// which is orthogonal to it too. More harmonics are taken where the orbit needs them.
 [[nodiscard]] corrector::Result born_orbit(const systems::System& system, const loop::Loop& base,
-                                           const std::vector<double>& modes, const loop::Isotropy& isotropy,
-                                           double amplitude, const corrector::Options& options = {});
+                                           const loop::Tangent& along, const loop::Isotropy& isotropy, double amplitude,
+                                           const corrector::Options& options = {});
 
 }  // namespace orbweaver::bifurcation

@@ -12,9 +12,9 @@ namespace orbweaver::bifurcation {
 
 /// The flat directions at a crossing besides the family's own and the time shift.
 struct Kernel {
-  loop::Loop base;  ///< the crossing's orbit, as many times around as born orbits take to close
-  std::vector<std::vector<double>> vectors;  ///< orthonormal modes, (2K + 1) x dimension
-  std::vector<double> singular_values;       ///< of the loop's Jacobian in the sector, smallest first
+  loop::Loop base;                      ///< the crossing's orbit, as many times around as born orbits take to close
+  std::vector<loop::Tangent> vectors;   ///< with orthonormal modes
+  std::vector<double> singular_values;  ///< of the loop's Jacobian in the sector, smallest first
 
   [[nodiscard]] int dimension() const { return static_cast<int>(vectors.size()); }
   /// The largest singular value of the kernel, and the smallest beside it (NaN where none was computed).

@@ -11,6 +11,7 @@
 #include "orbweaver/continuation/ending.hpp"
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/corrector/correct.hpp"
+#include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 
 namespace orbweaver::continuation {
@@ -45,7 +46,7 @@ struct Options {
 /// near it are orbits. The isotropy is that of the born orbits and holds for the base loop as well.
 struct Start {
   loop::Loop base;
-  std::vector<double> direction;  ///< modes, (2 cutoff + 1) x dimension, of any length > 0
+  loop::Tangent direction;  ///< of any length > 0
   loop::Isotropy isotropy;
 };
 
@@ -66,9 +67,8 @@ struct TraceState {
 
 /// Everything a step depends on: a step is a pure function of it and of the options.
 struct Frontier {
-  Orbit orbit;                        ///< the last one; `loop` may have another cutoff than when it was accepted
-  std::vector<double> tangent_modes;  ///< unit direction of the branch there, in the modes of orbit.loop
-  double tangent_period = 0.0;
+  Orbit orbit;                  ///< the last one; `loop` may have another cutoff than when it was accepted
+  loop::Tangent tangent;        ///< unit direction of the branch there, in the modes of orbit.loop
   double next_length = 0.0;     ///< step to try next, in unknowns
   double last_increment = 0.0;  ///< arclength of the last step
   loop::Loop first;             ///< loop of orbit 0

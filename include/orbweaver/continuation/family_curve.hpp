@@ -18,9 +18,7 @@ namespace orbweaver::continuation {
 struct CurvePoint {
   double position = 0.0;  ///< arclength of known orbits, in proportion to the chord between them
   loop::Loop loop;
-  std::vector<double>
-      tangent_modes;  ///< unit direction of the family there, towards larger positions; empty where unknown
-  double tangent_period = 0.0;
+  loop::Tangent tangent;  ///< unit direction of the family there, towards larger positions; empty where unknown
 };
 
 class CurveInterval;

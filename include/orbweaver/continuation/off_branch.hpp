@@ -1,9 +1,8 @@
 #pragma once
 
-#include <span>
 #include <vector>
 
-#include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/spectrum/singular_triplets.hpp"
 #include "orbweaver/systems/system.hpp"
@@ -13,8 +12,7 @@ namespace orbweaver::continuation {
 /// A direction in which an orbit is nearly flat besides its time shift and its family: J v = sigma u.
 struct OffBranchTriplet {
   double singular_value = 0.0;  ///< sigma; the paper's off-branch eigenvalue is 2 sigma^2
-  std::vector<double> modes;    ///< v: unscaled coefficients, (2K + 1) x dimension
-  double period = 0.0;          ///< v: change of T; |v| = 1
+  loop::Tangent direction;      ///< v: |v| = 1
   std::vector<int> signs;       ///< under each generator of the isotropy: +1 kept, -1 broken; empty: not split
   double residual = 0.0;        ///< |J v - sigma u|
   double left_residual = 0.0;   ///< |J' u - sigma v|, both on the slice
@@ -26,17 +24,14 @@ struct OffBranchTriplet {
 /// whole space is taken. Matrix-free where that is faster. Throws what spectrum::smallest_singular_triplets does.
 [[nodiscard]] std::vector<OffBranchTriplet> off_branch_triplets(const systems::System& system, const loop::Loop& loop,
                                                                 const loop::Isotropy& isotropy,
-                                                                std::span<const double> tangent_modes,
-                                                                double tangent_period,
+                                                                const loop::Tangent& tangent,
                                                                 const spectrum::TripletOptions& options);
 
 /// The same within one sector: `signs` under the generators of `isotropy` (+1 kept, -1 broken), which must be involutions.
 /// Empty where the sector holds nothing but the time shift and the family's direction.
 [[nodiscard]] std::vector<OffBranchTriplet> sector_triplets(const systems::System& system, const loop::Loop& loop,
                                                             const loop::Isotropy& isotropy,
-                                                            const std::vector<int>& signs,
-                                                            std::span<const double> tangent_modes,
-                                                            double tangent_period,
+                                                            const std::vector<int>& signs, const loop::Tangent& tangent,
                                                             const spectrum::TripletOptions& options);
 
 /// The smallest eigenvalue of H over the same perturbations: the paper's off-branch eigenvalue (section III C). With
@@ -44,7 +39,7 @@ struct OffBranchTriplet {
 /// by sector (docs/performance.md); NaN where that does not converge. It belongs to the coefficients of the loop with s even
 /// in time: under a time map the loop and its tangent are expanded so first.
 [[nodiscard]] double off_branch_eigenvalue(const systems::System& system, const loop::Loop& loop,
-                                           const loop::Isotropy& isotropy, std::span<const double> tangent_modes,
-                                           double tangent_period, int krylov_from = 700);
+                                           const loop::Isotropy& isotropy, const loop::Tangent& tangent,
+                                           int krylov_from = 700);
 
 }  // namespace orbweaver::continuation

@@ -6,7 +6,7 @@
 
 #include <Eigen/Dense>
 
-#include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/systems/system.hpp"
 
@@ -28,12 +28,12 @@ struct SweepPoint {
 
 /// A family of small oscillations that starts at the fixed point.
 struct NormalMode {
-  double period = 0.0;                 ///< refined to rounding
-  double grid_period = 0.0;            ///< the swept period where the dip was seen
-  double residual = 0.0;               ///< smallest singular value of the linearised problem at `period`
-  std::vector<double> direction;       ///< modes of a loop with cutoff `SweepOptions::cutoff`, |dz(s = 0)| = 1
-  std::vector<double> grid_direction;  ///< the same from the eigenvector at `grid_period`
-  loop::Isotropy isotropy;             ///< of the small oscillations
+  double period = 0.0;           ///< refined to rounding
+  double grid_period = 0.0;      ///< the swept period where the dip was seen
+  double residual = 0.0;         ///< smallest singular value of the linearised problem at `period`
+  loop::Tangent direction;       ///< of a loop with cutoff `SweepOptions::cutoff`, |dz(s = 0)| = 1
+  loop::Tangent grid_direction;  ///< the same from the eigenvector at `grid_period`
+  loop::Isotropy isotropy;       ///< of the small oscillations
 };
 
 /// Several oscillations Re(v e^{2 pi i t/T}) of one period: which of their combinations families start along, the linear

@@ -23,8 +23,8 @@ struct RowNumber {};
 /// below are the only place where a column is defined; the schema, the segments and the atlas follow from them.
 template <class Record>
 struct ColumnDefinition {
-  using Member =
-      std::variant<RowNumber, int Record::*, double Record::*, std::string Record::*, std::vector<double> Record::*>;
+  using Member = std::variant<RowNumber, int Record::*, double Record::*, std::string Record::*, CrossingKind Record::*,
+                              std::vector<double> Record::*>;
   const char* name;
   Member member = RowNumber{};
   RowShape shape = RowShape::one;
@@ -61,6 +61,8 @@ void fill_columns(Table& table, const ColumnDefinitions<Record>& columns, const 
                 std::get<std::vector<std::int64_t>>(column.values)[row] = from.*member;
               else if constexpr (std::is_same_v<Member, double Record::*>)
                 std::get<std::vector<double>>(column.values)[row] = from.*member;
+              else if constexpr (std::is_same_v<Member, CrossingKind Record::*>)
+                std::get<std::vector<std::string>>(column.values)[row] = name_of(from.*member);
               else
                 std::get<std::vector<std::string>>(column.values)[row] = from.*member;
             }

@@ -27,6 +27,7 @@ ColumnSpec spec_of(const ColumnDefinition<Record>& column, const Header& header)
   const auto& member = column.member;
   ColumnType type = ColumnType::integer;
   if (std::holds_alternative<std::string Record::*>(member)) type = ColumnType::text;
+  if (std::holds_alternative<CrossingKind Record::*>(member)) type = ColumnType::text;
   if (std::holds_alternative<double Record::*>(member)) type = ColumnType::real;
   if (std::holds_alternative<std::vector<double> Record::*>(member)) type = ColumnType::real;
   return {column.name, type, extents_of(column.shape, header)};

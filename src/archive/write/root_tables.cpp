@@ -17,8 +17,9 @@ std::int64_t index_of(const std::vector<std::string>& keys, const std::string& k
 }
 
 auto order_of(const CrossingRecord& c) {
-  return std::tie(c.family_key, c.arclength, c.sector_q, c.sector_j, c.kind, c.multiplicity, c.kernel_dimension,
-                  c.fundamental_order, c.state);
+  const auto place = std::tie(c.family_key, c.arclength, c.sector_q, c.sector_j);
+  const auto rest = std::tie(c.multiplicity, c.kernel_dimension, c.fundamental_order, c.state);
+  return std::tuple_cat(place, std::tuple(name_of(c.kind)), rest);
 }
 
 // order[new row] = index as given.

@@ -35,8 +35,8 @@ void serialize(Archive& archive, continuation::TraceState& s, unsigned) {
 
 template <class Archive>
 void serialize(Archive& archive, continuation::Frontier& f, unsigned) {
-  archive& f.orbit& f.tangent_modes& f.tangent_period& f.next_length& f.last_increment& f.first& f.first_energy& f
-      .first_amplitude& f.amplitude& f.earlier_energy& f.earlier_period& f.trace& f.farthest& f.on_energy_limit;
+  archive& f.orbit& f.tangent& f.next_length& f.last_increment& f.first& f.first_energy& f.first_amplitude& f
+      .amplitude& f.earlier_energy& f.earlier_period& f.trace& f.farthest& f.on_energy_limit;
 }
 
 template <class Archive>

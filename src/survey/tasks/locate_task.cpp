@@ -18,16 +18,17 @@ namespace orbweaver::survey {
 
 namespace {
 
+using archive::CrossingKind;
 using bifurcation::Event;
 using bifurcation::TestFunction;
 
-std::string kind_of(const Event& event, int multiplicity) {
-  if (event.kind == Event::Kind::fold_period) return "fold-period";
-  if (event.kind == Event::Kind::fold_energy) return "fold-energy";
-  if (event.function.kind == TestFunction::Kind::krein) return "krein";
-  if (event.function.kind == TestFunction::Kind::torus) return "torus";
-  if (multiplicity == 1) return "branch-point";
-  return multiplicity == 2 ? "period-doubling" : "subharmonic";
+CrossingKind kind_of(const Event& event, int multiplicity) {
+  if (event.kind == Event::Kind::fold_period) return CrossingKind::fold_period;
+  if (event.kind == Event::Kind::fold_energy) return CrossingKind::fold_energy;
+  if (event.function.kind == TestFunction::Kind::krein) return CrossingKind::krein;
+  if (event.function.kind == TestFunction::Kind::torus) return CrossingKind::torus;
+  if (multiplicity == 1) return CrossingKind::branch_point;
+  return multiplicity == 2 ? CrossingKind::period_doubling : CrossingKind::subharmonic;
 }
 
 /// Null vectors that the multipliers at the crossing let expect.
@@ -38,16 +39,6 @@ int expected_dimension(const bifurcation::Crossing& crossing, const bifurcation:
     if (away < std::max(1e-6, 10.0 * crossing.stability.fundamental_error[n])) ++pairs;
   }
   return std::max(1, pairs) * (sector.q <= 2 ? 1 : 2);
-}
-
-/// The |dz(s = 0)| of a step of length `amplitude` along the direction.
-double change_at_start(const bifurcation::Direction& direction, double amplitude) {
-  loop::Loop step = direction.base;
-  step.modes = direction.modes;
-  std::fill(step.winding.begin(), step.winding.end(), 0.0);
-  double square = 0.0;
-  for (const double v : loop::state_at(step, 0.0)) square += v * v;
-  return amplitude * std::sqrt(square);
 }
 
 /// The run is to stop.
@@ -65,7 +56,7 @@ class Location {
   }
 
   queue::TaskOutcome run() {
-    std::string why;
+    bifurcation::NotLocated why;
     continuation::Options options = branch_options(_scene, _team);
     const loop::Isotropy isotropy = isotropy_of(_work.isotropy, _system->description());
     continuation::FamilyCurve fast(_system, isotropy, options);
@@ -106,22 +97,22 @@ class Location {
         _failure = error.what();
       }
     queue::TaskOutcome done;
-    done.failed = !_failure.empty();
-    done.reason = _failure;
+    done.failed = _failure.has_value();
+    done.reason = _failure.value_or("");
     done.children = std::move(_starts);
     done.payload = pack(_outcome);
     return done;
   }
 
-  queue::TaskOutcome without_crossing(const std::string& why) {
+  queue::TaskOutcome without_crossing(const bifurcation::NotLocated& why) {
     queue::TaskOutcome done;
     // Only minima that come near zero, and functions that vanish for other reasons, may turn out to be nothing.
-    done.failed = !_event.tangency && why.find("nothing leaves") == std::string::npos;
-    done.reason =
-        fmt::format("the event between arclength {:.6g} and {:.6g} was not located: {}", _work.from, _work.to, why);
-    _outcome.remark = why;
+    done.failed = !_event.tangency && why.reason != bifurcation::NotLocated::Reason::no_event;
+    _outcome.remark = to_text(why);
+    if (done.failed)
+      done.reason = fmt::format("the event between arclength {:.6g} and {:.6g} was not located: {}", _work.from,
+                                _work.to, _outcome.remark);
     done.payload = pack(_outcome);
-    if (!done.failed) done.reason.clear();
     return done;
   }
 
@@ -174,9 +165,7 @@ class Location {
       leaving.isotropy = record_of(direction.isotropy);
       leaving.both_sides = direction.both_sides;
       leaving.base = record_of(sketch_of(direction.base));
-      loop::Loop vector = direction.base;
-      vector.modes = direction.modes;
-      leaving.direction = loop::with_cutoff(vector, leaving.base.cutoff).modes;
+      leaving.direction = loop::with_cutoff(direction.tangent, leaving.base.cutoff, leaving.base.dimension);
       add_starts(direction, leaving);
       _outcome.leaving.push_back(std::move(leaving));
     }
@@ -186,9 +175,9 @@ class Location {
     _outcome.remark = fmt::format("no flat direction besides the family's own (smallest singular value {:.2g})",
                                   kernel.singular_values.empty() ? archive::not_computed : kernel.singular_values[0]);
     if (_event.tangency) {  // a minimum that came near zero, but is none
-      _outcome.kind.clear();
+      _outcome.kind.reset();
     } else if (_event.function.sector.q == 1 && turns_in_energy(family)) {
-      _outcome.kind = "fold-energy";
+      _outcome.kind = CrossingKind::fold_energy;
     } else {
       _failure = _outcome.remark;
     }
@@ -211,9 +200,11 @@ class Location {
                                 leaving.key.substr(_work.key.size()));
       branch.lineage = {leaving.key, _work.key, _work.lineage.depth + 1, _outcome.multiplicity, side};
       branch.base = record_of(direction.base);
-      branch.direction = direction.modes;
+      branch.direction = direction.tangent;
       branch.isotropy = leaving.isotropy;
-      branch.amplitude = direction.amplitude > 0.0 ? change_at_start(direction, direction.amplitude) : 0.0;
+      branch.amplitude = direction.amplitude > 0.0
+                             ? direction.amplitude * loop::change_at_start(direction.base, direction.tangent)
+                             : 0.0;
       _starts.push_back(task_of(start));
     }
   }
@@ -226,7 +217,7 @@ class Location {
   Event _event;
   LocateOutcome _outcome;
   std::vector<queue::Task> _starts;
-  std::string _failure;
+  std::optional<std::string> _failure;
 };
 
 }  // namespace
