@@ -353,17 +353,23 @@ class Elimination final : public BoxScheme {
     Scalar pivot;  // 1 / R(c, c)
   };
   [[nodiscard]] Packet* reflector(int c) { return &_reflectors[at(2 * c * n())]; }
-  void reflect(int c, Packet* column) {
-    const int from = c * width / lanes;
+  /// So many columns at once, one behind the other: their sums do not wait for each other.
+  template <int Count>
+  void reflect(int c, Packet* columns) {
+    const int length = 2 * n();
     const Packet* v = reflector(c);
-    const Scalar part = _reflections[at(c)].scale * total(products(v + from, column + from, 2 * n() - from));
-    for (int a = from; a < 2 * n(); ++a) column[a] -= v[a] * part;
+    Packet sums[Count] = {};
+    for (int a = c * width / lanes; a < length; ++a)
+      for (int b = 0; b < Count; ++b) sums[b] += v[a] * columns[b * length + a];
+    Scalar parts[Count];
+    for (int b = 0; b < Count; ++b) parts[b] = _reflections[at(c)].scale * total(sums[b]);
+    for (int a = c * width / lanes; a < length; ++a)
+      for (int b = 0; b < Count; ++b) columns[b * length + a] -= v[a] * parts[b];
   }
   /// QR of the d columns of `_panel`: reflectors, and R above the diagonal there, zeros elsewhere in its packets.
   void reduce() {
     for (int c = 0; c < d(); ++c) {
       Packet* column = &_panel[at(2 * c * n())];
-      for (int b = 0; b < c; ++b) reflect(b, column);
       Packet* v = reflector(c);
       std::copy_n(column, 2 * n(), v);
       std::fill_n(scalars(v), c, Scalar{});
@@ -373,21 +379,30 @@ class Elimination final : public BoxScheme {
       const Scalar alpha = first > 0.0 ? -norm : norm;
       _reflections[at(c)] = {1.0 / (alpha * (alpha - first)), 1.0 / alpha};
       first -= alpha;
+      int b = c + 1;
+      for (; b + 4 <= d(); b += 4) reflect<4>(c, &_panel[at(2 * b * n())]);
+      for (; b < d(); ++b) reflect<1>(c, &_panel[at(2 * b * n())]);
     }
   }
-  /// Column b of invert = R^-1 (first rows of Q') and of keep, the other rows.
+  /// Columns from b on of invert = R^-1 (first rows of Q') and of keep, the other rows.
+  template <int Count>
   void invert(int b, const Step& s) {
-    Packet* q = _column.data();
-    std::fill_n(q, 2 * n(), Packet{});
-    scalars(b < d() ? q : q + n())[b % d()] += 1.0;
-    for (int c = 0; c < d(); ++c) reflect(c, q);
+    const int length = 2 * n();
+    Packet* q = _columns.data();
+    std::fill_n(q, Count * length, Packet{});
+    for (int k = 0; k < Count; ++k) scalars(q + k * length + (b + k < d() ? 0 : n()))[(b + k) % d()] += 1.0;
+    for (int c = 0; c < d(); ++c) reflect<Count>(c, q);
     for (int a = d() - 1; a >= 0; --a) {
-      const Scalar x = scalars(q)[a] *= _reflections[at(a)].pivot;
-      const Packet* r = &_panel[at(2 * a * n())];
-      for (int i = 0; i * lanes < a * width; ++i) q[i] -= r[i] * x;
+      const Packet* r = &_panel[at(a * length)];
+      Scalar x[Count];
+      for (int k = 0; k < Count; ++k) x[k] = scalars(q + k * length)[a] *= _reflections[at(a)].pivot;
+      for (int i = 0; i * lanes < a * width; ++i)
+        for (int k = 0; k < Count; ++k) q[k * length + i] -= r[i] * x[k];
     }
-    std::copy_n(q, n(), s.invert + b * n());
-    std::copy_n(q + n(), n(), s.keep + b * n());
+    for (int k = 0; k < Count; ++k) {
+      std::copy_n(q + k * length, n(), s.invert + (b + k) * n());
+      std::copy_n(q + k * length + n(), n(), s.keep + (b + k) * n());
+    }
   }
 
   // The relation carried along, first y_left + next y_j + border p = .., is combined with that of cell j, and y_j
@@ -398,7 +413,7 @@ class Elimination final : public BoxScheme {
     _border.assign(at(_borders * n()), Packet{});
     for (std::vector<Packet>* columns : {&_panel, &_reflectors}) columns->assign(at(2 * square()), Packet{});
     _reflections.resize(at(d()));
-    _column.resize(at(2 * n()));
+    _columns.resize(at(8 * n()));
     Vector column = vector();
     load_blocks(m, 0, _first.data(), _next.data());
     for (int p = 0; p < _borders; ++p) load(m.columns, m.column_stride, p, &_border[at(p * n())]);
@@ -410,7 +425,9 @@ class Elimination final : public BoxScheme {
         std::copy_n(&_here[at(b * n())], n(), &_panel[at((2 * b + 1) * n())]);
       }
       reduce();
-      for (int b = 0; b < 2 * d(); ++b) invert(b, s);
+      int b = 0;
+      for (; b + 4 <= 2 * d(); b += 4) invert<4>(b, s);
+      if (b < 2 * d()) invert<2>(b, s);
       multiply(s.invert, _first.data(), s.to_left);
       multiply(s.invert + square(), _ahead.data(), s.to_next);
       multiply(s.keep, _first.data(), _kept.data());
@@ -481,7 +498,7 @@ class Elimination final : public BoxScheme {
   core::Team* _team = nullptr;
   mutable std::vector<Packet> _steps, _border_steps;
   std::vector<Packet> _first, _next, _border;  // of the relation carried along
-  std::vector<Packet> _here, _ahead, _kept, _panel, _reflectors, _column;
+  std::vector<Packet> _here, _ahead, _kept, _panel, _reflectors, _columns;
   std::vector<Reflection> _reflections;
   std::vector<double> _relations;
   CondensedBox _condensed;
@@ -491,10 +508,12 @@ class Elimination final : public BoxScheme {
 
 }  // namespace
 
-// Sizes known to the compiler are those of the systems at hand: others take 1.1 to 3 times as long a coordinate.
+// Sizes known to the compiler are those of the systems at hand. Known at run time, a solve takes 58 us where it takes 27 (line,
+// d = 8, 201 cells).
 std::unique_ptr<BoxScheme> BoxScheme::of_dimension(int dimension, Storage storage) {
   if (storage == Storage::line) {
     if (dimension <= lanes) return std::make_unique<Elimination<double, 1>>(dimension);
+    if (dimension <= 2 * lanes) return std::make_unique<Elimination<double, 2>>(dimension);
     return std::make_unique<Elimination<double, 0>>(dimension);
   }
   switch (dimension) {

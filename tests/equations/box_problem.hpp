@@ -7,7 +7,7 @@
 
 #include "box_scheme.hpp"
 
-namespace orbweaver::equations::test {
+namespace orbweaver::test {
 
 /// Random numbers for every part of a box scheme, and the same as one dense matrix.
 class BoxProblem {
@@ -51,10 +51,10 @@ class BoxProblem {
   }
 
   /// With this rank's cells.
-  void factor(BoxScheme& box, core::Team* team = nullptr) const {
+  void factor(equations::BoxScheme& box, core::Team* team = nullptr) const {
     const auto [d, m, b, closed, strength] = _shape;
-    const core::Team::Part mine = cells_of(team, m);
-    BoxScheme::Matrices matrices;
+    const core::Team::Part mine = equations::cells_of(team, m);
+    equations::BoxScheme::Matrices matrices;
     matrices.cells = m;
     matrices.first = mine.begin;
     matrices.count = mine.end - mine.begin;
@@ -74,14 +74,15 @@ class BoxProblem {
   }
 
   /// What remains of a random right-hand side, relative to matrix and solution.
-  [[nodiscard]] double residual(const BoxScheme& box, bool transposed) const {
+  [[nodiscard]] double residual(const equations::BoxScheme& box, bool transposed) const {
     const Eigen::VectorXd side = right_side();
     const Eigen::VectorXd x = solved(box, side, transposed);
     const Eigen::VectorXd left_over = (transposed ? Eigen::VectorXd(_dense.transpose() * x) : _dense * x) - side;
     return left_over.lpNorm<Eigen::Infinity>() /
            (_dense.cwiseAbs().rowwise().sum().maxCoeff() * x.lpNorm<Eigen::Infinity>());
   }
-  [[nodiscard]] Eigen::VectorXd solved(const BoxScheme& box, const Eigen::VectorXd& side, bool transposed) const {
+  [[nodiscard]] Eigen::VectorXd solved(const equations::BoxScheme& box, const Eigen::VectorXd& side,
+                                       bool transposed) const {
     std::vector<double> x(index(_shape.dimension * _stride + _shape.borders));
     const auto place = [&](int n) {
       const int i = n / nodes();
@@ -124,4 +125,4 @@ class BoxProblem {
   Eigen::MatrixXd _dense;
 };
 
-}  // namespace orbweaver::equations::test
+}  // namespace orbweaver::test
