@@ -12,6 +12,24 @@ namespace {
 using VectorMap = Eigen::Map<Eigen::VectorXd>;
 using ConstVectorMap = Eigen::Map<const Eigen::VectorXd>;
 
+// Of the normal equations with a unit diagonal: what is added there, and the least square of a pivot. Both are at the
+// rounding of their entries, so that pairs that depend on each other get some weights and none that are huge.
+constexpr double regularisation = 1e-14;
+constexpr double least_pivot = 1e-16;
+// Keeps the scale of a pair without any change finite.
+constexpr double least_square = 1e-300;
+
+// The estimated error after a change is that change times the rate of contraction, times this for safety; one lucky
+// iteration is not believed to contract by more than `least_rate`.
+constexpr double safety = 5.0;
+constexpr double least_rate = 0.05;
+// A change at rounding ends a solve only after so many iterations with one factor: the first ones may be small by chance.
+constexpr int before_rounding = 3;
+// Stagnant: after so many iterations with one factor none of the last four shrank below this part of the first of them.
+constexpr int before_stagnation = 8;
+constexpr int watched = 4;
+constexpr double shrinks = 0.3;
+
 }  // namespace
 
 void AndersonSolver::resize(int size) {
@@ -39,21 +57,21 @@ void AndersonSolver::mix(std::vector<double>& u) {
   VectorMap point(u.data(), _size);
   const ConstVectorMap change(_last_change.data(), _size);
   if (used > 0) {
-    // Normal equations, scaled to a unit diagonal and slightly regularised.
+    // Normal equations, scaled to a unit diagonal and slightly regularised. Not Eigen's LLT, which has no least pivot.
     double scale[depth];
     double matrix[depth][depth];
     double y[depth];
-    for (int a = 0; a < used; ++a) scale[a] = 1.0 / std::sqrt(_gram[a][a] + 1e-300);
+    for (int a = 0; a < used; ++a) scale[a] = 1.0 / std::sqrt(_gram[a][a] + least_square);
     for (int a = 0; a < used; ++a) {
       y[a] = scale[a] * ConstVectorMap(_change_differences.data() + a * _size, _size).dot(change);
       for (int b = 0; b <= a; ++b) matrix[a][b] = scale[a] * scale[b] * _gram[a][b];
-      matrix[a][a] += 1e-14;
+      matrix[a][a] += regularisation;
     }
     for (int a = 0; a < used; ++a)
       for (int b = 0; b <= a; ++b) {
         double sum = matrix[a][b];
         for (int c = 0; c < b; ++c) sum -= matrix[a][c] * matrix[b][c];
-        matrix[a][b] = a == b ? std::sqrt(std::max(sum, 1e-16)) : sum / matrix[b][b];
+        matrix[a][b] = a == b ? std::sqrt(std::max(sum, least_pivot)) : sum / matrix[b][b];
       }
     for (int a = 0; a < used; ++a) {
       for (int c = 0; c < a; ++c) y[a] -= matrix[a][c] * y[c];
@@ -71,7 +89,7 @@ void AndersonSolver::mix(std::vector<double>& u) {
 }
 
 AndersonSolver::Result AndersonSolver::solve(PreconditionedEquations& equations, std::vector<double>& u,
-                                             bool has_factor, const Options& options) {
+                                             bool has_factor, const Options& options, const Monitor& monitor) {
   resize(equations.size());
   _count = 0;
   _prediction = u;
@@ -83,7 +101,7 @@ AndersonSolver::Result AndersonSolver::solve(PreconditionedEquations& equations,
     result.factored = true;
   }
   int since_factor = 0;
-  double recent[4] = {};  // the last sizes, a ring
+  double recent[watched] = {};  // the last sizes, a ring
   for (;; ++since_factor) {
     equations.residual(u.data(), _change.data());
     equations.precondition(_change.data());
@@ -93,6 +111,7 @@ AndersonSolver::Result AndersonSolver::solve(PreconditionedEquations& equations,
         std::max(change.head(_size - borders).lpNorm<Eigen::Infinity>(),
                  borders == 0 ? 0.0 : options.border_scale * change.tail(borders).lpNorm<Eigen::Infinity>());
     if (result.iterations == 1) result.first_change = size;
+    if (monitor) monitor(result.iterations - 1, size);
     if (!change.allFinite()) {
       result.finite = false;
       if (result.factored) return result;
@@ -101,8 +120,8 @@ AndersonSolver::Result AndersonSolver::solve(PreconditionedEquations& equations,
     }
     const bool diverged = !result.finite || !(size < options.divergence);
     if (!diverged && since_factor > 0) {
-      const double rate = std::clamp(size / result.last_change, 0.05, 1.0);
-      if (5.0 * rate * size < options.tolerance || (since_factor > 3 && size < options.rounding)) {
+      const double rate = std::clamp(size / result.last_change, least_rate, 1.0);
+      if (safety * rate * size < options.tolerance || (since_factor > before_rounding && size < options.rounding)) {
         VectorMap(u.data(), _size) -= change;
         result.last_change = size;
         result.converged = true;
@@ -110,13 +129,17 @@ AndersonSolver::Result AndersonSolver::solve(PreconditionedEquations& equations,
       }
     }
     // As far as the digits go: the changes are small and shrink no more. What they leave is the loss's to judge.
-    recent[since_factor % 4] = size;
-    const bool stagnant =
-        since_factor >= 8 && size<options.stagnation * options.tolerance&& * std::min_element(recent, recent + 4)> 0.3 *
-                                 recent[(since_factor + 1) % 4];
+    recent[since_factor % watched] = size;
+    const double least = *std::min_element(recent, recent + watched);
+    const bool stagnant = since_factor >= before_stagnation && size < options.stagnation * options.tolerance &&
+                          least > shrinks * recent[(since_factor + 1) % watched];
     if (stagnant) {
       result.last_change = size;
       result.converged = true;
+      return result;
+    }
+    if (result.iterations >= options.most_iterations) {
+      result.last_change = size;
       return result;
     }
     if (diverged || since_factor > (result.factored ? options.fresh_iterations : options.stale_iterations)) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "chunked_box.hpp"
+#include "box_scheme.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/equations/anderson.hpp"
@@ -20,7 +20,7 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 bool Collocation::applies(const systems::System& system, const loop::FundamentalDomain& domain) {
-  if (!ChunkedBox::of_dimension(system.dimension()) || !domain.is_square()) return false;
+  if (!domain.is_square()) return false;
   return domain.reversor.has_value() || system.structure().conservative();
 }
 
@@ -34,8 +34,8 @@ Collocation::Collocation(const systems::System& system, const loop::FundamentalD
       _borders(domain.reversor ? 1 : 2),
       _keeps_mean(domain.coordinates_with_mean()),
       _ends(domain.ends()),
-      _box(ChunkedBox::of_dimension(system.dimension())) {
-  core::require(cells % ChunkedBox::lanes == 0, "the cells of a domain must fill the lanes of the box scheme");
+      _box(BoxScheme::of_dimension(system.dimension(), BoxScheme::Storage::lanes)) {
+  core::require(cells % BoxScheme::lanes == 0, "the cells of a domain must fill the lanes of the box scheme");
   const double h = _grid.spacing();
   for (int j = 0; j < cells; ++j) _density.push_back(_map.density((j + 0.5) * h));
   for (int j = 0; j <= cells; ++j) _node_density.push_back(_map.density(j * h));
@@ -145,8 +145,10 @@ void Collocation::factor(const double* u) {
       _columns[at(i * stride + j)] = -c * _f[at(i * m + j)] / period;
       if (_borders > 1) _columns[at((d + i) * stride + j)] = -c * _gradient[at(i * m + j)];
     }
-  ChunkedBox::Matrices matrices;
+  BoxScheme::Matrices matrices;
   matrices.cells = m;
+  matrices.count = m;
+  matrices.column_stride = stride;
   matrices.stride = stride;
   matrices.blocks = _blocks.data();
   matrices.columns = _columns.data();

@@ -223,7 +223,7 @@ void LoopEquations::factor(const systems::System& system, const loop::Loop& loop
   const core::LogEvent event(core::Event::factor);
   const int nodes = 2 * loop.cutoff + 1;
   const loop::FourierGrid& grid = loop::FourierGrid::of_size(nodes);
-  const core::Team::Part mine = boxes_of(_team, nodes);
+  const core::Team::Part mine = cells_of(_team, nodes);
   const auto boxes = static_cast<std::size_t>(mine.end - mine.begin);
   const auto n = static_cast<std::size_t>(nodes);
   const auto d = static_cast<std::size_t>(loop.dimension);
@@ -234,41 +234,34 @@ void LoopEquations::factor(const systems::System& system, const loop::Loop& loop
     std::copy_n(z.begin() + static_cast<std::ptrdiff_t>(i * n) + mine.begin, boxes,
                 z.begin() + static_cast<std::ptrdiff_t>(i * boxes));
   z.resize(d * boxes);
-  BoxScheme::Matrices m;
-  m.dimension = loop.dimension;
-  m.nodes = nodes;
-  m.first = mine.begin;
-  m.boxes = mine.end - mine.begin;
-  m.spacing = h / rate;
-  m.blocks.resize(d * d * boxes);
+  std::vector<double> blocks(d * d * boxes);
   std::vector<double> f(d * boxes);
-  system.field_jacobian(boxes, z.data(), f.data(), m.blocks.data());
+  system.field_jacobian(boxes, z.data(), f.data(), blocks.data());
   std::vector<double> density;
   if (!loop.time_map.is_identity()) {
     for (int j = mine.begin; j < mine.end; ++j)
       density.push_back(loop.time_map.density(h * (static_cast<double>(j) + 0.5)));
     multiply_by(density, f);
-    multiply_by(density, m.blocks);
+    multiply_by(density, blocks);
   }
 
   const auto borders = static_cast<Eigen::Index>(_slice.conditions().cols());
-  m.columns = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(d * boxes), borders);
-  m.rows = Eigen::MatrixXd::Zero(borders, static_cast<Eigen::Index>(d * n));
-  m.corner = Eigen::MatrixXd::Zero(borders, borders);
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(d * boxes), borders);
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(d * n), borders);
+  Eigen::MatrixXd corner = Eigen::MatrixXd::Zero(borders, borders);
   Eigen::Index column = 0;
   if (_unknowns.period) {
     // d/dT of w r is -(rate / T) z', and z' rate = w f at an orbit.
-    for (std::size_t q = 0; q < d * boxes; ++q) m.columns(static_cast<Eigen::Index>(q), column) = -f[q] / loop.period;
-    m.corner.col(column) = _slice.conditions().row(_unknowns.size() - 1).transpose();
+    for (std::size_t q = 0; q < d * boxes; ++q) columns(static_cast<Eigen::Index>(q), column) = -f[q] / loop.period;
+    corner.col(column) = _slice.conditions().row(_unknowns.size() - 1).transpose();
     ++column;
   }
   if (_unfoldings > 0) {
     std::vector<double> gradient = energy_gradients(system, boxes, z);
     if (!density.empty()) multiply_by(density, gradient);
-    for (std::size_t q = 0; q < d * boxes; ++q) m.columns(static_cast<Eigen::Index>(q), column) = -gradient[q];
+    for (std::size_t q = 0; q < d * boxes; ++q) columns(static_cast<Eigen::Index>(q), column) = -gradient[q];
   }
   // c . u in coefficients is the mean over nodes of a loop with twice c's harmonics; y enters through the filter of z = F(y).
-  std::vector<double> nodal(d * n);
   for (Eigen::Index r = 0; r < borders; ++r) {
     std::vector<double> modes((2 * static_cast<std::size_t>(loop.cutoff) + 1) * d, 0.0);
     const Eigen::VectorXd condition = _slice.conditions().col(r);
@@ -276,10 +269,24 @@ void LoopEquations::factor(const systems::System& system, const loop::Loop& loop
         std::span<const double>(condition.data(), static_cast<std::size_t>(_unknowns.subspace.size())), modes);
     for (std::size_t q = d; q < modes.size(); ++q) modes[q] *= 2.0;
     smooth(modes, d, 0.5 * h);
-    grid.synthesize(loop.cutoff, loop.dimension, modes.data(), nodal.data());
-    for (std::size_t q = 0; q < d * n; ++q) m.rows(r, static_cast<Eigen::Index>(q)) = nodal[q] / nodes;
+    grid.synthesize(loop.cutoff, loop.dimension, modes.data(), rows.col(r).data());
   }
-  _box = factor_box_scheme(m, _team);
+  rows /= nodes;
+  const Eigen::MatrixXd corner_by_rows = corner.transpose();
+  BoxScheme::Matrices m;
+  m.cells = nodes;
+  m.first = mine.begin;
+  m.count = mine.end - mine.begin;
+  m.borders = static_cast<int>(borders);
+  m.difference = rate / h;
+  m.blocks = blocks.data();
+  m.columns = columns.data();
+  m.column_stride = m.count;
+  m.rows = rows.data();
+  m.stride = nodes;
+  m.corner = corner_by_rows.data();
+  _box = BoxScheme::of_dimension(loop.dimension, BoxScheme::Storage::line);
+  _box->factor(m, _team);
 }
 
 void LoopEquations::precondition(const In& r, Out out) const {
@@ -296,7 +303,7 @@ void LoopEquations::precondition(const In& r, Out out) const {
   shift(_modes, d, half_cell);
   grid.synthesize(cutoff, dimension, _modes.data(), _boxed.data());
   _boxed.tail(borders) = r.tail(borders);
-  _box->solve(_boxed);
+  _box->solve(_boxed.data());
   grid.analyze(cutoff, dimension, _boxed.data(), _modes.data());
   smooth(_modes, d, half_cell);
   _unknowns.subspace.project(_modes, view(out, _unknowns.subspace.size()));
@@ -318,7 +325,7 @@ void LoopEquations::precondition_transposed(const In& u, Out out) const {
   scale(_modes, d, 1.0 / nodes, 2.0 / nodes);
   grid.synthesize(cutoff, dimension, _modes.data(), _boxed.data());
   _boxed.tail(borders) = u.tail(borders);
-  _box->solve_transposed(_boxed);
+  _box->solve_transposed(_boxed.data());
   grid.analyze(cutoff, dimension, _boxed.data(), _modes.data());
   scale(_modes, d, nodes, 0.5 * nodes);
   shift(_modes, d, -half_cell);

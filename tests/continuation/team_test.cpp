@@ -26,6 +26,7 @@ Traced trace_with(core::Team* team, const std::shared_ptr<const test::Oscillator
   options.start_amplitude = 0.3;
   options.step_limit = 4;
   options.corrector.team = team;
+  options.corrector.method = corrector::Method::newton_krylov;  // what a team divides; collocation it repeats
   Branch branch(system, test::slowest_oscillation(*system), options);
   Traced out;
   while (const std::optional<Orbit> orbit = branch.advance()) out.orbits.push_back(*orbit);

@@ -10,6 +10,7 @@
 #include "orbweaver/equations/orbit_solver.hpp"
 #include "orbweaver/loss/linearization.hpp"
 #include "orbweaver/systems/system.hpp"
+#include "support/oscillator_chain.hpp"
 
 namespace orbweaver::equations {
 namespace {
@@ -95,6 +96,32 @@ TEST_P(Equations, PreconditionerSolvesWhatDoesNotDependOnTheStates) {
   for (std::size_t n = 0; n < u.size(); ++n) EXPECT_NEAR(r[n], v[n], 1e-10) << n;
 }
 
+// A chain of any number of particles: no dimension is left out.
+TEST(Collocation, AppliesToAnyDimension) {
+  for (const int particles : {1, 4, 5, 7}) {
+    const test::OscillatorChain chain(particles);
+    const int d = chain.dimension();
+    loop::Isotropy isotropy{test::element_of(chain.description(), "S", 1, 2),
+                            test::element_of(chain.description(), "R")};
+    const loop::FundamentalDomain domain = loop::fundamental_domain(isotropy, d);
+    ASSERT_TRUE(Collocation::applies(chain, domain)) << d;
+    const std::vector<double> zero(static_cast<std::size_t>(d), 0.0);
+    Collocation equations(chain, domain, zero, zero, 16, {});
+    loop::Loop loop = loop::constant_loop(zero, 5.0, equations.grid().cutoff() - 1);
+    loop = test::random_loop_in(loop::Subspace(d, loop.cutoff, isotropy), loop, 5, 0.4);
+    std::vector<double> u(static_cast<std::size_t>(equations.size()));
+    equations.from_loop(loop, u.data());
+    equations.set_conditions(test::random_values(u.size(), 9), u);
+    equations.factor(u.data());
+    std::vector<double> v(u.size(), 0.0);
+    v[static_cast<std::size_t>(equations.period_at())] = 1.0;
+    std::vector<double> r(u.size());
+    equations.apply_jacobian(v.data(), r.data());
+    equations.precondition(r.data());
+    for (std::size_t n = 0; n < u.size(); ++n) EXPECT_NEAR(r[n], v[n], 1e-10) << d;
+  }
+}
+
 TEST_P(Equations, QualityIsThatOfTheLoop) {
   const loop::Loop loop = sample();
   const std::vector<double> u = point_of(loop);
@@ -176,6 +203,66 @@ TEST(OrbitSolver, ConvergesWithAKeptFactorAndRenewsAPoorOne) {
   EXPECT_TRUE(renewed.factored);
   EXPECT_EQ(renewed.factor_point.size(), 3u);
   EXPECT_NEAR(u[2], std::sqrt(1200.0), 1e-10);
+}
+
+/// A value in the options database while it lives.
+class Option {
+ public:
+  Option(const char* name, const char* value) : _name(name) { PetscOptionsSetValue(nullptr, name, value); }
+  ~Option() { PetscOptionsClearValue(nullptr, _name); }
+  Option(const Option&) = delete;
+  Option& operator=(const Option&) = delete;
+
+ private:
+  const char* _name;
+};
+
+AndersonSolver::Result solved_from_afar() {
+  Square equations;
+  OrbitSolver solver;
+  std::vector<double> u{1.5, 1.8, 2.4};
+  return solver.solve(equations, u, false, {});
+}
+
+TEST(OrbitSolver, TheOptionsDatabaseGoesFirst) {
+  const AndersonSolver::Result usual = solved_from_afar();
+  ASSERT_TRUE(usual.converged);
+  ASSERT_GT(usual.iterations, 4);
+  {
+    const Option most("-collocation_tao_max_it", "2");
+    const AndersonSolver::Result stopped = solved_from_afar();
+    EXPECT_FALSE(stopped.converged);
+    EXPECT_EQ(stopped.iterations, 2);
+  }
+  {
+    const Option tolerance("-collocation_tao_gatol", "1e-2");
+    const AndersonSolver::Result loose = solved_from_afar();
+    EXPECT_TRUE(loose.converged);
+    EXPECT_LT(loose.iterations, usual.iterations);
+  }
+  {
+    const Option divergence("-collocation_divergence", "1e-3");
+    EXPECT_FALSE(solved_from_afar().converged);
+  }
+  {
+    const Option fresh("-collocation_fresh_iterations", "1");
+    EXPECT_FALSE(solved_from_afar().converged);
+  }
+  EXPECT_EQ(solved_from_afar().iterations, usual.iterations);
+}
+
+TEST(AndersonSolver, ShowsItsIterations) {
+  Square equations;
+  AndersonSolver solver;
+  std::vector<double> u{1.5, 1.8, 2.4};
+  std::vector<double> sizes;
+  const AndersonSolver::Result result = solver.solve(equations, u, false, {}, [&](int iteration, double size) {
+    EXPECT_EQ(iteration, static_cast<int>(sizes.size()));
+    sizes.push_back(size);
+  });
+  ASSERT_EQ(static_cast<int>(sizes.size()), result.iterations);
+  EXPECT_EQ(sizes.front(), result.first_change);
+  EXPECT_EQ(sizes.back(), result.last_change);
 }
 
 TEST(OrbitSolver, SaysWhereItFails) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "box_problem.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/team.hpp"
 #include "orbweaver/equations/loop_equations.hpp"
@@ -75,6 +76,24 @@ TEST_F(WithTeam, ThePreconditionerIsTheSameInverse) {
   alone.equations.precondition_transposed(right, expected);
   shared.equations.precondition_transposed(right, found);
   EXPECT_LT(difference(found, expected), 1e-12);
+}
+
+TEST_F(WithTeam, EliminatesAStretchAMember) {
+  for (const bool closed : {false, true})
+    for (const int dimension : {1, 3, 4, 5, 8})
+      for (const int cells : {2, 7, 24})
+        for (const int borders : {1, 2, 5}) {
+          const test::BoxProblem problem({dimension, cells, borders, closed});
+          const auto box = BoxScheme::of_dimension(dimension, BoxScheme::Storage::line);
+          problem.factor(*box, &team);
+          for (const bool transposed : {false, true})
+            EXPECT_LT(problem.residual(*box, transposed), 1e-14) << dimension << ' ' << cells << ' ' << borders;
+        }
+  // With lanes every member has four stretches of its own.
+  const test::BoxProblem problem({4, 24, 2});
+  const auto box = BoxScheme::of_dimension(4, BoxScheme::Storage::lanes);
+  problem.factor(*box, &team);
+  for (const bool transposed : {false, true}) EXPECT_LT(problem.residual(*box, transposed), 1e-14);
 }
 
 TEST_F(WithTeam, SolvesOnTheTeamsCommunicatorGiveTheSolution) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "orbweaver/equations/preconditioned_equations.hpp"
@@ -11,16 +12,20 @@ namespace orbweaver::equations {
 /// back substitution an iteration. The factor is renewed where it does not contract well enough.
 class AndersonSolver {
  public:
+  /// What a caller leaves at its default is a property of the method, not of the problem.
   struct Options {
     double tolerance = 1e-12;  ///< on the estimated error of y, absolute
     double rounding = 3e-13;   ///< a change this small is as far as double precision goes
     int scaled_from = -1;      ///< changes of unknowns from here on (the borders) count `border_scale` times; -1: none
     double border_scale = 1.0;
     double stagnation = 1000.0;  ///< changes below this many tolerances that shrink no more are as far as digits go
-    double divergence = 5.0;     ///< a change this large is a failure
-    int stale_iterations = 10;   ///< with a kept factor; then it is renewed
+    double divergence = 5.0;     ///< a change this large is a failure: angles and momenta of an orbit are of order 1
+    int stale_iterations = 10;   ///< with a kept factor; then it is renewed, which costs as much as some ten iterations
     int fresh_iterations = 18;   ///< with a new factor; then the solve has failed
+    int most_iterations = 1000;  ///< over all factors: a bound from outside, which the two above do not reach
   };
+  /// Called in each iteration with its number, from 0, and the size of the change: its largest entry, borders scaled.
+  using Monitor = std::function<void(int iteration, double size)>;
   struct Result {
     bool converged = false;
     bool finite = true;
@@ -33,9 +38,10 @@ class AndersonSolver {
 
   /// Solves from the prediction in `u` (changed in place). `has_factor`: the preconditioner at hand is usable.
   [[nodiscard]] Result solve(PreconditionedEquations& equations, std::vector<double>& u, bool has_factor,
-                             const Options& options);
+                             const Options& options, const Monitor& monitor = {});
 
  private:
+  // Pairs that are mixed: as many as a solve with a kept factor has iterations, so that it forgets none.
   static constexpr int depth = 10;
   void resize(int size);
   void remember(int n);

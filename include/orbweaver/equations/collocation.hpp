@@ -11,7 +11,7 @@
 
 namespace orbweaver::equations {
 
-class ChunkedBox;
+class BoxScheme;
 
 /// The bordered equations of an orbit on a fundamental domain, and their box preconditioner (docs/mathematics.md, "The
 /// fast solve"):
@@ -23,7 +23,9 @@ class ChunkedBox;
 /// the conserved energy, zero at an orbit).
 class Collocation final : public PreconditionedEquations {
  public:
-  /// True where domain and system give a square problem that this class covers.
+  /// True where domain and system give a square problem that this class covers. Any dimension: nothing of this is divided
+  /// by a team, and need not be. Five orbits of a chain of oscillators take one rank 0.8, 1.2, 12 and 66 ms (d = 8, 16, 32,
+  /// 64); as loops they take one rank 5.6, 16, 80 and 471 ms, and a team of two 5.5, 15, 58 and 316 ms.
   [[nodiscard]] static bool applies(const systems::System& system, const loop::FundamentalDomain& domain);
 
   /// `centre`: a point that the symmetries of the domain map to itself, to which y is relative; `winding` as in Loop.
@@ -98,7 +100,7 @@ class Collocation final : public PreconditionedEquations {
   loop::FundamentalDomain::Ends _ends;
   std::vector<double> _weights;
   std::vector<double> _reference;
-  std::unique_ptr<ChunkedBox> _box;
+  std::unique_ptr<BoxScheme> _box;
   double _jacobian_rms = 0.0;
   mutable std::vector<double> _z, _f, _gradient, _blocks, _columns, _nodal, _slope, _node_field, _difference;
 };
