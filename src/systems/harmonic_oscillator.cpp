@@ -10,26 +10,30 @@ class HarmonicOscillator {
   static constexpr int dimension = 2;
   static Description describe();
 
-  explicit HarmonicOscillator(const std::map<std::string, double>& parameters) : _omega(parameters.at("omega")) {}
+  template <class P>
+  class With {
+   public:
+    explicit With(const std::map<std::string, P>& parameters) : _omega(parameters.at("omega")) {}
 
-  template <class S>
-  void field(const S* z, S* f) const {
-    f[0] = z[1];
-    f[1] = z[0] * (-_omega * _omega);
-  }
+    template <class S>
+    void field(const S* z, S* f) const {
+      f[0] = z[1];
+      f[1] = z[0] * (-_omega * _omega);
+    }
 
-  template <class S>
-  S energy(const S* z) const {
-    return (z[1] * z[1] + z[0] * z[0] * (_omega * _omega)) * 0.5;
-  }
+    template <class S>
+    S energy(const S* z) const {
+      return (z[1] * z[1] + z[0] * z[0] * (_omega * _omega)) * 0.5;
+    }
 
-  template <class S>
-  S action_density(const S* z) const {
-    return z[1] * z[1];
-  }
+    template <class S>
+    S action_density(const S* z) const {
+      return z[1] * z[1];
+    }
 
- private:
-  double _omega;
+   private:
+    P _omega;
+  };
 };
 
 Description HarmonicOscillator::describe() {

@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <map>
+#include <memory>
+#include <string>
 
 #include "complex_system.hpp"
 #include "orbweaver/ad/derivatives.hpp"
+#include "orbweaver/core/error.hpp"
 #include "registered.hpp"
 
 namespace orbweaver::systems {
@@ -13,7 +17,9 @@ namespace orbweaver::systems {
 /// Adapts a model to the System interface, with derivatives by AD, over nodes in SIMD lanes. A model has
 ///   static constexpr int dimension;
 ///   static Description describe();
-///   explicit Model(const std::map<std::string, double>& parameters);   // every parameter, checked
+///   template <class P> class With;   // the model with parameters of type P
+/// and With<P>, P being double or (to differentiate by a parameter) the scalar S of the field, has
+///   explicit With(const std::map<std::string, P>& parameters);   // every parameter, checked
 ///   template <class S> void field(const S* z, S* f) const;
 ///   template <class S> S energy(const S* z) const;           // NaN where there is none
 ///   template <class S> S action_density(const S* z) const;   // NaN where there is none
@@ -50,6 +56,39 @@ class ModelSystem final : public ComplexSystem {
     });
   }
 
+  void parameter_derivatives(const std::string& name, std::size_t nodes, const double* z,
+                             double* derivatives) const override {
+    using S = ad::First<1, ad::Lanes>;
+    core::require(_parameters.contains(name), "a field is differentiated by a parameter that it has");
+    std::map<std::string, S> parameters;
+    for (const auto& [other, value] : _parameters)
+      parameters.emplace(other, other == name ? S::variable(ad::Lanes(value), 0) : S(value));
+    const typename Model::template With<S> model(parameters);
+    for_each_group(nodes, [=, &model](std::size_t j, std::size_t count) {
+      const State state = load(nodes, j, count, z);
+      std::array<S, size> at;
+      std::array<S, size> f;
+      for (std::size_t i = 0; i < size; ++i) {
+        at[i] = S(0.0);
+        at[i].value = state[i];
+      }
+      model.field(at.data(), f.data());
+      State out;
+      for (std::size_t i = 0; i < size; ++i) out[i] = f[i].derivatives[0];
+      store(nodes, j, count, out, derivatives);
+    });
+  }
+
+  [[nodiscard]] std::shared_ptr<const System> with_parameters(
+      const std::map<std::string, double>& values) const override {
+    std::map<std::string, double> parameters = _parameters;
+    for (const auto& [name, value] : values) {
+      core::require(parameters.contains(name), "a system moves parameters that it has");
+      parameters[name] = value;
+    }
+    return std::make_shared<const ModelSystem>(parameters);
+  }
+
   void energy_gradients(std::size_t nodes, const double* z, double* gradients) const override {
     const auto energy_of = [this]<class S>(const S* state) { return _model.template energy<S>(state); };
     for_each_group(nodes, [=](std::size_t j, std::size_t count) {
@@ -80,8 +119,10 @@ class ModelSystem final : public ComplexSystem {
   static constexpr auto size = static_cast<std::size_t>(Model::dimension);
   using State = std::array<ad::Lanes, size>;
 
+  using Bound = typename Model::template With<double>;
+
   struct Field {
-    const Model& model;
+    const Bound& model;
     template <class S>
     void operator()(const S* z, S* f) const {
       model.field(z, f);
@@ -112,7 +153,7 @@ class ModelSystem final : public ComplexSystem {
       for (std::size_t i = 0; i < Rows; ++i) values[i].store(nodal + i * nodes + j, count);
   }
 
-  Model _model;
+  Bound _model;
   Field _field{_model};
   std::map<std::string, double> _parameters;
 };

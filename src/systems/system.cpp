@@ -1,6 +1,16 @@
 #include "orbweaver/systems/system.hpp"
 
+#include "orbweaver/core/error.hpp"
+
 namespace orbweaver::systems {
+
+void System::parameter_derivatives(const std::string&, std::size_t, const double*, double*) const {
+  throw core::MisuseError("this system does not differentiate by its parameters");
+}
+
+std::shared_ptr<const System> System::with_parameters(const std::map<std::string, double>&) const {
+  throw core::MisuseError("the parameters of this system do not move");
+}
 
 void System::energy_gradients(std::size_t nodes, const double* z, double* gradients) const {
   const auto d = static_cast<std::size_t>(dimension());

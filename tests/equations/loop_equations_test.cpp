@@ -37,7 +37,7 @@ struct Problem {
   [[nodiscard]] Eigen::MatrixXd conditions() const {
     const Eigen::VectorXd shift = test::vector_of(unknowns.time_shift_direction(loop));
     Eigen::MatrixXd out(unknowns.size(), 0);
-    if (unknowns.period) out = test::unit_direction(unknowns.size(), 5);
+    if (unknowns.has_period()) out = test::unit_direction(unknowns.size(), 5);
     if (shift.norm() < 1e-8) return out;
     out.conservativeResize(Eigen::NoChange, out.cols() + 1);
     out.rightCols(1) = shift.normalized();
