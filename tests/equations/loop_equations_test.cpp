@@ -24,11 +24,15 @@ using namespace loss;
 struct Problem {
   Problem(const std::string& sector, int cutoff)
       : loop(test::linear_loop(test::in_phase(), 0.8, cutoff)),
-        unknowns{subspace(sector, cutoff), sector == "all" || sector == "++"},
+        unknowns{subspace(sector, cutoff), scalars(sector)},
         image(unknowns.subspace.image()),
         slice(unknowns.size(), conditions()),
         equations(*system, loop, unknowns, image, slice) {}
 
+  [[nodiscard]] static std::vector<Scalar> scalars(const std::string& sector) {
+    if (sector == "all" || sector == "++") return {Scalar::period()};
+    return {};
+  }
   [[nodiscard]] loop::Subspace subspace(const std::string& sector, int cutoff) const {
     if (sector == "all") return loop::Subspace::unrestricted(4, cutoff);
     const std::vector<int> signs{sector[0] == '+' ? 1 : -1, sector[1] == '+' ? 1 : -1};

@@ -21,8 +21,12 @@ constexpr int always_dense = 1 << 30;
 /// phase as far as they are there.
 struct Problem {
   Problem(const loop::Loop& orbit, const std::string& sector)
-      : loop(orbit), unknowns{subspace(sector), sector == "all" || sector == "++"}, slice(unknowns.size(), pinned()) {}
+      : loop(orbit), unknowns{subspace(sector), scalars(sector)}, slice(unknowns.size(), pinned()) {}
 
+  [[nodiscard]] static std::vector<loss::Scalar> scalars(const std::string& sector) {
+    if (sector == "all" || sector == "++") return {loss::Scalar::period()};
+    return {};
+  }
   [[nodiscard]] loop::Subspace subspace(const std::string& sector) const {
     if (sector == "all") return loop::Subspace::unrestricted(4, loop.cutoff);
     const std::vector<int> signs{sector[0] == '+' ? 1 : -1, sector[1] == '+' ? 1 : -1};
