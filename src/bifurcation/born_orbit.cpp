@@ -12,7 +12,7 @@ namespace {
 
 corrector::Result correct_pinned(const systems::System& system, const loop::Loop& base, const loop::Tangent& along,
                                  const loop::Isotropy& isotropy, double amplitude, const corrector::Options& options) {
-  const loss::Unknowns unknowns{loop::Subspace(base.dimension, base.cutoff, isotropy), true};
+  const loss::Unknowns unknowns{loop::Subspace(base.dimension, base.cutoff, isotropy), {loss::Scalar::period()}};
   Eigen::MatrixXd conditions = Eigen::MatrixXd::Zero(unknowns.size(), 2);
   const std::vector<double> pinned = unknowns.coordinates_of({along.modes, {}});  // T is free
   conditions.col(0) = Eigen::Map<const Eigen::VectorXd>(pinned.data(), unknowns.size());

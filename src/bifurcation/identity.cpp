@@ -103,7 +103,7 @@ class Chord {
   void resize(int cutoff) {
     _first = loop::with_cutoff(_a, cutoff);
     _second = loop::with_time_map(_b, _a.time_map, cutoff);
-    _unknowns.emplace(loss::Unknowns{loop::Subspace(_a.dimension, cutoff, _isotropy), true});
+    _unknowns.emplace(loss::Unknowns{loop::Subspace(_a.dimension, cutoff, _isotropy), {loss::Scalar::period()}});
   }
 
   // b - a without what only shifts the phase.

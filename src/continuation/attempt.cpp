@@ -33,7 +33,7 @@ Eigen::VectorXd without_shift(const Eigen::MatrixXd& conditions) {
 
 Attempt correct_along(const systems::System& system, const loop::Loop& base, const loop::Tangent& direction,
                       double length, const loop::Isotropy& isotropy, const corrector::Options& options) {
-  const loss::Unknowns unknowns{loop::Subspace(base.dimension, base.cutoff, isotropy), true};
+  const loss::Unknowns unknowns{loop::Subspace(base.dimension, base.cutoff, isotropy), {loss::Scalar::period()}};
   const std::vector<double> along = unknowns.coordinates_of(direction);
   Eigen::VectorXd normal = Eigen::Map<const Eigen::VectorXd>(along.data(), unknowns.size());
   normal.normalize();

@@ -142,7 +142,7 @@ corrector::Result orbit_at_period(const systems::System& system, const loop::Loo
   loop::Loop guess = near;
   guess.period = period;
   while (true) {
-    const loss::Unknowns unknowns{loop::Subspace(guess.dimension, guess.cutoff, isotropy), true};
+    const loss::Unknowns unknowns{loop::Subspace(guess.dimension, guess.cutoff, isotropy), {loss::Scalar::period()}};
     const Eigen::VectorXd pinned = Eigen::VectorXd::Unit(unknowns.size(), unknowns.size() - 1);
     corrector::Result result = corrector::correct(system, guess, unknowns,
                                                   loss::Slice(unknowns.size(), conditions_at(guess, unknowns, pinned)),

@@ -172,7 +172,8 @@ struct LoopBranch final : Branch::Implementation {
   [[nodiscard]] loop::Tangent tangent_of(const corrector::Result& result) const {
     loop::Tangent before = loop::with_cutoff(frontier.tangent, result.loop.cutoff, here().dimension);
     if (!result.flat_direction) return before;
-    const loss::Unknowns unknowns{loop::Subspace(result.loop.dimension, result.loop.cutoff, start.isotropy), true};
+    const loss::Unknowns unknowns{loop::Subspace(result.loop.dimension, result.loop.cutoff, start.isotropy),
+                                  {loss::Scalar::period()}};
     loop::Tangent found =
         unknowns.tangent_of({result.flat_direction->data(), static_cast<std::size_t>(result.flat_direction->size())});
     if (!(loop::dot(found, before) >= 0.0)) found *= -1.0;

@@ -32,7 +32,8 @@ class LoopInterval final : public CurveInterval {
     for (const CurvePoint& point : _points)
       if (point.position == position && !point.tangent.empty()) return point;
     while (true) {
-      const loss::Unknowns unknowns{loop::Subspace(_first.dimension, _first.cutoff, _isotropy), true};
+      const loss::Unknowns unknowns{loop::Subspace(_first.dimension, _first.cutoff, _isotropy),
+                                    {loss::Scalar::period()}};
       const std::vector<double> chord_values = unknowns.difference(_first, _last);
       const Eigen::Map<const Eigen::VectorXd> chord(chord_values.data(), unknowns.size());
       const double share = (position - _from) / (_to - _from);

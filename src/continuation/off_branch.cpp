@@ -44,11 +44,17 @@ loss::Slice complement(const loss::Unknowns& unknowns, const loop::Loop& loop, c
   return {size, excluded};
 }
 
+// A change of T keeps every symmetry.
+std::vector<loss::Scalar> scalars_of(bool all_kept) {
+  if (all_kept) return {loss::Scalar::period()};
+  return {};
+}
+
 // All sign patterns of the generators, or the unrestricted space where they do not split the modes completely.
 std::vector<Sector> sectors_of(const loop::Loop& loop, const loop::Isotropy& isotropy, const loop::Tangent& tangent) {
   std::vector<Sector> sectors;
   const auto add = [&](loop::Subspace subspace, std::vector<int> signs, bool period) {
-    loss::Unknowns unknowns{std::move(subspace), period};
+    loss::Unknowns unknowns{std::move(subspace), scalars_of(period)};
     loss::Slice slice = complement(unknowns, loop, tangent);
     if (slice.free() > 0) sectors.push_back({std::move(unknowns), std::move(signs), std::move(slice)});
   };
@@ -117,7 +123,7 @@ std::vector<OffBranchTriplet> sector_triplets(const systems::System& system, con
                                               const loop::Isotropy& isotropy, const std::vector<int>& signs,
                                               const loop::Tangent& tangent, const spectrum::TripletOptions& options) {
   const bool all_kept = std::all_of(signs.begin(), signs.end(), [](int sign) { return sign > 0; });
-  loss::Unknowns unknowns{loop::Subspace(loop.dimension, loop.cutoff, isotropy, signs), all_kept};
+  loss::Unknowns unknowns{loop::Subspace(loop.dimension, loop.cutoff, isotropy, signs), scalars_of(all_kept)};
   if (unknowns.subspace.size() == 0) return {};
   loss::Slice slice = complement(unknowns, loop, tangent);
   if (slice.free() == 0) return {};

@@ -34,26 +34,30 @@ double length(const loop::Loop& loop) {
 
 struct Polished {
   loop::Loop loop;
+  std::shared_ptr<const systems::System> system;
   double loss_rms;
   double newton_step;
   Eigen::VectorXd flat_direction;
 };
 
 // One more Newton step from the factored Hessian: shows that the step is small, and takes the orbit to rounding level.
-Polished polish(const systems::System& system, const loop::Loop& found, const loss::Unknowns& unknowns,
-                const loss::Slice& slice, const std::optional<Eigen::VectorXd>& normal, bool apply_step) {
-  const loss::Linearization lin(system, found, loss::Linearization::Order::jacobian);
+Polished polish(const std::shared_ptr<const systems::System>& system, const loop::Loop& found,
+                const loss::Unknowns& unknowns, const loss::Slice& slice, const std::optional<Eigen::VectorXd>& normal,
+                bool apply_step) {
+  const loss::Linearization lin(*system, found, loss::Linearization::Order::jacobian, unknowns.scalars);
   const spectrum::SlicedHessian hessian(lin, unknowns, slice);
   const Eigen::VectorXd step = hessian.newton_step();
-  Polished out{found, std::sqrt(lin.loss()), step.norm(), {}};
+  Polished out{found, system, std::sqrt(lin.loss()), step.norm(), {}};
   if (normal) out.flat_direction = hessian.flat_direction(*normal);
   if (!apply_step) return out;
-  const loop::Loop moved =
-      unknowns.moved(found, std::span<const double>(step.data(), static_cast<std::size_t>(step.size())));
+  const std::span<const double> by(step.data(), static_cast<std::size_t>(step.size()));
+  const loop::Loop moved = unknowns.moved(found, by);
   if (!(moved.period > 0.0)) return out;
-  const loss::Linearization after(system, moved, loss::Linearization::Order::residual);
+  const std::shared_ptr<const systems::System> there = unknowns.moved(*system, by);
+  const loss::Linearization after(*there, moved, loss::Linearization::Order::residual);
   if (std::sqrt(after.loss()) <= out.loss_rms) {
     out.loop = moved;
+    out.system = there;
     out.loss_rms = std::sqrt(after.loss());
   }
   return out;
@@ -130,13 +134,16 @@ Result correct_by_tao(const systems::System& system, const loop::Loop& guess, co
   const TaoRun run = run_tao(objective, options);
   result.iterations = run.iterations;
   result.loop = objective.loop_at(run.x);
+  const std::shared_ptr<const systems::System> here = objective.system_at(run.x);
+  result.parameters = unknowns.parameters_of(*here);
   if (!(result.loop.period > 0.0)) return period_lost(result);
   const loss::Linearization& lin = objective.at(run.x);
   result.loss_rms = std::sqrt(lin.loss());
   result.threshold = acceptance_threshold(result.loop, lin, options.tolerance);
   if (run.stop == Stop::threshold) {
-    const Polished polished = polish(system, result.loop, unknowns, slice, normal, is_second_order(options.method));
+    const Polished polished = polish(here, result.loop, unknowns, slice, normal, is_second_order(options.method));
     result.loop = polished.loop;
+    result.parameters = unknowns.parameters_of(*polished.system);
     result.loss_rms = polished.loss_rms;
     result.newton_step = polished.newton_step;
     if (normal) result.flat_direction = polished.flat_direction;
@@ -150,12 +157,13 @@ Result correct_by_newton_krylov(const systems::System& system, const loop::Loop&
   NewtonKrylovRun run = run_newton_krylov(system, guess, unknowns, slice, options, want_flat_direction);
   Result result;
   result.loop = std::move(run.loop);
+  result.parameters = unknowns.parameters_of(*run.system);
   result.iterations = run.iterations;
   result.inner_iterations = run.inner_iterations;
   result.newton_step = run.newton_step;
   result.flat_direction = std::move(run.flat_direction);
   if (!(result.loop.period > 0.0)) return period_lost(result);
-  const loss::Linearization lin(system, result.loop, loss::Linearization::Order::jacobian);
+  const loss::Linearization lin(*run.system, result.loop, loss::Linearization::Order::jacobian);
   result.loss_rms = std::sqrt(lin.loss());
   result.threshold = acceptance_threshold(result.loop, lin, options.tolerance);
   const bool kept = result.loss_rms < result.threshold;
@@ -173,8 +181,8 @@ Result dispatch(const systems::System& system, const loop::Loop& guess, const lo
   if (!wanted || !newton_krylov_applies(system, unknowns, slice)) {
     if (options.method == Method::newton_krylov)
       throw core::InputError(
-          "corrector newton-krylov needs a square problem (a free period, and a conservative system where a phase "
-          "condition is held): use `automatic`");
+          "corrector newton-krylov needs a square problem (a free period, and as many other scalars or conserved "
+          "quantities as further conditions): use `automatic`");
     return correct_by_tao(system, guess, unknowns, slice, options, normal);
   }
   if (options.method == Method::newton_krylov)
@@ -197,6 +205,7 @@ Result correct(const systems::System& system, const loop::Loop& guess, const los
   core::require(slice.unknowns() == unknowns.size(), "the slice belongs to other unknowns");
   Result result;
   result.loop = guess;
+  result.parameters = unknowns.parameters_of(system);
   if (!(guess.period > 0.0)) {
     result.outcome = Outcome::period_not_positive;
     result.detail = fmt::format("the guess has the period {:.6g}", guess.period);

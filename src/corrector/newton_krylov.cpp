@@ -19,7 +19,7 @@ constexpr equations::LoopSolver::Accuracy of_flat_direction{1e-13, 1e-8};
 }  // namespace
 
 bool newton_krylov_applies(const systems::System& system, const loss::Unknowns& unknowns, const loss::Slice& slice) {
-  if (!unknowns.period || slice.conditions().cols() < 1) return false;
+  if (!unknowns.has_period() || slice.conditions().cols() < 1) return false;
   return equations::LoopEquations::are_square(system, unknowns, unknowns.subspace.image(), slice);
 }
 
@@ -30,13 +30,14 @@ NewtonKrylovRun run_newton_krylov(const systems::System& system, const loop::Loo
   const int most = options.max_iterations > 0 ? options.max_iterations : default_iterations;
   NewtonKrylovRun run;
   run.loop = guess;
+  run.system = {std::shared_ptr<const systems::System>(), &system};
   core::Team* const team = core::worth_dividing(options.team, system.dimension());
   equations::LoopSolver inner(unknowns.size() + equations::LoopEquations::unfoldings(unknowns, image, slice),
                               "corrector_inner_", team);
   double last_loss = std::numeric_limits<double>::infinity();
   int without_progress = 0;
   while (run.stop == Stop::none) {
-    equations::LoopEquations equations(system, run.loop, unknowns, image, slice, team);
+    equations::LoopEquations equations(*run.system, run.loop, unknowns, image, slice, team);
     const double threshold = acceptance_threshold(run.loop, equations.linearization(), options.tolerance);
     without_progress = equations.loss() < progress * last_loss ? 0 : without_progress + 1;
     last_loss = equations.loss();
@@ -44,11 +45,12 @@ NewtonKrylovRun run_newton_krylov(const systems::System& system, const loop::Loo
     if (!under_threshold && without_progress >= most_without_progress) run.stop = Stop::stagnation;
     if (!under_threshold && run.iterations >= most) run.stop = Stop::iterations;
     if (run.stop != Stop::none) break;
-    equations.factor(system, run.loop);
+    equations.factor(*run.system, run.loop);
     // Once under the threshold one more step shows that it is small and takes the orbit to rounding level.
     const Eigen::VectorXd step = inner.solve(equations, -equations.residual(), of_steps).head(unknowns.size());
-    const loop::Loop moved =
-        unknowns.moved(run.loop, std::span<const double>(step.data(), static_cast<std::size_t>(step.size())));
+    const std::span<const double> by(step.data(), static_cast<std::size_t>(step.size()));
+    const loop::Loop moved = unknowns.moved(run.loop, by);
+    run.system = unknowns.moved(*run.system, by);
     run.newton_step = step.norm();
     if (!(moved.period > 0.0) || !std::isfinite(moved.period)) {
       run.loop = moved;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -13,6 +14,7 @@ namespace orbweaver::corrector {
 /// What the matrix-free Newton iteration left; like TaoRun, but with the last step and the flat direction.
 struct NewtonKrylovRun {
   loop::Loop loop;
+  std::shared_ptr<const systems::System> system;  ///< with the parameters that it came to
   Stop stop = Stop::none;
   int iterations = 0;
   int inner_iterations = 0;

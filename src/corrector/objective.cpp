@@ -12,6 +12,11 @@ loop::Loop Objective::loop_at(const Eigen::VectorXd& x) const {
   return _unknowns.moved(_base, std::span<const double>(u.data(), static_cast<std::size_t>(u.size())));
 }
 
+std::shared_ptr<const systems::System> Objective::system_at(const Eigen::VectorXd& x) const {
+  const Eigen::VectorXd u = _slice.expand(x);
+  return _unknowns.moved(_system, std::span<const double>(u.data(), static_cast<std::size_t>(u.size())));
+}
+
 bool Objective::defined_at(const Eigen::VectorXd& x) const {
   if (!x.allFinite()) return false;
   const double period = loop_at(x).period;
@@ -21,7 +26,7 @@ bool Objective::defined_at(const Eigen::VectorXd& x) const {
 const loss::Linearization& Objective::at(const Eigen::VectorXd& x) {
   if (!_linearization || _point.size() != x.size() || _point != x) {
     _linearization.reset();
-    _linearization = std::make_unique<loss::Linearization>(_system, loop_at(x), _order);
+    _linearization = std::make_unique<loss::Linearization>(*system_at(x), loop_at(x), _order, _unknowns.scalars);
     _point = x;
   }
   return *_linearization;

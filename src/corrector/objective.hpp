@@ -21,6 +21,7 @@ class Objective {
       : _system(system), _base(base), _unknowns(unknowns), _slice(slice), _order(order) {}
 
   [[nodiscard]] loop::Loop loop_at(const Eigen::VectorXd& x) const;
+  [[nodiscard]] std::shared_ptr<const systems::System> system_at(const Eigen::VectorXd& x) const;
   /// False where the loop is not finite or its period not positive, so that nothing can be evaluated.
   [[nodiscard]] bool defined_at(const Eigen::VectorXd& x) const;
   [[nodiscard]] const loss::Linearization& at(const Eigen::VectorXd& x);

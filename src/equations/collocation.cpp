@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <string>
+#include <utility>
 
 #include "box_scheme.hpp"
 #include "orbweaver/core/error.hpp"
@@ -19,23 +22,30 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
+std::vector<loss::Scalar> Collocation::conservative(const loop::FundamentalDomain& domain) {
+  if (domain.reversor) return {loss::Scalar::period()};
+  return {loss::Scalar::period(), loss::Scalar::unfolding()};
+}
+
 bool Collocation::applies(const systems::System& system, const loop::FundamentalDomain& domain) {
   if (!domain.is_square()) return false;
   return domain.reversor.has_value() || system.structure().conservative();
 }
 
 Collocation::Collocation(const systems::System& system, const loop::FundamentalDomain& domain,
-                         std::vector<double> centre, std::vector<double> winding, int cells, const loop::TimeMap& map)
+                         std::vector<double> centre, std::vector<double> winding, int cells, const loop::TimeMap& map,
+                         std::vector<loss::Scalar> scalars)
     : _system(system),
       _grid(loop::StaggeredGrid::shared(domain, cells)),
       _map(map),
       _centre(std::move(centre)),
       _winding(std::move(winding)),
-      _borders(domain.reversor ? 1 : 2),
+      _scalars(scalars.empty() ? conservative(domain) : std::move(scalars)),
       _keeps_mean(domain.coordinates_with_mean()),
       _ends(domain.ends()),
       _box(BoxScheme::of_dimension(system.dimension(), BoxScheme::Storage::lanes)) {
   core::require(cells % BoxScheme::lanes == 0, "the cells of a domain must fill the lanes of the box scheme");
+  core::require(_scalars.front().kind == loss::Scalar::Kind::period, "collocation solves for T");
   const double h = _grid.spacing();
   for (int j = 0; j < cells; ++j) _density.push_back(_map.density((j + 0.5) * h));
   for (int j = 0; j <= cells; ++j) _node_density.push_back(_map.density(j * h));
@@ -50,10 +60,10 @@ Collocation::Collocation(const systems::System& system, const loop::FundamentalD
   _f.resize(d * at(cells));
   _gradient.resize(d * at(cells));
   _blocks.resize(d * d * at(cells));
-  _columns.resize(at(_borders) * d * at(_grid.stride()));
+  _columns.resize(at(borders()) * d * at(_grid.stride()));
   _nodal.resize(d * at(_grid.stride()));
   _slope.resize(d * at(_grid.stride()));
-  _weights.assign(at(_borders * size()), 0.0);
+  _weights.assign(at(borders() * size()), 0.0);
   _reference.assign(at(size()), 0.0);
 }
 
@@ -72,6 +82,22 @@ void Collocation::set_conditions(std::span<const double> weights, std::span<cons
 }
 
 bool Collocation::keeps_mean(int coordinate) const { return _keeps_mean[at(coordinate)]; }
+
+const systems::System& Collocation::system_at(const double* u) const {
+  std::map<std::string, double> values;
+  for (int p = 1; p < borders(); ++p)
+    if (_scalars[at(p)].kind == loss::Scalar::Kind::parameter) values[_scalars[at(p)].parameter] = u[period_at() + p];
+  if (values.empty()) return _system;
+  _moved = _system.with_parameters(values);
+  return *_moved;
+}
+
+void Collocation::derivatives_by(const systems::System& system, const loss::Scalar& scalar) const {
+  if (scalar.kind == loss::Scalar::Kind::parameter)
+    system.parameter_derivatives(scalar.parameter, at(cells()), _z.data(), _gradient.data());
+  else
+    system.conserved_gradients(scalar.quantity, at(cells()), _z.data(), _gradient.data());
+}
 
 void Collocation::midpoint_states(const double* u) const {
   const int m = cells();
@@ -93,12 +119,14 @@ void Collocation::residual(const double* u, double* r) const {
   const int m = cells();
   const int d = dimension();
   const int stride = _grid.stride();
+  const systems::System& system = system_at(u);
   midpoint_states(u);
-  _system.field(at(m), _z.data(), _f.data());
+  system.field(at(m), _z.data(), _f.data());
   const double scale = _grid.spacing() * u[period_at()] / two_pi;
-  if (_borders > 1) {
-    const double mu = u[period_at() + 1];
-    _system.conserved_gradients(0, at(m), _z.data(), _gradient.data());
+  for (int p = 1; p < borders(); ++p) {
+    if (_scalars[at(p)].kind != loss::Scalar::Kind::unfolding) continue;
+    const double mu = u[period_at() + p];
+    derivatives_by(system, _scalars[at(p)]);
     for (std::size_t q = 0; q < _f.size(); ++q) _f[q] += mu * _gradient[q];
   }
   for (int i = 0; i < d; ++i) {
@@ -114,7 +142,7 @@ void Collocation::residual(const double* u, double* r) const {
   }
   const Eigen::Map<const Eigen::VectorXd> point(u, size());
   const Eigen::Map<const Eigen::VectorXd> reference(_reference.data(), size());
-  for (int q = 0; q < _borders; ++q) {
+  for (int q = 0; q < borders(); ++q) {
     const Eigen::Map<const Eigen::VectorXd> weights(_weights.data() + q * size(), size());
     r[period_at() + q] = weights.dot(point - reference);
   }
@@ -125,8 +153,9 @@ void Collocation::factor(const double* u) {
   const int m = cells();
   const int d = dimension();
   const int stride = _grid.stride();
+  const systems::System& system = system_at(u);
   midpoint_states(u);
-  _system.field_jacobian(at(m), _z.data(), _f.data(), _blocks.data());
+  system.field_jacobian(at(m), _z.data(), _f.data(), _blocks.data());
   const double period = u[period_at()];
   const double scale = _grid.spacing() * period / two_pi;
   double square = 0.0;
@@ -138,13 +167,19 @@ void Collocation::factor(const double* u) {
     }
   }
   _jacobian_rms = std::sqrt(square / m);
-  if (_borders > 1) _system.conserved_gradients(0, at(m), _z.data(), _gradient.data());
   for (int i = 0; i < d; ++i)
     for (int j = 0; j < m; ++j) {
       const double c = scale * _density[at(j)];
       _columns[at(i * stride + j)] = -c * _f[at(i * m + j)] / period;
-      if (_borders > 1) _columns[at((d + i) * stride + j)] = -c * _gradient[at(i * m + j)];
     }
+  for (int p = 1; p < borders(); ++p) {
+    derivatives_by(system, _scalars[at(p)]);
+    for (int i = 0; i < d; ++i)
+      for (int j = 0; j < m; ++j) {
+        const double c = scale * _density[at(j)];
+        _columns[at((p * d + i) * stride + j)] = -c * _gradient[at(i * m + j)];
+      }
+  }
   BoxScheme::Matrices matrices;
   matrices.cells = m;
   matrices.count = m;
@@ -152,17 +187,17 @@ void Collocation::factor(const double* u) {
   matrices.stride = stride;
   matrices.blocks = _blocks.data();
   matrices.columns = _columns.data();
-  matrices.borders = _borders;
+  matrices.borders = borders();
   matrices.left = _ends.left;
   matrices.right = _ends.right;
-  std::vector<double> rows(at(_borders * d * stride));
-  double corner[4] = {};
-  for (int q = 0; q < _borders; ++q) {
+  std::vector<double> rows(at(borders() * d * stride));
+  std::vector<double> corner(at(borders() * borders()));
+  for (int q = 0; q < borders(); ++q) {
     std::copy_n(_weights.data() + q * size(), d * stride, rows.data() + q * d * stride);
-    for (int p = 0; p < _borders; ++p) corner[q * _borders + p] = _weights[at(q * size() + period_at() + p)];
+    for (int p = 0; p < borders(); ++p) corner[at(q * borders() + p)] = _weights[at(q * size() + period_at() + p)];
   }
   matrices.rows = rows.data();
-  matrices.corner = corner;
+  matrices.corner = corner.data();
   _box->factor(matrices);
 }
 
@@ -177,7 +212,7 @@ void Collocation::apply_jacobian(const double* v, double* r) const {
     for (int j = 0; j < m; ++j) {
       out[j] = y[j + 1] - y[j];
       for (int l = 0; l < d; ++l) out[j] -= _blocks[at((i * d + l) * m + j)] * _z[at(l * m + j)];
-      for (int p = 0; p < _borders; ++p) out[j] += _columns[at((p * d + i) * stride + j)] * v[period_at() + p];
+      for (int p = 0; p < borders(); ++p) out[j] += _columns[at((p * d + i) * stride + j)] * v[period_at() + p];
     }
     double end = 0.0;
     for (int l = 0; l < d; ++l) end += _ends.left(i, l) * v[l * stride] + _ends.right(i, l) * v[l * stride + m];
@@ -185,7 +220,7 @@ void Collocation::apply_jacobian(const double* v, double* r) const {
     for (int j = m + 1; j < stride; ++j) out[j] = 0.0;
   }
   const Eigen::Map<const Eigen::VectorXd> perturbation(v, size());
-  for (int q = 0; q < _borders; ++q)
+  for (int q = 0; q < borders(); ++q)
     r[period_at() + q] = Eigen::Map<const Eigen::VectorXd>(_weights.data() + q * size(), size()).dot(perturbation);
 }
 
@@ -194,8 +229,9 @@ Collocation::Quality Collocation::quality(const double* u) const {
   const int d = dimension();
   const int stride = _grid.stride();
   const double rate = two_pi / u[period_at()];
+  const systems::System& system = system_at(u);
   midpoint_states(u);
-  _system.field(at(m), _z.data(), _f.data());
+  system.field(at(m), _z.data(), _f.data());
   double loss = 0.0;
   double speed = 0.0;
   for (int j = 0; j < m; ++j) {
@@ -234,7 +270,7 @@ Collocation::Quality Collocation::quality(const double* u) const {
       _nodal[at(i * count + j)] = _nodal[at(i * stride + j)] + _centre[at(i)] + _winding[at(i)] * j * _grid.spacing();
   std::vector<double>& f = _node_field;
   f.resize(at(d * count));
-  _system.field(at(count), _nodal.data(), f.data());
+  system.field(at(count), _nodal.data(), f.data());
   double between = 0.0;
   for (int j = 0; j < count; ++j) {
     double square = 0.0;
@@ -300,19 +336,20 @@ std::vector<double> Collocation::resampled(const Collocation& from, const std::v
         }
     _grid.from_nodal(z.data(), out.data());
   }
-  for (int q = 0; q < _borders; ++q) out[at(period_at() + q)] = u[at(from.period_at() + q)];
+  for (int q = 0; q < borders(); ++q) out[at(period_at() + q)] = u[at(from.period_at() + q)];
   return out;
 }
 
 double Collocation::action(const double* u) const {
   const int m = cells();
   const auto d = at(dimension());
+  const systems::System& system = system_at(u);
   midpoint_states(u);
   std::vector<double> state(d);
   double sum = 0.0;
   for (int j = 0; j < m; ++j) {
     for (std::size_t i = 0; i < d; ++i) state[i] = _z[i * at(m) + at(j)];
-    sum += _density[at(j)] * _system.action_density(state);
+    sum += _density[at(j)] * system.action_density(state);
   }
   return u[period_at()] * sum / m;
 }
@@ -336,7 +373,10 @@ void Collocation::from_loop(const loop::Loop& loop, double* u) const {
   for (std::size_t i = 0; i < at(dimension()); ++i) modes[i] -= _centre[i];
   _grid.from_modes(loop.cutoff, modes.data(), u);
   u[period_at()] = loop.period;
-  if (_borders > 1) u[period_at() + 1] = 0.0;
+  for (int p = 1; p < borders(); ++p)
+    u[period_at() + p] = _scalars[at(p)].kind == loss::Scalar::Kind::parameter
+                             ? _system.parameters().at(_scalars[at(p)].parameter)
+                             : 0.0;
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "box_scheme.hpp"
+#include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/loss/dense.hpp"
 
@@ -13,9 +14,15 @@ namespace orbweaver::equations {
 
 namespace {
 
-std::vector<double> energy_gradients(const systems::System& system, std::size_t nodes, const std::vector<double>& z) {
+// df/ds at the nodes for any scalar s but T.
+std::vector<double> derivatives_by(const systems::System& system, const loss::Scalar& scalar,
+                                   const std::vector<double>& z) {
+  const std::size_t nodes = z.size() / static_cast<std::size_t>(system.dimension());
   std::vector<double> out(z.size());
-  system.conserved_gradients(0, nodes, z.data(), out.data());
+  if (scalar.kind == loss::Scalar::Kind::parameter)
+    system.parameter_derivatives(scalar.parameter, nodes, z.data(), out.data());
+  else
+    system.conserved_gradients(scalar.quantity, nodes, z.data(), out.data());
   return out;
 }
 
@@ -95,22 +102,29 @@ LoopEquations::LoopEquations(const systems::System& system, const loop::Loop& lo
       _slice(slice),
       _team(core::several(team)),
       _unfoldings(unfoldings(unknowns, image, slice)),
-      _linearization(system, loop, loss::Linearization::Order::jacobian),
+      _linearization(system, loop, loss::Linearization::Order::jacobian, unknowns.scalars),
+      _scalars(unknowns.scalars),
       _modes(loop.modes.size()),
       _other_modes(loop.modes.size()),
       _nodal(static_cast<std::size_t>(_linearization.rows())),
       _other_nodal(_nodal.size()),
       _boxed(static_cast<Eigen::Index>(loop.modes.size()) + slice.conditions().cols()) {
+  unknowns.validate();
+  core::require(_unfoldings >= 0, "loop equations need as many conditions as scalars");
+  for (int k = 0; k < _unfoldings; ++k) _scalars.push_back(loss::Scalar::unfolding(k));
   const auto d = static_cast<std::size_t>(loop.dimension);
   _slope_modes.assign(loop.modes.size(), 0.0);
   std::copy(loop.winding.begin(), loop.winding.end(), _slope_modes.begin());
   add_derivative(loop.modes, d, 1.0, _slope_modes);
-  if (_unfoldings <= 0) return;
-  const loop::FourierGrid& grid = _linearization.grid();
-  _nodal = energy_gradients(system, static_cast<std::size_t>(grid.nodes()), states_at(grid, loop, 0.0));
-  weigh();
-  _unfolding_column.resize(image.size());
-  project_nodal(_unfolding_column);
+  if (columns() == 0) return;
+  _columns.resize(image.size(), columns());
+  const std::vector<double> z = states_at(_linearization.grid(), loop, 0.0);
+  for (Eigen::Index c = 0; c < columns(); ++c) {
+    const std::size_t first = _unknowns.has_period() ? 1 : 0;
+    _nodal = derivatives_by(system, _scalars[first + static_cast<std::size_t>(c)], z);
+    weigh();
+    project_nodal(_columns.col(c));
+  }
 }
 
 LoopEquations::~LoopEquations() = default;
@@ -118,7 +132,8 @@ LoopEquations::~LoopEquations() = default;
 bool LoopEquations::are_square(const systems::System& system, const loss::Unknowns& unknowns,
                                const loop::Subspace& image, const loss::Slice& slice) {
   const int more = unfoldings(unknowns, image, slice);
-  return image.size() == unknowns.subspace.size() && (more == 0 || (more == 1 && system.structure().conservative()));
+  const int conserved = static_cast<int>(system.structure().conserved.size());
+  return image.size() == unknowns.subspace.size() && more >= 0 && more <= conserved;
 }
 
 // _nodal times the density of the time map.
@@ -159,12 +174,12 @@ void LoopEquations::apply(const In& x, Out out) const {
   weigh();
   _linearization.grid().analyze(cutoff, dimension, _nodal.data(), _modes.data());
   add_derivative(_other_modes, d, rate, _modes);
-  if (_unknowns.period) {
-    const double dt = -rate / _linearization.period() * x(_unknowns.size() - 1);
+  if (_unknowns.has_period()) {
+    const double dt = -rate / _linearization.period() * x(first_scalar());
     for (std::size_t m = 0; m < _modes.size(); ++m) _modes[m] += dt * _slope_modes[m];
   }
   _image.project(_modes, view(out, _image.size()));
-  if (_unfoldings > 0) out.head(_image.size()) -= x(_unknowns.size()) * _unfolding_column;
+  for (Eigen::Index c = 0; c < columns(); ++c) out.head(_image.size()) -= x(first_column() + c) * _columns.col(c);
   out.tail(_slice.conditions().cols()).noalias() = _slice.conditions().transpose() * x.head(_unknowns.size());
 }
 
@@ -191,13 +206,13 @@ void LoopEquations::apply_transposed(const In& y, Out out) const {
   scale(_modes, d, 1.0, 0.5);
   add_derivative(_other_modes, d, -rate, _modes);
   _unknowns.subspace.project(_modes, view(out, _unknowns.subspace.size()));
-  if (_unknowns.period) {
+  if (_unknowns.has_period()) {
     double along_slope = 0.0;
     for (std::size_t m = 0; m < _slope_modes.size(); ++m) along_slope += _slope_modes[m] * _other_modes[m];
-    out(_unknowns.size() - 1) = -rate / _linearization.period() * along_slope;
+    out(first_scalar()) = -rate / _linearization.period() * along_slope;
   }
+  for (Eigen::Index c = 0; c < columns(); ++c) out(first_column() + c) = -_columns.col(c).dot(y.head(_image.size()));
   out.head(_unknowns.size()).noalias() += _slice.conditions() * y.tail(_slice.conditions().cols());
-  if (_unfoldings > 0) out(_unknowns.size()) = -_unfolding_column.dot(y.head(_image.size()));
 }
 
 void LoopEquations::project_rows(const In& rows, Out out) const {
@@ -249,17 +264,18 @@ void LoopEquations::factor(const systems::System& system, const loop::Loop& loop
   Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(d * boxes), borders);
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(d * n), borders);
   Eigen::MatrixXd corner = Eigen::MatrixXd::Zero(borders, borders);
-  Eigen::Index column = 0;
-  if (_unknowns.period) {
-    // d/dT of w r is -(rate / T) z', and z' rate = w f at an orbit.
-    for (std::size_t q = 0; q < d * boxes; ++q) columns(static_cast<Eigen::Index>(q), column) = -f[q] / loop.period;
-    corner.col(column) = _slice.conditions().row(_unknowns.size() - 1).transpose();
-    ++column;
-  }
-  if (_unfoldings > 0) {
-    std::vector<double> gradient = energy_gradients(system, boxes, z);
-    if (!density.empty()) multiply_by(density, gradient);
-    for (std::size_t q = 0; q < d * boxes; ++q) columns(static_cast<Eigen::Index>(q), column) = -gradient[q];
+  for (Eigen::Index column = 0; column < borders; ++column) {
+    const loss::Scalar& scalar = _scalars[static_cast<std::size_t>(column)];
+    if (scalar.kind == loss::Scalar::Kind::period) {
+      // d/dT of w r is -(rate / T) z', and z' rate = w f at an orbit.
+      for (std::size_t q = 0; q < d * boxes; ++q) columns(static_cast<Eigen::Index>(q), column) = -f[q] / loop.period;
+    } else {
+      std::vector<double> derivative = derivatives_by(system, scalar, z);
+      if (!density.empty()) multiply_by(density, derivative);
+      for (std::size_t q = 0; q < d * boxes; ++q) columns(static_cast<Eigen::Index>(q), column) = -derivative[q];
+    }
+    if (first_scalar() + column < _unknowns.size())
+      corner.col(column) = _slice.conditions().row(first_scalar() + column).transpose();
   }
   // c . u in coefficients is the mean over nodes of a loop with twice c's harmonics; y enters through the filter of z = F(y).
   for (Eigen::Index r = 0; r < borders; ++r) {

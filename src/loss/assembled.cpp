@@ -117,7 +117,8 @@ class HessianAssembly {
           rows.sine ? add_pair<false, true>(columns, rows, h) : add_pair<false, false>(columns, rows, h);
       }
     h.triangularView<Eigen::StrictlyUpper>() = h.transpose();
-    if (_unknowns.period) fill_period(h);
+    for (std::size_t n = 0; n < _unknowns.scalars.size(); ++n)
+      fill_scalar(_unknowns.subspace.size() + static_cast<int>(n), h);
   }
 
  private:
@@ -172,13 +173,12 @@ class HessianAssembly {
     }
   }
 
-  void fill_period(DenseMap h) const {
-    // The last column is H applied to the period alone, which the matrix-free form gives in O(N log N).
+  void fill_scalar(int at, DenseMap h) const {
+    // The column is H applied to the scalar alone, which the matrix-free form gives in O(N log N).
     std::vector<double> unit(static_cast<std::size_t>(_unknowns.size()), 0.0);
-    unit.back() = 1.0;
+    unit[static_cast<std::size_t>(at)] = 1.0;
     const std::vector<double> column = _lin.apply_hessian(_unknowns, unit, _curvature);
-    const int last = _unknowns.size() - 1;
-    for (int row = 0; row <= last; ++row) h(row, last) = h(last, row) = column[static_cast<std::size_t>(row)];
+    for (int row = 0; row < _unknowns.size(); ++row) h(row, at) = h(at, row) = column[static_cast<std::size_t>(row)];
   }
 
   const Linearization& _lin;
@@ -228,11 +228,16 @@ core::Handle<Mat> assemble_jacobian(const Linearization& lin, const Unknowns& un
           }
         }
       }
-    if (!unknowns.period) return;
-    for (int i = 0; i < d; ++i)
-      for (int j = 0; j < nodes; ++j)
-        j_matrix(static_cast<Eigen::Index>(i) * nodes + j, unknowns.size() - 1) =
-            -scale[static_cast<std::size_t>(j)] * lin.rate() / lin.period() * lin.slope(i)[j];
+    int at = unknowns.subspace.size();
+    for (const Scalar& scalar : unknowns.scalars) {
+      const double* column = scalar.kind == Scalar::Kind::period ? nullptr : lin.column(scalar).data();
+      for (int i = 0; i < d; ++i)
+        for (int j = 0; j < nodes; ++j)
+          j_matrix(static_cast<Eigen::Index>(i) * nodes + j, at) =
+              column == nullptr ? -scale[static_cast<std::size_t>(j)] * lin.rate() / lin.period() * lin.slope(i)[j]
+                                : -scale[static_cast<std::size_t>(j)] * column[i * nodes + j];
+      ++at;
+    }
   });
   return matrix;
 }

@@ -21,7 +21,8 @@ int valid_nodes_for(const loop::Loop& loop) {
 
 }  // namespace
 
-Linearization::Linearization(const systems::System& system, const loop::Loop& loop, Order order)
+Linearization::Linearization(const systems::System& system, const loop::Loop& loop, Order order,
+                             std::span<const Scalar> scalars)
     : _nodes(valid_nodes_for(loop)),
       _dimension(loop.dimension),
       _cutoff(loop.cutoff),
@@ -78,6 +79,31 @@ Linearization::Linearization(const systems::System& system, const loop::Loop& lo
     system.second_derivatives(n, _z.data(), _r.data(), _s.data());
     check_finite(system, _s, "second derivative");
   }
+  if (order == Order::residual) return;
+  for (const Scalar& scalar : scalars) {
+    if (scalar.kind == Scalar::Kind::period) continue;
+    std::vector<double> column(d * n);
+    if (scalar.kind == Scalar::Kind::parameter)
+      system.parameter_derivatives(scalar.parameter, n, _z.data(), column.data());
+    else
+      system.energy_gradients(n, _z.data(), column.data());
+    check_finite(system, column, "derivative by a scalar");
+    _columns.emplace_back(scalar, std::move(column));
+  }
+}
+
+const std::vector<double>& Linearization::column(const Scalar& scalar) const {
+  const auto found =
+      std::find_if(_columns.begin(), _columns.end(), [&](const auto& entry) { return entry.first == scalar; });
+  core::require(found != _columns.end(), "this linearization was made without one of the scalars of the unknowns");
+  return found->second;
+}
+
+template <class Use>
+void Linearization::for_each_column(const Unknowns& unknowns, const Use& use) const {
+  for (std::size_t n = 0; n < unknowns.scalars.size(); ++n)
+    if (unknowns.scalars[n].kind != Scalar::Kind::period)
+      use(static_cast<std::size_t>(unknowns.subspace.size()) + n, column(unknowns.scalars[n]));
 }
 
 void Linearization::check_finite(const systems::System& system, std::span<const double> values,
@@ -121,7 +147,8 @@ std::vector<double> Linearization::apply_jacobian(const Unknowns& unknowns, std:
   std::vector<double> out(d * n);
   _grid->synthesize(_cutoff, _dimension, modes.data(), dz.data());
   _grid->synthesize_derivative(_cutoff, _dimension, modes.data(), out.data());
-  const double dt = unknowns.period ? -_rate / _period * v.back() : 0.0;
+  const double dt =
+      unknowns.has_period() ? -_rate / _period * v[static_cast<std::size_t>(unknowns.subspace.size())] : 0.0;
   for (std::size_t i = 0; i < d; ++i) {
     double* row = out.data() + i * n;
     const double* slope_i = _slope.data() + i * n;
@@ -131,6 +158,9 @@ std::vector<double> Linearization::apply_jacobian(const Unknowns& unknowns, std:
       const double* z = dz.data() + l * n;
       for (std::size_t j = 0; j < n; ++j) row[j] -= a[j] * z[j];
     }
+    for_each_column(unknowns, [&](std::size_t at, const std::vector<double>& column) {
+      for (std::size_t j = 0; j < n; ++j) row[j] -= v[at] * column[i * n + j];
+    });
     for (std::size_t j = 0; j < n; ++j) row[j] *= _scale[j];
   }
   return out;
@@ -185,7 +215,11 @@ std::vector<double> Linearization::apply_jacobian_transposed(const Unknowns& unk
     }
   }
   std::vector<double> out = project_adjoint(unknowns, with_slope, with_value);
-  if (unknowns.period) out.back() = -_rate / _period * along_slope;
+  if (unknowns.has_period()) out[static_cast<std::size_t>(unknowns.subspace.size())] = -_rate / _period * along_slope;
+  for_each_column(unknowns, [&](std::size_t at, const std::vector<double>& column) {
+    for (std::size_t i = 0; i < d; ++i)
+      for (std::size_t j = 0; j < n; ++j) out[at] -= _scale[j] * y[i * n + j] * column[i * n + j];
+  });
   return out;
 }
 
@@ -200,6 +234,8 @@ std::vector<double> Linearization::apply_hessian(const Unknowns& unknowns, std::
   std::vector<double> out = apply_jacobian_transposed(unknowns, apply_jacobian(unknowns, v));
   if (curvature == Curvature::full) {
     require_order(Order::second);
+    core::require(unknowns.size() == unknowns.subspace.size() + (unknowns.has_period() ? 1 : 0),
+                  "the full curvature knows no scalar but T: take Gauss and Newton's");
     const std::vector<double> modes = perturbation(unknowns, v);
     const auto n = static_cast<std::size_t>(_nodes);
     const auto d = static_cast<std::size_t>(_dimension);
@@ -208,7 +244,7 @@ std::vector<double> Linearization::apply_hessian(const Unknowns& unknowns, std::
     _grid->synthesize(_cutoff, _dimension, modes.data(), dz.data());
     _grid->synthesize_derivative(_cutoff, _dimension, modes.data(), dslope.data());
     const double mean = 1.0 / _nodes;
-    const double dt = unknowns.period ? v.back() : 0.0;
+    const double dt = unknowns.has_period() ? v.back() : 0.0;
     const double cross = -_rate / _period * mean;
     std::vector<double> with_slope(d * n);
     std::vector<double> with_value(d * n, 0.0);
@@ -227,7 +263,7 @@ std::vector<double> Linearization::apply_hessian(const Unknowns& unknowns, std::
       }
     const std::vector<double> second = project_adjoint(unknowns, with_slope, with_value);
     for (std::size_t m = 0; m < out.size(); ++m) out[m] += second[m];
-    if (unknowns.period) out.back() += period_entry;
+    if (unknowns.has_period()) out.back() += period_entry;
   }
   for (double& value : out) value *= 2.0;
   return out;

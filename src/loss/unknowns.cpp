@@ -1,5 +1,8 @@
 #include "orbweaver/loss/unknowns.hpp"
 
+#include <algorithm>
+#include <map>
+
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
 
@@ -24,13 +27,45 @@ void divide_by_density(loop::Loop& loop) {
 
 }  // namespace
 
+bool Unknowns::has_parameters() const {
+  return std::any_of(scalars.begin(), scalars.end(), [](const Scalar& s) { return s.kind == Scalar::Kind::parameter; });
+}
+
+void Unknowns::validate() const {
+  core::require(
+      std::is_sorted(scalars.begin(), scalars.end(), [](const Scalar& a, const Scalar& b) { return a.kind < b.kind; }),
+      "scalars come in the order T, parameters, unfoldings");
+  for (std::size_t n = 1; n < scalars.size(); ++n)
+    core::require(std::find(scalars.begin(), scalars.begin() + static_cast<std::ptrdiff_t>(n), scalars[n]) ==
+                      scalars.begin() + static_cast<std::ptrdiff_t>(n),
+                  "a scalar is solved for once");
+}
+
 loop::Loop Unknowns::moved(const loop::Loop& base, std::span<const double> u) const {
   core::require(static_cast<int>(u.size()) == size(), "one value an unknown is needed");
   core::require(base.cutoff == subspace.cutoff(), "the loop and the subspace have different cutoffs");
   loop::Loop out = base;
   subspace.add_to(in_subspace(*this, u), out.modes);
-  if (period) out.period += u.back();
+  if (has_period()) out.period += u[static_cast<std::size_t>(subspace.size())];
   return out;
+}
+
+std::shared_ptr<const systems::System> Unknowns::moved(const systems::System& base, std::span<const double> u) const {
+  core::require(static_cast<int>(u.size()) == size(), "one value an unknown is needed");
+  if (!has_parameters()) return {std::shared_ptr<const systems::System>(), &base};
+  std::map<std::string, double> values;
+  for (std::size_t n = 0; n < scalars.size(); ++n)
+    if (scalars[n].kind == Scalar::Kind::parameter)
+      values[scalars[n].parameter] =
+          base.parameters().at(scalars[n].parameter) + u[static_cast<std::size_t>(subspace.size()) + n];
+  return base.with_parameters(values);
+}
+
+std::vector<double> Unknowns::parameters_of(const systems::System& system) const {
+  std::vector<double> values;
+  for (const Scalar& s : scalars)
+    if (s.kind == Scalar::Kind::parameter) values.push_back(system.parameters().at(s.parameter));
+  return values;
 }
 
 std::vector<double> Unknowns::difference(const loop::Loop& from, const loop::Loop& to) const {
@@ -38,16 +73,23 @@ std::vector<double> Unknowns::difference(const loop::Loop& from, const loop::Loo
   core::require(from.time_map == to.time_map, "the loops have different time maps: bring one to the other's first");
   std::vector<double> modes(from.modes.size());
   for (std::size_t n = 0; n < modes.size(); ++n) modes[n] = to.modes[n] - from.modes[n];
-  std::vector<double> u(static_cast<std::size_t>(size()));
+  std::vector<double> u(static_cast<std::size_t>(size()), 0.0);
   subspace.project(modes, std::span(u).first(static_cast<std::size_t>(subspace.size())));
-  if (period) u.back() = to.period - from.period;
+  if (has_period()) u[static_cast<std::size_t>(subspace.size())] = to.period - from.period;
   return u;
 }
 
 std::vector<double> Unknowns::coordinates_of(const loop::Tangent& tangent) const {
-  std::vector<double> u(static_cast<std::size_t>(size()));
+  std::vector<double> u(static_cast<std::size_t>(size()), 0.0);
   subspace.project(tangent.modes, std::span(u).first(static_cast<std::size_t>(subspace.size())));
-  if (period) u.back() = tangent.period();
+  // T is the first scalar of a tangent even where the unknowns leave it out.
+  std::size_t parameter = 1;
+  for (std::size_t n = 0; n < scalars.size(); ++n) {
+    double& entry = u[static_cast<std::size_t>(subspace.size()) + n];
+    if (scalars[n].kind == Scalar::Kind::period) entry = tangent.period();
+    if (scalars[n].kind == Scalar::Kind::parameter && parameter < tangent.scalars.size())
+      entry = tangent.scalars[parameter++];
+  }
   return u;
 }
 
@@ -56,7 +98,10 @@ loop::Tangent Unknowns::tangent_of(std::span<const double> u) const {
   const int modes = (2 * subspace.cutoff() + 1) * subspace.dimension();
   loop::Tangent out{std::vector<double>(static_cast<std::size_t>(modes), 0.0), {}};
   subspace.add_to(in_subspace(*this, u), out.modes);
-  if (period) out.scalars.push_back(u.back());
+  if (!has_period() && has_parameters()) out.scalars.push_back(0.0);
+  for (std::size_t n = 0; n < scalars.size(); ++n)
+    if (scalars[n].kind != Scalar::Kind::unfolding)
+      out.scalars.push_back(u[static_cast<std::size_t>(subspace.size()) + n]);
   return out;
 }
 

@@ -26,7 +26,7 @@ struct Sample {
 Sample sample(const systems::System& system, std::span<const double> fixed_point, double period, int cutoff) {
   const loop::Loop loop = loop::constant_loop(fixed_point, period, cutoff);
   const loss::Linearization linearization(system, loop, loss::Linearization::Order::jacobian);
-  const loss::Unknowns unknowns{loop::Subspace::unrestricted(loop.dimension, cutoff), false};
+  const loss::Unknowns unknowns{loop::Subspace::unrestricted(loop.dimension, cutoff), {}};
   const spectrum::Eigenpairs pairs = spectrum::smallest_eigenpairs(
       loss::assemble_hessian(linearization, unknowns, loss::Curvature::gauss_newton), {.count = 1});
   std::vector<double> weight(static_cast<std::size_t>(cutoff) + 1, 0.0);

@@ -7,15 +7,19 @@
 
 namespace orbweaver::systems {
 
-/// What a model is made from: a value for every parameter, and the effects asked for, all checked.
-struct Bound {
-  std::map<std::string, double> parameters;
+/// What a model is made from: a value for every parameter, and the effects asked for, all checked. Values are numbers, or
+/// (to differentiate by a parameter) of the scalar type of the field.
+template <class P>
+struct BoundTo {
+  std::map<std::string, P> parameters;
   std::vector<std::string> effects;
 
-  [[nodiscard]] double operator[](const std::string& parameter) const { return parameters.at(parameter); }
+  [[nodiscard]] const P& operator[](const std::string& parameter) const { return parameters.at(parameter); }
   [[nodiscard]] bool has(const std::string& effect) const {
     return std::find(effects.begin(), effects.end(), effect) != effects.end();
   }
 };
+
+using Bound = BoundTo<double>;
 
 }  // namespace orbweaver::systems

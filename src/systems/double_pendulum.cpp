@@ -16,51 +16,55 @@ class DoublePendulum {
   static ModelInfo info();
   static Structure structure(const Bound& bound);
 
-  explicit DoublePendulum(const Bound& bound)
-      : _m1(bound["m1"]), _m2(bound["m2"]), _l1(bound["l1"]), _l2(bound["l2"]), _g(bound["g"]) {}
+  template <class P>
+  class With {
+   public:
+    explicit With(const BoundTo<P>& bound)
+        : _m1(bound["m1"]), _m2(bound["m2"]), _l1(bound["l1"]), _l2(bound["l2"]), _g(bound["g"]) {}
 
-  template <class S>
-  void field(const S* z, S* f) const {
-    using std::cos;
-    using std::sin;
-    const double mass = _m1 + _m2;
-    const S d = z[0] - z[1];
-    const S sin_d = sin(d);
-    const S cos_d = cos(d);
-    const S sin_1 = sin(z[0]);
-    const S sin_2 = sin(z[1]);
-    const S swing_1 = z[2] * z[2] * _l1;
-    const S swing_2 = z[3] * z[3] * _l2;
-    const S share = S(1.0) / (sin_d * sin_d * _m2 + _m1);
-    const S pull_1 = (sin_2 * cos_d * _m2 - sin_1 * mass) * _g - sin_d * (swing_1 * cos_d + swing_2) * _m2;
-    const S pull_2 = (sin_1 * cos_d - sin_2) * (mass * _g) + sin_d * (swing_1 * mass + swing_2 * cos_d * _m2);
-    f[0] = z[2];
-    f[1] = z[3];
-    f[2] = pull_1 * share * (1.0 / _l1);
-    f[3] = pull_2 * share * (1.0 / _l2);
-  }
+    template <class S>
+    void field(const S* z, S* f) const {
+      using std::cos;
+      using std::sin;
+      const P mass = _m1 + _m2;
+      const S d = z[0] - z[1];
+      const S sin_d = sin(d);
+      const S cos_d = cos(d);
+      const S sin_1 = sin(z[0]);
+      const S sin_2 = sin(z[1]);
+      const S swing_1 = z[2] * z[2] * _l1;
+      const S swing_2 = z[3] * z[3] * _l2;
+      const S share = S(1.0) / (sin_d * sin_d * _m2 + _m1);
+      const S pull_1 = (sin_2 * cos_d * _m2 - sin_1 * mass) * _g - sin_d * (swing_1 * cos_d + swing_2) * _m2;
+      const S pull_2 = (sin_1 * cos_d - sin_2) * (mass * _g) + sin_d * (swing_1 * mass + swing_2 * cos_d * _m2);
+      f[0] = z[2];
+      f[1] = z[3];
+      f[2] = pull_1 * share * (1.0 / _l1);
+      f[3] = pull_2 * share * (1.0 / _l2);
+    }
 
-  template <int, class S>
-  S conserved(const S* z) const {
-    using std::cos;
-    const S height = cos(z[0]) * ((_m1 + _m2) * _l1) + cos(z[1]) * (_m2 * _l2);
-    return action_density(z) * 0.5 - height * _g;
-  }
+    template <int, class S>
+    S conserved(const S* z) const {
+      using std::cos;
+      const S height = cos(z[0]) * ((_m1 + _m2) * _l1) + cos(z[1]) * (_m2 * _l2);
+      return action_density(z) * 0.5 - height * _g;
+    }
 
-  template <class S>
-  S action_density(const S* z) const {
-    using std::cos;
-    const S d = z[0] - z[1];
-    return z[2] * z[2] * ((_m1 + _m2) * _l1 * _l1) + z[3] * z[3] * (_m2 * _l2 * _l2) +
-           z[2] * z[3] * cos(d) * (2.0 * _m2 * _l1 * _l2);
-  }
+    template <class S>
+    S action_density(const S* z) const {
+      using std::cos;
+      const S d = z[0] - z[1];
+      return z[2] * z[2] * ((_m1 + _m2) * _l1 * _l1) + z[3] * z[3] * (_m2 * _l2 * _l2) +
+             z[2] * z[3] * cos(d) * (2.0 * _m2 * _l1 * _l2);
+    }
 
- private:
-  double _m1;
-  double _m2;
-  double _l1;
-  double _l2;
-  double _g;
+   private:
+    P _m1;
+    P _m2;
+    P _l1;
+    P _l2;
+    P _g;
+  };
 };
 
 ModelInfo DoublePendulum::info() {

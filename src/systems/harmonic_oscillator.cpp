@@ -12,26 +12,30 @@ class HarmonicOscillator {
   static ModelInfo info();
   static Structure structure(const Bound& bound);
 
-  explicit HarmonicOscillator(const Bound& bound) : _omega(bound["omega"]) {}
+  template <class P>
+  class With {
+   public:
+    explicit With(const BoundTo<P>& bound) : _omega(bound["omega"]) {}
 
-  template <class S>
-  void field(const S* z, S* f) const {
-    f[0] = z[1];
-    f[1] = z[0] * (-_omega * _omega);
-  }
+    template <class S>
+    void field(const S* z, S* f) const {
+      f[0] = z[1];
+      f[1] = z[0] * (-_omega * _omega);
+    }
 
-  template <int, class S>
-  S conserved(const S* z) const {
-    return (z[1] * z[1] + z[0] * z[0] * (_omega * _omega)) * 0.5;
-  }
+    template <int, class S>
+    S conserved(const S* z) const {
+      return (z[1] * z[1] + z[0] * z[0] * (_omega * _omega)) * 0.5;
+    }
 
-  template <class S>
-  S action_density(const S* z) const {
-    return z[1] * z[1];
-  }
+    template <class S>
+    S action_density(const S* z) const {
+      return z[1] * z[1];
+    }
 
- private:
-  double _omega;
+   private:
+    P _omega;
+  };
 };
 
 ModelInfo HarmonicOscillator::info() {

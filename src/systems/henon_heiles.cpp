@@ -15,27 +15,31 @@ class HenonHeiles {
   static ModelInfo info();
   static Structure structure(const Bound& bound);
 
-  explicit HenonHeiles(const Bound&) {}
+  template <class P>
+  class With {
+   public:
+    explicit With(const BoundTo<P>&) {}
 
-  template <class S>
-  void field(const S* z, S* f) const {
-    f[0] = z[2];
-    f[1] = z[3];
-    f[2] = -(z[0] + z[0] * z[1] * 2.0);
-    f[3] = z[1] * z[1] - z[0] * z[0] - z[1];
-  }
+    template <class S>
+    void field(const S* z, S* f) const {
+      f[0] = z[2];
+      f[1] = z[3];
+      f[2] = -(z[0] + z[0] * z[1] * 2.0);
+      f[3] = z[1] * z[1] - z[0] * z[0] - z[1];
+    }
 
-  template <int, class S>
-  S conserved(const S* z) const {
-    const S square_x = z[0] * z[0];
-    const S square_y = z[1] * z[1];
-    return (action_density(z) + square_x + square_y) * 0.5 + square_x * z[1] - square_y * z[1] * (1.0 / 3.0);
-  }
+    template <int, class S>
+    S conserved(const S* z) const {
+      const S square_x = z[0] * z[0];
+      const S square_y = z[1] * z[1];
+      return (action_density(z) + square_x + square_y) * 0.5 + square_x * z[1] - square_y * z[1] * (1.0 / 3.0);
+    }
 
-  template <class S>
-  S action_density(const S* z) const {
-    return z[2] * z[2] + z[3] * z[3];
-  }
+    template <class S>
+    S action_density(const S* z) const {
+      return z[2] * z[2] + z[3] * z[3];
+    }
+  };
 };
 
 namespace {

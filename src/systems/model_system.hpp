@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <map>
+#include <memory>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -19,7 +22,9 @@ namespace orbweaver::systems {
 ///   static constexpr int quantities;                          // functions that can be conserved
 ///   static ModelInfo info();
 ///   static Structure structure(const Bound& bound);           // what holds with these parameters and effects
-///   explicit Model(const Bound& bound);
+///   template <class P> class With;                            // the model with parameters of type P
+/// and With<P>, P being double or (to differentiate by a parameter) the scalar S of the field, has
+///   explicit With(const BoundTo<P>& bound);
 ///   template <class S> void field(const S* z, S* f) const;
 ///   template <int K, class S> S conserved(const S* z) const;  // quantity K of the structure, K < quantities
 ///   template <class S> S action_density(const S* z) const;    // NaN where there is none
@@ -28,14 +33,13 @@ namespace orbweaver::systems {
 template <class Model>
 class ModelSystem final : public ComplexSystem {
  public:
-  explicit ModelSystem(const Bound& bound)
-      : _model(bound), _structure(Model::structure(bound)), _parameters(bound.parameters) {
+  explicit ModelSystem(const Bound& bound) : _model(bound), _structure(Model::structure(bound)), _bound(bound) {
     check(_structure, Registered<Model>::info(), Model::dimension, Model::quantities);
   }
 
   [[nodiscard]] const ModelInfo& info() const override { return Registered<Model>::info(); }
   [[nodiscard]] const Structure& structure() const override { return _structure; }
-  [[nodiscard]] const std::map<std::string, double>& parameters() const override { return _parameters; }
+  [[nodiscard]] const std::map<std::string, double>& parameters() const override { return _bound.parameters; }
 
   void field(std::size_t nodes, const double* z, double* f) const override {
     for_each_group(nodes, [=, this](std::size_t j, std::size_t count) {
@@ -60,6 +64,39 @@ class ModelSystem final : public ComplexSystem {
       const State weight = load(nodes, j, count, weights);
       store(nodes, j, count, ad::second_derivatives<Model::dimension>(_field, state.data(), weight.data()), contracted);
     });
+  }
+
+  void parameter_derivatives(const std::string& name, std::size_t nodes, const double* z,
+                             double* derivatives) const override {
+    using S = ad::First<1, ad::Lanes>;
+    core::require(_bound.parameters.contains(name), "a field is differentiated by a parameter that it has");
+    BoundTo<S> bound{{}, _bound.effects};
+    for (const auto& [other, value] : _bound.parameters)
+      bound.parameters.emplace(other, other == name ? S::variable(ad::Lanes(value), 0) : S(value));
+    const typename Model::template With<S> model(bound);
+    for_each_group(nodes, [=, &model](std::size_t j, std::size_t count) {
+      const State state = load(nodes, j, count, z);
+      std::array<S, size> at;
+      std::array<S, size> f;
+      for (std::size_t i = 0; i < size; ++i) {
+        at[i] = S(0.0);
+        at[i].value = state[i];
+      }
+      model.field(at.data(), f.data());
+      State out;
+      for (std::size_t i = 0; i < size; ++i) out[i] = f[i].derivatives[0];
+      store(nodes, j, count, out, derivatives);
+    });
+  }
+
+  [[nodiscard]] std::shared_ptr<const System> with_parameters(
+      const std::map<std::string, double>& values) const override {
+    Bound bound = _bound;
+    for (const auto& [name, value] : values) {
+      core::require(bound.parameters.contains(name), "a system moves parameters that it has");
+      bound.parameters[name] = value;
+    }
+    return std::make_shared<const ModelSystem>(bound);
   }
 
   void conserved_gradients(int k, std::size_t nodes, const double* z, double* gradients) const override {
@@ -107,8 +144,10 @@ class ModelSystem final : public ComplexSystem {
   static constexpr auto size = static_cast<std::size_t>(Model::dimension);
   using State = std::array<ad::Lanes, size>;
 
+  using Numeric = typename Model::template With<double>;
+
   struct Field {
-    const Model& model;
+    const Numeric& model;
     template <class S>
     void operator()(const S* z, S* f) const {
       model.field(z, f);
@@ -150,10 +189,10 @@ class ModelSystem final : public ComplexSystem {
       for (std::size_t i = 0; i < Rows; ++i) values[i].store(nodal + i * nodes + j, count);
   }
 
-  Model _model;
+  Numeric _model;
   Field _field{_model};
   Structure _structure;
-  std::map<std::string, double> _parameters;
+  Bound _bound;
 };
 
 template <class Model>

@@ -10,6 +10,14 @@ std::vector<std::string> System::winding_names() const {
   return names;
 }
 
+void System::parameter_derivatives(const std::string&, std::size_t, const double*, double*) const {
+  throw core::MisuseError("this system does not differentiate by its parameters");
+}
+
+std::shared_ptr<const System> System::with_parameters(const std::map<std::string, double>&) const {
+  throw core::MisuseError("the parameters of this system do not move");
+}
+
 void System::conserved_gradients(int k, std::size_t nodes, const double* z, double* gradients) const {
   const auto d = static_cast<std::size_t>(dimension());
   std::vector<double> state(d);

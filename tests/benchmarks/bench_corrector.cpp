@@ -13,7 +13,7 @@ void correct_at(benchmark::State& state, corrector::Method method, bool symmetri
   const FamilyOrbit& orbit = family_orbit(Family::in_phase, period);
   const int cutoff = loop::allowed_cutoff_at_least(static_cast<int>(state.range(0)));
   const loop::Isotropy isotropy = symmetric ? orbit.isotropy : loop::Isotropy{};
-  const loss::Unknowns unknowns{loop::Subspace(orbit.loop.dimension, cutoff, isotropy), true};
+  const loss::Unknowns unknowns{loop::Subspace(orbit.loop.dimension, cutoff, isotropy), {loss::Scalar::period()}};
   loop::Loop guess = loop::with_cutoff(orbit.loop, cutoff);
   for (int k = 1; k <= 5; k += 2) {
     guess.cosine(k, 0) += 1e-3 / k;

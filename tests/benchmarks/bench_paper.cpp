@@ -31,7 +31,8 @@ corrector::Result correct(const Step& step, corrector::Method method) {
 
 // The step from the orbit with this period; none where `cutoff` harmonics do not resolve it.
 std::optional<Step> step_from(const FamilyOrbit& orbit, int cutoff) {
-  Step step{orbit.system, {loop::Subspace(orbit.loop.dimension, cutoff, orbit.isotropy), true}, {}, {}};
+  Step step{
+      orbit.system, {loop::Subspace(orbit.loop.dimension, cutoff, orbit.isotropy), {loss::Scalar::period()}}, {}, {}};
   step.guess = loop::with_cutoff(orbit.loop, cutoff);
   step.tangent = Eigen::VectorXd::Unit(step.unknowns.size(), step.unknowns.size() - 1);
   const corrector::Result here = correct(step, corrector::Method::nls);

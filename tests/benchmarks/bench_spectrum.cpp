@@ -24,7 +24,7 @@ Problem problem_at(int k) {
   const FamilyOrbit& orbit = family_orbit(Family::in_phase, 9.0);
   const loop::Loop loop = loop::with_cutoff(orbit.loop, loop::allowed_cutoff_at_least(k));
   return {loss::Linearization(*orbit.system, loop, loss::Linearization::Order::jacobian),
-          {loop::Subspace(loop.dimension, loop.cutoff, orbit.isotropy), true}};
+          {loop::Subspace(loop.dimension, loop.cutoff, orbit.isotropy), {loss::Scalar::period()}}};
 }
 
 void assemble_hessian(benchmark::State& state) {
@@ -54,7 +54,7 @@ struct OnFamily {
       : orbit(family_orbit(family, period)),
         loop(loop::with_cutoff(orbit.loop, std::max(orbit.loop.cutoff, loop::allowed_cutoff_at_least(k)))),
         isotropy(symmetric ? orbit.isotropy : loop::Isotropy{}),
-        unknowns{loop::Subspace(loop.dimension, loop.cutoff, isotropy), true} {
+        unknowns{loop::Subspace(loop.dimension, loop.cutoff, isotropy), {loss::Scalar::period()}} {
     conditions = Eigen::VectorXd::Unit(unknowns.size(), unknowns.size() - 1);
     const std::vector<double> shift = unknowns.time_shift_direction(loop);
     if (!symmetric) {

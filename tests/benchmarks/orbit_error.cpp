@@ -32,7 +32,7 @@ OrbitError error_of(const systems::System& system, const loop::Loop& orbit, cons
                     const loop::Isotropy& isotropy) {
   const int cutoff = loop::allowed_cutoff_at_least(2 * orbit.cutoff);
   const loop::Loop produced = loop::with_cutoff(orbit, cutoff);
-  const loss::Unknowns unknowns{loop::Subspace(orbit.dimension, cutoff, isotropy), true};
+  const loss::Unknowns unknowns{loop::Subspace(orbit.dimension, cutoff, isotropy), {loss::Scalar::period()}};
   const auto difference = [&](const loop::Loop& to) {
     const std::vector<double> u = unknowns.difference(produced, to);
     return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size())));

@@ -28,7 +28,7 @@ inline loop::Loop even_in_phase_orbit(double period) {
 
 /// The flat direction of a loop among the perturbations of a subspace at fixed period; the time shift is left out.
 inline std::vector<double> kernel_of(const loop::Loop& loop, const loop::Subspace& subspace) {
-  const loss::Unknowns unknowns{subspace, false};
+  const loss::Unknowns unknowns{subspace, {}};
   const std::vector<double> shift = unknowns.time_shift_direction(loop);
   const Eigen::VectorXd direction =
       Eigen::Map<const Eigen::VectorXd>(shift.data(), static_cast<Eigen::Index>(shift.size()));

@@ -41,7 +41,7 @@ struct Crossing {
 
 inline Crossing crossing_at(const systems::System& system, const loop::Loop& orbit, const loop::Isotropy& isotropy,
                             int times, int dimension) {
-  const loss::Unknowns unknowns{loop::Subspace(orbit.dimension, orbit.cutoff, isotropy), true};
+  const loss::Unknowns unknowns{loop::Subspace(orbit.dimension, orbit.cutoff, isotropy), {loss::Scalar::period()}};
   Eigen::MatrixXd normal(unknowns.size(), 1);
   normal.col(0) = Eigen::VectorXd::Unit(unknowns.size(), unknowns.size() - 1);
   const Eigen::VectorXd pinned = normal.col(0);

@@ -38,7 +38,8 @@ struct OnFamily {
 OnFamily at_period(const test::PendulumMode& mode, double period) {
   const corrector::Result orbit = test::orbit_at(test::even_family_to_twelve(mode), period);
   EXPECT_TRUE(orbit.converged()) << orbit.detail;
-  const loss::Unknowns unknowns{loop::Subspace(4, orbit.loop.cutoff, test::pendulum_isotropy(*test::pendulum())), true};
+  const loss::Unknowns unknowns{loop::Subspace(4, orbit.loop.cutoff, test::pendulum_isotropy(*test::pendulum())),
+                                {loss::Scalar::period()}};
   const Eigen::VectorXd normal = Eigen::VectorXd::Unit(unknowns.size(), unknowns.size() - 1);
   const loss::Linearization linearization(*test::pendulum(), orbit.loop, loss::Linearization::Order::jacobian);
   const Eigen::VectorXd flat =
@@ -49,7 +50,7 @@ OnFamily at_period(const test::PendulumMode& mode, double period) {
 /// The same number by brute force: H over all coefficients and T, the two known flat directions projected out and moved
 /// to the top of the spectrum.
 double by_dense_projection(const OnFamily& orbit) {
-  const loss::Unknowns unknowns{loop::Subspace::unrestricted(4, orbit.loop.cutoff), true};
+  const loss::Unknowns unknowns{loop::Subspace::unrestricted(4, orbit.loop.cutoff), {loss::Scalar::period()}};
   const loss::Linearization linearization(*test::pendulum(), orbit.loop, loss::Linearization::Order::jacobian);
   const Eigen::MatrixXd j = test::to_dense(loss::assemble_jacobian(linearization, unknowns));
   const Eigen::MatrixXd h = 2.0 * j.transpose() * j;
@@ -135,7 +136,7 @@ TEST(OffBranchTriplets, AreTheSameDenseMatrixFreeSplitAndWhole) {
 TEST(OffBranchTriplets, AreDirections) {
   const OnFamily orbit = at_period(test::in_phase(), 9.0);
   const loss::Linearization linearization(*test::pendulum(), orbit.loop, loss::Linearization::Order::jacobian);
-  const loss::Unknowns all{loop::Subspace::unrestricted(4, orbit.loop.cutoff), true};
+  const loss::Unknowns all{loop::Subspace::unrestricted(4, orbit.loop.cutoff), {loss::Scalar::period()}};
   const auto whole = [&](const loop::Tangent& t) {
     const std::vector<double> u = all.coordinates_of(t);
     return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(u.data(), all.size()));

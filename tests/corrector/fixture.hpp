@@ -21,7 +21,7 @@ inline Eigen::VectorXd to_vector(const std::vector<double>& values) {
 struct Problem {
   Problem(const PendulumMode& mode, double amplitude, int cutoff)
       : guess(linear_loop(mode, amplitude, cutoff)),
-        unknowns{loop::Subspace(4, cutoff, pendulum_isotropy(*system)), true} {
+        unknowns{loop::Subspace(4, cutoff, pendulum_isotropy(*system)), {loss::Scalar::period()}} {
     const loop::Loop base = loop::constant_loop(mode.point, guess.period, cutoff);
     normal = to_vector(unknowns.difference(base, guess)).normalized();
   }

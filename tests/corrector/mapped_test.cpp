@@ -17,7 +17,7 @@ constexpr double period = 8.3;
 struct PinnedPeriod {
   PinnedPeriod(std::string symmetries, const loop::TimeMap& map, int cutoff)
       : guess(loop::with_time_map(starting_loop(cutoff), map, cutoff)),
-        unknowns{loop::Subspace(4, cutoff, chosen(symmetries)), true} {
+        unknowns{loop::Subspace(4, cutoff, chosen(symmetries)), {loss::Scalar::period()}} {
     const Eigen::VectorXd shift = test::to_vector(unknowns.time_shift_direction(guess));
     const bool phase = shift.norm() > 1e-8;
     conditions = Eigen::MatrixXd::Zero(unknowns.size(), phase ? 2 : 1);

@@ -14,7 +14,7 @@ namespace {
 struct InSubspace {
   InSubspace(const std::string& symmetries, double amplitude, int cutoff)
       : guess(test::linear_loop(test::in_phase(), amplitude, cutoff)),
-        unknowns{loop::Subspace(4, cutoff, chosen(symmetries)), true} {
+        unknowns{loop::Subspace(4, cutoff, chosen(symmetries)), {loss::Scalar::period()}} {
     const loop::Loop base = loop::constant_loop(std::vector<double>(4, 0.0), guess.period, cutoff);
     const Eigen::VectorXd normal = test::to_vector(unknowns.difference(base, guess)).normalized();
     const Eigen::VectorXd shift = test::to_vector(unknowns.time_shift_direction(guess));
@@ -88,7 +88,7 @@ TEST(NewtonKrylov, AutomaticTakesItForLargeProblems) {
 
 TEST(NewtonKrylov, RefusesAProblemThatIsNotSquare) {
   InSubspace problem("SR", 0.3, 22);
-  problem.unknowns.period = false;
+  problem.unknowns.scalars.clear();
   problem.conditions.conservativeResize(problem.unknowns.size(), Eigen::NoChange);
   EXPECT_THROW(static_cast<void>(problem.correct({.method = Method::newton_krylov})), core::InputError);
 }

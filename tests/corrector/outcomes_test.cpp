@@ -26,7 +26,7 @@ struct CircleGuess {
   CircleGuess(const systems::System& of, double period_in_turns)
       : system(of),
         guess(circle(period_in_turns)),
-        unknowns{loop::Subspace(2, 10, isotropy()), true},
+        unknowns{loop::Subspace(2, 10, isotropy()), {loss::Scalar::period()}},
         normal(amplitude()) {}
 
   static loop::Loop circle(double period_in_turns) {

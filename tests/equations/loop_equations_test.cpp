@@ -24,11 +24,15 @@ using namespace loss;
 struct Problem {
   Problem(const std::string& sector, int cutoff)
       : loop(test::linear_loop(test::in_phase(), 0.8, cutoff)),
-        unknowns{subspace(sector, cutoff), sector == "all" || sector == "++"},
+        unknowns{subspace(sector, cutoff), scalars(sector)},
         image(unknowns.subspace.image()),
         slice(unknowns.size(), conditions()),
         equations(*system, loop, unknowns, image, slice) {}
 
+  [[nodiscard]] static std::vector<Scalar> scalars(const std::string& sector) {
+    if (sector == "all" || sector == "++") return {Scalar::period()};
+    return {};
+  }
   [[nodiscard]] loop::Subspace subspace(const std::string& sector, int cutoff) const {
     if (sector == "all") return loop::Subspace::unrestricted(4, cutoff);
     const std::vector<int> signs{sector[0] == '+' ? 1 : -1, sector[1] == '+' ? 1 : -1};
@@ -37,7 +41,7 @@ struct Problem {
   [[nodiscard]] Eigen::MatrixXd conditions() const {
     const Eigen::VectorXd shift = test::vector_of(unknowns.time_shift_direction(loop));
     Eigen::MatrixXd out(unknowns.size(), 0);
-    if (unknowns.period) out = test::unit_direction(unknowns.size(), 5);
+    if (unknowns.has_period()) out = test::unit_direction(unknowns.size(), 5);
     if (shift.norm() < 1e-8) return out;
     out.conservativeResize(Eigen::NoChange, out.cols() + 1);
     out.rightCols(1) = shift.normalized();

@@ -19,7 +19,7 @@ using namespace loss;
 struct Problem {
   explicit Problem(core::Team* team)
       : loop(loop_of(chain)),
-        unknowns{loop::Subspace::unrestricted(chain.dimension(), loop.cutoff), true},
+        unknowns{loop::Subspace::unrestricted(chain.dimension(), loop.cutoff), {Scalar::period()}},
         image(unknowns.subspace.image()),
         slice(unknowns.size(), conditions()),
         equations(chain, loop, unknowns, image, slice, team) {}

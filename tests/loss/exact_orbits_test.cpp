@@ -24,7 +24,9 @@ loop::Loop oscillation(double omega, int cutoff, int harmonic = 1) {
   return loop;
 }
 
-Unknowns all_of(const loop::Loop& loop) { return {loop::Subspace::unrestricted(loop.dimension, loop.cutoff), true}; }
+Unknowns all_of(const loop::Loop& loop) {
+  return {loop::Subspace::unrestricted(loop.dimension, loop.cutoff), {Scalar::period()}};
+}
 
 void expect_exact(const systems::System& system, const loop::Loop& loop) {
   const Linearization here(system, loop, Linearization::Order::second);

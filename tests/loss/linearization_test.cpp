@@ -131,7 +131,7 @@ TEST(LinearizationMisuse, WrongSizesAreRefused) {
   EXPECT_THROW(static_cast<void>(here.apply_jacobian_transposed(sample.unknowns, std::vector<double>(rows - 1))),
                core::MisuseError);
   for (const int cutoff : {4, 20}) {
-    const Unknowns other{loop::Subspace::unrestricted(4, cutoff), true};
+    const Unknowns other{loop::Subspace::unrestricted(4, cutoff), {Scalar::period()}};
     const std::vector<double> v(static_cast<std::size_t>(other.size()), 0.0);
     EXPECT_THROW(static_cast<void>(here.apply_jacobian(other, v)), core::MisuseError) << "K = " << cutoff;
     EXPECT_THROW(static_cast<void>(here.apply_jacobian_transposed(other, std::vector<double>(rows))), core::MisuseError)

@@ -26,7 +26,9 @@ loop::Loop even_loop(std::uint64_t seed) {
   return loop;
 }
 
-Unknowns all_of(const loop::Loop& loop) { return {loop::Subspace::unrestricted(loop.dimension, loop.cutoff), true}; }
+Unknowns all_of(const loop::Loop& loop) {
+  return {loop::Subspace::unrestricted(loop.dimension, loop.cutoff), {Scalar::period()}};
+}
 
 // The unknowns that change `from` to `to`, but for the windings that both share.
 Eigen::VectorXd change(const loop::Loop& from, const loop::Loop& to) {

@@ -124,8 +124,8 @@ TEST(MatricesMisuse, IsRefused) {
   EXPECT_THROW(static_cast<void>(assemble_hessian(residual, sample.unknowns, Curvature::gauss_newton)),
                core::MisuseError);
   EXPECT_THROW(static_cast<void>(assemble_hessian(jacobian, sample.unknowns, Curvature::full)), core::MisuseError);
-  const Unknowns larger{loop::Subspace::unrestricted(4, 20), false};
-  const Unknowns flatter{loop::Subspace::unrestricted(2, 9), false};
+  const Unknowns larger{loop::Subspace::unrestricted(4, 20), {}};
+  const Unknowns flatter{loop::Subspace::unrestricted(2, 9), {}};
   for (const Unknowns& other : {larger, flatter}) {
     EXPECT_THROW(static_cast<void>(assemble_jacobian(jacobian, other)), core::MisuseError);
     EXPECT_THROW(static_cast<void>(assemble_hessian(jacobian, other, Curvature::gauss_newton)), core::MisuseError);

@@ -75,11 +75,11 @@ TEST(Symmetry, GradientStaysInTheSubspace) {
     const auto system = systems::make_system(s.system);
     const loop::Loop loop = symmetric_loop(s);
     const Linearization lin(*system, loop, Linearization::Order::jacobian);
-    const Unknowns all{Subspace::unrestricted(4, loop.cutoff), true};
+    const Unknowns all{Subspace::unrestricted(4, loop.cutoff), {Scalar::period()}};
     std::vector<double> modes(loop.modes.size(), 0.0);
     const std::vector<double> gradient = lin.gradient(all);
     all.subspace.add_to(std::span(gradient).first(modes.size()), modes);
-    const Unknowns own{Subspace(4, loop.cutoff, s.isotropy), true};
+    const Unknowns own{Subspace(4, loop.cutoff, s.isotropy), {Scalar::period()}};
     const std::vector<double> reduced = lin.gradient(own);
     std::vector<double> back(modes.size(), 0.0);
     own.subspace.add_to(std::span(reduced).first(static_cast<std::size_t>(own.subspace.size())), back);
@@ -95,7 +95,7 @@ TEST(Symmetry, HessianFallsApartIntoSectors) {
   const auto system = systems::make_system(s.system);
   const loop::Loop loop = symmetric_loop(s);
   const Linearization lin(*system, loop, Linearization::Order::second);
-  const Unknowns all{Subspace::unrestricted(4, loop.cutoff), false};
+  const Unknowns all{Subspace::unrestricted(4, loop.cutoff), {}};
   std::vector<Subspace> sectors;
   for (const std::vector<int>& signs : {std::vector<int>{1, 1}, {-1, 1}, {1, -1}, {-1, -1}})
     sectors.emplace_back(4, loop.cutoff, s.isotropy, signs);

@@ -12,7 +12,11 @@ namespace {
 using loop::Loop;
 using loop::Subspace;
 
-Unknowns free_unknowns(bool period = true) { return {Subspace::unrestricted(3, 5), period}; }
+Unknowns free_unknowns(bool period = true) {
+  Unknowns unknowns{Subspace::unrestricted(3, 5), {}};
+  if (period) unknowns.scalars.push_back(Scalar::period());
+  return unknowns;
+}
 
 Loop base_loop() {
   Loop loop = test::random_loop(3, 5, 91);
@@ -27,7 +31,7 @@ TEST(Unknowns, CountTheirPeriod) {
 
 TEST(Unknowns, DifferenceUndoesMoved) {
   const loop::Isotropy mirror{test::element_of(test::structure_of("henon_heiles"), "C", 1, 3)};
-  const Unknowns unknowns{Subspace(4, 5, mirror), true};
+  const Unknowns unknowns{Subspace(4, 5, mirror), {Scalar::period()}};
   const Loop base = test::random_loop(4, 5, 92);
   const std::vector<double> u = test::random_values(static_cast<std::size_t>(unknowns.size()), 93);
   const Loop moved = unknowns.moved(base, u);
@@ -52,7 +56,7 @@ TEST(Unknowns, LetThePeriodBecomeAnything) {
 
 TEST(Unknowns, DifferenceIsAProjection) {
   const loop::Isotropy mirror{test::element_of(test::structure_of("double_pendulum"), "S", 1, 2)};
-  const Unknowns unknowns{Subspace(4, 5, mirror), false};
+  const Unknowns unknowns{Subspace(4, 5, mirror), {}};
   const Loop from = test::random_loop(4, 5, 94);
   const Loop to = test::random_loop(4, 5, 95);
   const Loop nearest = unknowns.moved(from, unknowns.difference(from, to));
@@ -83,7 +87,7 @@ TEST(Unknowns, TimeShiftDirectionIsTheDerivativeOfATimeShift) {
 TEST(Unknowns, ReversibleSubspaceHasNoTimeShift) {
   const systems::Structure& pendulum = test::structure_of("double_pendulum");
   const loop::Isotropy brake{test::element_of(pendulum, "R")};
-  const Unknowns unknowns{Subspace(4, 5, brake), true};
+  const Unknowns unknowns{Subspace(4, 5, brake), {Scalar::period()}};
   const Loop loop =
       test::random_loop_in(unknowns.subspace, loop::constant_loop(std::vector<double>(4, 0.0), 2.0, 5), 96);
   for (const double d : unknowns.time_shift_direction(loop)) EXPECT_EQ(d, 0.0);

@@ -21,8 +21,12 @@ constexpr int always_dense = 1 << 30;
 /// phase as far as they are there.
 struct Problem {
   Problem(const loop::Loop& orbit, const std::string& sector)
-      : loop(orbit), unknowns{subspace(sector), sector == "all" || sector == "++"}, slice(unknowns.size(), pinned()) {}
+      : loop(orbit), unknowns{subspace(sector), scalars(sector)}, slice(unknowns.size(), pinned()) {}
 
+  [[nodiscard]] static std::vector<loss::Scalar> scalars(const std::string& sector) {
+    if (sector == "all" || sector == "++") return {loss::Scalar::period()};
+    return {};
+  }
   [[nodiscard]] loop::Subspace subspace(const std::string& sector) const {
     if (sector == "all") return loop::Subspace::unrestricted(4, loop.cutoff);
     const std::vector<int> signs{sector[0] == '+' ? 1 : -1, sector[1] == '+' ? 1 : -1};
@@ -32,8 +36,8 @@ struct Problem {
     const std::vector<double> shift = unknowns.time_shift_direction(loop);
     const Eigen::VectorXd direction = Eigen::Map<const Eigen::VectorXd>(shift.data(), unknowns.size());
     const bool phase = direction.norm() > 1e-8;
-    Eigen::MatrixXd out(unknowns.size(), (unknowns.period ? 1 : 0) + (phase ? 1 : 0));
-    if (unknowns.period) out.col(0) = Eigen::VectorXd::Unit(unknowns.size(), unknowns.size() - 1);
+    Eigen::MatrixXd out(unknowns.size(), (unknowns.has_period() ? 1 : 0) + (phase ? 1 : 0));
+    if (unknowns.has_period()) out.col(0) = Eigen::VectorXd::Unit(unknowns.size(), unknowns.size() - 1);
     if (phase) out.rightCols(1) = direction.normalized();
     return out;
   }
@@ -163,7 +167,7 @@ TEST(LoopTriplets, FindTheNextValuesBesideAnExactlyFlatDirection) {
   problem.loop = loop::constant_loop(std::vector<double>{0.0, 0.0}, 2.0 * std::numbers::pi, 40);
   problem.loop.cosine(1, 0) = 0.7;
   problem.loop.sine(1, 1) = -0.7;
-  problem.unknowns = {loop::Subspace::unrestricted(2, 40), true};
+  problem.unknowns = {loop::Subspace::unrestricted(2, 40), {loss::Scalar::period()}};
   problem.slice = loss::Slice(problem.unknowns.size(), problem.pinned());
   const SingularTriplets free = problem.triplets({.count = 4, .multiple = true, .krylov_from = 1});
   const SingularTriplets dense = problem.dense(4);

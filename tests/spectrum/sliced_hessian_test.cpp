@@ -21,7 +21,7 @@ std::span<const double> view(const Eigen::VectorXd& v) { return {v.data(), stati
 struct InPhase {
   explicit InPhase(double amplitude, int cutoff = 22)
       : guess(test::linear_loop(test::in_phase(), amplitude, cutoff)),
-        unknowns{loop::Subspace(4, cutoff, test::pendulum_isotropy(*system)), true},
+        unknowns{loop::Subspace(4, cutoff, test::pendulum_isotropy(*system)), {loss::Scalar::period()}},
         normal(direction_of_growth()),
         slice(unknowns.size(), normal) {}
 

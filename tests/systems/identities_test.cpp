@@ -8,6 +8,7 @@
 #include <Eigen/Dense>
 
 #include "complex_system.hpp"
+#include "orbweaver/core/error.hpp"
 #include "systems/samples.hpp"
 
 namespace orbweaver::systems {
@@ -65,6 +66,34 @@ TEST_P(Identities, JacobianAgreesWithComplexStep) {
       for (std::size_t i = 0; i < dimension; ++i)
         EXPECT_NEAR(entries[i * dimension + l], f[i].imag() / h, 1e-13 * (1.0 + largest(entries)));
     }
+  }
+}
+
+TEST_P(Identities, ParameterDerivativesAreDerivativesOfTheField) {
+  // Central differences of order eight.
+  constexpr double h = 0.003;
+  constexpr std::array<double, 4> stencil{4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0};
+  for (int sample = 0; sample < samples; ++sample) {
+    const auto system = random_system();
+    const auto z = random_state();
+    for (const auto& [name, value] : system->parameters()) {
+      std::vector<double> derivatives(dimension);
+      system->parameter_derivatives(name, 1, z.data(), derivatives.data());
+      Eigen::VectorXd expected = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(dimension));
+      const double step = h * value;
+      for (std::size_t k = 0; k < stencil.size(); ++k) {
+        const double away = step * static_cast<double>(k + 1);
+        expected += stencil[k] / step *
+                    (field(*system->with_parameters({{name, value + away}}), vector(z)) -
+                     field(*system->with_parameters({{name, value - away}}), vector(z)));
+      }
+      for (std::size_t i = 0; i < dimension; ++i)
+        EXPECT_NEAR(derivatives[i], expected(static_cast<Eigen::Index>(i)), 1e-10 * (1.0 + largest(derivatives)))
+            << name;
+    }
+    std::vector<double> out(dimension);
+    EXPECT_THROW(system->parameter_derivatives("no such", 1, z.data(), out.data()), core::MisuseError);
+    EXPECT_THROW(static_cast<void>(system->with_parameters({{"no such", 1.0}})), core::MisuseError);
   }
 }
 

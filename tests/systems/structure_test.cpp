@@ -52,38 +52,42 @@ class Springs {
     return structure;
   }
 
-  explicit Springs(const Bound& bound)
-      : _a(bound["a"]), _b(bound["b"]), _friction(bound.has("friction") ? bound["c"] : 0.0) {}
+  template <class P>
+  class With {
+   public:
+    explicit With(const BoundTo<P>& bound)
+        : _a(bound["a"]), _b(bound["b"]), _friction(bound.has("friction") ? bound["c"] : P(0.0)) {}
 
-  template <class S>
-  void field(const S* z, S* f) const {
-    f[0] = z[2];
-    f[1] = z[3];
-    f[2] = -(z[0] * _a) - z[2] * _friction;
-    f[3] = -(z[1] * _b) - z[3] * _friction;
-  }
+    template <class S>
+    void field(const S* z, S* f) const {
+      f[0] = z[2];
+      f[1] = z[3];
+      f[2] = -(z[0] * _a) - z[2] * _friction;
+      f[3] = -(z[1] * _b) - z[3] * _friction;
+    }
 
-  template <int K, class S>
-  S conserved(const S* z) const {
-    if constexpr (K == 0)
-      return (z[2] * z[2] + z[3] * z[3] + z[0] * z[0] * _a + z[1] * z[1] * _b) * 0.5;
-    else
-      return z[0] * z[3] - z[1] * z[2];
-  }
+    template <int K, class S>
+    S conserved(const S* z) const {
+      if constexpr (K == 0)
+        return (z[2] * z[2] + z[3] * z[3] + z[0] * z[0] * _a + z[1] * z[1] * _b) * 0.5;
+      else
+        return z[0] * z[3] - z[1] * z[2];
+    }
 
-  template <class S>
-  S action_density(const S* z) const {
-    return z[2] * z[2] + z[3] * z[3];
-  }
+    template <class S>
+    S action_density(const S* z) const {
+      return z[2] * z[2] + z[3] * z[3];
+    }
 
-  [[nodiscard]] double guard(int k, const double* z) const {
-    return k == 0 ? std::hypot(z[0] - 1.0, z[1]) : std::hypot(z[2], z[3]);
-  }
+    [[nodiscard]] double guard(int k, const double* z) const {
+      return k == 0 ? std::hypot(z[0] - 1.0, z[1]) : std::hypot(z[2], z[3]);
+    }
 
- private:
-  double _a;
-  double _b;
-  double _friction;
+   private:
+    P _a;
+    P _b;
+    P _friction;
+  };
 };
 
 std::shared_ptr<const System> springs(const std::map<std::string, double>& given,

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <Eigen/Dense>
 
@@ -60,8 +61,9 @@ struct Options {
 
 struct Result {
   Outcome outcome = Outcome::solver_failed;
-  std::string detail;  ///< a sentence for outcomes other than converged
-  loop::Loop loop;     ///< the best loop found
+  std::string detail;              ///< a sentence for outcomes other than converged
+  loop::Loop loop;                 ///< the best loop found,
+  std::vector<double> parameters;  ///< and the values that the parameters among the unknowns have there
   int iterations = 0;
   int inner_iterations = 0;                       ///< of GMRES, over all Newton steps (newton-krylov)
   double loss_rms = 0.0;                          ///< sqrt(loss) of `loop`

@@ -7,6 +7,7 @@
 #include "orbweaver/equations/preconditioned_equations.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/loop/grid/staggered_grid.hpp"
+#include "orbweaver/loss/unknowns.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::equations {
@@ -16,21 +17,24 @@ class BoxScheme;
 /// The bordered equations of an orbit on a fundamental domain, and their box preconditioner (docs/mathematics.md, "The
 /// fast solve"):
 ///
-///   y_(j+1) - y_j + n h - c_j (f(z_j) + mu grad H(z_j)) = 0 at the midpoints, c_j = h T density / (2 pi),
+///   y_(j+1) - y_j + n h - c_j (f(z_j; p) + sum_k mu_k grad H_k(z_j)) = 0 at the midpoints, c_j = h T density / (2 pi),
 ///   end conditions of the domain,   weights_q . (u - reference) = 0 for each border.
 ///
-/// A point u holds y at the nodes (dimension x stride), then T, then mu where the loop has no reversor (an unfolding of
-/// the conserved energy, zero at an orbit).
+/// A point u holds y at the nodes (dimension x stride), then the scalars: T, parameters p, unfoldings mu (zero at an
+/// orbit). There is a border, and a condition, for each.
 class Collocation final : public PreconditionedEquations {
  public:
-  /// True where domain and system give a square problem that this class covers. Any dimension: nothing of this is divided
+  /// The scalars of a conservative family: T, and an unfolding of the energy where no reversor fixes the phase.
+  [[nodiscard]] static std::vector<loss::Scalar> conservative(const loop::FundamentalDomain& domain);
+  /// True where domain, system and the scalars of a conservative family give a square problem. Any dimension: nothing of this is divided
   /// by a team, and need not be. Five orbits of a chain of oscillators take one rank 0.8, 1.2, 12 and 66 ms (d = 8, 16, 32,
   /// 64); as loops they take one rank 5.6, 16, 80 and 471 ms, and a team of two 5.5, 15, 58 and 316 ms.
   [[nodiscard]] static bool applies(const systems::System& system, const loop::FundamentalDomain& domain);
 
-  /// `centre`: a point that the symmetries of the domain map to itself, to which y is relative; `winding` as in Loop.
+  /// `centre`: a point that the symmetries of the domain map to itself, to which y is relative; `winding` as in Loop; `scalars`
+  /// begin with T, and without any are those of a conservative family.
   Collocation(const systems::System& system, const loop::FundamentalDomain& domain, std::vector<double> centre,
-              std::vector<double> winding, int cells, const loop::TimeMap& map);
+              std::vector<double> winding, int cells, const loop::TimeMap& map, std::vector<loss::Scalar> scalars = {});
   ~Collocation() override;
   Collocation(const Collocation&) = delete;
   Collocation& operator=(const Collocation&) = delete;
@@ -40,9 +44,10 @@ class Collocation final : public PreconditionedEquations {
   [[nodiscard]] int cells() const { return _grid.cells(); }
   [[nodiscard]] const loop::StaggeredGrid& grid() const { return _grid; }
   [[nodiscard]] const loop::TimeMap& time_map() const { return _map; }
-  [[nodiscard]] int borders() const { return _borders; }
+  [[nodiscard]] const std::vector<loss::Scalar>& scalars() const { return _scalars; }
+  [[nodiscard]] int borders() const { return static_cast<int>(_scalars.size()); }
   /// Numbers in a point.
-  [[nodiscard]] int size() const override { return dimension() * _grid.stride() + _borders; }
+  [[nodiscard]] int size() const override { return dimension() * _grid.stride() + borders(); }
   [[nodiscard]] int period_at() const { return dimension() * _grid.stride(); }
 
   /// One row of `weights` (borders x size) a border.
@@ -86,13 +91,17 @@ class Collocation final : public PreconditionedEquations {
 
  private:
   void midpoint_states(const double* u) const;
+  /// The system with the parameters of `u`.
+  [[nodiscard]] const systems::System& system_at(const double* u) const;
+  /// df/ds at the midpoints for a scalar s other than T, into _gradient.
+  void derivatives_by(const systems::System& system, const loss::Scalar& scalar) const;
 
   const systems::System& _system;
   const loop::StaggeredGrid& _grid;
   loop::TimeMap _map;
   std::vector<double> _centre;
   std::vector<double> _winding;
-  int _borders;
+  std::vector<loss::Scalar> _scalars;
   std::vector<double> _density;  // at the midpoints
   std::vector<double> _node_density;
   std::vector<double> _node_weights;
@@ -102,6 +111,7 @@ class Collocation final : public PreconditionedEquations {
   std::vector<double> _reference;
   std::unique_ptr<BoxScheme> _box;
   double _jacobian_rms = 0.0;
+  mutable std::shared_ptr<const systems::System> _moved;  // with the parameters of the last point, where any moves
   mutable std::vector<double> _z, _f, _gradient, _blocks, _columns, _nodal, _slope, _node_field, _difference;
 };
 

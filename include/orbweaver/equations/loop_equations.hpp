@@ -16,7 +16,8 @@ namespace orbweaver::equations {
 class BoxScheme;
 
 /// The square system of Newton's method at one loop: residual projected onto the modes of its symmetry type, and the
-/// slice's conditions; unknowns are those of the loss and, where a phase condition is held, an unfolding multiple of grad H.
+/// slice's conditions. Unknowns are those of the loss and, where conditions are more than scalars, an unfolding for each
+/// conserved quantity whose phase is held: the count decides.
 /// Under a time map the residual is taken as w r = (2 pi/T) z' - w f, w the density: the box scheme's cells then differ
 /// only by their factor w of the field.
 ///
@@ -32,13 +33,13 @@ class LoopEquations {
   LoopEquations(LoopEquations&&) = delete;
   LoopEquations& operator=(LoopEquations&&) = delete;
 
-  /// Number of unfolding columns that make the system square (may be negative or > 1: then it cannot be).
+  /// Number of unfoldings that make the system square (negative or more than it conserves: then it cannot be).
   [[nodiscard]] static int unfoldings(const loss::Unknowns& unknowns, const loop::Subspace& image,
                                       const loss::Slice& slice) {
     return image.size() + static_cast<int>(slice.conditions().cols()) - unknowns.size();
   }
 
-  /// Whether there are as many equations as unknowns, an unfolding included where the system conserves an energy.
+  /// Whether there are as many equations as unknowns, unfoldings included as far as the system conserves quantities.
   [[nodiscard]] static bool are_square(const systems::System& system, const loss::Unknowns& unknowns,
                                        const loop::Subspace& image, const loss::Slice& slice);
 
@@ -57,7 +58,7 @@ class LoopEquations {
   // Products with square matrices of this `size`, in O(K log K). They share scratch space: one at a time.
   using In = Eigen::Ref<const Eigen::VectorXd>;
   using Out = Eigen::Ref<Eigen::VectorXd>;
-  /// The Jacobian A times a vector: unknowns and unfolding to projected residual and conditions.
+  /// The Jacobian A times a vector: unknowns and unfoldings to projected residual and conditions.
   void apply(const In& x, Out out) const;
   /// A' times a vector.
   void apply_transposed(const In& y, Out out) const;
@@ -73,6 +74,10 @@ class LoopEquations {
   void precondition_transposed(const In& u, Out out) const;
 
  private:
+  /// Among all numbers of x: the first scalar, the first of those with a column of their own, and their count.
+  [[nodiscard]] Eigen::Index first_scalar() const { return _unknowns.subspace.size(); }
+  [[nodiscard]] Eigen::Index first_column() const { return first_scalar() + (_unknowns.has_period() ? 1 : 0); }
+  [[nodiscard]] Eigen::Index columns() const { return size() - first_column(); }
   void weigh() const;
   void project_nodal(Out out) const;
 
@@ -82,8 +87,9 @@ class LoopEquations {
   core::Team* _team;
   int _unfoldings;
   loss::Linearization _linearization;
-  std::vector<double> _slope_modes;   // of z'
-  Eigen::VectorXd _unfolding_column;  // projected grad H
+  std::vector<loss::Scalar> _scalars;  // of the unknowns, then the unfoldings
+  std::vector<double> _slope_modes;    // of z'
+  Eigen::MatrixXd _columns;            // projected derivatives of the field by all scalars but T
   std::unique_ptr<BoxScheme> _box;
   mutable std::vector<double> _modes, _other_modes, _nodal, _other_nodal;
   mutable Eigen::VectorXd _boxed;

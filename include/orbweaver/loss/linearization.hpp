@@ -32,9 +32,10 @@ class Linearization {
     second = 2,    ///< also sum_i r_i d2f_i at the nodes
   };
 
-  /// Throws MisuseError for an invalid loop, NumericalError where the field or its derivatives are not finite (which
+  /// `scalars`: those of the unknowns that it will be asked about, unless T is the only one. Throws MisuseError for an invalid loop, NumericalError where the field or its derivatives are not finite (which
   /// node, which time, which state).
-  Linearization(const systems::System& system, const loop::Loop& loop, Order order);
+  Linearization(const systems::System& system, const loop::Loop& loop, Order order,
+                std::span<const Scalar> scalars = {});
 
   [[nodiscard]] int nodes() const { return _nodes; }
   [[nodiscard]] int dimension() const { return _dimension; }
@@ -66,6 +67,8 @@ class Linearization {
   [[nodiscard]] const double* slope(int i) const { return _slope.data() + offset(i); }  ///< z_i'/w: dz_i/d(2 pi t/T)
   [[nodiscard]] bool evenly_in_time() const { return _evenly; }                         ///< w = 1 at all nodes
   [[nodiscard]] const double* field_jacobian(int i, int l) const { return _a.data() + offset(i * _dimension + l); }
+  /// -dr/ds of a parameter (df/dp) or of an unfolding (the gradient), dimension x nodes.
+  [[nodiscard]] const std::vector<double>& column(const Scalar& scalar) const;
   [[nodiscard]] const double* contracted(int i, int l) const { return _s.data() + offset(i * _dimension + l); }
 
  private:
@@ -77,6 +80,9 @@ class Linearization {
   [[nodiscard]] std::vector<double> project_adjoint(const Unknowns& unknowns, const std::vector<double>& with_slope,
                                                     const std::vector<double>& with_value) const;
   void require_order(Order order) const;
+  // Calls use(index in u, column) for each scalar but T.
+  template <class Use>
+  void for_each_column(const Unknowns& unknowns, const Use& use) const;
 
   int _nodes;
   int _dimension;
@@ -94,6 +100,7 @@ class Linearization {
   std::vector<double> _r;
   std::vector<double> _a;
   std::vector<double> _s;
+  std::vector<std::pair<Scalar, std::vector<double>>> _columns;
 };
 
 }  // namespace orbweaver::loss

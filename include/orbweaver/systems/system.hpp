@@ -43,6 +43,14 @@ class System {
   virtual void second_derivatives(std::size_t nodes, const double* z, const double* weights,
                                   double* contracted) const = 0;
 
+  /// df/dp for the parameter `name` at each node; `derivatives`: dimension x nodes. Throws MisuseError unless the system can.
+  virtual void parameter_derivatives(const std::string& name, std::size_t nodes, const double* z,
+                                     double* derivatives) const;
+  /// The same system with other values of some parameters. They are not checked against their ranges: an iteration may pass
+  /// outside. Throws MisuseError for a parameter that it does not have, or unless the system can.
+  [[nodiscard]] virtual std::shared_ptr<const System> with_parameters(
+      const std::map<std::string, double>& values) const;
+
   /// Conserved quantity k (of structure().conserved) at one state (size dimension). Throws MisuseError if there is none.
   [[nodiscard]] virtual double conserved(int k, std::span<const double> z) const = 0;
   /// Its gradient at one state; `gradient` has size dimension.
