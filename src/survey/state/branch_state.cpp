@@ -29,14 +29,19 @@ void serialize(Archive& archive, continuation::TracePoint& p, unsigned) {
 }
 
 template <class Archive>
-void serialize(Archive& archive, continuation::TraceState& s, unsigned) {
-  archive& s.cells& s.time_map& s.points& s.factor_point& s.factor_conditions;
+void serialize(Archive& archive, continuation::Resolution& r, unsigned) {
+  archive& r.size& r.time_map;
+}
+
+template <class Archive>
+void serialize(Archive& archive, continuation::ProblemState& s, unsigned) {
+  archive& s.resolution& s.amplitude& s.factor_point& s.factor_conditions;
 }
 
 template <class Archive>
 void serialize(Archive& archive, continuation::Frontier& f, unsigned) {
   archive& f.orbit& f.tangent& f.next_length& f.last_increment& f.first& f.first_energy& f.first_amplitude& f
-      .amplitude& f.earlier_energy& f.earlier_period& f.trace& f.farthest& f.on_energy_limit;
+      .earlier_energy& f.earlier_period& f.farthest& f.on_energy_limit& f.points& f.problem;
 }
 
 template <class Archive>

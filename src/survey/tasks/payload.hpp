@@ -16,7 +16,7 @@
 namespace orbweaver::survey {
 
 /// Version of everything that travels in payloads and lies in checkpoints and journals.
-inline constexpr int payload_version = 2;
+inline constexpr int payload_version = 3;
 
 /// `value` as bytes: a name, the version, and its members.
 template <class T>
