@@ -94,8 +94,19 @@ Reading index_deviation(const spectrum::Stability& stability, const Sector& sect
   return nearest;
 }
 
+std::string to_text(const NotLocated& why) {
+  switch (why.reason) {
+    case NotLocated::Reason::no_zero:
+      return fmt::format("no zero between positions {:.9g} and {:.9g}, where the function is {:.3g} and {:.3g}",
+                         why.from, why.to, why.at_from, why.at_to);
+    case NotLocated::Reason::no_orbit: return fmt::format("no orbit at position {:.12g}", why.position);
+    case NotLocated::Reason::no_event: return "two multipliers pass one another there: nothing leaves";
+  }
+  return "unknown";
+}
+
 std::optional<Crossing> locate(const systems::System& system, continuation::FamilyCurve& family, const Event& event,
-                               double from, double to, std::string& why, double tolerance) {
+                               double from, double to, NotLocated& why, double tolerance) {
   EventFunction function(system, family, event);
   constexpr double widest = 1e-10;  // what |index - value| <= |dk/ds| 1e-10 allows
   const double absolute = std::min(tolerance * (1.0 + std::max(std::abs(from), std::abs(to))), widest);
@@ -107,18 +118,17 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
   if (!located && event.kind != Event::Kind::test_function)
     located = extremum(system, family, event, from, to, absolute);
   if (!located) {
-    why = fmt::format("no zero between positions {:.9g} and {:.9g}, where the function is {:.3g} and {:.3g}", from, to,
-                      function(from), function(to));
+    why = {NotLocated::Reason::no_zero, from, to, function(from), function(to)};
     return std::nullopt;
   }
   std::optional<Crossing> crossing = function.at(located->position, true);
   if (!crossing) {
-    why = fmt::format("no orbit at position {:.12g}", located->position);
+    why = {.reason = NotLocated::Reason::no_orbit, .position = located->position};
     return std::nullopt;
   }
   if (event.kind == Event::Kind::test_function &&
       !is_event(event.function, system.description(), crossing->stability, event.tangency)) {
-    why = "two multipliers pass one another there: nothing leaves";
+    why = {.reason = NotLocated::Reason::no_event, .position = located->position};
     return std::nullopt;
   }
   crossing->width = located->width;

@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
+#include "orbweaver/survey/tree/family_end.hpp"
 #include "show_parts.hpp"
 #include "text_grid.hpp"
 
@@ -57,7 +59,8 @@ std::string end_text(const archive::Archive& atlas, std::size_t family) {
   const std::int64_t crossing = atlas.families().integers("end_crossing")[family];
   if (joined < 0) return text;
   const std::string& name = atlas.families().texts("name")[static_cast<std::size_t>(joined)];
-  if (reason.find(name) != std::string::npos) return text;  // said already
+  const std::vector<survey::EndKind> ends = survey::ends_in(reason);
+  if (std::find(ends.begin(), ends.end(), survey::EndKind::joined) != ends.end()) return text;  // said already
   const std::string where = crossing < 0 ? "" : " at " + crossing_text(atlas, static_cast<std::size_t>(crossing));
   return fmt::format("{} -> {}{}", text, name, where);
 }

@@ -67,11 +67,12 @@ double boundary(const archive::Archive& atlas, std::size_t family, std::size_t s
   const auto [from, to] = std::minmax(arclengths[stable], arclengths[unstable]);
   const archive::Table& crossings = atlas.crossings();
   for (std::size_t row = 0; row < crossings.rows(); ++row) {
-    const std::string& kind = crossings.texts("kind")[row];
+    const archive::CrossingKind kind = atlas.crossing_kinds()[row];
     const double where = crossings.reals("arclength")[row];
     const bool is_between =
         where >= from && where <= to && crossings.integers("family")[row] == static_cast<std::int64_t>(family);
-    if (is_between && kind != "subharmonic" && kind != "fold-period") return crossings.reals("period")[row];
+    if (is_between && kind != archive::CrossingKind::subharmonic && kind != archive::CrossingKind::fold_period)
+      return crossings.reals("period")[row];
   }
   return atlas.orbits().reals("period")[stable];
 }

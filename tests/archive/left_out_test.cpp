@@ -139,7 +139,7 @@ TEST_F(LeftOut, ATreeOfFamiliesComesBackWithAllItsReferences) {
   youngest.parent_key = "0003.0001";
   youngest.multiplicity = 3;
   youngest.end_family_key = "0003";
-  const auto add_crossing = [&](const char* key, double arclength, const char* kind) {
+  const auto add_crossing = [&](const char* key, double arclength, CrossingKind kind) {
     CrossingRecord crossing = records.crossings.front();
     crossing.family_key = key;
     crossing.arclength = arclength;
@@ -147,8 +147,8 @@ TEST_F(LeftOut, ATreeOfFamiliesComesBackWithAllItsReferences) {
     tree.crossings.push_back(crossing);
     return static_cast<int>(tree.crossings.size()) - 1;
   };
-  youngest.end_crossing = add_crossing("0003", -0.75, "krein");
-  youngest.crossing = add_crossing("0003.0001", 0.5, "subharmonic");
+  youngest.end_crossing = add_crossing("0003", -0.75, CrossingKind::krein);
+  youngest.crossing = add_crossing("0003.0001", 0.5, CrossingKind::subharmonic);
   tree.families.insert(tree.families.begin(), youngest);
   OrbitRecord orbit = records.orbits.back();
   orbit.family_key = youngest.key;

@@ -65,12 +65,12 @@ FamilyRecord family(std::string key, std::string name, std::string parent, int c
   return record;
 }
 
-CrossingRecord crossing(std::string key, double arclength, std::string kind) {
+CrossingRecord crossing(std::string key, double arclength, CrossingKind kind) {
   CrossingRecord record;
   record.family_key = std::move(key);
   record.arclength = arclength;
   record.period = 4 + arclength;
-  record.kind = std::move(kind);
+  record.kind = kind;
   record.state = {arclength, -1};
   record.kernel_dimension = 2;
   return record;
@@ -118,8 +118,9 @@ Records sample_records(const Header& header) {
   records.families[0].end_family_key = "0001.0002";
   records.families[0].end_crossing = 2;
   records.families[3].end_reason = "no first orbit could be found – the Newton iteration stalled";
-  records.crossings = {crossing("0001", 2.5, "period-doubling"), crossing("0003", 1.5, "branch-point"),
-                       crossing("0001", 0.5, "fold-energy")};
+  records.crossings = {crossing("0001", 2.5, CrossingKind::period_doubling),
+                       crossing("0003", 1.5, CrossingKind::branch_point),
+                       crossing("0001", 0.5, CrossingKind::fold_energy)};
   add_orbits(records, header, "0003", -4, 4);
   add_orbits(records, header, "0001", 0, 11);
   add_orbits(records, header, "0003.0001", 1, 5);

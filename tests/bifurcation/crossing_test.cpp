@@ -36,10 +36,10 @@ void expect_crossing(const test::PendulumMode& mode, const Expected& expected) {
   SCOPED_TRACE(expected.period);
   Curve curve(test::family_to_twelve(mode), expected.period);
   const Event event{Event::Kind::test_function, {bifurcation::TestFunction::Kind::sector, expected.sector}, false};
-  std::string why;
+  bifurcation::NotLocated why;
   const auto found = bifurcation::locate(*test::pendulum(), curve, event, curve.known().front().position,
                                          curve.known().back().position, why);
-  ASSERT_TRUE(found) << why;
+  ASSERT_TRUE(found) << to_text(why);
   EXPECT_NEAR(found->point.loop.period, expected.period, 1e-9);
   const bifurcation::Reading deviation = bifurcation::index_deviation(found->stability, expected.sector);
   EXPECT_LE(std::abs(deviation.value), std::max(1e-9, deviation.error));
@@ -67,10 +67,11 @@ TEST(Crossings, OfTheOutPhaseFamily) { expect_crossing(test::out_phase(), {4.059
 TEST(Crossings, AZeroThatIsNotThereIsSaid) {
   Curve curve(test::family_to_twelve(test::in_phase()), 9.0);
   const Event event{Event::Kind::test_function, {bifurcation::TestFunction::Kind::sector, {1, 0}}, false};
-  std::string why;
+  bifurcation::NotLocated why;
   const auto& known = curve.known();
   EXPECT_FALSE(bifurcation::locate(*test::pendulum(), curve, event, known[2].position, known[3].position, why));
-  EXPECT_NE(why.find("no zero between"), std::string::npos);
+  EXPECT_EQ(why.reason, bifurcation::NotLocated::Reason::no_zero);
+  EXPECT_NE(to_text(why).find("no zero between"), std::string::npos);
 }
 
 TEST(FamilyCurve, AnOrbitDoesNotDependOnWhatWasAskedBefore) {

@@ -219,8 +219,8 @@ TEST(Show, StabilityChangesAtLocatedCrossings) {
   const CrossingRecord some = records.crossings[1];  // of Out-Phase, whose steps are a quarter in arclength
   records.crossings.clear();
   for (const auto& [arclength, period, kind] :
-       {std::tuple(-0.45, 2.26, "subharmonic"), std::tuple(-0.4, 2.27, "branch-point"),
-        std::tuple(0.9, 2.9, "krein")}) {
+       {std::tuple(-0.45, 2.26, CrossingKind::subharmonic), std::tuple(-0.4, 2.27, CrossingKind::branch_point),
+        std::tuple(0.9, 2.9, CrossingKind::krein)}) {
     records.crossings.push_back(some);
     records.crossings.back().arclength = arclength;
     records.crossings.back().period = period;

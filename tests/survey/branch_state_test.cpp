@@ -98,9 +98,9 @@ class BranchStates : public ::testing::Test {
     while (!remaining.empty()) {
       const queue::Task task = remaining.back();
       remaining.pop_back();
-      if (task.kind == branch_kind) found[task.key] = task;
-      if (task.kind == branch_kind && task.key != "0000.0000") continue;
-      if (task.kind == locate_kind && task.key.find(kind) == std::string::npos) continue;
+      if (kind_of(task) == TaskKind::branch) found[task.key] = task;
+      if (kind_of(task) == TaskKind::branch && task.key != "0000.0000") continue;
+      if (kind_of(task) == TaskKind::locate && task.key.find(kind) == std::string::npos) continue;
       for (const queue::Task& child : done(task, 0).outcome.children) remaining.push_back(child);
     }
     return found;
@@ -137,7 +137,7 @@ TEST_F(BranchStates, ABranchAtALimitGoesOn) {
     const queue::Task task = branches_of_first_base("none").at("0000.0000");
     const Result narrow = done(task, 0);
     const BranchOutcome end = unpack_branch_outcome(narrow.outcome.payload);
-    ASSERT_NE(end.limited_by, 0) << end.end_reason;
+    ASSERT_NE(end.limited_by, 0) << end.end.text();
     const BranchState state = unpack_branch_state(end.before_limit);
     std::vector<std::string> rows(narrow.rows.begin(), narrow.rows.begin() + state.outcome.orbits);
     EXPECT_GE(rows.size(), 5u);

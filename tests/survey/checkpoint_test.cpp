@@ -19,8 +19,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-queue::Task task(const std::string& key, const std::string& kind = sweep_kind) {
-  return {key, 3, kind, "payload of " + key};
+queue::Task task(const std::string& key, TaskKind kind = TaskKind::sweep) {
+  return {key, 3, name_of(kind), "payload of " + key};
 }
 
 queue::TaskOutcome outcome(const std::string& key, std::vector<queue::Task> children = {}) {
@@ -144,6 +144,12 @@ class Reopened : public ::testing::Test {
     return entry;
   }
 
+  EndedTask started(const std::string& key, int limited_by) {
+    EndedTask entry{task("start " + key, TaskKind::start), outcome("start " + key), true};
+    entry.outcome.payload = pack(StartOutcome{limited_by});
+    return entry;
+  }
+
   EndedTask branch;
   EndedTask other;
   Checkpoint checkpoint;
@@ -159,15 +165,15 @@ TEST_F(Reopened, NothingWithoutWiderLimits) {
 
 TEST_F(Reopened, ABranchWithAllThatHangsOnIt) {
   checkpoint.unfinished = {task("locate 0000.0000/001.q1.j0"), task("locate 0000.0001/000.q1.j0")};
-  checkpoint.left_out = {task("0000.0000/000.q4.j1/0", start_kind)};
+  checkpoint.left_out = {task("0000.0000/000.q4.j1/0", TaskKind::start)};
   Reopening reopening(period_limited, checkpoint);
   EXPECT_FALSE(reopening.stays(branch));
   EXPECT_TRUE(reopening.stays(other));
   EXPECT_FALSE(reopening.stays(located("0000.0000/000.q4.j1", 0))) << "it hangs on the branch";
   EXPECT_TRUE(reopening.stays(located("0000.0001/000.q4.j1", depth_limited))) << "another limit";
   EXPECT_FALSE(reopening.stays(located("0000.0001/001.q4.j1", period_limited)));
-  EXPECT_TRUE(reopening.stays({task("start 0000.0001/000.q4.j1/0", start_kind), outcome("x"), true}));
-  EXPECT_FALSE(reopening.stays({task("start 0000.0001/000.q4.j1/1", start_kind), outcome("x"), false}));
+  EXPECT_TRUE(reopening.stays(started("0000.0001/000.q4.j1/0", 0)));
+  EXPECT_FALSE(reopening.stays({task("start 0000.0001/000.q4.j1/1", TaskKind::start), outcome("x"), false}));
   reopening.finish();
   EXPECT_TRUE(reopening.any());
   EXPECT_THAT(keys_of(checkpoint.unfinished), ElementsAre("locate 0000.0001/000.q1.j0", "0000.0000",

@@ -16,6 +16,7 @@ namespace {
 
 using namespace orbweaver;
 using namespace orbweaver::survey;
+using continuation::EndReason;
 using namespace orbweaver::test;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
@@ -59,7 +60,7 @@ std::string text(const FamilyTree::Result& result) {
                        f.crossing, f.multiplicity, f.isotropy, f.end_reason, f.end_crossing, f.end_family_key,
                        f.first_step, f.last_step);
   for (const archive::CrossingRecord& c : result.tables.crossings)
-    out += fmt::format("{} on {} at {} {}\n", c.kind, c.family_key, c.arclength, c.period);
+    out += fmt::format("{} on {} at {} {}\n", name_of(c.kind), c.family_key, c.arclength, c.period);
   for (const FamilySummary& s : result.families)
     out += fmt::format("{} {} depth {} orbits {} T {}..{} failed {}\n", s.key, s.name, s.depth, s.orbits, s.period_from,
                        s.period_to, s.failed);
@@ -72,18 +73,18 @@ TEST_F(Families, AreNamedByParentKindPlaceAndDirection) {
   const Place tripling{"0000.0000/004.q3.j1", 11.0, 4.0, 3};
   const Place second{"0000.0000/002.q4.j1/0/000.q2.j1", 19.0, 5.0, 1, r.leaving(0), 1};
   const Place of_other{"0003.0000/000.q2.j1", 7.0, 1.5, 1, "0003.0000"};
-  std::vector<Ended> events{ended(base_work(), "period limit", 5, 12),
-                            ended(base_work("0003.0000", "Up-Down"), "period limit", 5, 12)};
+  std::vector<Ended> events{ended(base_work(), EndReason::period_limit, 5, 12),
+                            ended(base_work("0003.0000", "Up-Down"), EndReason::period_limit, 5, 12)};
   for (const Place& place : {p, r}) {
     events.push_back(located(place));
-    for (const int number : {0, 1}) events.push_back(ended(work_from(place, number), "period limit", 16, 30));
+    for (const int number : {0, 1}) events.push_back(ended(work_from(place, number), EndReason::period_limit, 16, 30));
   }
   for (const Place& place : {branch_point, second, of_other}) {
     events.push_back(located(place, 1));
-    events.push_back(ended(work_from(place, 0), "period limit", 10, 30));
+    events.push_back(ended(work_from(place, 0), EndReason::period_limit, 10, 30));
   }
   events.push_back(located(tripling, 1));
-  events.push_back(ended(work_from(tripling, 0, 1), "period limit", 33, 40));
+  events.push_back(ended(work_from(tripling, 0, 1), EndReason::period_limit, 33, 40));
   const FamilyTree::Result result = resolve(events);
   EXPECT_THAT(names(result),
               ElementsAre("In-Phase", "Up-Down", "ID1a", "ID1b", "ID2a", "ID2b", "IB", "IT3", "Up-Down B", "ID2aB"));
@@ -109,25 +110,26 @@ TEST_F(Families, AreNumberedByArclengthNotByKey) {
   Place early{"0000.0000/005.q3.j1", 11.0, 1.0, 3};
   Place late{"0000.0000/004.q3.j1", 12.0, 4.0, 3};
   const FamilyTree::Result result =
-      resolve({ended(base_work(), "period limit", 5, 12), located(late, 1), located(early, 1),
-               ended(work_from(late, 0, 1), "x", 36, 40), ended(work_from(early, 0, 1), "y", 33, 40)});
+      resolve({ended(base_work(), EndReason::period_limit, 5, 12), located(late, 1), located(early, 1),
+               ended(work_from(late, 0, 1), EndReason::closed_loop, 36, 40),
+               ended(work_from(early, 0, 1), EndReason::closed_loop, 33, 40)});
   EXPECT_THAT(names(result), ElementsAre("In-Phase", "IT3-2", "IT3-1"));
 }
 
 // P's two families end at Q; Q's two families are these.
 std::vector<Ended> loop_of_two() {
-  return {ended(base_work(), "period limit", 5, 12), located(p), located(q), arrived(work_from(p, 0), 16, q, 0),
-          arrived(work_from(p, 1), 16, q, 1)};
+  return {ended(base_work(), EndReason::period_limit, 5, 12), located(p), located(q),
+          arrived(work_from(p, 0), 16, q, 0), arrived(work_from(p, 1), 16, q, 1)};
 }
 
 TEST_F(Families, ThatArriveDropWhatStartsThere) {
   // On Q's family b another crossing, and a family born there: theirs is a second way to what P's family b has as well.
   const Place below{"0000.0000/001.q4.j1/1/000.q2.j1", 17.0, 6.0, 1, q.leaving(1), 1};
   std::vector<Ended> events = loop_of_two();
-  events.push_back(ended(work_from(q, 0), "period limit", 18, 20));
+  events.push_back(ended(work_from(q, 0), EndReason::period_limit, 18, 20));
   events.push_back(arrived(work_from(q, 1), 18, p, 1));
   events.push_back(located(below, 1));
-  events.push_back(ended(work_from(below, 0), "period limit", 17, 30));
+  events.push_back(ended(work_from(below, 0), EndReason::period_limit, 17, 30));
   const FamilyTree::Result result = resolve(events);
   EXPECT_THAT(names(result), ElementsAre("In-Phase", "IDa", "IDb"));
   EXPECT_THAT(result.tables.left_out_keys, ElementsAre(q.leaving(0), q.leaving(1), below.leaving(0)));
@@ -145,38 +147,40 @@ TEST_F(Families, ThatArriveDropWhatStartsThere) {
 TEST_F(Families, ThatArriveElsewhereDropNothing) {
   Place elsewhere = q;
   elsewhere.arclength = 2.6;  // period and energy nearly as at Q, but another orbit
-  std::vector<Ended> events{ended(base_work(), "period limit", 5, 12), located(p), located(q)};
+  std::vector<Ended> events{ended(base_work(), EndReason::period_limit, 5, 12), located(p), located(q)};
   BranchOutcome outcome = unpack_branch_outcome(arrived(work_from(p, 0), 16, elsewhere, 0).outcome.payload);
   outcome.arrival.front().energy = q.energy();
-  Ended stray = ended(work_from(p, 0), "", 16, 18);
+  Ended stray = ended(work_from(p, 0), EndReason::closed_loop, 16, 18);
   stray.outcome.payload = pack(outcome);
   events.push_back(stray);
-  events.push_back(ended(work_from(q, 0), "period limit", 18, 20));
+  events.push_back(ended(work_from(q, 0), EndReason::period_limit, 18, 20));
   const FamilyTree::Result result = resolve(events);
   EXPECT_THAT(names(result), ElementsAre("In-Phase", "ID1", "ID2"));
-  EXPECT_EQ(family(result, "ID1").end_reason, "joined");
+  EXPECT_THAT(family(result, "ID1").end_reason, StartsWith("met a family of more symmetry (T = "));
   EXPECT_EQ(family(result, "ID1").end_family_key, "");
 }
 
 TEST_F(Families, OfAnotherDirectionStay) {
-  std::vector<Ended> events{ended(base_work(), "period limit", 5, 12),
+  std::vector<Ended> events{ended(base_work(), EndReason::period_limit, 5, 12),
                             located(p),
                             located(q),
                             arrived(work_from(p, 0), 16, q, 1),
-                            ended(work_from(q, 0), "x", 18, 20),
-                            ended(work_from(q, 1), "y", 18, 20)};
+                            ended(work_from(q, 0), EndReason::closed_loop, 18, 20),
+                            ended(work_from(q, 1), EndReason::closed_loop, 18, 20)};
   EXPECT_THAT(names(resolve(events)), ElementsAre("In-Phase", "ID1", "ID2"));
   EXPECT_THAT(resolve(events).tables.left_out_keys, ElementsAre(q.leaving(1)));
 }
 
 TEST_F(Families, DoNotDependOnTheOrderOfOutcomes) {
   const Place below{"0000.0000/001.q4.j1/0/000.q2.j1", 17.0, 6.0, 1, q.leaving(0), 1};
-  const std::vector<Ended> begin{ended(base_work(), "period limit", 5, 12), ended(work_from(p, 1), "x", 16, 30)};
+  const std::vector<Ended> begin{ended(base_work(), EndReason::period_limit, 5, 12),
+                                 ended(work_from(p, 1), EndReason::closed_loop, 16, 30)};
   const std::vector<Ended> kept{located(p), located(q), arrived(work_from(p, 0), 16, q, 0)};
   const std::vector<std::vector<Ended>> ways_of_q{
       {},  // never run
-      {arrived(work_from(q, 0), 18, p, 0), located(below, 1), ended(work_from(below, 0), "y", 17, 30)},
-      {ended(work_from(q, 0), "period limit", 18, 20), not_located(below, "no root")},
+      {arrived(work_from(q, 0), 18, p, 0), located(below, 1),
+       ended(work_from(below, 0), EndReason::closed_loop, 17, 30)},
+      {ended(work_from(q, 0), EndReason::period_limit, 18, 20), not_located(below, "no root")},
       {gave_up(work_from(q, 0), "nan", 18, 19)},
       {start_failed(work_from(q, 0), "no orbit leaves")}};
   std::string expected;
@@ -200,8 +204,8 @@ TEST_F(Families, DoNotDependOnTheOrderOfOutcomes) {
 TEST_F(Families, ThatFailAreCoveredByALaterOneThatArrives) {
   for (const Ended& lost :
        {gave_up(work_from(p, 0), "no convergence", 16, 17), start_failed(work_from(p, 0), "lost")}) {
-    const FamilyTree::Result result = resolve(
-        {ended(base_work(), "period limit", 5, 12), located(p), located(q), lost, arrived(work_from(q, 0), 18, p, 0)});
+    const FamilyTree::Result result = resolve({ended(base_work(), EndReason::period_limit, 5, 12), located(p),
+                                               located(q), lost, arrived(work_from(q, 0), 18, p, 0)});
     EXPECT_THAT(names(result), ElementsAre("In-Phase", "ID"));
     EXPECT_EQ(result.tables.families[1].key, q.leaving(0));
     EXPECT_THAT(result.tables.families[1].end_reason, StartsWith("joined In-Phase at T = 16 "));
@@ -212,7 +216,7 @@ TEST_F(Families, ThatFailAreCoveredByALaterOneThatArrives) {
 
 TEST_F(Families, ThatFailAreRecorded) {
   const FamilyTree::Result result =
-      resolve({ended(base_work(), "period limit", 5, 12), located(p), not_located(q, "no sign change"),
+      resolve({ended(base_work(), EndReason::period_limit, 5, 12), located(p), not_located(q, "no sign change"),
                gave_up(work_from(p, 0), "no convergence", 16, 17), start_failed(work_from(p, 1), "no orbit leaves")});
   EXPECT_THAT(names(result), ElementsAre("In-Phase", "IDa", "IDb"));
   EXPECT_EQ(family(result, "IDa").end_reason, "failure (no convergence)");
@@ -228,8 +232,8 @@ TEST_F(Families, ThatFailAreRecorded) {
 
 TEST_F(Families, OnALocationThatDidNotSucceedAreNotCrossings) {
   const FamilyTree::Result result =
-      resolve({ended(base_work(), "period limit", 5, 12), located(p), located(q), arrived(work_from(p, 0), 16, q, 0),
-               ended(work_from(q, 0), "period limit", 18, 20),
+      resolve({ended(base_work(), EndReason::period_limit, 5, 12), located(p), located(q),
+               arrived(work_from(p, 0), 16, q, 0), ended(work_from(q, 0), EndReason::period_limit, 18, 20),
                not_located({q.leaving(0) + "/000.q2.j1", 17.0, 6.0}, "no root")});
   EXPECT_THAT(result.failures, IsEmpty()) << "of a branch that is left out";
 }
@@ -238,13 +242,13 @@ TEST_F(Families, OnALocationThatDidNotSucceedAreNotCrossings) {
 TEST_F(Families, WithTwoSidesAreOneAndOneSideMayBeLeftOut) {
   const Place at{"0000.0000/000.q3.j1", 8.0, 1.0, 3};
   const Place to{"0000.0000/001.q3.j1", 9.0, 2.0, 3};
-  const std::vector<Ended> begin{ended(base_work(), "period limit", 5, 12), located(at, 1), located(to, 1)};
+  const std::vector<Ended> begin{ended(base_work(), EndReason::period_limit, 5, 12), located(at, 1), located(to, 1)};
   auto with = [&](std::vector<Ended> more) {
     more.insert(more.begin(), begin.begin(), begin.end());
     return resolve(more);
   };
-  FamilyTree::Result result = with(
-      {ended(work_from(at, 0, 1), "period limit", 24, 40, 10), ended(work_from(at, 0, -1), "energy limit", 20, 24, 7)});
+  FamilyTree::Result result = with({ended(work_from(at, 0, 1), EndReason::period_limit, 24, 40, 10),
+                                    ended(work_from(at, 0, -1), EndReason::energy_limit, 20, 24, 7)});
   ASSERT_THAT(names(result), ElementsAre("In-Phase", "IT3"));
   EXPECT_EQ(result.families[1].orbits, 17);
   EXPECT_EQ(result.families[1].period_from, 20.0);
@@ -255,8 +259,8 @@ TEST_F(Families, WithTwoSidesAreOneAndOneSideMayBeLeftOut) {
 
   // The side + of `to` is the side - of `at` run backwards; its side - stays.
   const std::vector<Ended> meeting{
-      ended(work_from(at, 0, 1), "period limit", 24, 40), arrived(work_from(at, 0, -1), 24, to, 0, 1),
-      arrived(work_from(to, 0, 1), 27, at, 0, -1), ended(work_from(to, 0, -1), "period limit", 27, 40)};
+      ended(work_from(at, 0, 1), EndReason::period_limit, 24, 40), arrived(work_from(at, 0, -1), 24, to, 0, 1),
+      arrived(work_from(to, 0, 1), 27, at, 0, -1), ended(work_from(to, 0, -1), EndReason::period_limit, 27, 40)};
   result = with(meeting);
   ASSERT_THAT(names(result), ElementsAre("In-Phase", "IT3-1", "IT3-2"));
   EXPECT_EQ(result.tables.families[1].first_step, first);
@@ -270,8 +274,10 @@ TEST_F(Families, WithTwoSidesAreOneAndOneSideMayBeLeftOut) {
   EXPECT_THAT(result.tables.left_out_keys, IsEmpty()) << "rows of the side are cut by steps";
 
   // It is the side - of `to` that is left out.
-  result = with({ended(work_from(at, 0, 1), "period limit", 24, 40), arrived(work_from(at, 0, -1), 24, to, 0, -1),
-                 ended(work_from(to, 0, 1), "period limit", 27, 40), ended(work_from(to, 0, -1), "x", 24, 27)});
+  result =
+      with({ended(work_from(at, 0, 1), EndReason::period_limit, 24, 40), arrived(work_from(at, 0, -1), 24, to, 0, -1),
+            ended(work_from(to, 0, 1), EndReason::period_limit, 27, 40),
+            ended(work_from(to, 0, -1), EndReason::closed_loop, 24, 27)});
   ASSERT_THAT(names(result), ElementsAre("In-Phase", "IT3-1", "IT3-2"));
   EXPECT_EQ(result.tables.families[2].first_step, 0);
   EXPECT_EQ(result.tables.families[2].last_step, last);
@@ -281,8 +287,8 @@ TEST_F(Families, OfAClosedCurveKeepOneSide) {
   // Both sides of one direction meet: each arrives at the crossing along the other.
   const Place at{"0000.0000/000.q3.j1", 8.0, 1.0, 3};
   const FamilyTree::Result result =
-      resolve({ended(base_work(), "period limit", 5, 12), located(at, 1), arrived(work_from(at, 0, 1), 24, at, 0, -1),
-               arrived(work_from(at, 0, -1), 24, at, 0, 1)});
+      resolve({ended(base_work(), EndReason::period_limit, 5, 12), located(at, 1),
+               arrived(work_from(at, 0, 1), 24, at, 0, -1), arrived(work_from(at, 0, -1), 24, at, 0, 1)});
   ASSERT_THAT(names(result), ElementsAre("In-Phase", "IT3"));
   EXPECT_EQ(result.tables.families[1].first_step, 0);
   EXPECT_EQ(result.families[1].orbits, 10);
@@ -291,9 +297,9 @@ TEST_F(Families, OfAClosedCurveKeepOneSide) {
 
 TEST_F(Families, BeyondTheLimitAreLeftOut) {
   scene.limits.families = 3;
-  std::vector<Ended> events{ended(base_work(), "period limit", 5, 12), located(p), located(r)};
+  std::vector<Ended> events{ended(base_work(), EndReason::period_limit, 5, 12), located(p), located(r)};
   for (const Place& place : {r, p})
-    for (const int number : {1, 0}) events.push_back(ended(work_from(place, number), "period limit", 16, 30));
+    for (const int number : {1, 0}) events.push_back(ended(work_from(place, number), EndReason::period_limit, 16, 30));
   const FamilyTree::Result result = resolve(events);
   EXPECT_THAT(names(result), ElementsAre("In-Phase", "IDa", "IDb"));
   EXPECT_THAT(result.tables.left_out_keys, ElementsAre(r.leaving(0), r.leaving(1)));
@@ -302,7 +308,7 @@ TEST_F(Families, BeyondTheLimitAreLeftOut) {
 TEST_F(Families, AreNotWantedWhereAnArrivalHasBeen) {
   FamilyTree tree(scene, pendulum());
   const auto start = [](const BranchWork& work) { return task_of(StartWork{work}); };
-  for (const Ended& event : {ended(base_work(), "period limit", 5, 12), located(p), located(q)})
+  for (const Ended& event : {ended(base_work(), EndReason::period_limit, 5, 12), located(p), located(q)})
     tree.add(event.task, event.outcome);
   EXPECT_TRUE(tree.wanted(start(work_from(q, 0))));
   const Ended arrival = arrived(work_from(p, 0), 16, q, 0);
@@ -319,12 +325,13 @@ TEST_F(Families, AreNotWantedWhereAnArrivalHasBeen) {
 TEST_F(Families, BeyondTheLimitAreNotWanted) {
   scene.limits.families = 3;
   FamilyTree tree(scene, pendulum());
-  for (const Ended& event : {ended(base_work(), "x", 5, 12), located(p), located(q), located(r),
-                             arrived(work_from(p, 0), 16, q, 0), ended(work_from(q, 0), "x", 18, 20)})
+  for (const Ended& event :
+       {ended(base_work(), EndReason::closed_loop, 5, 12), located(p), located(q), located(r),
+        arrived(work_from(p, 0), 16, q, 0), ended(work_from(q, 0), EndReason::closed_loop, 18, 20)})
     tree.add(event.task, event.outcome);
   // Q's family a is P's from the other end, and counts no more than if it had never run.
   EXPECT_TRUE(tree.wanted(task_of(work_from(q, 1))));
-  const Ended third = ended(work_from(q, 1), "x", 18, 30);
+  const Ended third = ended(work_from(q, 1), EndReason::closed_loop, 18, 30);
   tree.add(third.task, third.outcome);
   EXPECT_FALSE(tree.wanted(task_of(work_from(r, 0))));
   EXPECT_TRUE(tree.wanted(task_of(work_from(p, 1)))) << "comes before Q's";

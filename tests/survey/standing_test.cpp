@@ -80,6 +80,11 @@ TEST(Standing, AFamilyThatFailedIsRemembered) {
   EXPECT_EQ(survey::standing_of(folder, sample_scene()), Standing::finished_with_failures);
 }
 
+TEST(Standing, AFamilyOfWhichOneSideFailedIsRemembered) {
+  const auto folder = folder_with_atlas("side", "forwards: period limit (T = 30); backwards: failure (no orbit)");
+  EXPECT_EQ(survey::standing_of(folder, sample_scene()), Standing::finished_with_failures);
+}
+
 TEST(Standing, AFamilyThatAStopCutMakesItUnfinished) {
   const auto folder = folder_with_atlas("stopped", "stopped (T = 7.5)");
   EXPECT_EQ(survey::standing_of(folder, sample_scene()), Standing::unfinished);

@@ -92,13 +92,14 @@ inline survey::BranchWork work_from(const Place& place, int number, int side = 0
   return work;
 }
 
-inline Ended ended(const survey::BranchWork& work, const std::string& reason, double from, double to, int orbits = 10) {
+inline Ended ended(const survey::BranchWork& work, continuation::EndReason reason, double from, double to,
+                   int orbits = 10) {
   survey::BranchOutcome outcome;
   outcome.key = work.key;
   outcome.orbits = orbits;
   outcome.period_from = from;
   outcome.period_to = to;
-  outcome.end_reason = reason;
+  outcome.end.reason = reason;
   return {task_of(work), {work.key, false, "", {}, pack(outcome), false}};
 }
 
@@ -109,7 +110,7 @@ inline Ended arrived(const survey::BranchWork& work, double from, const Place& p
   outcome.orbits = 10;
   outcome.period_from = from;
   outcome.period_to = place.times * place.period;
-  outcome.end_reason = "joined";
+  outcome.end.reason = continuation::EndReason::stopped;
   const double roughly = 1.0001;  // places of arrivals are extrapolated
   outcome.arrival.push_back({roughly * place.times * place.period, place.energy(), orbit_near(place, number, side)});
   return {task_of(work), {work.key, false, "", {}, pack(outcome), false}};
@@ -123,7 +124,11 @@ inline Ended failed(Ended branch, const std::string& reason) {
 
 /// A branch that has failed half way.
 inline Ended gave_up(const survey::BranchWork& work, const std::string& reason, double from, double to) {
-  return failed(ended(work, "failure (" + reason + ")", from, to), "failure (" + reason + ")");
+  Ended branch = ended(work, continuation::EndReason::failure, from, to);
+  survey::BranchOutcome outcome = survey::unpack_branch_outcome(branch.outcome.payload);
+  outcome.end.detail = reason;
+  branch.outcome.payload = pack(outcome);
+  return failed(std::move(branch), outcome.end.text());
 }
 
 inline Ended start_failed(const survey::BranchWork& work, const std::string& reason) {
@@ -141,7 +146,9 @@ inline Ended located(const Place& place, int directions = 2) {
   outcome.arclength = place.arclength;
   outcome.period = place.period;
   outcome.energy = place.energy();
-  outcome.kind = place.times == 1 ? "branch-point" : place.times == 2 ? "period-doubling" : "subharmonic";
+  outcome.kind = place.times == 1   ? archive::CrossingKind::branch_point
+                 : place.times == 2 ? archive::CrossingKind::period_doubling
+                                    : archive::CrossingKind::subharmonic;
   outcome.multiplicity = place.times;
   outcome.kernel_dimension = place.times == 1 ? 1 : 2;
   outcome.state = {0.3 * place.arclength, 0.0, 0.0, 0.0};

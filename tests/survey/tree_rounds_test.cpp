@@ -10,6 +10,7 @@ namespace {
 
 using namespace orbweaver;
 using namespace orbweaver::survey;
+using continuation::EndReason;
 using namespace orbweaver::test;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -41,10 +42,10 @@ class TreeRounds : public ::testing::Test {
 TEST_F(TreeRounds, AnArrivalAtACrossingThatIsDroppedCountsAtTheNextBest) {
   const Place on_p{p.leaving(0) + "/000.q2.j1", 17.0, 6.0, 1, p.leaving(0), 1};
   const Place on_q{q.leaving(0) + "/000.q2.j1", 17.0, 6.0002, 1, q.leaving(0), 1};
-  add({ended(base_work(), "period limit", 5, 12), located(p), located(q), located(r),
-       arrived(work_from(p, 0), 16, q, 0), ended(work_from(q, 0), "period limit", 18, 20), located(on_p, 1),
-       located(on_q, 1), ended(work_from(on_p, 0), "period limit", 17, 30),
-       ended(work_from(on_q, 0), "period limit", 17, 30), arrived(work_from(r, 0), 19, on_q, 0)});
+  add({ended(base_work(), EndReason::period_limit, 5, 12), located(p), located(q), located(r),
+       arrived(work_from(p, 0), 16, q, 0), ended(work_from(q, 0), EndReason::period_limit, 18, 20), located(on_p, 1),
+       located(on_q, 1), ended(work_from(on_p, 0), EndReason::period_limit, 17, 30),
+       ended(work_from(on_q, 0), EndReason::period_limit, 17, 30), arrived(work_from(r, 0), 19, on_q, 0)});
   EXPECT_THAT(keys(), ElementsAre("0000.0000", p.leaving(0), r.leaving(0)));
   EXPECT_THAT(tree.resolve().tables.left_out_keys, ElementsAre(on_p.leaving(0), q.leaving(0), on_q.leaving(0)));
 }
@@ -58,7 +59,7 @@ TEST_F(TreeRounds, WhatWasLeftOutIsAskedAgainWhenMoreIsKnown) {
   archive::Records rows;
   const SegmentFlusher flusher(alone, "nowhere", header, rows, {});
   TreeRecorder recorder({display, time, keeper, flusher}, tree, {});
-  add({ended(base_work(), "period limit", 5, 12), located(o), located(p), located(q),
+  add({ended(base_work(), EndReason::period_limit, 5, 12), located(o), located(p), located(q),
        arrived(work_from(p, 0), 16, q, 0)});
   const queue::Task start = task_of(StartWork{work_from(q, 0)});
   const queue::Task other = task_of(StartWork{work_from(q, 1)});
@@ -74,7 +75,7 @@ TEST_F(TreeRounds, WhatWasLeftOutIsAskedAgainWhenMoreIsKnown) {
 
 TEST_F(TreeRounds, ACrossingWhoseKernelFailsKeepsItsRowAndIsAFailure) {
   Ended place = located(p, 0);
-  add({ended(base_work(), "period limit", 5, 12), failed(place, "the linear solver stalled")});
+  add({ended(base_work(), EndReason::period_limit, 5, 12), failed(place, "the linear solver stalled")});
   const FamilyTree::Result result = tree.resolve();
   ASSERT_EQ(result.tables.crossings.size(), 1U);
   EXPECT_EQ(result.tables.crossings[0].period, p.period);

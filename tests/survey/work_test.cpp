@@ -47,7 +47,7 @@ BranchOutcome sample_branch_outcome() {
           30.0,
           2.5,
           562,
-          "period limit (T = 30)",
+          {continuation::EndReason::period_limit, "T = 30"},
           {{8.5, -1.5, sample_loop()}},
           {"a remark"},
           period_limited,
@@ -66,7 +66,7 @@ LocateOutcome sample_locate_outcome() {
           1.0,
           2.0,
           3.0,
-          "subharmonic",
+          archive::CrossingKind::subharmonic,
           4,
           2,
           1e-12,
@@ -204,7 +204,7 @@ TEST(Payload, BranchOutcomeTravels) {
   EXPECT_EQ(back.last_period, sent.last_period);
   EXPECT_EQ(back.last_energy, sent.last_energy);
   EXPECT_EQ(back.last_cutoff, sent.last_cutoff);
-  EXPECT_EQ(back.end_reason, sent.end_reason);
+  EXPECT_EQ(back.end.text(), sent.end.text());
   ASSERT_EQ(back.arrival.size(), 1U);
   EXPECT_EQ(back.arrival[0].period, 8.5);
   EXPECT_EQ(back.arrival[0].energy, -1.5);
@@ -295,8 +295,8 @@ TEST(WorkTasks, SweepsComeFirstAndKeysSortByNumber) {
   EXPECT_LT(second.key, tenth.key);
   EXPECT_LT(tenth.priority, branch.priority);
   EXPECT_EQ(branch.key, "0001.0002/003.q4.j1/0-");
-  EXPECT_EQ(branch.kind, branch_kind);
-  EXPECT_EQ(second.kind, sweep_kind);
+  EXPECT_EQ(kind_of(branch), TaskKind::branch);
+  EXPECT_EQ(kind_of(second), TaskKind::sweep);
 }
 
 TEST(WorkTasks, BranchesThenCrossingsThenStartsThenDeeperBranches) {

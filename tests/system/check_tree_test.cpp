@@ -44,8 +44,8 @@ FamilyRecord family(const std::string& key, const std::string& name, const std::
   return record;
 }
 
-CrossingRecord crossing(const std::string& key, double arclength, double period, double energy, const char* kind, int m,
-                        int j, int q) {
+CrossingRecord crossing(const std::string& key, double arclength, double period, double energy,
+                        archive::CrossingKind kind, int m, int j, int q) {
   CrossingRecord record;
   record.family_key = key;
   record.arclength = arclength;
@@ -69,9 +69,10 @@ Records sound_tree() {
                    family("0.1.1", "Grandchild", "0.1", 2, 3)};
   tree.families[child_key].end_family_key = "0";
   tree.families[child_key].end_crossing = 1;
-  tree.crossings = {
-      crossing("0", 1.25, 5, -1, "subharmonic", 2, 1, 4), crossing("0", 3.75, 6, 0, "branch-point", 1, 0, 1),
-      crossing("0.1", -0.75, 9.7, -0.9, "subharmonic", 3, 1, 3), crossing("0", 4.25, 6.5, 0.5, "fold-energy", 1, 0, 1)};
+  tree.crossings = {crossing("0", 1.25, 5, -1, archive::CrossingKind::subharmonic, 2, 1, 4),
+                    crossing("0", 3.75, 6, 0, archive::CrossingKind::branch_point, 1, 0, 1),
+                    crossing("0.1", -0.75, 9.7, -0.9, archive::CrossingKind::subharmonic, 3, 1, 3),
+                    crossing("0", 4.25, 6.5, 0.5, archive::CrossingKind::fold_energy, 1, 0, 1)};
   tree.crossings.back().residual = tree.crossings.back().test_value = archive::not_computed;
   for (int step = 0; step <= 9; ++step) tree.orbits.push_back(orbit("0", step, 4 + 0.3 * step, -2 + step / 3.0, -1.5));
   for (int step = -3; step <= 3; ++step)

@@ -211,8 +211,7 @@ class Tree {
   }
 
   void check_location(std::size_t crossing) {
-    const std::string& kind = _crossings.texts("kind")[crossing];
-    if (kind != "branch-point" && kind != "period-doubling" && kind != "subharmonic") return;
+    if (!archive::has_sector(_atlas.crossing_kinds()[crossing])) return;
     const double j = static_cast<double>(at(_crossings, "sector_j", crossing));
     const double q = static_cast<double>(at(_crossings, "sector_q", crossing));
     const auto family = static_cast<std::size_t>(at(_crossings, "family", crossing));

@@ -27,10 +27,26 @@ struct Crossing {
   double width = 0.0;  ///< of the interval of positions that is left around it
 };
 
+/// Why an event was not located.
+struct NotLocated {
+  enum class Reason {
+    no_zero,   ///< the function does not change sign between `from` and `to`, where it is `at_from` and `at_to`
+    no_orbit,  ///< none converges at `position`
+    no_event,  ///< the function vanishes at `position` for another reason than the event that it stands for
+  };
+  Reason reason = Reason::no_zero;
+  double from = 0.0;
+  double to = 0.0;
+  double at_from = 0.0;
+  double at_to = 0.0;
+  double position = 0.0;
+};
+[[nodiscard]] std::string to_text(const NotLocated& why);
+
 /// Locates `event` between two positions of the family, every trial orbit converged anew. Positions are found to
 /// `tolerance` relative to 1 + |position|, to 1e-10 at least. None where the function has no zero there (`why` then says so).
 [[nodiscard]] std::optional<Crossing> locate(const systems::System& system, continuation::FamilyCurve& family,
-                                             const Event& event, double from, double to, std::string& why,
+                                             const Event& event, double from, double to, NotLocated& why,
                                              double tolerance = 1e-11);
 
 /// The multiplier pair that is nearest to the sector: k - 2 cos(2 pi j/q), with its error bound.

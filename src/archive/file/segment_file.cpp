@@ -16,8 +16,8 @@ SegmentFile::SegmentFile(const std::filesystem::path& path)
       _map_values(_file.expect_flat("time_maps")) {}
 
 void SegmentFile::check_values() const {
-  check_lots("modes_begin", "modes_count", _mode_values);
-  check_lots("time_map_begin", "time_map_count", _map_values);
+  check_ranges("modes_begin", "modes_count", _mode_values);
+  check_ranges("time_map_begin", "time_map_count", _map_values);
   const auto cutoffs = orbit_integers("cutoff");
   const auto counts = orbit_integers("modes_count");
   const auto dimension = static_cast<std::int64_t>(_file.header().state_names.size());
@@ -26,7 +26,7 @@ void SegmentFile::check_values() const {
                  fmt::format("has {} modes in row {}; cutoff {} asks for another number", counts[i], i, cutoffs[i]));
 }
 
-void SegmentFile::check_lots(const char* begin, const char* count, std::uint64_t total) const {
+void SegmentFile::check_ranges(const char* begin, const char* count, std::uint64_t total) const {
   const auto begins = orbit_integers(begin);
   const auto counts = orbit_integers(count);
   std::int64_t next = 0;

@@ -28,7 +28,7 @@ class SegmentFile {
   [[nodiscard]] std::uint64_t fingerprint() const;
 
  private:
-  void check_lots(const char* begin, const char* count, std::uint64_t total) const;
+  void check_ranges(const char* begin, const char* count, std::uint64_t total) const;
 
   SerialFile _file;
   TableSpec _orbits;

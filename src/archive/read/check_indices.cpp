@@ -15,7 +15,7 @@ void expect_range(const SerialFile& file, const Table& table, const char* column
                                      values[i], i, count));
 }
 
-void expect_lots(const SerialFile& file, const Table& orbits, const std::string& name, std::uint64_t total) {
+void expect_ranges(const SerialFile& file, const Table& orbits, const std::string& name, std::uint64_t total) {
   const auto& begins = orbits.integers(name + "_begin");
   const auto& counts = orbits.integers(name + "_count");
   const auto end = static_cast<std::int64_t>(total);
@@ -41,7 +41,7 @@ void expect_mode_counts(const SerialFile& file, const Table& orbits) {
 }
 
 // The families' ranges of orbits follow one another and cover the table, so each orbit has one family.
-void expect_family_lots(const SerialFile& file, const AtlasTables& tables) {
+void expect_family_ranges(const SerialFile& file, const AtlasTables& tables) {
   const auto& firsts = tables.families.integers("first_orbit");
   const auto& counts = tables.families.integers("orbit_count");
   const auto& family = tables.orbits.integers("family");
@@ -73,10 +73,10 @@ void check_indices(const SerialFile& file, const AtlasTables& tables) {
   expect_range(file, tables.crossings, "family", 0, families);
   expect_range(file, tables.orbits, "family", 0, families);
   expect_range(file, tables.sections, "orbit", 0, tables.orbits.rows());
-  expect_lots(file, tables.orbits, "modes", tables.mode_values);
-  expect_lots(file, tables.orbits, "time_map", tables.map_values);
+  expect_ranges(file, tables.orbits, "modes", tables.mode_values);
+  expect_ranges(file, tables.orbits, "time_map", tables.map_values);
   expect_mode_counts(file, tables.orbits);
-  expect_family_lots(file, tables);
+  expect_family_ranges(file, tables);
 }
 
 }  // namespace orbweaver::archive

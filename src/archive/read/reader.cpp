@@ -19,6 +19,7 @@ Archive::Archive(const std::filesystem::path& path) : _file(std::make_unique<Ser
   _families = read_table(*_file, families_spec());
   _orbits = read_table(*_file, orbits_spec(header));
   _crossings = read_table(*_file, crossings_spec(header));
+  for (const std::string& name : _crossings.texts("kind")) _crossing_kinds.push_back(crossing_kind_of(name));
   _sections = read_table(*_file, sections_spec(header));
   _mode_values = _file->expect_flat("modes");
   check_indices(*_file, {_families, _orbits, _crossings, _sections, _mode_values, _file->expect_flat("time_maps")});

@@ -172,7 +172,8 @@ void check_crossings(const Header& header, const Records& records) {
     check_reference(record, "family_key", crossing.family_key, keys);
     check_finite(record, "arclength", crossing.arclength);
     check_finite(record, "period", crossing.period);
-    check_text(record, "kind", crossing.kind);
+    expect(crossing.kind != CrossingKind::unknown, record,
+           "its kind is unknown; one of those that have names was expected");
     check_vector(record, "state", crossing.state, header.state_names.size(), "one a state name");
   }
 }

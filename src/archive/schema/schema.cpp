@@ -3,47 +3,41 @@
 #include <functional>
 #include <numeric>
 
+#include "columns.hpp"
+
 namespace orbweaver::archive {
 
 namespace {
 
-ColumnSpec integer(std::string name) { return {std::move(name), ColumnType::integer, {}}; }
-ColumnSpec text(std::string name) { return {std::move(name), ColumnType::text, {}}; }
-ColumnSpec real(std::string name, std::vector<std::size_t> row_shape = {}) {
-  return {std::move(name), ColumnType::real, std::move(row_shape)};
-}
-
-ColumnSpec stability(std::string name, const Header& header) {
+std::vector<std::size_t> extents_of(RowShape shape, const Header& header) {
   const auto pairs = static_cast<std::size_t>(header.pairs);
-  return has_complex_stability(header) ? real(std::move(name), {pairs, 2}) : real(std::move(name), {pairs});
+  switch (shape) {
+    case RowShape::one: break;
+    case RowShape::state: return {header.state_names.size()};
+    case RowShape::winding: return {header.winding_names.size()};
+    case RowShape::stability:
+      if (has_complex_stability(header)) return {pairs, 2};
+      return {pairs};
+  }
+  return {};
 }
 
-ColumnSpec state(const Header& header) { return real("state", {header.state_names.size()}); }
+template <class Record>
+ColumnSpec spec_of(const ColumnDefinition<Record>& column, const Header& header) {
+  const auto& member = column.member;
+  ColumnType type = ColumnType::integer;
+  if (std::holds_alternative<std::string Record::*>(member)) type = ColumnType::text;
+  if (std::holds_alternative<CrossingKind Record::*>(member)) type = ColumnType::text;
+  if (std::holds_alternative<double Record::*>(member)) type = ColumnType::real;
+  if (std::holds_alternative<std::vector<double> Record::*>(member)) type = ColumnType::real;
+  return {column.name, type, extents_of(column.shape, header)};
+}
 
-std::vector<ColumnSpec> orbit_columns(ColumnSpec family, const Header& header) {
-  return {std::move(family),
-          integer("step"),
-          real("arclength"),
-          real("period"),
-          real("energy"),
-          real("action"),
-          real("parameter"),
-          integer("cutoff"),
-          real("loss_rms"),
-          real("off_branch_eigenvalue"),
-          stability("stability", header),
-          stability("fundamental_stability", header),
-          real("stability_error"),
-          state(header),
-          real("closure"),
-          real("single_shot"),
-          real("energy_drift"),
-          real("tail"),
-          integer("modes_begin"),
-          integer("modes_count"),
-          integer("time_map_begin"),
-          integer("time_map_count"),
-          real("winding", {header.winding_names.size()})};
+template <class Record>
+TableSpec spec_of(const char* name, const ColumnDefinitions<Record>& columns, const Header& header) {
+  TableSpec spec{name, {}};
+  for (const ColumnDefinition<Record>& column : columns) spec.columns.push_back(spec_of(column, header));
+  return spec;
 }
 
 }  // namespace
@@ -58,28 +52,16 @@ std::size_t stability_width(const Header& header) {
   return static_cast<std::size_t>(header.pairs) * (has_complex_stability(header) ? 2 : 1);
 }
 
-TableSpec families_spec() {
-  return {"families",
-          {text("name"), integer("parent"), integer("crossing"), integer("multiplicity"), text("isotropy"),
-           integer("first_orbit"), integer("orbit_count"), text("end_reason"), integer("end_family"),
-           integer("end_crossing")}};
-}
+TableSpec families_spec() { return spec_of("families", family_columns(), {}); }
 
-TableSpec orbits_spec(const Header& header) { return {"orbits", orbit_columns(integer("family"), header)}; }
+TableSpec orbits_spec(const Header& header) { return spec_of("orbits", orbit_columns(), header); }
 
-TableSpec crossings_spec(const Header& header) {
-  return {"crossings",
-          {integer("family"), real("arclength"), real("period"), real("energy"), text("kind"), integer("multiplicity"),
-           integer("kernel_dimension"), real("residual"), state(header), integer("sector_j"), integer("sector_q"),
-           integer("fundamental_order"), real("test_value"), real("kernel_residual")}};
-}
+TableSpec crossings_spec(const Header& header) { return spec_of("crossings", crossing_columns(), header); }
 
-TableSpec sections_spec(const Header& header) { return {"sections", {integer("orbit"), real("time"), state(header)}}; }
+TableSpec sections_spec(const Header& header) { return spec_of("sections", section_columns(), header); }
 
-TableSpec segment_orbits_spec(const Header& header) { return {"orbits", orbit_columns(text("family_key"), header)}; }
+TableSpec segment_orbits_spec(const Header& header) { return spec_of("orbits", segment_orbit_columns(), header); }
 
-TableSpec segment_sections_spec(const Header& header) {
-  return {"sections", {text("family_key"), integer("step"), real("time"), state(header)}};
-}
+TableSpec segment_sections_spec(const Header& header) { return spec_of("sections", segment_section_columns(), header); }
 
 }  // namespace orbweaver::archive

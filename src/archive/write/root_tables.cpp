@@ -5,6 +5,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "schema/columns.hpp"
+
 namespace orbweaver::archive {
 
 namespace {
@@ -15,8 +17,9 @@ std::int64_t index_of(const std::vector<std::string>& keys, const std::string& k
 }
 
 auto order_of(const CrossingRecord& c) {
-  return std::tie(c.family_key, c.arclength, c.sector_q, c.sector_j, c.kind, c.multiplicity, c.kernel_dimension,
-                  c.fundamental_order, c.state);
+  const auto place = std::tie(c.family_key, c.arclength, c.sector_q, c.sector_j);
+  const auto rest = std::tie(c.multiplicity, c.kernel_dimension, c.fundamental_order, c.state);
+  return std::tuple_cat(place, std::tuple(name_of(c.kind)), rest);
 }
 
 // order[new row] = index as given.
@@ -34,41 +37,24 @@ std::vector<std::int64_t> inverse(const std::vector<std::size_t>& order) {
   return rows;
 }
 
-void fill_crossing(Table& table, std::size_t row, const CrossingRecord& crossing,
-                   const std::vector<std::string>& keys) {
-  table.integers("family")[row] = index_of(keys, crossing.family_key);
-  table.reals("arclength")[row] = crossing.arclength;
-  table.reals("period")[row] = crossing.period;
-  table.reals("energy")[row] = crossing.energy;
-  table.texts("kind")[row] = crossing.kind;
-  table.integers("multiplicity")[row] = crossing.multiplicity;
-  table.integers("kernel_dimension")[row] = crossing.kernel_dimension;
-  table.reals("residual")[row] = crossing.residual;
-  const auto width = crossing.state.size();
-  std::copy(crossing.state.begin(), crossing.state.end(),
-            table.reals("state").begin() + static_cast<std::ptrdiff_t>(row * width));
-  table.integers("sector_j")[row] = crossing.sector_j;
-  table.integers("sector_q")[row] = crossing.sector_q;
-  table.integers("fundamental_order")[row] = crossing.fundamental_order;
-  table.reals("test_value")[row] = crossing.test_value;
-  table.reals("kernel_residual")[row] = crossing.kernel_residual;
-}
-
-void fill_family(Table& table, const FamilyRecord& family, const std::vector<std::string>& keys,
-                 const std::vector<std::int64_t>& crossing_rows, const Numbering& numbering) {
-  const std::int64_t index = index_of(keys, family.key);
-  const auto row = static_cast<std::size_t>(index);
+void number_family(Table& table, std::size_t row, const FamilyRecord& family, const std::vector<std::string>& keys,
+                   const std::vector<std::int64_t>& crossing_rows, const Numbering& numbering) {
+  const auto index = static_cast<std::int64_t>(row);
   const auto crossing_row = [&](int given) { return given < 0 ? -1 : crossing_rows[static_cast<std::size_t>(given)]; };
-  table.texts("name")[row] = family.name;
   table.integers("parent")[row] = index_of(keys, family.parent_key);
   table.integers("crossing")[row] = crossing_row(family.crossing);
-  table.integers("multiplicity")[row] = family.multiplicity;
-  table.texts("isotropy")[row] = family.isotropy;
   table.integers("first_orbit")[row] = numbering.first_orbit(index);
   table.integers("orbit_count")[row] = numbering.first_orbit(index + 1) - numbering.first_orbit(index);
-  table.texts("end_reason")[row] = family.end_reason;
   table.integers("end_family")[row] = index_of(keys, family.end_family_key);
   table.integers("end_crossing")[row] = crossing_row(family.end_crossing);
+}
+
+// In the order of the keys.
+std::vector<const FamilyRecord*> family_order(const std::vector<FamilyRecord>& families,
+                                              const std::vector<std::string>& keys) {
+  std::vector<const FamilyRecord*> order(families.size());
+  for (const FamilyRecord& family : families) order[static_cast<std::size_t>(index_of(keys, family.key))] = &family;
+  return order;
 }
 
 }  // namespace
@@ -99,10 +85,15 @@ RootTables make_root_tables(const Header& header, const Records& tables, const s
   RootTables root{Table(families_spec(), tables.families.size()),
                   Table(crossings_spec(header), tables.crossings.size())};
   const std::vector<std::size_t> order = crossing_order(tables.crossings);
+  const auto crossing = [&](std::size_t row) -> const CrossingRecord& { return tables.crossings[order[row]]; };
+  fill_columns(root.crossings, crossing_columns(), crossing);
   for (std::size_t row = 0; row < order.size(); ++row)
-    fill_crossing(root.crossings, row, tables.crossings[order[row]], keys);
+    root.crossings.integers("family")[row] = index_of(keys, crossing(row).family_key);
   const std::vector<std::int64_t> crossing_rows = inverse(order);
-  for (const FamilyRecord& family : tables.families) fill_family(root.families, family, keys, crossing_rows, numbering);
+  const std::vector<const FamilyRecord*> families = family_order(tables.families, keys);
+  fill_columns(root.families, family_columns(), [&](std::size_t row) -> const FamilyRecord& { return *families[row]; });
+  for (std::size_t row = 0; row < families.size(); ++row)
+    number_family(root.families, row, *families[row], keys, crossing_rows, numbering);
   return root;
 }
 

@@ -11,6 +11,7 @@
 #include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/core/pause.hpp"
 #include "schema/check_records.hpp"
+#include "schema/columns.hpp"
 
 namespace orbweaver::archive {
 
@@ -19,34 +20,7 @@ namespace {
 // Doubles that a rank stages for one collective write: bounds memory and keeps below MPI's 2 GiB a call.
 constexpr std::size_t staged_values = std::size_t{1} << 20;
 
-using RealMember = double OrbitRecord::*;
 using VectorMember = std::vector<double> OrbitRecord::*;
-
-constexpr std::pair<const char*, RealMember> real_columns[] = {
-    {"arclength", &OrbitRecord::arclength},
-    {"period", &OrbitRecord::period},
-    {"energy", &OrbitRecord::energy},
-    {"action", &OrbitRecord::action},
-    {"parameter", &OrbitRecord::parameter},
-    {"loss_rms", &OrbitRecord::loss_rms},
-    {"off_branch_eigenvalue", &OrbitRecord::off_branch_eigenvalue},
-    {"stability_error", &OrbitRecord::stability_error},
-    {"closure", &OrbitRecord::closure},
-    {"single_shot", &OrbitRecord::single_shot},
-    {"energy_drift", &OrbitRecord::energy_drift},
-    {"tail", &OrbitRecord::tail},
-};
-
-constexpr std::pair<const char*, VectorMember> vector_columns[] = {
-    {"stability", &OrbitRecord::stability},
-    {"fundamental_stability", &OrbitRecord::fundamental_stability},
-    {"state", &OrbitRecord::state},
-    {"winding", &OrbitRecord::winding},
-};
-
-void copy_into(std::vector<double>& column, std::size_t row, std::size_t width, const std::vector<double>& values) {
-  std::copy(values.begin(), values.end(), column.begin() + static_cast<std::ptrdiff_t>(row * width));
-}
 
 std::uint64_t count_values(const Records& mine, VectorMember member) {
   std::uint64_t count = 0;
@@ -54,7 +28,7 @@ std::uint64_t count_values(const Records& mine, VectorMember member) {
   return count;
 }
 
-void fill_lots(Table& table, const Records& mine, VectorMember member, const std::string& name, std::uint64_t first) {
+void fill_ranges(Table& table, const Records& mine, VectorMember member, const std::string& name, std::uint64_t first) {
   auto& begins = table.integers(name + "_begin");
   auto& counts = table.integers(name + "_count");
   auto next = static_cast<std::int64_t>(first);
@@ -67,31 +41,14 @@ void fill_lots(Table& table, const Records& mine, VectorMember member, const std
 
 Table orbit_table(const Header& header, const Records& mine) {
   Table table(segment_orbits_spec(header), mine.orbits.size());
-  for (std::size_t i = 0; i < mine.orbits.size(); ++i) {
-    table.texts("family_key")[i] = mine.orbits[i].family_key;
-    table.integers("step")[i] = mine.orbits[i].step;
-    table.integers("cutoff")[i] = mine.orbits[i].cutoff;
-  }
-  for (const auto& [name, member] : real_columns) {
-    auto& column = table.reals(name);
-    for (std::size_t i = 0; i < mine.orbits.size(); ++i) column[i] = mine.orbits[i].*member;
-  }
-  for (const auto& [name, member] : vector_columns) {
-    const std::size_t width = table.column(name).spec.width();
-    for (std::size_t i = 0; i < mine.orbits.size(); ++i) copy_into(table.reals(name), i, width, mine.orbits[i].*member);
-  }
+  fill_columns(table, segment_orbit_columns(), [&](std::size_t i) -> const OrbitRecord& { return mine.orbits[i]; });
   return table;
 }
 
 Table section_table(const Header& header, const Records& mine) {
   Table table(segment_sections_spec(header), mine.sections.size());
-  for (std::size_t i = 0; i < mine.sections.size(); ++i) {
-    const SectionRecord& section = mine.sections[i];
-    table.texts("family_key")[i] = section.family_key;
-    table.integers("step")[i] = section.step;
-    table.reals("time")[i] = section.time;
-    copy_into(table.reals("state"), i, header.state_names.size(), section.state);
-  }
+  fill_columns(table, segment_section_columns(),
+               [&](std::size_t i) -> const SectionRecord& { return mine.sections[i]; });
   return table;
 }
 
@@ -180,8 +137,8 @@ WrittenSegment write_segment(MPI_Comm comm, const std::filesystem::path& path, c
   collectively(comm, [&] {
     orbits = orbit_table(header, mine);
     sections = section_table(header, mine);
-    fill_lots(orbits, mine, &OrbitRecord::modes, "modes", modes.first);
-    fill_lots(orbits, mine, &OrbitRecord::time_map, "time_map", maps.first);
+    fill_ranges(orbits, mine, &OrbitRecord::modes, "modes", modes.first);
+    fill_ranges(orbits, mine, &OrbitRecord::time_map, "time_map", maps.first);
   });
   agree_on_text_widths(comm, orbits);
   agree_on_text_widths(comm, sections);

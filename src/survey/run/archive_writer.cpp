@@ -19,9 +19,9 @@ namespace {
 /// Branches that a stop has cut: their rows are kept, and so must the families be.
 void add_unfinished(const std::vector<queue::Task>& tasks, FamilyTree& tree) {
   for (const queue::Task& task : tasks) {
-    if (task.kind != branch_kind || task.state.empty()) continue;
+    if (kind_of(task) != TaskKind::branch || task.state.empty()) continue;
     BranchState state = unpack_branch_state(task.state);
-    state.outcome.end_reason = fmt::format("stopped (T = {:.9g})", state.last.loop.period);
+    state.outcome.end = {continuation::EndReason::stopped, fmt::format("T = {:.9g}", state.last.loop.period)};
     queue::TaskOutcome outcome;
     outcome.key = task.key;
     outcome.payload = pack(state.outcome);
@@ -81,7 +81,7 @@ Summary archive_survey(const core::Communicator& comm, const std::filesystem::pa
   on_root(comm, [&] {
     const Stage stage = found.checkpoint.stage;
     continue_with(scene, state_folder(directory), found.checkpoint, [&](const EndedTask& entry) {
-      if (entry.task.kind == sweep_kind)
+      if (kind_of(entry.task) == TaskKind::sweep)
         sweeps.insert_or_assign(entry.task.key, std::pair(entry.task, entry.outcome));
       else
         tree.add(entry.task, entry.outcome);

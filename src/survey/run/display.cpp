@@ -6,6 +6,7 @@
 
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/survey/tasks/work.hpp"
+#include "orbweaver/survey/tree/family_end.hpp"
 
 namespace orbweaver::survey {
 
@@ -26,12 +27,12 @@ std::string line_of(const FamilyState& f) {
 }  // namespace
 
 void ProgressDisplay::started(const queue::Task& task, int) {
-  if (task.kind != branch_kind) return;
+  if (kind_of(task) != TaskKind::branch) return;
   _families[task.key].name = unpack_branch_work(task.payload).name;
 }
 
 void ProgressDisplay::progress(const queue::Task& task, const queue::Progress& progress, int) {
-  if (task.kind != branch_kind || progress.values.size() < 3) return;
+  if (kind_of(task) != TaskKind::branch || progress.values.size() < 3) return;
   FamilyState& f = _families[task.key];
   f.orbits = progress.step;
   f.period = progress.values[0];
@@ -41,7 +42,7 @@ void ProgressDisplay::progress(const queue::Task& task, const queue::Progress& p
 }
 
 void ProgressDisplay::ended(const queue::Task& task, const queue::TaskOutcome& outcome) {
-  if (task.kind != branch_kind) return;
+  if (kind_of(task) != TaskKind::branch) return;
   FamilyState& f = _families[task.key];
   f.running = false;
   f.changed = Clock::now();
@@ -52,7 +53,7 @@ void ProgressDisplay::ended(const queue::Task& task, const queue::TaskOutcome& o
     f.period = branch.last_period;
     f.energy = branch.last_energy;
     f.cutoff = branch.last_cutoff;
-    f.end = branch.end_reason;
+    f.end = end_text(branch);
   }
   if (_style == Display::lines) print_line(f);
   if (_style == Display::live) redraw();

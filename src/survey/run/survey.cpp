@@ -141,7 +141,7 @@ class Run {
   }
 
   void restore(const EndedTask& entry) {
-    if (entry.task.kind == sweep_kind)
+    if (kind_of(entry.task) == TaskKind::sweep)
       _sweeps_ended.insert_or_assign(entry.task.key, std::pair(entry.task, entry.outcome));
     else
       _tree.add(entry.task, entry.outcome);

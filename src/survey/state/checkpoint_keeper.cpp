@@ -14,7 +14,7 @@ namespace {
 
 /// The payload of a location is large, and needed again under wider limits only.
 bool may_be_done_again(const EndedTask& entry) {
-  return entry.task.kind != locate_kind || entry.outcome.payload.empty() ||
+  return kind_of(entry.task) != TaskKind::locate || entry.outcome.payload.empty() ||
          unpack_locate_outcome(entry.outcome.payload).limited_by != 0;
 }
 

@@ -6,15 +6,24 @@
 
 #include "branch_state.hpp"
 #include "orbweaver/scene/differences.hpp"
+#include "orbweaver/survey/tasks/keys.hpp"
 
 namespace orbweaver::survey {
 
 namespace {
 
-/// The crossing's or family's key that a task is about: "locate KEY", "start KEY", or the branch's own.
-std::string place_of(const std::string& task_key) {
-  const std::size_t space = task_key.find(' ');
-  return space == std::string::npos ? task_key : task_key.substr(space + 1);
+/// Limit that the entry's end rests on.
+int limits_of(const EndedTask& entry) {
+  const std::string& outcome = entry.outcome.payload;
+  switch (kind_of(entry.task)) {
+    case TaskKind::branch: return outcome.empty() ? 0 : unpack_branch_outcome(outcome).limited_by;
+    case TaskKind::locate: return outcome.empty() ? 0 : unpack_locate_outcome(outcome).limited_by;
+    // One that failed may have been driven beyond a limit on the way.
+    case TaskKind::start:
+      return entry.had_children ? unpack_start_outcome(outcome).limited_by : period_limited | energy_limited;
+    case TaskKind::sweep: break;
+  }
+  return 0;
 }
 
 }  // namespace
@@ -56,35 +65,20 @@ void Reopening::finish() {
 
 bool Reopening::is_behind(const std::string& key) const {
   const std::string place = place_of(key);
-  const bool gone = std::any_of(_whole.begin(), _whole.end(), [&](const std::string& branch) {
-    return place == branch || place.starts_with(branch + "/");
-  });
+  const bool gone = std::any_of(_whole.begin(), _whole.end(),
+                                [&](const std::string& branch) { return place == branch || lies_on(place, branch); });
   return gone || std::any_of(_behind.begin(), _behind.end(), [&](const Behind& behind) {
-           const std::size_t length = behind.branch.size();
-           return place.size() > length + 1 && place.compare(0, length, behind.branch) == 0 && place[length] == '/' &&
-                  std::stoi(place.substr(length + 1)) >= behind.first_event;
+           return lies_on(place, behind.branch) && event_number(place, behind.branch) >= behind.first_event;
          });
 }
 
-bool Reopening::is_limited(const EndedTask& entry) const {
-  int limits = 0;
-  if (entry.task.kind == start_kind) {
-    if (!entry.had_children || entry.outcome.payload == limited_start) limits = period_limited | energy_limited;
-  } else if (entry.outcome.payload.empty()) {
-    return false;
-  } else if (entry.task.kind == branch_kind) {
-    limits = unpack_branch_outcome(entry.outcome.payload).limited_by;
-  } else if (entry.task.kind == locate_kind) {
-    limits = unpack_locate_outcome(entry.outcome.payload).limited_by;
-  }
-  return (limits & _widened) != 0;
-}
+bool Reopening::is_limited(const EndedTask& entry) const { return (limits_of(entry) & _widened) != 0; }
 
 void Reopening::reopen(const EndedTask& entry) {
   queue::Task task = entry.task;
   task.state.clear();
-  if (task.kind == start_kind) _whole.push_back(place_of(task.key));
-  if (task.kind == branch_kind) {
+  if (kind_of(task) == TaskKind::start) _whole.push_back(place_of(task.key));
+  if (kind_of(task) == TaskKind::branch) {
     task.state = unpack_branch_outcome(entry.outcome.payload).before_limit;
     int orbits = 0;
     int events = 0;
@@ -100,7 +94,7 @@ void Reopening::reopen(const EndedTask& entry) {
 }
 
 void Reopening::drop(const queue::Task& task) {
-  if (task.kind == branch_kind) forget_rows(task, 0);
+  if (kind_of(task) == TaskKind::branch) forget_rows(task, 0);
 }
 
 /// The orbits of a branch from its `from`-th on.

@@ -10,16 +10,19 @@
 #include "orbweaver/archive/read/reader.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/scene/differences.hpp"
+#include "orbweaver/survey/tree/family_end.hpp"
 #include "resume.hpp"
 
 namespace orbweaver::survey {
 
 namespace {
 
-bool has_end(const archive::Archive& archive, const char* beginning) {
-  for (const std::string& reason : archive.families().texts("end_reason"))
-    if (reason.starts_with(beginning)) return true;
-  return false;
+bool has_end(const archive::Archive& archive, EndKind kind) {
+  const std::vector<std::string>& reasons = archive.families().texts("end_reason");
+  return std::any_of(reasons.begin(), reasons.end(), [kind](const std::string& reason) {
+    const std::vector<EndKind> ends = ends_in(reason);
+    return std::find(ends.begin(), ends.end(), kind) != ends.end();
+  });
 }
 
 std::optional<Checkpoint> newest_readable(const std::filesystem::path& folder) {
@@ -73,8 +76,8 @@ Standing standing_of(const std::filesystem::path& directory, const scene::Scene&
         fmt::format("{} was made from another scene than this one: give another folder with -o, or move the "
                     "archive away",
                     atlas.string()));
-  if (has_end(archive, "stopped")) return Standing::unfinished;
-  return has_end(archive, "failure") ? Standing::finished_with_failures : Standing::finished;
+  if (has_end(archive, EndKind::stopped)) return Standing::unfinished;
+  return has_end(archive, EndKind::failure) ? Standing::finished_with_failures : Standing::finished;
 }
 
 void require_startable(Standing standing, const std::filesystem::path& directory, bool resume) {

@@ -14,6 +14,7 @@
 #include "orbweaver/bifurcation/family_jump.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/symmetry/fundamental_domain.hpp"
+#include "orbweaver/survey/tasks/keys.hpp"
 #include "requested.hpp"
 
 namespace orbweaver::survey {
@@ -89,13 +90,10 @@ queue::TaskOutcome BranchTask::run() {
     if (_outcome.limited_by == 0)
       _outcome.limited_by = period_limited | energy_limited;  // from its start: where it stands is not known
   }
-  _outcome.end_reason = _outcome.arrival.empty() || ending.failed()
-                            ? ending.text()
-                            : fmt::format("met a family of more symmetry (T = {:.9g}, E = {:.9g})",
-                                          _outcome.arrival.front().period, _outcome.arrival.front().energy);
+  _outcome.end = ending;
   queue::TaskOutcome done;
   done.failed = ending.failed();
-  done.reason = ending.failed() ? _outcome.end_reason : "";
+  done.reason = ending.failed() ? ending.text() : "";
   done.children = std::move(_children);
   done.payload = pack(_outcome);
   return done;
@@ -227,8 +225,8 @@ void BranchTask::add_event(const bifurcation::Event& event, double from, double 
   LocateWork work;
   set_event(work, event);
   const bool is_fold = event.kind != bifurcation::Event::Kind::test_function;
-  work.key = fmt::format("{}/{:03}.{}", _work.key, _events++,
-                         is_fold ? "fold" : fmt::format("q{}.j{}", event.function.sector.q, event.function.sector.j));
+  work.key = event_key(_work.key, _events++,
+                       is_fold ? "fold" : fmt::format("q{}.j{}", event.function.sector.q, event.function.sector.j));
   work.name = _work.name;
   work.lineage = _work.lineage;
   work.isotropy = _work.isotropy;

@@ -46,12 +46,14 @@ Executor::Executor(const scene::Scene& scene, std::shared_ptr<const systems::Sys
     : _scene(scene), _system(std::move(system)), _rows(rows), _team(team) {}
 
 queue::TaskOutcome Executor::execute(const queue::Task& task, queue::TaskContext& context) {
-  if (task.kind == sweep_kind) return sweep(unpack_sweep_work(task.payload));
-  if (task.kind == branch_kind)
-    return BranchTask(_scene, _system, unpack_branch_work(task.payload), task.state, _rows, context, _team).run();
-  if (task.kind == locate_kind) return locate(_scene, _system, unpack_locate_work(task.payload), context, _team);
-  if (task.kind == start_kind) return start(_scene, _system, unpack_start_work(task.payload), _team);
-  throw core::EnvironmentError(fmt::format("no such kind of task: `{}`", task.kind));
+  switch (kind_of(task)) {
+    case TaskKind::sweep: return sweep(unpack_sweep_work(task.payload));
+    case TaskKind::branch:
+      return BranchTask(_scene, _system, unpack_branch_work(task.payload), task.state, _rows, context, _team).run();
+    case TaskKind::locate: return locate(_scene, _system, unpack_locate_work(task.payload), context, _team);
+    case TaskKind::start: return start(_scene, _system, unpack_start_work(task.payload), _team);
+  }
+  throw core::MisuseError("a task of a kind that is none");
 }
 
 queue::TaskOutcome Executor::sweep(const SweepWork& work) const {

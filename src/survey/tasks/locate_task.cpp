@@ -18,16 +18,17 @@ namespace orbweaver::survey {
 
 namespace {
 
+using archive::CrossingKind;
 using bifurcation::Event;
 using bifurcation::TestFunction;
 
-std::string kind_of(const Event& event, int multiplicity) {
-  if (event.kind == Event::Kind::fold_period) return "fold-period";
-  if (event.kind == Event::Kind::fold_energy) return "fold-energy";
-  if (event.function.kind == TestFunction::Kind::krein) return "krein";
-  if (event.function.kind == TestFunction::Kind::torus) return "torus";
-  if (multiplicity == 1) return "branch-point";
-  return multiplicity == 2 ? "period-doubling" : "subharmonic";
+CrossingKind kind_of(const Event& event, int multiplicity) {
+  if (event.kind == Event::Kind::fold_period) return CrossingKind::fold_period;
+  if (event.kind == Event::Kind::fold_energy) return CrossingKind::fold_energy;
+  if (event.function.kind == TestFunction::Kind::krein) return CrossingKind::krein;
+  if (event.function.kind == TestFunction::Kind::torus) return CrossingKind::torus;
+  if (multiplicity == 1) return CrossingKind::branch_point;
+  return multiplicity == 2 ? CrossingKind::period_doubling : CrossingKind::subharmonic;
 }
 
 /// Null vectors that the multipliers at the crossing let expect.
@@ -55,7 +56,7 @@ class Location {
   }
 
   queue::TaskOutcome run() {
-    std::string why;
+    bifurcation::NotLocated why;
     continuation::Options options = branch_options(_scene, _team);
     const loop::Isotropy isotropy = isotropy_of(_work.isotropy, _system->description());
     continuation::FamilyCurve fast(_system, isotropy, options);
@@ -96,22 +97,22 @@ class Location {
         _failure = error.what();
       }
     queue::TaskOutcome done;
-    done.failed = !_failure.empty();
-    done.reason = _failure;
+    done.failed = _failure.has_value();
+    done.reason = _failure.value_or("");
     done.children = std::move(_starts);
     done.payload = pack(_outcome);
     return done;
   }
 
-  queue::TaskOutcome without_crossing(const std::string& why) {
+  queue::TaskOutcome without_crossing(const bifurcation::NotLocated& why) {
     queue::TaskOutcome done;
     // Only minima that come near zero, and functions that vanish for other reasons, may turn out to be nothing.
-    done.failed = !_event.tangency && why.find("nothing leaves") == std::string::npos;
-    done.reason =
-        fmt::format("the event between arclength {:.6g} and {:.6g} was not located: {}", _work.from, _work.to, why);
-    _outcome.remark = why;
+    done.failed = !_event.tangency && why.reason != bifurcation::NotLocated::Reason::no_event;
+    _outcome.remark = to_text(why);
+    if (done.failed)
+      done.reason = fmt::format("the event between arclength {:.6g} and {:.6g} was not located: {}", _work.from,
+                                _work.to, _outcome.remark);
     done.payload = pack(_outcome);
-    if (!done.failed) done.reason.clear();
     return done;
   }
 
@@ -174,9 +175,9 @@ class Location {
     _outcome.remark = fmt::format("no flat direction besides the family's own (smallest singular value {:.2g})",
                                   kernel.singular_values.empty() ? archive::not_computed : kernel.singular_values[0]);
     if (_event.tangency) {  // a minimum that came near zero, but is none
-      _outcome.kind.clear();
+      _outcome.kind.reset();
     } else if (_event.function.sector.q == 1 && turns_in_energy(family)) {
-      _outcome.kind = "fold-energy";
+      _outcome.kind = CrossingKind::fold_energy;
     } else {
       _failure = _outcome.remark;
     }
@@ -216,7 +217,7 @@ class Location {
   Event _event;
   LocateOutcome _outcome;
   std::vector<queue::Task> _starts;
-  std::string _failure;
+  std::optional<std::string> _failure;
 };
 
 }  // namespace

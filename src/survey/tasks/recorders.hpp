@@ -81,7 +81,7 @@ class TreeRecorder : public Recorder {
   }
   /// What has begun is ended: it has rows, and crossings may lie on it. The tree drops it in the end, if it has to.
   bool wanted(const queue::Task& task) override {
-    return (task.kind == branch_kind && !task.state.empty()) || _tree.wanted(task);
+    return (kind_of(task) == TaskKind::branch && !task.state.empty()) || _tree.wanted(task);
   }
   void left_out(const queue::Task& task) override { _left_out.push_back(task); }
   /// Tasks left out that are wanted now that more is known; they are no longer among those left out.

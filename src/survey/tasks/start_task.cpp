@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -36,8 +37,8 @@ queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const 
   const continuation::Start begin = start_of(work.branch, system->description());
   continuation::Options options = branch_options(scene, team);
   const double first = work.branch.amplitude > 0.0 ? work.branch.amplitude : options.start_amplitude;
-  std::string why;
-  bool passed_over = false;
+  std::optional<std::string> why;
+  StartOutcome outcome;
   // A born orbit leaves along its direction. Too large an amplitude may find another family, too small a one is lost in
   // rounding.
   for (const double factor : {1.0, 0.3, 3.0, 0.1, 10.0, 0.03}) {
@@ -46,12 +47,13 @@ queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const 
     const std::optional<continuation::Orbit> orbit = branch.advance();
     if (!orbit) {
       const continuation::Ending ending = branch.ending().value();
-      if (ending.failed() || !why.empty()) {  // a limit reached from further out says nothing of this family
-        passed_over = passed_over || !ending.failed();
-        if (why.empty()) why = ending.text();
+      if (!ending.failed()) outcome.limited_by = period_limited | energy_limited;
+      if (ending.failed() || why) {  // a limit reached from further out says nothing of this family
+        if (!why) why = ending.text();
         continue;
       }
       queue::TaskOutcome done;  // beyond the scene's limits: no family begins
+      done.payload = pack(outcome);
       return done;
     }
     const double share = share_along(begin, orbit->loop);
@@ -64,12 +66,12 @@ queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const 
     found.amplitude = options.start_amplitude;
     queue::TaskOutcome done;
     done.children.push_back(task_of(found));
-    if (passed_over) done.payload = limited_start;
+    done.payload = pack(outcome);
     return done;
   }
   queue::TaskOutcome failed;
   failed.failed = true;
-  failed.reason = fmt::format("no orbit leaves along this direction: {}", why);
+  failed.reason = fmt::format("no orbit leaves along this direction: {}", why.value_or(""));
   return failed;
 }
 

@@ -4,6 +4,7 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/time_map.hpp"
+#include "orbweaver/survey/tasks/keys.hpp"
 #include "payload.hpp"
 #include "work_serialization.hpp"
 
@@ -81,17 +82,34 @@ double signed_arclength(const Lineage& lineage, double before_first, double posi
   return lineage.side > 0 ? position : -2.0 * before_first - position;
 }
 
+const char* name_of(TaskKind kind) {
+  switch (kind) {
+    case TaskKind::sweep: return "sweep";
+    case TaskKind::branch: return "branch";
+    case TaskKind::locate: return "locate";
+    case TaskKind::start: return "start";
+  }
+  return "unknown";
+}
+
+TaskKind kind_of(const queue::Task& task) {
+  for (const TaskKind kind : {TaskKind::sweep, TaskKind::branch, TaskKind::locate, TaskKind::start})
+    if (task.kind == name_of(kind)) return kind;
+  throw core::EnvironmentError(fmt::format("no such kind of task: `{}`", task.kind));
+}
+
 queue::Task task_of(const SweepWork& work) {
-  return {fmt::format("sweep.{:04}", work.index), 0, sweep_kind, pack(work)};
+  return {fmt::format("sweep.{:04}", work.index), 0, name_of(TaskKind::sweep), pack(work)};
 }
 queue::Task task_of(const BranchWork& work) {
-  return {work.key, priority_of(work.lineage.depth, 0), branch_kind, pack(work)};
+  return {work.key, priority_of(work.lineage.depth, 0), name_of(TaskKind::branch), pack(work)};
 }
 queue::Task task_of(const LocateWork& work) {
-  return {"locate " + work.key, priority_of(work.lineage.depth, 1), locate_kind, pack(work)};
+  return {locate_key(work.key), priority_of(work.lineage.depth, 1), name_of(TaskKind::locate), pack(work)};
 }
 queue::Task task_of(const StartWork& work) {
-  return {"start " + work.branch.key, priority_of(work.branch.lineage.depth - 1, 2), start_kind, pack(work)};
+  return {start_key(work.branch.key), priority_of(work.branch.lineage.depth - 1, 2), name_of(TaskKind::start),
+          pack(work)};
 }
 
 std::string pack(const SweepWork& work) { return to_payload(work); }
@@ -101,6 +119,7 @@ std::string pack(const BranchOutcome& outcome) { return to_payload(outcome); }
 std::string pack(const LocateWork& work) { return to_payload(work); }
 std::string pack(const LocateOutcome& outcome) { return to_payload(outcome); }
 std::string pack(const StartWork& work) { return to_payload(work); }
+std::string pack(const StartOutcome& outcome) { return to_payload(outcome); }
 SweepWork unpack_sweep_work(const std::string& bytes) { return from_payload<SweepWork>(bytes); }
 SweepOutcome unpack_sweep_outcome(const std::string& bytes) { return from_payload<SweepOutcome>(bytes); }
 BranchWork unpack_branch_work(const std::string& bytes) { return from_payload<BranchWork>(bytes); }
@@ -108,6 +127,7 @@ BranchOutcome unpack_branch_outcome(const std::string& bytes) { return from_payl
 LocateWork unpack_locate_work(const std::string& bytes) { return from_payload<LocateWork>(bytes); }
 LocateOutcome unpack_locate_outcome(const std::string& bytes) { return from_payload<LocateOutcome>(bytes); }
 StartWork unpack_start_work(const std::string& bytes) { return from_payload<StartWork>(bytes); }
+StartOutcome unpack_start_outcome(const std::string& bytes) { return from_payload<StartOutcome>(bytes); }
 
 continuation::Start start_of(const BranchWork& work, const systems::Description& system) {
   continuation::Start start;

@@ -50,9 +50,19 @@ void serialize(Archive& archive, ArrivalRecord& a, unsigned) {
 }
 
 template <class Archive>
+void serialize(Archive& archive, orbweaver::continuation::Ending& e, unsigned) {
+  archive& e.reason& e.detail;
+}
+
+template <class Archive>
+void serialize(Archive& archive, StartOutcome& o, unsigned) {
+  archive& o.limited_by;
+}
+
+template <class Archive>
 void serialize(Archive& archive, BranchOutcome& o, unsigned) {
   archive& o.key& o.orbits& o.period_from& o.period_to& o.energy_from& o.energy_to& o.last_period& o.last_energy& o
-      .last_cutoff& o.end_reason& o.arrival& o.remarks& o.limited_by& o.before_limit;
+      .last_cutoff& o.end& o.arrival& o.remarks& o.limited_by& o.before_limit;
 }
 
 template <class Archive>
@@ -73,7 +83,11 @@ void serialize(Archive& archive, LeavingRecord& r, unsigned) {
 
 template <class Archive>
 void serialize(Archive& archive, LocateOutcome& o, unsigned) {
-  archive& o.key& o.lineage& o.arclength& o.period& o.energy& o.kind& o.multiplicity& o.kernel_dimension& o.residual& o
+  bool crosses = o.kind.has_value();
+  archive& crosses;
+  if (crosses && !o.kind) o.kind.emplace();
+  if (crosses) archive&* o.kind;
+  archive& o.key& o.lineage& o.arclength& o.period& o.energy& o.multiplicity& o.kernel_dimension& o.residual& o
       .kernel_singular_value& o.next_singular_value& o.test_value& o.state& o.q& o.j& o.fundamental_order& o.leaving& o
       .remark& o.limited_by;
 }

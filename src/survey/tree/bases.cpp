@@ -6,6 +6,7 @@
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/survey/tasks/work.hpp"
+#include "orbweaver/survey/tree/family_end.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
 
 namespace orbweaver::survey {
@@ -75,7 +76,7 @@ void gather_failed_sweeps(const systems::Description& system, const SweepsEnded&
     record.key = fmt::format("{:04}", work.index);
     record.name = fmt::format("Equilibrium {}", work.index + 1);
     record.end_reason =
-        limited(fmt::format("failure (the sweep at {}: {})", point_text(system, work.point), outcome.reason));
+        limited(failure_text(fmt::format("the sweep at {}: {}", point_text(system, work.point), outcome.reason)));
     summary.families.push_back({record.key, record.name, "", 0, 0.0, 0.0, 0.0, 0.0, record.end_reason, true});
     summary.failed_tasks.push_back(fmt::format("{}: {}", key, outcome.reason));
     tables.families.push_back(std::move(record));

@@ -9,15 +9,13 @@
 #include <fmt/format.h>
 
 #include "orbweaver/loop/symmetry/alignment.hpp"
+#include "orbweaver/survey/tasks/keys.hpp"
+#include "orbweaver/survey/tree/family_end.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
 
 namespace orbweaver::survey {
 
 namespace {
-
-bool lies_on(const std::string& key, const std::string& branch) {
-  return key.size() > branch.size() && key.compare(0, branch.size(), branch) == 0 && key[branch.size()] == '/';
-}
 
 bool lies_on_one_of(const std::string& key, const std::set<std::string>& branches) {
   if (branches.empty()) return false;
@@ -28,8 +26,6 @@ bool lies_on_one_of(const std::string& key, const std::set<std::string>& branche
 
 /// How far an arrival may be from the crossing that it is compared with, in period and energy.
 constexpr double arrival_window = 1e-3;
-
-bool is_fold(const LocateOutcome& crossing) { return crossing.kind.starts_with("fold"); }
 
 /// The kind of a family in its name: B, D, T3, ...
 std::string letter_of(int multiplicity) {
@@ -48,7 +44,8 @@ struct FamilyTree::Family {
 };
 
 void FamilyTree::add(const queue::Task& task, const queue::TaskOutcome& outcome) {
-  if (task.kind == branch_kind) {
+  const TaskKind kind = kind_of(task);
+  if (kind == TaskKind::branch) {
     BranchWork work = unpack_branch_work(task.payload);
     Branch& branch = _branches[task.key];
     branch.lineage = std::move(work.lineage);
@@ -59,15 +56,15 @@ void FamilyTree::add(const queue::Task& task, const queue::TaskOutcome& outcome)
     if (outcome.payload.empty()) return;
     branch.outcome = unpack_branch_outcome(outcome.payload);
     branch.outcome->before_limit = {};  // a journal has it
-  } else if (task.kind == start_kind && outcome.failed) {
+  } else if (kind == TaskKind::start && outcome.failed) {
     const BranchWork work = unpack_start_work(task.payload).branch;
     _branches[work.key] = {work.lineage, work.name, work.isotropy, std::nullopt, true, outcome.reason};
-  } else if (task.kind == locate_kind) {
-    if (outcome.failed) _failures[task.key.substr(task.key.find(' ') + 1)] = outcome.reason;
+  } else if (kind == TaskKind::locate) {
+    if (outcome.failed) _failures[place_of(task.key)] = outcome.reason;
     if (outcome.payload.empty()) return;
     LocateOutcome crossing = unpack_locate_outcome(outcome.payload);
     const std::string key = crossing.key;
-    if (crossing.kind.empty()) return;
+    if (!crossing.kind) return;
     if (!crossing.leaving.empty()) _leaving.insert({crossing.multiplicity * crossing.period, key});
     _crossings.insert_or_assign(key, std::move(crossing));
   }
@@ -119,9 +116,10 @@ std::optional<FamilyTree::Meeting> FamilyTree::meeting_of(const Branch& branch, 
 }
 
 bool FamilyTree::wanted(const queue::Task& task) const {
-  if (task.kind != branch_kind && task.kind != start_kind) return true;
+  const TaskKind kind = kind_of(task);
+  if (kind != TaskKind::branch && kind != TaskKind::start) return true;
   const BranchWork work =
-      task.kind == branch_kind ? unpack_branch_work(task.payload) : unpack_start_work(task.payload).branch;
+      kind == TaskKind::branch ? unpack_branch_work(task.payload) : unpack_start_work(task.payload).branch;
   if (work.lineage.depth == 0) return true;
   const Keys dropped = dropped_branches();
   if (lies_on_one_of(work.key, dropped)) return false;
@@ -266,12 +264,11 @@ void FamilyTree::name_all(std::vector<Family>& families) const {
 void FamilyTree::add_crossings(const std::map<std::string, Branch>& kept, Result& result,
                                std::map<std::string, int>& index) const {
   for (const auto& [key, crossing] : _crossings) {
-    const std::string branch = key.substr(0, key.rfind('/'));
-    if (!kept.contains(branch)) continue;
+    if (!kept.contains(branch_of(key))) continue;
     // A fold in energy shows twice: as an extremum and as a zero of the test function of q = 1.
     const bool twice = std::any_of(index.begin(), index.end(), [&, &c = crossing](const auto& other) {
       const LocateOutcome& o = _crossings.at(other.first);
-      return is_fold(c) && o.kind == c.kind && o.lineage.family == c.lineage.family &&
+      return is_fold(*c.kind) && o.kind == c.kind && o.lineage.family == c.lineage.family &&
              std::abs(o.arclength - c.arclength) < 1e-4 * (1.0 + std::abs(c.arclength));
     });
     if (twice) continue;
@@ -281,7 +278,7 @@ void FamilyTree::add_crossings(const std::map<std::string, Branch>& kept, Result
     row.arclength = crossing.arclength;
     row.period = crossing.period;
     row.energy = crossing.energy;
-    row.kind = crossing.kind;
+    row.kind = *crossing.kind;
     row.multiplicity = crossing.multiplicity;
     row.kernel_dimension = crossing.kernel_dimension;
     row.residual = crossing.residual;
@@ -313,7 +310,7 @@ void FamilyTree::add_families(const std::vector<Family>& families, const Keys& d
     }
     summary.depth = family.lineage.depth;
     for (const Branch* side : family.sides) {
-      std::string reason = side->outcome ? side->outcome->end_reason : fmt::format("failure ({})", side->reason);
+      std::string reason = side->outcome ? end_text(*side->outcome) : failure_text(side->reason);
       if (const std::optional<Meeting> meeting = meeting_of(*side, dropped)) {
         const LocateOutcome& met = _crossings.at(meeting->crossing);
         const auto row = crossing_index.find(met.key);
@@ -321,15 +318,10 @@ void FamilyTree::add_families(const std::vector<Family>& families, const Keys& d
         if (row != crossing_index.end() && name != names.end()) {
           record.end_family_key = met.lineage.family;
           record.end_crossing = row->second;
-          reason = fmt::format("joined {} at T = {:.12g} (crossing at T = {:.12g}, {} times around)", name->second,
-                               met.multiplicity * met.period, met.period, met.multiplicity);
+          reason = joined_text(name->second, met);
         }
       }
-      if (family.sides.size() > 1)
-        record.end_reason += fmt::format("{}{}: {}", record.end_reason.empty() ? "" : "; ",
-                                         side->lineage.side > 0 ? "forwards" : "backwards", reason);
-      else
-        record.end_reason = reason;
+      record.end_reason = record.end_reason.empty() ? reason : both_ends_text(record.end_reason, reason);
       summary.failed = summary.failed || side->failed;
       if (side->failed) result.failures.push_back(fmt::format("{} ({}): {}", family.key, family.name, side->reason));
       if (!side->outcome || side->outcome->orbits == 0) continue;
@@ -366,9 +358,7 @@ FamilyTree::Result FamilyTree::resolve() const {
   for (const auto& [key, branch] : _branches)
     if (!kept_families.contains(branch.lineage.family)) left_out.insert(branch.lineage.family);
   result.tables.left_out_keys.assign(left_out.begin(), left_out.end());
-  const auto on_kept = [&](const std::string& crossing) {
-    return kept.contains(crossing.substr(0, crossing.rfind('/')));
-  };
+  const auto on_kept = [&](const std::string& crossing) { return kept.contains(branch_of(crossing)); };
   for (const auto& [key, reason] : _failures)
     if (on_kept(key)) result.failures.push_back(fmt::format("locate {}: {}", key, reason));
   const auto beyond = std::count_if(_crossings.begin(), _crossings.end(), [&](const auto& entry) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "orbweaver/archive/read/table.hpp"
+#include "orbweaver/archive/schema/crossing_kind.hpp"
 
 namespace orbweaver::archive {
 
@@ -32,6 +33,8 @@ class Archive {
   [[nodiscard]] const Table& orbits() const noexcept { return _orbits; }
   [[nodiscard]] const Table& crossings() const noexcept { return _crossings; }
   [[nodiscard]] const Table& sections() const noexcept { return _sections; }
+  /// The column `kind` of crossings().
+  [[nodiscard]] const std::vector<CrossingKind>& crossing_kinds() const noexcept { return _crossing_kinds; }
   /// Values in /modes.
   [[nodiscard]] std::uint64_t mode_values() const noexcept { return _mode_values; }
 
@@ -51,6 +54,7 @@ class Archive {
   Table _orbits;
   Table _crossings;
   Table _sections;
+  std::vector<CrossingKind> _crossing_kinds;
   std::uint64_t _mode_values = 0;
 };
 

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "orbweaver/archive/schema/crossing_kind.hpp"
+
 namespace orbweaver::archive {
 
 inline constexpr double not_computed = std::numeric_limits<double>::quiet_NaN();
@@ -57,7 +59,7 @@ struct CrossingRecord {
   double arclength = 0.0;
   double period = 0.0;
   double energy = not_computed;
-  std::string kind;
+  CrossingKind kind = CrossingKind::branch_point;
   int multiplicity = 1;
   int kernel_dimension = 0;
   double residual = not_computed;

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "orbweaver/archive/schema/crossing_kind.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/continuation/branch.hpp"
 #include "orbweaver/loop/curve/tangent.hpp"
@@ -11,11 +13,12 @@
 
 namespace orbweaver::survey {
 
-/// Kinds of tasks.
-inline constexpr const char* sweep_kind = "sweep";
-inline constexpr const char* branch_kind = "branch";
-inline constexpr const char* locate_kind = "locate";
-inline constexpr const char* start_kind = "start";
+/// What a task is to do.
+enum class TaskKind { sweep, branch, locate, start };
+/// As in queue::Task::kind.
+[[nodiscard]] const char* name_of(TaskKind kind);
+/// Throws EnvironmentError for a task that is none of ours.
+[[nodiscard]] TaskKind kind_of(const queue::Task& task);
 
 /// Limits of the scene that an outcome may rest on, as bits: with a wider one the task is done again.
 enum Limit : int { period_limited = 1, energy_limited = 2, step_limited = 4, depth_limited = 8 };
@@ -108,7 +111,7 @@ struct BranchOutcome {
   double last_period = 0.0;
   double last_energy = 0.0;
   int last_cutoff = 0;
-  std::string end_reason;
+  continuation::Ending end;
   std::vector<ArrivalRecord> arrival;  ///< one or none
   std::vector<std::string> remarks;
   int limited_by = 0;        ///< Limit: with wider ones the branch would have gone on
@@ -157,7 +160,7 @@ struct LocateOutcome {
   double arclength = 0.0;
   double period = 0.0;
   double energy = 0.0;
-  std::string kind;  ///< as in the archive
+  std::optional<archive::CrossingKind> kind;  ///< none: nothing crosses there
   int multiplicity = 1;
   int kernel_dimension = 0;
   double residual = 0.0;
@@ -173,13 +176,15 @@ struct LocateOutcome {
   int limited_by = 0;  ///< Limit: with wider ones more would have been looked for
 };
 
-/// The payload of a start that passed over an amplitude since it led beyond the period or energy limit; else it is empty.
-inline constexpr const char* limited_start = "passed over a limit";
-
 /// Find the first orbit of a family along a direction.
 struct StartWork {
   static constexpr const char* payload_name = "start work";
   BranchWork branch;  ///< with the amplitude to try first
+};
+
+struct StartOutcome {
+  static constexpr const char* payload_name = "start outcome";
+  int limited_by = 0;  ///< Limit: with wider ones another amplitude would have served, or a first one
 };
 
 /// Arclength along the family of a position along one branch of it: the other side of the crossing counts backwards.
@@ -198,6 +203,7 @@ struct StartWork {
 [[nodiscard]] std::string pack(const LocateWork& work);
 [[nodiscard]] std::string pack(const LocateOutcome& outcome);
 [[nodiscard]] std::string pack(const StartWork& work);
+[[nodiscard]] std::string pack(const StartOutcome& outcome);
 /// Each throws EnvironmentError for bytes that hold something else, another version, or a torn message.
 [[nodiscard]] SweepWork unpack_sweep_work(const std::string& bytes);
 [[nodiscard]] SweepOutcome unpack_sweep_outcome(const std::string& bytes);
@@ -206,6 +212,7 @@ struct StartWork {
 [[nodiscard]] LocateWork unpack_locate_work(const std::string& bytes);
 [[nodiscard]] LocateOutcome unpack_locate_outcome(const std::string& bytes);
 [[nodiscard]] StartWork unpack_start_work(const std::string& bytes);
+[[nodiscard]] StartOutcome unpack_start_outcome(const std::string& bytes);
 
 /// The start that a branch's work describes.
 [[nodiscard]] continuation::Start start_of(const BranchWork& work, const systems::Description& system);

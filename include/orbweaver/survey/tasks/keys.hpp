@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace orbweaver::survey {
+
+// Keys are paths (docs/architecture.md, "Keys"): what they say is read here and nowhere else.
+
+/// "0000.0001/003.q4.j1" of the branch "0000.0001": its event number 3; `what` is "q4.j1" or "fold".
+[[nodiscard]] std::string event_key(std::string_view branch, int number, std::string_view what);
+/// The branch on which the crossing lies.
+[[nodiscard]] std::string branch_of(std::string_view crossing);
+/// Whether `key` is that of something found along `branch`: an event, or what was born there, at any depth.
+[[nodiscard]] bool lies_on(std::string_view key, std::string_view branch);
+/// The number of the event of `branch` on which, or from which, `key` lies. Throws EnvironmentError for a key without one.
+[[nodiscard]] int event_number(std::string_view key, std::string_view branch);
+
+/// "locate KEY" and "start KEY": tasks about a crossing or a family, whose branch has the task KEY.
+[[nodiscard]] std::string locate_key(std::string_view crossing);
+[[nodiscard]] std::string start_key(std::string_view branch);
+/// The crossing's, family's or branch's KEY of any task.
+[[nodiscard]] std::string place_of(std::string_view task_key);
+
+}  // namespace orbweaver::survey

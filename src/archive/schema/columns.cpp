@@ -1,0 +1,104 @@
+#include "columns.hpp"
+
+namespace orbweaver::archive {
+
+namespace {
+
+constexpr RowNumber row_number{};
+
+}  // namespace
+
+const ColumnDefinitions<FamilyRecord>& family_columns() {
+  static const ColumnDefinitions<FamilyRecord> columns{
+      {"name", &FamilyRecord::name},
+      {"parent", row_number},
+      {"crossing", row_number},
+      {"multiplicity", &FamilyRecord::multiplicity},
+      {"isotropy", &FamilyRecord::isotropy},
+      {"first_orbit", row_number},
+      {"orbit_count", row_number},
+      {"end_reason", &FamilyRecord::end_reason},
+      {"end_family", row_number},
+      {"end_crossing", row_number},
+  };
+  return columns;
+}
+
+const ColumnDefinitions<OrbitRecord>& orbit_columns() {
+  static const ColumnDefinitions<OrbitRecord> columns{
+      {"family", row_number},
+      {"step", &OrbitRecord::step},
+      {"arclength", &OrbitRecord::arclength},
+      {"period", &OrbitRecord::period},
+      {"energy", &OrbitRecord::energy},
+      {"action", &OrbitRecord::action},
+      {"parameter", &OrbitRecord::parameter},
+      {"cutoff", &OrbitRecord::cutoff},
+      {"loss_rms", &OrbitRecord::loss_rms},
+      {"off_branch_eigenvalue", &OrbitRecord::off_branch_eigenvalue},
+      {"stability", &OrbitRecord::stability, RowShape::stability},
+      {"fundamental_stability", &OrbitRecord::fundamental_stability, RowShape::stability},
+      {"stability_error", &OrbitRecord::stability_error},
+      {"state", &OrbitRecord::state, RowShape::state},
+      {"closure", &OrbitRecord::closure},
+      {"single_shot", &OrbitRecord::single_shot},
+      {"energy_drift", &OrbitRecord::energy_drift},
+      {"tail", &OrbitRecord::tail},
+      {"modes_begin", row_number},
+      {"modes_count", row_number},
+      {"time_map_begin", row_number},
+      {"time_map_count", row_number},
+      {"winding", &OrbitRecord::winding, RowShape::winding},
+  };
+  return columns;
+}
+
+const ColumnDefinitions<CrossingRecord>& crossing_columns() {
+  static const ColumnDefinitions<CrossingRecord> columns{
+      {"family", row_number},
+      {"arclength", &CrossingRecord::arclength},
+      {"period", &CrossingRecord::period},
+      {"energy", &CrossingRecord::energy},
+      {"kind", &CrossingRecord::kind},
+      {"multiplicity", &CrossingRecord::multiplicity},
+      {"kernel_dimension", &CrossingRecord::kernel_dimension},
+      {"residual", &CrossingRecord::residual},
+      {"state", &CrossingRecord::state, RowShape::state},
+      {"sector_j", &CrossingRecord::sector_j},
+      {"sector_q", &CrossingRecord::sector_q},
+      {"fundamental_order", &CrossingRecord::fundamental_order},
+      {"test_value", &CrossingRecord::test_value},
+      {"kernel_residual", &CrossingRecord::kernel_residual},
+  };
+  return columns;
+}
+
+const ColumnDefinitions<SectionRecord>& section_columns() {
+  static const ColumnDefinitions<SectionRecord> columns{
+      {"orbit", row_number},
+      {"time", &SectionRecord::time},
+      {"state", &SectionRecord::state, RowShape::state},
+  };
+  return columns;
+}
+
+const ColumnDefinitions<OrbitRecord>& segment_orbit_columns() {
+  static const ColumnDefinitions<OrbitRecord> columns = [] {
+    ColumnDefinitions<OrbitRecord> list = orbit_columns();
+    list.front() = {"family_key", &OrbitRecord::family_key};
+    return list;
+  }();
+  return columns;
+}
+
+const ColumnDefinitions<SectionRecord>& segment_section_columns() {
+  static const ColumnDefinitions<SectionRecord> columns = [] {
+    ColumnDefinitions<SectionRecord> list = section_columns();
+    list.front() = {"step", &SectionRecord::step};
+    list.insert(list.begin(), {"family_key", &SectionRecord::family_key});
+    return list;
+  }();
+  return columns;
+}
+
+}  // namespace orbweaver::archive

@@ -1,0 +1,41 @@
+#include "orbweaver/survey/tasks/keys.hpp"
+
+#include <gtest/gtest.h>
+
+#include "orbweaver/core/error.hpp"
+
+namespace {
+
+using namespace orbweaver;
+using namespace orbweaver::survey;
+
+TEST(Keys, OfEventsHaveTheirBranchAndNumber) {
+  const std::string key = event_key("0000.0001/003.q4.j1/0-", 12, "fold");
+  EXPECT_EQ(key, "0000.0001/003.q4.j1/0-/012.fold");
+  EXPECT_EQ(branch_of(key), "0000.0001/003.q4.j1/0-");
+  EXPECT_EQ(event_number(key, "0000.0001/003.q4.j1/0-"), 12);
+  EXPECT_EQ(event_number(key, "0000.0001"), 3);
+}
+
+TEST(Keys, LieOnWhatTheyBeginWithToASlash) {
+  EXPECT_TRUE(lies_on("0000.0001/003.q4.j1", "0000.0001"));
+  EXPECT_TRUE(lies_on("0000.0001/003.q4.j1/0/001.fold", "0000.0001"));
+  EXPECT_FALSE(lies_on("0000.0001", "0000.0001")) << "itself";
+  EXPECT_FALSE(lies_on("0000.0001+/003.q4.j1", "0000.0001")) << "another side";
+  EXPECT_FALSE(lies_on("0000.0002/003.q4.j1", "0000.0001"));
+}
+
+TEST(Keys, WithoutANumberAreRefused) {
+  EXPECT_THROW((void)event_number("0000.0001/fold", "0000.0001"), core::EnvironmentError);
+  EXPECT_THROW((void)event_number("0000.0001", "0000.0001"), core::EnvironmentError);
+}
+
+TEST(Keys, OfTasksSayWhatTheyAreAbout) {
+  EXPECT_EQ(locate_key("0000.0001/003.fold"), "locate 0000.0001/003.fold");
+  EXPECT_EQ(place_of(locate_key("0000.0001/003.fold")), "0000.0001/003.fold");
+  EXPECT_EQ(place_of(start_key("0000.0001/003.q1.j0/0")), "0000.0001/003.q1.j0/0");
+  EXPECT_EQ(place_of("0000.0001"), "0000.0001");
+  EXPECT_EQ(place_of("sweep.0001"), "sweep.0001");
+}
+
+}  // namespace
