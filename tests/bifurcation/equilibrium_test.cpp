@@ -139,7 +139,7 @@ std::vector<std::string> kinds(const std::vector<Direction>& directions) {
   std::vector<std::string> out;
   for (const Direction& d : directions) {
     loop::Loop v = d.base;
-    v.modes = d.modes;
+    v.modes = d.tangent.modes;
     const std::complex<double> first(v.cosine(1, 0), -v.sine(1, 0));
     const std::complex<double> second(v.cosine(1, 1), -v.sine(1, 1));
     if (std::min(std::abs(first), std::abs(second)) < 0.02)

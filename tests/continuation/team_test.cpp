@@ -86,8 +86,8 @@ TEST(Teams, FindTheSameSingularTriplets) {
   for (std::size_t n = 0; n < 2; ++n) {
     EXPECT_NEAR(shared[n].singular_value, alone[n].singular_value, 1e-9 * alone[n].singular_value);
     EXPECT_NEAR(loop::dot(shared[n].direction, alone[n].direction), 1.0, 1e-9);
-    const auto* bytes = reinterpret_cast<const char*>(shared[n].modes.data());
-    team.compare("triplet", core::digest_of({bytes, sizeof(double) * shared[n].modes.size()}));
+    const auto* bytes = reinterpret_cast<const char*>(shared[n].direction.modes.data());
+    team.compare("triplet", core::digest_of({bytes, sizeof(double) * shared[n].direction.modes.size()}));
   }
 }
 
