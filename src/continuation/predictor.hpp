@@ -3,18 +3,19 @@
 #include <span>
 #include <vector>
 
-#include "orbweaver/continuation/branch.hpp"
+#include "orbweaver/continuation/frontier.hpp"
 
 namespace orbweaver::continuation {
 
-/// The polynomial through the last points of a branch (Lagrange's form), with its derivative.
+/// A predicted point of a branch and the direction in which the branch passes it.
 struct Prediction {
   std::vector<double> values;
-  std::vector<double> tangent;  ///< derivative with respect to the parameter
-  int order = 0;                ///< degree of the polynomial
+  std::vector<double> tangent;
+  int order = 0;  ///< degree of the polynomial that it lies on
 };
 
-/// The polynomial of degree `order` or less through the last points, at `parameter`. Needs at least two points.
+/// The polynomial of degree `order` or less through the last points (Lagrange's form), with its derivative, at
+/// `parameter`. Needs at least two points.
 [[nodiscard]] Prediction extrapolate(std::span<const TracePoint> points, int order, double parameter);
 
 }  // namespace orbweaver::continuation

@@ -56,8 +56,8 @@ std::optional<Resolution> finer_resolution(const equations::Collocation& equatio
   Resolution best{cell_counts::next(equations.cells()), equations.time_map()};
   const bool tail_decides = loop::tail(equations.to_loop(values.data())) > tail_limit;
   if (fit_pulse && tail_decides && domain.order <= 2 && best.time_map.coefficients.empty()) {
-    const int trial_cells = best.cells;
-    int fewest = cutoff_of(best.cells);
+    const int trial_cells = best.size;
+    int fewest = cutoff_of(best.size);
     for (const double factor : {1.0, 1.2, 1.44}) {
       loop::TimeMap map = equations.time_map();
       map.kappa = std::round(1000.0 * map.kappa * factor) / 1000.0;
@@ -75,11 +75,11 @@ std::optional<Resolution> finer_resolution(const equations::Collocation& equatio
     // Some room above what is needed now, so that the next steps have enough.
     const int mapped = std::max(cell_counts::at_least_for_cutoff(domain, fewest * 11 / 10), equations.cells());
     if (!(best.time_map == equations.time_map()) && cutoff_of(mapped) <= largest_cutoff)
-      best.cells = mapped;
+      best.size = mapped;
     else
       best.time_map = equations.time_map();
   }
-  if (cutoff_of(best.cells) > largest_cutoff) return std::nullopt;
+  if (cutoff_of(best.size) > largest_cutoff) return std::nullopt;
   return best;
 }
 

@@ -3,18 +3,14 @@
 #include <optional>
 #include <vector>
 
+#include "orbweaver/continuation/frontier.hpp"
 #include "orbweaver/equations/collocation.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 
 namespace orbweaver::continuation {
 
-struct Resolution {
-  int cells = 0;
-  loop::TimeMap time_map;
-};
-
-/// More cells for an orbit whose last harmonics exceed `tail_limit`, and if `fit_pulse` with a sharper pulse of the time
-/// map where that needs clearly fewer harmonics; none where it would take more than `largest_cutoff`.
+/// More cells for an orbit whose last harmonics exceed `tail_limit`, and if `fit_pulse` with a sharper pulse of the
+/// time map where that needs clearly fewer harmonics; none where it would take more than `largest_cutoff`.
 [[nodiscard]] std::optional<Resolution> finer_resolution(const equations::Collocation& equations,
                                                          const std::vector<double>& values, double tail_limit,
                                                          int largest_cutoff, bool fit_pulse);

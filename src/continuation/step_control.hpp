@@ -2,8 +2,8 @@
 
 namespace orbweaver::continuation {
 
-/// The step to try next after an accepted one: longer where the corrector needed few iterations and the tangent hardly
-/// turned, shorter where either was expensive; by a factor between 0.4 and 2. A pure function, reads no clock.
-[[nodiscard]] double next_step_length(double length, int iterations, double turning, double wanted_turning);
+/// The step to try next after an accepted one of `length`, whose prediction of degree `order` was wrong by `error`:
+/// such that the next one is wrong by `wanted`, by a factor between 0.3 and 1.6. A pure function, reads no clock.
+[[nodiscard]] double next_step_length(double length, double error, double wanted, int order);
 
 }  // namespace orbweaver::continuation

@@ -211,8 +211,10 @@ Result correct(const systems::System& system, const loop::Loop& guess, const los
     result.detail = fmt::format("the guess has the period {:.6g}", guess.period);
     return result;
   }
+  Options own = options;
+  if (own.method == Method::collocation) own.method = Method::automatic;  // a method for branches
   try {
-    return dispatch(system, guess, unknowns, slice, options, normal);
+    return dispatch(system, guess, unknowns, slice, own, normal);
   } catch (const core::NotFiniteError& error) {
     result.outcome = Outcome::not_finite;
     result.detail = error.what();

@@ -16,8 +16,9 @@ struct MethodName {
   bool second_order;
 };
 
-constexpr std::array<MethodName, 8> methods{{
+constexpr std::array<MethodName, 9> methods{{
     {Method::automatic, "automatic", true},
+    {Method::collocation, "collocation", true},
     {Method::newton_krylov, "newton-krylov", true},
     {Method::brgn, "brgn", true},
     {Method::nls, "nls", true},

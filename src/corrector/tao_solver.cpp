@@ -122,6 +122,7 @@ PetscErrorCode convergence_test(Tao tao, void* raw) {
 TaoType type_of(Method method) {
   switch (method) {
     case Method::automatic:
+    case Method::collocation:
     case Method::newton_krylov: break;
     case Method::brgn: return TAOBRGN;
     case Method::nls: return TAONLS;

@@ -41,7 +41,7 @@ void read_continuation(const Field& field, Continuation& continuation) {
   }
   if (const auto corrector = keys.find("corrector"))
     continuation.corrector =
-        corrector->choice({"automatic", "newton-krylov", "brgn", "nls", "ntr", "lmvm", "rprop", "rprop-extrapolated"});
+        corrector->choice({"automatic", "collocation", "newton-krylov", "brgn", "nls", "ntr", "lmvm", "rprop", "rprop-extrapolated"});
 }
 
 void read_survey(const Field& field, Survey& survey) {

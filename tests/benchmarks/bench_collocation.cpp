@@ -19,11 +19,12 @@ struct Problem {
     continuation::Branch branch(start.system, start.start, options);
     while (branch.advance()) {
     }
-    const continuation::TraceState& trace = branch.frontier().trace;
+    const continuation::Frontier& frontier = branch.frontier();
+    const continuation::Resolution& resolution = frontier.problem.resolution;
     equations = std::make_unique<equations::Collocation>(
         *start.system, loop::fundamental_domain(start.system->structure(), start.start.isotropy),
-        std::vector<double>(4, 0.0), std::vector<double>(4, 0.0), trace.cells, trace.time_map);
-    const std::vector<double>& orbit = trace.points.back().values;
+        std::vector<double>(4, 0.0), std::vector<double>(4, 0.0), resolution.size, resolution.time_map);
+    const std::vector<double>& orbit = frontier.points.back().values;
     std::vector<double> conditions(orbit.size(), 0.0);
     conditions[static_cast<std::size_t>(equations->period_at())] = 1.0;
     equations->set_conditions(conditions, orbit);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "continuation/families.hpp"
+#include "orbweaver/core/error.hpp"
 #include "orbweaver/loss/linearization.hpp"
 
 namespace orbweaver::continuation {
@@ -196,6 +197,44 @@ TEST(Families, DoNotDependOnTheCorrector) {
     const test::Trace trace = test::trace_of(test::in_phase(), {.corrector = {.method = method}, .period_limit = 8.4});
     EXPECT_EQ(trace.ending.reason, EndReason::period_limit) << name_of(method) << ": " << trace.ending.text();
     EXPECT_NEAR(trace.last().energy, energy, 1e-11) << name_of(method);
+  }
+}
+
+// Whole loops by the same tracer: the steps are its own, the families the same.
+TEST(Families, WholeLoopsTakeAsFewSteps) {
+  const test::Trace& fast = test::family_to_twelve(test::in_phase());
+  const test::Trace whole = test::trace_of(
+      test::in_phase(), {.corrector = {.method = corrector::Method::newton_krylov}, .period_limit = 12.0});
+  ASSERT_EQ(whole.ending.reason, EndReason::period_limit) << whole.ending.text();
+  EXPECT_NEAR(whole.last().energy, fast.last().energy, 1e-11);
+  EXPECT_EQ(whole.last().step, 21) << "pinned: a change of the step control";
+}
+
+TEST(Families, ByCollocationHaveTheBitsOfAutomatic) {
+  const test::Trace named =
+      test::trace_of(test::in_phase(), {.corrector = {.method = corrector::Method::collocation}, .period_limit = 9.0});
+  const test::Trace automatic = test::trace_of(test::in_phase(), {.period_limit = 9.0});
+  ASSERT_EQ(named.orbits.size(), automatic.orbits.size());
+  EXPECT_EQ(named.last().loop.modes, automatic.last().loop.modes);
+}
+
+TEST(Families, CollocationSaysWhereItDoesNotApply) {
+  Start start = test::start_of(test::in_phase());
+  for (loop::SymmetryElement& element : start.isotropy)
+    if (element.reversing) {
+      element.shift_numerator = 1;
+      element.shift_denominator = 4;
+    }
+  Options options;
+  EXPECT_NO_THROW(Branch(test::pendulum(), start, options));
+  options.corrector.method = corrector::Method::collocation;
+  try {
+    Branch(test::pendulum(), start, options);
+    ADD_FAILURE() << "accepted";
+  } catch (const core::InputError& error) {
+    EXPECT_THAT(error.what(),
+                testing::HasSubstr("the corrector `collocation` does not apply to loops of double_pendulum"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("use `automatic`"));
   }
 }
 

@@ -50,8 +50,8 @@ TEST_P(GeneralMaps, LeaveTheTangentAsItIs) {
   Branch branch(test::pendulum(), start, {.general_map_cells = 192});
   const Orbit orbit = branch.advance().value();
   const Frontier& frontier = branch.frontier();
-  ASSERT_FALSE(frontier.trace.time_map == orbit.loop.time_map);
-  EXPECT_LT(frontier.trace.cells, 0.6 * (2 * orbit.loop.cutoff + 1) / (GetParam() ? 2 : 1));
+  ASSERT_FALSE(frontier.problem.resolution.time_map == orbit.loop.time_map);
+  EXPECT_LT(frontier.problem.resolution.size, 0.6 * (2 * orbit.loop.cutoff + 1) / (GetParam() ? 2 : 1));
   const double h = 1e-4;
   const auto beside = [&](double period) {
     const corrector::Result result = orbit_at_period(*test::pendulum(), orbit.loop, start.isotropy, period, {});

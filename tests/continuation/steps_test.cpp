@@ -33,7 +33,7 @@ TEST(FixedStep, PredictsHalfADegree) {
   for (const test::PendulumMode& mode : {test::in_phase(), test::up_down()}) {
     const corrector::Options dense{.method = corrector::Method::nls};
     Branch branch(test::pendulum(), test::start_of(mode),
-                  {.corrector = dense, .fixed_step = half_degree, .step_limit = 30});
+                  {.corrector = dense, .fixed_step = half_degree, .predictor = Predictor::tangent, .step_limit = 30});
     ASSERT_TRUE(branch.advance().has_value());
     while (true) {
       const Frontier before = branch.frontier();
@@ -143,6 +143,25 @@ TEST(Frontiers, AreConsistent) {
   }
   ASSERT_TRUE(branch.ending().has_value());
   EXPECT_FALSE(branch.advance().has_value()) << "an ended branch stays ended";
+}
+
+// Steps are a function of the frontier, by both problems, whoever has asked for a tangent on the way.
+TEST(Frontiers, GoOnWithTheSameBits) {
+  for (const corrector::Method method : {corrector::Method::collocation, corrector::Method::newton_krylov}) {
+    const Options options{.corrector = {.method = method}, .step_limit = 12};
+    const test::Trace whole = test::trace_of(test::in_phase(), options);
+    ASSERT_EQ(whole.orbits.size(), 12u);
+    Branch first(test::pendulum(), test::start_of(test::in_phase()), options);
+    for (int n = 0; n < 6; ++n) ASSERT_TRUE(first.advance());
+    EXPECT_FALSE(first.frontier().tangent.empty());
+    Branch second(test::pendulum(), test::start_of(test::in_phase()), options, first.standing());
+    for (std::size_t n = 6; n < 12; ++n) {
+      const std::optional<Orbit> orbit = second.advance();
+      ASSERT_TRUE(orbit);
+      EXPECT_EQ(orbit->loop.modes, whole.orbits[n].loop.modes) << name_of(method) << " step " << n;
+      EXPECT_EQ(orbit->loop.period, whole.orbits[n].loop.period) << name_of(method) << " step " << n;
+    }
+  }
 }
 
 // The tangent is the derivative of the family: centred differences of the orbits at T +- h.

@@ -10,9 +10,9 @@
 namespace orbweaver::corrector {
 namespace {
 
-constexpr std::array all_methods = {
-    Method::automatic, Method::newton_krylov, Method::brgn,  Method::nls,
-    Method::ntr,       Method::lmvm,          Method::rprop, Method::rprop_extrapolated};
+constexpr std::array all_methods = {Method::automatic, Method::collocation, Method::newton_krylov,
+                                    Method::brgn,      Method::nls,         Method::ntr,
+                                    Method::lmvm,      Method::rprop,       Method::rprop_extrapolated};
 
 std::string test_name(const testing::TestParamInfo<Method>& tested) {
   std::string name(name_of(tested.param));

@@ -17,9 +17,9 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr std::array all_methods = {
-    Method::automatic, Method::newton_krylov, Method::brgn,  Method::nls,
-    Method::ntr,       Method::lmvm,          Method::rprop, Method::rprop_extrapolated};
+constexpr std::array all_methods = {Method::automatic, Method::collocation, Method::newton_krylov,
+                                    Method::brgn,      Method::nls,         Method::ntr,
+                                    Method::lmvm,      Method::rprop,       Method::rprop_extrapolated};
 
 /// q = cos s, p = -sin s with a wrong period, amplitude held.
 struct CircleGuess {

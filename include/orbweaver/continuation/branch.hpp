@@ -9,6 +9,7 @@
 #include <Eigen/Dense>
 
 #include "orbweaver/continuation/ending.hpp"
+#include "orbweaver/continuation/frontier.hpp"
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/core/serialization.hpp"
 #include "orbweaver/corrector/correct.hpp"
@@ -16,6 +17,12 @@
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 
 namespace orbweaver::continuation {
+
+/// How the next orbit of a branch is predicted.
+enum class Predictor {
+  polynomial,  ///< through the last orbits
+  tangent,     ///< along the family's own direction, as in the paper
+};
 
 /// How to step along a branch and where to stop.
 struct Options {
@@ -25,13 +32,13 @@ struct Options {
   std::optional<double> fixed_step{};  ///< |dz(s = 0)| of every step, radians (paper: 0.5 degrees); none = adaptive
   double start_amplitude = 8.7e-3;     ///< |dz(s = 0)| of the first orbit, radians
   double tail_tolerance = 1e-12;       ///< last harmonics, relative to min(1, rms amplitude): above it K is raised
-  double largest_step = 1.0;           ///< in the coefficients' own length (a_0, a_k, b_k and T)
+  double largest_step = 1.0;           ///< in the length in which the corrector measures steps (docs/mathematics.md)
   double smallest_step = 1e-9;         ///< times (1 + amplitude) min(1, amplitude); below it the branch has failed
-  double turning_angle = 0.25;         ///< wanted angle between neighbouring tangents, radians (without a predictor)
   bool fit_time_map = true;            ///< let s run with the orbit's speed where that needs fewer harmonics
   int general_map_cells = 800;         ///< from which a general time map repays its fit (docs/performance.md)
-  int predictor_order = 4;             ///< of the polynomial through the last orbits, at most
-  double prediction_error = 3e-3;      ///< wanted largest error of a predicted coordinate, radians
+  Predictor predictor = Predictor::polynomial;
+  int predictor_order = 4;         ///< of the polynomial through the last orbits, at most
+  double prediction_error = 3e-3;  ///< wanted largest error of a predicted coordinate, radians
   double period_limit = std::numeric_limits<double>::infinity();
   double energy_from = -std::numeric_limits<double>::infinity();
   double energy_to = std::numeric_limits<double>::infinity();
@@ -51,64 +58,15 @@ struct Start {
   loop::Isotropy isotropy;
 };
 
-/// A point of the branch as the fast way holds it: nodal values on the fundamental domain and the period.
-struct TracePoint {
-  std::vector<double> values;
-  double parameter = 0.0;  ///< along the branch: the predictor's polynomials run in it
-
-  static constexpr int wire_version = 1;
-  template <class Archive>
-  void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, values, parameter);
-  }
-};
-
-/// What the fast way keeps from one step to the next.
-struct TraceState {
-  int cells = 0;  ///< of the fundamental domain
-  loop::TimeMap time_map;
-  std::vector<TracePoint> points;         ///< the last ones, oldest first; the start itself is the very first
-  std::vector<double> factor_point;       ///< where the preconditioner was built; empty = to be built anew
-  std::vector<double> factor_conditions;  ///< and under which conditions
-
-  static constexpr int wire_version = 1;
-  template <class Archive>
-  void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, cells, time_map, points, factor_point, factor_conditions);
-  }
-};
-
-/// Everything a step depends on: a step is a pure function of it and of the options.
-struct Frontier {
-  Orbit orbit;                  ///< the last one; `loop` may have another cutoff than when it was accepted
-  loop::Tangent tangent;        ///< unit direction of the branch there, in the modes of orbit.loop
-  double next_length = 0.0;     ///< step to try next, in unknowns
-  double last_increment = 0.0;  ///< arclength of the last step
-  loop::Loop first;             ///< loop of orbit 0
-  double first_energy = 0.0;
-  double first_amplitude = 0.0;
-  double amplitude = 0.0;       ///< rms distance of the last orbit from its mean
-  double earlier_energy = 0.0;  ///< energy when the period was about a tenth smaller
-  double earlier_period = 0.0;
-  TraceState trace;              ///< of the fast way; empty otherwise
-  double farthest = 0.0;         ///< largest change of amplitude or relative change of T from orbit 0 so far
-  bool on_energy_limit = false;  ///< `orbit` is the last one, at the scene's energy limit
-
-  static constexpr int wire_version = 1;
-  template <class Archive>
-  void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, orbit, tangent, next_length, last_increment, first, first_energy, first_amplitude,
-                            amplitude, earlier_energy, earlier_period, trace, farthest, on_energy_limit);
-  }
-};
+class Tracer;
 
 /// One family, traced orbit by orbit in the subspace of its isotropy (paper, section III B).
 class Branch {
  public:
   /// Throws MisuseError for a start whose sizes disagree or whose direction is zero.
   Branch(std::shared_ptr<const systems::System> system, const Start& start, Options options);
-  /// Goes on from where a branch with the same start stood: `from` is what its `standing` was after some orbit. Its further
-  /// orbits have the same bits; limits may be wider.
+  /// Goes on from where a branch with the same start stood: `from` is what its `standing` was after some orbit. Its
+  /// further orbits have the same bits; limits may be wider.
   Branch(std::shared_ptr<const systems::System> system, const Start& start, Options options, Frontier from);
   ~Branch();
   Branch(Branch&&) noexcept;
@@ -125,10 +83,8 @@ class Branch {
   /// The same without a tangent that no step has needed yet: for checkpoints.
   [[nodiscard]] const Frontier& standing() const;
 
-  struct Implementation;
-
  private:
-  std::unique_ptr<Implementation> _implementation;
+  std::unique_ptr<Tracer> _tracer;
 };
 
 /// Called after each orbit; false stops the branch.

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <vector>
+
+#include "orbweaver/continuation/orbit.hpp"
+#include "orbweaver/core/serialization.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/curve/tangent.hpp"
+#include "orbweaver/loop/curve/time_map.hpp"
+
+namespace orbweaver::continuation {
+
+/// How finely the points of a branch are resolved.
+struct Resolution {
+  int size = 0;  ///< cells of the fundamental domain (collocation), or the cutoff (whole loops)
+  loop::TimeMap time_map;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, size, time_map);
+  }
+};
+
+/// A point of a branch in the numbers of the problem that corrects it: the loop, then the scalars (T first).
+struct TracePoint {
+  std::vector<double> values;
+  double parameter = 0.0;  ///< along the branch: the predictor's polynomials run in it
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, values, parameter);
+  }
+};
+
+/// What a point problem keeps from one correction to the next.
+struct ProblemState {
+  Resolution resolution;
+  double amplitude = 0.0;  ///< rms distance of the last orbit from its mean: small loops are solved in proportion
+  std::vector<double> factor_point;       ///< where the preconditioner was built; empty = to be built anew
+  std::vector<double> factor_conditions;  ///< and under which conditions
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, resolution, amplitude, factor_point, factor_conditions);
+  }
+};
+
+/// Everything a step depends on: a step is a pure function of it and of the options.
+struct Frontier {
+  Orbit orbit;               ///< the last one, as it was accepted
+  loop::Tangent tangent;     ///< unit direction of the branch there, in the modes of orbit.loop; empty: not asked for
+  double next_length = 0.0;  ///< step to try next, in the problem's own length
+  double last_increment = 0.0;  ///< arclength of the last step
+  loop::Loop first;             ///< loop of orbit 0
+  double first_energy = 0.0;
+  double first_amplitude = 0.0;
+  double earlier_energy = 0.0;  ///< energy when the period was about a tenth smaller
+  double earlier_period = 0.0;
+  double farthest = 0.0;           ///< largest change of amplitude or relative change of T from orbit 0 so far
+  bool on_energy_limit = false;    ///< `orbit` is the last one, at the scene's energy limit
+  std::vector<TracePoint> points;  ///< the last ones, oldest first; the start itself is the very first
+  ProblemState problem;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, orbit, tangent, next_length, last_increment, first, first_energy, first_amplitude,
+                            earlier_energy, earlier_period, farthest, on_energy_limit, points, problem);
+  }
+};
+
+}  // namespace orbweaver::continuation

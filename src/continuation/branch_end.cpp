@@ -1,0 +1,57 @@
+#include "branch_end.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace orbweaver::continuation {
+
+std::optional<Ending> end_at(const Frontier& frontier, const Options& options) {
+  const Orbit& orbit = frontier.orbit;
+  if (frontier.on_energy_limit) return Ending{EndReason::energy_limit, fmt::format("E = {:.12g}", orbit.energy)};
+  if (orbit.loop.period >= options.period_limit)
+    return Ending{EndReason::period_limit, fmt::format("T = {:.12g}", orbit.loop.period)};
+  if (orbit.step + 1 >= options.step_limit)
+    return Ending{EndReason::step_limit, fmt::format("{} orbits", orbit.step + 1)};
+  if (orbit.step <= 3) return std::nullopt;
+  const double amplitude = frontier.problem.amplitude;
+  if (amplitude < 0.5 * std::min(frontier.first_amplitude, options.start_amplitude))
+    return Ending{EndReason::fixed_point, fmt::format("T = {:.9g}, amplitude {:.2e}", orbit.loop.period, amplitude)};
+  // Neither T nor the amplitude can be further apart than the loops are: a cheap look before the distance itself.
+  const double near = 0.5 * frontier.last_increment;
+  if (near < 0.25 * frontier.farthest &&
+      std::abs(orbit.loop.period - frontier.first.period) < near * frontier.first.period &&
+      std::abs(amplitude - frontier.first_amplitude) < near && arclength_between(frontier.first, orbit.loop) < near)
+    return Ending{EndReason::closed_loop, fmt::format("T = {:.9g}, length {:.6g}", orbit.loop.period, orbit.arclength)};
+  return std::nullopt;
+}
+
+std::optional<Ending> beyond_limits(double period, double energy, const Options& options) {
+  if (period > options.period_limit)
+    return Ending{EndReason::period_limit, fmt::format("begins beyond it, at T = {:.9g}", period)};
+  if (energy > options.energy_to || energy < options.energy_from)
+    return Ending{EndReason::energy_limit, fmt::format("begins beyond it, at E = {:.9g}", energy)};
+  return std::nullopt;
+}
+
+namespace {
+
+// T has more than doubled, and over its last tenth the energy has moved by less than a thousandth of its range.
+bool period_diverges(const Frontier& frontier) {
+  const Orbit& orbit = frontier.orbit;
+  if (orbit.loop.modes.empty() || orbit.loop.period < 2.0 * frontier.first.period) return false;
+  const double range = std::abs(orbit.energy - frontier.first_energy);
+  return std::abs(orbit.energy - frontier.earlier_energy) < 1e-3 * range;
+}
+
+}  // namespace
+
+Ending end_between(const Frontier& frontier, EndReason reason, std::string detail) {
+  if (!period_diverges(frontier)) return {reason, std::move(detail)};
+  return {EndReason::period_divergence,
+          fmt::format("T = {:.6g}, E = {:.12g}; {}", frontier.orbit.loop.period, frontier.orbit.energy, detail)};
+}
+
+}  // namespace orbweaver::continuation

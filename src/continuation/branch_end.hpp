@@ -1,0 +1,20 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "orbweaver/continuation/branch.hpp"
+
+/// When a branch ends, from where it stands (docs/mathematics.md, "Ends").
+namespace orbweaver::continuation {
+
+/// The end that the last orbit is; none if the branch goes on.
+[[nodiscard]] std::optional<Ending> end_at(const Frontier& frontier, const Options& options);
+
+/// The end where the first orbit lies beyond the scene's limits already; none if it does not.
+[[nodiscard]] std::optional<Ending> beyond_limits(double period, double energy, const Options& options);
+
+/// An end for want of harmonics, or by failure; of a settled family it is a divergence of the period.
+[[nodiscard]] Ending end_between(const Frontier& frontier, EndReason reason, std::string detail);
+
+}  // namespace orbweaver::continuation

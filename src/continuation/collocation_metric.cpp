@@ -1,0 +1,103 @@
+#include "collocation_metric.hpp"
+
+#include <cmath>
+
+namespace orbweaver::continuation {
+
+using equations::Collocation;
+
+double step_product(const Collocation& e, const std::vector<double>& a, const std::vector<double>& b,
+                    const std::vector<double>& c, const std::vector<double>& d, double period_unit) {
+  double sum = 0.0;
+  for (int i = 0; i < e.dimension(); ++i)
+    for (int j = 0; j <= e.cells(); ++j) {
+      const auto n = static_cast<std::size_t>(i * e.grid().stride() + j);
+      sum += e.node_weights()[static_cast<std::size_t>(j)] * (a[n] - b[n]) * (c[n] - d[n]);
+    }
+  const auto at_period = static_cast<std::size_t>(e.period_at());
+  return sum + (a[at_period] - b[at_period]) * (c[at_period] - d[at_period]) / (period_unit * period_unit);
+}
+
+namespace {
+
+void phase_condition(const Collocation& e, const Prediction& prediction, std::vector<double>& weights) {
+  const int stride = e.grid().stride();
+  const auto size = static_cast<std::size_t>(e.size());
+  std::vector<double> z(static_cast<std::size_t>(e.dimension() * stride));
+  std::vector<double> slope(z.size());
+  e.grid().at_nodes(prediction.values.data(), z.data(), slope.data());
+  double square = 0.0;
+  for (int i = 0; i < e.dimension(); ++i)
+    for (int j = 0; j <= e.cells(); ++j) {
+      const auto n = static_cast<std::size_t>(i * stride + j);
+      weights[size + n] = e.node_weights()[static_cast<std::size_t>(j)] * slope[n];
+      square += weights[size + n] * slope[n];
+    }
+  for (std::size_t n = size; n < 2 * size; ++n) weights[n] /= std::sqrt(square);
+}
+
+}  // namespace
+
+std::vector<double> step_conditions(const Collocation& e, const Prediction& prediction, double period_unit) {
+  const int stride = e.grid().stride();
+  const auto size = static_cast<std::size_t>(e.size());
+  const std::vector<double>& share = e.node_weights();
+  std::vector<double> weights(static_cast<std::size_t>(e.borders()) * size, 0.0);
+  double square = 0.0;
+  for (int i = 0; i < e.dimension(); ++i)
+    for (int j = 0; j <= e.cells(); ++j) {
+      const auto n = static_cast<std::size_t>(i * stride + j);
+      weights[n] = share[static_cast<std::size_t>(j)] * prediction.tangent[n];
+      square += weights[n] * prediction.tangent[n];
+    }
+  const auto at_period = static_cast<std::size_t>(e.period_at());
+  weights[at_period] = prediction.tangent[at_period] / (period_unit * period_unit);
+  square += weights[at_period] * prediction.tangent[at_period];
+  for (std::size_t n = 0; n < size; ++n) weights[n] /= std::sqrt(square);
+  if (e.borders() > 1) phase_condition(e, prediction, weights);
+  return weights;
+}
+
+void take_out_shift(const Collocation& e, Prediction& prediction, const std::vector<double>& last) {
+  const int stride = e.grid().stride();
+  std::vector<double> z(static_cast<std::size_t>(e.dimension() * stride));
+  std::vector<double> slope(z.size());
+  e.grid().at_nodes(last.data(), z.data(), slope.data());
+  const std::vector<double>& shift = slope;  // of z instead of y: near enough to move along
+  double square = 0.0;
+  double moved = 0.0;
+  double turned = 0.0;
+  for (int i = 0; i < e.dimension(); ++i)
+    for (int j = 0; j <= e.cells(); ++j) {
+      const auto n = static_cast<std::size_t>(i * stride + j);
+      const double weight = e.node_weights()[static_cast<std::size_t>(j)] * slope[n];
+      square += weight * shift[n];
+      moved += weight * (prediction.values[n] - last[n]);
+      turned += weight * prediction.tangent[n];
+    }
+  if (!(square > 1e-16)) return;  // at an equilibrium there is no phase
+  for (std::size_t n = 0; n < shift.size(); ++n) {
+    prediction.values[n] -= moved / square * shift[n];
+    prediction.tangent[n] -= turned / square * shift[n];
+  }
+}
+
+bool is_upside_down(const Collocation& e, const std::vector<double>& a, const std::vector<double>& b) {
+  double product = 0.0;
+  for (int i = 0; i < e.dimension(); ++i) {
+    double sum_a = 0.0;
+    double sum_b = 0.0;
+    double sum_ab = 0.0;
+    for (int j = 0; j <= e.cells(); ++j) {
+      const auto n = static_cast<std::size_t>(i * e.grid().stride() + j);
+      const double share = e.node_weights()[static_cast<std::size_t>(j)];
+      sum_a += share * a[n];
+      sum_b += share * b[n];
+      sum_ab += share * a[n] * b[n];
+    }
+    product += e.keeps_mean(i) ? sum_ab - sum_a * sum_b : sum_ab;
+  }
+  return product < 0.0;
+}
+
+}  // namespace orbweaver::continuation

@@ -1,0 +1,295 @@
+#include "collocation_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "cell_counts.hpp"
+#include "collocation_metric.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/loss/linearization.hpp"
+#include "regrid.hpp"
+
+namespace orbweaver::continuation {
+
+using equations::Collocation;
+
+std::string CollocationProblem::obstacle(const FamilyOf& family) {
+  const int dimension = family.system.dimension();
+  const loop::FundamentalDomain domain = loop::fundamental_domain(family.isotropy, dimension);
+  if (!domain.expresses(family.isotropy)) return "one part of the loop, repeated, does not have all of their isotropy";
+  if (!domain.is_square()) return "the ends of their fundamental domain hold more or fewer conditions than coordinates";
+  if (!Collocation::applies(family.system, domain))
+    return fmt::format("it takes a reversor or a conserved energy, and a box scheme for {} coordinates", dimension);
+  return {};
+}
+
+CollocationProblem::CollocationProblem(const FamilyOf& family, const Options& options, ProblemState& state)
+    : PointProblem(state),
+      _system(family.system),
+      _domain(loop::fundamental_domain(family.isotropy, family.system.dimension())),
+      _isotropy(family.isotropy),
+      _centre(family.base.modes.begin(), family.base.modes.begin() + family.base.dimension),
+      _winding(family.base.winding),
+      _options(options) {}
+
+Resolution CollocationProblem::resolution_for(int cutoff, const loop::TimeMap& map, int largest) const {
+  int cells = cell_counts::at_least_for_cutoff(_domain, cutoff);
+  while (cells > 8 && cutoff_of(cells) > largest) cells = cell_counts::previous(cells);
+  return {cells, map};
+}
+
+std::optional<Resolution> CollocationProblem::next_resolution(int largest) const {
+  const int cells = cell_counts::next(resolution().size);
+  if (cutoff_of(cells) > largest) return std::nullopt;
+  return Resolution{cells, resolution().time_map};
+}
+
+std::shared_ptr<Collocation> CollocationProblem::equations_on(const Resolution& resolution) const {
+  return std::make_shared<Collocation>(_system, _domain, _centre, _winding, resolution.size, resolution.time_map);
+}
+
+PointProblem::Transfer CollocationProblem::resolve(const Resolution& to) {
+  std::shared_ptr<Collocation> from = std::move(_equations);
+  _equations = equations_on(to);
+  state().resolution = to;
+  state().factor_point.clear();
+  return [from = std::move(from), own = _equations](const std::vector<double>& values) {
+    return own->resampled(*from, values);
+  };
+}
+
+Collocation& CollocationProblem::equations() {
+  if (!_equations) {
+    _equations = equations_on(resolution());
+    if (!state().factor_point.empty()) {
+      _equations->set_conditions(state().factor_conditions, state().factor_point);
+      _equations->factor(state().factor_point.data());
+    }
+  }
+  return *_equations;
+}
+
+std::vector<double> CollocationProblem::from_loop(const loop::Loop& loop) {
+  std::vector<double> values(static_cast<std::size_t>(equations().size()), 0.0);
+  equations().from_loop(loop, values.data());
+  return values;
+}
+
+std::vector<double> CollocationProblem::from_change(const loop::Loop& change) {
+  const Collocation& e = equations();
+  std::vector<double> values(static_cast<std::size_t>(e.size()), 0.0);
+  loop::Loop relative = change;
+  for (std::size_t i = 0; i < e.centre().size(); ++i) relative.modes[i] += e.centre()[i];
+  e.from_loop(relative, values.data());
+  for (int q = 0; q < e.borders(); ++q) values[static_cast<std::size_t>(e.period_at() + q)] = 0.0;
+  return values;
+}
+
+loop::Tangent CollocationProblem::tangent_of(const std::vector<double>& direction, const loop::Loop& at) {
+  const Collocation& own = equations();
+  const loop::StaggeredGrid* grid = &own.grid();
+  std::vector<double> values = direction;
+  std::optional<Collocation> before;
+  if (!(resolution().time_map == at.time_map)) {  // after a change for an orbit that was not accepted
+    const std::vector<double> no_winding(own.winding().size(), 0.0);
+    const int cells = cell_counts::at_least_for_cutoff(_domain, at.cutoff);
+    before.emplace(_system, _domain, own.centre(), no_winding, cells, at.time_map);
+    values = before->resampled(own, values);
+    grid = &before->grid();
+  }
+  loop::Tangent out;
+  out.modes.resize((2 * static_cast<std::size_t>(grid->cutoff()) + 1) * static_cast<std::size_t>(own.dimension()));
+  grid->to_modes(values.data(), out.modes.data());
+  out = loop::with_cutoff(std::move(out), at.cutoff, at.dimension);
+  out.scalars = {values[values.size() - static_cast<std::size_t>(own.borders())]};
+  out.normalize();
+  return out;
+}
+
+double CollocationProblem::distance(const std::vector<double>& a, const std::vector<double>& b) {
+  return equations().distance(a.data(), b.data());
+}
+
+double CollocationProblem::change_at_start(const std::vector<double>& change) {
+  const Collocation& e = equations();
+  std::vector<double> z(static_cast<std::size_t>(e.dimension() * e.grid().stride()));
+  std::vector<double> slope(z.size());
+  e.grid().at_nodes(change.data(), z.data(), slope.data());
+  double square = 0.0;
+  for (int i = 0; i < e.dimension(); ++i) square += std::pow(z[static_cast<std::size_t>(i * e.grid().stride())], 2);
+  return std::sqrt(square);
+}
+
+double CollocationProblem::action(const Trial& trial) { return equations().action(trial.values.data()); }
+
+std::vector<double> CollocationProblem::direction_at(const std::vector<double>& orbit, const Prediction& near) {
+  const std::shared_ptr<Collocation> e = equations_on(resolution());  // of its own: the factor at hand stays
+  e->set_conditions(conditions_at(near), orbit);
+  try {
+    return equations::family_direction(*e, orbit);
+  } catch (const core::NumericalError&) {
+    return near.tangent;
+  }
+}
+
+std::vector<double> CollocationProblem::conditions_at(const Prediction& prediction) {
+  return step_conditions(equations(), prediction, period_unit(prediction.values[scalars_at()]));
+}
+
+void CollocationProblem::settle(Prediction& prediction, const std::vector<double>& last) {
+  const Collocation& e = equations();
+  if (e.borders() < 2) return;
+  const auto unfolding = static_cast<std::size_t>(e.period_at() + 1);
+  prediction.values[unfolding] = prediction.tangent[unfolding] = 0.0;
+  take_out_shift(e, prediction, last);
+}
+
+double CollocationProblem::product(const std::vector<double>& a, const std::vector<double>& b,
+                                   const std::vector<double>& c, const std::vector<double>& d) {
+  return step_product(equations(), a, b, c, d, period_unit(b[scalars_at()]));
+}
+
+bool CollocationProblem::inverted(const Trial& trial, const std::vector<double>& last) {
+  return is_upside_down(equations(), last, trial.values);
+}
+
+equations::AndersonSolver::Options CollocationProblem::solver_options() {
+  const Collocation& e = equations();
+  equations::AndersonSolver::Options solver;
+  // At a small amplitude A the equations see a change of T only A times.
+  const double amplitude = std::min(1.0, std::max(state().amplitude, 1e-300));
+  double size = amplitude;
+  for (const double c : e.centre()) size = std::max(size, std::abs(c));
+  solver.tolerance = 1e-2 * _options.corrector.tolerance * amplitude;
+  solver.rounding = std::max(0.3 * solver.tolerance, 50.0 * std::numeric_limits<double>::epsilon() * size);
+  solver.scaled_from = e.period_at();
+  solver.border_scale = amplitude;
+  return solver;
+}
+
+Trial CollocationProblem::correct(Prediction prediction, const std::vector<double>& conditions) {
+  Collocation& e = equations();
+  e.set_conditions(conditions, prediction.values);
+  Trial trial;
+  trial.order = prediction.order;
+  trial.values = std::move(prediction.values);
+  if (!(trial.values[static_cast<std::size_t>(e.period_at())] > 0.0)) {
+    trial.reason = "the predicted period is not positive";
+    return trial;
+  }
+  const std::vector<double> predicted = trial.values;
+  try {
+    auto result = _solver.solve(e, trial.values, !state().factor_point.empty(), solver_options());
+    trial.iterations = result.iterations;
+    trial.prediction_error = result.first_change;
+    trial.converged = result.converged;
+    if (result.factored) {
+      state().factor_point = std::move(result.factor_point);
+      state().factor_conditions = conditions;
+    }
+    if (!result.converged) {
+      state().factor_point.clear();
+      trial.reason = result.finite ? fmt::format("no convergence in {} iterations, the last change {:.2g}",
+                                                 result.iterations, result.last_change)
+                                   : not_finite_at(trial.values, predicted);
+    }
+  } catch (const core::NumericalError& error) {
+    state().factor_point.clear();
+    trial.converged = false;
+    trial.reason = error.what();
+  }
+  if (trial.converged) judge(trial);
+  return trial;
+}
+
+/// Accepts by the loss over the whole loop.
+void CollocationProblem::judge(Trial& trial) {
+  Collocation& e = equations();
+  const Collocation::Quality quality = e.quality(trial.values.data());
+  trial.loss_rms = quality.loss_rms;
+  trial.amplitude = quality.amplitude;
+  trial.size = quality.size;
+  double centre = 0.0;
+  for (const double c : e.centre()) centre += c * c;
+  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * std::sqrt(centre) * e.field_jacobian_rms();
+  trial.threshold = std::max(_options.corrector.tolerance * std::min(1.0, quality.speed_rms), rounding);
+  if (!(trial.values[static_cast<std::size_t>(e.period_at())] > 0.0)) {
+    trial.converged = false;
+    trial.reason = "the period is not positive";
+  } else if (!std::isfinite(trial.loss_rms)) {
+    trial.converged = false;
+    trial.reason = not_finite_at(trial.values, trial.values);
+  } else if (trial.loss_rms < trial.threshold) {
+    trial.is_orbit = true;
+  } else {
+    trial.reason = fmt::format("sqrt(loss) = {:.3g} at rounding, wanted {:.3g}: the tolerance is out of reach",
+                               trial.loss_rms, trial.threshold);
+  }
+}
+
+/// The sentence that the loss has for a field that is not finite.
+std::string CollocationProblem::not_finite_at(const std::vector<double>& values, const std::vector<double>& predicted) {
+  for (const std::vector<double>* point : {&predicted, &values}) {
+    const bool finite = std::all_of(point->begin(), point->end(), [](double v) { return std::isfinite(v); });
+    if (!finite) continue;
+    try {
+      const loss::Linearization probe(_system, equations().to_loop(point->data()),
+                                      loss::Linearization::Order::jacobian);
+    } catch (const core::NotFiniteError& error) {
+      return error.what();
+    }
+  }
+  return "the correction met numbers that are not finite";
+}
+
+/// At a small amplitude the period is known to eps / amplitude only: it must not decide how far a step went.
+double CollocationProblem::period_unit(double period) { return period / std::min(1.0, state().amplitude); }
+
+/// The residual that truncation leaves is about 2 pi / T K tail: only where that explains a loss above its threshold
+/// do more harmonics help.
+bool CollocationProblem::resolved(Trial& trial) {
+  trial.loop = equations().to_loop(trial.values.data());
+  const double last = loop::tail(trial.loop);
+  if (last > tail_limit(trial.amplitude, trial.size, _options)) return false;
+  // A tail of the size of the modes' own rounding says nothing of the resolution.
+  if (last <= 4.0 * std::numeric_limits<double>::epsilon() * trial.size) return true;
+  const double truncation = 2.0 * std::numbers::pi / trial.loop.period * trial.loop.cutoff * last;
+  return trial.loss_rms < trial.threshold || truncation < 1e-2 * trial.loss_rms;
+}
+
+std::optional<Resolution> CollocationProblem::finer(const Trial& trial, const std::vector<double>& settled,
+                                                    bool may_fit) {
+  if (_options.fit_time_map && may_fit)
+    if (std::optional<Resolution> general = remapped(trial, settled)) return general;
+  return finer_resolution(equations(), trial.values, tail_limit(trial.amplitude, trial.size, _options),
+                          _options.cutoff_to, _options.fit_time_map);
+}
+
+/// Fewer cells where the orbit needs far fewer harmonics than it has, or would under another time map.
+std::optional<Resolution> CollocationProblem::coarser(const Trial& accepted, const loop::Loop& loop, bool may_fit) {
+  if (_options.fit_time_map && may_fit)
+    if (std::optional<Resolution> other = remapped(accepted, accepted.values)) return other;
+  const std::optional<int> fewer =
+      coarser_cells(loop, _domain, tail_limit(accepted.amplitude, accepted.size, _options), _options.cutoff_from);
+  if (!fewer || *fewer >= resolution().size) return std::nullopt;
+  return Resolution{*fewer, resolution().time_map};
+}
+
+/// A general time map for a settled point where that pays, to the accuracy of `of`, a trial near it.
+std::optional<Resolution> CollocationProblem::remapped(const Trial& of, const std::vector<double>& settled) {
+  const Collocation& e = equations();
+  // What the loss allows the first harmonic that is left out, at the present cutoff.
+  const double period = settled[scalars_at()];
+  const double allowed = 0.3 * of.threshold * period / (2.0 * std::numbers::pi * e.grid().cutoff());
+  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * of.size;
+  if (e.cells() < _options.general_map_cells) return std::nullopt;
+  return general_resolution(e, settled, _isotropy,
+                            std::max(std::min(tail_limit(of.amplitude, of.size, _options), allowed), rounding),
+                            _options.cutoff_from);
+}
+
+}  // namespace orbweaver::continuation

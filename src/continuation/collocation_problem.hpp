@@ -1,0 +1,69 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "orbweaver/equations/collocation.hpp"
+#include "orbweaver/equations/orbit_solver.hpp"
+#include "orbweaver/loop/symmetry/fundamental_domain.hpp"
+#include "point_problem.hpp"
+
+namespace orbweaver::continuation {
+
+/// Points by collocation on the fundamental domain (equations::Collocation lays them out).
+class CollocationProblem final : public PointProblem {
+ public:
+  /// Why this does not apply to a family, as the end of a sentence; empty where it does.
+  [[nodiscard]] static std::string obstacle(const FamilyOf& family);
+  CollocationProblem(const FamilyOf& family, const Options& options, ProblemState& state);
+
+  [[nodiscard]] Resolution resolution_for(int cutoff, const loop::TimeMap& map, int largest) const override;
+  [[nodiscard]] std::optional<Resolution> next_resolution(int largest) const override;
+  [[nodiscard]] std::optional<Resolution> finer(const Trial& trial, const std::vector<double>& settled,
+                                                bool may_fit) override;
+  [[nodiscard]] std::optional<Resolution> coarser(const Trial& accepted, const loop::Loop& loop, bool may_fit) override;
+  Transfer resolve(const Resolution& to) override;
+  void state_replaced() override { _equations.reset(); }
+
+  [[nodiscard]] std::vector<double> from_loop(const loop::Loop& loop) override;
+  [[nodiscard]] std::vector<double> from_change(const loop::Loop& change) override;
+  [[nodiscard]] loop::Tangent tangent_of(const std::vector<double>& direction, const loop::Loop& at) override;
+  [[nodiscard]] std::size_t scalars_at() override { return static_cast<std::size_t>(equations().period_at()); }
+
+  [[nodiscard]] double product(const std::vector<double>& a, const std::vector<double>& b, const std::vector<double>& c,
+                               const std::vector<double>& d) override;
+  [[nodiscard]] double distance(const std::vector<double>& a, const std::vector<double>& b) override;
+  [[nodiscard]] double change_at_start(const std::vector<double>& change) override;
+  [[nodiscard]] bool inverted(const Trial& trial, const std::vector<double>& last) override;
+  [[nodiscard]] double action(const Trial& trial) override;
+
+  void settle(Prediction& prediction, const std::vector<double>& last) override;
+  [[nodiscard]] std::vector<double> conditions_at(const Prediction& prediction) override;
+  [[nodiscard]] Trial correct(Prediction prediction, const std::vector<double>& conditions) override;
+  [[nodiscard]] bool resolved(Trial& trial) override;
+  [[nodiscard]] std::vector<double> direction_at(const std::vector<double>& orbit, const Prediction& near) override;
+
+ private:
+  /// The equations of the state, with the factor that it names.
+  equations::Collocation& equations();
+  [[nodiscard]] std::shared_ptr<equations::Collocation> equations_on(const Resolution& resolution) const;
+  /// The highest harmonic on a grid of `cells`.
+  [[nodiscard]] int cutoff_of(int cells) const { return (cells * _domain.copies() - 1) / 2; }
+  [[nodiscard]] equations::AndersonSolver::Options solver_options();
+  void judge(Trial& trial);
+  [[nodiscard]] std::string not_finite_at(const std::vector<double>& values, const std::vector<double>& predicted);
+  [[nodiscard]] double period_unit(double period);
+  [[nodiscard]] std::optional<Resolution> remapped(const Trial& of, const std::vector<double>& settled);
+
+  const systems::System& _system;
+  loop::FundamentalDomain _domain;
+  loop::Isotropy _isotropy;
+  std::vector<double> _centre;
+  std::vector<double> _winding;
+  const Options& _options;
+  std::shared_ptr<equations::Collocation> _equations;
+  equations::OrbitSolver _solver;
+};
+
+}  // namespace orbweaver::continuation

@@ -1,0 +1,142 @@
+#include "curve_interval.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace orbweaver::continuation {
+
+namespace {
+
+/// An orbit further than this from its prediction, in parts of the chord, belongs to another family.
+constexpr double largest_correction = 0.2;
+
+/// The loop under another time map, with enough harmonics for it.
+loop::Loop under_map(const loop::Loop& loop, const loop::TimeMap& map) {
+  if (loop.time_map == map) return loop;
+  const double allowed = std::max(1e-12, 2.0 * loop::tail(loop));
+  int k = loop.cutoff;
+  loop::Loop out = loop::with_time_map(loop, map, k);
+  while (loop::tail(out) > allowed && k < 4 * loop.cutoff) {
+    k = loop::next_cutoff(loop::allowed_cutoff_at_least(k));
+    out = loop::with_time_map(loop, map, k);
+  }
+  return out;
+}
+
+/// Weights of a polynomial through those of `positions` (up to four, nearest first, well apart) for its value at
+/// `position`; zero for the others. `length` of the interval: what is nearer than 1e-4 of it is not apart.
+std::vector<double> lagrange_weights(const std::vector<double>& positions, double position, double length) {
+  std::vector<std::size_t> nearest(positions.size());
+  for (std::size_t n = 0; n < nearest.size(); ++n) nearest[n] = n;
+  std::stable_sort(nearest.begin(), nearest.end(), [&](std::size_t a, std::size_t b) {
+    return std::abs(positions[a] - position) < std::abs(positions[b] - position);
+  });
+  std::vector<std::size_t> used;  // well apart, so that their rounding is not amplified
+  for (const std::size_t n : nearest) {
+    const bool apart = std::all_of(used.begin(), used.end(), [&](std::size_t other) {
+      return std::abs(positions[n] - positions[other]) > 1e-4 * length;
+    });
+    if (apart && used.size() < 4) used.push_back(n);
+  }
+  std::vector<double> weights(positions.size(), 0.0);
+  for (const std::size_t n : used) {
+    weights[n] = 1.0;
+    for (const std::size_t other : used)
+      if (other != n) weights[n] *= (position - positions[other]) / (positions[n] - positions[other]);
+  }
+  return weights;
+}
+
+}  // namespace
+
+CurveInterval::CurveInterval(const systems::System& system, const loop::Isotropy& isotropy, const Options& options,
+                             const std::vector<FamilyCurve::Known>& known, std::size_t last)
+    : _options(options),
+      _from(known[last - 1].position),
+      _to(known[last].position),
+      _problem(make_point_problem({system, known[last].loop, isotropy}, options, _state)) {
+  const loop::Loop& end = known[last].loop;
+  _state.amplitude = loop::rms_amplitude(end);
+  std::vector<loop::Loop> loops;
+  int cutoff = 0;
+  for (const FamilyCurve::Known& k : known) {
+    loops.push_back(under_map(k.loop, end.time_map));
+    cutoff = std::max(cutoff, loops.back().cutoff);
+  }
+  _problem->resolve(_problem->resolution_for(cutoff, end.time_map, std::numeric_limits<int>::max()));
+  for (std::size_t n = 0; n < loops.size(); ++n) _points.push_back({_problem->from_loop(loops[n]), known[n].position});
+  _first = last - 1;
+  _last = last;
+}
+
+std::optional<CurvePoint> CurveInterval::at(double position, bool with_tangent) {
+  const auto known = std::find_if(_found.begin(), _found.end(), [&](const CurvePoint& point) {
+    return point.position == position && (!with_tangent || !point.tangent.empty());
+  });
+  if (known != _found.end()) return *known;
+  std::optional<Trial> trial = solve(position);
+  if (!trial) {
+    _state.factor_point.clear();
+    trial = solve(position);
+  }
+  if (!trial) return std::nullopt;
+  CurvePoint found{position, std::move(trial->loop), {}};
+  if (with_tangent)
+    found.tangent = _problem->tangent_of(_problem->direction_at(trial->values, prediction_at(position)), found.loop);
+  _points.push_back({std::move(trial->values), position});
+  _found.push_back(found);
+  return found;
+}
+
+std::optional<Trial> CurveInterval::solve(double position) {
+  while (true) {
+    const Prediction prediction = prediction_at(position);
+    // Conditions of the interval, not of the guess: the orbit must not depend on how it is found.
+    const std::vector<double> conditions = _problem->conditions_at({_points[_first].values, prediction.tangent, 1});
+    Trial trial = _problem->correct(prediction, conditions);
+    if (trial.converged && slipped(trial, prediction)) return std::nullopt;
+    const bool unresolved = trial.converged ? !_problem->resolved(trial) : trial.under_resolved;
+    if (!unresolved) return trial.is_orbit ? std::optional(std::move(trial)) : std::nullopt;
+    // The time map stays: the chord is measured under it.
+    const std::optional<Resolution> finer = _problem->next_resolution(2 * _options.cutoff_to);
+    if (!finer) return std::nullopt;
+    const PointProblem::Transfer transfer = _problem->resolve(*finer);
+    for (TracePoint& point : _points) point.values = transfer(point.values);
+  }
+}
+
+/// True if the corrector has gone far from where the family is expected: onto another one.
+bool CurveInterval::slipped(const Trial& trial, const Prediction& prediction) {
+  const std::vector<double>& first = _points[_first].values;
+  const std::vector<double>& last = _points[_last].values;
+  const std::vector<double>& guess = prediction.values;
+  return _problem->product(trial.values, guess, trial.values, guess) >
+         largest_correction * largest_correction * _problem->product(last, first, last, first);
+}
+
+/// On the polynomial through the nearest points, moved along the chord to its share of it.
+Prediction CurveInterval::prediction_at(double position) {
+  std::vector<double> positions;
+  for (const TracePoint& point : _points) positions.push_back(point.parameter);
+  const std::vector<double> weights = lagrange_weights(positions, position, _to - _from);
+  const std::vector<double>& first = _points[_first].values;
+  const std::vector<double>& last = _points[_last].values;
+  Prediction out;
+  out.values.assign(first.size(), 0.0);
+  out.tangent.resize(first.size());
+  for (std::size_t p = 0; p < weights.size(); ++p)
+    if (weights[p] != 0.0)
+      for (std::size_t n = 0; n < out.values.size(); ++n) out.values[n] += weights[p] * _points[p].values[n];
+  for (std::size_t n = 0; n < first.size(); ++n) out.tangent[n] = last[n] - first[n];
+  _problem->settle(out, first);
+  std::vector<double> end = first;
+  for (std::size_t n = 0; n < end.size(); ++n) end[n] += out.tangent[n];
+  const double share = (position - _from) / (_to - _from);
+  const double off =
+      share - _problem->product(out.values, first, end, first) / _problem->product(end, first, end, first);
+  for (std::size_t n = 0; n < end.size(); ++n) out.values[n] += off * out.tangent[n];
+  return out;
+}
+
+}  // namespace orbweaver::continuation

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string_view>
+
+#include "stepper.hpp"
+
+namespace orbweaver::continuation {
+
+/// The orbit of a branch on a limit, or why there is none.
+struct OnLimit {
+  std::optional<Trial> trial;  ///< with its loop
+  Ending ending;               ///< where there is none
+};
+
+/// A limit that was passed by the step of `length` to the trial `beyond`.
+struct Passed {
+  EndReason reason;         ///< the limit's
+  std::string_view symbol;  ///< of what is limited, for messages: "T"
+  double limit = 0.0;
+  double length = 0.0;
+  const Trial& beyond;
+};
+
+/// The orbit between the last point and the one beyond whose scalar of this number is the limit, exactly.
+[[nodiscard]] OnLimit orbit_at_scalar(Stepper& stepper, const Passed& passed, int scalar);
+
+/// The orbit there at which a measured quantity, `from` at the last point, is the limit.
+[[nodiscard]] OnLimit orbit_at_value(Stepper& stepper, const Passed& passed, double from,
+                                     const std::function<double(const Trial&)>& quantity);
+
+}  // namespace orbweaver::continuation

@@ -1,0 +1,222 @@
+#include "loop_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "orbweaver/loss/slice.hpp"
+
+namespace orbweaver::continuation {
+
+namespace {
+
+loop::Tangent as_tangent(std::span<const double> change) {
+  return {{change.begin(), change.end() - 1}, {change.back()}};
+}
+
+std::vector<double> as_change(loop::Tangent tangent) {
+  tangent.modes.insert(tangent.modes.end(), tangent.scalars.begin(), tangent.scalars.end());
+  return std::move(tangent.modes);
+}
+
+}  // namespace
+
+LoopProblem::LoopProblem(const FamilyOf& family, const Options& options, ProblemState& state)
+    : PointProblem(state), _system(family.system), _base(family.base), _isotropy(family.isotropy), _options(options) {}
+
+Resolution LoopProblem::resolution_for(int cutoff, const loop::TimeMap& map, int largest) const {
+  return {std::min(loop::allowed_cutoff_at_least(cutoff), largest), map};
+}
+
+std::optional<Resolution> LoopProblem::next_resolution(int largest) const {
+  const int cutoff = loop::next_cutoff(resolution().size);
+  if (cutoff > largest) return std::nullopt;
+  return Resolution{cutoff, resolution().time_map};
+}
+
+std::optional<Resolution> LoopProblem::finer(const Trial&, const std::vector<double>&, bool) {
+  return next_resolution(_options.cutoff_to);
+}
+
+/// Harmonics that would stay negligible under a smaller cutoff are dropped before the next step.
+std::optional<Resolution> LoopProblem::coarser(const Trial& accepted, const loop::Loop& loop, bool) {
+  const int smaller = loop::previous_cutoff(loop.cutoff);
+  if (smaller < _options.cutoff_from || smaller >= loop.cutoff) return std::nullopt;
+  const loop::Loop shorter = loop::with_cutoff(loop, smaller);
+  const double negligible = 0.01 * tail_limit(accepted.amplitude, accepted.size, _options);
+  if (loop::mean_distance(loop, shorter) >= negligible || loop::tail(shorter) >= negligible) return std::nullopt;
+  return Resolution{smaller, resolution().time_map};
+}
+
+PointProblem::Transfer LoopProblem::resolve(const Resolution& to) {
+  state().resolution = to;
+  const std::size_t modes = scalars_at();
+  const std::size_t scalars = 1;
+  return [=](const std::vector<double>& values) {
+    std::vector<double> out(values.begin(), values.end() - static_cast<std::ptrdiff_t>(scalars));
+    out.resize(modes, 0.0);
+    out.insert(out.end(), values.end() - static_cast<std::ptrdiff_t>(scalars), values.end());
+    return out;
+  };
+}
+
+std::size_t LoopProblem::scalars_at() {
+  return (2 * static_cast<std::size_t>(resolution().size) + 1) * static_cast<std::size_t>(_base.dimension);
+}
+
+loop::Loop LoopProblem::to_loop(const std::vector<double>& values) const {
+  loop::Loop loop = _base;
+  loop.cutoff = resolution().size;
+  loop.time_map = resolution().time_map;
+  loop.modes.assign(values.begin(), values.end() - 1);
+  loop.period = values.back();
+  return loop;
+}
+
+std::vector<double> LoopProblem::to_values(const loop::Loop& loop) const {
+  std::vector<double> values = loop.modes;
+  values.push_back(loop.period);
+  return values;
+}
+
+std::vector<double> LoopProblem::from_loop(const loop::Loop& loop) {
+  return to_values(loop::with_cutoff(loop, resolution().size));
+}
+
+std::vector<double> LoopProblem::from_change(const loop::Loop& change) {
+  std::vector<double> values = from_loop(change);
+  values.back() = 0.0;
+  return values;
+}
+
+loop::Tangent LoopProblem::tangent_of(const std::vector<double>& direction, const loop::Loop& at) {
+  loop::Tangent tangent = loop::with_cutoff(as_tangent(direction), at.cutoff, at.dimension);
+  tangent.normalize();
+  return tangent;
+}
+
+double LoopProblem::product(const std::vector<double>& a, const std::vector<double>& b, const std::vector<double>& c,
+                            const std::vector<double>& d) {
+  double sum = 0.0;
+  for (std::size_t n = 0; n < scalars_at(); ++n) {
+    const double mean = n < static_cast<std::size_t>(_base.dimension) ? 1.0 : 0.5;  // of 1, and of cos^2 and sin^2
+    sum += mean * (a[n] - b[n]) * (c[n] - d[n]);
+  }
+  // At a small amplitude the period is known to eps / amplitude only: it must not decide how far a step went.
+  const double unit = b.back() / std::min(1.0, state().amplitude);
+  return sum + (a.back() - b.back()) * (c.back() - d.back()) / (unit * unit);
+}
+
+double LoopProblem::distance(const std::vector<double>& a, const std::vector<double>& b) {
+  return arclength_between(to_loop(b), to_loop(a));
+}
+
+double LoopProblem::change_at_start(const std::vector<double>& change) {
+  return loop::change_at_start(loop::with_cutoff(_base, resolution().size), as_tangent(change));
+}
+
+bool LoopProblem::inverted(const Trial& trial, const std::vector<double>& last) {
+  double product = 0.0;
+  for (auto n = static_cast<std::size_t>(_base.dimension); n < scalars_at(); ++n) product += trial.values[n] * last[n];
+  return product < 0.0;
+}
+
+double LoopProblem::action(const Trial& trial) { return action_of(_system, trial.loop); }
+
+const loss::Unknowns& LoopProblem::unknowns() {
+  if (!_unknowns || _unknowns->subspace.cutoff() != resolution().size)
+    _unknowns.emplace(loss::Unknowns{loop::Subspace(_base.dimension, resolution().size, _isotropy), {loss::Scalar::period()}});
+  return *_unknowns;
+}
+
+std::vector<double> LoopProblem::time_shift(const std::vector<double>& values) {
+  const std::vector<double> shift = time_shift_condition(to_loop(values), unknowns());
+  return shift.empty() ? shift : as_change(unknowns().tangent_of(shift));
+}
+
+void LoopProblem::settle(Prediction& prediction, const std::vector<double>& last) {
+  const std::vector<double> shift = time_shift(last);
+  if (shift.empty()) return;
+  double moved = 0.0;
+  double turned = 0.0;
+  for (std::size_t n = 0; n < shift.size(); ++n) {
+    moved += shift[n] * (prediction.values[n] - last[n]);
+    turned += shift[n] * prediction.tangent[n];
+  }
+  for (std::size_t n = 0; n < shift.size(); ++n) {
+    prediction.values[n] -= moved * shift[n];
+    prediction.tangent[n] -= turned * shift[n];
+  }
+}
+
+std::vector<double> LoopProblem::conditions_at(const Prediction& prediction) {
+  std::vector<double> conditions = prediction.tangent;
+  double square = 0.0;
+  for (const double v : conditions) square += v * v;
+  for (double& v : conditions) v /= std::sqrt(square);
+  const std::vector<double> shift = time_shift(prediction.values);
+  conditions.insert(conditions.end(), shift.begin(), shift.end());
+  return conditions;
+}
+
+Eigen::MatrixXd LoopProblem::columns(const std::vector<double>& conditions) {
+  const std::size_t row = scalars_at() + 1;
+  Eigen::MatrixXd out(unknowns().size(), static_cast<Eigen::Index>(conditions.size() / row));
+  for (Eigen::Index q = 0; q < out.cols(); ++q) {
+    const std::vector<double> column =
+        unknowns().coordinates_of(as_tangent(std::span(conditions).subspan(static_cast<std::size_t>(q) * row, row)));
+    out.col(q) = Eigen::Map<const Eigen::VectorXd>(column.data(), out.rows()).normalized();
+  }
+  return out;
+}
+
+Trial LoopProblem::correct(Prediction prediction, const std::vector<double>& conditions) {
+  const loop::Loop guess = to_loop(prediction.values);
+  corrector::Result result = corrector::correct(
+      _system, guess, unknowns(), loss::Slice(unknowns().size(), columns(conditions)), _options.corrector);
+  Trial trial;
+  trial.order = prediction.order;
+  trial.converged = trial.is_orbit = result.converged();
+  trial.under_resolved = result.outcome == corrector::Outcome::under_resolved;
+  trial.reason = std::move(result.detail);
+  trial.values = to_values(result.loop);
+  trial.iterations = result.iterations;
+  trial.loss_rms = result.loss_rms;
+  trial.threshold = result.threshold;
+  trial.loop = std::move(result.loop);
+  if (!trial.converged) return trial;
+  trial.amplitude = loop::rms_amplitude(trial.loop);
+  trial.size = loop::rms_size(trial.loop);
+  trial.prediction_error =
+      std::hypot(loop::mean_distance(guess, trial.loop), trial.amplitude * (trial.loop.period / guess.period - 1.0));
+  return trial;
+}
+
+bool LoopProblem::resolved(Trial& trial) {
+  return loop::tail(trial.loop) <= tail_limit(trial.amplitude, trial.size, _options);
+}
+
+std::vector<double> LoopProblem::direction_at(const std::vector<double>& orbit, const Prediction& near) {
+  const Eigen::MatrixXd conditions = columns(conditions_at({orbit, near.tangent, 1}));
+  // A tangent does not shift the phase.
+  Eigen::VectorXd normal = conditions.col(0);
+  for (Eigen::Index q = 1; q < conditions.cols(); ++q) normal -= conditions.col(q).dot(normal) * conditions.col(q);
+  normal.normalize();
+  const corrector::Result result = corrector::correct(
+      _system, to_loop(orbit), unknowns(), loss::Slice(unknowns().size(), conditions), _options.corrector, normal);
+  if (!result.converged()) return near.tangent;
+  const Eigen::VectorXd& flat = result.flat_direction.value();
+  return as_change(unknowns().tangent_of(std::span(flat.data(), static_cast<std::size_t>(flat.size()))));
+}
+
+std::vector<double> time_shift_condition(const loop::Loop& loop, const loss::Unknowns& unknowns) {
+  std::vector<double> shift = unknowns.time_shift_direction(loop);
+  double square = 0.0;
+  for (const double v : shift) square += v * v;
+  const double length = std::sqrt(square);
+  if (length <= 1e-8 * loop::rms_amplitude(loop)) return {};
+  for (double& v : shift) v /= length;
+  return shift;
+}
+
+}  // namespace orbweaver::continuation

@@ -1,0 +1,227 @@
+#include "tracer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "branch_end.hpp"
+#include "limit_orbit.hpp"
+#include "orbweaver/continuation/off_branch.hpp"
+#include "step_control.hpp"
+
+namespace orbweaver::continuation {
+
+namespace {
+
+/// Orbits from one look for another general time map to the next.
+constexpr int refit_every = 32;
+
+}  // namespace
+
+Tracer::Tracer(std::shared_ptr<const systems::System> system, Start start, Options options)
+    : _system(std::move(system)),
+      _start(std::move(start)),
+      _options(std::move(options)),
+      _problem(make_point_problem({*_system, _start.base, _start.isotropy}, _options, _frontier.problem)),
+      _stepper(*_problem, _options, _frontier) {}
+
+/// At s = 0, where no harmonic needs a cosine.
+double Tracer::energy(const Trial& trial) const {
+  const loop::Loop& loop = trial.loop;
+  std::vector<double> z(loop.modes.begin(), loop.modes.begin() + loop.dimension);
+  for (int k = loop.cutoff; k >= 1; --k)
+    for (int i = 0; i < loop.dimension; ++i) z[static_cast<std::size_t>(i)] += loop.cosine(k, i);
+  return _system->energy(z);
+}
+
+void Tracer::go_on_from(Frontier frontier) {
+  _frontier = std::move(frontier);
+  _problem->state_replaced();
+}
+
+std::optional<Orbit> Tracer::advance() {
+  if (_ending) return std::nullopt;
+  if (!begun()) return first_orbit();
+  _ending = end_at(_frontier, _options);
+  return _ending ? std::nullopt : next_on_family();
+}
+
+std::optional<Orbit> Tracer::end(EndReason reason, std::string detail) {
+  _ending = end_between(_frontier, reason, std::move(detail));
+  return std::nullopt;
+}
+
+std::optional<Orbit> Tracer::first_orbit() {
+  const loop::Loop direction = start_direction();
+  double amplitude = _options.start_amplitude;
+  _problem->resolve(_problem->resolution_for(std::max(_start.base.cutoff, _options.cutoff_from), _start.base.time_map,
+                                             _options.cutoff_to));
+  while (true) {
+    _frontier.problem.amplitude = amplitude;
+    const std::vector<double> base = _problem->from_loop(_start.base);
+    Prediction prediction{base, _problem->from_change(direction), 1};
+    for (std::size_t n = 0; n < base.size(); ++n) prediction.values[n] += amplitude * prediction.tangent[n];
+    const std::vector<double> conditions = _problem->conditions_at(prediction);
+    Trial trial = _problem->correct(std::move(prediction), conditions);
+    if (_stepper.needs_more_harmonics(trial)) {
+      const std::optional<Resolution> finer = _problem->next_resolution(_options.cutoff_to);
+      if (!finer)
+        return end(EndReason::cutoff_limit, fmt::format("the first orbit needs more than K = {}", _options.cutoff_to));
+      _problem->resolve(*finer);
+      continue;
+    }
+    if (trial.is_orbit) {
+      _frontier.points = {{base, 0.0}};
+      _ending = beyond_limits(scalar(trial, 0), energy(trial), _options);
+      if (_ending) return std::nullopt;
+      _frontier.next_length = std::min(4.0 * _problem->distance(trial.values, base), _options.largest_step);
+      return accept(trial);
+    }
+    _frontier.problem.factor_point.clear();
+    amplitude *= 0.5;
+    if (amplitude < 1e-6 * _options.start_amplitude)
+      return end(EndReason::failure, fmt::format("no orbit near the start: {}", trial.reason));
+  }
+}
+
+/// The start's direction as a loop of unit |dz(s = 0)| (or unit length where z(s = 0) does not move).
+loop::Loop Tracer::start_direction() const {
+  loop::Loop direction = loop::perturbation(_start.base, _start.direction);
+  double square = 0.0;
+  for (const double v : loop::state_at(direction, 0.0)) square += v * v;
+  double length = 0.0;
+  for (const double v : _start.direction.modes) length += v * v;
+  const double unit = square > 1e-16 * length ? std::sqrt(square) : std::sqrt(length);
+  for (double& v : direction.modes) v /= unit;
+  return direction;
+}
+
+/// Steps after which the branch would be on another family are taken back and shortened.
+std::optional<Orbit> Tracer::next_on_family() {
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  if (!_options.jumped) return next_orbit(unlimited);
+  const Frontier before = _frontier;
+  std::optional<Orbit> next = next_orbit(unlimited);
+  while (next && _frontier.last_increment > _options.smallest_jump && _options.jumped(before.orbit, *next)) {
+    const double length = 0.3 * _frontier.last_increment;
+    go_on_from(before);
+    next = next_orbit(length);
+  }
+  return next;
+}
+
+std::optional<Orbit> Tracer::next_orbit(double at_most) {
+  const double amplitude = _frontier.problem.amplitude;
+  const double least = std::min(_options.smallest_step * (1.0 + amplitude) * std::min(1.0, amplitude), 0.1 * at_most);
+  _stepper.begin();
+  double length = std::min(std::max(length_to_try(), least), at_most);
+  for (int halved = 0;; ++halved) {
+    if (halved >= 3) _stepper.use_tangent();
+    Trial trial = _stepper.step(length);
+    const double wanted = _options.prediction_error * std::min(1.0, amplitude);
+    const bool jumped =
+        trial.prediction_error > 100.0 * wanted ||
+        (trial.converged && (_problem->inverted(trial, _stepper.last()) || _stepper.turned_too_far(trial, length)));
+    if (!jumped && _stepper.needs_more_harmonics(trial)) {
+      if (!_stepper.refine(trial))
+        return end(EndReason::cutoff_limit, fmt::format("the next orbit needs more than K = {}", _options.cutoff_to));
+      --halved;
+      continue;
+    }
+    if (trial.is_orbit && !jumped) {
+      _frontier.next_length =
+          std::min(next_step_length(length, trial.prediction_error, wanted, trial.order), _options.largest_step);
+      return accept_within_limits(std::move(trial), length);
+    }
+    _frontier.problem.factor_point.clear();
+    length *= 0.5;
+    if (!(length >= least))
+      return end(EndReason::failure,
+                 fmt::format("the corrector fails at T = {:.6g} even with step {:.1e}: {}", here().period, length,
+                             jumped ? "it leaves the family" : trial.reason));
+  }
+}
+
+double Tracer::length_to_try() {
+  if (!_options.fixed_step) return std::min(_frontier.next_length, _options.largest_step);
+  // Where z(s = 0) hardly moves (a fold of it, a divergence) the step in loop space is bounded all the same.
+  return std::min(*_options.fixed_step / std::max(_stepper.change_at_start(), 1e-12), 5.0 * _options.largest_step);
+}
+
+/// The last orbit of a branch lies on the scene's limit, not beyond it.
+std::optional<Orbit> Tracer::accept_within_limits(Trial trial, double length) {
+  constexpr int period = 0;  // among the scalars
+  OnLimit on_limit;
+  if (scalar(trial, period) > _options.period_limit) {
+    on_limit = orbit_at_scalar(_stepper, {EndReason::period_limit, "T", _options.period_limit, length, trial}, period);
+    if (on_limit.trial) on_limit.trial->loop.period = _options.period_limit;
+  } else {
+    const double value = energy(trial);
+    if (!(value > _options.energy_to || value < _options.energy_from)) return accept(trial);
+    const double limit = value > _options.energy_to ? _options.energy_to : _options.energy_from;
+    on_limit = orbit_at_value(_stepper, {EndReason::energy_limit, "E", limit, length, trial}, _frontier.orbit.energy,
+                              [this](const Trial& other) { return energy(other); });
+    _frontier.on_energy_limit = on_limit.trial.has_value();
+  }
+  if (on_limit.trial) return accept(*on_limit.trial);
+  return end(on_limit.ending.reason, std::move(on_limit.ending.detail));
+}
+
+Orbit Tracer::accept(const Trial& trial) {
+  Orbit orbit;
+  orbit.loop = trial.loop;
+  orbit.energy = energy(trial);
+  orbit.action = _problem->action(trial);
+  orbit.loss_rms = trial.loss_rms;
+  orbit.tail = loop::tail(orbit.loop);
+  orbit.iterations = trial.iterations;
+  const std::vector<double>& before = _stepper.last();
+  keep(orbit, begun() ? _problem->distance(trial.values, before) : 0.0, trial.amplitude);
+  _frontier.tangent = {};
+  // The length that the step has come out with: a parameter of its own would drift from extrapolation to extrapolation.
+  const double length = std::sqrt(_problem->product(trial.values, before, trial.values, before));
+  std::vector<TracePoint>& points = _frontier.points;
+  points.push_back({trial.values, points.back().parameter + length});
+  const auto kept = static_cast<std::size_t>(_options.predictor_order) + 1;
+  if (points.size() > kept) points.erase(points.begin());
+  if (_options.off_branch_spectrum) {
+    complete_frontier();
+    _frontier.orbit.off_branch_eigenvalue = off_branch_eigenvalue(*_system, here(), _start.isotropy, _frontier.tangent);
+  }
+  Orbit accepted = _frontier.orbit;
+  const bool may_fit = accepted.step % refit_every == 0;
+  if (const std::optional<Resolution> coarser = _problem->coarser(trial, here(), may_fit)) _stepper.resolve(*coarser);
+  return accepted;
+}
+
+void Tracer::keep(Orbit& orbit, double increment, double amplitude) {
+  Frontier& frontier = _frontier;
+  if (begun()) {
+    frontier.last_increment = increment;
+    orbit.step = frontier.orbit.step + 1;
+    orbit.arclength = frontier.orbit.arclength + increment;
+    if (orbit.loop.period > 1.1 * frontier.earlier_period) {
+      frontier.earlier_energy = frontier.orbit.energy;
+      frontier.earlier_period = here().period;
+    }
+  } else {
+    frontier.first = orbit.loop;
+    frontier.first_amplitude = amplitude;
+    frontier.first_energy = frontier.earlier_energy = orbit.energy;
+    frontier.earlier_period = orbit.loop.period;
+  }
+  frontier.problem.amplitude = amplitude;
+  frontier.farthest = std::max({frontier.farthest, std::abs(amplitude - frontier.first_amplitude),
+                                std::abs(orbit.loop.period / frontier.first.period - 1.0)});
+  frontier.orbit = orbit;
+}
+
+void Tracer::complete_frontier() {
+  if (!begun() || !_frontier.tangent.empty()) return;
+  _frontier.tangent = _problem->tangent_of(_problem->direction_at(_stepper.last(), _stepper.here()), here());
+}
+
+}  // namespace orbweaver::continuation
