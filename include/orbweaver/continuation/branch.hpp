@@ -11,7 +11,6 @@
 #include "orbweaver/continuation/ending.hpp"
 #include "orbweaver/continuation/frontier.hpp"
 #include "orbweaver/continuation/orbit.hpp"
-#include "orbweaver/core/serialization.hpp"
 #include "orbweaver/corrector/correct.hpp"
 #include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
