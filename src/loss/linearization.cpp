@@ -86,7 +86,7 @@ Linearization::Linearization(const systems::System& system, const loop::Loop& lo
     if (scalar.kind == Scalar::Kind::parameter)
       system.parameter_derivatives(scalar.parameter, n, _z.data(), column.data());
     else
-      system.energy_gradients(n, _z.data(), column.data());
+      system.conserved_gradients(scalar.quantity, n, _z.data(), column.data());
     check_finite(system, column, "derivative by a scalar");
     _columns.emplace_back(scalar, std::move(column));
   }

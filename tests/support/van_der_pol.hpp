@@ -1,23 +1,19 @@
 #pragma once
 
-#include <limits>
 #include <map>
 #include <memory>
 #include <string>
 
 #include "orbweaver/systems/system.hpp"
+#include "support/stated_system.hpp"
 
 namespace orbweaver::test {
 
 /// x' = y, y' = mu (1 - x^2) y - x: one limit cycle for each mu > 0, and nothing that is conserved.
-class VanDerPol final : public systems::System {
+class VanDerPol final : public StatedSystem {
  public:
-  explicit VanDerPol(double mu) : _mu(mu), _parameters{{"mu", mu}} {
-    _description.name = "van_der_pol";
-    _description.state_names = {"x", "y"};
-  }
+  explicit VanDerPol(double mu) : StatedSystem(structure_of(2), "van_der_pol"), _mu(mu), _parameters{{"mu", mu}} {}
 
-  [[nodiscard]] const systems::Description& description() const override { return _description; }
   [[nodiscard]] const std::map<std::string, double>& parameters() const override { return _parameters; }
 
   void field(std::size_t nodes, const double* z, double* f) const override {
@@ -60,17 +56,9 @@ class VanDerPol final : public systems::System {
     return std::make_shared<const VanDerPol>(values.at("mu"));
   }
 
-  [[nodiscard]] double energy(std::span<const double>) const override { return nan; }
-  void energy_gradient(std::span<const double>, std::span<double> gradient) const override {
-    gradient[0] = gradient[1] = nan;
-  }
-  [[nodiscard]] double action_density(std::span<const double>) const override { return nan; }
-
  private:
-  static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   double _mu;
   std::map<std::string, double> _parameters;
-  systems::Description _description;
 };
 
 }  // namespace orbweaver::test
