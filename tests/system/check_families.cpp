@@ -12,10 +12,10 @@
 #include "orbweaver/archive/read/loop_of.hpp"
 #include "orbweaver/archive/read/reader.hpp"
 #include "orbweaver/bifurcation/identity.hpp"
-#include "orbweaver/loop/symmetry/isotropy_text.hpp"
 #include "orbweaver/core/blas_kernels.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/petsc/session.hpp"
+#include "orbweaver/loop/symmetry/isotropy_text.hpp"
 #include "orbweaver/scene/scene.hpp"
 
 namespace {

@@ -17,7 +17,8 @@ void set_shift(SymmetryElement& element, int numerator, int denominator) {
   element.shift_denominator = denominator / common;
 }
 
-// w(t) = g z(t), or g z(-t): z(t + p) = M z(t) and z(p - t) = M z(t) become the same for w with g M g^-1, at -p if g reverses.
+// w(t) = g z(t), or g z(-t): z(t + p) = M z(t) and z(p - t) = M z(t) become the same for w with g M g^-1, at -p if g
+// reverses.
 SymmetryElement conjugated(const SymmetryElement& g, SymmetryElement element) {
   element.map = g.map * element.map * g.map.inverse();
   if (g.reversing) set_shift(element, -element.shift_numerator, element.shift_denominator);

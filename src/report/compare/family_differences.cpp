@@ -14,8 +14,8 @@ namespace orbweaver::report {
 
 namespace {
 
-/// Steps of the other family by which one may begin or end beyond it: where no limit fixes the last orbit, that is a matter of
-/// the steps; they grow by less than this from one to the next.
+/// Steps of the other family by which one may begin or end beyond it: where no limit fixes the last orbit, that is a
+/// matter of the steps; they grow by less than this from one to the next.
 constexpr double reach = 2.0;
 /// At the birth: the first orbit's distance from the crossing or the equilibrium is the scene's or what served.
 constexpr double reach_at_birth = 10.0;
@@ -166,7 +166,8 @@ void FamilyDifferences::compare_orbits(const Pair& pair) {
   compare_loops(pair, fits_a);
 }
 
-/// Where interpolation is too coarse to tell (long steps, folds of period and energy in one place), the orbits' loops do.
+/// Where interpolation is too coarse to tell (long steps, folds of period and energy in one place), the orbits' loops
+/// do.
 void FamilyDifferences::decide_by_loops(const AtlasTree& own, const TreeFamily& family, const AtlasTree& other,
                                         const TreeFamily& beside, std::vector<CurveFit>& fits) {
   if (!_loops.can_compare() || beside.orbits() < 2) return;
@@ -199,8 +200,8 @@ void FamilyDifferences::decide_by_loops(const AtlasTree& own, const TreeFamily& 
     if (!fits[n].measured && !fits[n].fits()) fits[n] = on_curve(fits[n].segment);
 }
 
-/// Period and energy have their extrema in one place: no curve goes by there, and Newton's method is at a loss (a crossing lies beside
-/// it). With both neighbours in their places nothing says that the orbit is not.
+/// Period and energy have their extrema in one place: no curve goes by there, and Newton's method is at a loss (a
+/// crossing lies beside it). With both neighbours in their places nothing says that the orbit is not.
 void FamilyDifferences::leave_out_undecided(const TreeFamily& family, std::vector<CurveFit>& fits) {
   for (std::size_t n = 1; n + 1 < fits.size(); ++n) {
     if (!std::isinf(fits[n].excess) || !fits[n - 1].fits() || !fits[n + 1].fits()) continue;

@@ -9,9 +9,11 @@ namespace orbweaver::report {
 
 namespace {
 
-/// Orbits of each family of a pair that are held against the other's curve to see whether it is the same: enough for a share.
+/// Orbits of each family of a pair that are held against the other's curve to see whether it is the same: enough for a
+/// share.
 constexpr std::size_t samples = 12;
-/// The curves of different families cross, or leave one another slowly; those of one agree but for what only one has reached.
+/// The curves of different families cross, or leave one another slowly; those of one agree but for what only one has
+/// reached.
 constexpr double same_share = 0.5;
 /// Crossings of one kind and sector on one family are further apart, relative in period and in energy.
 constexpr double near_crossing = 1e-3;
@@ -31,7 +33,8 @@ struct Share {
 
 std::size_t index(int row) { return static_cast<std::size_t>(row); }
 
-// Orbits beyond the ends of the other family say nothing; those are the ones at the ends whose period and energy lie outside.
+// Orbits beyond the ends of the other family say nothing; those are the ones at the ends whose period and energy lie
+// outside.
 bool is_in_range(const InvariantCurve& curve, const Invariants& x) {
   for (const Invariant i : {Invariant::period, Invariant::energy}) {
     double from = x.value(i), to = x.value(i);

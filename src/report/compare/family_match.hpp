@@ -17,9 +17,9 @@ struct TreeMatch {
   std::vector<bool> is_born_elsewhere;  ///< families of A that were matched by their orbits alone
 };
 
-/// Matches families down from the roots: roots with roots; then, at each crossing that both have, the families born there
-/// with one another, by the share of orbits that lie on the other's curve; their loops decide where several share most of
-/// them. What is left is matched with anything that shares its orbits, wherever it was born.
+/// Matches families down from the roots: roots with roots; then, at each crossing that both have, the families born
+/// there with one another, by the share of orbits that lie on the other's curve; their loops decide where several share
+/// most of them. What is left is matched with anything that shares its orbits, wherever it was born.
 [[nodiscard]] TreeMatch match_trees(const AtlasTree& a, const AtlasTree& b, const LoopCheck& loops);
 
 }  // namespace orbweaver::report

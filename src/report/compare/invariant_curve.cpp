@@ -11,7 +11,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::array<Invariant, 3> variables{Invariant::period, Invariant::energy, Invariant::parameter};
-/// Nodes on either side of a segment: degree five is the highest that noise of 1e-10 does not spoil at uneven distances.
+/// Nodes on either side of a segment: degree five is the highest that noise of 1e-10 does not spoil at uneven
+/// distances.
 constexpr std::size_t widest = 3;
 constexpr std::size_t nearby = 4;          // segments on either side of the last place
 constexpr std::size_t most_failures = 64;  // searches of a whole curve: more orbits off it tell nothing new

@@ -38,9 +38,10 @@ struct CurveFit {
 
 /// The curve through a family's orbits in the space of invariants.
 ///
-/// Beside each two neighbours the one among period, energy and parameter that changes most is the variable; the others are
-/// interpolated by polynomials through up to six orbits among which it is monotone. The error is taken for the largest difference to
-/// polynomials of one or two orbits fewer. No arclength is used: chords between orbits that lie elsewhere add up to another one.
+/// Beside each two neighbours the one among period, energy and parameter that changes most is the variable; the others
+/// are interpolated by polynomials through up to six orbits among which it is monotone. The error is taken for the
+/// largest difference to polynomials of one or two orbits fewer. No arclength is used: chords between orbits that lie
+/// elsewhere add up to another one.
 class InvariantCurve {
  public:
   InvariantCurve() = default;
@@ -59,8 +60,8 @@ class InvariantCurve {
   std::vector<Invariants> _points;
 };
 
-/// All orbits of another family, in their order. Each is looked for ever further from the one before; how often all is searched in
-/// vain is limited, so that the cost is linear in the number of orbits.
+/// All orbits of another family, in their order. Each is looked for ever further from the one before; how often all is
+/// searched in vain is limited, so that the cost is linear in the number of orbits.
 [[nodiscard]] std::vector<CurveFit> fit_all(const InvariantCurve& curve, const std::vector<Invariants>& orbits);
 
 /// "energy".

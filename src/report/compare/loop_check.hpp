@@ -49,8 +49,8 @@ class LoopCheck {
                                            const TreeFamily& beside, const std::vector<CurveFit>& fits,
                                            int count) const;
 
-  /// Whether two families that share their invariants are the same: true as soon as one of a few orbits says so, and where
-  /// that cannot be found out.
+  /// Whether two families that share their invariants are the same: true as soon as one of a few orbits says so, and
+  /// where that cannot be found out.
   [[nodiscard]] bool are_same(const AtlasTree& a, const TreeFamily& family_a, const AtlasTree& b,
                               const TreeFamily& family_b) const;
 

@@ -10,8 +10,8 @@
 namespace orbweaver::report {
 
 struct CompareOptions {
-  /// Of the period; the energy's is the same part of action/period (the mean of p . dq/dt). Where orbits lie at other places of
-  /// their family, the error of the interpolation between them comes on top.
+  /// Of the period; the energy's is the same part of action/period (the mean of p . dq/dt). Where orbits lie at other
+  /// places of their family, the error of the interpolation between them comes on top.
   double tolerance = 1e-9;
   int loops = 1;  ///< orbits of each family whose loops are compared as well; 0: only where all else leaves a choice
   bool strict_names = false;  ///< another name is a difference
@@ -83,12 +83,13 @@ struct Comparison {
   [[nodiscard]] bool same() const { return differences.empty(); }
 };
 
-/// Compares two atlases as trees. Families without a parent are matched by the orbits they hold, others by the crossing they
-/// were born at, multiplicity and, among several, their orbits; crossings by kind, sector, multiplicity and place. Orbits
-/// need not lie at the same places of a family: each is held against the curve through the other's orbits, as the numbers
-/// that no symmetry changes (period, energy, action, parameter, trace of the stability) depend on one another; loops are
-/// compared where that leaves a choice, and CompareOptions::loops times a family (bifurcation::same_family). Names do not
-/// count. Cost: linear in the number of orbits. Needs a core::Session. Throws InputError where a file cannot be read.
+/// Compares two atlases as trees. Families without a parent are matched by the orbits they hold, others by the crossing
+/// they were born at, multiplicity and, among several, their orbits; crossings by kind, sector, multiplicity and place.
+/// Orbits need not lie at the same places of a family: each is held against the curve through the other's orbits, as
+/// the numbers that no symmetry changes (period, energy, action, parameter, trace of the stability) depend on one
+/// another; loops are compared where that leaves a choice, and CompareOptions::loops times a family
+/// (bifurcation::same_family). Names do not count. Cost: linear in the number of orbits. Needs a core::Session. Throws
+/// InputError where a file cannot be read.
 [[nodiscard]] Comparison compare(const archive::Archive& a, const archive::Archive& b,
                                  const CompareOptions& options = {});
 
