@@ -43,7 +43,8 @@ class System {
   virtual void second_derivatives(std::size_t nodes, const double* z, const double* weights,
                                   double* contracted) const = 0;
 
-  /// Conserved quantity k (of structure().conserved) at one state (size dimension). Throws MisuseError if there is none.
+  /// Conserved quantity k (of structure().conserved) at one state (size dimension). Throws MisuseError if there is
+  /// none.
   [[nodiscard]] virtual double conserved(int k, std::span<const double> z) const = 0;
   /// Its gradient at one state; `gradient` has size dimension.
   virtual void conserved_gradient(int k, std::span<const double> z, std::span<double> gradient) const = 0;
