@@ -10,9 +10,9 @@
 
 namespace orbweaver::systems {
 
-/// The effects asked for, and every parameter of the system and of them by name: what was given, and the standard values
-/// for the rest. Throws core::InputError on an unknown or repeated effect, an unknown parameter, one whose effect is not asked
-/// for, and a value that is not finite or out of range; the message says what is known or allowed.
+/// The effects asked for, and every parameter of the system and of them by name: what was given, and the standard
+/// values for the rest. Throws core::InputError on an unknown or repeated effect, an unknown parameter, one whose
+/// effect is not asked for, and a value that is not finite or out of range; the message says what is known or allowed.
 [[nodiscard]] Bound bound_to(const ModelInfo& info, const std::map<std::string, double>& given,
                              const std::vector<std::string>& effects);
 

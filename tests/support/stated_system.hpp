@@ -11,8 +11,8 @@
 
 namespace orbweaver::test {
 
-/// What all systems made for one test have in common: a structure as stated, no parameters, and nothing beyond the field
-/// unless the test says so.
+/// What all systems made for one test have in common: a structure as stated, no parameters, and nothing beyond the
+/// field unless the test says so.
 class StatedSystem : public systems::System {
  public:
   explicit StatedSystem(systems::Structure structure, const std::string& name = "test")

@@ -22,9 +22,9 @@ struct AffineMap {
   [[nodiscard]] bool is_linear() const { return offset.isZero(0.0); }
   [[nodiscard]] Eigen::VectorXd operator()(const Eigen::VectorXd& z) const { return matrix * z + offset; }
   [[nodiscard]] AffineMap inverse() const;
-  /// True if both are the same map modulo whole turns of the coordinates in `angles`. Only there offsets are compared: two
-  /// maps of one finite group with the same matrix differ by a translation of finite order, which other coordinates do
-  /// not have.
+  /// True if both are the same map modulo whole turns of the coordinates in `angles`. Only there offsets are compared:
+  /// two maps of one finite group with the same matrix differ by a translation of finite order, which other coordinates
+  /// do not have.
   [[nodiscard]] bool is_same(const AffineMap& other, const std::vector<int>& angles) const;
 };
 

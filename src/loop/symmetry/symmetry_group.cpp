@@ -14,12 +14,12 @@ namespace {
 
 using systems::AffineMap;
 
-/// More than the symmetries of any orbit in view (96 those of a cube with time shifts and reversal): what generates more
-/// was declared with rounding errors or by mistake.
+/// More than the symmetries of any orbit in view (96 those of a cube with time shifts and reversal): what generates
+/// more was declared with rounding errors or by mistake.
 constexpr std::size_t largest_group = 1000;
 
-// z(t + a) = g z(t) and z(t + b) = h z(t) give z(t + b + a) = g h z(t); z(b - t) = h z(t) gives z(b - t + a) = g h z(t);
-// g reversing: z(a - (t + b)) = g h z(t), so that b counts backwards.
+// z(t + a) = g z(t) and z(t + b) = h z(t) give z(t + b + a) = g h z(t); z(b - t) = h z(t) gives z(b - t + a) = g h
+// z(t); g reversing: z(a - (t + b)) = g h z(t), so that b counts backwards.
 SymmetryElement product(const SymmetryElement& g, const SymmetryElement& h) {
   SymmetryElement out{"", g.reversing != h.reversing, g.map * h.map, 0, 1};
   const int q = std::lcm(g.shift_denominator, h.shift_denominator);

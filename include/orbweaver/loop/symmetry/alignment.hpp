@@ -22,11 +22,11 @@ struct Alignment {
   double distance = std::numeric_limits<double>::infinity();  ///< sqrt of the mean over time of |w - to|^2
 };
 
-/// The element of the group that the declared symmetries generate, and the time shift, that bring `from` closest to `to`,
-/// periods scaled to one: the first in the group's order, with the smallest shift either way, among those equally close to
-/// 1e-12. The shift is a minimum of the distance to rounding. Where not even 119 harmonics of the loops in time come closer
-/// than `hopeless`, that distance is returned. Infinite distance if the loops wind otherwise under every symmetry. Throws
-/// MisuseError if dimensions differ.
+/// The element of the group that the declared symmetries generate, and the time shift, that bring `from` closest to
+/// `to`, periods scaled to one: the first in the group's order, with the smallest shift either way, among those equally
+/// close to 1e-12. The shift is a minimum of the distance to rounding. Where not even 119 harmonics of the loops in
+/// time come closer than `hopeless`, that distance is returned. Infinite distance if the loops wind otherwise under
+/// every symmetry. Throws MisuseError if dimensions differ.
 [[nodiscard]] Alignment align(const systems::Structure& system, const Loop& from, const Loop& to,
                               double hopeless = std::numeric_limits<double>::infinity());
 

@@ -33,8 +33,8 @@ struct FundamentalDomain {
   [[nodiscard]] bool is_square() const;
 };
 
-/// The domain of the group that `isotropy` generates; reversors with another shift than 0 are not used. What stands on it is
-/// relative to a point that the symmetries map to itself, so that only their matrices are needed.
+/// The domain of the group that `isotropy` generates; reversors with another shift than 0 are not used. What stands on
+/// it is relative to a point that the symmetries map to itself, so that only their matrices are needed.
 [[nodiscard]] FundamentalDomain fundamental_domain(const systems::Structure& structure, const Isotropy& isotropy);
 
 }  // namespace orbweaver::loop

@@ -19,8 +19,8 @@ class SymmetryGroup {
   /// The elements that `keeps` holds for, which must form a group.
   [[nodiscard]] SymmetryGroup subgroup(const std::function<bool(const SymmetryElement&)>& keeps) const;
 
-  /// Shifts lie in [0, 1). The identity "1@0" comes first; products of equivariances before what reversors add. Declared
-  /// symmetries have their names, products those of their factors.
+  /// Shifts lie in [0, 1). The identity "1@0" comes first; products of equivariances before what reversors add.
+  /// Declared symmetries have their names, products those of their factors.
   [[nodiscard]] const Isotropy& elements() const { return _elements; }
   /// p: the least time shift is T/p.
   [[nodiscard]] int order() const { return _order; }

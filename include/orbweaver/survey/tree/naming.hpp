@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "orbweaver/scene/scene.hpp"
-#include "orbweaver/systems/structure.hpp"
+#include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::survey {
 
