@@ -1,5 +1,5 @@
-// What rank 0 spends on the tree of families while a survey runs: the time per task that ends, and that of the tables at the
-// end, for a tree of made-up outcomes: bench_tree [--families N].
+// What rank 0 spends on the tree of families while a survey runs: the time per task that ends, and that of the tables
+// at the end, for a tree of made-up outcomes: bench_tree [--families N].
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -36,8 +36,8 @@ survey::BranchWork with_orbit(survey::BranchWork work) {
   return work;
 }
 
-/// Places along one parent, in pairs: what leaves the first of two arrives at the second, and the other way round. Periods
-/// and energies of all places are spread evenly.
+/// Places along one parent, in pairs: what leaves the first of two arrives at the second, and the other way round.
+/// Periods and energies of all places are spread evenly.
 std::vector<test::Place> places_on(const std::string& parent, int depth, int count, int& before) {
   std::vector<test::Place> places;
   for (int n = 0; n < count; ++n, ++before) {
@@ -88,7 +88,8 @@ int main(int argc, char** argv) {
   constexpr int places_a_branch = 20;
   int places_before = 0;
   int next_report = std::max(1, families / 8);
-  // Every other family does not come to be asked for in time, as where many ranks work: it runs as well, and is dropped.
+  // Every other family does not come to be asked for in time, as where many ranks work: it runs as well, and is
+  // dropped.
   for (std::size_t at = 0; at < parents.size() && known < families; ++at) {
     const std::string parent = parents[at];
     const int depth = survey::depth_of(parent);

@@ -168,7 +168,8 @@ void expect_as_plainly(const Grown& grown, const std::vector<Event>& events) {
   }
 }
 
-/// A tree whose branches arrive at random at the starts of others, often of several: far more confused than those of surveys.
+/// A tree whose branches arrive at random at the starts of others, often of several: far more confused than those of
+/// surveys.
 std::vector<Event> random_tree(std::mt19937& random, std::size_t size) {
   const auto below = [&](std::size_t n) { return random() % n; };
   std::vector<std::string> keys{"0000.0000", "0000.0001+", "0000.0001-", "0001.0000"};
@@ -240,8 +241,8 @@ TEST(Pruning, IsTheSameInEveryOrderAndAfterEveryAddition) {
   EXPECT_GT(dropped, 300U);
 }
 
-// A arrives at P's start and, a little farther off, at B's; P lies elsewhere, but its start is where B arrives. If P stays, A
-// meets on P's child; if it does not, A meets B, so B does not stay, and P does.
+// A arrives at P's start and, a little farther off, at B's; P lies elsewhere, but its start is where B arrives. If P
+// stays, A meets on P's child; if it does not, A meets B, so B does not stay, and P does.
 TEST(Pruning, KeepsAndTellsWhatContradictsItself) {
   const std::string a = "0000.0000/000.q2.j1/0";
   const std::string b = "0000.0000/001.q2.j1/0";

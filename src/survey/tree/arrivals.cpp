@@ -9,11 +9,11 @@ namespace orbweaver::survey {
 
 namespace {
 
-/// How far an arrival may be from the crossing that it is compared with, in period and energy: both are extrapolated along
-/// the branch.
+/// How far an arrival may be from the crossing that it is compared with, in period and energy: both are extrapolated
+/// along the branch.
 constexpr double arrival_window = 1e-3;
-/// How far the orbit before an arrival may be from a direction, in parts of its distance from the crossing's orbit. Other
-/// directions are further off.
+/// How far the orbit before an arrival may be from a direction, in parts of its distance from the crossing's orbit.
+/// Other directions are further off.
 constexpr double farthest_from_direction = 0.4;
 
 double born_period(const LocateOutcome& crossing) { return crossing.multiplicity * crossing.period; }

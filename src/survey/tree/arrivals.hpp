@@ -12,9 +12,9 @@
 
 namespace orbweaver::survey {
 
-/// Finds the crossings where branches have arrived, and the directions along which they came: by period and energy first,
-/// then by loops. What is compared with what depends on neither order nor time; every pair that comes close is compared
-/// once, when the second of them is added, and found among the others by period.
+/// Finds the crossings where branches have arrived, and the directions along which they came: by period and energy
+/// first, then by loops. What is compared with what depends on neither order nor time; every pair that comes close is
+/// compared once, when the second of them is added, and found among the others by period.
 class Arrivals {
  public:
   explicit Arrivals(const systems::Structure& system) : _system(system) {}

@@ -27,8 +27,8 @@ struct Meeting {
   double away = 0.0;  ///< of the orbit before, from the direction, in parts of its distance from the crossing
 };
 
-/// Who lies on whom, and who may have arrived where: all that pruning looks at. Branches have numbers in the order in which
-/// they came to be known, which decides nothing; `comes_first` does.
+/// Who lies on whom, and who may have arrived where: all that pruning looks at. Branches have numbers in the order in
+/// which they came to be known, which decides nothing; `comes_first` does.
 class BranchGraph {
  public:
   using Number = int;

@@ -18,10 +18,10 @@ namespace orbweaver::survey {
 /// What rank 0 knows of the families while the survey runs, and what it makes of it at the end: which branches are the
 /// same curve from another end, names, parents, ends.
 ///
-/// A branch that arrives at a crossing has come along one of the directions that leave there (Arrivals), so whatever starts
-/// in that direction is the same branch run backwards: one of the two is dropped, with everything found along it (Pruning).
-/// `wanted` judges by what has ended so far; what it has left out wrongly is run afterwards (Survey), so that the archive
-/// depends on tasks and outcomes only, not on when they came.
+/// A branch that arrives at a crossing has come along one of the directions that leave there (Arrivals), so whatever
+/// starts in that direction is the same branch run backwards: one of the two is dropped, with everything found along it
+/// (Pruning). `wanted` judges by what has ended so far; what it has left out wrongly is run afterwards (Survey), so
+/// that the archive depends on tasks and outcomes only, not on when they came.
 class FamilyTree {
  public:
   FamilyTree(const scene::Scene& scene, const systems::Structure& system)

@@ -10,19 +10,20 @@
 
 namespace orbweaver::survey {
 
-/// Which branches are the same curve as another that stays, from the other end, or lie on such a one. A pure function of the
-/// branches and their candidates, whatever the order in which they are added; an addition costs what depends on it.
+/// Which branches are the same curve as another that stays, from the other end, or lie on such a one. A pure function
+/// of the branches and their candidates, whatever the order in which they are added; an addition costs what depends on
+/// it.
 ///
-/// Crossings on a dropped branch do not count where others arrive, so the rule (PruningRound) is applied to its own result,
-/// from `nothing is dropped` on, until that stays as it is. Each round is kept and brought up to date by what changed in the
-/// one before. Where one crossing is taken for another, the rule may contradict itself: if A is dropped then B stays, if B
-/// stays then A stays. After `free_rounds` a round may therefore only take branches back; such rounds come to an end since
-/// a finite set shrinks. What the rule would still drop then is kept and told (`disputed`): a curve that is recorded twice
-/// is better than one that is lost.
+/// Crossings on a dropped branch do not count where others arrive, so the rule (PruningRound) is applied to its own
+/// result, from `nothing is dropped` on, until that stays as it is. Each round is kept and brought up to date by what
+/// changed in the one before. Where one crossing is taken for another, the rule may contradict itself: if A is dropped
+/// then B stays, if B stays then A stays. After `free_rounds` a round may therefore only take branches back; such
+/// rounds come to an end since a finite set shrinks. What the rule would still drop then is kept and told (`disputed`):
+/// a curve that is recorded twice is better than one that is lost.
 class Pruning {
  public:
-  /// More than the generations of the deepest survey (survey.depth is at most 16): a round passes on to the next one what
-  /// has changed for those who arrive at places below.
+  /// More than the generations of the deepest survey (survey.depth is at most 16): a round passes on to the next one
+  /// what has changed for those who arrive at places below.
   static constexpr int free_rounds = 20;
 
   /// A branch has ended; it may have arrived at these places. Returns the keys of ended branches whose drop changed.
@@ -33,7 +34,8 @@ class Pruning {
 
   /// Whether a branch that has ended is dropped.
   [[nodiscard]] bool is_dropped(const std::string& key) const;
-  /// Whether a branch that has not ended lies on a dropped one, or an earlier one that stays has arrived along its side.
+  /// Whether a branch that has not ended lies on a dropped one, or an earlier one that stays has arrived along its
+  /// side.
   [[nodiscard]] bool would_be_dropped(const std::string& key, const Lineage& lineage) const;
   /// Where a branch that has ended arrived; null if nowhere that counts.
   [[nodiscard]] const Meeting* arrival(const std::string& key) const;

@@ -7,22 +7,23 @@
 
 namespace orbweaver::survey {
 
-/// One application of the rule of pruning: which branches are dropped if crossings on those dropped `before` do not count.
+/// One application of the rule of pruning: which branches are dropped if crossings on those dropped `before` do not
+/// count.
 ///
-/// Where a branch arrives is then known: at the nearest candidate that counts. A branch is dropped if it lies on a dropped
-/// one, or if another arrives along its side: an earlier one that stays by this very clause; else a later one that does, if
-/// the branch itself does not arrive at the start of that one (it failed or met a limit on the way) and that one does not
-/// lie on it.
-/// Each clause asks of earlier branches what the same clause said, and of others what the clause before said; so a pass
-/// over those that a change may reach, in the order of the branches, brings everything up to date.
+/// Where a branch arrives is then known: at the nearest candidate that counts. A branch is dropped if it lies on a
+/// dropped one, or if another arrives along its side: an earlier one that stays by this very clause; else a later one
+/// that does, if the branch itself does not arrive at the start of that one (it failed or met a limit on the way) and
+/// that one does not lie on it. Each clause asks of earlier branches what the same clause said, and of others what the
+/// clause before said; so a pass over those that a change may reach, in the order of the branches, brings everything up
+/// to date.
 class PruningRound {
  public:
   using Number = BranchGraph::Number;
   /// `only_fewer`: drops no branch that was not dropped before.
   PruningRound(const BranchGraph& graph, bool only_fewer) : _graph(&graph), _only_fewer(only_fewer) {}
 
-  /// `changed` are known since before, and have ended or have new candidates; `flipped` are dropped before and were not, or the other way round.
-  /// Returns whose drop has changed.
+  /// `changed` are known since before, and have ended or have new candidates; `flipped` are dropped before and were
+  /// not, or the other way round. Returns whose drop has changed.
   std::vector<Number> update(const std::vector<Number>& changed, const std::vector<Number>& flipped);
 
   [[nodiscard]] bool dropped(Number n) const { return state(n).dropped; }

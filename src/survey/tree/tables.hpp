@@ -21,8 +21,8 @@ struct TreeTables {
   std::vector<std::string> remarks;
 };
 
-/// Adds a row for every crossing (they lie on families that stay) but for the second of two at one fold. Returns the rows by
-/// key.
+/// Adds a row for every crossing (they lie on families that stay) but for the second of two at one fold. Returns the
+/// rows by key.
 [[nodiscard]] std::map<std::string, int> add_crossings(const std::vector<const LocateOutcome*>& crossings,
                                                        TreeTables& tables);
 
