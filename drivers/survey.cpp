@@ -94,7 +94,8 @@ int run(const Options& options, const Invocation& invocation) {
   try {
     return run_on_ranks(comm, [&] { return survey_on(comm, options); });
   } catch (
-      ...) {  // reported before MPI ends: mpirun kills a job when its first rank exits, maybe before another has printed
+      // reported before MPI ends: mpirun kills a job when its first rank exits, maybe before another has printed
+      ...) {
     return report_failure(std::current_exception());
   }
 }

@@ -11,15 +11,16 @@ namespace orbweaver::bifurcation {
 
 namespace {
 
-/// What surprises is measured in the largest modulus so far, kept between these: near its birth a family's functions are
-/// small, and none is of interest beyond the scale of a stability index.
+/// What surprises is measured in the largest modulus so far, kept between these: near its birth a family's functions
+/// are small, and none is of interest beyond the scale of a stability index.
 constexpr double least_scale = 0.1;
 constexpr double largest_scale = 1.0;
 /// Brent's method closes in on a minimum to this share of the bracket: its square is below rounding of the value there.
 constexpr double minimum_width = 1e-6;
 /// A touching zero is judged relative to the values at the bracket's ends where these are below a tenth.
 constexpr double small_ends = 10.0;
-/// A minimum nearer than this share to the bracket's end may belong to the next bracket, so it is looked for there again.
+/// A minimum nearer than this share to the bracket's end may belong to the next bracket, so it is looked for there
+/// again.
 constexpr double at_end = 0.01;
 /// A parabola's minimum is examined where it lies below this share of its neighbours (a parabola is a poor model).
 constexpr double deep_enough = 0.5;
@@ -136,7 +137,8 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
     examined_to = right.position;
     return;
   }
-  // Relative to the ends: near its birth a family's index leaves 2 like a power of its distance, small but not at a zero.
+  // Relative to the ends: near its birth a family's index leaves 2 like a power of its distance, small but not at a
+  // zero.
   const double ends = std::min(std::abs(left.reading.value), std::abs(right.reading.value));
   const auto zero = [&](const Node& node) {
     return std::abs(node.reading.value) <=

@@ -145,8 +145,8 @@ int rotations(const KernelActions& group) {
   return static_cast<int>(distinct.size());
 }
 
-// The amplitudes to search at: from where terms of order q - 2, which fix the angle, are above 1e-6. Their coefficient may
-// be small.
+// The amplitudes to search at: from where terms of order q - 2, which fix the angle, are above 1e-6. Their coefficient
+// may be small.
 std::vector<double> search_amplitudes(int q, const loop::Loop& base, bool constant) {
   const double scale = constant ? 1.0 : std::min(1.0, loop::rms_amplitude(base));
   const double least = std::clamp(q > 4 ? std::pow(1e-6, 1.0 / (q - 2)) : 0.0, 0.01, 0.1);

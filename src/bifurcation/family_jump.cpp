@@ -12,7 +12,8 @@ namespace orbweaver::bifurcation {
 
 namespace {
 
-/// Cosine of the angle between the family's direction at `at` and the chord from `from` to `to`, all under one time map.
+/// Cosine of the angle between the family's direction at `at` and the chord from `from` to `to`, all under one time
+/// map.
 double along_chord(const continuation::CurvePoint& at, const loop::Loop& from, const loop::Loop& to) {
   const std::size_t size = std::min({at.tangent.modes.size(), from.modes.size(), to.modes.size()});
   double product = 0.0;

@@ -18,8 +18,8 @@ using continuation::Orbit;
 constexpr double beyond = 0.3;  // of the chord: how far outside its ends a projection may lie
 constexpr double away = 1.0;    // of the chord: how far from it an orbit between its ends can be
 constexpr int corrections = 4;
-/// A smooth family leaves the chord by about this share of it times position (1 - position); further off Newton's method
-/// has gone over to a neighbouring family.
+/// A smooth family leaves the chord by about this share of it times position (1 - position); further off Newton's
+/// method has gone over to a neighbouring family.
 constexpr double bulge = 0.8;
 
 bool is_between(double a, double b, double x, double widening) {

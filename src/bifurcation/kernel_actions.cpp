@@ -13,7 +13,8 @@ namespace orbweaver::bifurcation {
 
 namespace {
 
-/// Kernel vectors are orthonormal and an oscillation about an equilibrium is of harmonic 1 to this, or the caller is wrong.
+/// Kernel vectors are orthonormal and an oscillation about an equilibrium is of harmonic 1 to this, or the caller is
+/// wrong.
 constexpr double orthonormal = 1e-6;
 constexpr double pure_oscillation = 1e-9;
 
@@ -39,8 +40,8 @@ int order_of(const systems::AffineMap& map, const std::vector<int>& angles) {
   return order;
 }
 
-// Shifts of symmetries are multiples of T/m over the order of their matrix (and of quarters, as in isotropies), the loop
-// being an orbit m times around.
+// Shifts of symmetries are multiples of T/m over the order of their matrix (and of quarters, as in isotropies), the
+// loop being an orbit m times around.
 int shared_order(const loop::Isotropy& group, const std::vector<int>& angles) {
   int order = 4;
   for (const loop::SymmetryElement& s : group) order = std::lcm(order, order_of(s.map, angles));

@@ -17,8 +17,9 @@ struct Action {
   [[nodiscard]] bool maps(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const;
 };
 
-/// All spatio-temporal symmetries of a loop, and how they act on a kernel: the group that the declared symmetries generate
-/// with the time shifts that the loop allows. A constant loop allows every shift: the actions then hold a finite part of these, and comparisons all of them.
+/// All spatio-temporal symmetries of a loop, and how they act on a kernel: the group that the declared symmetries
+/// generate with the time shifts that the loop allows. A constant loop allows every shift: the actions then hold a
+/// finite part of these, and comparisons all of them.
 class KernelActions {
  public:
   KernelActions(const systems::Structure& system, const loop::Loop& base, const std::vector<loop::Tangent>& kernel,
@@ -34,7 +35,8 @@ class KernelActions {
   /// The kernel vector with these coordinates, and back.
   [[nodiscard]] loop::Tangent vector_at(const Eigen::VectorXd& coordinates) const;
   [[nodiscard]] Eigen::VectorXd coordinates_of(std::span<const double> modes) const;
-  /// +1 if a symmetry maps `from` to `to`, -1 if only to -`to`, 0 if neither; unit vectors, as far apart as `tolerance`.
+  /// +1 if a symmetry maps `from` to `to`, -1 if only to -`to`, 0 if neither; unit vectors, as far apart as
+  /// `tolerance`.
   [[nodiscard]] int image(const Eigen::VectorXd& from, const Eigen::VectorXd& to, double tolerance) const;
 
  private:

@@ -44,8 +44,8 @@ struct Search {
     return inside / length;
   }
 
-  // Newton's method turns away from the direction that it is pinned to, or stalls on the way: it is pinned again to the one
-  // it came to, until that stays. Then the part in the kernel has the amplitude itself.
+  // Newton's method turns away from the direction that it is pinned to, or stalls on the way: it is pinned again to the
+  // one it came to, until that stays. Then the part in the kernel has the amplitude itself.
   template <class Unwanted>
   [[nodiscard]] std::optional<FoundOrbit> settle(Eigen::VectorXd pinned, const Unwanted& unwanted) const {
     for (int pins = 0; pins < most_pins; ++pins) {
@@ -62,8 +62,8 @@ struct Search {
     return std::nullopt;
   }
 
-  // Neighbouring directions lead back to it, or on to one that is `taken`: it is neither one of a continuum nor one where the
-  // loss, at this amplitude, is below its threshold along all directions.
+  // Neighbouring directions lead back to it, or on to one that is `taken`: it is neither one of a continuum nor one
+  // where the loss, at this amplitude, is below its threshold along all directions.
   template <class Taken>
   [[nodiscard]] bool is_isolated(const Eigen::VectorXd& v, double nudge, const Taken& taken) const {
     Eigen::MatrixXd along = v;

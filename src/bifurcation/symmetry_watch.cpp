@@ -21,7 +21,8 @@ constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr double negligible = 1e-8;  // of a broken part, relative to the loop
 constexpr std::size_t phases = 3;    // of a reversor that are watched: the closest ones
 
-// Columns: the complex coefficients of harmonics 0 ... K, so that |z|^2 = sum |column|^2 (harmonics weighted by sqrt(1/2)).
+// Columns: the complex coefficients of harmonics 0 ... K, so that |z|^2 = sum |column|^2 (harmonics weighted by
+// sqrt(1/2)).
 Eigen::MatrixXcd coefficients_of(const loop::Loop& loop) {
   Eigen::MatrixXcd out(loop.dimension, loop.cutoff + 1);
   for (int i = 0; i < loop.dimension; ++i) {
@@ -125,8 +126,8 @@ SymmetryWatch::Products SymmetryWatch::compare(const Gained& gained, const Seen&
   return {broken_a.squaredNorm(), broken_a.cwiseProduct(broken_b.conjugate()).sum().real(), broken_b.squaredNorm()};
 }
 
-// <c(A), c(B)> of one matrix for all its shifts, from correlations harmonic by harmonic: cheap, but known only to rounding of
-// |A||B|, which decides where nothing is gained.
+// <c(A), c(B)> of one matrix for all its shifts, from correlations harmonic by harmonic: cheap, but known only to
+// rounding of |A||B|, which decides where nothing is gained.
 class SymmetryWatch::Correlation {
  public:
   Correlation(const systems::AffineMap& inverse, const Seen& a, const Seen& b, const std::vector<int>& angles)

@@ -125,7 +125,8 @@ double LoopProblem::action(const Trial& trial) { return action_of(_system, trial
 
 const loss::Unknowns& LoopProblem::unknowns() {
   if (!_unknowns || _unknowns->subspace.cutoff() != resolution().size)
-    _unknowns.emplace(loss::Unknowns{loop::Subspace(_base.dimension, resolution().size, _isotropy), {loss::Scalar::period()}});
+    _unknowns.emplace(
+        loss::Unknowns{loop::Subspace(_base.dimension, resolution().size, _isotropy), {loss::Scalar::period()}});
   return *_unknowns;
 }
 

@@ -63,7 +63,8 @@ Polished polish(const std::shared_ptr<const systems::System>& system, const loop
   return out;
 }
 
-// The residual that the truncation leaves is about rate K tail: only where that explains the loss do more harmonics help.
+// The residual that the truncation leaves is about rate K tail: only where that explains the loss do more harmonics
+// help.
 bool tail_explains(const loop::Loop& loop, double loss_rms, double threshold, const Options& options) {
   // A tail of the size of the modes' own rounding says nothing of the resolution.
   if (loop::tail(loop) <= std::numeric_limits<double>::epsilon() * loop::rms_size(loop)) return false;

@@ -27,9 +27,9 @@ struct NewtonKrylovRun {
 [[nodiscard]] bool newton_krylov_applies(const systems::System& system, const loss::Unknowns& unknowns,
                                          const loss::Slice& slice);
 
-/// Newton's method on the residual projected onto the modes of its symmetry type, each step by GMRES with the box scheme
-/// as preconditioner: O(K log K) time and O(K) memory. The slice's first condition is the normal of the flat direction.
-/// Throws NumericalError or NotFiniteError as the loss and the box scheme do.
+/// Newton's method on the residual projected onto the modes of its symmetry type, each step by GMRES with the box
+/// scheme as preconditioner: O(K log K) time and O(K) memory. The slice's first condition is the normal of the flat
+/// direction. Throws NumericalError or NotFiniteError as the loss and the box scheme do.
 [[nodiscard]] NewtonKrylovRun run_newton_krylov(const systems::System& system, const loop::Loop& guess,
                                                 const loss::Unknowns& unknowns, const loss::Slice& slice,
                                                 const Options& options, bool want_flat_direction);

@@ -1,5 +1,5 @@
-// The paper's optimiser as TAO types: Rprop (Riedmiller and Braun 1993) in the variant that forgets a gradient whose sign
-// has flipped, and the same with the paper's linear extrapolation (section III E).
+// The paper's optimiser as TAO types: Rprop (Riedmiller and Braun 1993) in the variant that forgets a gradient whose
+// sign has flipped, and the same with the paper's linear extrapolation (section III E).
 #include <algorithm>
 #include <cmath>
 

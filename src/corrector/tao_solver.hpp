@@ -10,7 +10,8 @@
 
 namespace orbweaver::corrector {
 
-/// Why the iteration stopped, in our own terms: TAO's convergence test is ours (the convergence callback of tao_solver.cpp), whatever the type.
+/// Why the iteration stopped, in our own terms: TAO's convergence test is ours (the convergence callback of
+/// tao_solver.cpp), whatever the type.
 enum class Stop { none, threshold, stagnation, iterations, tao };
 
 /// What one run of a TAO solver left.

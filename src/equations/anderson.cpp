@@ -23,7 +23,8 @@ constexpr double least_square = 1e-300;
 // iteration is not believed to contract by more than `least_rate`.
 constexpr double safety = 5.0;
 constexpr double least_rate = 0.05;
-// A change at rounding ends a solve only after so many iterations with one factor: the first ones may be small by chance.
+// A change at rounding ends a solve only after so many iterations with one factor: the first ones may be small by
+// chance.
 constexpr int before_rounding = 3;
 // Stagnant: after so many iterations with one factor none of the last four shrank below this part of the first of them.
 constexpr int before_stagnation = 8;

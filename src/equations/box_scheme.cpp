@@ -26,9 +26,10 @@ double sum_of(const Packet& v) { return (v[0] + v[2]) + (v[1] + v[3]); }
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// The elimination, the same for both storages. `Scalar` is a Packet of one number of each of four stretches, or a double.
-/// A vector (d numbers) or a column of a matrix is a row of packets: one a coordinate with lanes, four coordinates in each
-/// without, the last filled up with zeros. `Packets`: so many a vector, 0 where that is known at run time.
+/// The elimination, the same for both storages. `Scalar` is a Packet of one number of each of four stretches, or a
+/// double. A vector (d numbers) or a column of a matrix is a row of packets: one a coordinate with lanes, four
+/// coordinates in each without, the last filled up with zeros. `Packets`: so many a vector, 0 where that is known at
+/// run time.
 template <class Scalar, int Packets>
 class Elimination final : public BoxScheme {
  public:
@@ -508,8 +509,8 @@ class Elimination final : public BoxScheme {
 
 }  // namespace
 
-// Sizes known to the compiler are those of the systems at hand. Known at run time, a solve takes 58 us where it takes 27 (line,
-// d = 8, 201 cells).
+// Sizes known to the compiler are those of the systems at hand. Known at run time, a solve takes 58 us where it takes
+// 27 (line, d = 8, 201 cells).
 std::unique_ptr<BoxScheme> BoxScheme::of_dimension(int dimension, Storage storage) {
   if (storage == Storage::line) {
     if (dimension <= lanes) return std::make_unique<Elimination<double, 1>>(dimension);

@@ -14,10 +14,10 @@ namespace orbweaver::equations {
 ///   left y_0 + right y_cells = e,   or the loop closes: y_cells is y_0,
 ///   sum_j rows_j . y_j + corner p = b,
 ///
-/// factored by orthogonal elimination (Wright 1992, doi:10.1137/0913044: stable where solutions grow and decay). The cells
-/// are cut into stretches; the inner nodes of each are eliminated one by one, and one LU of what is left couples the
-/// stretches' ends, the end conditions and the borders. O(cells d^3) once, O(cells d^2) a solve. Solves share scratch
-/// space: one at a time.
+/// factored by orthogonal elimination (Wright 1992, doi:10.1137/0913044: stable where solutions grow and decay). The
+/// cells are cut into stretches; the inner nodes of each are eliminated one by one, and one LU of what is left couples
+/// the stretches' ends, the end conditions and the borders. O(cells d^3) once, O(cells d^2) a solve. Solves share
+/// scratch space: one at a time.
 class BoxScheme {
  public:
   /// `line`: a stretch each member of the team, for long loops and large d. `lanes`: four stretches side by side in the
@@ -53,8 +53,8 @@ class BoxScheme {
   BoxScheme(BoxScheme&&) = delete;
   BoxScheme& operator=(BoxScheme&&) = delete;
 
-  /// `m` holds the cells of `cells_of`. With a team, this and the solves are collective over it. Throws NumericalError where
-  /// what is left is singular or not finite, MisuseError for more than `most_borders`.
+  /// `m` holds the cells of `cells_of`. With a team, this and the solves are collective over it. Throws NumericalError
+  /// where what is left is singular or not finite, MisuseError for more than `most_borders`.
   virtual void factor(const Matrices& m, core::Team* team = nullptr) = 0;
   /// In place: coordinate i of r_j at [i * stride + j], e_i at [i * stride + cells], b behind the last coordinate; on
   /// return y_j at the same places, and p. Whole on every member.

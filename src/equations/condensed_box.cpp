@@ -8,9 +8,9 @@ namespace orbweaver::equations {
 
 namespace {
 
-// Up to this size the product with the inverse is what a solve takes: 60 ns for 21 unknowns, where Eigen's triangular solves
-// take 390 ns and ones written by hand 340 ns, a third of the whole preconditioner at 32 cells. Computing it takes 3.4 us
-// once. It is a preconditioner's: whoever calls looks at the residual.
+// Up to this size the product with the inverse is what a solve takes: 60 ns for 21 unknowns, where Eigen's triangular
+// solves take 390 ns and ones written by hand 340 ns, a third of the whole preconditioner at 32 cells. Computing it
+// takes 3.4 us once. It is a preconditioner's: whoever calls looks at the residual.
 constexpr int most_inverted = 48;
 
 }  // namespace

@@ -9,13 +9,13 @@
 
 namespace orbweaver::equations {
 
-/// What elimination within the stretches leaves of a box scheme: a dense system for the nodes where stretches meet, and the
-/// borders. Stretch k is between nodes k and k + 1 of this system; where the loop closes the last is between the last and
-/// the first.
+/// What elimination within the stretches leaves of a box scheme: a dense system for the nodes where stretches meet, and
+/// the borders. Stretch k is between nodes k and k + 1 of this system; where the loop closes the last is between the
+/// last and the first.
 class CondensedBox {
  public:
-  /// Of one stretch, as numbers one after the other, matrices by columns: the relation first y_k + next y_(k+1) + border p,
-  /// then its share of the border rows on y_k and on y_(k+1).
+  /// Of one stretch, as numbers one after the other, matrices by columns: the relation first y_k + next y_(k+1) +
+  /// border p, then its share of the border rows on y_k and on y_(k+1).
   [[nodiscard]] static int relation_size(int dimension, int borders) {
     return 2 * dimension * dimension + 3 * dimension * borders;
   }

@@ -183,7 +183,8 @@ void LoopEquations::apply(const In& x, Out out) const {
   out.tail(_slice.conditions().cols()).noalias() = _slice.conditions().transpose() * x.head(_unknowns.size());
 }
 
-// The steps of `apply` backwards. The transpose of the analysis is the synthesis of scaled modes, and the other way round.
+// The steps of `apply` backwards. The transpose of the analysis is the synthesis of scaled modes, and the other way
+// round.
 void LoopEquations::apply_transposed(const In& y, Out out) const {
   const int cutoff = _linearization.cutoff();
   const int dimension = _linearization.dimension();
@@ -277,7 +278,8 @@ void LoopEquations::factor(const systems::System& system, const loop::Loop& loop
     if (first_scalar() + column < _unknowns.size())
       corner.col(column) = _slice.conditions().row(first_scalar() + column).transpose();
   }
-  // c . u in coefficients is the mean over nodes of a loop with twice c's harmonics; y enters through the filter of z = F(y).
+  // c . u in coefficients is the mean over nodes of a loop with twice c's harmonics; y enters through the filter of z =
+  // F(y).
   for (Eigen::Index r = 0; r < borders; ++r) {
     std::vector<double> modes((2 * static_cast<std::size_t>(loop.cutoff) + 1) * d, 0.0);
     const Eigen::VectorXd condition = _slice.conditions().col(r);

@@ -23,8 +23,8 @@ Wave wave_of_row(int row) { return {(row + 1) / 2, row > 0 && row % 2 == 0}; }
 // d/ds of cos(ks) is -k sin(ks), of sin(ks) is k cos(ks).
 double slope_factor(Wave w) { return w.sine ? w.k : -w.k; }
 
-// Fourier sums of one nodal function, sum_j g_j cos(m s_j) and sum_j g_j sin(m s_j), for -2K <= m <= 2K, so that products
-// of two waves need no case for the sign of a difference.
+// Fourier sums of one nodal function, sum_j g_j cos(m s_j) and sum_j g_j sin(m s_j), for -2K <= m <= 2K, so that
+// products of two waves need no case for the sign of a difference.
 class Sums {
  public:
   Sums() = default;
@@ -140,7 +140,8 @@ class HessianAssembly {
     return block;
   }
 
-  // The lower triangle's share of all products of a coefficient of `columns` (P, coordinate i) with one of `rows` (Q, l):
+  // The lower triangle's share of all products of a coefficient of `columns` (P, coordinate i) with one of `rows` (Q,
+  // l):
   //   (2/N) sum_j [ rate^2 P'Q' delta_il / w - rate P' A_il Q - rate P A_li Q' + w P M_il Q ].
   template <bool PSine, bool QSine>
   void add_pair(const Group& columns, const Group& rows, DenseMap h) const {

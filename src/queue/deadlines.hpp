@@ -7,8 +7,8 @@
 
 namespace orbweaver::queue {
 
-/// Rank 0's watch over how long the workers take for their tasks, without the time they stand still for flushes. A task has
-/// `seconds` to end by itself, and the same again to obey when its worker is told to end it. 0: no limit.
+/// Rank 0's watch over how long the workers take for their tasks, without the time they stand still for flushes. A task
+/// has `seconds` to end by itself, and the same again to obey when its worker is told to end it. 0: no limit.
 class Deadlines {
  public:
   Deadlines(double seconds, int ranks) : _seconds(seconds), _of(static_cast<std::size_t>(ranks)) {}

@@ -17,8 +17,8 @@ namespace orbweaver::queue {
 /// What a program says before it ends because a task neither ends nor reports.
 [[nodiscard]] std::string unresponsive_text(const std::string& key, int rank, double task_seconds);
 
-/// A debug line on a task that has ended here: how long it took, the longest time it let pass without a report (s), bytes in
-/// and out, and its children.
+/// A debug line on a task that has ended here: how long it took, the longest time it let pass without a report (s),
+/// bytes in and out, and its children.
 void log_task(const Task& task, const TaskOutcome& outcome, double seconds, double silence);
 
 /// Flushes; returns the text of what was thrown, empty if nothing was.

@@ -40,8 +40,8 @@ void read_continuation(const Field& field, Continuation& continuation) {
       cutoff->fail("from <= to", cutoff->got(), "give the smaller number first");
   }
   if (const auto corrector = keys.find("corrector"))
-    continuation.corrector =
-        corrector->choice({"automatic", "collocation", "newton-krylov", "brgn", "nls", "ntr", "lmvm", "rprop", "rprop-extrapolated"});
+    continuation.corrector = corrector->choice(
+        {"automatic", "collocation", "newton-krylov", "brgn", "nls", "ntr", "lmvm", "rprop", "rprop-extrapolated"});
 }
 
 void read_survey(const Field& field, Survey& survey) {

@@ -33,9 +33,9 @@ struct Chain {
 void evaluate_field(const systems::System& system, Chain& chain);
 
 /// The chain with at least `at_least` segments a period: as many as suit the loop's resolution, the rates of its
-/// linearised flow and its symmetries, even on T/p. Segments that a reversor gives are not integrated. A team divides the
-/// segments among its members, who all get the whole chain.
-/// Throws core::NotFiniteError if the Jacobian is not finite on the loop.
+/// linearised flow and its symmetries, even on T/p. Segments that a reversor gives are not integrated. A team divides
+/// the segments among its members, who all get the whole chain. Throws core::NotFiniteError if the Jacobian is not
+/// finite on the loop.
 [[nodiscard]] Chain make_chain(const systems::System& system, VariationalStep& stepper, const loop::Loop& loop,
                                const FundamentalGroup& group, int at_least, core::Team* team = nullptr);
 

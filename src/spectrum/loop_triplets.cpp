@@ -21,7 +21,8 @@ namespace orbweaver::spectrum {
 
 namespace {
 
-// Residuals of a triplet that counts as found: of its value (which then is right to 1e-7), or of 2 pi / T where it is tiny.
+// Residuals of a triplet that counts as found: of its value (which then is right to 1e-7), or of 2 pi / T where it is
+// tiny.
 constexpr double share_of_value = 3e-4;
 constexpr double share_of_rate = 1e-6;
 
@@ -172,7 +173,8 @@ void search(Inverse& inverse, std::vector<Triplet>& found, int count, double tol
   const auto good = [&](const Triplet& t) { return std::max(t.residual, t.left_residual) <= acceptable(t); };
   std::string failure = "Krylov iterations did not converge";
   for (Triplet& t : largest_of(inverse, count, tolerance)) {
-    // Tiny values leave the solves little but their own vectors, and Lanczos vectors mix: inverse iteration cleans them.
+    // Tiny values leave the solves little but their own vectors, and Lanczos vectors mix: inverse iteration cleans
+    // them.
     if (std::max(t.residual, t.left_residual) > share_of_value * t.value) {
       const Eigen::VectorXd right = inverse.apply(inverse.apply_transposed(t.right).normalized()).normalized();
       t = triplet_of(inverse.equations, right, inverse.apply_transposed(right));

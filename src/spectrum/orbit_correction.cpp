@@ -8,9 +8,11 @@ namespace orbweaver::spectrum {
 
 namespace {
 
-/// Segments are joined while the norm of their product stays below this: the correction then loses less than two digits.
+/// Segments are joined while the norm of their product stays below this: the correction then loses less than two
+/// digits.
 constexpr double joined_norm = 30.0;
-/// Weight of the period in the least squares: along a conservative family the orbit of (nearly) the same period is meant.
+/// Weight of the period in the least squares: along a conservative family the orbit of (nearly) the same period is
+/// meant.
 constexpr double period_weight = 1e-3;
 
 using Forcing = Eigen::Matrix<double, Eigen::Dynamic, 2>;

@@ -20,8 +20,8 @@ struct OrbitCorrection {
 /// stable for any growth around the orbit.
 [[nodiscard]] OrbitCorrection orbit_correction(const Chain& chain, const FundamentalGroup& group, bool conservative);
 
-/// The chain along the loop with `factor` times the correction added, to first order in that and second order in h. A team
-/// divides the segments among its members.
+/// The chain along the loop with `factor` times the correction added, to first order in that and second order in h. A
+/// team divides the segments among its members.
 [[nodiscard]] Chain corrected(const systems::System& system, const Chain& chain, const OrbitCorrection& correction,
                               double factor, core::Team* team = nullptr);
 

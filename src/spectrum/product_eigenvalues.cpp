@@ -10,7 +10,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Factors are multiplied while the product's norm stays below this, so that at most two digits of the small values are lost.
+/// Factors are multiplied while the product's norm stays below this, so that at most two digits of the small values are
+/// lost.
 constexpr double joined_norm = 100.0;
 /// Orthogonal iteration of a product of whole periods: a ratio of 10 takes 14 sweeps.
 constexpr int most_sweeps = 40;
@@ -18,7 +19,8 @@ constexpr int most_sweeps = 40;
 constexpr double parted = 1e-14;
 /// Moduli closer than this are taken as one, so that the order of a complex pair does not hang on rounding.
 constexpr double same_modulus = 1e-10;
-/// Double eigenvalues that rounding has split take the library's QR iteration over 160 sweeps, where it stops by default.
+/// Double eigenvalues that rounding has split take the library's QR iteration over 160 sweeps, where it stops by
+/// default.
 constexpr int slow_iterations = 10000;
 
 /// Neighbouring factors multiplied while the norm stays below `joined_norm`, so that no digits are lost.

@@ -18,7 +18,8 @@ struct TransverseFlow {
   [[nodiscard]] Eigen::Index dimension() const { return around.rows(); }
 };
 
-/// Throws core::NumericalError if f vanishes at one of the chain's states. A team divides the segments among its members.
+/// Throws core::NumericalError if f vanishes at one of the chain's states. A team divides the segments among its
+/// members.
 [[nodiscard]] TransverseFlow transverse_flow(const systems::System& system, const Chain& chain,
                                              const FundamentalGroup& group, core::Team* team = nullptr);
 

@@ -69,7 +69,8 @@ Eigen::VectorXcd LinearModes::softest(int k, double period) const {
 std::vector<LinearModes::Root> LinearModes::roots(int k, double low, double near, double high, int depth) const {
   constexpr int deepest = 4;  // divisions of a bracket: parts^4 tells periods apart that differ by 1e-6 of it
   constexpr int parts = 40;
-  // Singular values of M move no faster than |dM/dT| = 2 pi k / T^2: only those within reach of 0 in the bracket can vanish.
+  // Singular values of M move no faster than |dM/dT| = 2 pi k / T^2: only those within reach of 0 in the bracket can
+  // vanish.
   const double reach = 2.0 * std::numbers::pi * k / (low * low) * (high - low);
   const auto smallest_at = [&](double period) { return singular_vectors(matrix(k, period)).singularValues(); };
   const Eigen::VectorXd sigma = smallest_at(near);

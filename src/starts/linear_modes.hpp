@@ -10,8 +10,8 @@
 
 namespace orbweaver::starts {
 
-/// The loop problem linearised at a fixed point, one harmonic k at a time: M(T) = i k (2 pi / T) - A, singular where the
-/// equilibrium has oscillations z = Re(v e^{iks}) of period T.
+/// The loop problem linearised at a fixed point, one harmonic k at a time: M(T) = i k (2 pi / T) - A, singular where
+/// the equilibrium has oscillations z = Re(v e^{iks}) of period T.
 class LinearModes {
  public:
   LinearModes(const systems::System& system, std::span<const double> fixed_point);
@@ -23,9 +23,9 @@ class LinearModes {
     Eigen::MatrixXcd kernel;  ///< one vector a column
   };
 
-  /// The roots of harmonic k in [low, high], seen as a dip at `near`: zeros of the signed function Re tr(g g'^-1), where g(T)
-  /// is the block that borders M (docs/mathematics.md, "Sweep"). Empty where the function has no sign change or M stays
-  /// regular. Where several singular values are small but do not vanish together the bracket is divided.
+  /// The roots of harmonic k in [low, high], seen as a dip at `near`: zeros of the signed function Re tr(g g'^-1),
+  /// where g(T) is the block that borders M (docs/mathematics.md, "Sweep"). Empty where the function has no sign change
+  /// or M stays regular. Where several singular values are small but do not vanish together the bracket is divided.
   [[nodiscard]] std::vector<Root> roots(int k, double low, double near, double high, int depth = 0) const;
 
   /// The right singular vector of the smallest singular value of M(T) at harmonic k.

@@ -7,8 +7,8 @@
 
 namespace orbweaver::systems {
 
-/// What a model is made from: a value for every parameter, and the effects asked for, all checked. Values are numbers, or
-/// (to differentiate by a parameter) of the scalar type of the field.
+/// What a model is made from: a value for every parameter, and the effects asked for, all checked. Values are numbers,
+/// or (to differentiate by a parameter) of the scalar type of the field.
 template <class P>
 struct BoundTo {
   std::map<std::string, P> parameters;

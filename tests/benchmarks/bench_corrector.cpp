@@ -1,4 +1,5 @@
-// One correction against the cutoff K: an orbit padded to K, pushed off by a smooth perturbation, corrected at its period.
+// One correction against the cutoff K: an orbit padded to K, pushed off by a smooth perturbation, corrected at its
+// period.
 #include <benchmark/benchmark.h>
 
 #include "family_orbit.hpp"

@@ -1,5 +1,5 @@
-// Traces the families of the double pendulum in a fresh process and prints what it cost: one side of the comparison with
-// AUTO-07p (tests/benchmarks/auto07p/compare.py).
+// Traces the families of the double pendulum in a fresh process and prints what it cost: one side of the comparison
+// with AUTO-07p (tests/benchmarks/auto07p/compare.py).
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

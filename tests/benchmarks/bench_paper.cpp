@@ -1,5 +1,5 @@
-// The paper's optimiser (Rprop with linear extrapolation, sections III A and III E) against the default corrector: one step
-// of 0.5 degrees along a family at the paper's K, tolerance and subspace.
+// The paper's optimiser (Rprop with linear extrapolation, sections III A and III E) against the default corrector: one
+// step of 0.5 degrees along a family at the paper's K, tolerance and subspace.
 #include <benchmark/benchmark.h>
 
 #include <cmath>

@@ -121,8 +121,8 @@ void measure(const core::Communicator& comm, const Settings& settings, const std
   std::fflush(stdout);
 }
 
-// Tasks of one length; enough for about the wanted duration, if a worker waits 0.2 ms between two and rank 0 needs 20 us
-// and 1 ns a byte.
+// Tasks of one length; enough for about the wanted duration, if a worker waits 0.2 ms between two and rank 0 needs 20
+// us and 1 ns a byte.
 void measure_equal(const core::Communicator& comm, const Settings& settings, double seconds, double bytes) {
   const int workers = comm.size() - 1;
   const double rate = std::min(workers / (seconds + 2e-4), 1.0 / (2e-5 + 1e-9 * bytes));

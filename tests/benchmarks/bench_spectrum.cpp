@@ -111,7 +111,8 @@ void off_branch(benchmark::State& state, double period, bool symmetric) {
   report(state, problem, peak, found);
 }
 
-/// One continuation step of a family, full loop: prediction, correction with its tangent, the two smallest off-branch triplets.
+/// One continuation step of a family, full loop: prediction, correction with its tangent, the two smallest off-branch
+/// triplets.
 void step_with_triplets(benchmark::State& state, Family family, double period) {
   const OnFamily problem(family, period, static_cast<int>(state.range(0)), false);
   const Eigen::VectorXd prediction = 0.02 * problem.conditions.col(0);

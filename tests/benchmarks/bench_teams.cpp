@@ -1,4 +1,5 @@
-// bench_teams [--rounds N]: what a task costs one rank and a team of all ranks, in turn within one run; under mpirun -n 2.
+// bench_teams [--rounds N]: what a task costs one rank and a team of all ranks, in turn within one run; under mpirun -n
+// 2.
 #include <algorithm>
 #include <chrono>
 #include <functional>

@@ -1,5 +1,5 @@
-// Harmonics that the families' orbits need for a tail of 1e-12: evenly in time, under the best pulse, under the general map,
-// and under the general map fitted once more to the loop under the first.
+// Harmonics that the families' orbits need for a tail of 1e-12: evenly in time, under the best pulse, under the general
+// map, and under the general map fitted once more to the loop under the first.
 #include <array>
 
 #include <fmt/format.h>

@@ -44,7 +44,8 @@ inline std::vector<double> kernel_of(const loop::Loop& loop, const loop::Subspac
   return modes;
 }
 
-/// The first orbits of a branch on either side of its crossing, in its own order: those on the side of -direction first.
+/// The first orbits of a branch on either side of its crossing, in its own order: those on the side of -direction
+/// first.
 struct Branching {
   loop::Isotropy isotropy;
   loop::Loop crossing;

@@ -120,8 +120,9 @@ TEST(ClosedForms, LostStabilityAtOnePassesOne) {
 }
 
 TEST(ClosedForms, SpringSwingsAtHalfItsFrequency) {
-  // A swinging spring near its 1:2 resonance: frequency 1/2 + delta beside z_0, coupled by g Re(conj(z_0) z_1^2)/2; in axes
-  // that turn half as fast as z_0 coefficients are constant, and the index is -2 cos(2 pi sqrt(delta^2 - 2 g^2 I)).
+  // A swinging spring near its 1:2 resonance: frequency 1/2 + delta beside z_0, coupled by g Re(conj(z_0) z_1^2)/2; in
+  // axes that turn half as fast as z_0 coefficients are constant, and the index is -2 cos(2 pi sqrt(delta^2 - 2 g^2
+  // I)).
   const double delta = 0.2;
   const double g = 0.3;
   const Eigen::Matrix2d swap = (Eigen::Matrix2d() << 0, g, g, 0).finished();

@@ -134,8 +134,9 @@ struct Followed {
   }
 };
 
-// At T = 10.4168 the in-phase family of the ideal pendulum crosses IB, which breaks both reversors. In the field the two
-// curves pass one another instead, at a distance of about the cube root of its strength, and turn ever more sharply.
+// At T = 10.4168 the in-phase family of the ideal pendulum crosses IB, which breaks both reversors. In the field the
+// two curves pass one another instead, at a distance of about the cube root of its strength, and turn ever more
+// sharply.
 class FamilyJump : public ::testing::TestWithParam<double> {
  protected:
   std::shared_ptr<const systems::System> system = std::make_shared<MagneticPendulum>(GetParam());

@@ -10,9 +10,9 @@
 
 namespace orbweaver::test {
 
-/// H = I + x' A x / 2 with I = (q^2 + p^2)/2 and A = A_0 + I A_I + q A_q + p A_p; state q, p, x = (x_1, y_1, x_2, y_2, ..).
-/// In the invariant plane x = 0 lie circles q = r cos t, p = -r sin t with period 2 pi, one for each I = r^2/2. Along one
-/// of them dx/dt = J A(t) x, J made of blocks (0 1; -1 0).
+/// H = I + x' A x / 2 with I = (q^2 + p^2)/2 and A = A_0 + I A_I + q A_q + p A_p; state q, p, x = (x_1, y_1, x_2, y_2,
+/// ..). In the invariant plane x = 0 lie circles q = r cos t, p = -r sin t with period 2 pi, one for each I = r^2/2.
+/// Along one of them dx/dt = J A(t) x, J made of blocks (0 1; -1 0).
 class PlaneFamily final : public PointSystem {
  public:
   struct Forms {
@@ -86,8 +86,8 @@ class PlaneFamily final : public PointSystem {
 };
 
 /// The limit cycle u = cos t, v = sin t of Hopf's normal form (its own contraction exp(-4 pi)), and beside it
-/// dw/dt = (s + d (u v; v -u) + turn J) w in the plane w, J = (0 -1; 1 0). In axes that turn half as fast as the cycle this
-/// has constant coefficients: the multipliers are -exp(2 pi (s +- sqrt(d^2 - (turn - 1/2)^2))).
+/// dw/dt = (s + d (u v; v -u) + turn J) w in the plane w, J = (0 -1; 1 0). In axes that turn half as fast as the cycle
+/// this has constant coefficients: the multipliers are -exp(2 pi (s +- sqrt(d^2 - (turn - 1/2)^2))).
 class PlaneCycle final : public PointSystem {
  public:
   PlaneCycle(double s, double d, double turn) : PointSystem(structure_of(4)), _s(s), _d(d), _turn(turn) {}

@@ -49,7 +49,8 @@ std::vector<double> overlaps(const loop::Tangent& tangent, const std::vector<std
   return out;
 }
 
-/// All images of the known directions under the half map and the shifts by a turn of the orbit, in the crossing's own time.
+/// All images of the known directions under the half map and the shifts by a turn of the orbit, in the crossing's own
+/// time.
 std::vector<std::vector<double>> images(const Crossing& crossing, const std::vector<Direction>& known, int times) {
   std::vector<std::vector<double>> out;
   for (const Direction& direction : known) {

@@ -95,8 +95,8 @@ TEST_P(Families, StepsAndArclengthCountUp) {
   }
 }
 
-// dW/dE = T: by Cauchy's mean value theorem the chord between neighbours is a period between theirs, whatever the step. The
-// energies of tiny loops are differences of numbers of order 1: 1e-15 over their distance.
+// dW/dE = T: by Cauchy's mean value theorem the chord between neighbours is a period between theirs, whatever the step.
+// The energies of tiny loops are differences of numbers of order 1: 1e-15 over their distance.
 TEST_P(Families, ChordOfActionAgainstEnergyIsAPeriodBetween) {
   for (std::size_t n = 1; n < family().orbits.size(); ++n) {
     const Orbit& a = family().orbits[n - 1];

@@ -1,5 +1,5 @@
-// Makes sessions and looks at what is running before, within and after: `owns` lets the session start MPI, `borrows` starts
-// it outside. Exit status 0 when everything was as it should be, else the number of things that were not.
+// Makes sessions and looks at what is running before, within and after: `owns` lets the session start MPI, `borrows`
+// starts it outside. Exit status 0 when everything was as it should be, else the number of things that were not.
 #include <cstdio>
 #include <string>
 

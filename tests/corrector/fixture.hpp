@@ -26,9 +26,9 @@ struct Problem {
     normal = to_vector(unknowns.difference(base, guess)).normalized();
   }
 
-  /// The guess with the period and every coefficient of the subspace moved by up to `share` of the loop's size; the noise
-  /// falls off with the harmonic as the modes of smooth loops do. It stays in the slice through the guess, so that all
-  /// noisy guesses belong to one orbit.
+  /// The guess with the period and every coefficient of the subspace moved by up to `share` of the loop's size; the
+  /// noise falls off with the harmonic as the modes of smooth loops do. It stays in the slice through the guess, so
+  /// that all noisy guesses belong to one orbit.
   [[nodiscard]] loop::Loop noisy(double share, unsigned seed) const {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> uniform(-share, share);

@@ -1,5 +1,5 @@
-// A family of another kind than conservative: the limit cycle of van der Pol's oscillator, T and mu both solved for under a
-// phase condition and a pin. The equations only count: no unfolding, since nothing is conserved.
+// A family of another kind than conservative: the limit cycle of van der Pol's oscillator, T and mu both solved for
+// under a phase condition and a pin. The equations only count: no unfolding, since nothing is conserved.
 #include <cmath>
 #include <numbers>
 

@@ -33,8 +33,8 @@ const loop::Loop& reference() {
 
 class EveryMethod : public testing::TestWithParam<Method> {};
 
-// A loop with sqrt(loss) = rms lies within rms / sigma of the orbit, sigma the smallest singular value of J on the slice; the
-// second order adds about 1e-8 of that here.
+// A loop with sqrt(loss) = rms lies within rms / sigma of the orbit, sigma the smallest singular value of J on the
+// slice; the second order adds about 1e-8 of that here.
 TEST_P(EveryMethod, FindsTheSameOrbitFromNoise) {
   ASSERT_NEAR(reference().period, 8.27175542100751, 1e-12);
   for (unsigned seed = 1; seed <= 5; ++seed) {

@@ -10,7 +10,8 @@
 namespace orbweaver::corrector {
 namespace {
 
-/// An in-phase loop corrected in the subspace of some of its symmetries; the time shift is held where the subspace has it.
+/// An in-phase loop corrected in the subspace of some of its symmetries; the time shift is held where the subspace has
+/// it.
 struct InSubspace {
   InSubspace(const std::string& symmetries, double amplitude, int cutoff)
       : guess(test::linear_loop(test::in_phase(), amplitude, cutoff)),

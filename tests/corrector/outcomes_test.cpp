@@ -124,7 +124,8 @@ INSTANTIATE_TEST_SUITE_P(Outcomes, EveryMethodFails, testing::ValuesIn(all_metho
   return name;
 });
 
-// Three times the true period: the full Gauss-Newton step leads to T = -3. BRGN takes it (and says so), the others search.
+// Three times the true period: the full Gauss-Newton step leads to T = -3. BRGN takes it (and says so), the others
+// search.
 TEST(Outcomes, PeriodNotPositiveOnTheWay) {
   const test::Oscillator oscillator(0.0);
   expect_outcome(CircleGuess(oscillator, 3.0).correct({.method = Method::brgn}), Outcome::period_not_positive);

@@ -56,7 +56,8 @@ struct Tiny {
 
 class TinyAmplitude : public testing::TestWithParam<Tiny> {};
 
-// The period moves with the square of the amplitude; around a point away from 0 rounding eps pi / amplitude comes on top.
+// The period moves with the square of the amplitude; around a point away from 0 rounding eps pi / amplitude comes on
+// top.
 TEST_P(TinyAmplitude, ConvergesToTheNormalMode) {
   const auto& [mode, amplitude, period_error, shape_error] = GetParam();
   const test::Problem problem(mode, amplitude, 10);

@@ -113,7 +113,8 @@ TEST_P(InSectors, TransposesAreTransposed) {
   EXPECT_NEAR(y.dot(mx), x.dot(mty), 1e-12 * mx.norm());
 }
 
-// A second-order scheme: the error goes with (2K + 1)^-2. (The column of T is right at orbits only: sectors without it.)
+// A second-order scheme: the error goes with (2K + 1)^-2. (The column of T is right at orbits only: sectors without
+// it.)
 TEST(LoopEquations, TheBoxSchemeInvertsThemToSecondOrder) {
   for (const char* sector : {"+-", "-+", "--"}) {
     double error[2];

@@ -1,4 +1,5 @@
-// A tangent moves modes and scalars together: the same difference, the same length, whatever the loop's cutoff and time map.
+// A tangent moves modes and scalars together: the same difference, the same length, whatever the loop's cutoff and time
+// map.
 #include "orbweaver/loop/curve/tangent.hpp"
 
 #include <gtest/gtest.h>

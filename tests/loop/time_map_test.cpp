@@ -41,8 +41,8 @@ TEST(TimeMap, IdentityByDefault) {
   EXPECT_FALSE((TimeMap{1.0, {0.0, 0.1}}).is_identity());
 }
 
-// Fitted to an orbit of the double pendulum. The phase has a step near s = 4, on either side of which Newton's method jumps
-// to the other side, again and again.
+// Fitted to an orbit of the double pendulum. The phase has a step near s = 4, on either side of which Newton's method
+// jumps to the other side, again and again.
 TEST(TimeMap, InverseWhereThePhaseHasAStep) {
   const TimeMap map{1.0,
                     {-0.12, -0.60, 0.32,  0.51,  0.45,  -0.20, -0.22, -0.07, 0.22,  0.16,  0.08, -0.21, -0.16, 0.10,

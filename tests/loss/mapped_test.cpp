@@ -1,5 +1,5 @@
-// One curve under the identity and under a time map: the loss, its gradient along a change of the curve and of the period,
-// and the direction of a time shift are those of the curve.
+// One curve under the identity and under a time map: the loss, its gradient along a change of the curve and of the
+// period, and the direction of a time shift are those of the curve.
 #include <cmath>
 
 #include <gtest/gtest.h>

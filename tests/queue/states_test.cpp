@@ -16,8 +16,8 @@ using queue::TaskOutcome;
 
 constexpr int steps_each = 40;
 
-/// A step a row; the state is the number of steps done. Rows count as written from the flush on, and what a flush writes
-/// stays only if the queue was told that it succeeded, as in a program that is killed and begun again.
+/// A step a row; the state is the number of steps done. Rows count as written from the flush on, and what a flush
+/// writes stays only if the queue was told that it succeeded, as in a program that is killed and begun again.
 class Steps : public queue::Executor, public queue::Flusher, public queue::Observer {
  public:
   explicit Steps(const Communicator& comm) : _comm(comm) {}

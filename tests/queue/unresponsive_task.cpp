@@ -38,7 +38,8 @@ int main(int argc, char** argv) {
     Unresponsive executor;
     Nothing flusher;
     queue::Observer nobody;
-    queue::run(comm, options, {{"a", 0, "", ""}, {"unresponsive", 1, "", ""}, {"z", 2, "", ""}}, executor, nobody, flusher);
+    queue::run(comm, options, {{"a", 0, "", ""}, {"unresponsive", 1, "", ""}, {"z", 2, "", ""}}, executor, nobody,
+               flusher);
   }
   MPI_Finalize();
   return 0;

@@ -132,8 +132,8 @@ TEST(SweepReport, ModesOfAResonance) {
     expect_close(report[0].modes[n].period, 2.0 * std::numbers::pi, 1e-12, isotropies[n]);
     EXPECT_EQ(report[0].modes[n].isotropy, isotropies[n]);
   }
-  // y'' = y^2 - y along the axis of symmetry: frequency 1 - 5 a^2 / 12 at amplitude a, so that after 2 pi the momentum is
-  // a 2 pi (5 a^2 / 12).
+  // y'' = y^2 - y along the axis of symmetry: frequency 1 - 5 a^2 / 12 at amplitude a, so that after 2 pi the momentum
+  // is a 2 pi (5 a^2 / 12).
   const double a = 0.5 * std::numbers::pi / 180.0;
   expect_close(report[0].modes[0].deviation, 0.5 * 2.0 * std::numbers::pi * 5.0 / 12.0 * a * a, 0.02, "deviation");
 }

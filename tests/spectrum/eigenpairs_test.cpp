@@ -44,8 +44,8 @@ struct Case {
 
 class KnownSpectrum : public testing::TestWithParam<Case> {};
 
-// The matrix in floating point has the spectrum up to a few eps |H| (Weyl), so that is the tolerance for values. Vectors
-// come from solves with H + 1e-8 |H|, whose rounding leaves residuals of up to 1e-10 |H|.
+// The matrix in floating point has the spectrum up to a few eps |H| (Weyl), so that is the tolerance for values.
+// Vectors come from solves with H + 1e-8 |H|, whose rounding leaves residuals of up to 1e-10 |H|.
 TEST_P(KnownSpectrum, SmallestPairs) {
   for (const int size : sizes) {
     SCOPED_TRACE("size " + std::to_string(size));

@@ -144,7 +144,8 @@ TEST(LoopTriplets, KeepFiveDigitsOfATinyValueThatEigenvaluesOfHLose) {
   EXPECT_GT(std::abs(smallest_eigenpairs(h, {.count = 1}).values[0] - squared), 0.01 * squared);
 }
 
-// Where the smallest value is 0 to rounding, solves hold nothing but its vector: the next one must come out all the same.
+// Where the smallest value is 0 to rounding, solves hold nothing but its vector: the next one must come out all the
+// same.
 TEST(LoopTriplets, FindTheNextValuesBesideAFlatDirection) {
   Problem problem(in_phase_at(9.0), "+-");
   const Eigen::VectorXd shift = problem.slice.conditions().col(0);

@@ -54,7 +54,8 @@ TEST_P(PendulumModes, PeriodsToRounding) {
   EXPECT_LT(mode->residual, 1e-13);
   EXPECT_EQ(loop::to_text(mode->isotropy), "S@1/2 R@0");
 
-  // |dz(s = 0)| = 1, at rest there: cosines of the angles in the mode's ratio, sines of the velocities that belong to it.
+  // |dz(s = 0)| = 1, at rest there: cosines of the angles in the mode's ratio, sines of the velocities that belong to
+  // it.
   loop::Loop direction = loop::constant_loop(wanted.point, wanted.period(), 10);
   ASSERT_EQ(mode->direction.modes.size(), direction.modes.size());
   ASSERT_EQ(mode->grid_direction.modes.size(), direction.modes.size());
@@ -148,7 +149,8 @@ TEST(Sweep, OtherMassesAndLengths) {
   }
 }
 
-// The slow mode (T = 7.464672...) lies 0.0147 below four times the fast one: with steps of 0.02 the two dips show as one.
+// The slow mode (T = 7.464672...) lies 0.0147 below four times the fast one: with steps of 0.02 the two dips show as
+// one.
 TEST(Sweep, ADipBehindAMultipleIsFound) {
   const auto system = systems::make_system("double_pendulum", {{"m2", 3.0}, {"l2", 0.5}});
   const SweepResult result =

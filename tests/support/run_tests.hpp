@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 #include <mpi.h>
 
-/// All tests, between MPI's start and its end. Under mpirun only rank 0 prints; a failure on any rank is the result of all.
+/// All tests, between MPI's start and its end. Under mpirun only rank 0 prints; a failure on any rank is the result of
+/// all.
 inline int run_tests(int argc, char** argv) {
   ::testing::InitGoogleTest(&argc, argv);
   int rank = 0;

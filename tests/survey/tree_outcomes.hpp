@@ -135,7 +135,8 @@ inline Ended start_failed(const survey::BranchWork& work, const std::string& rea
   return {task_of(survey::StartWork{work}), {"start " + work.key, true, reason, {}, "", false}};
 }
 
-/// The location of a place, with `directions` directions; both sides of each are different where it is three times around.
+/// The location of a place, with `directions` directions; both sides of each are different where it is three times
+/// around.
 inline Ended located(const Place& place, int directions = 2) {
   survey::LocateWork work;
   work.key = place.key;

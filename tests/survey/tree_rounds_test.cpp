@@ -37,9 +37,10 @@ class TreeRounds : public ::testing::Test {
   FamilyTree tree{scene, test::structure_of("double_pendulum")};
 };
 
-// P's family ends at Q, where Q's is the same from the other end. Both have a crossing at one place of theirs, a family born
-// there, and R's family arrives at that place: at the crossing on Q's family, as far as the loops can tell. That one
-// is dropped with its family, so R's arrives at the crossing on P's, and what was born there is R's from the other end.
+// P's family ends at Q, where Q's is the same from the other end. Both have a crossing at one place of theirs, a family
+// born there, and R's family arrives at that place: at the crossing on Q's family, as far as the loops can tell. That
+// one is dropped with its family, so R's arrives at the crossing on P's, and what was born there is R's from the other
+// end.
 TEST_F(TreeRounds, AnArrivalAtACrossingThatIsDroppedCountsAtTheNextBest) {
   const Place on_p{p.leaving(0) + "/000.q2.j1", 17.0, 6.0, 1, p.leaving(0), 1};
   const Place on_q{q.leaving(0) + "/000.q2.j1", 17.0, 6.0002, 1, q.leaving(0), 1};

@@ -1,7 +1,7 @@
 // check_action ATLAS TOLERANCE: dW/dE = T along every family, W the action and E the energy. Both are taken as
 // polynomials of degree 6 through seven neighbouring orbits, an error of sixth order in the steps: in the arclength,
-// or in the period where it grows throughout, whichever is better. The energy may turn, so the gap between dW and T dE is
-// held against T times the greatest slope of the energy among the seven. Families of fewer orbits are passed over.
+// or in the period where it grows throughout, whichever is better. The energy may turn, so the gap between dW and T dE
+// is held against T times the greatest slope of the energy among the seven. Families of fewer orbits are passed over.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

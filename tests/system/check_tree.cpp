@@ -1,5 +1,5 @@
-// check_tree ATLAS [--failures N] [--base-families N]: whether the families of a survey make a sound tree (tree_problems.hpp).
-// Ends with 1 and a line a problem where they do not.
+// check_tree ATLAS [--failures N] [--base-families N]: whether the families of a survey make a sound tree
+// (tree_problems.hpp). Ends with 1 and a line a problem where they do not.
 #include <cstdio>
 #include <cstdlib>
 #include <string>

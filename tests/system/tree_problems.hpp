@@ -10,7 +10,7 @@ namespace orbweaver::test {
 
 struct TreeOptions {
   std::size_t failures = 0;  ///< families that may end in failure
-  int base_families = -1;            ///< families without a parent that there must be; -1: any number
+  int base_families = -1;    ///< families without a parent that there must be; -1: any number
 };
 
 /// What is wrong with the tree of families, one sentence each (empty: nothing). Looked at are the references between

@@ -31,14 +31,14 @@ struct DirectionOptions {
   corrector::Options corrector{};    ///< of a search
 };
 
-/// The directions in which families leave `base` along its kernel (docs/mathematics.md, "Kernels and directions"), those
-/// with a reversor first, in the system's order of reversors.
+/// The directions in which families leave `base` along its kernel (docs/mathematics.md, "Kernels and directions"),
+/// those with a reversor first, in the system's order of reversors.
 ///
 /// base: the crossing's orbit gone around m times (identity time map), or the constant loop at an equilibrium.
 /// isotropy: generators of the crossing's orbit; base must have each of them, whatever its shift.
 /// kernel: null vectors with orthonormal modes; at an equilibrium of harmonic 1 alone, both phases of each
-/// oscillation. Throws MisuseError for sizes that disagree or vectors that are not orthonormal, NumericalError where the
-/// symmetries do not map the kernel to itself isometrically, or where directions are not isolated (a continuum).
+/// oscillation. Throws MisuseError for sizes that disagree or vectors that are not orthonormal, NumericalError where
+/// the symmetries do not map the kernel to itself isometrically, or where directions are not isolated (a continuum).
 [[nodiscard]] std::vector<Direction> directions(const systems::System& system, const loop::Loop& base,
                                                 const loop::Isotropy& isotropy,
                                                 const std::vector<loop::Tangent>& kernel,
@@ -50,8 +50,8 @@ struct DirectionOptions {
                                                             const Eigen::MatrixXcd& kernel, int cutoff,
                                                             const DirectionOptions& options = {});
 
-/// The orbit at base + amplitude * along + u, u orthogonal to `along` and to the time shift: never the base's own family,
-/// which is orthogonal to it too. More harmonics are taken where the orbit needs them.
+/// The orbit at base + amplitude * along + u, u orthogonal to `along` and to the time shift: never the base's own
+/// family, which is orthogonal to it too. More harmonics are taken where the orbit needs them.
 [[nodiscard]] corrector::Result born_orbit(const systems::System& system, const loop::Loop& base,
                                            const loop::Tangent& along, const loop::Isotropy& isotropy, double amplitude,
                                            const corrector::Options& options = {});

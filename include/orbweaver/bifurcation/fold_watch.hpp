@@ -17,8 +17,9 @@ struct Fold {
 /// Finds folds from the orbits of a family one after the other.
 class FoldWatch {
  public:
-  /// The folds that this orbit shows, between it and up to two earlier ones that differ by more than rounding: differences
-  /// count above 1e-10 times the largest modulus so far. Quantities that are NaN are passed over. Throws MisuseError unless positions increase.
+  /// The folds that this orbit shows, between it and up to two earlier ones that differ by more than rounding:
+  /// differences count above 1e-10 times the largest modulus so far. Quantities that are NaN are passed over. Throws
+  /// MisuseError unless positions increase.
   [[nodiscard]] std::vector<Fold> advance(double position, double period, double energy);
 
   /// One quantity's last two orbits that differ.

@@ -21,8 +21,8 @@ struct IdentityOptions {
 /// What a comparison of an orbit with a family found.
 struct Comparison {
   bool same = false;
-  /// sqrt(mean |dz|^2 + (dT/T)^2) from the family's orbit that was corrected beside it, or from the chord or its ends where
-  /// that was enough to tell; infinite where the invariants were.
+  /// sqrt(mean |dz|^2 + (dT/T)^2) from the family's orbit that was corrected beside it, or from the chord or its ends
+  /// where that was enough to tell; infinite where the invariants were.
   double distance = std::numeric_limits<double>::infinity();
   double position = std::numeric_limits<double>::quiet_NaN();  ///< of its projection on the chord: 0 at `a`, 1 at `b`
   std::string detail;                                          ///< how it was told
@@ -30,16 +30,17 @@ struct Comparison {
   explicit operator bool() const { return same; }
 };
 
-/// True unless period, energy or action of `x` lie outside those of the neighbours `a` and `b`: the range between the two,
-/// widened at both ends by half of itself and by `widening` of the value (the energy's: of the mean of p . dq/dt). Cheap.
+/// True unless period, energy or action of `x` lie outside those of the neighbours `a` and `b`: the range between the
+/// two, widened at both ends by half of itself and by `widening` of the value (the energy's: of the mean of p . dq/dt).
+/// Cheap.
 [[nodiscard]] bool may_lie_between(const continuation::Orbit& a, const continuation::Orbit& b,
                                    const continuation::Orbit& x, double widening);
 
 /// Is `x` an orbit of the family with the isotropy `isotropy`, of which `a` and `b` are neighbours? Modulo time shift,
 /// the system's symmetries and reversal, whole turns of angles, and repetition (`x` may go up to 12 times around).
 ///
-/// x is brought to a (loop::align) and projected on the chord from a to b; the chord's orbit there is corrected within the
-/// isotropy's subspace, orthogonally to the chord; the two are compared after another alignment
+/// x is brought to a (loop::align) and projected on the chord from a to b; the chord's orbit there is corrected within
+/// the isotropy's subspace, orthogonally to the chord; the two are compared after another alignment
 /// (docs/mathematics.md, "Identity"). Away from crossings the answer does not depend on the chord's length as long as
 /// Newton's method converges from it.
 [[nodiscard]] Comparison same_family(const systems::System& system, const continuation::Orbit& a,

@@ -13,7 +13,8 @@ struct Sector {
 
   /// The stability index mu + 1/mu of the sector: 2 cos(2 pi j/q).
   [[nodiscard]] double index() const;
-  /// m: orbits born in this sector close after m periods of theirs, m = q / gcd(q, p) with p the fundamental map's order.
+  /// m: orbits born in this sector close after m periods of theirs, m = q / gcd(q, p) with p the fundamental map's
+  /// order.
   [[nodiscard]] int multiplicity(int fundamental_order) const;
 
   friend bool operator==(const Sector&, const Sector&) = default;
@@ -25,8 +26,9 @@ struct Sector {
   }
 };
 
-/// All sectors with gcd(j, q) = 1 and 0 <= j <= q/2 (j and -j are conjugate) whose multiplicity is at most `subharmonics`,
-/// ordered by q, then j: q = 1, 2, 3, 4, 6, 8, 8 for order 2 and 4 subharmonics. Throws MisuseError if either is below 1.
+/// All sectors with gcd(j, q) = 1 and 0 <= j <= q/2 (j and -j are conjugate) whose multiplicity is at most
+/// `subharmonics`, ordered by q, then j: q = 1, 2, 3, 4, 6, 8, 8 for order 2 and 4 subharmonics. Throws MisuseError if
+/// either is below 1.
 [[nodiscard]] std::vector<Sector> sectors(int fundamental_order, int subharmonics);
 
 }  // namespace orbweaver::bifurcation

@@ -26,14 +26,14 @@ struct Gained {
 /// "S@1/4", "1@1/3" (three times around a shorter orbit), "R" (at some phase).
 [[nodiscard]] std::string to_text(const Gained& gained);
 
-/// Watches a branch for orbits with more symmetry than its own isotropy: there it meets a more symmetric family, at one of
-/// that family's crossings (docs/mathematics.md, "Arrivals").
+/// Watches a branch for orbits with more symmetry than its own isotropy: there it meets a more symmetric family, at one
+/// of that family's crossings (docs/mathematics.md, "Arrivals").
 ///
 /// Candidates are every declared equivariance and the identity with shifts p/q, q <= `largest_order`, that the own
-/// isotropy does not generate, and, if it has no reversor, the declared reversors at any phase. With c(z) = e z - z, the
-/// broken part, the signed part of an orbit B seen from A is <c(A), c(B)> / <c(A), c(A)>: 1 at A, and of the other sign
-/// beyond an orbit with the symmetry e. Inner products are means over time, of 240 samples: q that do not divide 240 need
-/// orbits that those resolve. Orbits A and B are neighbours of one branch, with its phase convention.
+/// isotropy does not generate, and, if it has no reversor, the declared reversors at any phase. With c(z) = e z - z,
+/// the broken part, the signed part of an orbit B seen from A is <c(A), c(B)> / <c(A), c(A)>: 1 at A, and of the other
+/// sign beyond an orbit with the symmetry e. Inner products are means over time, of 240 samples: q that do not divide
+/// 240 need orbits that those resolve. Orbits A and B are neighbours of one branch, with its phase convention.
 class SymmetryWatch {
  public:
   SymmetryWatch(const systems::Structure& system, const loop::Isotropy& own, int largest_order = 12);
@@ -46,9 +46,10 @@ class SymmetryWatch {
   };
   [[nodiscard]] static Seen see(const loop::Loop& loop);
 
-  /// All candidates whose broken part turned round between `a` and `b`, or vanishes at `b`, those that generate the most
-  /// together with the own isotropy first. Broken parts below 1e-8 of the loop at `a` are rounding, and pass nothing. Where
-  /// it vanishes at `b` to that size, `b` lies on the crossing, or the corrector has slipped onto the symmetric family.
+  /// All candidates whose broken part turned round between `a` and `b`, or vanishes at `b`, those that generate the
+  /// most together with the own isotropy first. Broken parts below 1e-8 of the loop at `a` are rounding, and pass
+  /// nothing. Where it vanishes at `b` to that size, `b` lies on the crossing, or the corrector has slipped onto the
+  /// symmetric family.
   [[nodiscard]] std::vector<Gained> all_passed(const Seen& a, const Seen& b) const;
   /// The first of them.
   [[nodiscard]] std::optional<Gained> passed(const Seen& a, const Seen& b) const;
@@ -56,8 +57,8 @@ class SymmetryWatch {
 
   /// The signed part of `at` seen from `a`: its root between two orbits is where `gained` may hold.
   [[nodiscard]] double signed_part(const Gained& gained, const loop::Loop& a, const loop::Loop& at) const;
-  /// |c(at)| / |c(a)|: small where `gained` holds. At a root of the signed part where the broken part has only turned, it
-  /// is not.
+  /// |c(at)| / |c(a)|: small where `gained` holds. At a root of the signed part where the broken part has only turned,
+  /// it is not.
   [[nodiscard]] double relative_size(const Gained& gained, const loop::Loop& a, const loop::Loop& at) const;
 
  private:

@@ -44,8 +44,9 @@ struct TestFunction {
   }
 };
 
-/// What can happen to orbits of the system whose fundamental map has this order: all sectors (for dissipative systems q = 1
-/// and 2), then krein (two pairs or more) or torus (two multipliers or more). Empty where no multiplier is nontrivial.
+/// What can happen to orbits of the system whose fundamental map has this order: all sectors (for dissipative systems q
+/// = 1 and 2), then krein (two pairs or more) or torus (two multipliers or more). Empty where no multiplier is
+/// nontrivial.
 [[nodiscard]] std::vector<TestFunction> test_functions(const systems::Structure& system, int fundamental_order,
                                                        int subharmonics);
 

@@ -20,8 +20,8 @@ namespace orbweaver::core {
 //     }
 //   };
 //
-// Nothing else lists them. What is added, left out or moved changes the type's layout (layout.hpp), by which the bytes of other
-// builds are refused.
+// Nothing else lists them. What is added, left out or moved changes the type's layout (layout.hpp), by which the bytes
+// of other builds are refused.
 
 template <class T>
 concept Serialized = requires {

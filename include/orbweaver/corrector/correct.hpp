@@ -29,8 +29,8 @@ enum class Method {
   rprop_extrapolated,  ///< the same with the paper's line search along the direction of the last epochs
 };
 
-/// Name as in a scene ("automatic", "collocation", "newton-krylov", "brgn", "nls", "ntr", "lmvm", "rprop", "rprop-extrapolated") and back.
-/// `method_of` throws core::InputError naming the known ones.
+/// Name as in a scene ("automatic", "collocation", "newton-krylov", "brgn", "nls", "ntr", "lmvm", "rprop",
+/// "rprop-extrapolated") and back. `method_of` throws core::InputError naming the known ones.
 [[nodiscard]] std::string_view name_of(Method method);
 [[nodiscard]] Method method_of(std::string_view name);
 [[nodiscard]] bool is_second_order(Method method);
@@ -80,8 +80,8 @@ struct Result {
 [[nodiscard]] double acceptance_threshold(const loop::Loop& loop, const loss::Linearization& linearization,
                                           double tolerance);
 
-/// Optimises the loss over `guess` + slice. `normal`: the slice's condition (the tangent) if the flat direction through it
-/// is wanted at the end. Never throws for a numerical outcome. Throws MisuseError for sizes that disagree, and
+/// Optimises the loss over `guess` + slice. `normal`: the slice's condition (the tangent) if the flat direction through
+/// it is wanted at the end. Never throws for a numerical outcome. Throws MisuseError for sizes that disagree, and
 /// EnvironmentError if PETSc fails otherwise.
 [[nodiscard]] Result correct(const systems::System& system, const loop::Loop& guess, const loss::Unknowns& unknowns,
                              const loss::Slice& slice, const Options& options,

@@ -7,9 +7,9 @@
 
 namespace orbweaver::equations {
 
-/// Newton's method with a preconditioner kept from an earlier point, accelerated: Anderson's mixing of the preconditioned
-/// residuals (Anderson 1965; Walker and Ni 2011), which solves the linear part as GMRES would at one residual and one
-/// back substitution an iteration. The factor is renewed where it does not contract well enough.
+/// Newton's method with a preconditioner kept from an earlier point, accelerated: Anderson's mixing of the
+/// preconditioned residuals (Anderson 1965; Walker and Ni 2011), which solves the linear part as GMRES would at one
+/// residual and one back substitution an iteration. The factor is renewed where it does not contract well enough.
 class AndersonSolver {
  public:
   /// What a caller leaves at its default is a property of the method, not of the problem.

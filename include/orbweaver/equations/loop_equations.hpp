@@ -16,13 +16,12 @@ namespace orbweaver::equations {
 class BoxScheme;
 
 /// The square system of Newton's method at one loop: residual projected onto the modes of its symmetry type, and the
-/// slice's conditions. Unknowns are those of the loss and, where conditions are more than scalars, an unfolding for each
-/// conserved quantity whose phase is held: the count decides.
-/// Under a time map the residual is taken as w r = (2 pi/T) z' - w f, w the density: the box scheme's cells then differ
-/// only by their factor w of the field.
+/// slice's conditions. Unknowns are those of the loss and, where conditions are more than scalars, an unfolding for
+/// each conserved quantity whose phase is held: the count decides. Under a time map the residual is taken as w r = (2
+/// pi/T) z' - w f, w the density: the box scheme's cells then differ only by their factor w of the field.
 ///
-/// With a team, `factor`, the preconditioner and the products are collective over it, and `factor` and the preconditioner
-/// divided by boxes along the loop. Arguments and results are whole, and the same on every member.
+/// With a team, `factor`, the preconditioner and the products are collective over it, and `factor` and the
+/// preconditioner divided by boxes along the loop. Arguments and results are whole, and the same on every member.
 class LoopEquations {
  public:
   LoopEquations(const systems::System& system, const loop::Loop& loop, const loss::Unknowns& unknowns,

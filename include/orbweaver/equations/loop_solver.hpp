@@ -9,8 +9,8 @@
 namespace orbweaver::equations {
 
 /// GMRES on loop equations of one size, preconditioned from the right by their box scheme (which must be factored).
-/// Overridable under an options prefix. With a team it runs on the team's communicator, rows distributed, and is collective
-/// over it; the equations must have the same team. Right-hand sides and solutions are whole.
+/// Overridable under an options prefix. With a team it runs on the team's communicator, rows distributed, and is
+/// collective over it; the equations must have the same team. Right-hand sides and solutions are whole.
 class LoopSolver {
  public:
   /// Relative residuals: asked for, and still accepted where rounding stops GMRES earlier.

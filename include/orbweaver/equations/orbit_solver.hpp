@@ -11,13 +11,13 @@
 
 namespace orbweaver::equations {
 
-/// The accelerated solve as a TAO solver (TAOSHELL, prefix `collocation_`), so that PETSc's options, monitors and logs see
-/// it like the others. The objects are made anew only when the number of unknowns changes.
+/// The accelerated solve as a TAO solver (TAOSHELL, prefix `collocation_`), so that PETSc's options, monitors and logs
+/// see it like the others. The objects are made anew only when the number of unknowns changes.
 ///
 /// What the options database has under the prefix goes before what the caller asks for: `tao_gatol` (the tolerance),
 /// `tao_max_it` (iterations over all factors), and `rounding`, `stagnation`, `divergence`, `stale_iterations`,
-/// `fresh_iterations` as in AndersonSolver::Options. `-collocation_tao_monitor` shows the iterations: the function value
-/// and the residual are both the size of the change.
+/// `fresh_iterations` as in AndersonSolver::Options. `-collocation_tao_monitor` shows the iterations: the function
+/// value and the residual are both the size of the change.
 class OrbitSolver {
  public:
   static constexpr const char* prefix = "collocation_";

@@ -22,8 +22,8 @@ enum class Curvature {
 ///
 ///   r_j = (2 pi / T) z'(s_j) / w_j - f(z(s_j)),   R_j = sqrt(w_j / N) r_j,   loss = |R|^2 = mean over time of |r|^2,
 ///
-/// w_j = 2 pi phi'(s_j), the density of the loop's time map (1 without one). N = loop::nodes_for(loop) >= 2 (2K + 1), so
-/// that the mean is the integral and not only zero at nodes. Every operation costs O(N log N).
+/// w_j = 2 pi phi'(s_j), the density of the loop's time map (1 without one). N = loop::nodes_for(loop) >= 2 (2K + 1),
+/// so that the mean is the integral and not only zero at nodes. Every operation costs O(N log N).
 class Linearization {
  public:
   enum class Order {
@@ -32,8 +32,9 @@ class Linearization {
     second = 2,    ///< also sum_i r_i d2f_i at the nodes
   };
 
-  /// `scalars`: those of the unknowns that it will be asked about, unless T is the only one. Throws MisuseError for an invalid loop, NumericalError where the field or its derivatives are not finite (which
-  /// node, which time, which state).
+  /// `scalars`: those of the unknowns that it will be asked about, unless T is the only one. Throws MisuseError for an
+  /// invalid loop, NumericalError where the field or its derivatives are not finite (which node, which time, which
+  /// state).
   Linearization(const systems::System& system, const loop::Loop& loop, Order order,
                 std::span<const Scalar> scalars = {});
 

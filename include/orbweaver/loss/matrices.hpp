@@ -10,8 +10,8 @@
 
 namespace orbweaver::loss {
 
-/// J as a dense PETSc matrix on PETSC_COMM_SELF, (dimension N) x unknowns. Cost O(N dimension^2 unknowns): for small K, for
-/// least-squares solvers that want it, and as the reference of the matrix-free form.
+/// J as a dense PETSc matrix on PETSC_COMM_SELF, (dimension N) x unknowns. Cost O(N dimension^2 unknowns): for small K,
+/// for least-squares solvers that want it, and as the reference of the matrix-free form.
 [[nodiscard]] core::Handle<Mat> assemble_jacobian(const Linearization& linearization, const Unknowns& unknowns);
 
 /// H as a dense symmetric PETSc matrix, unknowns x unknowns. Sums over nodes of products of two modes are sums and

@@ -30,8 +30,8 @@ struct Scalar {
   bool operator==(const Scalar&) const = default;
 };
 
-/// What is solved for: the coordinates of a perturbation in a subspace, then the scalars: T first, then parameters, then
-/// unfoldings. A vector of unknowns u is always relative to a base loop, and to a system: u = 0 is the base.
+/// What is solved for: the coordinates of a perturbation in a subspace, then the scalars: T first, then parameters,
+/// then unfoldings. A vector of unknowns u is always relative to a base loop, and to a system: u = 0 is the base.
 struct Unknowns {
   loop::Subspace subspace;
   std::vector<Scalar> scalars;
@@ -48,11 +48,11 @@ struct Unknowns {
                                                              std::span<const double> u) const;
   /// The values that the system has for the parameters among the scalars, in their order.
   [[nodiscard]] std::vector<double> parameters_of(const systems::System& system) const;
-  /// The orthogonal projection of `to` - `from` onto the unknowns (same cutoff as the subspace, same time map); parameters
-  /// and unfoldings do not differ.
+  /// The orthogonal projection of `to` - `from` onto the unknowns (same cutoff as the subspace, same time map);
+  /// parameters and unfoldings do not differ.
   [[nodiscard]] std::vector<double> difference(const loop::Loop& from, const loop::Loop& to) const;
-  /// The orthogonal projection of a tangent onto the unknowns, and the tangent that a vector of unknowns is. An unfolding is
-  /// no part of it.
+  /// The orthogonal projection of a tangent onto the unknowns, and the tangent that a vector of unknowns is. An
+  /// unfolding is no part of it.
   [[nodiscard]] std::vector<double> coordinates_of(const loop::Tangent& tangent) const;
   [[nodiscard]] loop::Tangent tangent_of(std::span<const double> u) const;
   /// dz/d(2 pi t/T) = z'/(2 pi phi') of the loop as a vector of unknowns: the direction of a time shift (scalars 0).

@@ -9,8 +9,9 @@
 
 #include "orbweaver/core/serialization.hpp"
 
-// Types that list their members (core/serialization.hpp) go without Boost's class information and tracking: versions and
-// layouts are checked as a whole by whoever opens the bytes, and nothing is shared by pointer. It also compiles faster.
+// Types that list their members (core/serialization.hpp) go without Boost's class information and tracking: versions
+// and layouts are checked as a whole by whoever opens the bytes, and nothing is shared by pointer. It also compiles
+// faster.
 
 namespace boost::serialization {
 

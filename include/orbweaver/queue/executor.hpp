@@ -8,8 +8,8 @@
 
 namespace orbweaver::queue {
 
-/// Gives the state of running work: bytes from which `execute` can go on, rows reported so far not repeated. Empty bytes:
-/// it has to begin again (work without rows only).
+/// Gives the state of running work: bytes from which `execute` can go on, rows reported so far not repeated. Empty
+/// bytes: it has to begin again (work without rows only).
 using StateSource = std::function<std::string()>;
 
 /// What running work sees of the run.
@@ -30,8 +30,8 @@ class Executor {
  public:
   virtual ~Executor() = default;
 
-  /// Called on any rank that computes, one task at a time; goes on from `task.state` if there is one. Whatever it throws
-  /// becomes a failed outcome with the exception's text as its reason, and the run goes on.
+  /// Called on any rank that computes, one task at a time; goes on from `task.state` if there is one. Whatever it
+  /// throws becomes a failed outcome with the exception's text as its reason, and the run goes on.
   virtual TaskOutcome execute(const Task& task, TaskContext& context) = 0;
 };
 

@@ -18,16 +18,16 @@ namespace orbweaver::queue {
 struct Options {
   double flush_seconds = 5.0;      ///< a flush this long after the last one; 0: none by time
   std::int64_t flush_rows = 5000;  ///< a flush after this many reported rows; 0: none by amount
-  /// Flushes take about this share of the run at most, as long as that needs no more than ten times flush_seconds between
-  /// two: a flush that took t seconds from its request to its end is followed by t / flush_share without one.
+  /// Flushes take about this share of the run at most, as long as that needs no more than ten times flush_seconds
+  /// between two: a flush that took t seconds from its request to its end is followed by t / flush_share without one.
   /// None is put off where there are flush_rows rows for each rank that works.
   double flush_share = 0.03;
   /// Least time (s) between two progress messages of a worker; longer with more than 1000 x this many workers, so that
   /// rank 0 never gets more than about 1000 of them a second.
   double progress_seconds = 0.2;
-  /// A task that runs longer (s, without flushes) is told to stop at its next report and put aside with its state: the run goes on
-  /// with the others and ends as stopped early. If it has not ended after the same time again, the program ends on all ranks
-  /// with exit status 3. 0: no limit.
+  /// A task that runs longer (s, without flushes) is told to stop at its next report and put aside with its state: the
+  /// run goes on with the others and ends as stopped early. If it has not ended after the same time again, the program
+  /// ends on all ranks with exit status 3. 0: no limit.
   double task_seconds = 0.0;
   double tick_seconds = 0.1;                     ///< between two ticks of the observer
   std::chrono::microseconds shortest_sleep{50};  ///< of a rank that waits; grows until something happens, up to:
@@ -70,9 +70,10 @@ struct RunSummary {
 /// the others work. No rank spins while it waits. `initial` and `observer` count on rank 0 only. Nobody else may send
 /// on `comm` meanwhile, except within a collective flush.
 ///
-/// A task that the observer does not want counts as done. A task that fails is recorded and the run goes on. The run ends with the same EnvironmentError on all ranks when a
-/// flush or the observer throws, when a key comes twice, or when a message is torn, foreign, or of another version.
-/// Throws MisuseError for options out of range, on every rank alike.
+/// A task that the observer does not want counts as done. A task that fails is recorded and the run goes on. The run
+/// ends with the same EnvironmentError on all ranks when a flush or the observer throws, when a key comes twice, or
+/// when a message is torn, foreign, or of another version. Throws MisuseError for options out of range, on every rank
+/// alike.
 RunSummary run(const core::Communicator& comm, const Options& options, std::vector<Task> initial, Executor& executor,
                Observer& observer, Flusher& flusher);
 

@@ -24,8 +24,8 @@ struct Task {
   }
 };
 
-/// What became of a task. Must be a pure function of the task's key, kind and payload, so that a run depends neither on the
-/// number of ranks nor on where earlier attempts were cut off: going on from a state comes to the same end.
+/// What became of a task. Must be a pure function of the task's key, kind and payload, so that a run depends neither on
+/// the number of ranks nor on where earlier attempts were cut off: going on from a state comes to the same end.
 struct TaskOutcome {
   std::string key;  ///< filled in by the queue
   bool failed = false;

@@ -26,13 +26,15 @@ struct EquilibriumReport {
   std::vector<ModeRow> modes;
 };
 
-/// Finds the scene's equilibria and sweeps the period at each; not collective. Throws as find_fixed_points and sweep do.
+/// Finds the scene's equilibria and sweeps the period at each; not collective. Throws as find_fixed_points and sweep
+/// do.
 [[nodiscard]] std::vector<EquilibriumReport> sweep_report(const scene::Scene& scene);
 
 /// The modes, dips passed over, and equilibria without oscillations, for people.
 [[nodiscard]] std::string to_text(const std::vector<EquilibriumReport>& reports);
 
-/// Smallest eigenvalue against period as text with aligned columns (one column an equilibrium), or as CSV with full precision.
+/// Smallest eigenvalue against period as text with aligned columns (one column an equilibrium), or as CSV with full
+/// precision.
 [[nodiscard]] std::string eigenvalue_table(const std::vector<EquilibriumReport>& reports);
 [[nodiscard]] std::string eigenvalue_csv(const std::vector<EquilibriumReport>& reports);
 

@@ -18,14 +18,15 @@ enum class Change {
 struct Difference {
   std::string key;  ///< as users write it: "limits.period"
   std::string
-      before;  ///< as a scene would say it, defaults filled in: "30", "0.5deg", "[-.inf, 2]"; empty where it has no value
+      /// as a scene would say it, defaults filled in: "30", "0.5deg", "[-.inf, 2]"; empty where it has no value
+      before;
   std::string now;
   Change change = Change::other;
 };
 
-/// The keys in which two checked scenes differ. What counts is the values as they were read, defaults included: comments,
-/// notation and units (where both give the same double) do not. A key of the texts that this function does not know is
-/// compared as written, and is `other` where it differs.
+/// The keys in which two checked scenes differ. What counts is the values as they were read, defaults included:
+/// comments, notation and units (where both give the same double) do not. A key of the texts that this function does
+/// not know is compared as written, and is `other` where it differs.
 [[nodiscard]] std::vector<Difference> differences(const Scene& before, const Scene& now);
 
 }  // namespace orbweaver::scene

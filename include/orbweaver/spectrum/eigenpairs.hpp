@@ -23,8 +23,8 @@ struct EigenOptions {
 };
 
 /// The smallest eigenpairs of a symmetric positive semidefinite dense matrix by SLEPc: shift-invert just below zero, at
-/// -1e-8 |H|, which is a safe distance for a singular H (closer to 0 wrong values are reported as converged). Values below
-/// about 1e-16 |H| are rounding. Overridable under the options prefix `spectrum_eps_`.
+/// -1e-8 |H|, which is a safe distance for a singular H (closer to 0 wrong values are reported as converged). Values
+/// below about 1e-16 |H| are rounding. Overridable under the options prefix `spectrum_eps_`.
 /// Throws NumericalError if fewer than `count` pairs converge; MisuseError for count < 1 or > size.
 [[nodiscard]] Eigenpairs smallest_eigenpairs(const core::Handle<Mat>& matrix, const EigenOptions& options);
 

@@ -31,16 +31,16 @@ struct TripletOptions {
   core::Team* team = nullptr;     ///< ranks that divide the matrix-free way among them; then it is collective
 };
 
-/// The `count` smallest singular triplets of a dense matrix with at least as many rows as columns, by SLEPc's SVD on the
-/// triangular factor of J. Unlike the eigenvalues of J'J they keep their digits down to about 1e-16 |J|.
-/// Throws MisuseError for count < 1 or > columns or fewer rows than columns; NumericalError for a matrix that is not finite.
+/// The `count` smallest singular triplets of a dense matrix with at least as many rows as columns, by SLEPc's SVD on
+/// the triangular factor of J. Unlike the eigenvalues of J'J they keep their digits down to about 1e-16 |J|. Throws
+/// MisuseError for count < 1 or > columns or fewer rows than columns; NumericalError for a matrix that is not finite.
 [[nodiscard]] SingularTriplets smallest_singular_triplets(const core::Handle<Mat>& matrix, int count);
 
-/// The smallest singular triplets of a loop's J over the `unknowns` on the `slice` (J restricted to what the slice leaves
-/// free); v holds unknowns. From `krylov_from` unknowns on matrix-free, in O(K log K) time and O(K) memory, if the loop
-/// equations are square; else by the dense matrix. The slice should hold what is known to be flat at an orbit: the time
-/// shift, where the unknowns contain it, and the family's tangent, where they contain the period.
-/// Throws MisuseError for count < 1 or > free unknowns; NumericalError where triplets do not converge.
+/// The smallest singular triplets of a loop's J over the `unknowns` on the `slice` (J restricted to what the slice
+/// leaves free); v holds unknowns. From `krylov_from` unknowns on matrix-free, in O(K log K) time and O(K) memory, if
+/// the loop equations are square; else by the dense matrix. The slice should hold what is known to be flat at an orbit:
+/// the time shift, where the unknowns contain it, and the family's tangent, where they contain the period. Throws
+/// MisuseError for count < 1 or > free unknowns; NumericalError where triplets do not converge.
 [[nodiscard]] SingularTriplets smallest_singular_triplets(const systems::System& system, const loop::Loop& loop,
                                                           const loss::Unknowns& unknowns, const loss::Slice& slice,
                                                           const TripletOptions& options);
@@ -50,8 +50,8 @@ struct TripletOptions {
 [[nodiscard]] SingularTriplets smallest_singular_triplets(const equations::LoopEquations& equations,
                                                           const TripletOptions& options);
 
-/// The smallest eigenpairs of the Gauss-Newton Hessian H = 2 J'J on the slice, from the triplets: values 2 sigma^2, which
-/// keeps their digits below 1e-16 |H|; vectors hold unknowns.
+/// The smallest eigenpairs of the Gauss-Newton Hessian H = 2 J'J on the slice, from the triplets: values 2 sigma^2,
+/// which keeps their digits below 1e-16 |H|; vectors hold unknowns.
 [[nodiscard]] Eigenpairs smallest_eigenpairs(const systems::System& system, const loop::Loop& loop,
                                              const loss::Unknowns& unknowns, const loss::Slice& slice,
                                              const TripletOptions& options);

@@ -9,8 +9,8 @@
 
 namespace orbweaver::spectrum {
 
-/// The Gauss-Newton Hessian of a loop on a slice, factored once (Cholesky): gives the Newton step and the flat direction
-/// through the slice's normal, each for the cost of a triangular solve.
+/// The Gauss-Newton Hessian of a loop on a slice, factored once (Cholesky): gives the Newton step and the flat
+/// direction through the slice's normal, each for the cost of a triangular solve.
 class SlicedHessian {
  public:
   /// Assembles and factors. Where rounding makes H indefinite a multiple of the identity, from 1e-15 |H| upwards, is

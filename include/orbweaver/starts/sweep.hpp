@@ -36,8 +36,8 @@ struct NormalMode {
   loop::Isotropy isotropy;       ///< of the small oscillations
 };
 
-/// Several oscillations Re(v e^{2 pi i t/T}) of one period: which of their combinations families start along, the linear
-/// problem does not say (bifurcation::equilibrium_directions).
+/// Several oscillations Re(v e^{2 pi i t/T}) of one period: which of their combinations families start along, the
+/// linear problem does not say (bifurcation::equilibrium_directions).
 struct DegenerateMode {
   double period = 0.0;
   double grid_period = 0.0;

@@ -12,7 +12,8 @@
 
 namespace orbweaver::systems {
 
-/// An autonomous vector field dz/dt = f(z) with its parameters and effects bound. Immutable; safe to share in a process.
+/// An autonomous vector field dz/dt = f(z) with its parameters and effects bound. Immutable; safe to share in a
+/// process.
 ///
 /// Nodal arrays are component-major: coordinate i of node j stands at [i * nodes + j]. Registered systems evaluate
 /// several nodes at once; a node's bits depend neither on the other nodes nor on its place among them. Functions do not
@@ -38,20 +39,22 @@ class System {
   virtual void field(std::size_t nodes, const double* z, double* f) const = 0;
   /// f and its Jacobian. `jacobian`: entry (i, l) = df_i/dz_l of node j at [(i * dimension + l) * nodes + j].
   virtual void field_jacobian(std::size_t nodes, const double* z, double* f, double* jacobian) const = 0;
-  /// Second derivatives contracted with `weights` (dimension x nodes): entry (l, m) = sum_i weights_i d2f_i/dz_l dz_m of
-  /// node j at [(l * dimension + m) * nodes + j], symmetric.
+  /// Second derivatives contracted with `weights` (dimension x nodes): entry (l, m) = sum_i weights_i d2f_i/dz_l dz_m
+  /// of node j at [(l * dimension + m) * nodes + j], symmetric.
   virtual void second_derivatives(std::size_t nodes, const double* z, const double* weights,
                                   double* contracted) const = 0;
 
-  /// df/dp for the parameter `name` at each node; `derivatives`: dimension x nodes. Throws MisuseError unless the system can.
+  /// df/dp for the parameter `name` at each node; `derivatives`: dimension x nodes. Throws MisuseError unless the
+  /// system can.
   virtual void parameter_derivatives(const std::string& name, std::size_t nodes, const double* z,
                                      double* derivatives) const;
-  /// The same system with other values of some parameters. They are not checked against their ranges: an iteration may pass
-  /// outside. Throws MisuseError for a parameter that it does not have, or unless the system can.
+  /// The same system with other values of some parameters. They are not checked against their ranges: an iteration may
+  /// pass outside. Throws MisuseError for a parameter that it does not have, or unless the system can.
   [[nodiscard]] virtual std::shared_ptr<const System> with_parameters(
       const std::map<std::string, double>& values) const;
 
-  /// Conserved quantity k (of structure().conserved) at one state (size dimension). Throws MisuseError if there is none.
+  /// Conserved quantity k (of structure().conserved) at one state (size dimension). Throws MisuseError if there is
+  /// none.
   [[nodiscard]] virtual double conserved(int k, std::span<const double> z) const = 0;
   /// Its gradient at one state; `gradient` has size dimension.
   virtual void conserved_gradient(int k, std::span<const double> z, std::span<double> gradient) const = 0;

@@ -19,8 +19,8 @@ enum class RowShape { one, state, winding, stability };
 /// An integer that says where other rows lie: it is filled in when the rows are numbered, and -1 until then.
 struct RowNumber {};
 
-/// One column of a table: its name, the member of the record that a row is taken from, and the shape of a row. The lists
-/// below are the only place where a column is defined; the schema, the segments and the atlas follow from them.
+/// One column of a table: its name, the member of the record that a row is taken from, and the shape of a row. The
+/// lists below are the only place where a column is defined; the schema, the segments and the atlas follow from them.
 template <class Record>
 struct ColumnDefinition {
   using Member = std::variant<RowNumber, int Record::*, double Record::*, std::string Record::*, CrossingKind Record::*,

@@ -6,8 +6,8 @@
 
 namespace orbweaver::archive {
 
-/// Tells which orbits a segment holds, whatever their order: the sum modulo 2^64 over its rows of a hash of each. (FNV-1a, 64
-/// bits: Fowler, Noll, Vo; draft-eastlake-fnv. Sums of it over parts add up.)
+/// Tells which orbits a segment holds, whatever their order: the sum modulo 2^64 over its rows of a hash of each.
+/// (FNV-1a, 64 bits: Fowler, Noll, Vo; draft-eastlake-fnv. Sums of it over parts add up.)
 class Fingerprint {
  public:
   void add(std::string_view family_key, std::int64_t step, double arclength, double period) {

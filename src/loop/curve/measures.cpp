@@ -1,5 +1,5 @@
-// Means over time: Parseval's equation where s runs evenly with time, sums over nodes weighted by the time map's density
-// otherwise.
+// Means over time: Parseval's equation where s runs evenly with time, sums over nodes weighted by the time map's
+// density otherwise.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

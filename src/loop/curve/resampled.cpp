@@ -12,7 +12,8 @@ namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
 
-// z - n s at any parameters s: dimension x s.size(), component-major. Harmonics are turned on by one multiplication a node.
+// z - n s at any parameters s: dimension x s.size(), component-major. Harmonics are turned on by one multiplication a
+// node.
 std::vector<double> periodic_part_at(const Loop& loop, std::span<const double> s) {
   const std::size_t n = s.size();
   const auto d = static_cast<std::size_t>(loop.dimension);

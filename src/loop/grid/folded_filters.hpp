@@ -7,8 +7,8 @@
 
 namespace orbweaver::loop {
 
-/// The filters of a StaggeredGrid as dense matrices on the domain alone, for symmetries that change signs of coordinates
-/// and do not mix them. Coordinates with the same signs share matrices.
+/// The filters of a StaggeredGrid as dense matrices on the domain alone, for symmetries that change signs of
+/// coordinates and do not mix them. Coordinates with the same signs share matrices.
 class FoldedFilters {
  public:
   /// cos and sin of q half cells, q = 0 .. 2 nodes - 1.

@@ -23,7 +23,8 @@ constexpr double past_optimum = 1.3;
 constexpr double tiny_square = 1e-300;
 /// Coefficients of a density of mean 1 that differ by less are rounding.
 constexpr double same_coefficient = 1e-14;
-/// Orders of the derivatives that show the distance of the singularities: lower ones see the orbit's size, higher ones noise.
+/// Orders of the derivatives that show the distance of the singularities: lower ones see the orbit's size, higher ones
+/// noise.
 constexpr int first_order = 4;
 constexpr int last_order = 7;
 

@@ -32,7 +32,8 @@ bool is_same(const SymmetryElement& a, const SymmetryElement& b, const std::vect
 
 bool is_same_group(const Isotropy& a, const Isotropy& b, const std::vector<int>& angles) {
   return a.size() == b.size() && std::all_of(a.begin(), a.end(), [&](const SymmetryElement& e) {
-           return std::any_of(b.begin(), b.end(), [&](const SymmetryElement& other) { return is_same(e, other, angles); });
+           return std::any_of(b.begin(), b.end(),
+                              [&](const SymmetryElement& other) { return is_same(e, other, angles); });
          });
 }
 

@@ -22,7 +22,8 @@ double in_period(double shift) {
   return part < 1.0 - rounding ? part : 0.0;
 }
 
-// The state at a point of a reversor's fixed set, angles that wind within [-pi/2, 3 pi/2): on such a set they are 0 or pi.
+// The state at a point of a reversor's fixed set, angles that wind within [-pi/2, 3 pi/2): on such a set they are 0 or
+// pi.
 std::vector<double> state_to_compare(const Loop& loop, double shift) {
   std::vector<double> z = state_at(loop, shift * loop.period);
   for (std::size_t i = 0; i < z.size(); ++i)

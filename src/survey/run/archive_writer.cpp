@@ -61,8 +61,7 @@ void write_archive(const core::Communicator& comm, const scene::Scene& scene, co
     const std::filesystem::path folder = state_folder(summary.atlas.parent_path());
     for (const archive::WrittenSegment& segment : standing.segments) segments.push_back(folder / segment.name);
   });
-  if (summary.archived)
-    archive::consolidate(comm.get(), segments, summary.atlas, header_of(scene, system), tables);
+  if (summary.archived) archive::consolidate(comm.get(), segments, summary.atlas, header_of(scene, system), tables);
   summary.failures = core::agreed(comm.get(), static_cast<unsigned long>(summary.failed_tasks.size()));
 }
 

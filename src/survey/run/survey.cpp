@@ -58,7 +58,8 @@ void make_folder(const std::filesystem::path& folder) {
                                              folder.string(), error.message()));
 }
 
-/// A survey from where it stands, which is known on rank 0, to its end or to a stop; by rank 0 and the leaders of teams.
+/// A survey from where it stands, which is known on rank 0, to its end or to a stop; by rank 0 and the leaders of
+/// teams.
 class Run {
  public:
   Run(const core::Communicator& comm, const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,

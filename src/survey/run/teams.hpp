@@ -11,9 +11,9 @@
 
 namespace orbweaver::survey {
 
-/// The ranks of a survey: rank 0, which keeps the queue, and teams of `team_size` ranks each, in the order of the ranks.
-/// The first of a team leads it: the queue's worker, who keeps rows and outcomes. The others follow: they do with it each
-/// task that it is given (docs/protocol.md, "Teams").
+/// The ranks of a survey: rank 0, which keeps the queue, and teams of `team_size` ranks each, in the order of the
+/// ranks. The first of a team leads it: the queue's worker, who keeps rows and outcomes. The others follow: they do
+/// with it each task that it is given (docs/protocol.md, "Teams").
 class Teams {
  public:
   /// Collective over `comm`. A single rank forms no team, whatever the size. Throws InputError on all ranks unless the
@@ -44,7 +44,8 @@ class TeamExecutor final : public queue::Executor {
   queue::Executor& _member;
 };
 
-/// Ends the leader's survey for the followers of its team, who return its summary's numbers or throw the like of `error`.
+/// Ends the leader's survey for the followers of its team, who return its summary's numbers or throw the like of
+/// `error`.
 void dismiss(core::Team* team, const Summary& summary);
 void dismiss(core::Team* team, const std::exception_ptr& error);
 

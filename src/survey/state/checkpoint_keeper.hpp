@@ -9,8 +9,8 @@
 
 namespace orbweaver::survey {
 
-/// Rank 0's part of a flush: gathers what has ended, takes the state of the run while all ranks stand still, and writes it
-/// when their rows are safe. Holds what is in flight; what has ended is in the journals.
+/// Rank 0's part of a flush: gathers what has ended, takes the state of the run while all ranks stand still, and writes
+/// it when their rows are safe. Holds what is in flight; what has ended is in the journals.
 class CheckpointKeeper {
  public:
   /// `last`: where the survey stands, as far as it has come; its lists are carried on.

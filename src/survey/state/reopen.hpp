@@ -11,9 +11,9 @@ namespace orbweaver::survey {
 /// Bits of Limit (work.hpp) for the limits that lie farther out in `now`; `families_limited` among them.
 [[nodiscard]] int widened_limits(const scene::Scene& before, const scene::Scene& now);
 
-/// Decides, entry by entry in the order in which tasks ended, what a survey with wider limits keeps. What ended at one of
-/// them waits again in the checkpoint, from where it would have gone on; what was found behind that place, and the rows
-/// that it made, no longer count.
+/// Decides, entry by entry in the order in which tasks ended, what a survey with wider limits keeps. What ended at one
+/// of them waits again in the checkpoint, from where it would have gone on; what was found behind that place, and the
+/// rows that it made, no longer count.
 class Reopening {
  public:
   Reopening(int widened, Checkpoint& checkpoint) : _widened(widened), _checkpoint(checkpoint) {}

@@ -12,8 +12,8 @@
 
 namespace orbweaver::survey {
 
-/// The newest checkpoint in `folder` whose segments and journals are all there: on rank 0, the others only hear whether there
-/// is one. Files that it does not list are removed. Collective. Throws InputError on all ranks if there are
+/// The newest checkpoint in `folder` whose segments and journals are all there: on rank 0, the others only hear whether
+/// there is one. Files that it does not list are removed. Collective. Throws InputError on all ranks if there are
 /// checkpoints and none can be used, saying why not; `found` is false if there is none.
 struct Found {
   bool found = false;
@@ -22,10 +22,9 @@ struct Found {
 [[nodiscard]] Found find_checkpoint(const core::Communicator& comm, const std::filesystem::path& folder);
 
 /// Makes `checkpoint` one of `scene`, whose limits may be wider: what ended at a limit that lies farther out now waits
-/// again, and all that followed from where it ended is dropped. Reads every journal, and gives `take` the tasks that have
-/// ended and stay so; journals from which something was dropped are written anew. A finished survey is one that follows
-/// families again. On rank 0 only. Throws InputError that
-/// names the keys if the scenes differ in anything else.
+/// again, and all that followed from where it ended is dropped. Reads every journal, and gives `take` the tasks that
+/// have ended and stay so; journals from which something was dropped are written anew. A finished survey is one that
+/// follows families again. On rank 0 only. Throws InputError that names the keys if the scenes differ in anything else.
 void continue_with(const scene::Scene& scene, const std::filesystem::path& folder, Checkpoint& checkpoint,
                    const std::function<void(const EndedTask&)>& take);
 

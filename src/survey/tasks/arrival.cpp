@@ -35,9 +35,9 @@ std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuat
     if (watch.relative_size(gained, from.loop, loop) < slipped) return;
     samples.push_back({watch.signed_part(gained, from.loop, loop), loop.period, continuation::energy_of(system, loop)});
   };
-  // Orbits before the meeting point and, if the branch went on along the images, one beyond. At the point itself the two
-  // families cannot be told apart, so that nothing is solved for there.
-  // Backwards from `from`, as long as the part grows: a polynomial in it needs values well apart.
+  // Orbits before the meeting point and, if the branch went on along the images, one beyond. At the point itself the
+  // two families cannot be told apart, so that nothing is solved for there. Backwards from `from`, as long as the part
+  // grows: a polynomial in it needs values well apart.
   const std::vector<continuation::FamilyCurve::Known>& known = family.known();
   for (auto orbit = known.rbegin(); orbit != known.rend() && samples.size() < 3; ++orbit) {
     if (orbit->position > from.arclength) continue;

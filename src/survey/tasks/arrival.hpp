@@ -11,7 +11,8 @@
 namespace orbweaver::survey {
 
 /// Where the branch meets a family with more symmetry between two of its orbits, if it does. Beyond that point lie the
-/// images of the orbits before it, or, where the broken part is not turned by the symmetry, the other side of a crossing.
+/// images of the orbits before it, or, where the broken part is not turned by the symmetry, the other side of a
+/// crossing.
 [[nodiscard]] std::optional<ArrivalRecord> arrival_between(
     const systems::System& system, continuation::FamilyCurve& family, const bifurcation::SymmetryWatch& watch,
     const continuation::Orbit& from, const bifurcation::SymmetryWatch::Seen& from_seen, const continuation::Orbit& to,

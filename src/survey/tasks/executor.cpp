@@ -14,7 +14,8 @@ namespace orbweaver::survey {
 
 namespace {
 
-// Both directions of a start are one family where a symmetry or a time shift maps loops on one side to those on the other.
+// Both directions of a start are one family where a symmetry or a time shift maps loops on one side to those on the
+// other.
 bool directions_are_images(const systems::Structure& system, std::span<const double> point,
                            const starts::NormalMode& mode, int cutoff) {
   const loop::Loop base = loop::constant_loop(point, mode.period, cutoff);

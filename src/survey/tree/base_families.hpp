@@ -19,8 +19,8 @@ using SweepsEnded = std::map<std::string, std::pair<queue::Task, queue::TaskOutc
 /// A sweep for every equilibrium. Throws InputError if there is none.
 [[nodiscard]] std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::System& system);
 
-/// The families at equilibria in the order of their keys: equilibria sorted, longest period first; no more than the scene
-/// allows. What was passed over is remarked in the summary.
+/// The families at equilibria in the order of their keys: equilibria sorted, longest period first; no more than the
+/// scene allows. What was passed over is remarked in the summary.
 [[nodiscard]] std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const systems::System& system,
                                                          const SweepsEnded& sweeps, Summary& summary);
 

@@ -1,5 +1,5 @@
-// Included before every file of the simulated bench_queue: what reads a clock or sleeps does so in simulated time, which
-// SMPI arranges for C but not for std::chrono and std::this_thread.
+// Included before every file of the simulated bench_queue: what reads a clock or sleeps does so in simulated time,
+// which SMPI arranges for C but not for std::chrono and std::this_thread.
 #pragma once
 
 #undef exit  // SMPI's macro breaks CLI11

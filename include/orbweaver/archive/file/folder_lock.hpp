@@ -4,8 +4,8 @@
 
 namespace orbweaver::archive {
 
-/// Holds a folder for this process, by flock(2) on a file `lock` in it, until destruction or the process's end, however it
-/// comes. Where the file system cannot lock, it holds nothing.
+/// Holds a folder for this process, by flock(2) on a file `lock` in it, until destruction or the process's end, however
+/// it comes. Where the file system cannot lock, it holds nothing.
 class FolderLock {
  public:
   FolderLock() = default;

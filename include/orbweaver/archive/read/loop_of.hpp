@@ -8,8 +8,8 @@
 
 namespace orbweaver::archive {
 
-/// The loop of row `orbit` of /orbits, to be evaluated by loop::state_at. `angles`: the coordinates that may wind, in the
-/// order of the header's winding_names (systems::Structure::angles). Throws MisuseError if there is no such row or
+/// The loop of row `orbit` of /orbits, to be evaluated by loop::state_at. `angles`: the coordinates that may wind, in
+/// the order of the header's winding_names (systems::Structure::angles). Throws MisuseError if there is no such row or
 /// `angles` do not fit the header, InputError where the file holds no valid loop there.
 [[nodiscard]] loop::Loop loop_of(const Archive& atlas, std::size_t orbit, const std::vector<int>& angles);
 

@@ -28,8 +28,8 @@ struct FamilyRecord {
   int last_step = std::numeric_limits<int>::max();
 };
 
-/// One row of /orbits. Columns that were not computed stay NaN. `step` orders the orbits of a family. A family that runs
-/// through the crossing it was born at has steps and arclengths below zero on one side of it.
+/// One row of /orbits. Columns that were not computed stay NaN. `step` orders the orbits of a family. A family that
+/// runs through the crossing it was born at has steps and arclengths below zero on one side of it.
 struct OrbitRecord {
   std::string family_key;
   int step = 0;

@@ -22,16 +22,16 @@ struct ConsolidateOptions {
 /// number of ranks and for any distribution of the rows over segments and ranks.
 ///
 /// `tables` holds families and crossings; its orbits and sections must be empty (write them to a segment). The fields
-/// `crossing` and `end_crossing` of a family are indices into `tables.crossings` as given. Rows of the segments that lie
-/// outside a family's first_step ... last_step, belong to one of `tables.left_out_keys` or are among `tables.voided` are
-/// left out, with their section points. No family and no crossing may refer to a family that is left out; which crossings a cut family keeps
-/// is the caller's to say. Each rank holds the numbering of the rows (about 64 bytes an orbit) and one block of the rows
-/// themselves.
+/// `crossing` and `end_crossing` of a family are indices into `tables.crossings` as given. Rows of the segments that
+/// lie outside a family's first_step ... last_step, belong to one of `tables.left_out_keys` or are among
+/// `tables.voided` are left out, with their section points. No family and no crossing may refer to a family that is
+/// left out; which crossings a cut family keeps is the caller's to say. Each rank holds the numbering of the rows
+/// (about 64 bytes an orbit) and one block of the rows themselves.
 ///
 /// Writes OUTPUT.part, syncs, renames. Throws, on all ranks alike: InputError for a segment that is torn, foreign, of
-/// another scene (neither the header's nor one of `tables.earlier_scenes`), has an orbit twice, an orbit of a family that is neither listed nor left out, or a section point of an
-/// orbit that no segment holds;
-/// MisuseError for invalid tables; EnvironmentError if the file cannot be written.
+/// another scene (neither the header's nor one of `tables.earlier_scenes`), has an orbit twice, an orbit of a family
+/// that is neither listed nor left out, or a section point of an orbit that no segment holds; MisuseError for invalid
+/// tables; EnvironmentError if the file cannot be written.
 void consolidate(MPI_Comm comm, const std::vector<std::filesystem::path>& segments, const std::filesystem::path& output,
                  const Header& header, const Records& tables, const ConsolidateOptions& options = {});
 

@@ -33,9 +33,9 @@ struct WrittenSegment {
 /// PATH.part, which is flushed, synced and only then renamed: a file named PATH is whole. Segments hold the bulk only;
 /// families and crossings are few, change until a survey ends, and are handed to `consolidate` by rank 0.
 ///
-/// Returns on every rank what was written. Throws, on all ranks alike: MisuseError if a record of any rank is invalid or the ranks' headers differ or a rank
-/// gives families or crossings; EnvironmentError if the file cannot be created, written, synced or renamed (PATH.part
-/// is then removed and an older PATH is untouched).
+/// Returns on every rank what was written. Throws, on all ranks alike: MisuseError if a record of any rank is invalid
+/// or the ranks' headers differ or a rank gives families or crossings; EnvironmentError if the file cannot be created,
+/// written, synced or renamed (PATH.part is then removed and an older PATH is untouched).
 WrittenSegment write_segment(MPI_Comm comm, const std::filesystem::path& path, const Header& header,
                              const Records& mine);
 

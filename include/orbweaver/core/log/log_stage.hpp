@@ -2,8 +2,9 @@
 
 namespace orbweaver::core {
 
-/// What `-log_view` tells apart as stages: the work of a layer, without what it hands to another (stages nest, and PETSc
-/// counts each second in the innermost one, so that the stages and "Main Stage" add up to the whole). Session registers them.
+/// What `-log_view` tells apart as stages: the work of a layer, without what it hands to another (stages nest, and
+/// PETSc counts each second in the innermost one, so that the stages and "Main Stage" add up to the whole). Session
+/// registers them.
 enum class Stage { sweep, continuation, corrector, spectrum, certificate, archive, queue_wait };
 
 /// What it tells apart as events, in whichever stage they happen. Events include events begun within them.
@@ -26,8 +27,8 @@ extern const Log no_log;
 extern Log log;
 }  // namespace detail
 
-/// From here to the end of the scope (by whatever way it is left) time counts for a stage. Costs a comparison if nothing
-/// is logged.
+/// From here to the end of the scope (by whatever way it is left) time counts for a stage. Costs a comparison if
+/// nothing is logged.
 class LogStage {
  public:
   explicit LogStage(Stage stage) noexcept : _id(detail::log.stage[static_cast<int>(stage)]) {

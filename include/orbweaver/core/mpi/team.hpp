@@ -24,9 +24,10 @@ class TeamError : public EnvironmentError {
 /// its part, and all get the parts of all, so that their numbers stay the same bit by bit. All functions but the
 /// observers are collective over the team.
 ///
-/// Members meet at every exchange: each says at which step of the task it is, at which place in the code, and how its part
-/// went. A member that failed alone meets the others wherever they are, so nobody is left waiting: all throw TeamError
-/// there, the team has fallen apart (`fallen_apart`), and nothing is exchanged before the next task (`begin`).
+/// Members meet at every exchange: each says at which step of the task it is, at which place in the code, and how its
+/// part went. A member that failed alone meets the others wherever they are, so nobody is left waiting: all throw
+/// TeamError there, the team has fallen apart (`fallen_apart`), and nothing is exchanged before the next task
+/// (`begin`).
 class Team {
  public:
   /// Duplicates `comm`.

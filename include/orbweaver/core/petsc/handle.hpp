@@ -14,7 +14,8 @@ void destroy_petsc_object(PetscObject* object) noexcept;
 }  // namespace detail
 
 /// Owns one PETSc, SLEPc or TAO object (Mat, Vec, KSP, EPS, SVD, Tao, ...): the only place that destroys one.
-/// A moved-from handle is empty; using an empty handle throws MisuseError, since a null object crashes the packaged PETSc.
+/// A moved-from handle is empty; using an empty handle throws MisuseError, since a null object crashes the packaged
+/// PETSc.
 template <class T>
 class Handle {
  public:

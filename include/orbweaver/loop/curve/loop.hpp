@@ -54,8 +54,9 @@ struct Loop {
 /// The same loop with `cutoff` harmonics: padded with zeros or truncated.
 [[nodiscard]] Loop with_cutoff(const Loop& loop, int cutoff);
 
-/// The same loop under another time map, with `cutoff` harmonics: evaluated at the times of the new nodes and transformed.
-/// What does not fit into `cutoff` harmonics is cut off (see `tail` of the result). Cost O(nodes x cutoff).
+/// The same loop under another time map, with `cutoff` harmonics: evaluated at the times of the new nodes and
+/// transformed. What does not fit into `cutoff` harmonics is cut off (see `tail` of the result). Cost O(nodes x
+/// cutoff).
 [[nodiscard]] Loop with_time_map(const Loop& loop, const TimeMap& map, int cutoff);
 
 /// The same loop with s even in time, with as many harmonics as that needs (up to eight times its own): the tail stays
@@ -73,8 +74,8 @@ struct Loop {
 /// under half a period for kappa), and moves along with the curve otherwise.
 [[nodiscard]] Loop time_shifted(const Loop& loop, double fraction);
 
-/// Even number of nodes on which means over time of functions of the state are accurate: FourierGrid::nodes_for(cutoff),
-/// or more where the time map's density has higher harmonics (nodes_to_resolve).
+/// Even number of nodes on which means over time of functions of the state are accurate:
+/// FourierGrid::nodes_for(cutoff), or more where the time map's density has higher harmonics (nodes_to_resolve).
 [[nodiscard]] int nodes_for(const Loop& loop);
 
 /// States at nodes equidistant in s: mean over time of g = sum_j weights_j g(z_j).
@@ -85,14 +86,15 @@ struct Samples {
 };
 [[nodiscard]] Samples samples_of(const Loop& loop);
 
-/// sqrt of the mean over a period of |z(t) - w(t)|^2, periods scaled to one; cutoffs and time maps may differ, dimensions
-/// and windings must agree. By Parseval's equation where both maps are the identity.
+/// sqrt of the mean over a period of |z(t) - w(t)|^2, periods scaled to one; cutoffs and time maps may differ,
+/// dimensions and windings must agree. By Parseval's equation where both maps are the identity.
 [[nodiscard]] double mean_distance(const Loop& a, const Loop& b);
 
 /// sqrt of the mean over a period of |dz/dt|^2.
 [[nodiscard]] double rms_speed(const Loop& loop);
 
-/// sqrt of the mean over a period of |z - mean z|^2 (less the winding, n 2 pi t/T): how far the loop is from a constant one.
+/// sqrt of the mean over a period of |z - mean z|^2 (less the winding, n 2 pi t/T): how far the loop is from a constant
+/// one.
 [[nodiscard]] double rms_amplitude(const Loop& loop);
 
 /// sqrt of the mean over a period of |z|^2 (less the winding): the scale of rounding errors in the modes.

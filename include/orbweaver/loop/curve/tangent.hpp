@@ -7,8 +7,8 @@
 
 namespace orbweaver::loop {
 
-/// How a loop and its scalars change: a direction in which orbits lie, or the difference of two of them. Lengths and inner
-/// products are those of the coefficients and scalars as numbers.
+/// How a loop and its scalars change: a direction in which orbits lie, or the difference of two of them. Lengths and
+/// inner products are those of the coefficients and scalars as numbers.
 struct Tangent {
   std::vector<double> modes;    ///< (2K + 1) x dimension, as those of a Loop; empty: unknown
   std::vector<double> scalars;  ///< of T first, then of the parameters that move along; those left out do not change

@@ -9,7 +9,8 @@ namespace orbweaver::loop {
 /// How the loop parameter s runs with time, t = T phi(s) (docs/mathematics.md, "Time map"): more of s, and so more of
 /// the harmonics' resolution, where the orbit moves fast. The identity by default.
 ///
-///   2 pi phi(s) = s + atan2((kappa - 1) sin s cos s, cos^2 s + kappa sin^2 s) + sum_k (c_k sin ks + d_k (1 - cos ks)) / k
+///   2 pi phi(s) = s + atan2((kappa - 1) sin s cos s, cos^2 s + kappa sin^2 s)
+///                 + sum_k (c_k sin ks + d_k (1 - cos ks)) / k
 ///
 /// The first part is psi with tan psi = kappa tan s: a symmetric pulse at s = pi/2 and 3 pi/2 for kappa > 1, invariant
 /// under s -> -s and s -> s + pi.
@@ -28,8 +29,8 @@ struct TimeMap {
   /// True if phase(s + 2 pi turns) = phase(s) + 2 pi turns for all s: only every q-th coefficient for turns = p/q, and
   /// half turns where kappa is not 1.
   [[nodiscard]] bool is_invariant_under_shift(double turns) const;
-  /// The map of the same curve with s counted from s = `shift` on: phase(s + shift) - phase(shift). Where kappa does not
-  /// allow the shift, its pulse is written as coefficients, to rounding.
+  /// The map of the same curve with s counted from s = `shift` on: phase(s + shift) - phase(shift). Where kappa does
+  /// not allow the shift, its pulse is written as coefficients, to rounding.
   [[nodiscard]] TimeMap shifted(double shift) const;
   /// The map of the curve run backwards: -phase(-s).
   [[nodiscard]] TimeMap reversed() const;
@@ -43,10 +44,12 @@ struct TimeMap {
   }
 };
 
-/// The densities at the nodes s_j = 2 pi j / nodes: the weights of means over time, mean g = (1/nodes) sum_j density_j g_j.
+/// The densities at the nodes s_j = 2 pi j / nodes: the weights of means over time, mean g = (1/nodes) sum_j density_j
+/// g_j.
 [[nodiscard]] std::vector<double> densities(const TimeMap& map, int nodes);
 
-/// Nodes beyond which the density's harmonics are below rounding: what means over time need besides the integrand's own.
+/// Nodes beyond which the density's harmonics are below rounding: what means over time need besides the integrand's
+/// own.
 [[nodiscard]] int nodes_to_resolve(const TimeMap& map);
 
 /// As stored in the archive: kappa, c_1, d_1, ...; empty for the identity.

@@ -21,12 +21,14 @@ struct TimeMapFit {
 /// kappa is not 1.
 [[nodiscard]] TimeMap with_least_density(TimeMap map, double least);
 
-/// Up to `most` harmonics of density, from the distance of the loop's singularities in complex time as its derivatives of
-/// order 4 to 7 show it: s advances in proportion to (|z^(q)| / q!)^(1/q). Invariant under `isotropy`, density >= 0.02.
+/// Up to `most` harmonics of density, from the distance of the loop's singularities in complex time as its derivatives
+/// of order 4 to 7 show it: s advances in proportion to (|z^(q)| / q!)^(1/q). Invariant under `isotropy`, density >=
+/// 0.02.
 [[nodiscard]] TimeMapFit fit_general(const Loop& loop, const Isotropy& isotropy, double tolerance, int most = 16);
 
-/// The loop's own map unless another needs at most `pays` times its harmonics: identity, the best pulse (where `isotropy`
-/// allows one) or the general map, whichever needs fewest. A pure function of the loop; O(nodes x cutoff) a candidate.
+/// The loop's own map unless another needs at most `pays` times its harmonics: identity, the best pulse (where
+/// `isotropy` allows one) or the general map, whichever needs fewest. A pure function of the loop; O(nodes x cutoff) a
+/// candidate.
 [[nodiscard]] TimeMapFit fit_time_map(const Loop& loop, const Isotropy& isotropy, double tolerance, double pays = 0.8);
 
 /// True if the time map goes with the symmetries: they then act on the loop's harmonics as without a map.

@@ -33,12 +33,12 @@ struct Alignment {
 /// `from` (or a neighbour of it, with the same phase convention) moved by an alignment.
 [[nodiscard]] Loop aligned(const Loop& from, const Alignment& alignment);
 
-/// The largest m <= 12 such that the loop goes m times around a shorter one, to `tolerance` (rms over time of what has not
-/// that period); windings must be divisible by m. 1 where there is none.
+/// The largest m <= 12 such that the loop goes m times around a shorter one, to `tolerance` (rms over time of what has
+/// not that period); windings must be divisible by m. 1 where there is none.
 [[nodiscard]] int repetitions(const Loop& loop, double tolerance);
 
-/// The loop of period T/m around which `loop` goes m times, under the identity as time map. What repeats less often is left
-/// out. Throws MisuseError for m < 1 or windings that are not divisible by m.
+/// The loop of period T/m around which `loop` goes m times, under the identity as time map. What repeats less often is
+/// left out. Throws MisuseError for m < 1 or windings that are not divisible by m.
 [[nodiscard]] Loop without_repetition(const Loop& loop, int m);
 
 }  // namespace orbweaver::loop

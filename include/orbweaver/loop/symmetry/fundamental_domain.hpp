@@ -8,8 +8,8 @@
 
 namespace orbweaver::loop {
 
-/// The part of a loop that its isotropy repeats: s in [0, 2 pi / order], with z(t + T/order) = generator z(t); or half of
-/// that where a reversor z(-t) = R z(t) mirrors it (both ends then lie on fixed sets).
+/// The part of a loop that its isotropy repeats: s in [0, 2 pi / order], with z(t + T/order) = generator z(t); or half
+/// of that where a reversor z(-t) = R z(t) mirrors it (both ends then lie on fixed sets).
 struct FundamentalDomain {
   int order = 1;                            ///< p
   Eigen::MatrixXd generator;                ///< dimension x dimension

@@ -33,8 +33,8 @@ struct SymmetryElement {
 /// The declared symmetries that a loop has: generators of its isotropy group, in the system's order.
 using Isotropy = std::vector<SymmetryElement>;
 
-/// The isotropy as it was received, with the matrices that `system` declares. Throws EnvironmentError for a name that it does
-/// not, and for shifts that are none.
+/// The isotropy as it was received, with the matrices that `system` declares. Throws EnvironmentError for a name that
+/// it does not, and for shifts that are none.
 [[nodiscard]] Isotropy with_declared_matrices(Isotropy isotropy, const systems::Structure& system);
 
 /// "S@1/2 R@0": equivariances first, then reversors; empty text for no symmetry.
@@ -43,7 +43,8 @@ using Isotropy = std::vector<SymmetryElement>;
 /// `element` applied to a loop: the loop w with w = g z (for a symmetry of z, w = z up to the lattice).
 [[nodiscard]] Loop transformed(const Loop& loop, const SymmetryElement& element);
 
-/// The same for any time shift, in parts of the period: w(t) = M^-1 z(t + T shift), or M^-1 z(T shift - t) if `reversing`.
+/// The same for any time shift, in parts of the period: w(t) = M^-1 z(t + T shift), or M^-1 z(T shift - t) if
+/// `reversing`.
 [[nodiscard]] Loop transformed(const Loop& loop, const systems::AffineMap& map, bool reversing, double shift);
 
 /// `element` applied to a perturbation of a loop: by its matrix alone.
@@ -58,8 +59,8 @@ using Isotropy = std::vector<SymmetryElement>;
 [[nodiscard]] Isotropy find_isotropy(const systems::Structure& system, const Loop& loop, double tolerance,
                                      int max_denominator = 4);
 
-/// A declared symmetry of `system` (or the identity, named "1") with a time shift p/q, q <= `max_denominator`, that maps
-/// `from` to `to` within `tolerance` (mean distance, angles modulo 2 pi); none if there is none.
+/// A declared symmetry of `system` (or the identity, named "1") with a time shift p/q, q <= `max_denominator`, that
+/// maps `from` to `to` within `tolerance` (mean distance, angles modulo 2 pi); none if there is none.
 [[nodiscard]] std::optional<SymmetryElement> find_map(const systems::Structure& system, const Loop& from,
                                                       const Loop& to, double tolerance, int max_denominator = 4);
 

@@ -21,7 +21,8 @@ struct ShiftMinimum {
 [[nodiscard]] ShiftMinimum shift_minimum_near(const Loop& y, const Loop& x, const std::vector<int>& angles,
                                               double shift);
 
-/// y(t + psi) - x(t), angles' means reduced to [-pi, pi]: no winding. `turns`, if given, takes the whole turns added to y.
+/// y(t + psi) - x(t), angles' means reduced to [-pi, pi]: no winding. `turns`, if given, takes the whole turns added to
+/// y.
 [[nodiscard]] Loop difference_at(const Loop& y, const Loop& x, const std::vector<int>& angles, double shift,
                                  std::vector<double>* turns = nullptr);
 

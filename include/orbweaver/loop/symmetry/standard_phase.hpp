@@ -18,8 +18,8 @@ namespace orbweaver::loop {
 ///
 /// With a reversor in the group that `isotropy` generates: on the fixed set of the first one in the system's order, at
 /// that of its two points where the first coordinate is largest (of equal ones the next; angles that wind are compared
-/// modulo 2 pi). Otherwise at the maximum of the first angle, or of the first coordinate of a system without angles, less
-/// the linear part if it winds.
+/// modulo 2 pi). Otherwise at the maximum of the first angle, or of the first coordinate of a system without angles,
+/// less the linear part if it winds.
 [[nodiscard]] Loop in_standard_phase(const systems::Structure& system, const Loop& loop, const Isotropy& isotropy);
 
 }  // namespace orbweaver::loop

@@ -53,17 +53,17 @@ struct RunOptions {
 
 /// Surveys a scene into `directory`/atlas.h5: equilibria, sweeps, then every family found, as tasks of the queue
 /// (docs/architecture.md). Collective over `comm`; works with any number of ranks, and the datasets of the archive have
-/// the same bytes for all of them, also when it was broken off and resumed. Failed tasks are recorded and do not stop the
-/// others. `directory`/segments holds what a resume needs, and stays for one with wider limits. A stop that was asked for
-/// (queue::request_stop) or came by the wall time leaves a checkpoint and no archive, one by limits.time both.
-/// `system` is the scene's system (systems::make_system). Throws InputError or EnvironmentError, on all ranks alike, if the
-/// scene cannot be begun or a flush fails.
+/// the same bytes for all of them, also when it was broken off and resumed. Failed tasks are recorded and do not stop
+/// the others. `directory`/segments holds what a resume needs, and stays for one with wider limits. A stop that was
+/// asked for (queue::request_stop) or came by the wall time leaves a checkpoint and no archive, one by limits.time
+/// both. `system` is the scene's system (systems::make_system). Throws InputError or EnvironmentError, on all ranks
+/// alike, if the scene cannot be begun or a flush fails.
 [[nodiscard]] Summary run_survey(const core::Communicator& comm, const scene::Scene& scene,
                                  const std::shared_ptr<const systems::System>& system,
                                  const std::filesystem::path& directory, const RunOptions& options);
 
-/// Makes the archive of what a survey that was broken off has come to so far. Collective. Throws InputError if `directory`
-/// holds no checkpoint that can be used.
+/// Makes the archive of what a survey that was broken off has come to so far. Collective. Throws InputError if
+/// `directory` holds no checkpoint that can be used.
 [[nodiscard]] Summary archive_survey(const core::Communicator& comm, const std::filesystem::path& directory);
 
 }  // namespace orbweaver::survey

@@ -14,8 +14,8 @@ enum class Standing {
   finished_with_failures,  ///< the same, with a family that failed
 };
 
-/// Looks into `directory`. Throws InputError if what is there is unreadable, of a newer version, or of a scene that differs in
-/// more than wider limits. Not collective.
+/// Looks into `directory`. Throws InputError if what is there is unreadable, of a newer version, or of a scene that
+/// differs in more than wider limits. Not collective.
 [[nodiscard]] Standing standing_of(const std::filesystem::path& directory, const scene::Scene& scene);
 
 /// Throws InputError where a survey may not begin: a folder with a survey needs `resume`.

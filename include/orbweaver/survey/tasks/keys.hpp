@@ -17,7 +17,8 @@ namespace orbweaver::survey {
 [[nodiscard]] int depth_of(std::string_view branch);
 /// Whether `key` is that of something found along `branch`: an event, or what was born there, at any depth.
 [[nodiscard]] bool lies_on(std::string_view key, std::string_view branch);
-/// The number of the event of `branch` on which, or from which, `key` lies. Throws EnvironmentError for a key without one.
+/// The number of the event of `branch` on which, or from which, `key` lies. Throws EnvironmentError for a key without
+/// one.
 [[nodiscard]] int event_number(std::string_view key, std::string_view branch);
 
 /// "locate KEY" and "start KEY": tasks about a crossing or a family, whose branch has the task KEY.

@@ -6,9 +6,9 @@
 
 namespace orbweaver::survey {
 
-/// Where a family stands in the tree. Keys are paths: a crossing's key is its family's branch, its ordinal along it and its
-/// sector ("0000.0001/003.q4.j1"); a family born there adds the direction's number; a branch adds + or - where both sides
-/// of the direction lead to different orbits of the family.
+/// Where a family stands in the tree. Keys are paths: a crossing's key is its family's branch, its ordinal along it and
+/// its sector ("0000.0001/003.q4.j1"); a family born there adds the direction's number; a branch adds + or - where both
+/// sides of the direction lead to different orbits of the family.
 struct Lineage {
   std::string family;    ///< key of the family
   std::string crossing;  ///< key of the crossing where it was born; empty for bases

@@ -16,8 +16,8 @@ enum Limit : int { period_limited = 1, energy_limited = 2, step_limited = 4, dep
 /// Throws EnvironmentError for other bits.
 void check_limits(int limits);
 
-/// Tasks run by depth; within one branches first, then the location of what they crossed, then the starts of what leaves there.
-/// Sweeps come before all.
+/// Tasks run by depth; within one branches first, then the location of what they crossed, then the starts of what
+/// leaves there. Sweeps come before all.
 [[nodiscard]] int priority_of(TaskKind kind, int depth);
 
 }  // namespace orbweaver::survey
