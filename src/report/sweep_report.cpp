@@ -45,8 +45,8 @@ std::vector<EquilibriumReport> sweep_report(const scene::Scene& scene) {
     EquilibriumReport report{point, survey::point_text(description, point), starts::sweep(*system, point, options), {}};
     for (const starts::NormalMode& mode : bifurcation::small_oscillations(*system, report.sweep, options.cutoff))
       report.modes.push_back(
-          {survey::base_name(scene, description, point, static_cast<int>(reports.size()),
-                             static_cast<int>(report.modes.size())),
+          {survey::base_family_name(scene, description, point, static_cast<int>(reports.size()),
+                                    static_cast<int>(report.modes.size())),
            mode.period, mode.grid_period, deviation_degrees(*system, point, mode.direction, mode.period),
            deviation_degrees(*system, point, mode.grid_direction, mode.grid_period), loop::to_text(mode.isotropy)});
     reports.push_back(std::move(report));

@@ -84,7 +84,7 @@ class BranchStates : public ::testing::Test {
     }
   }
 
-  /// The tasks that the scene's bases, their crossings and starts make, by key.
+  /// The tasks that the scene's base families, their crossings and starts make, by key.
   std::map<std::string, queue::Task> branches_of_first_base(const std::string& kind) {
     std::map<std::string, queue::Task> found;
     const queue::TaskOutcome swept = done(task_of(SweepWork{0, {0.0, 0.0, 0.0, 0.0}}), 0).outcome;

@@ -17,6 +17,16 @@ TEST(Keys, OfEventsHaveTheirBranchAndNumber) {
   EXPECT_EQ(event_number(key, "0000.0001"), 3);
 }
 
+TEST(Keys, OfBranchesHaveTheirParentAndDepth) {
+  const std::string branch = "0000.0001+/003.q4.j1/0-/012.q2.j1/1";
+  EXPECT_EQ(depth_of(branch), 2);
+  EXPECT_EQ(parent_of(branch), "0000.0001+/003.q4.j1/0-");
+  EXPECT_EQ(depth_of(parent_of(branch)), 1);
+  EXPECT_EQ(parent_of(parent_of(branch)), "0000.0001+");
+  EXPECT_EQ(depth_of("0000.0001+"), 0);
+  EXPECT_EQ(parent_of("0000.0001+"), "");
+}
+
 TEST(Keys, LieOnWhatTheyBeginWithToASlash) {
   EXPECT_TRUE(lies_on("0000.0001/003.q4.j1", "0000.0001"));
   EXPECT_TRUE(lies_on("0000.0001/003.q4.j1/0/001.fold", "0000.0001"));

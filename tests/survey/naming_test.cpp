@@ -12,7 +12,7 @@ using namespace orbweaver;
 constexpr double pi = std::numbers::pi;
 
 std::string named(const scene::Scene& scene, const std::vector<double>& point, int mode, int index = 0) {
-  return survey::base_name(scene, systems::describe_system("double_pendulum"), point, index, mode);
+  return survey::base_family_name(scene, systems::describe_system("double_pendulum"), point, index, mode);
 }
 
 scene::Scene scene_with_names() {

@@ -128,8 +128,8 @@ TEST_F(Tree, RequestedOrbitsAreRows) {
       }
     }
   }
-  EXPECT_EQ(at_period, 7 + 10);  // bases, OD's two and OB; bases, ID1's and OD's two, IB and OB
-  EXPECT_EQ(at_energy, 6 + 8);   // In-Phase, Out-Phase, ID1's and OD's two; bases, OD's two, IB and OB
+  EXPECT_EQ(at_period, 7 + 10);  // base families, OD's two and OB; base families, ID1's and OD's two, IB and OB
+  EXPECT_EQ(at_energy, 6 + 8);   // In-Phase, Out-Phase, ID1's and OD's two; base families, OD's two, IB and OB
   EXPECT_THAT(atlas->orbits().reals("loss_rms"), Each(::testing::Le(1e-10)));
 }
 

@@ -2,7 +2,7 @@
 
 #include "orbweaver/core/mpi/communicator.hpp"
 #include "state/checkpoint.hpp"
-#include "tree/bases.hpp"
+#include "tree/base_families.hpp"
 #include "tree/family_tree.hpp"
 
 namespace orbweaver::survey {

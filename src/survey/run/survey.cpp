@@ -28,7 +28,7 @@
 #include "tasks/recorders.hpp"
 #include "teams.hpp"
 #include "time_limit.hpp"
-#include "tree/bases.hpp"
+#include "tree/base_families.hpp"
 #include "tree/family_tree.hpp"
 
 namespace orbweaver::survey {
@@ -163,7 +163,7 @@ class Run {
       _keeper->set_stage(Stage::families);
       for (const queue::Task& task : tasks) _known.insert(task.key);
       for (const queue::Task& task : recorder.left_out_tasks()) _known.insert(task.key);
-      for (queue::Task& task : branch_tasks(_scene, _system->description(), _sweeps_ended, _summary))
+      for (queue::Task& task : base_family_tasks(_scene, _system->description(), _sweeps_ended, _summary))
         if (!_known.contains(task.key)) tasks.push_back(std::move(task));
     });
     do {

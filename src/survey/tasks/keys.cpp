@@ -1,5 +1,6 @@
 #include "orbweaver/survey/tasks/keys.hpp"
 
+#include <algorithm>
 #include <charconv>
 
 #include <fmt/format.h>
@@ -20,6 +21,16 @@ std::string event_key(std::string_view branch, int number, std::string_view what
 }
 
 std::string branch_of(std::string_view crossing) { return std::string(crossing.substr(0, crossing.rfind('/'))); }
+
+std::string parent_of(std::string_view branch) {
+  const std::size_t direction = branch.rfind('/');
+  return direction == std::string_view::npos ? "" : branch_of(branch.substr(0, direction));
+}
+
+int depth_of(std::string_view branch) {
+  // A crossing and a direction each time.
+  return static_cast<int>(std::count(branch.begin(), branch.end(), '/')) / 2;
+}
 
 bool lies_on(std::string_view key, std::string_view branch) {
   return key.size() > branch.size() && key.starts_with(branch) && key[branch.size()] == '/';

@@ -9,7 +9,7 @@
 #include "run/segment_flusher.hpp"
 #include "run/time_limit.hpp"
 #include "state/checkpoint_keeper.hpp"
-#include "tree/bases.hpp"
+#include "tree/base_families.hpp"
 #include "tree/family_tree.hpp"
 
 namespace orbweaver::survey {

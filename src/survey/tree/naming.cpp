@@ -25,8 +25,8 @@ bool is_at(const systems::Description& system, const std::vector<double>& point,
 
 }  // namespace
 
-std::string base_name(const scene::Scene& scene, const systems::Description& system, const std::vector<double>& point,
-                      int index, int mode) {
+std::string base_family_name(const scene::Scene& scene, const systems::Description& system,
+                             const std::vector<double>& point, int index, int mode) {
   for (const scene::FixedPoints::Names& entry : scene.fixed_points.names)
     if (is_at(system, point, entry.point) && static_cast<std::size_t>(mode) < entry.names.size())
       return entry.names[static_cast<std::size_t>(mode)];

@@ -24,7 +24,7 @@ struct FamilySummary {
   double energy_to = 0.0;
   std::string end_reason;
   bool failed = false;
-  int depth = 0;  ///< 0 for bases
+  int depth = 0;  ///< 0 for base families
 };
 
 /// What a survey came to; complete on rank 0, `failures` and `stopped_early` on all ranks.

@@ -11,6 +11,10 @@ namespace orbweaver::survey {
 [[nodiscard]] std::string event_key(std::string_view branch, int number, std::string_view what);
 /// The branch on which the crossing lies.
 [[nodiscard]] std::string branch_of(std::string_view crossing);
+/// The branch on which the crossing lies where a branch was born; empty for one of a base family.
+[[nodiscard]] std::string parent_of(std::string_view branch);
+/// Of a branch: 0 for base families, 1 for what is born on them.
+[[nodiscard]] int depth_of(std::string_view branch);
 /// Whether `key` is that of something found along `branch`: an event, or what was born there, at any depth.
 [[nodiscard]] bool lies_on(std::string_view key, std::string_view branch);
 /// The number of the event of `branch` on which, or from which, `key` lies. Throws EnvironmentError for a key without one.

@@ -19,10 +19,10 @@ using SweepsEnded = std::map<std::string, std::pair<queue::Task, queue::TaskOutc
 /// A sweep for every equilibrium. Throws InputError if there is none.
 [[nodiscard]] std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::System& system);
 
-/// The families at equilibria in the order of their keys: equilibria sorted, longest period first; no more than the scene
-/// allows. What was passed over is remarked in the summary.
-[[nodiscard]] std::vector<queue::Task> branch_tasks(const scene::Scene& scene, const systems::Description& system,
-                                                    const SweepsEnded& sweeps, Summary& summary);
+/// The families at equilibria in the order of their keys: equilibria sorted, longest period first; no more than the
+/// scene allows. What was passed over is remarked in the summary.
+[[nodiscard]] std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const systems::Description& system,
+                                                         const SweepsEnded& sweeps, Summary& summary);
 
 /// An equilibrium whose sweep failed is a family without orbits, so that the archive says so.
 void gather_failed_sweeps(const systems::Description& system, const SweepsEnded& sweeps, Summary& summary,

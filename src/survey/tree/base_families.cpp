@@ -1,4 +1,4 @@
-#include "bases.hpp"
+#include "base_families.hpp"
 
 #include <fmt/format.h>
 
@@ -23,8 +23,8 @@ std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::S
   return tasks;
 }
 
-std::vector<queue::Task> branch_tasks(const scene::Scene& scene, const systems::Description& system,
-                                      const SweepsEnded& sweeps, Summary& summary) {
+std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const systems::Description& system,
+                                           const SweepsEnded& sweeps, Summary& summary) {
   std::vector<queue::Task> tasks;
   for (const auto& [key, ended] : sweeps) {
     const auto& [task, outcome] = ended;
@@ -37,7 +37,7 @@ std::vector<queue::Task> branch_tasks(const scene::Scene& scene, const systems::
     for (const std::string& reason : found.rejected)
       summary.remarks.push_back(fmt::format("dip passed over at {}: {}", point_text(system, found.point), reason));
     for (std::size_t n = 0; n < found.modes.size(); ++n) {
-      const std::string name = base_name(scene, system, found.point, found.index, static_cast<int>(n));
+      const std::string name = base_family_name(scene, system, found.point, found.index, static_cast<int>(n));
       const std::string branch_key = fmt::format("{:04}.{:04}", found.index, n);
       const FoundMode& mode = found.modes[n];
       BranchWork work;

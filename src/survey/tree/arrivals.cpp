@@ -1,0 +1,77 @@
+#include "arrivals.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "orbweaver/loop/symmetry/alignment.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+/// How far an arrival may be from the crossing that it is compared with, in period and energy: both are extrapolated
+/// along the branch.
+constexpr double arrival_window = 1e-3;
+/// How far the orbit before an arrival may be from a direction, in parts of its distance from the crossing's orbit.
+/// Other directions are further off.
+constexpr double farthest_from_direction = 0.4;
+
+double born_period(const LocateOutcome& crossing) { return crossing.multiplicity * crossing.period; }
+
+bool within_window(const ArrivalRecord& arrival, const LocateOutcome& crossing) {
+  return std::abs(arrival.period / born_period(crossing) - 1.0) <= arrival_window &&
+         std::abs(arrival.energy - crossing.energy) <= arrival_window * (1.0 + std::abs(crossing.energy));
+}
+
+/// Calls `found` for what has a key near `period`: all that can be within the window, and a little more.
+template <typename Map, typename Found>
+void for_near(const Map& by_period, double period, const Found& found) {
+  const auto end = by_period.upper_bound(period * (1.0 + 2.0 * arrival_window));
+  for (auto at = by_period.lower_bound(period * (1.0 - 2.0 * arrival_window)); at != end; ++at) found(at->second);
+}
+
+}  // namespace
+
+std::optional<Meeting> Arrivals::meeting(const ArrivalRecord& arrival, const LocateOutcome& crossing) const {
+  if (!within_window(arrival, crossing)) return std::nullopt;
+  const loop::Loop near = loop_of(arrival.near);
+  std::optional<Meeting> best;
+  double nearest = farthest_from_direction;
+  for (const LeavingRecord& leaving : crossing.leaving) {
+    const loop::Loop base = loop_of(leaving.base);
+    const double distance = loop::align(_system, near, base).distance;
+    const double unit = loop::mean_distance(base, loop::moved(base, leaving.direction, 1.0));
+    for (const int side : {1, -1}) {
+      if (side < 0 && !leaving.both_sides) continue;
+      const loop::Loop expected = loop::moved(base, leaving.direction, side * distance / unit);
+      const double away = loop::align(_system, near, expected).distance / distance;
+      if (away < nearest) {
+        nearest = away;
+        best = Meeting{crossing.key, {leaving.key, side}, away};
+      }
+    }
+  }
+  return best;
+}
+
+std::vector<Meeting> Arrivals::add_branch(const std::string& key, ArrivalRecord arrival) {
+  std::vector<Meeting> meetings;
+  for_near(_crossings, arrival.period, [&](const LocateOutcome& crossing) {
+    if (std::optional<Meeting> found = meeting(arrival, crossing)) meetings.push_back(std::move(*found));
+  });
+  const double period = arrival.period;
+  _arrived.emplace(period, Arrived{key, std::move(arrival)});
+  return meetings;
+}
+
+std::vector<std::pair<std::string, Meeting>> Arrivals::add_crossing(const LocateOutcome& crossing) {
+  std::vector<std::pair<std::string, Meeting>> meetings;
+  for_near(_arrived, born_period(crossing), [&](const Arrived& branch) {
+    if (std::optional<Meeting> found = meeting(branch.at, crossing))
+      meetings.emplace_back(branch.key, std::move(*found));
+  });
+  _crossings.emplace(born_period(crossing), crossing);
+  return meetings;
+}
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "branch_graph.hpp"
+#include "orbweaver/survey/tasks/work.hpp"
+#include "orbweaver/systems/description.hpp"
+
+namespace orbweaver::survey {
+
+/// Finds the crossings where branches have arrived, and the directions along which they came: by period and energy
+/// first, then by loops. What is compared with what depends on neither order nor time; every pair that comes close is
+/// compared once, when the second of them is added, and found among the others by period.
+class Arrivals {
+ public:
+  explicit Arrivals(const systems::Description& system) : _system(system) {}
+
+  /// A branch has arrived somewhere: the crossings known so far where it may be.
+  std::vector<Meeting> add_branch(const std::string& key, ArrivalRecord arrival);
+  /// Directions leave a crossing: branches known so far that may have come along one, by key.
+  std::vector<std::pair<std::string, Meeting>> add_crossing(const LocateOutcome& crossing);
+
+ private:
+  struct Arrived {
+    std::string key;
+    ArrivalRecord at;
+  };
+  /// The nearest direction of the crossing, if any is near.
+  [[nodiscard]] std::optional<Meeting> meeting(const ArrivalRecord& arrival, const LocateOutcome& crossing) const;
+
+  const systems::Description& _system;
+  std::multimap<double, Arrived> _arrived;          // by the period where they meet
+  std::multimap<double, LocateOutcome> _crossings;  // by the period of the born orbits
+};
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,131 @@
+#include "tables.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <set>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "orbweaver/loop/symmetry/isotropy.hpp"
+#include "orbweaver/survey/tree/family_end.hpp"
+#include "orbweaver/survey/tree/naming.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+/// A fold in energy shows twice: as an extremum and as a zero of the test function of q = 1. The first by key stays.
+class FoldsOnce {
+ public:
+  /// False for a fold where one of the same kind on the same family has been.
+  bool is_new(const LocateOutcome& crossing) {
+    if (!is_fold(*crossing.kind)) return true;
+    std::set<double>& places = _places[{crossing.lineage.family, *crossing.kind}];
+    const auto is_same = [&](double place) {
+      return std::abs(place - crossing.arclength) < same_place * (1.0 + std::abs(crossing.arclength));
+    };
+    const auto above = places.lower_bound(crossing.arclength);
+    if (above != places.end() && is_same(*above)) return false;
+    if (above != places.begin() && is_same(*std::prev(above))) return false;
+    places.insert(crossing.arclength);
+    return true;
+  }
+
+ private:
+  /// Each of the two is located to far less than this in arclength, and other folds lie farther off.
+  static constexpr double same_place = 1e-4;
+  std::map<std::pair<std::string, archive::CrossingKind>, std::set<double>> _places;  // arclengths by family and kind
+};
+
+archive::CrossingRecord row_of(const LocateOutcome& crossing) {
+  archive::CrossingRecord row;
+  row.family_key = crossing.lineage.family;
+  row.arclength = crossing.arclength;
+  row.period = crossing.period;
+  row.energy = crossing.energy;
+  row.kind = *crossing.kind;
+  row.multiplicity = crossing.multiplicity;
+  row.kernel_dimension = crossing.kernel_dimension;
+  row.residual = crossing.residual;
+  row.state = crossing.state;
+  row.sector_j = crossing.j;
+  row.sector_q = crossing.q;
+  row.fundamental_order = crossing.fundamental_order;
+  row.test_value = crossing.test_value;
+  row.kernel_residual = crossing.kernel_singular_value;
+  return row;
+}
+
+/// The orbits of another side.
+void add_orbits(const BranchOutcome& branch, FamilySummary& summary) {
+  const bool first = summary.orbits == 0;
+  summary.orbits += branch.orbits;
+  summary.period_from = first ? branch.period_from : std::min(summary.period_from, branch.period_from);
+  summary.period_to = first ? branch.period_to : std::max(summary.period_to, branch.period_to);
+  summary.energy_from = first ? branch.energy_from : std::min(summary.energy_from, branch.energy_from);
+  summary.energy_to = first ? branch.energy_to : std::max(summary.energy_to, branch.energy_to);
+}
+
+}  // namespace
+
+std::map<std::string, int> add_crossings(const std::vector<const LocateOutcome*>& crossings, TreeTables& tables) {
+  std::map<std::string, int> rows;
+  FoldsOnce folds;
+  for (const LocateOutcome* crossing : crossings) {
+    if (!folds.is_new(*crossing)) continue;
+    rows[crossing->key] = static_cast<int>(tables.tables.crossings.size());
+    tables.tables.crossings.push_back(row_of(*crossing));
+  }
+  return rows;
+}
+
+void add_families(const std::vector<Family>& families, const Crossings& crossings,
+                  const std::map<std::string, int>& crossing_rows,
+                  const std::function<const Meeting*(const std::string&)>& arrival, const systems::Description& system,
+                  TreeTables& tables) {
+  std::map<std::string, std::string> names;
+  for (const Family& family : families) names[family.key] = family.name;
+  for (const Family& family : families) {
+    archive::FamilyRecord record;
+    FamilySummary summary;
+    record.key = summary.key = family.key;
+    record.name = summary.name = family.name;
+    record.multiplicity = family.lineage.multiplicity;
+    record.isotropy = summary.isotropy = loop::to_text(isotropy_of(family.sides.front()->second.isotropy, system));
+    if (family.lineage.depth > 0) {
+      const LocateOutcome& born = crossings.at(family.lineage.crossing);
+      record.parent_key = born.lineage.family;
+      record.crossing = crossing_rows.at(born.key);
+    }
+    summary.depth = family.lineage.depth;
+    for (const FamilySide entry : family.sides) {
+      const auto& [key, side] = *entry;
+      std::string reason = side.outcome ? end_text(*side.outcome) : failure_text(side.reason);
+      if (const Meeting* meeting = arrival(key)) {
+        const LocateOutcome& met = crossings.at(meeting->crossing);
+        const auto row = crossing_rows.find(met.key);
+        const auto name = names.find(met.lineage.family);
+        if (row != crossing_rows.end() && name != names.end()) {
+          record.end_family_key = met.lineage.family;
+          record.end_crossing = row->second;
+          reason = joined_text(name->second, met);
+        }
+      }
+      record.end_reason = record.end_reason.empty() ? reason : both_ends_text(record.end_reason, reason);
+      summary.failed = summary.failed || side.failed;
+      if (side.failed) tables.failures.push_back(fmt::format("{} ({}): {}", family.key, family.name, side.reason));
+      if (side.outcome && side.outcome->orbits > 0) add_orbits(*side.outcome, summary);
+    }
+    if (family.sides.size() == 1) {  // of a family with two sides the other one may have been run as well
+      if (family.lineage.side < 0) record.last_step = -1;
+      if (family.lineage.side > 0) record.first_step = 0;
+    }
+    record.end_reason = summary.end_reason = limited(record.end_reason);
+    tables.tables.families.push_back(std::move(record));
+    tables.families.push_back(std::move(summary));
+  }
+}
+
+}  // namespace orbweaver::survey

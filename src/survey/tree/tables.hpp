@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "branch_graph.hpp"
+#include "family.hpp"
+#include "orbweaver/archive/schema/records.hpp"
+#include "orbweaver/survey/run/survey.hpp"
+#include "orbweaver/systems/description.hpp"
+
+namespace orbweaver::survey {
+
+/// Rows of the archive and of the summary.
+struct TreeTables {
+  archive::Records tables;              ///< families and crossings, and what of the rows does not belong to them
+  std::vector<FamilySummary> families;  ///< parents before children
+  std::vector<std::string> failures;    ///< key and reason
+  std::vector<std::string> remarks;
+};
+
+/// Adds a row for every crossing (they lie on families that stay) but for the second of two at one fold. Returns the
+/// rows by key.
+[[nodiscard]] std::map<std::string, int> add_crossings(const std::vector<const LocateOutcome*>& crossings,
+                                                       TreeTables& tables);
+
+/// Adds a row for every family. `arrival` says where the branch with a key has arrived; null if nowhere.
+void add_families(const std::vector<Family>& families, const Crossings& crossings,
+                  const std::map<std::string, int>& crossing_rows,
+                  const std::function<const Meeting*(const std::string&)>& arrival, const systems::Description& system,
+                  TreeTables& tables);
+
+}  // namespace orbweaver::survey
