@@ -32,8 +32,8 @@ class Linearization {
     second = 2,    ///< also sum_i r_i d2f_i at the nodes
   };
 
-  /// `scalars`: those of the unknowns that it will be asked about, unless T is the only one. Throws MisuseError for an invalid loop, NumericalError where the field or its derivatives are not finite (which
-  /// node, which time, which state).
+  /// `scalars`: those of the unknowns that it will be asked about, unless T is the only one. Throws MisuseError for an
+  /// invalid loop, NumericalError where the field or its derivatives are not finite (which node, which time, which state).
   Linearization(const systems::System& system, const loop::Loop& loop, Order order,
                 std::span<const Scalar> scalars = {});
 
