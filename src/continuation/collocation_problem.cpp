@@ -18,19 +18,18 @@ namespace orbweaver::continuation {
 using equations::Collocation;
 
 std::string CollocationProblem::obstacle(const FamilyOf& family) {
-  const int dimension = family.system.dimension();
-  const loop::FundamentalDomain domain = loop::fundamental_domain(family.isotropy, dimension);
+  const loop::FundamentalDomain domain = loop::fundamental_domain(family.system.structure(), family.isotropy);
   if (!domain.expresses(family.isotropy)) return "one part of the loop, repeated, does not have all of their isotropy";
   if (!domain.is_square()) return "the ends of their fundamental domain hold more or fewer conditions than coordinates";
   if (!Collocation::applies(family.system, domain))
-    return fmt::format("it takes a reversor or a conserved energy, and a box scheme for {} coordinates", dimension);
+    return "it takes a reversor or a conserved quantity";
   return {};
 }
 
 CollocationProblem::CollocationProblem(const FamilyOf& family, const Options& options, ProblemState& state)
     : PointProblem(state),
       _system(family.system),
-      _domain(loop::fundamental_domain(family.isotropy, family.system.dimension())),
+      _domain(loop::fundamental_domain(family.system.structure(), family.isotropy)),
       _isotropy(family.isotropy),
       _centre(family.base.modes.begin(), family.base.modes.begin() + family.base.dimension),
       _winding(family.base.winding),

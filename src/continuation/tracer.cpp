@@ -34,7 +34,7 @@ double Tracer::energy(const Trial& trial) const {
   std::vector<double> z(loop.modes.begin(), loop.modes.begin() + loop.dimension);
   for (int k = loop.cutoff; k >= 1; --k)
     for (int i = 0; i < loop.dimension; ++i) z[static_cast<std::size_t>(i)] += loop.cosine(k, i);
-  return _system->energy(z);
+  return energy_at(*_system, z);
 }
 
 void Tracer::go_on_from(Frontier frontier) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -17,6 +18,9 @@
 namespace orbweaver::starts {
 
 namespace {
+
+constexpr std::string_view no_zero =
+    "a dip that does not reach zero, or zeros too close together to tell apart: no family starts here";
 
 struct Sample {
   SweepPoint point;
@@ -129,10 +133,11 @@ SweepResult sweep(const systems::System& system, std::span<const double> fixed_p
               {root.period, fmt::format("{} times around the oscillation with T = {:.12g}", k, root.period / k)});
       }
     // Harmonic 0 is the mean of the loop: it does not depend on T, its minima are rounding.
-    if (!reaches_zero && samples[n].harmonic > 0)
-      result.rejected.push_back(
-          {here.period,
-           "a dip that does not reach zero, or zeros too close together to tell apart: no family starts here"});
+    if (!reaches_zero && samples[n].harmonic > 0) {
+      RejectedDip& dip = result.rejected.emplace_back();
+      dip.period = here.period;
+      dip.reason = no_zero;
+    }
   }
   std::stable_sort(result.modes.begin(), result.modes.end(),
                    [](const NormalMode& a, const NormalMode& b) { return a.period > b.period; });
