@@ -125,7 +125,11 @@ class Chord {
 };
 
 Comparison apart(double distance, double position, std::string detail) {
-  return {false, distance, position, std::move(detail)};
+  return {false, distance, position, std::move(detail), true};
+}
+
+Comparison undecided(double distance, double position, std::string detail) {
+  return {false, distance, position, std::move(detail), false};
 }
 
 Comparison compare(const systems::System& system, Chord chord, const loop::Loop& x, const IdentityOptions& options) {
@@ -146,8 +150,8 @@ Comparison compare(const systems::System& system, Chord chord, const loop::Loop&
       return apart(alignment.distance, position, "beyond the neighbours");
     const corrector::Result result = chord.correct(nearest, step);
     if (!result.converged())
-      return apart(alignment.distance, position,
-                   fmt::format("no orbit beside it: {} {}", corrector::name_of(result.outcome), result.detail));
+      return undecided(alignment.distance, position,
+                       fmt::format("no orbit beside it: {} {}", corrector::name_of(result.outcome), result.detail));
     nearest = result.loop;
     alignment = loop::align(structure, x, nearest);
     const double before = distance;
@@ -155,8 +159,8 @@ Comparison compare(const systems::System& system, Chord chord, const loop::Loop&
     if (distance <= tolerance) {
       const double off = chord.off_chord(nearest, position) * length;
       if (off <= bulge * std::abs(position * (1.0 - position)) * length + 10.0 * tolerance)
-        return {true, distance, position, "the same orbit"};
-      return apart(off, position, "the correction leaves the family");
+        return {true, distance, position, "the same orbit", true};
+      return undecided(off, position, "the correction leaves the family");
     }
     if (distance > away * length + tolerance) return apart(distance, position, "far from the family");
     // What is left of a wrong phase shrinks with its square; what separates two families stays.

@@ -26,6 +26,7 @@ struct Comparison {
   double distance = std::numeric_limits<double>::infinity();
   double position = std::numeric_limits<double>::quiet_NaN();  ///< of its projection on the chord: 0 at `a`, 1 at `b`
   std::string detail;                                          ///< how it was told
+  bool decided = true;  ///< false: Newton's method found no orbit beside it, or left the family on the way
 
   explicit operator bool() const { return same; }
 };

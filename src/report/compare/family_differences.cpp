@@ -297,6 +297,12 @@ void FamilyDifferences::compare_loops(const Pair& pair, const std::vector<CurveF
       continue;
     }
     if (_loops.are_same(_a, pair.a, _b, pair.b)) continue;  // Newton's method failed beside this one
+    if (!sample.answer.decided) {
+      _result.notes.push_back(
+          fmt::format("{} at {} has the numbers of the other's family; its loop could not be compared: {}", pair.a.name,
+                      where, sample.answer.detail));
+      continue;
+    }
     add(DifferenceKind::loop, pair,
         fmt::format(
             "the orbit of A at {} has the numbers of B's family and is not one of its loops: {}, distance {:.1e}",

@@ -39,11 +39,11 @@ LoopAnswer LoopCheck::ask(const OrbitBeside& x) const {
     const double in_period = std::abs(orbit.loop.period / node->loop.period - 1.0);
     if (in_period > allowed) continue;
     const double distance = std::hypot(in_period, loop::align(system, orbit.loop, node->loop, allowed).distance);
-    if (distance <= allowed) return {true, distance, allowed, "the same orbit"};
+    if (distance <= allowed) return {true, distance, allowed, "the same orbit", true};
   }
   const bifurcation::Comparison found =
       bifurcation::same_family(*_system, a, b, loop::isotropy_of(system, x.beside.isotropy), orbit, options);
-  return {found.same, found.distance, allowed, found.detail};
+  return {found.same, found.distance, allowed, found.detail, found.decided};
 }
 
 std::vector<LoopCheck::Sample> LoopCheck::sample(const AtlasTree& own, const TreeFamily& family, const AtlasTree& other,

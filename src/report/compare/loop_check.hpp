@@ -16,6 +16,7 @@ struct LoopAnswer {
   double distance = 0.0;  ///< from the family, as bifurcation::Comparison measures it
   double allowed = 0.0;   ///< bifurcation::IdentityOptions::tolerance, times 1 + rms size
   std::string detail;
+  bool decided = true;  ///< as in bifurcation::Comparison
 };
 
 /// An orbit of one of two atlases beside a family of the other.
