@@ -1,6 +1,6 @@
 # The layers in the order of docs/architecture.md. A layer may include only those before it; tests/structure checks the includes.
 set(ORBWEAVER_LAYERS
-  core ad systems scene loop loss equations spectrum corrector starts continuation bifurcation certificate archive queue survey
+  core ad numerics systems scene loop loss equations spectrum corrector starts continuation bifurcation certificate archive queue survey
   report)
 
 # g++ 12 reports its own AVX-512 intrinsics as maybe-uninitialized wherever Eigen inlines them.
@@ -46,6 +46,7 @@ if(ORBWEAVER_PRECOMPILED_HEADERS)
 endif()
 function(orbweaver_precompiled_headers target)
   if(ORBWEAVER_PRECOMPILED_HEADERS)
+    target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:fmt::fmt>)  # its macros must be those of the header
     target_precompile_headers(${target} REUSE_FROM orbweaver_precompiled)
   endif()
 endfunction()

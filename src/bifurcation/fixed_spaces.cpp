@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "orbweaver/numerics/decompositions.hpp"
+
 namespace orbweaver::bifurcation {
 
 namespace {

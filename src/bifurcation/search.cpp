@@ -8,6 +8,8 @@
 #include <Eigen/Geometry>
 #include <boost/math/distributions/normal.hpp>
 
+#include "orbweaver/numerics/decompositions.hpp"
+
 namespace orbweaver::bifurcation {
 
 namespace {

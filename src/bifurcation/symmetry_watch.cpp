@@ -12,6 +12,7 @@
 #include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/symmetry/shift_search.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::bifurcation {
 

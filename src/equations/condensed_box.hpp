@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 
 #include "box_scheme.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::equations {
 

@@ -10,6 +10,7 @@
 #include "matrix_table.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::spectrum {
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::spectrum {
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "matrix_table.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::spectrum {
 

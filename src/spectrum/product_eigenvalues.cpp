@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "orbweaver/numerics/decompositions.hpp"
+
 namespace orbweaver::spectrum {
 
 namespace {

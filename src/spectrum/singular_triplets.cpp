@@ -7,6 +7,7 @@
 #include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/core/petsc/check.hpp"
 #include "orbweaver/loss/dense.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 #include "start_vector.hpp"
 
 namespace orbweaver::spectrum {

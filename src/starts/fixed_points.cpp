@@ -10,6 +10,7 @@
 #include <Eigen/Dense>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::starts {
 

@@ -9,6 +9,7 @@
 #include <boost/math/tools/toms748_solve.hpp>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::starts {
 

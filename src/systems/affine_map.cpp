@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::systems {
 

@@ -27,7 +27,7 @@ inline loop::Loop even_in_phase_orbit(double period) {
 }
 
 /// The flat direction of a loop among the perturbations of a subspace at fixed period; the time shift is left out.
-inline std::vector<double> kernel_of(const loop::Loop& loop, const loop::Subspace& subspace) {
+inline loop::Tangent kernel_of(const loop::Loop& loop, const loop::Subspace& subspace) {
   const loss::Unknowns unknowns{subspace, {}};
   const std::vector<double> shift = unknowns.time_shift_direction(loop);
   const Eigen::VectorXd direction =
@@ -39,9 +39,12 @@ inline std::vector<double> kernel_of(const loop::Loop& loop, const loop::Subspac
   options.krylov_from = 100000;
   const spectrum::SingularTriplets found = spectrum::smallest_singular_triplets(
       *pendulum(), loop, unknowns, loss::Slice(unknowns.size(), conditions), options);
-  std::vector<double> modes(loop.modes.size(), 0.0);
-  subspace.add_to(std::span<const double>(found.right.data(), static_cast<std::size_t>(found.right.rows())), modes);
-  return modes;
+  loop::Tangent kernel;
+  kernel.modes.assign(loop.modes.size(), 0.0);
+  kernel.scalars = {0.0};
+  subspace.add_to(std::span<const double>(found.right.data(), static_cast<std::size_t>(found.right.rows())),
+                  kernel.modes);
+  return kernel;
 }
 
 /// The first orbits of a branch on either side of its crossing, in its own order: those on the side of -direction

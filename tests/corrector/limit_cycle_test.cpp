@@ -99,8 +99,8 @@ struct Collocated {
 
 Collocated by_collocation(double period_from, double mu_from, Pinned pinned) {
   const test::VanDerPol system(mu_from);
-  equations::Collocation equations(system, loop::fundamental_domain({}, 2), {0.0, 0.0}, {0.0, 0.0}, 160, {},
-                                   {Scalar::period(), Scalar::of_parameter("mu")});
+  equations::Collocation equations(system, loop::fundamental_domain(system.structure(), {}), {0.0, 0.0}, {0.0, 0.0},
+                                   160, {}, {Scalar::period(), Scalar::of_parameter("mu")});
   EXPECT_EQ(equations.borders(), 2);
   const auto size = static_cast<std::size_t>(equations.size());
   const int stride = equations.grid().stride();

@@ -101,9 +101,9 @@ TEST(Collocation, AppliesToAnyDimension) {
   for (const int particles : {1, 4, 5, 7}) {
     const test::OscillatorChain chain(particles);
     const int d = chain.dimension();
-    loop::Isotropy isotropy{test::element_of(chain.description(), "S", 1, 2),
-                            test::element_of(chain.description(), "R")};
-    const loop::FundamentalDomain domain = loop::fundamental_domain(isotropy, d);
+    loop::Isotropy isotropy{test::element_of(chain.structure(), "S", 1, 2),
+                            test::element_of(chain.structure(), "R")};
+    const loop::FundamentalDomain domain = loop::fundamental_domain(chain.structure(), isotropy);
     ASSERT_TRUE(Collocation::applies(chain, domain)) << d;
     const std::vector<double> zero(static_cast<std::size_t>(d), 0.0);
     Collocation equations(chain, domain, zero, zero, 16, {});

@@ -92,14 +92,17 @@ TEST(AffineSymmetry, PhasesAreTheSame) {
       const auto here = reversor_phase(galaxy().reversors[n], {}, later, 1e-9);
       const auto phase = reversor_phase(moved().structure.reversors[n], {}, there(later), 1e-9);
       ASSERT_EQ(phase.has_value(), here.has_value());
-      if (here) EXPECT_NEAR(*phase, *here, 1e-12);
+      if (here) {
+        EXPECT_NEAR(*phase, *here, 1e-12);
+      }
     }
   }
 }
 
 TEST(AffineSymmetry, LoopsAreBroughtTogether) {
   const Loop loop = sample({});
-  for (const SymmetryElement& e : SymmetryGroup::of_space(galaxy()).elements()) {
+  const SymmetryGroup space = SymmetryGroup::of_space(galaxy());
+  for (const SymmetryElement& e : space.elements()) {
     const Loop to = transformed(loop, e.map, e.reversing, irrational);
     const Alignment found = align(moved().structure, there(loop), there(to));
     EXPECT_EQ(found.name, e.name);

@@ -17,7 +17,6 @@ const double irrational = std::sqrt(2.0) / 7.0;
 constexpr double pi = std::numbers::pi;
 
 const systems::Structure& pendulum() { return test::structure_of("double_pendulum"); }
-const systems::Structure& galaxy() { return test::structure_of("henon_heiles"); }
 
 Loop loop_with(const Isotropy& isotropy, const std::vector<double>& mean = {0.0, 0.0, 0.0, 0.0}) {
   return test::random_loop_in(Subspace(4, 8, isotropy), constant_loop(mean, 5.0, 8), 71);

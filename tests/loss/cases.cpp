@@ -10,12 +10,17 @@ namespace orbweaver::test {
 
 namespace {
 
+std::vector<loss::Scalar> scalars_with(bool period) {
+  if (period) return {loss::Scalar::period()};
+  return {};
+}
+
 Case free_case(const std::string& system, int cutoff, bool period, std::vector<double> winding = {}) {
   auto made = systems::make_system(system);
   loop::Loop loop = random_loop(made->dimension(), cutoff, 61);
   if (!winding.empty()) loop.winding = std::move(winding);
   loop::Subspace all = loop::Subspace::unrestricted(loop.dimension, cutoff);
-  return {std::move(made), std::move(loop), {std::move(all), period}};
+  return {std::move(made), std::move(loop), {std::move(all), scalars_with(period)}};
 }
 
 Case symmetric_case(const std::string& system, const loop::Isotropy& isotropy, const std::vector<double>& mean,
@@ -24,7 +29,7 @@ Case symmetric_case(const std::string& system, const loop::Isotropy& isotropy, c
   const loop::Loop base = loop::constant_loop(mean, 4.2, 9);
   loop::Loop loop = random_loop_in(loop::Subspace(4, 9, isotropy), base, 62);
   loop::Subspace sector(4, 9, isotropy, signs);
-  return {std::move(made), std::move(loop), {std::move(sector), period}};
+  return {std::move(made), std::move(loop), {std::move(sector), scalars_with(period)}};
 }
 
 loop::Isotropy of_pendulum() {

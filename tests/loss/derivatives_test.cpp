@@ -93,7 +93,7 @@ TEST_P(LossDerivatives, JacobianIsTheDerivativeOfTheResidual) {
   const Eigen::VectorXd difference = (residual_at(h * v) - residual_at(-h * v)) / (2.0 * h);
   EXPECT_LT((difference - change).norm(), 1e-8 * change.norm());
   // Where the residual is of first degree in the unknowns nothing remains but rounding.
-  if (sample.system->structure().name == "harmonic_oscillator" || sample.system->structure().name == "double_pendulum")
+  if (sample.system->info().name == "harmonic_oscillator" || sample.system->info().name == "double_pendulum")
     expect_order([&](double step) { return (residual_at(step * v) - residual_at(0.0 * v) - step * change).norm(); },
                  1e-3, 2.0, "J v");
 }

@@ -18,9 +18,10 @@ class StatedSystem : public systems::System {
   explicit StatedSystem(systems::Structure structure, const std::string& name = "test")
       : _structure(std::move(structure)) {
     _info.name = name;
+    // Not as sums of texts: g++ 12 sees an overflow in them.
     for (int i = 0; i < _structure.dimension; ++i) {
-      _info.state_names.push_back("z" + std::to_string(i));
-      _info.winding_names.push_back("n" + std::to_string(i));
+      _info.state_names.emplace_back("z").append(std::to_string(i));
+      _info.winding_names.emplace_back("n").append(std::to_string(i));
     }
   }
 

@@ -28,15 +28,16 @@ using ::testing::Not;
 int team_size(const core::Communicator& comm) { return comm.size() == 5 ? 2 : comm.size() - 1; }
 
 /// A chain of four particles, dimension 8: its four families, of a few orbits each. The scene's own system is not used.
+/// By newton-krylov, which a team divides; collocation is done by each member alone.
 scene::Scene chain_scene(int team, const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides{"survey.team_size=" + std::to_string(team)};
   overrides.insert(overrides.end(), more.begin(), more.end());
   return scene::parse(
       "system: {name: harmonic_oscillator}\n"
       "starts: {fixed_points: {grid: [[0]]}, sweep: {period: [5.2, 6.3], step: 0.05}}\n"
-      "continuation: {start: 17deg}\n"
+      "continuation: {start: 17deg, corrector: newton-krylov}\n"
       "survey: {depth: 0}\n"
-      "limits: {steps: 5}\n"
+      "limits: {steps: 9}\n"
       "output: {flush_seconds: 0.05, flush_orbits: 3}\n",
       "chain", overrides);
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::loop {
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::loop {
 

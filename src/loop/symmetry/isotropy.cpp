@@ -12,6 +12,7 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/symmetry/subspace.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::loop {
 

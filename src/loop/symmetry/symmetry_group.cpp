@@ -110,8 +110,8 @@ void SymmetryGroup::set_generator() {
 SymmetryGroup SymmetryGroup::subgroup(const std::function<bool(const SymmetryElement&)>& keeps) const {
   SymmetryGroup out;
   out._angles = _angles;
-  std::copy_if(_elements.begin(), _elements.end(), std::back_inserter(out._elements), keeps);
-  core::require(!out._elements.empty() && out._elements.front().name == "1", "every group has the identity");
+  out._elements.push_back(_elements.front());  // the identity, also where nothing can be said of the others
+  std::copy_if(_elements.begin() + 1, _elements.end(), std::back_inserter(out._elements), keeps);
   out.set_generator();
   return out;
 }

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <Eigen/Dense>
+
+/// Eigen's decompositions of dynamic matrices, compiled once (src/numerics/decompositions.cpp): each takes the compiler
+/// five to twenty seconds. Who decomposes a matrix includes this header; the code is Eigen's own.
+extern template class Eigen::EigenSolver<Eigen::MatrixXd>;
+extern template class Eigen::HouseholderQR<Eigen::MatrixXd>;
+extern template class Eigen::JacobiSVD<Eigen::MatrixXd>;
+extern template class Eigen::JacobiSVD<Eigen::MatrixXcd>;
+extern template class Eigen::PartialPivLU<Eigen::MatrixXcd>;
+extern template class Eigen::PartialPivLU<Eigen::MatrixXd>;
