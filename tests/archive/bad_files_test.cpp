@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "archive/sample.hpp"
-#include "orbweaver/archive/file/h5_handle.hpp"
+#include "file/h5_handle.hpp"
 #include "orbweaver/archive/read/reader.hpp"
 #include "orbweaver/archive/write/segment.hpp"
 #include "orbweaver/core/error.hpp"

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "archive/sample.hpp"
-#include "orbweaver/archive/file/h5_handle.hpp"
+#include "file/h5_handle.hpp"
 #include "orbweaver/archive/read/check_segments.hpp"
 #include "orbweaver/core/mpi/communicator.hpp"
 

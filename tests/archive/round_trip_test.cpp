@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "archive/sample.hpp"
-#include "orbweaver/archive/file/h5_handle.hpp"
+#include "file/h5_handle.hpp"
 #include "orbweaver/archive/read/reader.hpp"
 #include "orbweaver/archive/write/consolidate.hpp"
 #include "orbweaver/archive/write/segment.hpp"

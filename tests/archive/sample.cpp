@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "orbweaver/archive/file/h5_handle.hpp"
+#include "file/h5_handle.hpp"
 #include "orbweaver/archive/schema/schema.hpp"
 #include "orbweaver/archive/write/consolidate.hpp"
 #include "orbweaver/archive/write/segment.hpp"

@@ -1,4 +1,4 @@
-#include "orbweaver/archive/file/h5_handle.hpp"
+#include "h5_handle.hpp"
 
 #include <utility>
 

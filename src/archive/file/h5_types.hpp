@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "orbweaver/archive/file/h5_handle.hpp"
+#include "h5_handle.hpp"
 #include "orbweaver/archive/schema/schema.hpp"
 
 namespace orbweaver::archive {

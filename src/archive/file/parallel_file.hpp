@@ -8,8 +8,8 @@
 
 #include <mpi.h>
 
+#include "h5_handle.hpp"
 #include "layout_file.hpp"
-#include "orbweaver/archive/file/h5_handle.hpp"
 
 namespace orbweaver::archive {
 

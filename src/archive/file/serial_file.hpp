@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "orbweaver/archive/file/h5_handle.hpp"
+#include "h5_handle.hpp"
 #include "orbweaver/archive/read/table.hpp"
 
 namespace orbweaver::archive {
