@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "show_parts.hpp"
+#include "show_crossings.hpp"
+#include "show_families.hpp"
+#include "show_values.hpp"
 
 namespace orbweaver::report {
 

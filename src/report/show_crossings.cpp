@@ -1,9 +1,10 @@
+#include "show_crossings.hpp"
+
 #include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "show_parts.hpp"
 #include "text_grid.hpp"
 
 namespace orbweaver::report {
@@ -42,6 +43,11 @@ std::vector<std::string> born_at(const archive::Archive& atlas) {
 }
 
 }  // namespace
+
+std::string crossing_text(const archive::Archive& atlas, std::size_t crossing) {
+  return fmt::format("{} T {:.6g}", atlas.crossings().texts("kind")[crossing],
+                     atlas.crossings().reals("period")[crossing]);
+}
 
 void print_crossings(std::ostream& out, const archive::Archive& atlas) {
   const archive::Table& crossings = atlas.crossings();

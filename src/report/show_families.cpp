@@ -1,10 +1,13 @@
+#include "show_families.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "orbweaver/survey/tree/family_end.hpp"
-#include "show_parts.hpp"
+#include "show_crossings.hpp"
+#include "show_stability.hpp"
 #include "text_grid.hpp"
 
 namespace orbweaver::report {
@@ -88,11 +91,6 @@ std::string range_text(const std::vector<double>& values, std::size_t first, std
     high = std::fmax(high, values[i]);
   }
   return std::isnan(low) ? "-" : fmt::format("{:.6g} .. {:.6g}", low, high);
-}
-
-std::string crossing_text(const archive::Archive& atlas, std::size_t crossing) {
-  return fmt::format("{} T {:.6g}", atlas.crossings().texts("kind")[crossing],
-                     atlas.crossings().reals("period")[crossing]);
 }
 
 void print_families(std::ostream& out, const archive::Archive& atlas) {

@@ -1,3 +1,5 @@
+#include "show_stability.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -5,8 +7,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
-#include "show_parts.hpp"
 
 namespace orbweaver::report {
 

@@ -1,4 +1,4 @@
-#include "show_parts.hpp"
+#include "show_values.hpp"
 
 #include <algorithm>
 #include <cmath>

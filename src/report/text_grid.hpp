@@ -7,6 +7,9 @@
 
 namespace orbweaver::report {
 
+/// Lines of readable text are not longer, where words allow it.
+inline constexpr std::size_t line_width = 120;
+
 /// Columns of text, aligned: left, or right for numbers.
 class TextGrid {
  public:

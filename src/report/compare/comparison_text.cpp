@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include "json_text.hpp"
-#include "show_parts.hpp"
 #include "text_grid.hpp"
 
 namespace orbweaver::report {

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstddef>
+#include <ostream>
+#include <string>
+
+#include "orbweaver/archive/read/reader.hpp"
+
+namespace orbweaver::report {
+
+/// The crossings, with names of families in place of indices.
+void print_crossings(std::ostream& out, const archive::Archive& atlas);
+
+/// "period-doubling T 8.44293": row `crossing` of /crossings.
+[[nodiscard]] std::string crossing_text(const archive::Archive& atlas, std::size_t crossing);
+
+}  // namespace orbweaver::report
