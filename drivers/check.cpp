@@ -12,6 +12,7 @@
 #include "common_options.hpp"
 #include "failure.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::drivers {

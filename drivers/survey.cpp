@@ -16,6 +16,7 @@
 #include "orbweaver/report/summary_text.hpp"
 #include "orbweaver/survey/run/survey.hpp"
 #include "orbweaver/survey/state/standing.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "signals.hpp"
 #include "terminal.hpp"
 

@@ -1,8 +1,10 @@
+#include "born_orbit.hpp"
+
 #include <cmath>
 #include <span>
 
-#include "orbweaver/bifurcation/directions.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loss/slice.hpp"
 #include "orbweaver/loss/unknowns.hpp"
 

@@ -12,6 +12,7 @@
 #include "kernel_actions.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
 #include "search.hpp"
 

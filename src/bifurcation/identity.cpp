@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
 #include "orbweaver/loss/slice.hpp"
 #include "orbweaver/loss/unknowns.hpp"

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
 
 namespace orbweaver::bifurcation {

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <boost/math/distributions/normal.hpp>
 
+#include "born_orbit.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::bifurcation {

@@ -9,6 +9,7 @@
 #include "loop_problem.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/grid/time_map_fit.hpp"
 #include "tracer.hpp"
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "orbweaver/loop/curve/measures.hpp"
+
 namespace orbweaver::continuation {
 
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loss/slice.hpp"
 
 namespace orbweaver::continuation {

@@ -7,8 +7,9 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/equations/loop_equations.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/loss/assembled.hpp"
 #include "orbweaver/loss/linearization.hpp"
-#include "orbweaver/loss/matrices.hpp"
 #include "orbweaver/loss/slice.hpp"
 #include "orbweaver/spectrum/eigenpairs.hpp"
 

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <vector>
 
+#include "orbweaver/loop/curve/measures.hpp"
+
 namespace orbweaver::continuation {
 
 double energy_at(const systems::System& system, std::span<const double> state) {

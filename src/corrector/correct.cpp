@@ -9,10 +9,25 @@
 #include "objective.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/spectrum/sliced_hessian.hpp"
 #include "tao_solver.hpp"
 
 namespace orbweaver::corrector {
+
+std::string_view name_of(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::converged: return "converged";
+    case Outcome::under_resolved: return "under-resolved";
+    case Outcome::stalled: return "stalled";
+    case Outcome::iteration_limit: return "iteration limit";
+    case Outcome::period_not_positive: return "period not positive";
+    case Outcome::not_finite: return "not finite";
+    case Outcome::singular: return "singular";
+    case Outcome::solver_failed: return "solver failed";
+  }
+  return "unknown";
+}
 
 namespace {
 

@@ -2,8 +2,9 @@
 
 #include <cmath>
 
+#include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/loss/assembled.hpp"
 #include "orbweaver/loss/dense.hpp"
-#include "orbweaver/loss/matrices.hpp"
 
 namespace orbweaver::corrector {
 

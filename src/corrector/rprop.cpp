@@ -1,12 +1,13 @@
 // The paper's optimiser as TAO types: Rprop (Riedmiller and Braun 1993) in the variant that forgets a gradient whose
 // sign has flipped, and the same with the paper's linear extrapolation (section III E).
+#include "rprop.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include <petsc/private/taoimpl.h>
 
 #include "orbweaver/core/petsc/check.hpp"
-#include "tao_solver.hpp"
 
 namespace orbweaver::corrector {
 

@@ -10,6 +10,7 @@
 #include "orbweaver/core/petsc/check.hpp"
 #include "orbweaver/core/petsc/handle.hpp"
 #include "orbweaver/loss/dense.hpp"
+#include "rprop.hpp"
 
 namespace orbweaver::corrector {
 

@@ -25,7 +25,4 @@ struct TaoRun {
 /// Runs the TAO type of `options.method` on the objective from x = 0. Throws what a callback threw.
 [[nodiscard]] TaoRun run_tao(Objective& objective, const Options& options);
 
-/// Registers the TAO types "orbweaver_rprop" and "orbweaver_rprop_extrapolated" (once a process).
-void register_rprop();
-
 }  // namespace orbweaver::corrector

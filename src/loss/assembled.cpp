@@ -1,3 +1,5 @@
+#include "orbweaver/loss/assembled.hpp"
+
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -6,7 +8,6 @@
 #include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/core/petsc/check.hpp"
 #include "orbweaver/loss/dense.hpp"
-#include "orbweaver/loss/matrices.hpp"
 
 namespace orbweaver::loss {
 

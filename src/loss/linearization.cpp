@@ -9,6 +9,7 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 
 namespace orbweaver::loss {
 

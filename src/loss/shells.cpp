@@ -1,10 +1,11 @@
+#include "shells.hpp"
+
 #include <exception>
 #include <memory>
 #include <utility>
 
 #include "orbweaver/core/petsc/check.hpp"
 #include "orbweaver/loss/dense.hpp"
-#include "orbweaver/loss/matrices.hpp"
 
 namespace orbweaver::loss {
 

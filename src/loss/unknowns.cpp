@@ -4,6 +4,7 @@
 #include <map>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
 
 namespace orbweaver::loss {

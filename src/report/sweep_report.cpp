@@ -10,6 +10,7 @@
 #include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
+#include "orbweaver/systems/registry.hpp"
 
 namespace orbweaver::report {
 

@@ -9,9 +9,10 @@
 
 #include <fmt/format.h>
 
+#include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
-#include "sections.hpp"
 #include "source.hpp"
+#include "system_section.hpp"
 #include "units.hpp"
 
 namespace orbweaver::scene {

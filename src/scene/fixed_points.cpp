@@ -1,3 +1,5 @@
+#include "fixed_points.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -5,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "sections.hpp"
 #include "suggest.hpp"
 #include "units.hpp"
 

@@ -5,11 +5,14 @@
 
 #include <fmt/format.h>
 
+#include "fixed_points.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "overrides.hpp"
 #include "reader.hpp"
 #include "sections.hpp"
+#include "system_section.hpp"
 
 namespace orbweaver::scene {
 
@@ -93,6 +96,20 @@ Scene parse(const std::string& text, const std::string& origin, const std::vecto
 
 Scene load(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   return parse(read_file(file), file.string(), overrides);
+}
+
+std::vector<std::string> not_built_yet(const Scene& scene) {
+  std::vector<std::string> sentences;
+  const auto say = [&](bool asked, const std::string& sentence) {
+    if (asked) sentences.push_back(sentence);
+  };
+  const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  say(!system->structure().conservative() || !scene.system.effects.empty(),
+      "system: continuation of systems without a conserved energy, or with effects, is not built yet.");
+  say(!scene.section.coordinate.empty(),
+      fmt::format("section: crossings of the Poincare section {} = {:g} are not computed yet.",
+                  scene.section.coordinate, scene.section.value));
+  return sentences;
 }
 
 }  // namespace orbweaver::scene

@@ -8,8 +8,6 @@ namespace orbweaver::scene {
 
 // One reader a section of a scene; each fills its struct and leaves the defaults of absent keys alone. All throw
 // core::InputError as Field does.
-void read_system(const Field& field, SystemChoice& system);
-void read_fixed_points(const Field& field, const systems::System& system, FixedPoints& points);
 void read_sweep(const Field& field, Sweep& sweep);
 void read_continuation(const Field& field, Continuation& continuation);
 void read_survey(const Field& field, Survey& survey);
@@ -17,8 +15,5 @@ void read_limits(const Field& field, Limits& limits);
 void read_events(const Field& field, Events& events);
 void read_section(const Field& field, const systems::System& system, Section& section);
 void read_output(const Field& field, Output& output);
-
-/// The parameters that the system has with the effects chosen.
-[[nodiscard]] std::vector<systems::Parameter> known_parameters(const SystemChoice& choice);
 
 }  // namespace orbweaver::scene

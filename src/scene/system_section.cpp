@@ -1,10 +1,11 @@
+#include "system_section.hpp"
+
 #include <algorithm>
 
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/systems/system.hpp"
-#include "sections.hpp"
+#include "orbweaver/systems/registry.hpp"
 
 namespace orbweaver::scene {
 

@@ -1,3 +1,5 @@
+#include "orbweaver/spectrum/loop_triplets.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -12,9 +14,8 @@
 #include "orbweaver/core/petsc/callback.hpp"
 #include "orbweaver/core/petsc/check.hpp"
 #include "orbweaver/equations/loop_solver.hpp"
+#include "orbweaver/loss/assembled.hpp"
 #include "orbweaver/loss/dense.hpp"
-#include "orbweaver/loss/matrices.hpp"
-#include "orbweaver/spectrum/singular_triplets.hpp"
 #include "start_vector.hpp"
 
 namespace orbweaver::spectrum {

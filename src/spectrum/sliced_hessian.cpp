@@ -6,8 +6,8 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/petsc/check.hpp"
+#include "orbweaver/loss/assembled.hpp"
 #include "orbweaver/loss/dense.hpp"
-#include "orbweaver/loss/matrices.hpp"
 
 namespace orbweaver::spectrum {
 

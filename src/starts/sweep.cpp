@@ -11,8 +11,8 @@
 #include "linear_modes.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/loss/assembled.hpp"
 #include "orbweaver/loss/linearization.hpp"
-#include "orbweaver/loss/matrices.hpp"
 #include "orbweaver/spectrum/eigenpairs.hpp"
 
 namespace orbweaver::starts {

@@ -1,3 +1,5 @@
+#include "orbweaver/systems/registry.hpp"
+
 #include <algorithm>
 #include <array>
 
@@ -5,7 +7,6 @@
 
 #include "checks.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/systems/system.hpp"
 #include "registered.hpp"
 
 namespace orbweaver::systems {

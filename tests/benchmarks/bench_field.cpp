@@ -5,6 +5,7 @@
 #include <benchmark/benchmark.h>
 
 #include "orbweaver/ad/derivatives.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::benchmarks {

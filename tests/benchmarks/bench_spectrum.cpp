@@ -7,8 +7,9 @@
 #include "memory.hpp"
 #include "orbweaver/continuation/off_branch.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/loss/matrices.hpp"
+#include "orbweaver/loss/assembled.hpp"
 #include "orbweaver/spectrum/eigenpairs.hpp"
+#include "orbweaver/spectrum/loop_triplets.hpp"
 #include "orbweaver/spectrum/singular_triplets.hpp"
 
 namespace orbweaver::benchmarks {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "orbweaver/starts/sweep.hpp"
+#include "orbweaver/systems/registry.hpp"
 
 namespace orbweaver::benchmarks {
 

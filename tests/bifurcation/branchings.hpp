@@ -5,7 +5,7 @@
 #include "continuation/families.hpp"
 #include "orbweaver/loss/slice.hpp"
 #include "orbweaver/loss/unknowns.hpp"
-#include "orbweaver/spectrum/singular_triplets.hpp"
+#include "orbweaver/spectrum/loop_triplets.hpp"
 
 namespace orbweaver::test {
 

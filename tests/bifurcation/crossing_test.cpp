@@ -5,6 +5,7 @@
 #include "continuation/families.hpp"
 #include "orbweaver/bifurcation/kernel.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 
 namespace {
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "bifurcation/crossings.hpp"
+#include "born_orbit.hpp"
 #include "orbweaver/certificate/certificate.hpp"
 
 namespace orbweaver::bifurcation {

@@ -7,6 +7,7 @@
 #include "bifurcation/crossings.hpp"
 #include "orbweaver/bifurcation/directions.hpp"
 #include "orbweaver/certificate/certificate.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "spectrum/point_systems.hpp"
 
 namespace orbweaver::bifurcation {

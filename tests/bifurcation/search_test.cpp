@@ -2,10 +2,13 @@
 #include <algorithm>
 
 #include "bifurcation/crossings.hpp"
+#include "born_orbit.hpp"
 #include "orbweaver/bifurcation/directions.hpp"
 #include "orbweaver/bifurcation/identity.hpp"
 #include "orbweaver/certificate/certificate.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/standard_phase.hpp"
+#include "orbweaver/systems/registry.hpp"
 
 namespace orbweaver::bifurcation {
 namespace {

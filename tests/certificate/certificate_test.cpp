@@ -8,6 +8,7 @@
 
 #include "certificate/decay.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/systems/registry.hpp"
 
 namespace orbweaver::certificate {
 namespace {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "orbweaver/continuation/branch.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "spectrum/pendulum_loops.hpp"
 
 namespace orbweaver::test {

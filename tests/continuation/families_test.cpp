@@ -8,6 +8,7 @@
 
 #include "continuation/families.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loss/linearization.hpp"
 
 namespace orbweaver::continuation {

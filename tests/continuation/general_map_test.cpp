@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "continuation/families.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/grid/time_map_fit.hpp"
 #include "orbweaver/loss/linearization.hpp"
 

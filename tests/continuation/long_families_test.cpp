@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "continuation/families.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loss/linearization.hpp"
 
 namespace orbweaver::continuation {

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "continuation/families.hpp"
-#include "orbweaver/loss/matrices.hpp"
+#include "orbweaver/loss/assembled.hpp"
 #include "orbweaver/spectrum/sliced_hessian.hpp"
 #include "spectrum/matrices.hpp"
 

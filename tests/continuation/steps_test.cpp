@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "continuation/families.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 
 namespace orbweaver::continuation {
 namespace {

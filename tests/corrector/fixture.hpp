@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "orbweaver/corrector/correct.hpp"
-#include "orbweaver/loss/matrices.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/loss/assembled.hpp"
 #include "orbweaver/spectrum/singular_triplets.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "spectrum/pendulum_loops.hpp"
 
 namespace orbweaver::test {

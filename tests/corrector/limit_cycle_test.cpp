@@ -11,7 +11,7 @@
 #include "orbweaver/equations/loop_equations.hpp"
 #include "orbweaver/equations/orbit_solver.hpp"
 #include "orbweaver/loop/symmetry/fundamental_domain.hpp"
-#include "orbweaver/loss/matrices.hpp"
+#include "orbweaver/loss/linearization.hpp"
 #include "support/van_der_pol.hpp"
 
 namespace orbweaver::corrector {

@@ -5,7 +5,9 @@
 
 #include "corrector/fixture.hpp"
 #include "orbweaver/equations/loop_equations.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
+#include "orbweaver/systems/registry.hpp"
 
 namespace orbweaver::corrector {
 namespace {

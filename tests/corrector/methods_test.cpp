@@ -6,6 +6,7 @@
 
 #include "corrector/fixture.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 
 namespace orbweaver::corrector {
 namespace {

@@ -6,6 +6,8 @@
 
 #include "corrector/fixture.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/systems/registry.hpp"
 
 namespace orbweaver::corrector {
 namespace {

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "corrector/fixture.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/systems/registry.hpp"
 
 namespace orbweaver::corrector {
 namespace {

@@ -11,6 +11,8 @@
 #include "orbweaver/loss/linearization.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "support/oscillator_chain.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/systems/registry.hpp"
 
 namespace orbweaver::equations {
 namespace {

@@ -10,7 +10,8 @@
 #include "loss/cases.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/equations/loop_solver.hpp"
-#include "orbweaver/loss/matrices.hpp"
+#include "orbweaver/loss/assembled.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "spectrum/matrices.hpp"
 #include "spectrum/pendulum_loops.hpp"
 

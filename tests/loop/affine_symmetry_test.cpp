@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "loop/samples.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/loop/symmetry/standard_phase.hpp"

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "loop/samples.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "support/stated_system.hpp"
 

@@ -8,6 +8,7 @@
 
 #include "loop/samples.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 
 namespace orbweaver::loop {
 namespace {

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/subspace.hpp"
 #include "support/stated_system.hpp"
 

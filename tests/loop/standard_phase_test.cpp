@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "loop/samples.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "support/stated_system.hpp"
 
 namespace orbweaver::loop {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 
 namespace {
 

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "loop/samples.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "support/stated_system.hpp"
 
 namespace orbweaver::test {

@@ -6,6 +6,7 @@
 #include "loop/samples.hpp"
 #include "loss/cases.hpp"
 #include "orbweaver/loss/linearization.hpp"
+#include "orbweaver/systems/registry.hpp"
 
 namespace orbweaver::loss {
 namespace {

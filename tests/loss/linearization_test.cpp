@@ -8,6 +8,7 @@
 #include "loop/samples.hpp"
 #include "loss/cases.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/systems/registry.hpp"
 
 namespace orbweaver::loss {
 namespace {

@@ -7,6 +7,8 @@
 #include "loop/samples.hpp"
 #include "loss/cases.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/systems/registry.hpp"
 
 namespace orbweaver::loss {
 namespace {

@@ -1,4 +1,4 @@
-#include "orbweaver/loss/matrices.hpp"
+#include "orbweaver/loss/assembled.hpp"
 
 #include <memory>
 
@@ -8,6 +8,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/petsc/check.hpp"
 #include "orbweaver/loss/dense.hpp"
+#include "shells.hpp"
 
 namespace orbweaver::loss {
 namespace {

@@ -4,9 +4,11 @@
 
 #include "loop/samples.hpp"
 #include "loss/cases.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
 #include "orbweaver/loss/dense.hpp"
-#include "orbweaver/loss/matrices.hpp"
+#include "orbweaver/loss/linearization.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "support/stated_system.hpp"
 
 namespace orbweaver::loss {

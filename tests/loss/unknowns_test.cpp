@@ -4,6 +4,7 @@
 
 #include "loop/samples.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "support/stated_system.hpp"
 
 namespace orbweaver::loss {

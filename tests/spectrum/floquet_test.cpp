@@ -19,6 +19,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/symmetry/fundamental_domain.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "spectrum/pendulum_loops.hpp"
 #include "spectrum/point_systems.hpp"
 #include "transverse_flow.hpp"

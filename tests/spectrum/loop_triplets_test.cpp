@@ -6,9 +6,10 @@
 
 #include "continuation/families.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/loss/matrices.hpp"
+#include "orbweaver/loss/assembled.hpp"
 #include "orbweaver/spectrum/eigenpairs.hpp"
-#include "orbweaver/spectrum/singular_triplets.hpp"
+#include "orbweaver/spectrum/loop_triplets.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "spectrum/matrices.hpp"
 
 namespace orbweaver::spectrum {

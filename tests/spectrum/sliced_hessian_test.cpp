@@ -7,8 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "orbweaver/loss/matrices.hpp"
+#include "orbweaver/loss/assembled.hpp"
 #include "orbweaver/spectrum/eigenpairs.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "spectrum/matrices.hpp"
 #include "spectrum/pendulum_loops.hpp"
 

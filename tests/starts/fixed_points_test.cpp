@@ -7,6 +7,7 @@
 
 #include "corrector/oscillator.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/systems/registry.hpp"
 
 namespace orbweaver::starts {
 namespace {

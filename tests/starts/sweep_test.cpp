@@ -11,6 +11,7 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "spectrum/pendulum_loops.hpp"
 
 namespace orbweaver::starts {

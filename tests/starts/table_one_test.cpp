@@ -9,6 +9,7 @@
 
 #include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/starts/sweep.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "spectrum/pendulum_loops.hpp"
 
 namespace orbweaver::starts {

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::test {

@@ -11,6 +11,7 @@
 #include "archive/sample.hpp"
 #include "orbweaver/archive/read/reader.hpp"
 #include "orbweaver/survey/run/survey.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "survey/scenes.hpp"
 
 namespace orbweaver::test {

@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "orbweaver/scene/scene.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "survey/scenes.hpp"
 #include "tasks/executor.hpp"
 

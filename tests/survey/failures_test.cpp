@@ -11,6 +11,7 @@
 #include "orbweaver/archive/read/reader.hpp"
 #include "orbweaver/report/summary_text.hpp"
 #include "orbweaver/survey/run/survey.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "support/delegating_system.hpp"
 #include "survey/scenes.hpp"
 

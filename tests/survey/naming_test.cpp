@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace {

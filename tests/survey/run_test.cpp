@@ -7,6 +7,7 @@
 #include "orbweaver/archive/read/reader.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/survey/run/survey.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "survey/scenes.hpp"
 
 namespace {

@@ -9,6 +9,7 @@
 #include "orbweaver/archive/read/reader.hpp"
 #include "orbweaver/queue/stop.hpp"
 #include "orbweaver/survey/run/survey.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "survey/scenes.hpp"
 
 namespace {

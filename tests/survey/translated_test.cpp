@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "orbweaver/systems/registry.hpp"
 #include "support/translated_system.hpp"
 #include "survey/atlas.hpp"
 

@@ -12,6 +12,7 @@
 #include "orbweaver/archive/read/loop_of.hpp"
 #include "orbweaver/archive/read/reader.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 
 namespace {
 

@@ -17,6 +17,7 @@
 #include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/loop/symmetry/isotropy_text.hpp"
 #include "orbweaver/scene/scene.hpp"
+#include "orbweaver/systems/registry.hpp"
 
 namespace {
 

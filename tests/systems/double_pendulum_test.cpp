@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 
 #include "orbweaver/ad/derivatives.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "systems/samples.hpp"
 
 namespace orbweaver::systems {

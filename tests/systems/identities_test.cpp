@@ -9,6 +9,7 @@
 
 #include "complex_system.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "systems/samples.hpp"
 
 namespace orbweaver::systems {

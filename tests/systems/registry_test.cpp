@@ -8,6 +8,7 @@
 
 #include "checks.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::systems {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "model_system.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "systems/samples.hpp"
 
 namespace orbweaver::systems {

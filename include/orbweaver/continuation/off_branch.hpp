@@ -4,7 +4,7 @@
 
 #include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
-#include "orbweaver/spectrum/singular_triplets.hpp"
+#include "orbweaver/spectrum/loop_triplets.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::continuation {

@@ -59,7 +59,7 @@ class Linearization {
   [[nodiscard]] std::vector<double> apply_hessian(const Unknowns& unknowns, std::span<const double> v,
                                                   Curvature curvature) const;
 
-  // Nodal data for the assembly of matrices (loss/matrices.hpp).
+  // Nodal data for the assembly of matrices (loss/assembled.hpp).
   [[nodiscard]] double rate() const { return _rate; }      ///< 2 pi / T
   [[nodiscard]] double period() const { return _period; }  ///< T
   [[nodiscard]] const loop::FourierGrid& grid() const { return *_grid; }

@@ -66,16 +66,4 @@ class System {
   [[nodiscard]] virtual double action_density(std::span<const double> z) const = 0;
 };
 
-/// Names of all registered systems.
-[[nodiscard]] std::vector<std::string> system_names();
-
-/// What may be asked of the system `name`. Throws core::InputError naming the known ones.
-[[nodiscard]] const ModelInfo& model_info(const std::string& name);
-
-/// Binds parameters and effects. Throws core::InputError on an unknown system, parameter or effect, or a value out of
-/// range, saying what is known or allowed.
-[[nodiscard]] std::shared_ptr<const System> make_system(const std::string& name,
-                                                        const std::map<std::string, double>& parameters = {},
-                                                        const std::vector<std::string>& effects = {});
-
 }  // namespace orbweaver::systems

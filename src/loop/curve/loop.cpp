@@ -6,6 +6,9 @@
 #include <numbers>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/loop/grid/fourier.hpp"
+#include "resampled.hpp"
 
 namespace orbweaver::loop {
 
@@ -82,6 +85,16 @@ Loop with_cutoff(const Loop& loop, int cutoff) {
   Loop out = loop;
   out.cutoff = cutoff;
   out.modes.resize((2 * static_cast<std::size_t>(cutoff) + 1) * static_cast<std::size_t>(loop.dimension), 0.0);
+  return out;
+}
+
+Loop with_time_map(const Loop& loop, const TimeMap& map, int cutoff) {
+  Loop out = with_cutoff(loop, cutoff);
+  if (map == loop.time_map) return out;
+  out.time_map = map;
+  const int nodes = std::max(nodes_for(out), FourierGrid::nodes_for(loop.cutoff));
+  const std::vector<double> nodal = resampled(loop, map, nodes);
+  FourierGrid::of_size(nodes).analyze(cutoff, loop.dimension, nodal.data(), out.modes.data());
   return out;
 }
 

@@ -1,11 +1,12 @@
 // Means over time: Parseval's equation where s runs evenly with time, sums over nodes weighted by the time map's
 // density otherwise.
+#include "orbweaver/loop/curve/measures.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
 #include "resampled.hpp"
 
@@ -104,16 +105,6 @@ Samples samples_of(const Loop& loop) {
   for (std::size_t i = 0; i < loop.winding.size(); ++i)
     for (std::size_t j = 0; j < n; ++j)
       out.states[i * n + j] += loop.winding[i] * two_pi * static_cast<double>(j) / out.nodes;
-  return out;
-}
-
-Loop with_time_map(const Loop& loop, const TimeMap& map, int cutoff) {
-  Loop out = with_cutoff(loop, cutoff);
-  if (map == loop.time_map) return out;
-  out.time_map = map;
-  const int nodes = std::max(nodes_for(out), FourierGrid::nodes_for(loop.cutoff));
-  const std::vector<double> nodal = resampled(loop, map, nodes);
-  FourierGrid::of_size(nodes).analyze(cutoff, loop.dimension, nodal.data(), out.modes.data());
   return out;
 }
 

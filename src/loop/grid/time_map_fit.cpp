@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
 
 namespace orbweaver::loop {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/loop/symmetry/shift_search.hpp"

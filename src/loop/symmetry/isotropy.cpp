@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/subspace.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <numbers>
 
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
 #include "orbweaver/loop/symmetry/shift_search.hpp"

@@ -10,6 +10,7 @@
 #include "compare/family_differences.hpp"
 #include "orbweaver/scene/differences.hpp"
 #include "orbweaver/scene/scene.hpp"
+#include "orbweaver/systems/registry.hpp"
 
 namespace orbweaver::report {
 

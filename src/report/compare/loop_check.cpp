@@ -5,6 +5,7 @@
 
 #include "orbweaver/archive/read/loop_of.hpp"
 #include "orbweaver/bifurcation/identity.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
 #include "orbweaver/loop/symmetry/isotropy_text.hpp"
 

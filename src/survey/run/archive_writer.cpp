@@ -9,6 +9,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/survey/run/version.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "state/branch_state.hpp"
 #include "state/resume.hpp"
 

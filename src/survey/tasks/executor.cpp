@@ -8,6 +8,7 @@
 #include "locate_task.hpp"
 #include "orbweaver/bifurcation/small_oscillations.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/corrector/method.hpp"
 #include "orbweaver/starts/sweep.hpp"
 
 namespace orbweaver::survey {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
 
 namespace orbweaver::survey {

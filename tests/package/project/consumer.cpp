@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 
 /// The field of the harmonic oscillator at q = 1, p = 2, by the installed libraries: exit status 0 when it is (2, -9).

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <memory>
-
 #include <petscmat.h>
 
 #include "orbweaver/core/petsc/handle.hpp"
@@ -18,11 +16,5 @@ namespace orbweaver::loss {
 /// differences of Fourier sums of the nodal d x d blocks, so that the cost is O(d^2 N log N + unknowns^2), whatever N.
 [[nodiscard]] core::Handle<Mat> assemble_hessian(const Linearization& linearization, const Unknowns& unknowns,
                                                  Curvature curvature);
-
-/// J and H as MATSHELL: products in O(N log N), nothing stored but the nodal blocks. The matrices keep what they need.
-[[nodiscard]] core::Handle<Mat> shell_jacobian(std::shared_ptr<const Linearization> linearization,
-                                               std::shared_ptr<const Unknowns> unknowns);
-[[nodiscard]] core::Handle<Mat> shell_hessian(std::shared_ptr<const Linearization> linearization,
-                                              std::shared_ptr<const Unknowns> unknowns, Curvature curvature);
 
 }  // namespace orbweaver::loss

@@ -1,10 +1,11 @@
+#include "orbweaver/corrector/method.hpp"
+
 #include <array>
 #include <string>
 
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/corrector/correct.hpp"
 
 namespace orbweaver::corrector {
 
@@ -41,20 +42,6 @@ Method method_of(std::string_view name) {
     known += known.empty() ? std::string(m.name) : fmt::format(", {}", m.name);
   }
   throw core::InputError(fmt::format("unknown corrector `{}`: use one of {}", name, known));
-}
-
-std::string_view name_of(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::converged: return "converged";
-    case Outcome::under_resolved: return "under-resolved";
-    case Outcome::stalled: return "stalled";
-    case Outcome::iteration_limit: return "iteration limit";
-    case Outcome::period_not_positive: return "period not positive";
-    case Outcome::not_finite: return "not finite";
-    case Outcome::singular: return "singular";
-    case Outcome::solver_failed: return "solver failed";
-  }
-  return "unknown";
 }
 
 }  // namespace orbweaver::corrector
