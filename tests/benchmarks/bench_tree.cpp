@@ -12,10 +12,10 @@
 #include <CLI/CLI.hpp>
 
 #include "orbweaver/scene/scene.hpp"
-#include "orbweaver/survey/tasks/keys.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "support/stated_system.hpp"
 #include "survey/tree_outcomes.hpp"
+#include "tasks/keys.hpp"
 #include "tree/family_tree.hpp"
 
 namespace {

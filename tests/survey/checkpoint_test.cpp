@@ -6,10 +6,10 @@
 
 #include "archive/sample.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/survey/tasks/work.hpp"
 #include "state/checkpoint_keeper.hpp"
 #include "state/reopen.hpp"
 #include "survey/scenes.hpp"
+#include "tasks/work.hpp"
 
 namespace {
 

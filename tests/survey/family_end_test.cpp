@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include "orbweaver/continuation/ending.hpp"
+#include "tree/end_text.hpp"
+
 namespace {
 
 using namespace orbweaver;

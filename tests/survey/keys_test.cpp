@@ -1,4 +1,4 @@
-#include "orbweaver/survey/tasks/keys.hpp"
+#include "tasks/keys.hpp"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-#include "orbweaver/survey/tasks/keys.hpp"
+#include "tasks/keys.hpp"
 
 namespace {
 

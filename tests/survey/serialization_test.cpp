@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/survey/tasks/work.hpp"
 #include "state/branch_state.hpp"
 #include "state/checkpoint.hpp"
 #include "support/serialized.hpp"
 #include "tasks/payload.hpp"
+#include "tasks/work.hpp"
 
 namespace orbweaver::test {
 

@@ -3,10 +3,10 @@
 #include <sstream>
 
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/survey/tasks/work.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "support/stated_system.hpp"
 #include "tasks/payload.hpp"
+#include "tasks/work.hpp"
 
 namespace {
 

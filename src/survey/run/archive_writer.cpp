@@ -8,10 +8,10 @@
 #include "orbweaver/archive/write/consolidate.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
-#include "orbweaver/survey/run/version.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "state/branch_state.hpp"
 #include "state/resume.hpp"
+#include "version.hpp"
 
 namespace orbweaver::survey {
 

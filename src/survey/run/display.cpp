@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/log/log.hpp"
-#include "orbweaver/survey/tasks/work.hpp"
-#include "orbweaver/survey/tree/family_end.hpp"
+#include "tasks/work.hpp"
+#include "tree/end_text.hpp"
 
 namespace orbweaver::survey {
 

@@ -20,7 +20,6 @@
 #include "orbweaver/core/petsc/check.hpp"
 #include "orbweaver/queue/run.hpp"
 #include "orbweaver/queue/stop.hpp"
-#include "orbweaver/survey/run/version.hpp"
 #include "segment_flusher.hpp"
 #include "state/checkpoint_keeper.hpp"
 #include "state/resume.hpp"
@@ -30,6 +29,7 @@
 #include "time_limit.hpp"
 #include "tree/base_families.hpp"
 #include "tree/family_tree.hpp"
+#include "version.hpp"
 
 namespace orbweaver::survey {
 

@@ -1,4 +1,4 @@
-#include "orbweaver/survey/run/version.hpp"
+#include "version.hpp"
 
 namespace orbweaver::survey {
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/log/log.hpp"
-#include "orbweaver/survey/tasks/work.hpp"
+#include "tasks/work.hpp"
 
 namespace orbweaver::survey {
 

@@ -6,7 +6,7 @@
 
 #include "branch_state.hpp"
 #include "orbweaver/scene/differences.hpp"
-#include "orbweaver/survey/tasks/keys.hpp"
+#include "tasks/keys.hpp"
 
 namespace orbweaver::survey {
 

@@ -5,8 +5,8 @@
 #include "orbweaver/bifurcation/symmetry_watch.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
 #include "orbweaver/continuation/orbit.hpp"
-#include "orbweaver/survey/tasks/work.hpp"
 #include "orbweaver/systems/system.hpp"
+#include "work.hpp"
 
 namespace orbweaver::survey {
 

@@ -9,12 +9,12 @@
 
 #include "arrival.hpp"
 #include "executor.hpp"
+#include "keys.hpp"
 #include "orbit_row.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/bifurcation/family_jump.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
-#include "orbweaver/survey/tasks/keys.hpp"
 #include "requested.hpp"
 
 namespace orbweaver::survey {

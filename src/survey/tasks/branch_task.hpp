@@ -11,8 +11,8 @@
 #include "orbweaver/continuation/family_curve.hpp"
 #include "orbweaver/queue/executor.hpp"
 #include "orbweaver/scene/scene.hpp"
-#include "orbweaver/survey/tasks/work.hpp"
 #include "state/branch_state.hpp"
+#include "work.hpp"
 
 namespace orbweaver::survey {
 

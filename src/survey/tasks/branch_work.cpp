@@ -1,4 +1,4 @@
-#include "orbweaver/survey/tasks/branch_work.hpp"
+#include "branch_work.hpp"
 
 #include "payload.hpp"
 

@@ -10,6 +10,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/corrector/method.hpp"
 #include "orbweaver/starts/sweep.hpp"
+#include "start_task.hpp"
 
 namespace orbweaver::survey {
 

@@ -6,8 +6,8 @@
 #include "orbweaver/core/mpi/team.hpp"
 #include "orbweaver/queue/executor.hpp"
 #include "orbweaver/scene/scene.hpp"
-#include "orbweaver/survey/tasks/work.hpp"
 #include "orbweaver/systems/system.hpp"
+#include "work.hpp"
 
 namespace orbweaver::survey {
 

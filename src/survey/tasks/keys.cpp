@@ -1,4 +1,4 @@
-#include "orbweaver/survey/tasks/keys.hpp"
+#include "keys.hpp"
 
 #include <algorithm>
 #include <charconv>

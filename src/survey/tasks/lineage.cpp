@@ -1,4 +1,4 @@
-#include "orbweaver/survey/tasks/lineage.hpp"
+#include "lineage.hpp"
 
 namespace orbweaver::survey {
 

@@ -5,8 +5,8 @@
 #include "orbweaver/core/mpi/team.hpp"
 #include "orbweaver/queue/executor.hpp"
 #include "orbweaver/scene/scene.hpp"
-#include "orbweaver/survey/tasks/work.hpp"
 #include "orbweaver/systems/system.hpp"
+#include "work.hpp"
 
 namespace orbweaver::survey {
 
@@ -14,10 +14,5 @@ namespace orbweaver::survey {
 /// the scene's depth and period allow. `team` divides the work; may be null.
 [[nodiscard]] queue::TaskOutcome locate(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
                                         const LocateWork& work, queue::TaskContext& context, core::Team* team);
-
-/// Finds the first orbit along a direction: the branch's task is then its child. An orbit that is the crossing's own
-/// family again is noticed, and other amplitudes are tried.
-[[nodiscard]] queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
-                                       const StartWork& work, core::Team* team);
 
 }  // namespace orbweaver::survey

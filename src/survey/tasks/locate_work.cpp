@@ -1,6 +1,6 @@
-#include "orbweaver/survey/tasks/locate_work.hpp"
+#include "locate_work.hpp"
 
-#include "orbweaver/survey/tasks/keys.hpp"
+#include "keys.hpp"
 #include "payload.hpp"
 
 namespace orbweaver::survey {

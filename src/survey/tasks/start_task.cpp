@@ -1,3 +1,5 @@
+#include "start_task.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -5,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "executor.hpp"
-#include "locate_task.hpp"
 #include "orbweaver/continuation/branch.hpp"
 
 namespace orbweaver::survey {

@@ -1,6 +1,6 @@
-#include "orbweaver/survey/tasks/start_work.hpp"
+#include "start_work.hpp"
 
-#include "orbweaver/survey/tasks/keys.hpp"
+#include "keys.hpp"
 #include "payload.hpp"
 
 namespace orbweaver::survey {

@@ -1,9 +1,9 @@
-#include "orbweaver/survey/tasks/sweep_work.hpp"
+#include "sweep_work.hpp"
 
 #include <fmt/format.h>
 
-#include "orbweaver/survey/tasks/task_kind.hpp"
 #include "payload.hpp"
+#include "task_kind.hpp"
 
 namespace orbweaver::survey {
 

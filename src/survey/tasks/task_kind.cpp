@@ -1,4 +1,4 @@
-#include "orbweaver/survey/tasks/task_kind.hpp"
+#include "task_kind.hpp"
 
 #include <fmt/format.h>
 

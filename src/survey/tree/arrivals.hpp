@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "branch_graph.hpp"
-#include "orbweaver/survey/tasks/work.hpp"
 #include "orbweaver/systems/structure.hpp"
+#include "tasks/work.hpp"
 
 namespace orbweaver::survey {
 

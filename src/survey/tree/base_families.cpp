@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
+#include "end_text.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
-#include "orbweaver/survey/tasks/work.hpp"
-#include "orbweaver/survey/tree/family_end.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
+#include "tasks/work.hpp"
 
 namespace orbweaver::survey {
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/survey/tasks/keys.hpp"
+#include "tasks/keys.hpp"
 
 namespace orbweaver::survey {
 

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "orbweaver/survey/tasks/work.hpp"
+#include "tasks/work.hpp"
 
 namespace orbweaver::survey {
 

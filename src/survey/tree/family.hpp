@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "orbweaver/survey/tasks/work.hpp"
+#include "tasks/work.hpp"
 
 namespace orbweaver::survey {
 

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
+#include "orbweaver/continuation/ending.hpp"
+
 namespace orbweaver::survey {
 
 namespace {
 
-constexpr std::string_view met_name = "met a family of more symmetry";
-constexpr std::string_view joined_name = "joined";
 constexpr std::string_view forwards_mark = "forwards: ";
 constexpr std::string_view backwards_mark = "; backwards: ";
 
@@ -31,26 +31,11 @@ std::string_view name_of(EndKind kind) {
     case EndKind::closed_loop: return continuation::name_of(EndReason::closed_loop);
     case EndKind::stopped: return continuation::name_of(EndReason::stopped);
     case EndKind::failure: return continuation::name_of(EndReason::failure);
-    case EndKind::met: return met_name;
-    case EndKind::joined: return joined_name;
+    case EndKind::met: return "met a family of more symmetry";
+    case EndKind::joined: return "joined";
     case EndKind::unknown: break;
   }
   return "unknown";
-}
-
-std::string end_text(const BranchOutcome& outcome) {
-  if (outcome.arrival.empty() || outcome.end.failed()) return outcome.end.text();
-  const ArrivalRecord& arrival = outcome.arrival.front();
-  return fmt::format("{} (T = {:.9g}, E = {:.9g})", met_name, arrival.period, arrival.energy);
-}
-
-std::string failure_text(const std::string& why) {
-  return continuation::Ending{continuation::EndReason::failure, why}.text();
-}
-
-std::string joined_text(const std::string& name, const LocateOutcome& crossing) {
-  return fmt::format("{} {} at T = {:.12g} (crossing at T = {:.12g}, {} times around)", joined_name, name,
-                     crossing.multiplicity * crossing.period, crossing.period, crossing.multiplicity);
 }
 
 std::string both_ends_text(const std::string& forwards, const std::string& backwards) {

@@ -11,7 +11,7 @@
 
 #include "family_names.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/survey/tasks/keys.hpp"
+#include "tasks/keys.hpp"
 
 namespace orbweaver::survey {
 

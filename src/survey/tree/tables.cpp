@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "end_text.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/survey/tree/family_end.hpp"
 #include "orbweaver/survey/tree/naming.hpp"

@@ -4,9 +4,6 @@
 #include <string_view>
 #include <vector>
 
-#include "orbweaver/continuation/ending.hpp"
-#include "orbweaver/survey/tasks/work.hpp"
-
 namespace orbweaver::survey {
 
 /// How a branch of a family ended: as continuation::EndReason, or at another family.
@@ -28,18 +25,10 @@ enum class EndKind {
 /// "period limit", "joined".
 [[nodiscard]] std::string_view name_of(EndKind kind);
 
-// Texts of ends, for people and for the column end_reason of /families.
-
-/// "period limit (T = 30)", "met a family of more symmetry (T = 8, E = 1)".
-[[nodiscard]] std::string end_text(const BranchOutcome& outcome);
-/// "failure (WHY)", of a branch without an outcome.
-[[nodiscard]] std::string failure_text(const std::string& why);
-/// "joined NAME at T = 24 (crossing at T = 8, 3 times around)".
-[[nodiscard]] std::string joined_text(const std::string& name, const LocateOutcome& crossing);
-/// Of a family with two branches.
+/// The text of /families' column end_reason for a family with two branches, from those of its branches.
 [[nodiscard]] std::string both_ends_text(const std::string& forwards, const std::string& backwards);
 
-/// The ends in a text that these functions made, two for a family with two branches: for archives that are read.
+/// The ends in an end_reason, two for a family with two branches: for archives that are read.
 [[nodiscard]] std::vector<EndKind> ends_in(std::string_view end_reason);
 
 }  // namespace orbweaver::survey

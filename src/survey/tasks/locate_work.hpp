@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "lineage.hpp"
 #include "orbweaver/archive/schema/crossing_kind.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
 #include "orbweaver/core/serialization.hpp"
 #include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/queue/task.hpp"
-#include "orbweaver/survey/tasks/lineage.hpp"
-#include "orbweaver/survey/tasks/task_kind.hpp"
+#include "task_kind.hpp"
 
 namespace orbweaver::survey {
 

@@ -3,14 +3,14 @@
 #include <string>
 #include <vector>
 
+#include "lineage.hpp"
 #include "orbweaver/continuation/branch.hpp"
 #include "orbweaver/continuation/ending.hpp"
 #include "orbweaver/core/serialization.hpp"
 #include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/queue/task.hpp"
-#include "orbweaver/survey/tasks/lineage.hpp"
-#include "orbweaver/survey/tasks/task_kind.hpp"
 #include "orbweaver/systems/structure.hpp"
+#include "task_kind.hpp"
 
 namespace orbweaver::survey {
 

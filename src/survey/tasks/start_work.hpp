@@ -2,10 +2,10 @@
 
 #include <string>
 
+#include "branch_work.hpp"
 #include "orbweaver/core/serialization.hpp"
 #include "orbweaver/queue/task.hpp"
-#include "orbweaver/survey/tasks/branch_work.hpp"
-#include "orbweaver/survey/tasks/task_kind.hpp"
+#include "task_kind.hpp"
 
 namespace orbweaver::survey {
 

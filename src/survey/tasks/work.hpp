@@ -1,0 +1,8 @@
+#pragma once
+
+// All that tasks take and give.
+
+#include "branch_work.hpp"
+#include "locate_work.hpp"
+#include "start_work.hpp"
+#include "sweep_work.hpp"

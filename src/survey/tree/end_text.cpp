@@ -1,0 +1,25 @@
+#include "end_text.hpp"
+
+#include <fmt/format.h>
+
+#include "orbweaver/continuation/ending.hpp"
+#include "orbweaver/survey/tree/family_end.hpp"
+
+namespace orbweaver::survey {
+
+std::string end_text(const BranchOutcome& outcome) {
+  if (outcome.arrival.empty() || outcome.end.failed()) return outcome.end.text();
+  const ArrivalRecord& arrival = outcome.arrival.front();
+  return fmt::format("{} (T = {:.9g}, E = {:.9g})", name_of(EndKind::met), arrival.period, arrival.energy);
+}
+
+std::string failure_text(const std::string& why) {
+  return continuation::Ending{continuation::EndReason::failure, why}.text();
+}
+
+std::string joined_text(const std::string& name, const LocateOutcome& crossing) {
+  return fmt::format("{} {} at T = {:.12g} (crossing at T = {:.12g}, {} times around)", name_of(EndKind::joined), name,
+                     crossing.multiplicity * crossing.period, crossing.period, crossing.multiplicity);
+}
+
+}  // namespace orbweaver::survey

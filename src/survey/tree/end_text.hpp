@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "tasks/branch_work.hpp"
+#include "tasks/locate_work.hpp"
+
+namespace orbweaver::survey {
+
+// Texts of ends, for people and for the column end_reason of /families: each begins with the name of its EndKind.
+
+/// "period limit (T = 30)", "met a family of more symmetry (T = 8, E = 1)".
+[[nodiscard]] std::string end_text(const BranchOutcome& outcome);
+/// "failure (WHY)", of a branch without an outcome.
+[[nodiscard]] std::string failure_text(const std::string& why);
+/// "joined NAME at T = 24 (crossing at T = 8, 3 times around)".
+[[nodiscard]] std::string joined_text(const std::string& name, const LocateOutcome& crossing);
+
+}  // namespace orbweaver::survey
