@@ -1,6 +1,6 @@
-# Runs check_includes.cmake on every tree in FIXTURES: each must print what its expected.txt says, and all but `clean`
-# must fail. A check that lets a fault through shows here.
-#   cmake -DFIXTURES=<folder> -DLAYERS=core,ad,... -P check_fixtures.cmake
+# Runs a check on every tree in FIXTURES: each must print what its expected.txt says, and all but `clean` must fail.
+# A check that lets a fault through shows here.
+#   cmake -DCHECK=<script> -DFIXTURES=<folder> -DLAYERS=core,ad,... -P check_fixtures.cmake
 cmake_minimum_required(VERSION 3.25)
 file(GLOB trees LIST_DIRECTORIES TRUE "${FIXTURES}/*")
 set(wrong 0)
@@ -9,7 +9,7 @@ foreach(tree IN LISTS trees)
   file(READ "${tree}/expected.txt" expected)
   string(STRIP "${expected}" expected)
   execute_process(
-    COMMAND "${CMAKE_COMMAND}" "-DROOT=${tree}" "-DLAYERS=${LAYERS}" -P "${CMAKE_CURRENT_LIST_DIR}/check_includes.cmake"
+    COMMAND "${CMAKE_COMMAND}" "-DROOT=${tree}" "-DLAYERS=${LAYERS}" -P "${CHECK}"
     RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   string(FIND "${output}" "${expected}" position)
   if(name STREQUAL "clean" AND NOT status EQUAL 0)

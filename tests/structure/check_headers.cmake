@@ -1,0 +1,83 @@
+# Checks the headers of a source tree. Run as
+#   cmake -DROOT=<tree> -P check_headers.cmake
+# and it fails, naming the file, on
+#   - a source in src/ that has no header of its name, neither beside it nor in include/orbweaver/; the source of a
+#     model, which its line in the registry reaches (it instantiates Registered<...>), needs none,
+#   - a public header that no other layer and no driver reads, neither itself nor through public headers that they read.
+cmake_minimum_required(VERSION 3.25)
+if(NOT ROOT)
+  message(FATAL_ERROR "expected -DROOT=<tree>")
+endif()
+set(faults 0)
+
+# The public headers that a file includes, each as <layer>/<file>.
+function(read_public_includes file includes_out)
+  file(STRINGS "${ROOT}/${file}" lines REGEX "^[ \t]*#[ \t]*include[ \t]*[\"<]orbweaver/")
+  set(includes "")
+  foreach(line IN LISTS lines)
+    string(REGEX REPLACE "^[^\"<]*[\"<]orbweaver/([^\">]*).*$" "\\1" included "${line}")
+    list(APPEND includes "${included}")
+  endforeach()
+  set(${includes_out} "${includes}" PARENT_SCOPE)
+endfunction()
+
+file(GLOB_RECURSE sources RELATIVE "${ROOT}/src" "${ROOT}/src/*.cpp")
+file(GLOB_RECURSE headers RELATIVE "${ROOT}/include/orbweaver" "${ROOT}/include/orbweaver/*.hpp")
+if(NOT sources OR NOT headers)
+  message(FATAL_ERROR "no sources or no public headers below ${ROOT}")
+endif()
+
+foreach(source IN LISTS sources)
+  string(REGEX REPLACE "\\.cpp$" ".hpp" header "${source}")
+  if(EXISTS "${ROOT}/src/${header}" OR EXISTS "${ROOT}/include/orbweaver/${header}")
+    continue()
+  endif()
+  file(STRINGS "${ROOT}/src/${source}" registered REGEX "^template struct Registered<")
+  if(NOT registered)
+    message(NOTICE "src/${source}: has no header of its name")
+    math(EXPR faults "${faults} + 1")
+  endif()
+endforeach()
+
+file(GLOB_RECURSE files RELATIVE "${ROOT}"
+  "${ROOT}/include/orbweaver/*.hpp" "${ROOT}/src/*.hpp" "${ROOT}/src/*.cpp"
+  "${ROOT}/drivers/*.hpp" "${ROOT}/drivers/*.cpp")
+set(read "")
+foreach(file IN LISTS files)
+  string(REGEX MATCH "^((include/orbweaver|src)/([^/]+)|drivers)/" ignored "${file}")
+  set(layer "${CMAKE_MATCH_3}")  # empty for drivers
+  read_public_includes("${file}" includes)
+  foreach(included IN LISTS includes)
+    if(NOT included MATCHES "^${layer}/")
+      list(APPEND read "${included}")
+    endif()
+  endforeach()
+endforeach()
+list(REMOVE_DUPLICATES read)
+set(waiting ${read})
+while(waiting)
+  list(POP_FRONT waiting header)
+  if(NOT header IN_LIST headers)
+    continue()
+  endif()
+  read_public_includes("include/orbweaver/${header}" includes)
+  foreach(included IN LISTS includes)
+    if(NOT included IN_LIST read)
+      list(APPEND read "${included}")
+      list(APPEND waiting "${included}")
+    endif()
+  endforeach()
+endwhile()
+foreach(header IN LISTS headers)
+  if(NOT header IN_LIST read)
+    message(NOTICE "include/orbweaver/${header}: no other layer and no driver reads it: it belongs into src/")
+    math(EXPR faults "${faults} + 1")
+  endif()
+endforeach()
+
+list(LENGTH sources source_count)
+list(LENGTH headers header_count)
+if(faults GREATER 0)
+  message(FATAL_ERROR "${faults} faults in ${source_count} sources and ${header_count} public headers")
+endif()
+message(NOTICE "${source_count} sources have their headers, ${header_count} public headers their readers")
