@@ -19,8 +19,15 @@ namespace orbweaver::bifurcation {
 namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
-constexpr double negligible = 1e-8;  // of a broken part, relative to the loop
-constexpr std::size_t phases = 3;    // of a reversor that are watched: the closest ones
+/// Of a broken part, relative to the loop: orbits that have the symmetry have it to the corrector's accuracy, and a
+/// branch is born with a part of the size of its first amplitude.
+constexpr double negligible = 1e-8;
+/// Phases of a reversor that are watched, the closest ones. Not measured.
+constexpr std::size_t phases = 3;
+/// Windings are whole numbers: anything below a half would do.
+constexpr double same_winding = 1e-9;
+/// Rounding of a correlation in parts of |A|^2 + |B|^2, with room: what is below is computed without cancellation.
+constexpr double correlation_rounding = 1e-13;
 
 // Columns: the complex coefficients of harmonics 0 ... K, so that |z|^2 = sum |column|^2 (harmonics weighted by
 // sqrt(1/2)).
@@ -186,9 +193,9 @@ std::vector<Gained> SymmetryWatch::all_passed(const Seen& from, const Seen& to) 
   };
   const auto keeps_winding = [&from](const Eigen::MatrixXd& matrix, double sign) {
     const Eigen::Map<const Eigen::VectorXd> winding(from.loop.winding.data(), from.loop.dimension);
-    return (sign * (matrix * winding) - winding).isZero(1e-9);
+    return (sign * (matrix * winding) - winding).isZero(same_winding);
   };
-  const double rounding = 1e-13 * (from.size * from.size + to.size * to.size);
+  const double rounding = correlation_rounding * (from.size * from.size + to.size * to.size);
   for (const auto& [symmetry, candidates] : _equivariances) {
     if (!keeps_winding(symmetry.map.matrix, 1.0)) continue;
     const systems::AffineMap inverse = symmetry.map.inverse();
