@@ -10,9 +10,7 @@ namespace {
 
 /// An orbit further than this from its prediction, in parts of the chord, belongs to another family.
 constexpr double largest_correction = 0.2;
-/// What truncation under another time map may leave: the tail of orbits (`Options::tail_tolerance` by default), or
-/// twice the loop's own; within so many times its harmonics, since a loop that needs more is better solved anew.
-constexpr double negligible_tail = 1e-12;
+/// Of a loop's harmonics, under another time map: one that needs more is better solved anew. Not measured.
 constexpr int most_harmonics = 4;
 /// Nearest orbits that a prediction takes, a cubic, and how far apart in parts of the interval: at 1e-4 an orbit's
 /// rounding is multiplied by 1e4, still below what the corrector removes.
@@ -22,7 +20,7 @@ constexpr double apart = 1e-4;
 /// The loop under another time map, with enough harmonics for it.
 loop::Loop under_map(const loop::Loop& loop, const loop::TimeMap& map) {
   if (loop.time_map == map) return loop;
-  const double allowed = std::max(negligible_tail, 2.0 * loop::tail(loop));
+  const double allowed = std::max(loop::negligible_harmonic, 2.0 * loop::tail(loop));
   int k = loop.cutoff;
   loop::Loop out = loop::with_time_map(loop, map, k);
   while (loop::tail(out) > allowed && k < most_harmonics * loop.cutoff) {

@@ -32,11 +32,13 @@ struct Bracket {
 };
 
 struct DetectorOptions {
-  double surprise = 0.1;      ///< a step is halved where a reading differs by more from what evenly spaced ones
-                              ///< extrapolate, times the function's largest modulus so far (but 0.1 at least)
-  int halvings = 3;           ///< of one step, at most
-  double touch = 1e-6;        ///< a minimum of |value| below this, or below its error bound, touches zero
-  double touch_error = 1e-4;  ///< a reading with a larger error bound cannot show that
+  double surprise = 0.1;  ///< a step is halved where a reading differs by more from what evenly spaced ones
+                          ///< extrapolate, times the function's largest modulus so far (but 0.1 at least)
+  int halvings = 3;       ///< of one step, at most
+  /// A minimum of |value| below this, or below its error bound, touches zero. Located to 1e-6 of a bracket, a true touch
+  /// is far below; what is taken for one wrongly costs a location that finds nothing.
+  double touch = 1e-6;
+  double touch_error = 1e-4;  ///< a reading with a larger error bound cannot show that; not measured
   int probes = 40;            ///< for one minimum, at most
 };
 
