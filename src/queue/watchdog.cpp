@@ -42,14 +42,14 @@ void Watchdog::ended() {
   _deadlines.ended(0);
 }
 
-void Watchdog::stands() {
+void Watchdog::pause() {
   const std::lock_guard lock(_mutex);
-  _deadlines.stands(0);
+  _deadlines.pause(0);
 }
 
-void Watchdog::go_on() {
+void Watchdog::resume() {
   const std::lock_guard lock(_mutex);
-  _deadlines.go_on();
+  _deadlines.resume();
 }
 
 bool Watchdog::overdue() {

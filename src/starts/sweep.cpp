@@ -34,7 +34,7 @@ constexpr double at_range_end = 1e-12;
 
 struct Sample {
   SweepPoint point;
-  int harmonic;  // the one that carries the softest eigenvector
+  int harmonic;  // the one that carries the smallest eigenvector
 };
 
 Sample sample(const systems::System& system, std::span<const double> fixed_point, double period, int cutoff) {
@@ -92,7 +92,8 @@ NormalMode normal_mode(const systems::System& system, std::span<const double> fi
   mode.grid_period = grid_period;
   mode.residual = root.residual;
   mode.direction = direction_of(with_standard_phase(structure, root.kernel.col(0)), cutoff);
-  mode.grid_direction = direction_of(with_standard_phase(structure, linear.softest(1, grid_period)), cutoff);
+  mode.grid_direction =
+      direction_of(with_standard_phase(structure, linear.smallest_right_singular_vector(1, grid_period)), cutoff);
   mode.isotropy = isotropy_of(structure, fixed_point, mode.period, mode.direction, cutoff);
   return mode;
 }
@@ -124,7 +125,7 @@ SweepResult sweep(const systems::System& system, std::span<const double> fixed_p
     if (!(here.eigenvalue < samples[n - 1].point.eigenvalue && here.eigenvalue <= samples[n + 1].point.eigenvalue))
       continue;
     bool reaches_zero = false;
-    // All harmonics, not only the softest one: dips that lie closer together than a step show as one.
+    // All harmonics, not only that of the smallest eigenvalue: dips that lie closer together than a step show as one.
     for (int k = 1; k <= options.cutoff; ++k)
       for (const LinearModes::Root& root : linear.roots(k, low, here.period, high)) {
         reaches_zero = true;

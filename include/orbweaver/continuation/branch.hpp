@@ -72,8 +72,8 @@ class Branch {
  public:
   /// Throws MisuseError for a start whose sizes disagree or whose direction is zero.
   Branch(std::shared_ptr<const systems::System> system, const Start& start, Options options);
-  /// Goes on from where a branch with the same start stood: `from` is what its `standing` was after some orbit. Its
-  /// further orbits have the same bits; limits may be wider.
+  /// Goes on from where a branch with the same start was: `from` is its `restart_frontier` after some orbit. Further
+  /// orbits have the same bits; limits may be wider.
   Branch(std::shared_ptr<const systems::System> system, const Start& start, Options options, Frontier from);
   ~Branch();
   Branch(Branch&&) noexcept;
@@ -85,10 +85,10 @@ class Branch {
   [[nodiscard]] std::optional<Orbit> advance();
   /// Set once `advance` has returned none.
   [[nodiscard]] const std::optional<Ending>& ending() const;
-  /// Where the branch stands (after at least one orbit).
+  /// Where the branch is (after at least one orbit).
   [[nodiscard]] const Frontier& frontier();
   /// The same without a tangent that no step has needed yet: for checkpoints.
-  [[nodiscard]] const Frontier& standing() const;
+  [[nodiscard]] const Frontier& restart_frontier() const;
 
  private:
   std::unique_ptr<Tracer> _tracer;

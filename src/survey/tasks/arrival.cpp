@@ -41,12 +41,12 @@ constexpr double still_vanishing = 0.05;
 constexpr double telling = 1e-2;
 
 std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuation::FamilyCurve& family,
-                                        const bifurcation::SymmetryWatch& watch, const bifurcation::Gained& gained,
+                                        const bifurcation::SymmetryWatch& watch, const bifurcation::SymmetryGain& gain,
                                         const continuation::Orbit& from, const continuation::Orbit& to) {
   std::vector<Sample> samples;
   const auto add = [&](const loop::Loop& loop) {
-    if (watch.relative_size(gained, from.loop, loop) < slipped) return;
-    samples.push_back({watch.signed_part(gained, from.loop, loop), loop.period, continuation::energy_of(system, loop)});
+    if (watch.relative_size(gain, from.loop, loop) < slipped) return;
+    samples.push_back({watch.signed_part(gain, from.loop, loop), loop.period, continuation::energy_of(system, loop)});
   };
   // Orbits before the meeting point and, if the branch went on along the images, one beyond. At the point itself the
   // two families cannot be told apart, so that nothing is solved for there. Backwards from `from`, as long as the part
@@ -63,12 +63,12 @@ std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuat
     }
   }
   add(to.loop);
-  const double part = watch.signed_part(gained, from.loop, to.loop);
+  const double part = watch.signed_part(gain, from.loop, to.loop);
   const double there = from.arclength + on_the_way / (1.0 - std::min(part, 0.0)) * (to.arclength - from.arclength);
   loop::Loop near = from.loop;
   if (const auto point = family.at(there)) {
-    const double size = watch.relative_size(gained, from.loop, point->loop);
-    if (size > proportional * std::abs(watch.signed_part(gained, from.loop, point->loop)) + still_vanishing)
+    const double size = watch.relative_size(gain, from.loop, point->loop);
+    if (size > proportional * std::abs(watch.signed_part(gain, from.loop, point->loop)) + still_vanishing)
       return std::nullopt;  // it turns instead of vanishing: no arrival
     add(point->loop);
     if (size > telling) near = point->loop;
@@ -89,11 +89,11 @@ loop::Loop sketch_of(const loop::Loop& loop, int cutoff) {
 
 std::optional<ArrivalRecord> arrival_between(const systems::System& system, continuation::FamilyCurve& family,
                                              const bifurcation::SymmetryWatch& watch, const continuation::Orbit& from,
-                                             const bifurcation::SymmetryWatch::Seen& from_seen,
+                                             const bifurcation::SymmetryWatch::SampledOrbit& from_sampled,
                                              const continuation::Orbit& to,
-                                             const bifurcation::SymmetryWatch::Seen& to_seen) {
-  for (const bifurcation::Gained& gained : watch.all_passed(from_seen, to_seen))
-    if (auto record = arrival_by(system, family, watch, gained, from, to)) return record;
+                                             const bifurcation::SymmetryWatch::SampledOrbit& to_sampled) {
+  for (const bifurcation::SymmetryGain& gain : watch.all_passed(from_sampled, to_sampled))
+    if (auto record = arrival_by(system, family, watch, gain, from, to)) return record;
   return std::nullopt;
 }
 
