@@ -15,7 +15,7 @@
 #include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/report/summary_text.hpp"
 #include "orbweaver/survey/run/survey.hpp"
-#include "orbweaver/survey/state/standing.hpp"
+#include "orbweaver/survey/state/directory_status.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "signals.hpp"
 #include "terminal.hpp"
@@ -54,7 +54,7 @@ std::string how_to_go_on(const Options& options) {
 
 int survey_on(const core::Communicator& comm, const Options& options) {
   scene::Scene scene;
-  survey::Standing standing = survey::Standing::none;
+  survey::DirectoryStatus status = survey::DirectoryStatus::none;
   survey::RunOptions run_options{display_for(options), options.resume};
   agree(comm, [&] {
     scene = options.scene.load();
@@ -63,12 +63,12 @@ int survey_on(const core::Communicator& comm, const Options& options) {
   stop_on_signals();
   agree(comm, [&] {
     if (!comm.is_root()) return;  // folders need not look alike from every machine
-    standing = survey::standing_of(options.directory, scene);
-    survey::require_startable(standing, options.directory, options.resume);
+    status = survey::status_of(options.directory, scene);
+    survey::require_startable(status, options.directory, options.resume);
   });
-  standing = core::agreed(comm.get(), standing);
-  if (standing == survey::Standing::finished || standing == survey::Standing::finished_with_failures) {
-    const bool failed = standing == survey::Standing::finished_with_failures;
+  status = core::agreed(comm.get(), status);
+  if (status == survey::DirectoryStatus::finished || status == survey::DirectoryStatus::finished_with_failures) {
+    const bool failed = status == survey::DirectoryStatus::finished_with_failures;
     if (comm.is_root())
       print_result(fmt::format("{} holds this survey, finished{}: nothing to do\n", options.directory.string(),
                                failed ? ", with failures (orbweaver show says which)" : ""));

@@ -24,7 +24,7 @@ corrector::Result correct_pinned(const systems::System& system, const loop::Loop
   const std::vector<double> shift = unknowns.time_shift_direction(guess);
   conditions.col(1) = Eigen::Map<const Eigen::VectorXd>(shift.data(), unknowns.size());
   const double length = conditions.col(1).norm();
-  if (length < 1e-8 * loop::rms_amplitude(guess))
+  if (length < loss::Unknowns::least_time_shift * loop::rms_amplitude(guess))
     conditions.conservativeResize(Eigen::NoChange, 1);
   else
     conditions.col(1) /= length;
@@ -35,7 +35,7 @@ corrector::Result correct_pinned(const systems::System& system, const loop::Loop
 
 corrector::Result born_orbit(const systems::System& system, const loop::Loop& base, const loop::Tangent& along,
                              const loop::Isotropy& isotropy, double amplitude, const corrector::Options& options) {
-  constexpr int most_raises = 4;
+  constexpr int most_raises = 4;  // to 2 or 4 times the base's harmonics: orbits near it need no more
   core::require(along.modes.size() == base.modes.size(), "a direction needs the size of its base loop's modes");
   loop::Loop from = base;
   loop::Tangent direction = along;

@@ -15,6 +15,10 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
+/// An extremum nearer than this share to an end of the interval is the end's: Brent's method stops there where the
+/// function has none within.
+constexpr double off_ends = 1e-3;
+
 class EventFunction {
  public:
   EventFunction(const systems::System& system, continuation::FamilyCurve& family, const Event& event)
@@ -65,7 +69,7 @@ std::optional<Located> extremum(const systems::System& system, continuation::Fam
   for (const double sign : {1.0, -1.0}) {
     std::optional<Located> found =
         locate_minimum([&](double position) { return sign * (quantity(position) - ends); }, from, to, tolerance);
-    const double margin = 1e-3 * (to - from);
+    const double margin = off_ends * (to - from);
     if (found && found->position > from + margin && found->position < to - margin) return found;
   }
   return std::nullopt;

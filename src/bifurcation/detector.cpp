@@ -62,21 +62,22 @@ void add_sign_changes(std::size_t function, const std::vector<Node>& nodes, std:
 
 }  // namespace
 
-std::optional<Station> Detector::probed(const Probe& probe, double position) const {
-  std::optional<Station> station = probe(position);
-  core::require(!station || station->readings.size() == _state.watches.size(),
-                "detector: the probe's station has another number of readings");
-  return station;
+std::optional<TestPoint> Detector::probed(const Probe& probe, double position) const {
+  std::optional<TestPoint> point = probe(position);
+  core::require(!point || point->readings.size() == _state.watches.size(),
+                "detector: the probe's point has another number of readings");
+  return point;
 }
 
-/// Whether the stations next to n let expect another reading there: linear interpolation between them is off by half as
-/// much as linear extrapolation from one side. The family's second station is compared with its first.
-bool Detector::surprising(const std::vector<Station>& grid, std::size_t n) const {
+/// Whether the points next to n let expect another reading there: linear interpolation between them is off by half as
+/// much as linear extrapolation from one side. The family's second point is compared with its first.
+bool Detector::badly_extrapolated(const std::vector<TestPoint>& grid, std::size_t n) const {
   if (n + 1 == grid.size()) return false;
   for (std::size_t f = 0; f < _state.watches.size(); ++f) {
     const Reading& here = grid[n].readings[f];
     const Reading& after = grid[n + 1].readings[f];
-    const double allowed = _options.surprise * std::clamp(_state.watches[f].scale, least_scale, largest_scale);
+    const double allowed =
+        _options.extrapolation_error * std::clamp(_state.watches[f].scale, least_scale, largest_scale);
     if (n == 0) {
       if (std::abs(after.value - here.value) > 2.0 * allowed + here.error + after.error) return true;
       continue;
@@ -90,16 +91,16 @@ bool Detector::surprising(const std::vector<Station>& grid, std::size_t n) const
   return false;
 }
 
-std::vector<Station> Detector::subdivided(const Station& next, const Probe& probe) const {
-  std::vector<Station> grid = _state.stations;
+std::vector<TestPoint> Detector::subdivided(const TestPoint& next, const Probe& probe) const {
+  std::vector<TestPoint> grid = _state.points;
   const auto known = static_cast<std::ptrdiff_t>(grid.size());
   grid.push_back(next);
   bool halved = known > 0;
   for (int level = 0; halved && level < _options.halvings; ++level) {
     halved = false;
-    std::vector<Station> finer(grid.begin(), grid.begin() + known);
+    std::vector<TestPoint> finer(grid.begin(), grid.begin() + known);
     for (auto n = static_cast<std::size_t>(known); n < grid.size(); ++n) {
-      if (surprising(grid, n - 1) || surprising(grid, n)) {
+      if (badly_extrapolated(grid, n - 1) || badly_extrapolated(grid, n)) {
         if (auto middle = probed(probe, 0.5 * (grid[n - 1].position + grid[n].position))) {
           finer.push_back(*std::move(middle));
           halved = true;
@@ -121,9 +122,9 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
   const auto size = [&](double position) {
     if (position == right.position) return std::abs(right.reading.value);
     if (crossed) return 0.0;
-    const std::optional<Station> station = probed(probe, position);
-    if (!station) return std::nan("");
-    const Reading& reading = station->readings[function];
+    const std::optional<TestPoint> point = probed(probe, position);
+    if (!point) return std::nan("");
+    const Reading& reading = point->readings[function];
     nodes.push_back({position, reading});
     crossed = reading.sign() == -sign;
     return sign * reading.value;
@@ -142,13 +143,13 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
   const double ends = std::min(std::abs(left.reading.value), std::abs(right.reading.value));
   const auto zero = [&](const Node& node) {
     return std::abs(node.reading.value) <=
-           std::max(node.reading.error, _options.touch * std::min(1.0, small_ends * ends));
+           std::max(node.reading.error, _options.tangency_tolerance * std::min(1.0, small_ends * ends));
   };
   const auto least = std::min_element(nodes.begin(), nodes.end(), [](const Node& a, const Node& b) {
     return std::abs(a.reading.value) < std::abs(b.reading.value);
   });
   if (least->position < right.position - at_end * length) examined_to = right.position;
-  if (!zero(*least) || !(least->reading.error <= _options.touch_error)) return;
+  if (!zero(*least) || !(least->reading.error <= _options.tangency_error)) return;
   if (least == nodes.begin() || least + 1 == nodes.end()) return;
   auto from = least;
   auto to = least;
@@ -178,7 +179,7 @@ void Detector::take(std::size_t function, const Node& node, const Probe& probe, 
   Watch& watch = _state.watches[function];
   if (node.reading.sign() == 0) {
     const double size = std::abs(node.reading.value);
-    if (node.reading.error <= _options.touch_error &&
+    if (node.reading.error <= _options.tangency_error &&
         (!watch.undecided || size < std::abs(watch.undecided->reading.value)))
       watch.undecided = node;
     return;
@@ -198,39 +199,39 @@ void Detector::take(std::size_t function, const Node& node, const Probe& probe, 
   watch.undecided.reset();
 }
 
-std::vector<Bracket> Detector::advance(const Station& next, const Probe& probe) {
-  if (_state.stations.empty()) _state.watches.resize(next.readings.size());
-  core::require(next.readings.size() == _state.watches.size(), "detector: a station has another number of readings");
-  core::require(_state.stations.empty() || next.position > _state.stations.back().position,
+std::vector<Bracket> Detector::advance(const TestPoint& next, const Probe& probe) {
+  if (_state.points.empty()) _state.watches.resize(next.readings.size());
+  core::require(next.readings.size() == _state.watches.size(), "detector: a point has another number of readings");
+  core::require(_state.points.empty() || next.position > _state.points.back().position,
                 "detector: positions must increase");
   for (std::size_t f = 0; f < next.readings.size(); ++f)
     if (next.readings[f].sign() != 0)
       _state.watches[f].scale = std::max(_state.watches[f].scale, std::abs(next.readings[f].value));
   std::vector<Bracket> found;
-  for (Station& station : subdivided(next, probe)) {
-    for (std::size_t f = 0; f < station.readings.size(); ++f)
-      take(f, {station.position, station.readings[f]}, probe, found);
-    _state.stations.push_back(std::move(station));
+  for (TestPoint& point : subdivided(next, probe)) {
+    for (std::size_t f = 0; f < point.readings.size(); ++f) take(f, {point.position, point.readings[f]}, probe, found);
+    _state.points.push_back(std::move(point));
   }
-  if (_state.stations.size() > 2) _state.stations.erase(_state.stations.begin(), _state.stations.end() - 2);
+  if (_state.points.size() > 2) _state.points.erase(_state.points.begin(), _state.points.end() - 2);
   sort_by_position(found);
   return found;
 }
 
 std::vector<Bracket> Detector::finish(const Probe& probe) {
   std::vector<Bracket> found;
-  std::optional<Station> middle;
+  std::optional<TestPoint> middle;
   for (std::size_t f = 0; f < _state.watches.size(); ++f) {
     const std::vector<Node>& last = _state.watches[f].signed_nodes;
     if (last.size() < 2 || last[0].reading.sign() != last[1].reading.sign()) continue;
     const double position = 0.5 * (last[0].position + last[1].position);
-    if (std::abs(last[1].reading.value) > _options.surprise || position <= _state.watches[f].examined_to) continue;
+    if (std::abs(last[1].reading.value) > _options.extrapolation_error || position <= _state.watches[f].examined_to)
+      continue;
     if (!middle || middle->position != position) middle = probed(probe, position);
     if (!middle) continue;
     const std::vector<Node> nodes{last[0], {position, middle->readings[f]}, last[1]};
     if (nodes[1].reading.sign() == nodes[0].reading.sign())
       look_for_minimum(f, nodes[0], nodes[1], nodes[2], probe, found);
-    else if (nodes[1].reading.sign() == 0 && nodes[1].reading.error <= _options.touch_error)
+    else if (nodes[1].reading.sign() == 0 && nodes[1].reading.error <= _options.tangency_error)
       examine(f, nodes[0], nodes[2], probe, found);
     else
       add_sign_changes(f, nodes, found);

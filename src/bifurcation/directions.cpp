@@ -22,6 +22,29 @@ namespace {
 
 constexpr double same_line = 3e-3;  // radians; distinct lines of a finite group are much further apart
 constexpr int largest_kernel = 8;
+/// Entries of unit directions and coordinates of orbits that are less apart do not decide signs and phases: kernel
+/// vectors are good to that. Either choice starts the same family.
+constexpr double visible = 1e-6;
+/// The amplitude at which base and direction are looked at together, and what a symmetry may be off there, in the
+/// base's tolerances. What the direction breaks is off by the order of the amplitude: neither decides.
+constexpr double probe_amplitude = 0.1;
+constexpr double probe_tolerance = 10.0;
+/// A unit vector whose part in a space is longer than 1 less this lies in it: 0.8 degrees.
+constexpr double outside = 1e-4;
+/// The size that terms of order q - 2, which alone fix the angle in a plane, must have at an amplitude for a search:
+/// ten thousand times the loss's tolerance, since their coefficient may be small.
+constexpr double fixing_term = 1e-6;
+/// Amplitudes of a search, relative to the orbit's where that is below 1: for q > 4 the first is between these two, and
+/// is doubled while below the third. Smaller ones leave the angle to the loss's tolerance, larger ones are not near.
+constexpr double least_amplitude = 0.01;
+constexpr double largest_first_amplitude = 0.1;
+constexpr double largest_amplitude = 0.3;
+/// How far beside a direction its neighbours are sought: in a plane a tenth of the way to the next image (in parts of
+/// half that way), elsewhere so many radians. Not measured.
+constexpr double nudge_in_plane = 0.2;
+constexpr double nudge_in_space = 0.03;
+/// What a symmetry of an orbit found may be off, in parts of its amplitude: a broken one is off by all of it.
+constexpr double found_tolerance = 1e-2;
 
 // What decides which of several images of one direction is reported, and in which order directions are listed.
 struct Rank {
@@ -56,15 +79,15 @@ double upward(const loop::Loop& direction) {
   const std::vector<double> at_start = loop::state_at(direction, 0.0);
   for (const std::vector<double>* numbers : {&at_start, &direction.modes})
     for (const double v : *numbers)
-      if (std::abs(v) > 1e-6) return v > 0.0 ? 1.0 : -1.0;
+      if (std::abs(v) > visible) return v > 0.0 ? 1.0 : -1.0;
   return 1.0;
 }
 
 // One of the born orbits' isotropies: what base and direction have in common.
 loop::Isotropy isotropy_along(const systems::Structure& system, const KernelActions& group, const loop::Loop& base,
                               const loop::Tangent& along, const DirectionOptions& options) {
-  return loop::find_isotropy(system, loop::moved(base, along, 0.1), 10.0 * options.symmetry_tolerance,
-                             group.denominator());
+  return loop::find_isotropy(system, loop::moved(base, along, probe_amplitude),
+                             probe_tolerance * options.symmetry_tolerance, group.denominator());
 }
 
 bool has_other_sides(const KernelActions& group, const Eigen::VectorXd& v) {
@@ -87,7 +110,7 @@ Direction direction_along(const systems::Structure& system, const KernelActions&
   if (rank.reversor < std::numeric_limits<int>::max()) {
     // Of the two instants on the fixed set the one with the larger first coordinate.
     start = 0.5 * rank.phase;
-    if (first_coordinate(base, start + 0.5) > first_coordinate(base, start) + 1e-6) start += 0.5;
+    if (first_coordinate(base, start + 0.5) > first_coordinate(base, start) + visible) start += 0.5;
   }
   Direction out;
   out.base = loop::time_shifted(base, start);
@@ -113,7 +136,7 @@ std::vector<Eigen::VectorXd> fixed_lines(const KernelActions& group) {
     if (space.cols() == 1) lines.emplace_back(space.col(0));
   if (!group.constant()) return lines;
   const auto contains = [](const Eigen::MatrixXd& space, const Eigen::VectorXd& v) {
-    return (space.transpose() * v).norm() > 1.0 - 1e-4;
+    return (space.transpose() * v).norm() > 1.0 - outside;
   };
   for (const Eigen::MatrixXd& space : spaces)
     if (space.cols() == 2 && contains(space, group.quarter() * space.col(0)) &&
@@ -141,20 +164,20 @@ int rotations(const KernelActions& group) {
   std::vector<Eigen::MatrixXd> distinct;
   for (const Action& a : group.actions())
     if (a.matrix.determinant() > 0.0 && std::none_of(distinct.begin(), distinct.end(), [&](const Eigen::MatrixXd& m) {
-          return (m - a.matrix).norm() < 1e-2;
+          return (m - a.matrix).norm() < same_element;
         }))
       distinct.push_back(a.matrix);
   return static_cast<int>(distinct.size());
 }
 
-// The amplitudes to search at: from where terms of order q - 2, which fix the angle, are above 1e-6. Their coefficient
-// may be small.
+// The amplitudes to search at.
 std::vector<double> search_amplitudes(int q, const loop::Loop& base, bool constant) {
   const double scale = constant ? 1.0 : std::min(1.0, loop::rms_amplitude(base));
-  const double least = std::clamp(q > 4 ? std::pow(1e-6, 1.0 / (q - 2)) : 0.0, 0.01, 0.1);
+  const double least =
+      std::clamp(q > 4 ? std::pow(fixing_term, 1.0 / (q - 2)) : 0.0, least_amplitude, largest_first_amplitude);
   std::vector<double> out{scale * least};
   if (q > 2)
-    for (double r = 2.0 * least; r < 0.3; r *= 2.0) out.push_back(scale * r);
+    for (double r = 2.0 * least; r < largest_amplitude; r *= 2.0) out.push_back(scale * r);
   return out;
 }
 
@@ -166,7 +189,7 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   const Eigen::VectorXd generic = Eigen::VectorXd::LinSpaced(group.dimension(), 1.0, std::sqrt(2.0)).array().sin();
   const loop::Isotropy kept =
       isotropy_along(system.structure(), group, base, group.vector_at(generic.normalized()), options);
-  const double nudge = plane ? 0.2 * std::numbers::pi / q : 0.03;
+  const double nudge = plane ? nudge_in_plane * std::numbers::pi / q : nudge_in_space;
   const int expected = plane && q > 2 ? (q % 2 == 0 ? 2 : 1) : 0;
   SearchResult best;
   double amplitude = 0.0;
@@ -190,9 +213,10 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   if (best.not_isolated > 0 || static_cast<int>(best.found.size()) < expected) core::log_warning(seen);
   std::vector<Direction> out;
   for (const FoundOrbit& orbit : best.found)
-    out.push_back({base, group.vector_at(orbit.coordinates),
-                   loop::find_isotropy(system.structure(), orbit.loop, 1e-2 * amplitude, group.denominator()),
-                   has_other_sides(group, orbit.coordinates), amplitude});
+    out.push_back(
+        {base, group.vector_at(orbit.coordinates),
+         loop::find_isotropy(system.structure(), orbit.loop, found_tolerance * amplitude, group.denominator()),
+         has_other_sides(group, orbit.coordinates), amplitude});
   return out;
 }
 

@@ -51,7 +51,7 @@ bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop
   const std::optional<continuation::CurvePoint> end = step.at(1.0, true);
   if (!start || !end) return true;
   for (const continuation::CurvePoint* point : {&*start, &*end})
-    if (along_chord(*point, start->loop, end->loop) < 0.5) return true;
+    if (along_chord(*point, start->loop, end->loop) < options.least_cosine) return true;
   return energy_slope(*system, *start) * energy_slope(*system, *end) > 0.0;
 }
 

@@ -8,12 +8,9 @@ namespace orbweaver::bifurcation {
 
 namespace {
 
-// Singular values of g - 1 are 2 sin(angle / 2) of g's rotations: far from 0 in a finite group of moderate size.
-constexpr double vanishing = 1e-2;
-
 Eigen::MatrixXd null_space(const Eigen::MatrixXd& conditions) {
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(conditions, Eigen::ComputeFullV);
-  const Eigen::Index rank = (svd.singularValues().array() > vanishing).count();
+  const Eigen::Index rank = (svd.singularValues().array() > same_element).count();
   return svd.matrixV().rightCols(conditions.cols() - rank);
 }
 
@@ -27,7 +24,7 @@ std::vector<Eigen::MatrixXd> fixed_spaces(const std::vector<Eigen::MatrixXd>& ma
   const auto add = [&](const Eigen::MatrixXd& basis) {
     if (basis.cols() == 0) return;
     const auto same = [&](const Eigen::MatrixXd& known) {
-      return known.cols() == basis.cols() && (projector(known) - projector(basis)).norm() < vanishing;
+      return known.cols() == basis.cols() && (projector(known) - projector(basis)).norm() < same_element;
     };
     if (std::none_of(spaces.begin(), spaces.end(), same)) spaces.push_back(basis);
   };

@@ -9,6 +9,7 @@ namespace orbweaver::bifurcation {
 
 namespace {
 
+/// Changes of T and E below this, relative to the largest modulus so far, are the corrector's tolerance.
 constexpr double visible = 1e-10;
 
 /// True if the quantity has turned since `turn.before`.

@@ -16,9 +16,18 @@ namespace {
 
 using continuation::Orbit;
 
-constexpr double beyond = 0.3;  // of the chord: how far outside its ends a projection may lie
-constexpr double away = 1.0;    // of the chord: how far from it an orbit between its ends can be
+/// How far outside the chord's ends a projection may lie, and how far from the chord an orbit between its ends can be,
+/// in parts of the chord. Wide on purpose: further corrections decide, these only end hopeless ones.
+constexpr double beyond = 0.3;
+constexpr double away = 1.0;
+/// Corrections of a phase that was off by the chord's error, each to its square (four squarings of 0.1 are rounding),
+/// while the distance falls to this share: what separates two families stays.
 constexpr int corrections = 4;
+constexpr double phase_progress = 0.3;
+/// Tolerances that an orbit at the chord's end, where the bulge allows nothing, may be off it. Not measured.
+constexpr double off_at_ends = 10.0;
+/// A repetition must be exact to this share of the amplitude too, or small orbits would all repeat.
+constexpr double repeated = 1e-3;
 /// A smooth family leaves the chord by about this share of it times position (1 - position); further off Newton's
 /// method has gone over to a neighbouring family.
 constexpr double bulge = 0.8;
@@ -41,7 +50,7 @@ loop::Loop moved(const loss::Unknowns& unknowns, const loop::Loop& base, const E
 Eigen::VectorXd shift_direction(const loss::Unknowns& unknowns, const loop::Loop& at) {
   const std::vector<double> u = unknowns.time_shift_direction(at);
   const Eigen::VectorXd direction = Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size()));
-  if (direction.norm() <= 1e-8 * loop::rms_amplitude(at)) return {};
+  if (direction.norm() <= loss::Unknowns::least_time_shift * loop::rms_amplitude(at)) return {};
   return direction.normalized();
 }
 
@@ -159,13 +168,12 @@ Comparison compare(const systems::System& system, Chord chord, const loop::Loop&
     distance = distance_between(x, nearest, alignment.distance);
     if (distance <= tolerance) {
       const double off = chord.off_chord(nearest, position) * length;
-      if (off <= bulge * std::abs(position * (1.0 - position)) * length + 10.0 * tolerance)
+      if (off <= bulge * std::abs(position * (1.0 - position)) * length + off_at_ends * tolerance)
         return {true, distance, position, "the same orbit", true};
       return undecided(off, position, "the correction leaves the family");
     }
     if (distance > away * length + tolerance) return apart(distance, position, "far from the family");
-    // What is left of a wrong phase shrinks with its square; what separates two families stays.
-    if (distance > 0.3 * before) break;
+    if (distance > phase_progress * before) break;
   }
   return apart(distance, position, "another orbit");
 }
@@ -185,7 +193,7 @@ bool may_lie_between(const Orbit& a, const Orbit& b, const Orbit& x, double wide
 Comparison same_family(const systems::System& system, const Orbit& a, const Orbit& b, const loop::Isotropy& isotropy,
                        const Orbit& x, const IdentityOptions& options) {
   Orbit primitive = x;
-  const double negligible = std::min(options.tolerance, 1e-3 * loop::rms_amplitude(x.loop));
+  const double negligible = std::min(options.tolerance, repeated * loop::rms_amplitude(x.loop));
   const int m = loop::repetitions(x.loop, negligible);
   if (m > 1) {
     primitive.loop = loop::without_repetition(x.loop, m);

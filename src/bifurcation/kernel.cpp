@@ -46,6 +46,10 @@ Split split_of(const loop::SymmetryGroup& group, const Sector& sector, int multi
   return split;
 }
 
+/// Accuracy of the vectors: starts are corrected from them, and values come out to its square. The solves inside are to
+/// be better than that.
+constexpr double of_vectors = 1e-6;
+constexpr double of_solves = 1e-7;
 /// Below it singular values of a loop's Jacobian are rounding.
 constexpr double rounding = 1e-11;
 
@@ -93,8 +97,8 @@ Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& 
   const Split split = split_of(group, sector, multiplicity);
   spectrum::TripletOptions options;
   options.count = split.signs.size() > 1 && expected > 1 ? expected / 2 + 1 : expected + 1;
-  options.tolerance = 1e-6;  // of the vectors: starts are corrected; values come out to its square
-  options.inner_tolerance = 1e-7;
+  options.tolerance = of_vectors;
+  options.inner_tolerance = of_solves;
   options.team = team;
   options.multiple = split.signs.size() == 1 && expected > 1;
   std::vector<OffBranchTriplet> all;

@@ -21,7 +21,7 @@ struct NoValue {};
 
 /// Counts evaluations, and leaves the library's algorithm where there is no value.
 struct Counted {
-  const Along& function;
+  const PositionFunction& function;
   int evaluations = 0;
 
   double operator()(double position) {
@@ -38,7 +38,7 @@ void check_interval(double from, double to, double tolerance) {
 
 }  // namespace
 
-std::optional<Located> locate_root(const Along& function, double from, double to, double tolerance,
+std::optional<Located> locate_root(const PositionFunction& function, double from, double to, double tolerance,
                                    int max_evaluations) {
   check_interval(from, to, tolerance);
   Counted counted{function};
@@ -71,7 +71,7 @@ std::optional<Located> locate_root(const Along& function, double from, double to
   }
 }
 
-std::optional<Located> locate_minimum(const Along& function, double from, double to, double tolerance,
+std::optional<Located> locate_minimum(const PositionFunction& function, double from, double to, double tolerance,
                                       int max_evaluations) {
   check_interval(from, to, tolerance);
   Counted counted{function};

@@ -17,8 +17,10 @@ namespace {
 
 constexpr double same_direction = 0.02;  // radians; settled ones agree much closer
 constexpr double settled = 1e-3;         // radians between the pinned direction and the one of the orbit found
-constexpr double largest_tilt = 1.0;
-constexpr int most_pins = 8;
+constexpr double largest_tilt = 1.0;     // radians; an orbit that leaves the base further off lies elsewhere
+constexpr int most_pins = 8;             // each a Newton solve; not measured
+constexpr double returned = 0.2;         // of the nudge: what remains of it at an isolated direction, which is settled
+constexpr double least_length = 0.1;     // of a normal vector: shorter ones are rounded to few directions
 
 // The radical inverse of n in a base: a number in (0, 1).
 double halton(int n, int base) {
@@ -79,7 +81,7 @@ struct Search {
     for (const Eigen::VectorXd& aside : axes.rightCols(others).colwise()) {
       const auto back = settle((v + nudge * aside).normalized(), [](const Eigen::VectorXd&) { return false; });
       if (!back) return false;
-      if ((back->coordinates - v).norm() > 0.2 * nudge && !taken(back->coordinates)) return false;
+      if ((back->coordinates - v).norm() > returned * nudge && !taken(back->coordinates)) return false;
     }
     return true;
   }
@@ -127,7 +129,7 @@ std::vector<Eigen::VectorXd> start_directions(int dimension, int order, int coun
     Eigen::VectorXd v(dimension);
     for (int i = 0; i < dimension; ++i)
       v(i) = boost::math::quantile(boost::math::normal(), halton(n, primes[static_cast<std::size_t>(i)]));
-    if (v.norm() > 0.1) out.push_back(v.normalized());
+    if (v.norm() > least_length) out.push_back(v.normalized());
   }
   return out;
 }

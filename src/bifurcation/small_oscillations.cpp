@@ -14,7 +14,7 @@ loop::Tangent at_unit_start(loop::Tangent tangent, std::size_t dimension) {
   std::vector<double>& modes = tangent.modes;
   double square = 0.0;
   for (std::size_t i = 0; i < dimension; ++i) square += modes[dimension + i] * modes[dimension + i];
-  if (square > 1e-18)
+  if (std::sqrt(square) > starts::still_at_start)
     for (double& v : modes) v /= std::sqrt(square);
   return tangent;
 }

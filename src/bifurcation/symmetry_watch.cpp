@@ -20,8 +20,15 @@ namespace orbweaver::bifurcation {
 namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
-constexpr double negligible = 1e-8;  // of a broken part, relative to the loop
-constexpr std::size_t phases = 3;    // of a reversor that are watched: the closest ones
+/// Of a broken part, relative to the loop: orbits that have the symmetry have it to the corrector's accuracy, and a
+/// branch is born with a part of the size of its first amplitude.
+constexpr double negligible = 1e-8;
+/// Phases of a reversor that are watched, the closest ones. Not measured.
+constexpr std::size_t phases = 3;
+/// Windings are whole numbers: anything below a half would do.
+constexpr double same_winding = 1e-9;
+/// Rounding of a correlation in parts of |A|^2 + |B|^2, with room: what is below is computed without cancellation.
+constexpr double correlation_rounding = 1e-13;
 
 // Columns: the complex coefficients of harmonics 0 ... K, so that |z|^2 = sum |column|^2 (harmonics weighted by
 // sqrt(1/2)).
@@ -35,7 +42,7 @@ Eigen::MatrixXcd coefficients_of(const loop::Loop& loop) {
   return out;
 }
 
-double shift_of(const Gained& gained) { return static_cast<double>(gained.shift_numerator) / gained.shift_denominator; }
+double shift_of(const SymmetryGain& gain) { return static_cast<double>(gain.shift_numerator) / gain.shift_denominator; }
 
 // Broken means modulo the lattice of angles: A's within a half turn of 0, B's within a half turn of A's.
 void reduce(const std::vector<int>& angles, Eigen::VectorXd& of_a, Eigen::VectorXd& of_b) {
@@ -45,10 +52,10 @@ void reduce(const std::vector<int>& angles, Eigen::VectorXd& of_a, Eigen::Vector
   }
 }
 
-bool generates(const loop::Isotropy& group, const Gained& gained, const std::vector<int>& angles) {
+bool generates(const loop::Isotropy& group, const SymmetryGain& gain, const std::vector<int>& angles) {
   return std::any_of(group.begin(), group.end(), [&](const loop::SymmetryElement& e) {
-    return !e.reversing && e.shift_numerator == gained.shift_numerator &&
-           e.shift_denominator == gained.shift_denominator && e.map.is_same(gained.map, angles);
+    return !e.reversing && e.shift_numerator == gain.shift_numerator && e.shift_denominator == gain.shift_denominator &&
+           e.map.is_same(gain.map, angles);
   });
 }
 
@@ -60,10 +67,10 @@ struct SymmetryWatch::Products {
   double second;  // <c(B), c(B)>
 };
 
-std::string to_text(const Gained& gained) {
-  if (gained.reversing) return gained.name;
-  if (gained.shift_numerator == 0) return gained.name + "@0";
-  return fmt::format("{}@{}/{}", gained.name, gained.shift_numerator, gained.shift_denominator);
+std::string to_text(const SymmetryGain& gain) {
+  if (gain.reversing) return gain.name;
+  if (gain.shift_numerator == 0) return gain.name + "@0";
+  return fmt::format("{}@{}/{}", gain.name, gain.shift_numerator, gain.shift_denominator);
 }
 
 SymmetryWatch::SymmetryWatch(const systems::Structure& system, const loop::Isotropy& own, int largest_order)
@@ -77,7 +84,7 @@ SymmetryWatch::SymmetryWatch(const systems::Structure& system, const loop::Isotr
     Shifted shifted{s, {}};
     for (int q = is_identity ? 2 : 1; q <= largest_order; ++q)
       for (int p = 0; p < q; ++p) {
-        Gained candidate{s.name, false, s.map, p, q, 0.0};
+        SymmetryGain candidate{s.name, false, s.map, p, q, 0.0};
         const bool is_new = is_identity ? p == 1 : std::gcd(p, q) == 1;
         if (is_new && !generates(group, candidate, system.angles)) shifted.candidates.push_back(std::move(candidate));
       }
@@ -87,20 +94,20 @@ SymmetryWatch::SymmetryWatch(const systems::Structure& system, const loop::Isotr
   if (std::none_of(group.begin(), group.end(), is_reversing)) _reversors = system.reversors;
 }
 
-SymmetryWatch::Seen SymmetryWatch::see(const loop::Loop& loop) {
-  Seen out{loop::interpolant(loop::time_samples(loop)), {}, 0.0};
+SymmetryWatch::SampledOrbit SymmetryWatch::sampled(const loop::Loop& loop) {
+  SampledOrbit out{loop::interpolant(loop::time_samples(loop)), {}, 0.0};
   out.coefficients = coefficients_of(out.loop);
   out.size = loop::rms_size(out.loop);
   return out;
 }
 
 // The coefficients of M^-1 z(t + T shift) - z(t), or of M^-1 z(-t - T shift) - z(t) for a reversor.
-Eigen::MatrixXcd SymmetryWatch::broken_part(const Gained& gained, const systems::AffineMap& inverse, const Seen& orbit,
-                                            double shift) const {
+Eigen::MatrixXcd SymmetryWatch::broken_part(const SymmetryGain& gain, const systems::AffineMap& inverse,
+                                            const SampledOrbit& orbit, double shift) const {
   const Eigen::MatrixXcd& z = orbit.coefficients;
-  Eigen::MatrixXcd image = gained.reversing ? Eigen::MatrixXcd(z.conjugate()) : z;
+  Eigen::MatrixXcd image = gain.reversing ? Eigen::MatrixXcd(z.conjugate()) : z;
   const Eigen::Map<const Eigen::VectorXd> winding(orbit.loop.winding.data(), orbit.loop.dimension);
-  image.col(0) += (gained.reversing ? -1.0 : 1.0) * two_pi * shift * winding.cast<std::complex<double>>();
+  image.col(0) += (gain.reversing ? -1.0 : 1.0) * two_pi * shift * winding.cast<std::complex<double>>();
   const std::complex<double> step = std::polar(1.0, two_pi * shift);
   std::complex<double> wave = 1.0;
   for (Eigen::Index k = 1; k < image.cols(); ++k) image.col(k) *= wave *= step;
@@ -109,17 +116,18 @@ Eigen::MatrixXcd SymmetryWatch::broken_part(const Gained& gained, const systems:
   return broken;
 }
 
-SymmetryWatch::Products SymmetryWatch::compare(const Gained& gained, const Seen& a, const Seen& b) const {
-  const systems::AffineMap inverse = gained.map.inverse();
-  double shift_of_a = shift_of(gained);
+SymmetryWatch::Products SymmetryWatch::compare(const SymmetryGain& gain, const SampledOrbit& a,
+                                               const SampledOrbit& b) const {
+  const systems::AffineMap inverse = gain.map.inverse();
+  double shift_of_a = shift_of(gain);
   double shift_of_b = shift_of_a;
-  if (gained.reversing) {  // R^-1 z(T phi - t) = y(t - T phi); the phase of B is the one near that of A
-    shift_of_a = -gained.phase;
-    const loop::Loop image = loop::transformed(b.loop, gained.map, true, 0.0);
+  if (gain.reversing) {  // R^-1 z(T phi - t) = y(t - T phi); the phase of B is the one near that of A
+    shift_of_a = -gain.phase;
+    const loop::Loop image = loop::transformed(b.loop, gain.map, true, 0.0);
     shift_of_b = loop::shift_minimum_near(image, b.loop, _system.angles, shift_of_a).shift;
   }
-  Eigen::MatrixXcd broken_a = broken_part(gained, inverse, a, shift_of_a);
-  Eigen::MatrixXcd broken_b = broken_part(gained, inverse, b, shift_of_b);
+  Eigen::MatrixXcd broken_a = broken_part(gain, inverse, a, shift_of_a);
+  Eigen::MatrixXcd broken_b = broken_part(gain, inverse, b, shift_of_b);
   Eigen::VectorXd mean_a = broken_a.col(0).real();
   Eigen::VectorXd mean_b = broken_b.col(0).real();
   reduce(_system.angles, mean_a, mean_b);
@@ -132,7 +140,8 @@ SymmetryWatch::Products SymmetryWatch::compare(const Gained& gained, const Seen&
 // rounding of |A||B|, which decides where nothing is gained.
 class SymmetryWatch::Correlation {
  public:
-  Correlation(const systems::AffineMap& inverse, const Seen& a, const Seen& b, const std::vector<int>& angles)
+  Correlation(const systems::AffineMap& inverse, const SampledOrbit& a, const SampledOrbit& b,
+              const std::vector<int>& angles)
       : _inverse(inverse), _a(a), _b(b), _angles(angles), _sums(a.coefficients.cols()) {
     const Eigen::MatrixXcd image_a = inverse.matrix * a.coefficients;
     const Eigen::MatrixXcd image_b = inverse.matrix * b.coefficients;
@@ -162,24 +171,24 @@ class SymmetryWatch::Correlation {
 
  private:
   const systems::AffineMap& _inverse;
-  const Seen& _a;
-  const Seen& _b;
+  const SampledOrbit& _a;
+  const SampledOrbit& _b;
   const std::vector<int>& _angles;
   double _unshifted = 0.0;
   Eigen::VectorXcd _sums;
 };
 
-// Elements of the group that `gained` and the own isotropy generate; a reversor doubles it, whatever its phase.
-std::size_t SymmetryWatch::generated_with(const Gained& gained) const {
-  if (gained.reversing) return 2 * loop::SymmetryGroup(_system, _own).elements().size();
+// Elements of the group that `gain` and the own isotropy generate; a reversor doubles it, whatever its phase.
+std::size_t SymmetryWatch::generated_with(const SymmetryGain& gain) const {
+  if (gain.reversing) return 2 * loop::SymmetryGroup(_system, _own).elements().size();
   loop::Isotropy generators = _own;
-  generators.push_back({gained.name, false, gained.map, gained.shift_numerator, gained.shift_denominator});
+  generators.push_back({gain.name, false, gain.map, gain.shift_numerator, gain.shift_denominator});
   return loop::SymmetryGroup(_system, generators).elements().size();
 }
 
-std::vector<Gained> SymmetryWatch::all_passed(const Seen& from, const Seen& to) const {
-  std::vector<std::pair<std::size_t, Gained>> found;
-  const auto consider = [&](const Gained& candidate) {
+std::vector<SymmetryGain> SymmetryWatch::all_passed(const SampledOrbit& from, const SampledOrbit& to) const {
+  std::vector<std::pair<std::size_t, SymmetryGain>> found;
+  const auto consider = [&](const SymmetryGain& candidate) {
     const Products products = compare(candidate, from, to);
     if (std::sqrt(products.first) <= negligible * from.size) return;
     if (products.mixed < 0.0 || std::sqrt(products.second) <= negligible * to.size)
@@ -187,14 +196,14 @@ std::vector<Gained> SymmetryWatch::all_passed(const Seen& from, const Seen& to) 
   };
   const auto keeps_winding = [&from](const Eigen::MatrixXd& matrix, double sign) {
     const Eigen::Map<const Eigen::VectorXd> winding(from.loop.winding.data(), from.loop.dimension);
-    return (sign * (matrix * winding) - winding).isZero(1e-9);
+    return (sign * (matrix * winding) - winding).isZero(same_winding);
   };
-  const double rounding = 1e-13 * (from.size * from.size + to.size * to.size);
+  const double rounding = correlation_rounding * (from.size * from.size + to.size * to.size);
   for (const auto& [symmetry, candidates] : _equivariances) {
     if (!keeps_winding(symmetry.map.matrix, 1.0)) continue;
     const systems::AffineMap inverse = symmetry.map.inverse();
     const Correlation correlation(inverse, from, to, _system.angles);
-    for (const Gained& candidate : candidates)
+    for (const SymmetryGain& candidate : candidates)
       if (correlation.at(shift_of(candidate)) <= rounding) consider(candidate);
   }
   for (const systems::Symmetry& r : _reversors) {
@@ -206,28 +215,28 @@ std::vector<Gained> SymmetryWatch::all_passed(const Seen& from, const Seen& to) 
       consider({r.name, true, r.map, 0, 1, -minimum.shift + std::ceil(minimum.shift)});
   }
   std::stable_sort(found.begin(), found.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
-  std::vector<Gained> out;
-  for (auto& [order, gained] : found) out.push_back(std::move(gained));
+  std::vector<SymmetryGain> out;
+  for (auto& [order, gain] : found) out.push_back(std::move(gain));
   return out;
 }
 
-std::optional<Gained> SymmetryWatch::passed(const loop::Loop& a, const loop::Loop& b) const {
-  return passed(see(a), see(b));
+std::optional<SymmetryGain> SymmetryWatch::passed(const loop::Loop& a, const loop::Loop& b) const {
+  return passed(sampled(a), sampled(b));
 }
 
-std::optional<Gained> SymmetryWatch::passed(const Seen& a, const Seen& b) const {
-  std::vector<Gained> all = all_passed(a, b);
+std::optional<SymmetryGain> SymmetryWatch::passed(const SampledOrbit& a, const SampledOrbit& b) const {
+  std::vector<SymmetryGain> all = all_passed(a, b);
   if (all.empty()) return std::nullopt;
   return std::move(all.front());
 }
 
-double SymmetryWatch::signed_part(const Gained& gained, const loop::Loop& a, const loop::Loop& at) const {
-  const Products products = compare(gained, see(a), see(at));
+double SymmetryWatch::signed_part(const SymmetryGain& gain, const loop::Loop& a, const loop::Loop& at) const {
+  const Products products = compare(gain, sampled(a), sampled(at));
   return products.mixed / products.first;
 }
 
-double SymmetryWatch::relative_size(const Gained& gained, const loop::Loop& a, const loop::Loop& at) const {
-  const Products products = compare(gained, see(a), see(at));
+double SymmetryWatch::relative_size(const SymmetryGain& gain, const loop::Loop& a, const loop::Loop& at) const {
+  const Products products = compare(gain, sampled(a), sampled(at));
   return std::sqrt(products.second / products.first);
 }
 

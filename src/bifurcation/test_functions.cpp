@@ -38,6 +38,15 @@ std::vector<Bounded> indices_of(const systems::Structure& system, const spectrum
   return indices;
 }
 
+/// Roundings of a product, a factor: four operations each.
+constexpr double roundings_a_factor = 4.0 * std::numeric_limits<double>::epsilon();
+/// |k| <= 2 on the unit circle: krein's denominator begins at 2^2 + 2^2, and pairs that meet there have
+/// |k_i + k_j| <= 4; multipliers with mu_i mu_j = 1 that are not real have |mu_i + mu_j| <= 2 (docs/mathematics.md,
+/// "Test functions").
+constexpr double krein_scale = 8.0;
+constexpr double largest_krein_sum = 4.0;
+constexpr double largest_torus_sum = 2.0;
+
 /// (x - c)/(scale + |x|) for |c| <= scale: then an error e of x changes it by at most 2 e/(scale + |x + e|).
 Bounded scaled(const Bounded& x, double c, double scale) {
   const double size = std::abs(x.value);
@@ -47,12 +56,12 @@ Bounded scaled(const Bounded& x, double c, double scale) {
 Bounded distance_squared(const Bounded& a, const Bounded& b) {
   const Complex difference = a.value - b.value;
   const double error = a.error + b.error;
-  const double below = 8.0 + 2.0 * std::norm(a.value) + 2.0 * std::norm(b.value);
+  const double below = krein_scale + 2.0 * std::norm(a.value) + 2.0 * std::norm(b.value);
   const double below_error =
       2.0 * a.error * (2.0 * std::abs(a.value) + a.error) + 2.0 * b.error * (2.0 * std::abs(b.value) + b.error);
   const Complex value = difference * difference / below;
   const double above_error = error * (2.0 * std::abs(difference) + error);
-  return {value, (above_error + std::abs(value) * below_error) / std::max(8.0, below - below_error)};
+  return {value, (above_error + std::abs(value) * below_error) / std::max(krein_scale, below - below_error)};
 }
 
 Bounded product(const Bounded& a, const Bounded& b) {
@@ -108,7 +117,7 @@ Reading evaluate(const TestFunction& function, const systems::Structure& system,
   const std::vector<Bounded> factors = factors_of(function, system, indices_of(system, stability));
   Bounded result{1.0, 0.0};
   for (const Bounded& factor : factors) result = product(result, factor);
-  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * static_cast<double>(factors.size());
+  const double rounding = roundings_a_factor * static_cast<double>(factors.size());
   return {result.value.real(), result.error + rounding};
 }
 
@@ -123,8 +132,8 @@ bool is_event(const TestFunction& function, const systems::Structure& system, co
     return std::abs(a.value) < std::abs(b.value);
   });
   const double sum = sums[static_cast<std::size_t>(vanishing - factors.begin())].value.real();
-  if (function.kind == Kind::krein) return !tangency && std::abs(sum) <= 4.0;
-  return std::abs(sum) <= 2.0;
+  if (function.kind == Kind::krein) return !tangency && std::abs(sum) <= largest_krein_sum;
+  return std::abs(sum) <= largest_torus_sum;
 }
 
 }  // namespace orbweaver::bifurcation

@@ -19,6 +19,14 @@ namespace odeint = boost::numeric::odeint;
 using State = std::vector<double>;
 
 constexpr int step_limit = 1'000'000;
+/// Below the first one steps are rounding; above the second the method's order means nothing.
+constexpr double least_tolerance = 1e-15;
+constexpr double largest_tolerance = 0.1;
+/// The first step moves the state by tolerance^(1/8), 8 being the method's order, of its size, taken as this at least.
+constexpr double order = 8.0;
+constexpr double least_size = 0.01;
+/// Of a step that left the field's domain.
+constexpr double shortened = 0.1;
 
 bool is_finite(const State& values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
@@ -39,14 +47,15 @@ void require_usable(const systems::System& system, const State& state, double ti
   core::require(state.size() == static_cast<std::size_t>(system.dimension()),
                 "the state to integrate must have one number a coordinate of the system");
   core::require(std::isfinite(time), "the time to integrate over must be finite");
-  core::require(tolerance >= 1e-15 && tolerance <= 0.1, "the tolerance of an integration must be in [1e-15, 0.1]");
+  core::require(tolerance >= least_tolerance && tolerance <= largest_tolerance,
+                "the tolerance of an integration must be in [1e-15, 0.1]");
 }
 
 /// A first step that is right to within the factor 5 by which the controller corrects a step.
 double first_step(const State& state, const State& field, double time, double tolerance) {
   const double speed = norm(field);
   if (speed == 0.0) return time;
-  const double guess = std::pow(tolerance, 1.0 / 8.0) * (0.01 + norm(state)) / speed;
+  const double guess = std::pow(tolerance, 1.0 / order) * (least_size + norm(state)) / speed;
   return std::copysign(std::min(guess, std::abs(time)), time);
 }
 
@@ -78,7 +87,7 @@ std::vector<double> integrate(const systems::System& system, std::vector<double>
     const auto outcome = stepper.try_step(derivative, state, after, next, step);
     if (!finite || !is_finite(next)) {
       // A trial step may leave the domain where the orbit does not: only a state that no small step leaves is at fault.
-      step = 0.1 * tried;
+      step = shortened * tried;
       if (reached + step == reached) fail(system, reached, time, "the state or the vector field there is not finite");
       continue;
     }

@@ -45,7 +45,7 @@ const Frontier& Branch::frontier() {
   _tracer->complete_frontier();
   return _tracer->frontier();
 }
-const Frontier& Branch::standing() const { return _tracer->frontier(); }
+const Frontier& Branch::restart_frontier() const { return _tracer->frontier(); }
 
 Ending trace(std::shared_ptr<const systems::System> system, const Start& start, const Options& options,
              const Observer& observer) {

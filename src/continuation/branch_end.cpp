@@ -8,6 +8,23 @@
 
 namespace orbweaver::continuation {
 
+namespace {
+
+/// Orbits after which a branch may have come back or to a fixed point: the first ones lie near the start anyway.
+constexpr int first_orbits = 3;
+/// The end at a fixed point, of the first orbit's amplitude and the start's: steps there are of the amplitude's size.
+constexpr double vanishing_amplitude = 0.5;
+/// How near the first orbit must be, in parts of the last step: the step that comes next would pass it.
+constexpr double closing = 0.5;
+/// A branch has come back only after it was so much further away. Not measured; it must only tell these two apart.
+constexpr double was_away = 0.25;
+/// How often the period must have grown, and how little of its range the energy may have moved over `period_window`,
+/// where the period diverges. Not measured; both decide only how an end is called.
+constexpr double grown_period = 2.0;
+constexpr double settled_energy = 1e-3;
+
+}  // namespace
+
 std::optional<Ending> end_at(const Frontier& frontier, const Options& options) {
   const Orbit& orbit = frontier.orbit;
   if (frontier.on_energy_limit) return Ending{EndReason::energy_limit, fmt::format("E = {:.12g}", orbit.energy)};
@@ -15,13 +32,13 @@ std::optional<Ending> end_at(const Frontier& frontier, const Options& options) {
     return Ending{EndReason::period_limit, fmt::format("T = {:.12g}", orbit.loop.period)};
   if (orbit.step + 1 >= options.step_limit)
     return Ending{EndReason::step_limit, fmt::format("{} orbits", orbit.step + 1)};
-  if (orbit.step <= 3) return std::nullopt;
+  if (orbit.step <= first_orbits) return std::nullopt;
   const double amplitude = frontier.problem.amplitude;
-  if (amplitude < 0.5 * std::min(frontier.first_amplitude, options.start_amplitude))
+  if (amplitude < vanishing_amplitude * std::min(frontier.first_amplitude, options.start_amplitude))
     return Ending{EndReason::fixed_point, fmt::format("T = {:.9g}, amplitude {:.2e}", orbit.loop.period, amplitude)};
   // Neither T nor the amplitude can be further apart than the loops are: a cheap look before the distance itself.
-  const double near = 0.5 * frontier.last_increment;
-  if (near < 0.25 * frontier.farthest &&
+  const double near = closing * frontier.last_increment;
+  if (near < was_away * frontier.farthest &&
       std::abs(orbit.loop.period - frontier.first.period) < near * frontier.first.period &&
       std::abs(amplitude - frontier.first_amplitude) < near && arclength_between(frontier.first, orbit.loop) < near)
     return Ending{EndReason::closed_loop, fmt::format("T = {:.9g}, length {:.6g}", orbit.loop.period, orbit.arclength)};
@@ -38,12 +55,11 @@ std::optional<Ending> beyond_limits(double period, double energy, const Options&
 
 namespace {
 
-// T has more than doubled, and over its last tenth the energy has moved by less than a thousandth of its range.
 bool period_diverges(const Frontier& frontier) {
   const Orbit& orbit = frontier.orbit;
-  if (orbit.loop.modes.empty() || orbit.loop.period < 2.0 * frontier.first.period) return false;
+  if (orbit.loop.modes.empty() || orbit.loop.period < grown_period * frontier.first.period) return false;
   const double range = std::abs(orbit.energy - frontier.first_energy);
-  return std::abs(orbit.energy - frontier.earlier_energy) < 1e-3 * range;
+  return std::abs(orbit.energy - frontier.earlier_energy) < settled_energy * range;
 }
 
 }  // namespace

@@ -8,6 +8,10 @@
 /// When a branch ends, from where it stands (docs/mathematics.md, "Ends").
 namespace orbweaver::continuation {
 
+/// Growth of T over which the energy is compared where the period may diverge: a tenth, which near a saddle multiplies
+/// the distance from the connecting orbit by exp(-rate T/10). Not measured; it decides only how an end is called.
+inline constexpr double period_window = 1.1;
+
 /// The end that the last orbit is; none if the branch goes on.
 [[nodiscard]] std::optional<Ending> end_at(const Frontier& frontier, const Options& options);
 

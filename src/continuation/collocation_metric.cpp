@@ -20,6 +20,10 @@ double step_product(const Collocation& e, const std::vector<double>& a, const st
 
 namespace {
 
+/// Below this mean square of dz/ds the point is an equilibrium, which has no phase: an amplitude of 1e-8, far below any
+/// first orbit.
+constexpr double still = 1e-16;
+
 void phase_condition(const Collocation& e, const Prediction& prediction, std::vector<double>& weights) {
   const int stride = e.grid().stride();
   const auto size = static_cast<std::size_t>(e.size());
@@ -75,7 +79,7 @@ void take_out_shift(const Collocation& e, Prediction& prediction, const std::vec
       moved += weight * (prediction.values[n] - last[n]);
       turned += weight * prediction.tangent[n];
     }
-  if (!(square > 1e-16)) return;  // at an equilibrium there is no phase
+  if (!(square > still)) return;
   for (std::size_t n = 0; n < shift.size(); ++n) {
     prediction.values[n] -= moved / square * shift[n];
     prediction.tangent[n] -= turned / square * shift[n];

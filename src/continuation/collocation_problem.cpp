@@ -17,12 +17,30 @@ namespace orbweaver::continuation {
 
 using equations::Collocation;
 
+namespace {
+
+/// Of the corrector's tolerance on sqrt(loss), for the estimated error of the nodal values: the residual multiplies it
+/// by the field's Jacobian and 2 pi K/T, and the loss judges afterwards. Not measured.
+constexpr double of_loss_tolerance = 1e-2;
+/// A change that small, in parts of that tolerance, is good enough even if it shrinks no more. Not measured.
+constexpr double good_enough = 0.3;
+/// Roundings of nodal values after a filter over the whole loop and the elimination. Not measured.
+constexpr double nodal_rounding = 50.0 * std::numeric_limits<double>::epsilon();
+/// Roundings of a mode, some of the transforms' own: their number was not measured.
+constexpr double mode_rounding = 4.0 * std::numeric_limits<double>::epsilon();
+/// What the harmonics that a new time map leaves out may add to the loss, in parts of its threshold: the rest is
+/// for the equations. Not measured.
+constexpr double left_to_truncation = 0.3;
+/// Keeps quotients by the amplitude finite.
+constexpr double least_amplitude = 1e-300;
+
+}  // namespace
+
 std::string CollocationProblem::obstacle(const FamilyOf& family) {
   const loop::FundamentalDomain domain = loop::fundamental_domain(family.system.structure(), family.isotropy);
   if (!domain.expresses(family.isotropy)) return "one part of the loop, repeated, does not have all of their isotropy";
   if (!domain.is_square()) return "the ends of their fundamental domain hold more or fewer conditions than coordinates";
-  if (!Collocation::applies(family.system, domain))
-    return "it takes a reversor or a conserved quantity";
+  if (!Collocation::applies(family.system, domain)) return "it takes a reversor or a conserved quantity";
   return {};
 }
 
@@ -160,11 +178,11 @@ equations::AndersonSolver::Options CollocationProblem::solver_options() {
   const Collocation& e = equations();
   equations::AndersonSolver::Options solver;
   // At a small amplitude A the equations see a change of T only A times.
-  const double amplitude = std::min(1.0, std::max(state().amplitude, 1e-300));
+  const double amplitude = std::min(1.0, std::max(state().amplitude, least_amplitude));
   double size = amplitude;
   for (const double c : e.centre()) size = std::max(size, std::abs(c));
-  solver.tolerance = 1e-2 * _options.corrector.tolerance * amplitude;
-  solver.rounding = std::max(0.3 * solver.tolerance, 50.0 * std::numeric_limits<double>::epsilon() * size);
+  solver.tolerance = of_loss_tolerance * _options.corrector.tolerance * amplitude;
+  solver.rounding = std::max(good_enough * solver.tolerance, nodal_rounding * size);
   solver.scaled_from = e.period_at();
   solver.border_scale = amplitude;
   return solver;
@@ -214,8 +232,8 @@ void CollocationProblem::judge(Trial& trial) {
   trial.size = quality.size;
   double centre = 0.0;
   for (const double c : e.centre()) centre += c * c;
-  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * std::sqrt(centre) * e.field_jacobian_rms();
-  trial.threshold = std::max(_options.corrector.tolerance * std::min(1.0, quality.speed_rms), rounding);
+  trial.threshold = corrector::acceptance_threshold(_options.corrector.tolerance, quality.speed_rms, std::sqrt(centre),
+                                                    e.field_jacobian_rms());
   if (!(trial.values[static_cast<std::size_t>(e.period_at())] > 0.0)) {
     trial.converged = false;
     trial.reason = "the period is not positive";
@@ -255,9 +273,9 @@ bool CollocationProblem::resolved(Trial& trial) {
   const double last = loop::tail(trial.loop);
   if (last > tail_limit(trial.amplitude, trial.size, _options)) return false;
   // A tail of the size of the modes' own rounding says nothing of the resolution.
-  if (last <= 4.0 * std::numeric_limits<double>::epsilon() * trial.size) return true;
+  if (last <= mode_rounding * trial.size) return true;
   const double truncation = 2.0 * std::numbers::pi / trial.loop.period * trial.loop.cutoff * last;
-  return trial.loss_rms < trial.threshold || truncation < 1e-2 * trial.loss_rms;
+  return trial.loss_rms < trial.threshold || truncation < corrector::least_explained * trial.loss_rms;
 }
 
 std::optional<Resolution> CollocationProblem::finer(const Trial& trial, const std::vector<double>& settled,
@@ -283,8 +301,8 @@ std::optional<Resolution> CollocationProblem::remapped(const Trial& of, const st
   const Collocation& e = equations();
   // What the loss allows the first harmonic that is left out, at the present cutoff.
   const double period = settled[scalars_at()];
-  const double allowed = 0.3 * of.threshold * period / (2.0 * std::numbers::pi * e.grid().cutoff());
-  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * of.size;
+  const double allowed = left_to_truncation * of.threshold * period / (2.0 * std::numbers::pi * e.grid().cutoff());
+  const double rounding = mode_rounding * of.size;
   if (e.cells() < _options.general_map_cells) return std::nullopt;
   return general_resolution(e, settled, _isotropy,
                             std::max(std::min(tail_limit(of.amplitude, of.size, _options), allowed), rounding),

@@ -12,22 +12,28 @@ namespace {
 
 /// An orbit further than this from its prediction, in parts of the chord, belongs to another family.
 constexpr double largest_correction = 0.2;
+/// Of a loop's harmonics, under another time map: one that needs more is better solved anew. Not measured.
+constexpr int most_harmonics = 4;
+/// Nearest orbits that a prediction takes, a cubic, and how far apart in parts of the interval: at 1e-4 an orbit's
+/// rounding is multiplied by 1e4, still below what the corrector removes.
+constexpr std::size_t used_orbits = 4;
+constexpr double apart = 1e-4;
 
 /// The loop under another time map, with enough harmonics for it.
 loop::Loop under_map(const loop::Loop& loop, const loop::TimeMap& map) {
   if (loop.time_map == map) return loop;
-  const double allowed = std::max(1e-12, 2.0 * loop::tail(loop));
+  const double allowed = std::max(loop::negligible_harmonic, 2.0 * loop::tail(loop));
   int k = loop.cutoff;
   loop::Loop out = loop::with_time_map(loop, map, k);
-  while (loop::tail(out) > allowed && k < 4 * loop.cutoff) {
+  while (loop::tail(out) > allowed && k < most_harmonics * loop.cutoff) {
     k = loop::next_cutoff(loop::allowed_cutoff_at_least(k));
     out = loop::with_time_map(loop, map, k);
   }
   return out;
 }
 
-/// Weights of a polynomial through those of `positions` (up to four, nearest first, well apart) for its value at
-/// `position`; zero for the others. `length` of the interval: what is nearer than 1e-4 of it is not apart.
+/// Weights of a polynomial through those of `positions` (nearest first, well apart) for its value at `position`; zero
+/// for the others. `length` is that of the interval.
 std::vector<double> lagrange_weights(const std::vector<double>& positions, double position, double length) {
   std::vector<std::size_t> nearest(positions.size());
   for (std::size_t n = 0; n < nearest.size(); ++n) nearest[n] = n;
@@ -36,10 +42,10 @@ std::vector<double> lagrange_weights(const std::vector<double>& positions, doubl
   });
   std::vector<std::size_t> used;  // well apart, so that their rounding is not amplified
   for (const std::size_t n : nearest) {
-    const bool apart = std::all_of(used.begin(), used.end(), [&](std::size_t other) {
-      return std::abs(positions[n] - positions[other]) > 1e-4 * length;
+    const bool is_apart = std::all_of(used.begin(), used.end(), [&](std::size_t other) {
+      return std::abs(positions[n] - positions[other]) > apart * length;
     });
-    if (apart && used.size() < 4) used.push_back(n);
+    if (is_apart && used.size() < used_orbits) used.push_back(n);
   }
   std::vector<double> weights(positions.size(), 0.0);
   for (const std::size_t n : used) {

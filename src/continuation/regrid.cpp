@@ -12,8 +12,21 @@ namespace {
 
 /// Harmonics of density to try; many serve loops that go several times around.
 constexpr int density_harmonics[] = {16, 32};
-/// A new general map is to need at most this share of the harmonics.
+/// A new general map is to need at most this share of the harmonics: less would not repay the regrid.
 constexpr double general_pays = 0.8;
+/// Harmonics to have above those needed: after a fit, or after harmonics were dropped, a number of cells more; after a
+/// sharper pulse half of that, since the next steps may sharpen it again. Not measured.
+int with_room(int harmonics) { return harmonics * 6 / 5; }
+int with_little_room(int harmonics) { return harmonics * 11 / 10; }
+/// Pulses tried where the tail asks for more cells: the present kappa, and one and two steps of 1.2 (from one number of
+/// cells to the next). A sharper one is taken where it needs 3 % fewer harmonics; neither number was measured, and both
+/// decide only about cells.
+constexpr double pulse_factors[] = {1.0, 1.2, 1.44};
+constexpr double pulse_pays = 0.97;
+/// kappa is kept to thousandths, finer than harmonics can tell: maps of one pulse then compare equal.
+constexpr double kappa_parts = 1000.0;
+/// Of the bound on the tail: harmonics below it are dropped. At the bound itself cells would come and go.
+constexpr double dropped = 0.1;
 
 double harmonic_norm(const loop::Loop& loop, int k) {
   double square = 0.0;
@@ -43,7 +56,7 @@ std::optional<Resolution> general_resolution(const equations::Collocation& equat
   }
   if (best.map == loop.time_map || best.harmonics > general_pays * own || !loop::is_invariant(best.map, isotropy))
     return std::nullopt;
-  const int cutoff = std::max(best.harmonics * 6 / 5, least_cutoff);
+  const int cutoff = std::max(with_room(best.harmonics), least_cutoff);
   const int cells = cell_counts::at_least_for_cutoff(equations.grid().domain(), cutoff);
   if (cells > equations.cells()) return std::nullopt;
   return Resolution{cells, best.map};
@@ -58,22 +71,22 @@ std::optional<Resolution> finer_resolution(const equations::Collocation& equatio
   if (fit_pulse && tail_decides && domain.order <= 2 && best.time_map.coefficients.empty()) {
     const int trial_cells = best.size;
     int fewest = cutoff_of(best.size);
-    for (const double factor : {1.0, 1.2, 1.44}) {
+    for (const double factor : pulse_factors) {
       loop::TimeMap map = equations.time_map();
-      map.kappa = std::round(1000.0 * map.kappa * factor) / 1000.0;
+      map.kappa = std::round(kappa_parts * map.kappa * factor) / kappa_parts;
       equations::Collocation trial(equations.system(), domain, equations.centre(), equations.winding(), trial_cells,
                                    map);
       const loop::Loop loop = trial.to_loop(trial.resampled(equations, values).data());
       const int needed = harmonics_needed(loop, tail_limit);
       if (factor == 1.0) {
         fewest = needed;
-      } else if (needed < 0.97 * fewest) {
+      } else if (needed < pulse_pays * fewest) {
         fewest = needed;
         best.time_map = map;
       }
     }
-    // Some room above what is needed now, so that the next steps have enough.
-    const int mapped = std::max(cell_counts::at_least_for_cutoff(domain, fewest * 11 / 10), equations.cells());
+    // Room above what is needed now, so that the next steps have enough.
+    const int mapped = std::max(cell_counts::at_least_for_cutoff(domain, with_little_room(fewest)), equations.cells());
     if (!(best.time_map == equations.time_map()) && cutoff_of(mapped) <= largest_cutoff)
       best.size = mapped;
     else
@@ -87,9 +100,9 @@ std::optional<int> coarser_cells(const loop::Loop& loop, const loop::Fundamental
                                  int least_cutoff) {
   const int two_thirds = 2 * loop.cutoff / 3;
   for (int k = two_thirds; k <= loop.cutoff; ++k)
-    if (harmonic_norm(loop, k) > 0.1 * tail_limit) return std::nullopt;
-  const int needed = harmonics_needed(loop, 0.1 * tail_limit);
-  return cell_counts::at_least_for_cutoff(domain, std::max(needed * 6 / 5, least_cutoff));
+    if (harmonic_norm(loop, k) > dropped * tail_limit) return std::nullopt;
+  const int needed = harmonics_needed(loop, dropped * tail_limit);
+  return cell_counts::at_least_for_cutoff(domain, std::max(with_room(needed), least_cutoff));
 }
 
 }  // namespace orbweaver::continuation

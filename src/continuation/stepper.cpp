@@ -64,10 +64,10 @@ Trial Stepper::correct(Prediction prediction, std::optional<int> held_scalar) {
 bool Stepper::turned_too_far(const Trial& trial, double length) {
   const std::vector<double>& before = _frontier.points[_frontier.points.size() - 2].values;
   const double step = std::sqrt(_problem.product(trial.values, last(), trial.values, last()));
-  if (step > 2.0 * length) return true;
+  if (_options.least_cosine * step > length) return true;
   const auto turned = [&](const std::vector<double>& from, const std::vector<double>& to) {
     return _problem.product(trial.values, last(), to, from) <
-           0.5 * step * std::sqrt(_problem.product(to, from, to, from));
+           _options.least_cosine * step * std::sqrt(_problem.product(to, from, to, from));
   };
   if (!turned(before, last())) return false;
   use_tangent();

@@ -16,8 +16,28 @@ namespace orbweaver::continuation {
 
 namespace {
 
-/// Orbits from one look for another general time map to the next.
+/// Orbits from one look for another general time map to the next: a fit costs 3 to 20 ms (docs/performance.md).
 constexpr int refit_every = 32;
+/// The second step is at most so many times the first orbit's distance, which is given and not a matter of errors; one
+/// that is too long is halved. Not measured.
+constexpr double growth_after_first = 4.0;
+/// The first orbit's amplitude is halved down to this share: about twenty attempts.
+constexpr double least_start = 1e-6;
+/// A direction of which z(s = 0) has less than this share (of squared lengths) is scaled by its length instead.
+constexpr double still_at_start = 1e-16;
+/// Of a step's length where the step went over to another family: the next attempt.
+constexpr double shortened_after_jump = 0.3;
+/// A step that may not be longer than a given length may be halved three times all the same.
+constexpr double least_of_longest = 0.1;
+/// A prediction that is wrong by so many times the wanted error (0.3 rad) has met another family: errors of one family
+/// change by factors from step to step, not by this. Not measured.
+constexpr double wrong_prediction = 100.0;
+/// Halvings of one step from which it goes along the family's direction: the polynomial may point back after a bend.
+constexpr int polynomial_attempts = 3;
+/// A fixed step of z(s = 0) may take so many times the largest step where z(s = 0) moves less than the loop.
+constexpr double fixed_in_largest = 5.0;
+/// Keeps the quotient finite where z(s = 0) does not move; below any step that `fixed_in_largest` does not bound.
+constexpr double least_change = 1e-12;
 
 }  // namespace
 
@@ -77,12 +97,13 @@ std::optional<Orbit> Tracer::first_orbit() {
       _frontier.points = {{base, 0.0}};
       _ending = beyond_limits(scalar(trial, 0), energy(trial), _options);
       if (_ending) return std::nullopt;
-      _frontier.next_length = std::min(4.0 * _problem->distance(trial.values, base), _options.largest_step);
+      _frontier.next_length =
+          std::min(growth_after_first * _problem->distance(trial.values, base), _options.largest_step);
       return accept(trial);
     }
     _frontier.problem.factor_point.clear();
     amplitude *= 0.5;
-    if (amplitude < 1e-6 * _options.start_amplitude)
+    if (amplitude < least_start * _options.start_amplitude)
       return end(EndReason::failure, fmt::format("no orbit near the start: {}", trial.reason));
   }
 }
@@ -94,7 +115,7 @@ loop::Loop Tracer::start_direction() const {
   for (const double v : loop::state_at(direction, 0.0)) square += v * v;
   double length = 0.0;
   for (const double v : _start.direction.modes) length += v * v;
-  const double unit = square > 1e-16 * length ? std::sqrt(square) : std::sqrt(length);
+  const double unit = square > still_at_start * length ? std::sqrt(square) : std::sqrt(length);
   for (double& v : direction.modes) v /= unit;
   return direction;
 }
@@ -106,7 +127,7 @@ std::optional<Orbit> Tracer::next_on_family() {
   const Frontier before = _frontier;
   std::optional<Orbit> next = next_orbit(unlimited);
   while (next && _frontier.last_increment > _options.smallest_jump && _options.jumped(before.orbit, *next)) {
-    const double length = 0.3 * _frontier.last_increment;
+    const double length = shortened_after_jump * _frontier.last_increment;
     go_on_from(before);
     next = next_orbit(length);
   }
@@ -115,15 +136,16 @@ std::optional<Orbit> Tracer::next_on_family() {
 
 std::optional<Orbit> Tracer::next_orbit(double at_most) {
   const double amplitude = _frontier.problem.amplitude;
-  const double least = std::min(_options.smallest_step * (1.0 + amplitude) * std::min(1.0, amplitude), 0.1 * at_most);
+  const double least =
+      std::min(_options.smallest_step * (1.0 + amplitude) * std::min(1.0, amplitude), least_of_longest * at_most);
   _stepper.begin();
   double length = std::min(std::max(length_to_try(), least), at_most);
   for (int halved = 0;; ++halved) {
-    if (halved >= 3) _stepper.use_tangent();
+    if (halved >= polynomial_attempts) _stepper.use_tangent();
     Trial trial = _stepper.step(length);
     const double wanted = _options.prediction_error * std::min(1.0, amplitude);
     const bool jumped =
-        trial.prediction_error > 100.0 * wanted ||
+        trial.prediction_error > wrong_prediction * wanted ||
         (trial.converged && (_problem->inverted(trial, _stepper.last()) || _stepper.turned_too_far(trial, length)));
     if (!jumped && _stepper.needs_more_harmonics(trial)) {
       if (!_stepper.refine(trial))
@@ -148,7 +170,8 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
 double Tracer::length_to_try() {
   if (!_options.fixed_step) return std::min(_frontier.next_length, _options.largest_step);
   // Where z(s = 0) hardly moves (a fold of it, a divergence) the step in loop space is bounded all the same.
-  return std::min(*_options.fixed_step / std::max(_stepper.change_at_start(), 1e-12), 5.0 * _options.largest_step);
+  return std::min(*_options.fixed_step / std::max(_stepper.change_at_start(), least_change),
+                  fixed_in_largest * _options.largest_step);
 }
 
 /// The last orbit of a branch lies on the scene's limit, not beyond it.
@@ -203,7 +226,7 @@ void Tracer::keep(Orbit& orbit, double increment, double amplitude) {
     frontier.last_increment = increment;
     orbit.step = frontier.orbit.step + 1;
     orbit.arclength = frontier.orbit.arclength + increment;
-    if (orbit.loop.period > 1.1 * frontier.earlier_period) {
+    if (orbit.loop.period > period_window * frontier.earlier_period) {
       frontier.earlier_energy = frontier.orbit.energy;
       frontier.earlier_period = here().period;
     }

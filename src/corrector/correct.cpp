@@ -31,6 +31,11 @@ std::string_view name_of(Outcome outcome) {
 
 namespace {
 
+/// Roundings of the mean state that reach the residual through the field's Jacobian: a few, not measured.
+constexpr double roundings = 4.0 * std::numeric_limits<double>::epsilon();
+/// A loss below so many roundings of its own terms cannot fall further; decides only what is said of a failure.
+constexpr double all_rounding = 10.0 * std::numeric_limits<double>::epsilon();
+
 double rms_field_jacobian(const loss::Linearization& lin) {
   double sum = 0.0;
   for (int i = 0; i < lin.dimension(); ++i)
@@ -84,7 +89,7 @@ bool tail_explains(const loop::Loop& loop, double loss_rms, double threshold, co
   // A tail of the size of the modes' own rounding says nothing of the resolution.
   if (loop::tail(loop) <= std::numeric_limits<double>::epsilon() * loop::rms_size(loop)) return false;
   const double truncation = 2.0 * M_PI / loop.period * loop.cutoff * loop::tail(loop);
-  return truncation > options.tail_tolerance * threshold && truncation > 1e-2 * loss_rms;
+  return truncation > options.tail_tolerance * threshold && truncation > least_explained * loss_rms;
 }
 
 Outcome outcome_of(Stop stop, const loop::Loop& loop, double loss_rms, double threshold, const Options& options) {
@@ -105,14 +110,16 @@ Outcome outcome_of(Stop stop, const loop::Loop& loop, double loss_rms, double th
 
 }  // namespace
 
+double acceptance_threshold(double tolerance, double speed, double size, double field_jacobian) {
+  return std::max(tolerance * std::min(1.0, speed), roundings * size * field_jacobian);
+}
+
 double acceptance_threshold(const loop::Loop& loop, const loss::Linearization& linearization, double tolerance) {
   double mean_square = 0.0;
   for (const double v : loop::mean_state(loop)) mean_square += v * v;
-  const double size = std::sqrt(mean_square);
-  const double rounding = linearization.order() == loss::Linearization::Order::residual
-                              ? 0.0
-                              : 4.0 * std::numeric_limits<double>::epsilon() * size * rms_field_jacobian(linearization);
-  return std::max(tolerance * std::min(1.0, loop::rms_speed(loop)), rounding);
+  const bool residual_only = linearization.order() == loss::Linearization::Order::residual;
+  return acceptance_threshold(tolerance, loop::rms_speed(loop), std::sqrt(mean_square),
+                              residual_only ? 0.0 : rms_field_jacobian(linearization));
 }
 
 namespace {
@@ -124,7 +131,7 @@ void judge(Result& result, Stop stop, const std::string& solver_reason, const Op
     result.detail = fmt::format("{} after {} iterations at sqrt(loss) = {:.3g}, wanted {:.3g}, K = {} ({})",
                                 name_of(result.outcome), result.iterations, result.loss_rms, result.threshold,
                                 result.loop.cutoff, solver_reason);
-    if (result.loss_rms < 10.0 * std::numeric_limits<double>::epsilon() * loop::rms_speed(result.loop))
+    if (result.loss_rms < all_rounding * loop::rms_speed(result.loop))
       result.detail += "; the loss is all rounding: the tolerance is out of reach";
   } else if (result.newton_step > options.step_tolerance * (1.0 + length(result.loop))) {
     result.outcome = Outcome::stalled;

@@ -10,10 +10,9 @@ namespace orbweaver::corrector {
 
 namespace {
 
-constexpr int default_iterations = 30;                           // quadratic convergence needs a handful
-constexpr double progress = 0.25;                                // of the loss: a Newton step on its way gains far more
-constexpr int most_without_progress = 3;                         // steps, after which the iteration stagnates
-constexpr equations::LoopSolver::Accuracy of_steps{1e-8, 1e-5};  // a step's error is squared away by the next
+/// A step's error is squared away by the next.
+constexpr equations::LoopSolver::Accuracy of_steps{1e-8, 1e-5};
+/// Nothing corrects a tangent afterwards, so it is solved to rounding.
 constexpr equations::LoopSolver::Accuracy of_flat_direction{1e-13, 1e-8};
 
 }  // namespace
@@ -27,7 +26,7 @@ NewtonKrylovRun run_newton_krylov(const systems::System& system, const loop::Loo
                                   const loss::Unknowns& unknowns, const loss::Slice& slice, const Options& options,
                                   bool want_flat_direction) {
   const loop::Subspace image = unknowns.subspace.image();
-  const int most = options.max_iterations > 0 ? options.max_iterations : default_iterations;
+  const int most = options.max_iterations > 0 ? options.max_iterations : most_newton_steps;
   NewtonKrylovRun run;
   run.loop = guess;
   run.system = {std::shared_ptr<const systems::System>(), &system};
@@ -39,7 +38,7 @@ NewtonKrylovRun run_newton_krylov(const systems::System& system, const loop::Loo
   while (run.stop == Stop::none) {
     equations::LoopEquations equations(*run.system, run.loop, unknowns, image, slice, team);
     const double threshold = acceptance_threshold(run.loop, equations.linearization(), options.tolerance);
-    without_progress = equations.loss() < progress * last_loss ? 0 : without_progress + 1;
+    without_progress = equations.loss() < least_progress * last_loss ? 0 : without_progress + 1;
     last_loss = equations.loss();
     const bool under_threshold = std::sqrt(equations.loss()) < threshold;
     if (!under_threshold && without_progress >= most_without_progress) run.stop = Stop::stagnation;

@@ -16,6 +16,16 @@ namespace orbweaver::corrector {
 
 namespace {
 
+/// Added to the diagonal of J'J in parts of each entry, so that Cholesky meets no negative pivot of rounding size: not
+/// a multiple of the norm, since the period's entry is as small as the square of the amplitude.
+constexpr double raised_diagonal = 4.0 * std::numeric_limits<double>::epsilon();
+/// The residual where none is defined: finite, since TAO refuses infinite ones, and its square is too.
+constexpr double undefined_residual = 1e100;
+/// The paper's optimiser takes 150 to 650 gradients for a step (docs/performance.md): this ends hopeless runs only.
+constexpr int most_first_order_steps = 200'000;
+/// Of the limit on iterations: a line search takes a few evaluations each, so that the iterations' limit decides.
+constexpr int evaluations_an_iteration = 100;
+
 struct Context {
   Objective& objective;
   const Options& options;
@@ -51,12 +61,10 @@ PetscErrorCode hessian(Tao, Vec x, Mat h, Mat, void* raw) {
   return c.guard.run([&] {
     c.objective.hessian(loss::to_eigen(x), c.options.curvature, core::Handle<Mat>::share(h));
     if (c.options.curvature != loss::Curvature::gauss_newton) return;
-    // J'J is positive definite up to rounding; this keeps Cholesky from meeting a negative pivot of rounding size. A
-    // multiple of each diagonal entry, since the period's is as small as the square of the amplitude.
     core::Handle<Vec> diagonal;
     core::check(MatCreateVecs(h, diagonal.put(), nullptr), "MatCreateVecs");
     core::check(MatGetDiagonal(h, diagonal.get()), "MatGetDiagonal");
-    core::check(VecScale(diagonal.get(), 4.0 * std::numeric_limits<double>::epsilon()), "VecScale");
+    core::check(VecScale(diagonal.get(), raised_diagonal), "VecScale");
     core::check(MatDiagonalSet(h, diagonal.get(), ADD_VALUES), "MatDiagonalSet");
     core::check(MatSetOption(h, MAT_SPD, PETSC_TRUE), "MatSetOption");
   });
@@ -67,8 +75,8 @@ PetscErrorCode residual(Tao, Vec x, Vec r, void* raw) {
   return c.guard.run([&] {
     const Eigen::VectorXd point = loss::to_eigen(x);
     if (!c.objective.defined_at(point)) {
-      // Finite, since TAO refuses infinite residuals; if a solver steps here all the same, the test below ends the run.
-      loss::assign(r, Eigen::VectorXd::Constant(c.objective.rows(), 1e100));
+      // If a solver steps here all the same, the test below ends the run.
+      loss::assign(r, Eigen::VectorXd::Constant(c.objective.rows(), undefined_residual));
       return;
     }
     const std::vector<double> values = c.objective.at(point).residual();
@@ -102,12 +110,13 @@ PetscErrorCode convergence_test(Tao tao, void* raw) {
     }
     const loss::Linearization& lin = c.objective.at(x);
     const double threshold = acceptance_threshold(c.objective.loop_at(x), lin, c.options.tolerance);
-    const bool progress = lin.loss() < 0.25 * c.last_loss;
+    const bool progress = lin.loss() < least_progress * c.last_loss;
     c.without_progress = progress ? 0 : c.without_progress + 1;
     c.last_loss = lin.loss();
     if (std::sqrt(lin.loss()) < threshold) {
       c.stop = Stop::threshold;
-    } else if (is_second_order(c.options.method) && iteration >= 3 && c.without_progress >= 3) {
+    } else if (is_second_order(c.options.method) && iteration >= most_without_progress &&
+               c.without_progress >= most_without_progress) {
       c.stop = Stop::stagnation;
     } else if (iteration >= c.max_iterations) {
       c.stop = Stop::iterations;
@@ -157,7 +166,8 @@ TaoRun run_tao(Objective& objective, const Options& options) {
   const int size = objective.slice().free();
   const bool second_order = is_second_order(options.method);
   Context context{objective, options,
-                  options.max_iterations > 0 ? options.max_iterations : (second_order ? 30 : 200000)};
+                  options.max_iterations > 0 ? options.max_iterations
+                                             : (second_order ? most_newton_steps : most_first_order_steps)};
 
   const core::Handle<Vec> x = loss::create_vector(size);
   core::Handle<Mat> matrix;
@@ -174,7 +184,7 @@ TaoRun run_tao(Objective& objective, const Options& options) {
   core::check(TaoSetSolution(tao.get(), x.get()), "TaoSetSolution");
   core::check(TaoSetTolerances(tao.get(), 0.0, 0.0, 0.0), "TaoSetTolerances");
   core::check(TaoSetMaximumIterations(tao.get(), context.max_iterations), "TaoSetMaximumIterations");
-  core::check(TaoSetMaximumFunctionEvaluations(tao.get(), 100 * context.max_iterations),
+  core::check(TaoSetMaximumFunctionEvaluations(tao.get(), evaluations_an_iteration * context.max_iterations),
               "TaoSetMaximumFunctionEvaluations");
   Tao tested = tao.get();
   if (options.method == Method::brgn) {

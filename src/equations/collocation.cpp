@@ -405,6 +405,7 @@ std::vector<double> family_direction(Collocation& equations, const std::vector<d
   AndersonSolver solver;
   std::vector<double> direction(at(equations.size()), 0.0);
   AndersonSolver::Options options;
+  // One linear system: a direction needs no more digits than its branch has, and may be long next to a fold.
   options.tolerance = 1e-9;
   options.rounding = 1e-10;
   options.divergence = 1e6;

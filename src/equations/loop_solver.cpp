@@ -15,6 +15,8 @@ namespace {
 // Two or three iterations are the rule (docs/performance.md); next to singular points a few dozen.
 constexpr int restart = 60;
 constexpr int most_iterations = 180;
+/// Absolute: a right side of zeros has the solution zero.
+constexpr double zero = 1e-300;
 
 struct Context {
   const LoopEquations* equations = nullptr;
@@ -133,8 +135,7 @@ Eigen::VectorXd LoopSolver::run(const LoopEquations& equations, const Eigen::Vec
   const core::Team::Part mine = rows_of(team, size);
   loss::assign(k.right_side.get(), right_side.segment(mine.begin, mine.end - mine.begin));
   if (team != nullptr) team->compare("loop solver: a solve", static_cast<std::uint64_t>(size));
-  core::check(KSPSetTolerances(k.ksp.get(), accuracy.wanted, 1e-300, PETSC_DEFAULT, most_iterations),
-              "KSPSetTolerances");
+  core::check(KSPSetTolerances(k.ksp.get(), accuracy.wanted, zero, PETSC_DEFAULT, most_iterations), "KSPSetTolerances");
   const PetscErrorCode code = transposed ? KSPSolveTranspose(k.ksp.get(), k.right_side.get(), k.solution.get())
                                          : KSPSolve(k.ksp.get(), k.right_side.get(), k.solution.get());
   k.context.guard.rethrow();
@@ -148,7 +149,7 @@ Eigen::VectorXd LoopSolver::run(const LoopEquations& equations, const Eigen::Vec
   _iterations += static_cast<int>(iterations);
   const Eigen::VectorXd own = loss::to_eigen(k.solution.get());
   Eigen::VectorXd x = whole(team, loss::ConstVectorMap(own.data(), own.size()), size);
-  if (!x.allFinite() || !(residual <= accuracy.accepted * right_side.norm() + 1e-300))
+  if (!x.allFinite() || !(residual <= accuracy.accepted * right_side.norm() + zero))
     throw core::NumericalError(
         "GMRES on the loop equations does not converge: the orbit is near a point where they are singular");
   return x;

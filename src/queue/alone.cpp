@@ -97,11 +97,11 @@ void Alone::flush() {
   if (_ledger.counts().running > 0) _ledger.set_state(_key, _state != nullptr ? (*_state)() : std::string());
   _ledger.flushing(number);
   _schedule.begun();
-  _watchdog.stands();
+  _watchdog.pause();
   const Stopwatch watch;
   const std::string error = flush_guarded(_flusher, number);
   _times.flushed(watch.seconds());
-  _watchdog.go_on();
+  _watchdog.resume();
   if (!error.empty()) throw core::EnvironmentError(flush_failed_text(number, {{0, error}}, 1));
   _ledger.flushed(number);
   _schedule.flushed();

@@ -120,7 +120,7 @@ void Coordinator::end_flush() {
   _round.end();
   _ledger.flushed(number);
   _schedule.flushed();
-  _deadlines.go_on();
+  _deadlines.resume();
   _over = _last_round;
 }
 
@@ -154,7 +154,7 @@ void Coordinator::accept(int worker, Message&& message) {
           [&](const ProgressReport& report) { accept(worker, report); },
           [&](const FlushReady& ready) {
             _round.ready(worker, ready.number);
-            _deadlines.stands(worker);
+            _deadlines.pause(worker);
             count_rows(ready.rows);
             const std::string& key = _task_of[static_cast<std::size_t>(worker)];
             if (!key.empty()) _ledger.set_state(key, ready.state);

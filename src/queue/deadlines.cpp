@@ -7,15 +7,15 @@ void Deadlines::began(int worker) {
   at(worker).busy = true;
 }
 
-void Deadlines::stands(int worker) {
+void Deadlines::pause(int worker) {
   Watch& watch = at(worker);
   watch.used = watch.seconds();
-  watch.stands = true;
+  watch.paused = true;
 }
 
-void Deadlines::go_on() {
+void Deadlines::resume() {
   for (Watch& watch : _of) {
-    watch.stands = false;
+    watch.paused = false;
     watch.since.restart();
   }
 }

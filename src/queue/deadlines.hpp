@@ -15,9 +15,9 @@ class Deadlines {
 
   void began(int worker);
   void ended(int worker) { at(worker) = {}; }
-  void stands(int worker);
+  void pause(int worker);
   /// All go on from a flush.
-  void go_on();
+  void resume();
 
   /// Workers whose time is over and who have not been told before; they now count as told.
   [[nodiscard]] std::vector<int> overdue();
@@ -29,11 +29,11 @@ class Deadlines {
   struct Watch {
     bool busy = false;
     bool told = false;
-    bool stands = false;
+    bool paused = false;
     double used = 0.0;  // before `since` was restarted
     Stopwatch since;
 
-    [[nodiscard]] double seconds() const { return stands ? used : used + since.seconds(); }
+    [[nodiscard]] double seconds() const { return paused ? used : used + since.seconds(); }
   };
   Watch& at(int worker) { return _of[static_cast<std::size_t>(worker)]; }
 

@@ -10,6 +10,14 @@
 
 namespace orbweaver::queue {
 
+namespace {
+
+/// Between two looks at the clock: a tenth of a second, which costs nothing, or a quarter of shorter limits.
+constexpr double longest_look = 0.1;
+constexpr double looks_a_limit = 4.0;
+
+}  // namespace
+
 Watchdog::Watchdog(double task_seconds) : _seconds(task_seconds), _deadlines(task_seconds, 1) {
   if (_seconds > 0) _thread = std::thread([this] { watch(); });
 }
@@ -34,14 +42,14 @@ void Watchdog::ended() {
   _deadlines.ended(0);
 }
 
-void Watchdog::stands() {
+void Watchdog::pause() {
   const std::lock_guard lock(_mutex);
-  _deadlines.stands(0);
+  _deadlines.pause(0);
 }
 
-void Watchdog::go_on() {
+void Watchdog::resume() {
   const std::lock_guard lock(_mutex);
-  _deadlines.go_on();
+  _deadlines.resume();
 }
 
 bool Watchdog::overdue() {
@@ -51,7 +59,7 @@ bool Watchdog::overdue() {
 }
 
 void Watchdog::watch() {
-  const std::chrono::duration<double> interval(std::min(0.1, _seconds / 4));
+  const std::chrono::duration<double> interval(std::min(longest_look, _seconds / looks_a_limit));
   std::unique_lock lock(_mutex);
   while (!_woken.wait_for(lock, interval, [this] { return _over; })) {
     static_cast<void>(_deadlines.overdue());

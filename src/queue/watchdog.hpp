@@ -22,8 +22,8 @@ class Watchdog {
 
   void began(const std::string& key);
   void ended();
-  void stands();
-  void go_on();
+  void pause();
+  void resume();
   /// Whether the time of the task is over.
   [[nodiscard]] bool overdue();
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/bifurcation/small_oscillations.hpp"
+#include "orbweaver/certificate/certificate.hpp"
 #include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
@@ -26,7 +27,7 @@ double deviation_degrees(const systems::System& system, const std::vector<double
   const std::size_t d = point.size();
   for (std::size_t i = 0; i < d; ++i)
     start[i] += table_step * direction.modes[d + i];  // a_1: the only cosine of a normal mode
-  const std::vector<double> end = certificate::integrate(system, start, period, 1e-13);
+  const std::vector<double> end = certificate::integrate(system, start, period, certificate::Options{}.tolerance);
   double sum = 0.0;
   for (std::size_t i = 0; i < d; ++i) sum += (end[i] - start[i]) * (end[i] - start[i]);
   return std::sqrt(sum) / degree;

@@ -14,12 +14,13 @@ namespace orbweaver::scene {
 
 namespace {
 
-constexpr double most_grid_points = 1e6;
+constexpr double most_grid_points = 1e6;  // Newton's method from each on one rank; not measured
+constexpr double same_angle = 1e-9;       // radians: two spellings of one angle in degrees differ by rounding
 constexpr std::string_view grid_example = "[[0, 180], [0, 180]]";
 constexpr std::string_view names_example = "{[0, 180]: [Down-Up]}";
 
 bool same_value(double a, double b, bool angle) {
-  return angle ? std::abs(std::remainder(a - b, 2 * std::numbers::pi)) < 1e-9 : a == b;
+  return angle ? std::abs(std::remainder(a - b, 2 * std::numbers::pi)) < same_angle : a == b;
 }
 
 bool same_point(const systems::System& system, const std::vector<double>& a, const std::vector<double>& b) {

@@ -28,6 +28,13 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double truncation_share = 0.1;
 /// The Newton step that stands for the orbit's own error is itself uncertain.
 constexpr double orbit_safety = 3.0;
+/// Roundings of one step's arithmetic on a factor of size 1. Not measured; added to a bound.
+constexpr double step_roundings = 8.0;
+/// Segments are refined by the ratio of errors to the power 1/8, the order of the steps, with some room, and at most
+/// doubled: an estimate that is dominated by something else would ask for ever more.
+constexpr double room = 1.1;
+constexpr double most_finer = 2.0;
+constexpr double order_of_steps = 8.0;
 
 /// Distance from each value to the nearest of `others`, times a factor, added to `errors`.
 void add_distances(const Values& values, const Values& others, double factor, std::vector<double>& errors) {
@@ -47,7 +54,7 @@ void add_distances(const FloquetIndices& indices, const FloquetIndices& others, 
 double rounding_of(const Chain& chain, Eigen::Index m) {
   const double rate = chain.jacobians.col(m).norm();
   const double terms = rate * (1.0 + chain.states.col(m).norm());
-  return epsilon * (8.0 + std::min(1.0, chain.steps[m] * rate) * terms / chain.fields.col(m).norm());
+  return epsilon * (step_roundings + std::min(1.0, chain.steps[m] * rate) * terms / chain.fields.col(m).norm());
 }
 
 struct TraceError {
@@ -101,9 +108,9 @@ void add_probes(const systems::Structure& system, const TransverseFlow& flow, in
   Eigen::MatrixXd answers(2 * (indices.full.size() + indices.fundamental.size()), probes);
   const auto ask = [&](int begin, int end) {
     unsigned state = 12345;
-    const auto random = [&state] {
+    const auto random = [&state] {  // 24 bits of the generator of Numerical Recipes (Press et al.), in [-1, 1)
       state = state * 1664525u + 1013904223u;
-      return static_cast<double>(state >> 8) / 8388608.0 - 1.0;
+      return static_cast<double>(state >> 8) / 0x1p23 - 1.0;
     };
     for (int probe = 0; probe < end; ++probe) {  // those before `begin` for their random numbers alone
       TransverseFlow changed = flow;
@@ -148,7 +155,7 @@ void add_rounding_probes(const systems::Structure& system, const Chain& chain, c
 /// The values' response to the orbit's own error, on a scale where differences keep their digits.
 void add_orbit_error(const systems::System& system, const Chain& chain, const FundamentalGroup& group,
                      const FloquetIndices& indices, core::Team* team, Stability& stability) {
-  constexpr double visible = 1e-7;
+  constexpr double visible = 1e-7;  // of a change of the states: far above rounding, and its square far below
   const OrbitCorrection correction = orbit_correction(chain, group, system.structure().conservative());
   const double size = std::max(correction.states.cwiseAbs().maxCoeff(), std::abs(correction.stretch));
   if (size == 0.0) return;
@@ -213,7 +220,7 @@ Integrated integrated(const systems::System& system, const loop::Loop& loop, con
         add_truncation(structure, result.chain, result.flow, group.order, result.indices, team, result.stability);
     const double error = largest_relative(result.stability.fundamental, result.stability.fundamental_error);
     if (error <= options.tolerance || refinement >= options.refinements) return result;
-    const double finer = std::min(2.0, 1.1 * std::pow(error / options.tolerance, 1.0 / 8.0));
+    const double finer = std::min(most_finer, room * std::pow(error / options.tolerance, 1.0 / order_of_steps));
     least = static_cast<int>(finer * static_cast<double>(result.chain.segments()) * group.order) + 1;
   }
 }

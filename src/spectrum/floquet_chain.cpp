@@ -21,6 +21,8 @@ constexpr double segments_a_harmonic = 1.6;
 /// Largest sum over segments of (h |A|)^8, |A| being the growth or turning rate of the linearised flow: leaves 1e-11 on
 /// a linear oscillator that turns nine times.
 constexpr double largest_sum = 5e-4;
+/// The sum falls with this power of the number of segments: n terms of n^-8.
+constexpr double power_of_segments = 7.0;
 
 /// Few numbers of segments are used, so that few Fourier plans are made: multiples of 24, by 2 to 7, or 8 to 15 times a
 /// power of 2.
@@ -247,7 +249,7 @@ Chain make_chain(const systems::System& system, VariationalStep& stepper, const 
   const int around = allowed_segments(resolution, group.grid_factor);
   Chain chain = nodes_of(system, loop, group, around);
   const double sum = group.order * (loop.dimension == 4 ? sum_of_rates<4>(chain) : sum_of_rates<Eigen::Dynamic>(chain));
-  const double wanted = around * std::pow(sum / largest_sum, 1.0 / 7.0);
+  const double wanted = around * std::pow(sum / largest_sum, 1.0 / power_of_segments);
   if (!std::isfinite(wanted))
     throw core::NotFiniteError(
         "Floquet multipliers: the field's Jacobian is not finite on the orbit; expected finite "

@@ -12,7 +12,16 @@ namespace orbweaver::spectrum {
 
 namespace {
 
+/// Of matrices, phases and unit gradients that are equal to some roundings.
 constexpr double same = 1e-9;
+/// Of gradients at an orbit's state and its image, relative to them: the state is on the orbit to 1e-10, while a map
+/// that changes a sign is off by 2.
+constexpr double same_gradient = 1e-6;
+/// Values of s at which time maps are compared: seven over a period, at no regular fraction of it, which tells maps of
+/// different symmetry apart unless all of them agree.
+constexpr double first_place = 0.3;
+constexpr double last_place = 6.0;
+constexpr double between_places = 0.9;
 
 /// Floquet multipliers need the gradients of conserved quantities carried along: no element that changes a sign.
 bool keeps_conserved(const systems::System& system, const std::vector<double>& state, const systems::AffineMap& map) {
@@ -24,7 +33,7 @@ bool keeps_conserved(const systems::System& system, const std::vector<double>& s
   for (int k = 0; k < static_cast<int>(system.structure().conserved.size()); ++k) {
     system.conserved_gradient(k, state, {here.data(), d});
     system.conserved_gradient(k, {image.data(), d}, {there.data(), d});
-    if (!((map.matrix.transpose() * there - here).norm() <= 1e-6 * here.norm())) return false;
+    if (!((map.matrix.transpose() * there - here).norm() <= same_gradient * here.norm())) return false;
   }
   return true;
 }
@@ -34,7 +43,7 @@ bool keeps_nodes(const loop::TimeMap& map, const loop::SymmetryElement& element)
   if (map.is_identity()) return true;
   const double shift = 2.0 * std::numbers::pi * element.shift_numerator / element.shift_denominator;
   const double sign = element.reversing ? -1.0 : 1.0;
-  for (double s = 0.3; s < 6.0; s += 0.9)
+  for (double s = first_place; s < last_place; s += between_places)
     if (std::abs(map.phase(shift + sign * s) - shift - sign * map.phase(s)) > same) return false;
   return true;
 }

@@ -12,11 +12,14 @@ namespace {
 
 using Complex = std::complex<double>;
 
+/// Of the product of matrices of symmetries: exact up to roundings, or of order 1 away.
+constexpr double same_matrix = 1e-6;
+
 /// +1 or -1 if `around` is that multiple of the unit matrix, else 0.
 int sign_of(const Eigen::MatrixXd& around) {
   const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(around.rows(), around.cols());
-  if ((around - unit).norm() < 1e-6) return 1;
-  if ((around + unit).norm() < 1e-6) return -1;
+  if ((around - unit).norm() < same_matrix) return 1;
+  if ((around + unit).norm() < same_matrix) return -1;
   return 0;
 }
 

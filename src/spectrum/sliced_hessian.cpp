@@ -17,6 +17,7 @@ namespace {
 /// smallest eigenvalues.
 constexpr double first_shift = 1e-15;
 constexpr double largest_shift = 1e-9;
+constexpr double shift_growth = 10.0;  // few factorisations, and no shift far above what was needed
 
 }  // namespace
 
@@ -33,7 +34,7 @@ void SlicedHessian::factor(const core::Handle<Mat>& reduced) {
   core::check(MatNorm(reduced.get(), NORM_INFINITY, &norm), "MatNorm");
   if (!(norm > 0.0) || !std::isfinite(norm))
     throw core::NumericalError("the Hessian on the slice is zero or not finite");
-  for (_shift = 0.0; _shift <= largest_shift * norm; _shift = std::max(10.0 * _shift, first_shift * norm)) {
+  for (_shift = 0.0; _shift <= largest_shift * norm; _shift = std::max(shift_growth * _shift, first_shift * norm)) {
     core::check(MatDuplicate(reduced.get(), MAT_COPY_VALUES, _factor.put()), "MatDuplicate");
     if (_shift > 0.0) core::check(MatShift(_factor.get(), _shift), "MatShift");
     core::check(MatSetOption(_factor.get(), MAT_SPD, PETSC_TRUE), "MatSetOption");

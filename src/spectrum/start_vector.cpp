@@ -9,11 +9,20 @@
 
 namespace orbweaver::spectrum {
 
+namespace {
+
+/// Fractional parts of its multiples fill [0, 1) evenly (the golden ratio less 1).
+constexpr double golden = 0.6180339887498949;
+/// Entries that agree to this count as equally large, so that rounding does not choose the one that fixes the sign.
+constexpr double equally_large = 1e-6;
+
+}  // namespace
+
 core::Handle<Vec> start_vector(int size) {
   core::Handle<Vec> vector = loss::create_vector(size);
   Eigen::VectorXd values(size);
   // Quasi-random and without symmetry, so that no eigenvector is orthogonal to it by accident.
-  for (int n = 0; n < size; ++n) values(n) = 0.5 + std::fmod(0.6180339887498949 * (n + 1), 1.0);
+  for (int n = 0; n < size; ++n) values(n) = 0.5 + std::fmod(golden * (n + 1), 1.0);
   loss::assign(vector.get(), values);
   return vector;
 }
@@ -29,7 +38,7 @@ void seed_basis(BV basis) {
 Eigen::VectorXd with_fixed_sign(const Eigen::VectorXd& vector) {
   const double largest = vector.cwiseAbs().maxCoeff();
   for (const double entry : vector)
-    if (std::abs(entry) >= largest * (1.0 - 1e-6)) return entry < 0.0 ? Eigen::VectorXd(-vector) : vector;
+    if (std::abs(entry) >= largest * (1.0 - equally_large)) return entry < 0.0 ? Eigen::VectorXd(-vector) : vector;
   return vector;
 }
 

@@ -15,6 +15,10 @@ using ad::Lanes;
 
 constexpr std::size_t stages = 12;
 constexpr std::size_t w = VariationalStep::lanes;
+/// The estimate is e5^2 / sqrt(e5^2 + 0.01 e3^2), as in DOP853 (Hairer, Norsett and Wanner 1993, II.10).
+constexpr double share_of_third = 0.01;
+/// Below the squares of all errors: unused lanes hold zeros.
+constexpr double never_zero = 1e-300;
 
 /// Stage `row` (the last one: the result) takes h * weight of the slope at stage `column`.
 struct Entry {
@@ -154,7 +158,7 @@ void VariationalStep::estimate(const double* lengths, std::size_t used) {
       squares_3 += other * other;
       error.store(&_truncations[n]);
     }
-    const Lanes share = sqrt(squares_5 / (squares_5 + 0.01 * squares_3 + 1e-300));
+    const Lanes share = sqrt(squares_5 / (squares_5 + share_of_third * squares_3 + never_zero));
     for (std::size_t n = g; n < _truncations.size(); n += w)
       (share * Lanes::load(&_truncations[n])).store(&_truncations[n]);
   }

@@ -18,6 +18,11 @@ namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr double same_point = 1e-7;
+/// Newton's step that no longer changes a point, and its field, relative to 1 + |df/dz|, that is rounding with room: a
+/// start that leads elsewhere leaves a field of order 1.
+constexpr double settled = 1e-15;
+constexpr double vanishing_field = 1e-12;
+constexpr int most_steps = 100;  // steps are bounded and may go round a saddle; otherwise a handful
 constexpr double longest_step =
     1.0;  // of Newton, so that it does not leave the neighbourhood of its start for far away
 
@@ -33,7 +38,7 @@ std::optional<Eigen::VectorXd> newton(const systems::System& system, Eigen::Vect
   Eigen::VectorXd f(d);
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> a(d, d);
   const std::vector<double> start(z.begin(), z.end());
-  for (int iteration = 0; iteration < 100; ++iteration) {
+  for (int iteration = 0; iteration < most_steps; ++iteration) {
     system.field_jacobian(1, z.data(), f.data(), a.data());
     if (!f.allFinite() || !a.allFinite()) {
       if (iteration > 0) return std::nullopt;
@@ -44,10 +49,10 @@ std::optional<Eigen::VectorXd> newton(const systems::System& system, Eigen::Vect
     if (step.norm() > longest_step) step *= longest_step / step.norm();
     z -= step;
     reduce_angles(system, z);
-    if (step.norm() < 1e-15 * (1.0 + z.norm())) break;
+    if (step.norm() < settled * (1.0 + z.norm())) break;
   }
   system.field(1, z.data(), f.data());
-  if (!(f.norm() < 1e-12 * (1.0 + a.norm()))) return std::nullopt;
+  if (!(f.norm() < vanishing_field * (1.0 + a.norm()))) return std::nullopt;
   return z;
 }
 

@@ -63,7 +63,7 @@ Eigen::MatrixXcd LinearModes::matrix(int k, double period) const {
   return rate * Eigen::MatrixXcd::Identity(_a.rows(), _a.cols()) - _a.cast<Complex>();
 }
 
-Eigen::VectorXcd LinearModes::softest(int k, double period) const {
+Eigen::VectorXcd LinearModes::smallest_right_singular_vector(int k, double period) const {
   return singular_vectors(matrix(k, period)).matrixV().rightCols(1);
 }
 

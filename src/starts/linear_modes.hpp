@@ -29,7 +29,7 @@ class LinearModes {
   [[nodiscard]] std::vector<Root> roots(int k, double low, double near, double high, int depth = 0) const;
 
   /// The right singular vector of the smallest singular value of M(T) at harmonic k.
-  [[nodiscard]] Eigen::VectorXcd softest(int k, double period) const;
+  [[nodiscard]] Eigen::VectorXcd smallest_right_singular_vector(int k, double period) const;
 
   /// |A|, the scale of residuals.
   [[nodiscard]] double scale() const { return _a.norm(); }

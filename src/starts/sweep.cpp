@@ -22,9 +22,19 @@ namespace {
 constexpr std::string_view no_zero =
     "a dip that does not reach zero, or zeros too close together to tell apart: no family starts here";
 
+/// Kernel vectors of unit length come out of an SVD: their entries, and equations between them, hold to rounding times
+/// the inverse of the gap to the next singular value. What is larger is seen, what is smaller is taken for zero.
+constexpr double negligible_entry = 1e-9;
+constexpr double reversible = 1e-8;
+/// Roots of neighbouring dips that are nearer, relative to the period, are one: brackets overlap, roots are right to
+/// rounding.
+constexpr double same_root = 1e-9;
+/// Rounding of the ends of a range of periods, relative to them.
+constexpr double at_range_end = 1e-12;
+
 struct Sample {
   SweepPoint point;
-  int harmonic;  // the one that carries the softest eigenvector
+  int harmonic;  // the one that carries the smallest eigenvector
 };
 
 Sample sample(const systems::System& system, std::span<const double> fixed_point, double period, int cutoff) {
@@ -47,20 +57,20 @@ Eigen::VectorXcd with_standard_phase(const systems::Structure& system, Eigen::Ve
   for (const systems::Symmetry& r : system.reversors) {
     const Eigen::VectorXcd image = r.map.matrix.cast<std::complex<double>>() * v.conjugate();
     const std::complex<double> phase = v.dot(image);  // image = phase * v if the mode is reversible
-    if (std::abs(std::abs(phase) - 1.0) > 1e-9 || (image - phase * v).norm() > 1e-8) continue;
+    if (std::abs(std::abs(phase) - 1.0) > negligible_entry || (image - phase * v).norm() > reversible) continue;
     v *= std::sqrt(phase);
     for (const std::complex<double>& c : v)
-      if (std::abs(c.real()) > 1e-9) return c.real() > 0.0 ? v : Eigen::VectorXcd(-v);
+      if (std::abs(c.real()) > negligible_entry) return c.real() > 0.0 ? v : Eigen::VectorXcd(-v);
   }
   for (const std::complex<double>& c : v)
-    if (std::abs(c) > 1e-9) return v * (std::conj(c) / std::abs(c));
+    if (std::abs(c) > negligible_entry) return v * (std::conj(c) / std::abs(c));
   return v;
 }
 
 // z = Re(v e^{is}) as modes, scaled to |dz(s = 0)| = 1.
 loop::Tangent direction_of(const Eigen::VectorXcd& v, int cutoff) {
   loop::Loop loop = loop::constant_loop(std::vector<double>(static_cast<std::size_t>(v.size()), 0.0), 1.0, cutoff);
-  const double scale = v.real().norm() > 1e-9 ? 1.0 / v.real().norm() : 1.0;
+  const double scale = v.real().norm() > still_at_start ? 1.0 / v.real().norm() : 1.0;
   for (int i = 0; i < loop.dimension; ++i) {
     loop.cosine(1, i) = scale * v(i).real();
     loop.sine(1, i) = -scale * v(i).imag();
@@ -71,7 +81,7 @@ loop::Tangent direction_of(const Eigen::VectorXcd& v, int cutoff) {
 loop::Isotropy isotropy_of(const systems::Structure& system, std::span<const double> fixed_point, double period,
                            const loop::Tangent& direction, int cutoff) {
   const loop::Loop loop = loop::moved(loop::constant_loop(fixed_point, period, cutoff), direction, 1.0);
-  return loop::find_isotropy(system, loop, 1e-7);
+  return loop::find_isotropy(system, loop, loop::symmetry_tolerance);
 }
 
 NormalMode normal_mode(const systems::System& system, std::span<const double> fixed_point, const LinearModes& linear,
@@ -82,7 +92,8 @@ NormalMode normal_mode(const systems::System& system, std::span<const double> fi
   mode.grid_period = grid_period;
   mode.residual = root.residual;
   mode.direction = direction_of(with_standard_phase(structure, root.kernel.col(0)), cutoff);
-  mode.grid_direction = direction_of(with_standard_phase(structure, linear.softest(1, grid_period)), cutoff);
+  mode.grid_direction =
+      direction_of(with_standard_phase(structure, linear.smallest_right_singular_vector(1, grid_period)), cutoff);
   mode.isotropy = isotropy_of(structure, fixed_point, mode.period, mode.direction, cutoff);
   return mode;
 }
@@ -98,7 +109,7 @@ SweepResult sweep(const systems::System& system, std::span<const double> fixed_p
   const LinearModes linear(system, fixed_point);
 
   const auto last =
-      static_cast<int>(std::floor((options.period_to - options.period_from) / options.step * (1.0 + 1e-12)));
+      static_cast<int>(std::floor((options.period_to - options.period_from) / options.step * (1.0 + at_range_end)));
   // One sample beyond each end, so that a dip at an end is seen; only roots within the range count.
   const int first = options.period_from > options.step ? -1 : 0;
   std::vector<Sample> samples;
@@ -114,14 +125,14 @@ SweepResult sweep(const systems::System& system, std::span<const double> fixed_p
     if (!(here.eigenvalue < samples[n - 1].point.eigenvalue && here.eigenvalue <= samples[n + 1].point.eigenvalue))
       continue;
     bool reaches_zero = false;
-    // All harmonics, not only the softest one: dips that lie closer together than a step show as one.
+    // All harmonics, not only that of the smallest eigenvalue: dips that lie closer together than a step show as one.
     for (int k = 1; k <= options.cutoff; ++k)
       for (const LinearModes::Root& root : linear.roots(k, low, here.period, high)) {
         reaches_zero = true;
         std::vector<double>& found = known[static_cast<std::size_t>(k)];
-        const auto is_same = [&](double period) { return std::abs(root.period - period) < 1e-9 * period; };
-        const bool outside =
-            root.period < options.period_from * (1.0 - 1e-12) || root.period > options.period_to * (1.0 + 1e-12);
+        const auto is_same = [&](double period) { return std::abs(root.period - period) < same_root * period; };
+        const bool outside = root.period < options.period_from * (1.0 - at_range_end) ||
+                             root.period > options.period_to * (1.0 + at_range_end);
         if (outside || std::any_of(found.begin(), found.end(), is_same)) continue;
         found.push_back(root.period);
         if (k == 1 && root.multiplicity == 1)

@@ -24,18 +24,18 @@ void expect_one_arrival(const Branching& branch, const std::string& text) {
     EXPECT_FALSE(watch.passed(branch.before[n].loop, branch.before[n + 1].loop).has_value()) << n;
   }
   const loop::Loop& a = branch.before[4].loop;
-  const auto gained = watch.passed(a, branch.after.front().loop);
-  ASSERT_TRUE(gained.has_value());
-  EXPECT_EQ(to_text(*gained), text);
-  EXPECT_LT(watch.relative_size(*gained, a, branch.crossing), 1e-5);
+  const auto gain = watch.passed(a, branch.after.front().loop);
+  ASSERT_TRUE(gain.has_value());
+  EXPECT_EQ(to_text(*gain), text);
+  EXPECT_LT(watch.relative_size(*gain, a, branch.crossing), 1e-5);
   double last = 1.0;
   for (const loop::Loop& at : {branch.before[5].loop, branch.crossing, branch.after[0].loop, branch.after[1].loop}) {
-    EXPECT_LT(watch.signed_part(*gained, a, at), last);
-    last = watch.signed_part(*gained, a, at);
+    EXPECT_LT(watch.signed_part(*gain, a, at), last);
+    last = watch.signed_part(*gain, a, at);
   }
   // Beyond, orbits are images of those before: the broken part has turned round altogether, to 8 degrees.
   const loop::Loop& beyond = branch.after[1].loop;
-  EXPECT_LT(watch.signed_part(*gained, a, beyond), -0.99 * watch.relative_size(*gained, a, beyond));
+  EXPECT_LT(watch.signed_part(*gain, a, beyond), -0.99 * watch.relative_size(*gain, a, beyond));
 }
 
 TEST(Arrival, OfABranchWithoutReversorGainsOne) { expect_one_arrival(test::in_phase_branch(), "R"); }

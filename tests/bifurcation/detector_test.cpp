@@ -30,24 +30,24 @@ struct Family {
   double earlier = last;
   double before_that = last;
 
-  [[nodiscard]] Station station(double position) const {
-    Station out{position, {}};
+  [[nodiscard]] TestPoint point(double position) const {
+    TestPoint out{position, {}};
     for (const auto& function : functions) out.readings.push_back(function(position));
     return out;
   }
   [[nodiscard]] Detector::Probe probe() {
-    return [this](double position) -> std::optional<Station> {
+    return [this](double position) -> std::optional<TestPoint> {
       ++probes;
-      EXPECT_GT(position, before_that) << "looks back farther than two stations before the last one";
+      EXPECT_GT(position, before_that) << "looks back farther than two points before the last one";
       EXPECT_LT(position, last);
-      return station(position);
+      return point(position);
     };
   }
   std::vector<Bracket> advance(double position) {
     before_that = earlier;
     earlier = last;
     last = position;
-    std::vector<Bracket> found = detector.advance(station(position), probe());
+    std::vector<Bracket> found = detector.advance(point(position), probe());
     EXPECT_TRUE(
         std::is_sorted(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.from < b.from; }));
     return found;
@@ -177,7 +177,7 @@ TEST(Detector, TwoZerosInTheLastStep) {
 }
 
 TEST(Detector, LastStepIsLookedIntoOnceMore) {
-  // A dip that the stations do not show; without a further station only the middle of the step is left to ask for.
+  // A dip that the points do not show; without a further point only the middle of the step is left to ask for.
   Family family{{exact([](double x) { return 0.04 * (1.0 - 1.2 * std::exp(-30.0 * (x - 4.45) * (x - 4.45))); })}};
   const double half = std::sqrt(std::log(1.2) / 30.0);
   expect_events(family.run({0, 1, 2, 3, 4, 5}), {{0, 4.45 - half}, {0, 4.45 + half}});
@@ -246,7 +246,7 @@ TEST(Detector, TouchIsSeenThroughNoiseAndFromItsOwnStation) {
   };
   Family rough{{noisy}};
   expect_events(rough.run({0.5, 1, 2, 3, 4, 5, 6, 7, 8}), {{0, 4.2, true}});
-  // So narrow that only one station shows it.
+  // So narrow that only one point shows it.
   Family narrow{{exact([](double x) { return 0.004 * (1.0 - std::exp(-20.0 * (x - 4.0) * (x - 4.0))); })}};
   expect_events(narrow.run({0, 1, 2, 3, 4, 5, 6, 7, 8}), {{0, 4.0, true}});
 }
@@ -314,7 +314,7 @@ TEST(Detector, MissingProbesLeaveWhatTheStationsShow) {
   Family family{{exact([](double x) { return std::cos(x); })}};
   std::vector<Bracket> found;
   for (const double x : evenly(0, 6, 6))
-    for (const Bracket& bracket : family.detector.advance(family.station(x), [](double) { return std::nullopt; }))
+    for (const Bracket& bracket : family.detector.advance(family.point(x), [](double) { return std::nullopt; }))
       found.push_back(bracket);
   expect_events(found, {{0, 0.5 * std::numbers::pi}, {0, 1.5 * std::numbers::pi}});
 }
@@ -352,7 +352,7 @@ TEST(Detector, MisuseIsRefused) {
   (void)detector.advance({1.0, {{0.5, 0.0}}}, none);
   EXPECT_THROW((void)detector.advance({1.0, {{0.5, 0.0}}}, none), core::MisuseError);
   EXPECT_THROW((void)detector.advance({2.0, {}}, none), core::MisuseError);
-  const auto wrong = [](double x) { return Station{x, {}}; };
+  const auto wrong = [](double x) { return TestPoint{x, {}}; };
   EXPECT_THROW((void)detector.advance({2.0, {{-0.9, 0.0}}}, wrong), core::MisuseError);
 }
 

@@ -27,14 +27,14 @@ struct Detection {
   int probes = 0;             ///< of the detector
 };
 
-/// Runs the detector over the stations and locates what it brackets.
+/// Runs the detector over the points and locates what it brackets.
 inline Detection detect(const systems::Structure& system, const StabilityAt& stability_at,
                         const std::vector<bifurcation::TestFunction>& functions, const std::vector<double>& positions,
                         double tolerance) {
   using namespace bifurcation;
-  const auto station = [&](double position) -> std::optional<Station> {
+  const auto point = [&](double position) -> std::optional<TestPoint> {
     const spectrum::Stability stability = stability_at(position);
-    Station out{position, {}};
+    TestPoint out{position, {}};
     for (const TestFunction& function : functions) out.readings.push_back(evaluate(function, system, stability));
     return out;
   };
@@ -42,13 +42,13 @@ inline Detection detect(const systems::Structure& system, const StabilityAt& sta
   Detector detector;
   const auto probe = [&](double position) {
     ++result.probes;
-    return station(position);
+    return point(position);
   };
   std::vector<Bracket> brackets;
   const auto append = [&](const std::vector<Bracket>& found) {
     brackets.insert(brackets.end(), found.begin(), found.end());
   };
-  for (const double position : positions) append(detector.advance(*station(position), probe));
+  for (const double position : positions) append(detector.advance(*point(position), probe));
   append(detector.finish(probe));
   for (const Bracket& bracket : brackets) {
     const TestFunction& function = functions[bracket.function];

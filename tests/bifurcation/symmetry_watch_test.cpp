@@ -72,13 +72,13 @@ void expect_arrival(const Pitchfork& p, const std::string& text) {
   const SymmetryWatch watch(p.system, p.own);
   const loop::Loop a = p.at(0.2);
   const loop::Loop b = p.at(-0.1);
-  const auto gained = watch.passed(a, b);
-  ASSERT_TRUE(gained.has_value()) << text;
-  EXPECT_EQ(to_text(*gained), text);
-  EXPECT_NEAR(watch.signed_part(*gained, a, a), 1.0, 1e-12);
-  EXPECT_NEAR(watch.signed_part(*gained, a, b), -0.5, 1e-12);
-  EXPECT_NEAR(watch.relative_size(*gained, a, b), 0.5, 1e-12);
-  EXPECT_NEAR(watch.relative_size(*gained, a, p.base), 0.0, 1e-13);
+  const auto gain = watch.passed(a, b);
+  ASSERT_TRUE(gain.has_value()) << text;
+  EXPECT_EQ(to_text(*gain), text);
+  EXPECT_NEAR(watch.signed_part(*gain, a, a), 1.0, 1e-12);
+  EXPECT_NEAR(watch.signed_part(*gain, a, b), -0.5, 1e-12);
+  EXPECT_NEAR(watch.relative_size(*gain, a, b), 0.5, 1e-12);
+  EXPECT_NEAR(watch.relative_size(*gain, a, p.base), 0.0, 1e-13);
 }
 
 TEST(SymmetryWatch, SeesTheSymmetryThatAPitchforkBroke) { expect_arrival(loss_of_s(), "S@1/2"); }
@@ -86,10 +86,10 @@ TEST(SymmetryWatch, SeesASubharmonicArrive) { expect_arrival(threefold(), "1@1/3
 TEST(SymmetryWatch, TakesWhatGeneratesMost) {
   expect_arrival(fourfold(), "S@1/4");
   const Pitchfork p = fourfold();
-  const std::vector<Gained> all =
-      SymmetryWatch(p.system, p.own).all_passed(SymmetryWatch::see(p.at(0.2)), SymmetryWatch::see(p.at(-0.1)));
+  const std::vector<SymmetryGain> all =
+      SymmetryWatch(p.system, p.own).all_passed(SymmetryWatch::sampled(p.at(0.2)), SymmetryWatch::sampled(p.at(-0.1)));
   std::vector<std::string> texts;
-  for (const Gained& gained : all) texts.push_back(to_text(gained));
+  for (const SymmetryGain& gain : all) texts.push_back(to_text(gain));
   EXPECT_EQ(texts, (std::vector<std::string>{"S@1/4", "S@3/4", "1@1/2"}));
 }
 
@@ -132,15 +132,15 @@ TEST(SymmetryWatch, TellsATurnFromAnArrival) {
   const auto turned = [&](double angle) {
     return plus(plus(p.base, 0.2 * std::cos(angle), p.v), 0.2 * std::sin(angle), other);
   };
-  const auto gained = watch.passed(turned(0.0), turned(3.0));
-  ASSERT_TRUE(gained.has_value());
+  const auto gain = watch.passed(turned(0.0), turned(3.0));
+  ASSERT_TRUE(gain.has_value());
   double low = 0.0, high = 3.0;
   for (int n = 0; n < 50; ++n) {
     const double middle = 0.5 * (low + high);
-    (watch.signed_part(*gained, turned(0.0), turned(middle)) > 0.0 ? low : high) = middle;
+    (watch.signed_part(*gain, turned(0.0), turned(middle)) > 0.0 ? low : high) = middle;
   }
-  EXPECT_NEAR(watch.signed_part(*gained, turned(0.0), turned(low)), 0.0, 1e-10);
-  EXPECT_GT(watch.relative_size(*gained, turned(0.0), turned(low)), 0.5);
+  EXPECT_NEAR(watch.signed_part(*gain, turned(0.0), turned(low)), 0.0, 1e-10);
+  EXPECT_GT(watch.relative_size(*gain, turned(0.0), turned(low)), 0.5);
 }
 
 // Reversors at any phase, where the branch has none.
@@ -153,16 +153,17 @@ TEST(SymmetryWatch, SeesReversorsAtAnyPhase) {
                       loop::time_shifted(in_subspace(r, {-1}, 91), irrational)};
     const SymmetryWatch watch(p.system, p.own);
     const loop::Loop a = p.at(0.05);
-    const auto gained = watch.passed(a, p.at(-0.03));
-    ASSERT_TRUE(gained.has_value()) << name;
-    EXPECT_EQ(to_text(*gained), name);
-    EXPECT_TRUE(gained->reversing);
-    EXPECT_NEAR(gained->phase, 1.0 - 2.0 * irrational, 0.05);
-    EXPECT_LT(watch.signed_part(*gained, a, p.at(-0.03)), -0.3);
-    EXPECT_LT(watch.relative_size(*gained, a, p.base), 1e-12);
+    const auto gain = watch.passed(a, p.at(-0.03));
+    ASSERT_TRUE(gain.has_value()) << name;
+    EXPECT_EQ(to_text(*gain), name);
+    EXPECT_TRUE(gain->reversing);
+    EXPECT_NEAR(gain->phase, 1.0 - 2.0 * irrational, 0.05);
+    EXPECT_LT(watch.signed_part(*gain, a, p.at(-0.03)), -0.3);
+    EXPECT_LT(watch.relative_size(*gain, a, p.base), 1e-12);
     EXPECT_FALSE(watch.passed(a, p.at(0.03)).has_value());
     const SymmetryWatch with_reversor(p.system, r);
-    for (const Gained& other : with_reversor.all_passed(SymmetryWatch::see(a), SymmetryWatch::see(p.at(-0.03))))
+    for (const SymmetryGain& other :
+         with_reversor.all_passed(SymmetryWatch::sampled(a), SymmetryWatch::sampled(p.at(-0.03))))
       EXPECT_FALSE(other.reversing);
   }
 }
@@ -211,9 +212,9 @@ TEST(SymmetryWatch, SeesThroughATimeMap) {
   const Pitchfork p = loss_of_s();
   const SymmetryWatch watch(p.system, p.own);
   const loop::TimeMap map{1.5, {}};
-  const auto gained = watch.passed(with_time_map(p.at(0.2), map, 140), p.at(-0.1));
-  ASSERT_TRUE(gained.has_value());
-  EXPECT_NEAR(watch.signed_part(*gained, p.at(0.2), with_time_map(p.at(-0.1), map, 140)), -0.5, 1e-9);
+  const auto gain = watch.passed(with_time_map(p.at(0.2), map, 140), p.at(-0.1));
+  ASSERT_TRUE(gain.has_value());
+  EXPECT_NEAR(watch.signed_part(*gain, p.at(0.2), with_time_map(p.at(-0.1), map, 140)), -0.5, 1e-9);
 }
 
 }  // namespace

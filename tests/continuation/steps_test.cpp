@@ -155,7 +155,7 @@ TEST(Frontiers, GoOnWithTheSameBits) {
     Branch first(test::pendulum(), test::start_of(test::in_phase()), options);
     for (int n = 0; n < 6; ++n) ASSERT_TRUE(first.advance());
     EXPECT_FALSE(first.frontier().tangent.empty());
-    Branch second(test::pendulum(), test::start_of(test::in_phase()), options, first.standing());
+    Branch second(test::pendulum(), test::start_of(test::in_phase()), options, first.restart_frontier());
     for (std::size_t n = 6; n < 12; ++n) {
       const std::optional<Orbit> orbit = second.advance();
       ASSERT_TRUE(orbit);

@@ -53,7 +53,8 @@ struct NotLocated {
 [[nodiscard]] std::string to_text(const NotLocated& why);
 
 /// Locates `event` between two positions of the family, every trial orbit converged anew. Positions are found to
-/// `tolerance` relative to 1 + |position|, to 1e-10 at least. None where the function has no zero there (`why` then
+/// `tolerance` relative to 1 + |position|, to 1e-10 at least, since indices are to be right to |dk/ds| 1e-10
+/// (docs/mathematics.md, "Location"). None where the function has no zero there (`why` then
 /// says so).
 [[nodiscard]] std::optional<Crossing> locate(const systems::System& system, continuation::FamilyCurve& family,
                                              const Event& event, double from, double to, NotLocated& why,

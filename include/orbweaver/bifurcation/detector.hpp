@@ -12,7 +12,7 @@
 namespace orbweaver::bifurcation {
 
 /// An orbit of a family with its test functions.
-struct Station {
+struct TestPoint {
   double position;                ///< along the family (arclength), increasing
   std::vector<Reading> readings;  ///< one a test function, in the caller's order
 
@@ -32,12 +32,16 @@ struct Bracket {
 };
 
 struct DetectorOptions {
-  double surprise = 0.1;      ///< a step is halved where a reading differs by more from what evenly spaced ones
-                              ///< extrapolate, times the function's largest modulus so far (but 0.1 at least)
-  int halvings = 3;           ///< of one step, at most
-  double touch = 1e-6;        ///< a minimum of |value| below this, or below its error bound, touches zero
-  double touch_error = 1e-4;  ///< a reading with a larger error bound cannot show that
-  int probes = 40;            ///< for one minimum, at most
+  /// A step is halved where a reading differs by more from what evenly spaced ones extrapolate, times the function's
+  /// largest modulus so far (but 0.1 at least). Zeros in pairs within a step are missed above, steps wasted below; not
+  /// measured.
+  double extrapolation_error = 0.1;
+  int halvings = 3;  ///< of one step, at most
+  /// A minimum of |value| below this, or below its error bound, touches zero. Located to 1e-6 of a bracket, a true
+  /// touch is far below; what is taken for one wrongly costs a location that finds nothing.
+  double tangency_tolerance = 1e-6;
+  double tangency_error = 1e-4;  ///< a reading with a larger error bound cannot show that; not measured
+  int probes = 40;               ///< for one minimum, at most
 };
 
 /// Everything a detector keeps: plain values, for checkpoints.
@@ -64,33 +68,33 @@ struct DetectorState {
       core::serialize_members(archive, signed_nodes, undecided, scale, examined_to);
     }
   };
-  std::vector<Station> stations;  ///< the last two, probed ones included
+  std::vector<TestPoint> points;  ///< the last two, probed ones included
   std::vector<Watch> watches;     ///< one a test function
 
   static constexpr int wire_version = 1;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, stations, watches);
+    core::serialize_members(archive, points, watches);
   }
 };
 
-/// Finds the zeros of test functions along a family from stations that come one after the other. Where a step is too
-/// coarse for that (a reading is not what its neighbours let expect), it asks for stations in between.
+/// Finds the zeros of test functions along a family from its points one after the other. Where a step is too coarse for
+/// that (a reading is not what its neighbours let expect), it asks for points in between.
 ///
-/// A function's sign is compared with its last one: stations without a sign are passed over, so noise below the error
+/// A function's sign is compared with its last one: points without a sign are passed over, so noise below the error
 /// bound is no event, nor is a family's start, where a function is about zero before it has had a sign.
 class Detector {
  public:
-  /// The station at a position between known ones, not before the last but two; none if there is no orbit to be had.
-  using Probe = std::function<std::optional<Station>(double position)>;
+  /// The point at a position between known ones, not before the last but two; none if there is no orbit to be had.
+  using Probe = std::function<std::optional<TestPoint>(double position)>;
 
   explicit Detector(DetectorOptions options = {}) : _options(options) {}
   Detector(DetectorState state, DetectorOptions options) : _options(options), _state(std::move(state)) {}
 
-  /// Takes the family's next station. Returns what is new, by position: brackets of one function share at most an end.
-  /// Throws MisuseError unless positions increase and all stations (the probe's too) have as many readings.
-  [[nodiscard]] std::vector<Bracket> advance(const Station& next, const Probe& probe);
-  /// What can still be found before the last station, once the family has ended.
+  /// Takes the family's next point. Returns what is new, by position: brackets of one function share at most an end.
+  /// Throws MisuseError unless positions increase and all points (the probe's too) have as many readings.
+  [[nodiscard]] std::vector<Bracket> advance(const TestPoint& next, const Probe& probe);
+  /// What can still be found before the last point, once the family has ended.
   [[nodiscard]] std::vector<Bracket> finish(const Probe& probe);
 
   [[nodiscard]] const DetectorState& state() const { return _state; }
@@ -99,14 +103,14 @@ class Detector {
   using Node = DetectorState::Node;
   using Watch = DetectorState::Watch;
 
-  [[nodiscard]] bool surprising(const std::vector<Station>& grid, std::size_t n) const;
-  [[nodiscard]] std::vector<Station> subdivided(const Station& next, const Probe& probe) const;
+  [[nodiscard]] bool badly_extrapolated(const std::vector<TestPoint>& grid, std::size_t n) const;
+  [[nodiscard]] std::vector<TestPoint> subdivided(const TestPoint& next, const Probe& probe) const;
   void take(std::size_t function, const Node& node, const Probe& probe, std::vector<Bracket>& found);
   void look_for_minimum(std::size_t function, const Node& a, const Node& b, const Node& c, const Probe& probe,
                         std::vector<Bracket>& found);
   void examine(std::size_t function, const Node& left, const Node& right, const Probe& probe,
                std::vector<Bracket>& found);
-  [[nodiscard]] std::optional<Station> probed(const Probe& probe, double position) const;
+  [[nodiscard]] std::optional<TestPoint> probed(const Probe& probe, double position) const;
 
   DetectorOptions _options;
   DetectorState _state;

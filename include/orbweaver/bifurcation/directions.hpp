@@ -25,10 +25,12 @@ struct Direction {
 };
 
 struct DirectionOptions {
-  double symmetry_tolerance = 1e-7;  ///< of the base loop's symmetries, as loop::find_isotropy
-  double kernel_tolerance = 1e-4;    ///< how far symmetries may take kernel vectors out of the kernel
-  int seeds = 12;                    ///< of a search in a plane; 2^(n-1) times as many in n > 2 dimensions
-  corrector::Options corrector{};    ///< of a search
+  double symmetry_tolerance = loop::symmetry_tolerance;  ///< of the base loop's symmetries, as loop::find_isotropy
+  /// How far symmetries may take kernel vectors out of the kernel: these are good to 1e-6, and one that is missing or
+  /// wrong shows as a number of order 1.
+  double kernel_tolerance = 1e-4;
+  int seeds = 12;                  ///< of a search in a plane; 2^(n-1) times as many in n > 2 dimensions
+  corrector::Options corrector{};  ///< of a search
 };
 
 /// The directions in which families leave `base` along its kernel (docs/mathematics.md, "Kernels and directions"),

@@ -14,8 +14,12 @@ namespace orbweaver::bifurcation {
 struct IdentityOptions {
   corrector::Options corrector{};
   int cutoff_to = 4096;
-  double tolerance = 1e-6;  ///< distance of the same orbit, relative to 1 + rms size of the loop
-  double widening = 1e-2;   ///< of the ranges of period, energy and action between neighbours, relative to their values
+  /// Distance of the same orbit, relative to 1 + rms size of the loop. The first orbits of twins, the nearest families
+  /// that were compared, are 0.01 apart (docs/mathematics.md, "Identity").
+  double tolerance = 1e-6;
+  /// Of the ranges of period, energy and action between neighbours, relative to their values: a first look, which may
+  /// only pass too many.
+  double widening = 1e-2;
 };
 
 /// What a comparison of an orbit with a family found.

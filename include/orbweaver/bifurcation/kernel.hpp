@@ -24,7 +24,8 @@ struct Kernel {
 
 /// The kernel at an orbit in one sector of its fundamental map (order p, design: m = q/gcd(q, p) times around). Its
 /// dimension, at most `expected` (1 for q <= 2 and 2 beyond, times the pairs of multipliers that are there), is where
-/// the singular values have their largest gap; vectors whose values exceed `largest` do not count. `even_in_time`:
+/// the singular values have their largest gap; vectors whose values exceed `largest` do not count (those of the
+/// deep survey's kernels are below 9e-9: docs/performance.md). `even_in_time`:
 /// `base` is to have the identity as time map, as starts need it; orbits gone around once are cheaper under their own.
 /// `team` divides the work; may be null.
 [[nodiscard]] Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& point,

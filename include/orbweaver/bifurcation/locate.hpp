@@ -6,7 +6,7 @@
 namespace orbweaver::bifurcation {
 
 /// A function of the position along a family; NaN where it has no value.
-using Along = std::function<double(double position)>;
+using PositionFunction = std::function<double(double position)>;
 
 /// A located zero or minimum.
 struct Located {
@@ -20,13 +20,13 @@ struct Located {
 /// The zero of `function` between `from` and `to`, where it has opposite signs, to `tolerance` in the position
 /// (Alefeld, Potra and Shi's algorithm 748: bracketing, superlinear). None if the signs agree or a value is NaN.
 /// Throws MisuseError unless from < to and tolerance > 0.
-[[nodiscard]] std::optional<Located> locate_root(const Along& function, double from, double to, double tolerance,
-                                                 int max_evaluations = 60);
+[[nodiscard]] std::optional<Located> locate_root(const PositionFunction& function, double from, double to,
+                                                 double tolerance, int max_evaluations = 60);
 
 /// A local minimum of `function` between `from` and `to` (Brent's method), to `tolerance` in the position, but not
 /// closer than 1e-8 (to - from), where a minimum is flat to double precision. None if a value is NaN.
 /// Throws MisuseError unless from < to and tolerance > 0.
-[[nodiscard]] std::optional<Located> locate_minimum(const Along& function, double from, double to, double tolerance,
-                                                    int max_evaluations = 60);
+[[nodiscard]] std::optional<Located> locate_minimum(const PositionFunction& function, double from, double to,
+                                                    double tolerance, int max_evaluations = 60);
 
 }  // namespace orbweaver::bifurcation

@@ -13,7 +13,7 @@
 namespace orbweaver::bifurcation {
 
 /// A symmetry e that the orbits of a branch lack and that an orbit between two of them may have.
-struct Gained {
+struct SymmetryGain {
   std::string name;  ///< "1" for the identity
   bool reversing = false;
   systems::AffineMap map;
@@ -24,7 +24,7 @@ struct Gained {
 };
 
 /// "S@1/4", "1@1/3" (three times around a shorter orbit), "R" (at some phase).
-[[nodiscard]] std::string to_text(const Gained& gained);
+[[nodiscard]] std::string to_text(const SymmetryGain& gain);
 
 /// Watches a branch for orbits with more symmetry than its own isotropy: there it meets a more symmetric family, at one
 /// of that family's crossings (docs/mathematics.md, "Arrivals").
@@ -39,41 +39,41 @@ class SymmetryWatch {
   SymmetryWatch(const systems::Structure& system, const loop::Isotropy& own, int largest_order = 12);
 
   /// An orbit as the watch sees it: the harmonics of its 240 samples in time. Worth keeping from one step to the next.
-  struct Seen {
+  struct SampledOrbit {
     loop::Loop loop;
     Eigen::MatrixXcd coefficients;  ///< dimension x harmonics, sum of |.|^2 = mean of |z|^2 (less the winding)
     double size = 0.0;
   };
-  [[nodiscard]] static Seen see(const loop::Loop& loop);
+  [[nodiscard]] static SampledOrbit sampled(const loop::Loop& loop);
 
   /// All candidates whose broken part turned round between `a` and `b`, or vanishes at `b`, those that generate the
   /// most together with the own isotropy first. Broken parts below 1e-8 of the loop at `a` are rounding, and pass
   /// nothing. Where it vanishes at `b` to that size, `b` lies on the crossing, or the corrector has slipped onto the
   /// symmetric family.
-  [[nodiscard]] std::vector<Gained> all_passed(const Seen& a, const Seen& b) const;
+  [[nodiscard]] std::vector<SymmetryGain> all_passed(const SampledOrbit& a, const SampledOrbit& b) const;
   /// The first of them.
-  [[nodiscard]] std::optional<Gained> passed(const Seen& a, const Seen& b) const;
-  [[nodiscard]] std::optional<Gained> passed(const loop::Loop& a, const loop::Loop& b) const;
+  [[nodiscard]] std::optional<SymmetryGain> passed(const SampledOrbit& a, const SampledOrbit& b) const;
+  [[nodiscard]] std::optional<SymmetryGain> passed(const loop::Loop& a, const loop::Loop& b) const;
 
-  /// The signed part of `at` seen from `a`: its root between two orbits is where `gained` may hold.
-  [[nodiscard]] double signed_part(const Gained& gained, const loop::Loop& a, const loop::Loop& at) const;
-  /// |c(at)| / |c(a)|: small where `gained` holds. At a root of the signed part where the broken part has only turned,
+  /// The signed part of `at` seen from `a`: its root between two orbits is where `gain` may hold.
+  [[nodiscard]] double signed_part(const SymmetryGain& gain, const loop::Loop& a, const loop::Loop& at) const;
+  /// |c(at)| / |c(a)|: small where `gain` holds. At a root of the signed part where the broken part has only turned,
   /// it is not.
-  [[nodiscard]] double relative_size(const Gained& gained, const loop::Loop& a, const loop::Loop& at) const;
+  [[nodiscard]] double relative_size(const SymmetryGain& gain, const loop::Loop& a, const loop::Loop& at) const;
 
  private:
   struct Products;
   class Correlation;
-  [[nodiscard]] Eigen::MatrixXcd broken_part(const Gained& gained, const systems::AffineMap& inverse, const Seen& orbit,
-                                             double shift) const;
-  [[nodiscard]] Products compare(const Gained& gained, const Seen& a, const Seen& b) const;
-  [[nodiscard]] std::size_t generated_with(const Gained& gained) const;
+  [[nodiscard]] Eigen::MatrixXcd broken_part(const SymmetryGain& gain, const systems::AffineMap& inverse,
+                                             const SampledOrbit& orbit, double shift) const;
+  [[nodiscard]] Products compare(const SymmetryGain& gain, const SampledOrbit& a, const SampledOrbit& b) const;
+  [[nodiscard]] std::size_t generated_with(const SymmetryGain& gain) const;
 
   systems::Structure _system;
   loop::Isotropy _own;
   struct Shifted {  // one matrix with all its shifts
     systems::Symmetry symmetry;
-    std::vector<Gained> candidates;
+    std::vector<SymmetryGain> candidates;
   };
   std::vector<Shifted> _equivariances;
   std::vector<systems::Symmetry> _reversors;

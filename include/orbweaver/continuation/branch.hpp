@@ -29,15 +29,23 @@ struct Options {
   int cutoff_from = 8;
   int cutoff_to = 4096;
   std::optional<double> fixed_step{};  ///< |dz(s = 0)| of every step, radians (paper: 0.5 degrees); none = adaptive
-  double start_amplitude = 8.7e-3;     ///< |dz(s = 0)| of the first orbit, radians
-  double tail_tolerance = 1e-12;       ///< last harmonics, relative to min(1, rms amplitude): above it K is raised
-  double largest_step = 1.0;           ///< in the length in which the corrector measures steps (docs/mathematics.md)
-  double smallest_step = 1e-9;         ///< times (1 + amplitude) min(1, amplitude); below it the branch has failed
-  bool fit_time_map = true;            ///< let s run with the orbit's speed where that needs fewer harmonics
-  int general_map_cells = 800;         ///< from which a general time map repays its fit (docs/performance.md)
+  double start_amplitude = 8.7e-3;     ///< |dz(s = 0)| of the first orbit, radians: the paper's 0.5 degrees
+  /// Last harmonics, relative to min(1, rms amplitude): above it K is raised. Harmonic k weighs 2 pi k/T times in the
+  /// residual, hence two digits below `corrector.tolerance`.
+  double tail_tolerance = 1e-12;
+  double largest_step = 1.0;  ///< in the length in which the corrector measures steps (docs/mathematics.md)
+  /// Times (1 + amplitude) min(1, amplitude); below it the branch has failed. Sharper bends than that are crossings to
+  /// double precision (docs/mathematics.md, "Families that nearly cross").
+  double smallest_step = 1e-9;
+  /// Cosine of the largest angle (60 degrees) that a step makes with the family's direction at its ends, its prediction
+  /// and the last step: what turns further has left the family, unless a shorter step shows otherwise. Not measured.
+  double least_cosine = 0.5;
+  bool fit_time_map = true;     ///< let s run with the orbit's speed where that needs fewer harmonics
+  int general_map_cells = 800;  ///< from which a general time map repays its fit (docs/performance.md)
   Predictor predictor = Predictor::polynomial;
-  int predictor_order = 4;         ///< of the polynomial through the last orbits, at most
-  double prediction_error = 3e-3;  ///< wanted largest error of a predicted coordinate, radians
+  int predictor_order = 4;  ///< of the polynomial through the last orbits, at most
+  /// Wanted largest error of a predicted coordinate, radians. Ten times more makes steps of degree 4 1.6 times longer.
+  double prediction_error = 3e-3;
   double period_limit = std::numeric_limits<double>::infinity();
   double energy_from = -std::numeric_limits<double>::infinity();
   double energy_to = std::numeric_limits<double>::infinity();
@@ -64,8 +72,8 @@ class Branch {
  public:
   /// Throws MisuseError for a start whose sizes disagree or whose direction is zero.
   Branch(std::shared_ptr<const systems::System> system, const Start& start, Options options);
-  /// Goes on from where a branch with the same start stood: `from` is what its `standing` was after some orbit. Its
-  /// further orbits have the same bits; limits may be wider.
+  /// Goes on from where a branch with the same start was: `from` is its `restart_frontier` after some orbit. Further
+  /// orbits have the same bits; limits may be wider.
   Branch(std::shared_ptr<const systems::System> system, const Start& start, Options options, Frontier from);
   ~Branch();
   Branch(Branch&&) noexcept;
@@ -77,10 +85,10 @@ class Branch {
   [[nodiscard]] std::optional<Orbit> advance();
   /// Set once `advance` has returned none.
   [[nodiscard]] const std::optional<Ending>& ending() const;
-  /// Where the branch stands (after at least one orbit).
+  /// Where the branch is (after at least one orbit).
   [[nodiscard]] const Frontier& frontier();
   /// The same without a tangent that no step has needed yet: for checkpoints.
-  [[nodiscard]] const Frontier& standing() const;
+  [[nodiscard]] const Frontier& restart_frontier() const;
 
  private:
   std::unique_ptr<Tracer> _tracer;

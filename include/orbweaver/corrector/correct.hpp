@@ -34,9 +34,11 @@ enum class Outcome {
 struct Options {
   Method method = Method::automatic;
   int krylov_from = 150;     ///< automatic: unknowns from which newton-krylov is used (measured: docs/performance.md)
-  double tolerance = 1e-10;  ///< on sqrt(loss), times min(1, rms |dz/dt|)
-  double step_tolerance = 1e-6;  ///< the last Newton step, relative to 1 + |loop|
-  double tail_tolerance = 1e-3;  ///< under_resolved needs a tail above this times the threshold
+  double tolerance = 1e-10;  ///< on sqrt(loss), times min(1, rms |dz/dt|); the paper's
+  /// The last Newton step, relative to 1 + |loop|. Under the threshold a step is at most `tolerance` over the smallest
+  /// singular value: longer ones show a direction flatter than 1e-4, in which the loss does not hold the orbit.
+  double step_tolerance = 1e-6;
+  double tail_tolerance = 1e-3;  ///< under_resolved needs truncation (2 pi/T) K tail above this times the threshold
   int max_iterations = 0;        ///< 0: 30 for second-order methods, 200,000 for first-order ones
   loss::Curvature curvature = loss::Curvature::gauss_newton;  ///< Hessian for nls and ntr
   core::Team* team = nullptr;  ///< ranks that divide newton-krylov among them; then `correct` is collective over it
@@ -57,8 +59,15 @@ struct Result {
   [[nodiscard]] bool converged() const { return outcome == Outcome::converged; }
 };
 
-/// The threshold for sqrt(loss) at a loop: tolerance * min(1, rms |dz/dt|), never below the rounding error of the
-/// residual itself, 4 eps |z| |df/dz| (which matters only for amplitudes under about 1e-5 around a point away from 0).
+/// More harmonics help only where truncation explains at least this share of sqrt(loss). It is an estimate, good to a
+/// factor of ten or so; a loss that is all truncation is at about 1 whatever the share. Not measured.
+inline constexpr double least_explained = 1e-2;
+
+/// The threshold for sqrt(loss) of a loop with rms |dz/dt| `speed`, mean state of size `size` and rms |df/dz|
+/// `field_jacobian`: tolerance * min(1, speed), never below the rounding error of the residual itself,
+/// 4 eps |z| |df/dz| (which matters only for amplitudes under about 1e-5 around a point away from 0).
+[[nodiscard]] double acceptance_threshold(double tolerance, double speed, double size, double field_jacobian);
+/// The same at a loop; the rounding error counts where the linearization has the field's Jacobian.
 [[nodiscard]] double acceptance_threshold(const loop::Loop& loop, const loss::Linearization& linearization,
                                           double tolerance);
 

@@ -57,6 +57,9 @@ struct Unknowns {
   [[nodiscard]] loop::Tangent tangent_of(std::span<const double> u) const;
   /// dz/d(2 pi t/T) = z'/(2 pi phi') of the loop as a vector of unknowns: the direction of a time shift (scalars 0).
   [[nodiscard]] std::vector<double> time_shift_direction(const loop::Loop& loop) const;
+  /// Where that is shorter than this times the loop's rms amplitude, a reversor excludes it: what is left is rounding
+  /// (1e-16 of the loop's size, so loops of amplitude 1e-8 and more about a point of order 1 are told right).
+  static constexpr double least_time_shift = 1e-8;
 };
 
 }  // namespace orbweaver::loss

@@ -12,6 +12,10 @@
 
 namespace orbweaver::starts {
 
+/// Oscillations of unit amplitude of which z(s = 0) moves by less are scaled to unit amplitude, not to
+/// |dz(s = 0)| = 1: the state there is rounding.
+inline constexpr double still_at_start = 1e-9;
+
 /// The range of periods swept at a fixed point.
 struct SweepOptions {
   double period_from = 1.0;
@@ -31,7 +35,7 @@ struct NormalMode {
   double period = 0.0;           ///< refined to rounding
   double grid_period = 0.0;      ///< the swept period where the dip was seen
   double residual = 0.0;         ///< smallest singular value of the linearised problem at `period`
-  loop::Tangent direction;       ///< of a loop with cutoff `SweepOptions::cutoff`, |dz(s = 0)| = 1
+  loop::Tangent direction;       ///< of a loop with cutoff `SweepOptions::cutoff`, |dz(s = 0)| = 1 (`still_at_start`)
   loop::Tangent grid_direction;  ///< the same from the eigenvector at `grid_period`
   loop::Isotropy isotropy;       ///< of the small oscillations
 };

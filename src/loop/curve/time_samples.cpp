@@ -27,7 +27,7 @@ Loop interpolant(const TimeSamples& samples) {
 
 Loop resolved_in_time(const Loop& loop) {
   if (loop.time_map.is_identity()) return loop;
-  const double negligible = std::max(1e-12, 2.0 * tail(loop));
+  const double negligible = std::max(negligible_harmonic, 2.0 * tail(loop));
   for (int count = time_sample_count;; count *= 2) {
     Loop out = interpolant(time_samples(loop, count));
     if (tail(out) <= negligible || out.cutoff >= 8 * loop.cutoff) return out;

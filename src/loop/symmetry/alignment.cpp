@@ -17,7 +17,13 @@ namespace orbweaver::loop {
 namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
+/// Distances of loops that differ by less are equal but for rounding.
 constexpr double equally_close = 1e-12;
+/// Squares of distances come from differences of large numbers, of the size of the loop's square: minima that agree to
+/// this are compared by the loops themselves.
+constexpr double same_square = 1e-9;
+/// Of the tolerance: a shift by T/prime changes a harmonic by at most twice its size, and samples add rounding.
+constexpr double of_samples = 4.0;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Either way from 0, in periods.
@@ -34,8 +40,7 @@ Alignment closest(const SymmetryElement& candidate, const Loop& from, const Loop
   const Loop image = transformed(from, candidate.map, candidate.reversing, 0.0);
   if (image.winding != to.winding) return best;
   const std::vector<ShiftMinimum> minima = shift_minima(image, to, angles);
-  // Correlations know D only to 1e-8 of the loop: what is as close as that is compared by the loops themselves.
-  const double within = minima.front().square + 1e-9 * (1.0 + std::pow(rms_size(to), 2));
+  const double within = minima.front().square + same_square * (1.0 + std::pow(rms_size(to), 2));
   for (const ShiftMinimum& minimum : minima) {
     if (minimum.square > within) break;
     // w(t) = y(t + psi) with y = M^-1 z(+-t): the shift of z counts backwards if reversing.
@@ -102,7 +107,7 @@ bool may_repeat(const Loop& loop, int prime, double tolerance) {
       const double change = z[(j + step) % samples.count] - z[j];
       sum += change * change;
     }
-  return std::sqrt(sum / samples.count) <= 4.0 * tolerance;
+  return std::sqrt(sum / samples.count) <= of_samples * tolerance;
 }
 
 }  // namespace

@@ -12,6 +12,11 @@ namespace {
 
 using Eigen::MatrixXd;
 
+/// Entries of declared matrices are exact; those of products, singular values and shifts are good to some roundings.
+/// What is not zero, or not the same, is of order 1: three orders more or less make no difference.
+constexpr double same_entry = 1e-12;
+constexpr double same = 1e-9;
+
 /// Rows that vanish exactly on the fixed space of `matrix`: sparse where the matrix is diagonal, orthonormal otherwise.
 MatrixXd conditions_of_fixed_space(const MatrixXd& matrix) {
   const Eigen::Index d = matrix.rows();
@@ -21,14 +26,14 @@ MatrixXd conditions_of_fixed_space(const MatrixXd& matrix) {
     rows.conservativeResize(rows.rows() + 1, Eigen::NoChange);
     rows.row(rows.rows() - 1) = row;
   };
-  if (moved.isDiagonal(1e-12)) {
+  if (moved.isDiagonal(same_entry)) {
     for (Eigen::Index i = 0; i < d; ++i)
-      if (std::abs(moved(i, i)) > 1e-12) add(Eigen::RowVectorXd::Unit(d, i));
+      if (std::abs(moved(i, i)) > same_entry) add(Eigen::RowVectorXd::Unit(d, i));
     return rows;
   }
   const Eigen::JacobiSVD<MatrixXd> svd(moved, Eigen::ComputeFullV);
   for (Eigen::Index n = 0; n < d; ++n)
-    if (svd.singularValues()(n) > 1e-9) add(svd.matrixV().col(n).transpose());
+    if (svd.singularValues()(n) > same) add(svd.matrixV().col(n).transpose());
   return rows;
 }
 
@@ -52,7 +57,7 @@ bool FundamentalDomain::expresses(const Isotropy& isotropy) const {
     MatrixXd power = element.reversing ? *reversor : MatrixXd::Identity(generator.rows(), generator.cols());
     for (int n = 0; n < order; ++n) {
       const double turns = element.shift() - static_cast<double>(n) / order;
-      if (std::abs(turns - std::round(turns)) < 1e-9 && (power - element.map.matrix).norm() < 1e-9) return true;
+      if (std::abs(turns - std::round(turns)) < same && (power - element.map.matrix).norm() < same) return true;
       power = generator * power;
     }
     return false;
@@ -69,7 +74,7 @@ std::vector<bool> FundamentalDomain::coordinates_with_mean() const {
   }
   if (reversor) mean = 0.5 * (mean + *reversor * mean);
   std::vector<bool> out;
-  for (Eigen::Index i = 0; i < d; ++i) out.push_back(mean.row(i).norm() > 1e-9);
+  for (Eigen::Index i = 0; i < d; ++i) out.push_back(mean.row(i).norm() > same);
   return out;
 }
 

@@ -17,6 +17,10 @@ namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr double rounding = 1e-13;  // of a shift in periods
+/// Coordinates of two instants that are nearer, relative to 1 + the loop's size, are the same: the next one decides.
+constexpr double same_coordinate = 1e-9;
+constexpr double settled = 1e-15;  // a step in s that no longer changes it
+constexpr int most_steps = 30;     // of Newton's method from a grid finer than the harmonics: it needs three or four
 
 double in_period(double shift) {
   const double part = shift - std::floor(shift);
@@ -53,7 +57,7 @@ double turns_of_maximum(const Loop& even, int i) {
   const double spacing = two_pi / nodes;
   const double start = spacing * static_cast<double>(highest);
   double s = start;
-  for (int n = 0; n < 30; ++n) {  // Newton's method on dz/ds, within the neighbouring nodes
+  for (int n = 0; n < most_steps; ++n) {  // Newton's method on dz/ds, within the neighbouring nodes
     double slope = 0.0;
     double curvature = 0.0;
     for (int k = even.cutoff; k >= 1; --k) {
@@ -66,7 +70,7 @@ double turns_of_maximum(const Loop& even, int i) {
     const double next = std::clamp(s + slope / std::abs(curvature), start - spacing, start + spacing);
     const double step = std::abs(next - s);
     s = next;
-    if (step < 1e-15) break;
+    if (step < settled) break;
   }
   return s / two_pi;
 }
@@ -95,7 +99,7 @@ Loop in_standard_phase(const systems::Structure& system, const Loop& loop, const
       if (!element.reversing || element.name != reversor.name) continue;
       const double first = 0.5 * element.shift();
       const double second = first + 0.5;
-      const double tolerance = 1e-9 * (1.0 + rms_size(loop));
+      const double tolerance = same_coordinate * (1.0 + rms_size(loop));
       const bool take_second = is_larger(state_to_compare(loop, second), state_to_compare(loop, first), tolerance);
       return time_shifted(loop, take_second ? second : first);
     }

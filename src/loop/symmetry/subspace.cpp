@@ -13,6 +13,11 @@ namespace orbweaver::loop {
 namespace {
 
 constexpr double zero_weight = 1e-14;
+/// Singular values of conditions made of sines and cosines, relative to the largest: they vanish to some roundings or
+/// are those of a rotation.
+constexpr double vanishing = 1e-10;
+/// Columns as long as the longest but for this are equally good pivots: the first one is taken, whatever rounding says.
+constexpr double equally_long = 1e-12;
 
 // g acting on (a_k, b_k), a vector of 2 x dimension (of dimension alone for k = 0).
 Eigen::MatrixXd harmonic_action(const SymmetryElement& g, int k) {
@@ -41,7 +46,7 @@ Eigen::MatrixXd fixed_space(const std::vector<Eigen::MatrixXd>& conditions, Eige
   for (std::size_t c = 0; c < conditions.size(); ++c)
     stacked.middleRows(static_cast<Eigen::Index>(c) * size, size) = conditions[c];
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(stacked, Eigen::ComputeFullV);
-  const double cut = 1e-10 * std::max(1.0, svd.singularValues().size() > 0 ? svd.singularValues()(0) : 1.0);
+  const double cut = vanishing * std::max(1.0, svd.singularValues().size() > 0 ? svd.singularValues()(0) : 1.0);
   const Eigen::Index rank = (svd.singularValues().array() > cut).count();
   const Eigen::MatrixXd kernel = svd.matrixV().rightCols(size - rank);
   Eigen::MatrixXd rest = kernel * kernel.transpose();
@@ -49,7 +54,7 @@ Eigen::MatrixXd fixed_space(const std::vector<Eigen::MatrixXd>& conditions, Eige
   for (Eigen::Index n = 0; n < basis.cols(); ++n) {
     Eigen::Index pivot = 0;
     for (Eigen::Index c = 1; c < size; ++c)
-      if (rest.col(c).norm() > rest.col(pivot).norm() + 1e-12) pivot = c;
+      if (rest.col(c).norm() > rest.col(pivot).norm() + equally_long) pivot = c;
     basis.col(n) = rest.col(pivot).normalized();
     if (basis(pivot, n) < 0.0) basis.col(n) = -basis.col(n);
     rest -= basis.col(n) * (basis.col(n).transpose() * rest).eval();

@@ -44,11 +44,11 @@ archive::Header header_of(const scene::Scene& scene, const systems::System& syst
 }
 
 void write_archive(const core::Communicator& comm, const scene::Scene& scene, const systems::System& system,
-                   const Checkpoint& standing, FamilyTree& tree, const SweepsEnded& sweeps, Summary& summary) {
+                   const Checkpoint& checkpoint, FamilyTree& tree, const SweepsEnded& sweeps, Summary& summary) {
   archive::Records tables;
   std::vector<std::filesystem::path> segments;
   core::on_root(comm.get(), [&] {
-    add_unfinished(standing.unfinished, tree);
+    add_unfinished(checkpoint.unfinished, tree);
     FamilyTree::Result found = tree.resolve();
     tables = std::move(found.tables);
     summary.families = std::move(found.families);
@@ -57,10 +57,10 @@ void write_archive(const core::Communicator& comm, const scene::Scene& scene, co
     for (const FamilySummary& family : summary.families) summary.orbits += family.orbits;
     summary.crossings = static_cast<long>(tables.crossings.size());
     gather_failed_sweeps(system, sweeps, summary, tables);
-    tables.voided = standing.voided;
-    tables.earlier_scenes = standing.earlier_scenes;
+    tables.voided = checkpoint.voided;
+    tables.earlier_scenes = checkpoint.earlier_scenes;
     const std::filesystem::path folder = state_folder(summary.atlas.parent_path());
-    for (const archive::WrittenSegment& segment : standing.segments) segments.push_back(folder / segment.name);
+    for (const archive::WrittenSegment& segment : checkpoint.segments) segments.push_back(folder / segment.name);
   });
   if (summary.archived) archive::consolidate(comm.get(), segments, summary.atlas, header_of(scene, system), tables);
   summary.failures = core::agreed(comm.get(), static_cast<unsigned long>(summary.failed_tasks.size()));

@@ -9,9 +9,9 @@ namespace orbweaver::survey {
 
 [[nodiscard]] archive::Header header_of(const scene::Scene& scene, const systems::System& system);
 
-/// Fills the summary from what has ended and what `standing` says was under way, and, if `summary.archived` says so,
+/// Fills the summary from what has ended and what `checkpoint` says was under way, and, if `summary.archived` says so,
 /// makes the archive `summary.atlas` of it and of the segments. Collective; only rank 0's arguments count.
 void write_archive(const core::Communicator& comm, const scene::Scene& scene, const systems::System& system,
-                   const Checkpoint& standing, FamilyTree& tree, const SweepsEnded& sweeps, Summary& summary);
+                   const Checkpoint& checkpoint, FamilyTree& tree, const SweepsEnded& sweeps, Summary& summary);
 
 }  // namespace orbweaver::survey

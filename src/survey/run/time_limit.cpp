@@ -10,8 +10,12 @@ namespace orbweaver::survey {
 
 namespace {
 
-/// What is left of a wall time for the last flush: a twentieth, a minute at most.
-double without_margin(double wall) { return wall - std::min(0.05 * wall, 60.0); }
+/// What is left of a wall time for the last flush: this share, and so many seconds at most. Not measured;
+/// a flush that comes too late is killed by the batch system, and the resume begins at the one before.
+constexpr double margin_share = 0.05;
+constexpr double largest_margin = 60.0;
+
+double without_margin(double wall) { return wall - std::min(margin_share * wall, largest_margin); }
 
 }  // namespace
 

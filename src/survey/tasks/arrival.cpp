@@ -26,39 +26,52 @@ double at_zero(const std::vector<Sample>& samples, double Sample::*value) {
 
 /// A smaller broken part is an orbit of the more symmetric family, onto which the corrector has slipped.
 constexpr double slipped = 1e-6;
+/// Orbits before the meeting point that the extrapolation takes, at most (with one on the way and one beyond, a
+/// quartic), and how far apart their parts must be: nearer ones multiply each other's errors. Not measured.
+constexpr std::size_t orbits_before = 3;
+constexpr double apart = 1.2;
+/// Where on the way to the meeting point, by linear interpolation of the part, one more orbit is sought. Nearer to it
+/// the corrector slips onto the more symmetric family. Not measured.
+constexpr double on_the_way = 0.7;
+/// The part is proportional to its signed part where it vanishes: its size may be so many times that, and so much more.
+/// A part that turns instead of vanishing keeps a size of about 1.
+constexpr double proportional = 2.0;
+constexpr double still_vanishing = 0.05;
+/// A smaller broken part does not say in which direction the branch came.
+constexpr double telling = 1e-2;
 
 std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuation::FamilyCurve& family,
-                                        const bifurcation::SymmetryWatch& watch, const bifurcation::Gained& gained,
+                                        const bifurcation::SymmetryWatch& watch, const bifurcation::SymmetryGain& gain,
                                         const continuation::Orbit& from, const continuation::Orbit& to) {
   std::vector<Sample> samples;
   const auto add = [&](const loop::Loop& loop) {
-    if (watch.relative_size(gained, from.loop, loop) < slipped) return;
-    samples.push_back({watch.signed_part(gained, from.loop, loop), loop.period, continuation::energy_of(system, loop)});
+    if (watch.relative_size(gain, from.loop, loop) < slipped) return;
+    samples.push_back({watch.signed_part(gain, from.loop, loop), loop.period, continuation::energy_of(system, loop)});
   };
   // Orbits before the meeting point and, if the branch went on along the images, one beyond. At the point itself the
   // two families cannot be told apart, so that nothing is solved for there. Backwards from `from`, as long as the part
   // grows: a polynomial in it needs values well apart.
   const std::vector<continuation::FamilyCurve::Known>& known = family.known();
-  for (auto orbit = known.rbegin(); orbit != known.rend() && samples.size() < 3; ++orbit) {
+  for (auto orbit = known.rbegin(); orbit != known.rend() && samples.size() < orbits_before; ++orbit) {
     if (orbit->position > from.arclength) continue;
     const std::size_t before = samples.size();
     add(orbit->loop);
     if (samples.size() == before) continue;
-    if (before > 0 && samples.back().part < 1.2 * samples[before - 1].part) {
+    if (before > 0 && samples.back().part < apart * samples[before - 1].part) {
       samples.pop_back();
       break;
     }
   }
   add(to.loop);
-  const double part = watch.signed_part(gained, from.loop, to.loop);
-  const double there = from.arclength + 0.7 / (1.0 - std::min(part, 0.0)) * (to.arclength - from.arclength);
+  const double part = watch.signed_part(gain, from.loop, to.loop);
+  const double there = from.arclength + on_the_way / (1.0 - std::min(part, 0.0)) * (to.arclength - from.arclength);
   loop::Loop near = from.loop;
   if (const auto point = family.at(there)) {
-    const double size = watch.relative_size(gained, from.loop, point->loop);
-    // A part that turns instead of vanishing is no arrival.
-    if (size > 2.0 * std::abs(watch.signed_part(gained, from.loop, point->loop)) + 0.05) return std::nullopt;
+    const double size = watch.relative_size(gain, from.loop, point->loop);
+    if (size > proportional * std::abs(watch.signed_part(gain, from.loop, point->loop)) + still_vanishing)
+      return std::nullopt;  // it turns instead of vanishing: no arrival
     add(point->loop);
-    if (size > 1e-2) near = point->loop;
+    if (size > telling) near = point->loop;
   }
   ArrivalRecord record;
   record.period = at_zero(samples, &Sample::period);
@@ -76,11 +89,11 @@ loop::Loop sketch_of(const loop::Loop& loop, int cutoff) {
 
 std::optional<ArrivalRecord> arrival_between(const systems::System& system, continuation::FamilyCurve& family,
                                              const bifurcation::SymmetryWatch& watch, const continuation::Orbit& from,
-                                             const bifurcation::SymmetryWatch::Seen& from_seen,
+                                             const bifurcation::SymmetryWatch::SampledOrbit& from_sampled,
                                              const continuation::Orbit& to,
-                                             const bifurcation::SymmetryWatch::Seen& to_seen) {
-  for (const bifurcation::Gained& gained : watch.all_passed(from_seen, to_seen))
-    if (auto record = arrival_by(system, family, watch, gained, from, to)) return record;
+                                             const bifurcation::SymmetryWatch::SampledOrbit& to_sampled) {
+  for (const bifurcation::SymmetryGain& gain : watch.all_passed(from_sampled, to_sampled))
+    if (auto record = arrival_by(system, family, watch, gain, from, to)) return record;
   return std::nullopt;
 }
 

@@ -15,8 +15,8 @@ namespace orbweaver::survey {
 /// crossing.
 [[nodiscard]] std::optional<ArrivalRecord> arrival_between(
     const systems::System& system, continuation::FamilyCurve& family, const bifurcation::SymmetryWatch& watch,
-    const continuation::Orbit& from, const bifurcation::SymmetryWatch::Seen& from_seen, const continuation::Orbit& to,
-    const bifurcation::SymmetryWatch::Seen& to_seen);
+    const continuation::Orbit& from, const bifurcation::SymmetryWatch::SampledOrbit& from_sampled,
+    const continuation::Orbit& to, const bifurcation::SymmetryWatch::SampledOrbit& to_sampled);
 
 /// A loop with few harmonics and s even in time, for comparisons.
 [[nodiscard]] loop::Loop sketch_of(const loop::Loop& loop, int cutoff = 60);

@@ -63,7 +63,7 @@ void BranchTask::begin(const std::string& bytes) {
   for (const continuation::FamilyCurve::Known& known : state.known) _curve.add(known.position, known.loop, kept_orbits);
   _detector = bifurcation::Detector(std::move(state.detector), {});
   _folds = state.folds;
-  _seen = bifurcation::SymmetryWatch::see(state.last.loop);
+  _sampled = bifurcation::SymmetryWatch::sampled(state.last.loop);
   _last = std::move(state.last);
   _before_first = state.before_first;
   _events = state.events;
@@ -97,19 +97,19 @@ queue::TaskOutcome BranchTask::run() {
 
 continuation::Ending BranchTask::follow() {
   while (true) {
-    const continuation::Frontier before = _branch->standing();
+    const continuation::Frontier before = _branch->restart_frontier();
     const std::optional<continuation::Orbit> orbit = _branch->advance();
     if (!orbit) {
       note_limits(_branch->ending().value(), before);
       return _branch->ending().value();
     }
     // The branch ends with an orbit on a limit, which it would not have under a wider one: no state may hold it.
-    const bool on_limit = orbit->loop.period >= _options.period_limit || _branch->standing().on_energy_limit;
+    const bool on_limit = orbit->loop.period >= _options.period_limit || _branch->restart_frontier().on_energy_limit;
     if (on_limit) limited_by(period_limited | energy_limited, before);
     if (!take(*orbit)) return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", orbit->loop.period)};
     if (on_limit) continue;
     _stopped = !_context.report({_outcome.orbits, 1, {orbit->loop.period, orbit->energy, orbit->loop.cutoff * 1.0}},
-                                [&] { return pack(state_at(_branch->standing())); });
+                                [&] { return pack(state_at(_branch->restart_frontier())); });
     if (_stopped) return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", orbit->loop.period)};
   }
 }
@@ -180,34 +180,35 @@ bool BranchTask::jumped(const continuation::Orbit& from, const continuation::Orb
 }
 
 bool BranchTask::arrive(const continuation::Orbit& orbit) {
-  bifurcation::SymmetryWatch::Seen seen = bifurcation::SymmetryWatch::see(orbit.loop);
+  bifurcation::SymmetryWatch::SampledOrbit sampled = bifurcation::SymmetryWatch::sampled(orbit.loop);
   if (_last) {
-    if (const auto arrival = arrival_between(*_system, _curve, _symmetry, *_last, *_seen, orbit, seen))
+    if (const auto arrival = arrival_between(*_system, _curve, _symmetry, *_last, *_sampled, orbit, sampled))
       _outcome.arrival.push_back(*arrival);
   }
-  _seen = std::move(seen);
+  _sampled = std::move(sampled);
   return !_outcome.arrival.empty();
 }
 
-bifurcation::Station BranchTask::station(double position, const std::optional<spectrum::Stability>& stability) const {
-  bifurcation::Station out{position, {}};
+bifurcation::TestPoint BranchTask::test_point(double position,
+                                              const std::optional<spectrum::Stability>& stability) const {
+  bifurcation::TestPoint out{position, {}};
   for (const bifurcation::TestFunction& function : _functions)
     out.readings.push_back(stability ? bifurcation::evaluate(function, _system->structure(), *stability)
                                      : bifurcation::Reading{archive::not_computed, archive::not_computed});
   return out;
 }
 
-std::optional<bifurcation::Station> BranchTask::probe(double position) {
+std::optional<bifurcation::TestPoint> BranchTask::probe(double position) {
   if (position < _curve.known().front().position) return std::nullopt;  // so far back no orbits are kept
   const std::optional<continuation::CurvePoint> point = _curve.at(position);
   if (!point) return std::nullopt;
-  return station(position, stability_of(*_system, point->loop, _start.isotropy, _team));
+  return test_point(position, stability_of(*_system, point->loop, _start.isotropy, _team));
 }
 
 void BranchTask::detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability) {
   using Kind = bifurcation::Event::Kind;
   const auto probing = [this](double position) { return probe(position); };
-  for (const bifurcation::Bracket& b : _detector.advance(station(orbit.arclength, stability), probing))
+  for (const bifurcation::Bracket& b : _detector.advance(test_point(orbit.arclength, stability), probing))
     add_event({Kind::test_function, _functions[b.function], b.tangency}, b.from, b.to);
   for (const bifurcation::Fold& fold : _folds.advance(orbit.arclength, orbit.loop.period, orbit.energy))
     add_event({fold.quantity == bifurcation::Fold::Quantity::period ? Kind::fold_period : Kind::fold_energy, {}, false},

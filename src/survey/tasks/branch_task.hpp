@@ -41,9 +41,9 @@ class BranchTask {
   void add_event(const bifurcation::Event& event, double from, double to);
   void solve_requested(const continuation::Orbit& orbit);
   void store(continuation::Orbit orbit, const std::optional<spectrum::Stability>& stability);
-  [[nodiscard]] bifurcation::Station station(double position,
-                                             const std::optional<spectrum::Stability>& stability) const;
-  [[nodiscard]] std::optional<bifurcation::Station> probe(double position);
+  [[nodiscard]] bifurcation::TestPoint test_point(double position,
+                                                  const std::optional<spectrum::Stability>& stability) const;
+  [[nodiscard]] std::optional<bifurcation::TestPoint> probe(double position);
 
   const scene::Scene& _scene;
   std::shared_ptr<const systems::System> _system;
@@ -61,11 +61,11 @@ class BranchTask {
   bifurcation::Detector _detector;
   bifurcation::FoldWatch _folds;
   std::optional<continuation::Orbit> _last;
-  std::optional<bifurcation::SymmetryWatch::Seen> _seen;  // of the last orbit
-  std::optional<spectrum::Stability> _last_stability;     // of the last orbit
-  std::vector<double> _asked;                             // modes of the orbit whose stability was asked for last,
-  std::optional<spectrum::Stability> _stability;          // and its stability
-  double _before_first = 0.0;                             // arclength from the crossing to the first orbit
+  std::optional<bifurcation::SymmetryWatch::SampledOrbit> _sampled;  // of the last orbit
+  std::optional<spectrum::Stability> _last_stability;                // of the last orbit
+  std::vector<double> _asked;                     // modes of the orbit whose stability was asked for last,
+  std::optional<spectrum::Stability> _stability;  // and its stability
+  double _before_first = 0.0;                     // arclength from the crossing to the first orbit
   int _events = 0;
   BranchOutcome _outcome;
   std::vector<queue::Task> _children;

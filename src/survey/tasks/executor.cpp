@@ -16,12 +16,16 @@ namespace orbweaver::survey {
 
 namespace {
 
+/// How far images of oscillations of unit amplitude may be apart: linear, they agree to rounding, or by some 1 not.
+constexpr double same_oscillation = 1e-8;
+
 // Both directions of a start are one family where a symmetry or a time shift maps loops on one side to those on the
 // other.
 bool directions_are_images(const systems::Structure& system, std::span<const double> point,
                            const starts::NormalMode& mode, int cutoff) {
   const loop::Loop base = loop::constant_loop(point, mode.period, cutoff);
-  return loop::find_map(system, loop::moved(base, mode.direction, 1.0), loop::moved(base, mode.direction, -1.0), 1e-8)
+  return loop::find_map(system, loop::moved(base, mode.direction, 1.0), loop::moved(base, mode.direction, -1.0),
+                        same_oscillation)
       .has_value();
 }
 

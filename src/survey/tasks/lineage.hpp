@@ -11,8 +11,8 @@ namespace orbweaver::survey {
 /// sides of the direction lead to different orbits of the family.
 struct Lineage {
   std::string family;    ///< key of the family
-  std::string crossing;  ///< key of the crossing where it was born; empty for bases
-  int depth = 0;         ///< 0 for bases
+  std::string crossing;  ///< key of the crossing where it was born; empty for base families
+  int depth = 0;         ///< 0 for base families
   int multiplicity = 1;  ///< times around the parent's orbit
   int side = 1;          ///< of the direction; -1: steps are counted backwards
 

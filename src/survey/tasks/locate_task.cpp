@@ -31,12 +31,19 @@ CrossingKind kind_of(const Event& event, int multiplicity) {
   return multiplicity == 2 ? CrossingKind::period_doubling : CrossingKind::subharmonic;
 }
 
+/// Pairs of multipliers count as in the sector within this or so many of their error bounds. A location leaves 1e-9
+/// (docs/mathematics.md, "Location"); one pair is counted in any case, so this matters to multiple crossings only.
+constexpr double in_sector = 1e-6;
+constexpr double error_bounds = 10.0;
+/// Rounding of a period at the limit, relative to it: such a family still begins on the limit.
+constexpr double at_limit = 1e-9;
+
 /// Null vectors that the multipliers at the crossing let expect.
 int expected_dimension(const bifurcation::Crossing& crossing, const bifurcation::Sector& sector) {
   int pairs = 0;
   for (std::size_t n = 0; n < crossing.stability.fundamental.size(); ++n) {
     const double away = std::abs(crossing.stability.fundamental[n] - sector.index());
-    if (away < std::max(1e-6, 10.0 * crossing.stability.fundamental_error[n])) ++pairs;
+    if (away < std::max(in_sector, error_bounds * crossing.stability.fundamental_error[n])) ++pairs;
   }
   return std::max(1, pairs) * (sector.q <= 2 ? 1 : 2);
 }
@@ -141,7 +148,7 @@ class Location {
 
   void leave(const bifurcation::Crossing& crossing, continuation::FamilyCurve& family) {
     const loop::Isotropy& isotropy = family.isotropy();
-    if (_outcome.multiplicity * _outcome.period > _scene.limits.period * (1.0 + 1e-9)) {
+    if (_outcome.multiplicity * _outcome.period > _scene.limits.period * (1.0 + at_limit)) {
       _outcome.remark = "orbits born here lie beyond the period limit";
       _outcome.limited_by = period_limited;
       return;

@@ -13,6 +13,13 @@ namespace orbweaver::survey {
 
 namespace {
 
+/// Amplitudes to try, in parts of the first. Too large a one may find another family, too small a one is lost in
+/// rounding. Not measured; a factor decides only where the ones before it found no orbit.
+constexpr double amplitude_factors[] = {1.0, 0.3, 3.0, 0.1, 10.0, 0.03};
+/// Least cosine between the first orbit's way and the direction in which it was to leave (60 degrees): an orbit of the
+/// base family or of another direction lies beside it. Not measured.
+constexpr double least_share = 0.5;
+
 /// What of the orbit's way from the crossing lies along the direction in which it was to leave: 1 where all does.
 double share_along(const continuation::Start& start, const loop::Loop& orbit) {
   const int cutoff = std::min(start.base.cutoff, orbit.cutoff);
@@ -40,9 +47,7 @@ queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const 
   const double first = work.branch.amplitude > 0.0 ? work.branch.amplitude : options.start_amplitude;
   std::optional<std::string> why;
   StartOutcome outcome;
-  // A born orbit leaves along its direction. Too large an amplitude may find another family, too small a one is lost in
-  // rounding.
-  for (const double factor : {1.0, 0.3, 3.0, 0.1, 10.0, 0.03}) {
+  for (const double factor : amplitude_factors) {
     options.start_amplitude = factor * first;
     continuation::Branch branch(system, begin, options);
     const std::optional<continuation::Orbit> orbit = branch.advance();
@@ -58,7 +63,7 @@ queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const 
       return done;
     }
     const double share = share_along(begin, orbit->loop);
-    if (share < 0.5) {
+    if (share < least_share) {
       why = fmt::format("at amplitude {:.2g} the orbit found lies beside the direction (cosine {:.2f})",
                         options.start_amplitude, share);
       continue;

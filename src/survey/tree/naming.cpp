@@ -10,11 +10,16 @@ namespace orbweaver::survey {
 
 namespace {
 
+/// Equilibria are found to rounding, and names are given for points with some digits.
+constexpr double same_place = 1e-6;
+/// In degrees or the coordinate's unit: printed as 0.
+constexpr double printed_as_zero = 1e-9;
+
 bool is_at(const systems::System& system, const std::vector<double>& point, const std::vector<double>& given) {
   for (std::size_t i = 0; i < given.size(); ++i) {
     double difference = point[i] - given[i];
     if (system.structure().is_angle(i)) difference = std::remainder(difference, 2.0 * std::numbers::pi);
-    if (std::abs(difference) > 1e-6) return false;
+    if (std::abs(difference) > same_place) return false;
   }
   return true;
 }
@@ -40,7 +45,7 @@ std::string point_text(const systems::System& system, const std::vector<double>&
   for (std::size_t i = 0; i < point.size(); ++i) {
     const double value = system.structure().is_angle(i) ? point[i] * 180.0 / std::numbers::pi : point[i];
     text += fmt::format("{}{} = {:.6g}{}", i == 0 ? "" : ", ", system.info().state_names[i],
-                        std::abs(value) < 1e-9 ? 0.0 : value, system.structure().is_angle(i) ? " deg" : "");
+                        std::abs(value) < printed_as_zero ? 0.0 : value, system.structure().is_angle(i) ? " deg" : "");
   }
   return text;
 }

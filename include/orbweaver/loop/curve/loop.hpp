@@ -59,9 +59,13 @@ struct Loop {
 /// cutoff).
 [[nodiscard]] Loop with_time_map(const Loop& loop, const TimeMap& map, int cutoff);
 
+/// Harmonics below this are negligible where a loop is expanded under another time map: two digits below the usual
+/// tolerance on the residual, in which harmonic k weighs 2 pi k/T times. A loop's own tail may be larger.
+inline constexpr double negligible_harmonic = 1e-12;
+
 /// The same loop with s even in time, with as many harmonics as that needs (up to eight times its own): the tail stays
 /// below twice its own or `negligible`, whichever is larger.
-[[nodiscard]] Loop evenly_in_time(const Loop& loop, double negligible = 1e-12);
+[[nodiscard]] Loop evenly_in_time(const Loop& loop, double negligible = negligible_harmonic);
 
 /// The same orbit gone around `times` times as one loop: harmonic k becomes harmonic times k, the period is multiplied.
 /// Throws MisuseError for times < 1 or a time map that is not the identity.

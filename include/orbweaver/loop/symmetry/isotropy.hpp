@@ -53,6 +53,10 @@ using Isotropy = std::vector<SymmetryElement>;
 /// How far `element` is from being a symmetry of the loop: mean distance of z and g z, angles modulo 2 pi.
 [[nodiscard]] double symmetry_defect(const Loop& loop, const SymmetryElement& element, const std::vector<int>& angles);
 
+/// What a symmetry of a converged loop of size 1 may be off: sqrt(loss) is below 1e-10 and modes are good to that over
+/// the smallest singular value, while a symmetry that is broken is off by the amplitude that breaks it.
+inline constexpr double symmetry_tolerance = 1e-7;
+
 /// Generators of the isotropy of `loop`: the declared symmetries of `system` that hold to `tolerance` with a time shift
 /// p/q, q <= `max_denominator` (the smallest that holds), products of earlier ones left out. s = 0 must already lie on
 /// the reversor's fixed set for a reversor to be seen at shift 0.

@@ -7,7 +7,7 @@
 namespace orbweaver::survey {
 
 /// What a folder holds of a survey.
-enum class Standing {
+enum class DirectoryStatus {
   none,                    ///< nothing: absent, empty, or no survey in it
   unfinished,              ///< a survey that did not come to its end, or whose limits are wider in the scene
   finished,                ///< a survey of this very scene with its archive
@@ -16,9 +16,9 @@ enum class Standing {
 
 /// Looks into `directory`. Throws InputError if what is there is unreadable, of a newer version, or of a scene that
 /// differs in more than wider limits. Not collective.
-[[nodiscard]] Standing standing_of(const std::filesystem::path& directory, const scene::Scene& scene);
+[[nodiscard]] DirectoryStatus status_of(const std::filesystem::path& directory, const scene::Scene& scene);
 
 /// Throws InputError where a survey may not begin: a folder with a survey needs `resume`.
-void require_startable(Standing standing, const std::filesystem::path& directory, bool resume);
+void require_startable(DirectoryStatus status, const std::filesystem::path& directory, bool resume);
 
 }  // namespace orbweaver::survey

@@ -1,4 +1,4 @@
-#include "orbweaver/survey/state/standing.hpp"
+#include "orbweaver/survey/state/directory_status.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -46,7 +46,8 @@ bool holds_files(const std::filesystem::path& folder) {
   return false;
 }
 
-Standing standing_of(const Checkpoint& checkpoint, const std::filesystem::path& directory, const scene::Scene& scene) {
+DirectoryStatus status_of(const Checkpoint& checkpoint, const std::filesystem::path& directory,
+                          const scene::Scene& scene) {
   const scene::Scene before = scene::parse(checkpoint.scene, "the checkpoint's scene");
   const std::string differing = refusal(before, scene);
   if (!differing.empty())
@@ -59,30 +60,30 @@ Standing standing_of(const Checkpoint& checkpoint, const std::filesystem::path& 
     return difference.change == scene::Change::widened;
   });
   if (checkpoint.stage != Stage::finished || widened || !std::filesystem::exists(directory / "atlas.h5"))
-    return Standing::unfinished;
-  return checkpoint.failures > 0 ? Standing::finished_with_failures : Standing::finished;
+    return DirectoryStatus::unfinished;
+  return checkpoint.failures > 0 ? DirectoryStatus::finished_with_failures : DirectoryStatus::finished;
 }
 
 }  // namespace
 
-Standing standing_of(const std::filesystem::path& directory, const scene::Scene& scene) {
+DirectoryStatus status_of(const std::filesystem::path& directory, const scene::Scene& scene) {
   const std::filesystem::path folder = state_folder(directory);
-  if (const auto checkpoint = newest_readable(folder)) return standing_of(*checkpoint, directory, scene);
+  if (const auto checkpoint = newest_readable(folder)) return status_of(*checkpoint, directory, scene);
   const std::filesystem::path atlas = directory / "atlas.h5";
-  if (!std::filesystem::exists(atlas)) return holds_files(folder) ? Standing::unfinished : Standing::none;
+  if (!std::filesystem::exists(atlas)) return holds_files(folder) ? DirectoryStatus::unfinished : DirectoryStatus::none;
   const archive::Archive archive(atlas);
   if (archive.header().scene != scene.text)
     throw core::InputError(
         fmt::format("{} was made from another scene than this one: give another folder with -o, or move the "
                     "archive away",
                     atlas.string()));
-  if (has_end(archive, EndKind::stopped)) return Standing::unfinished;
-  return has_end(archive, EndKind::failure) ? Standing::finished_with_failures : Standing::finished;
+  if (has_end(archive, EndKind::stopped)) return DirectoryStatus::unfinished;
+  return has_end(archive, EndKind::failure) ? DirectoryStatus::finished_with_failures : DirectoryStatus::finished;
 }
 
-void require_startable(Standing standing, const std::filesystem::path& directory, bool resume) {
-  if (standing == Standing::none || resume) return;
-  const bool unfinished = standing == Standing::unfinished;
+void require_startable(DirectoryStatus status, const std::filesystem::path& directory, bool resume) {
+  if (status == DirectoryStatus::none || resume) return;
+  const bool unfinished = status == DirectoryStatus::unfinished;
   throw core::InputError(
       fmt::format("{} already holds {} survey, and nothing was changed: give another folder with -o, or --resume to {}",
                   directory.string(), unfinished ? "an unfinished" : "a finished",
