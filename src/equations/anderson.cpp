@@ -37,9 +37,9 @@ void AndersonSolver::resize(int size) {
   if (size == _size) return;
   _size = size;
   const auto n = static_cast<std::size_t>(size);
-  for (std::vector<double>* v : {&_change, &_last_change, &_last_point, &_prediction}) v->assign(n, 0.0);
-  _point_differences.assign(depth * n, 0.0);
-  _change_differences.assign(depth * n, 0.0);
+  for (std::vector<double>* v : {&_change, &_last_change, &_last_point, &_prediction}) v->resize(n);
+  _point_differences.resize(depth * n);
+  _change_differences.resize(depth * n);
 }
 
 /// Adds the pair (point, change) minus the one before to the ring, and its products to the Gram matrix.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -42,13 +43,14 @@ Collocation::Collocation(const systems::System& system, const loop::FundamentalD
       _winding(std::move(winding)),
       _scalars(scalars.empty() ? conservative(domain) : std::move(scalars)),
       _keeps_mean(domain.coordinates_with_mean()),
-      _ends(domain.ends()),
-      _box(BoxScheme::of_dimension(system.dimension(), BoxScheme::Storage::lanes)) {
+      _ends(domain.ends()) {
   core::require(cells % BoxScheme::lanes == 0, "the cells of a domain must fill the lanes of the box scheme");
   core::require(_scalars.front().kind == loss::Scalar::Kind::period, "collocation solves for T");
   const double h = _grid.spacing();
-  for (int j = 0; j < cells; ++j) _density.push_back(_map.density((j + 0.5) * h));
-  for (int j = 0; j <= cells; ++j) _node_density.push_back(_map.density(j * h));
+  _density.resize(at(cells));
+  _node_density.resize(at(cells + 1));
+  for (int j = 0; j < cells; ++j) _density[at(j)] = _map.density((j + 0.5) * h);
+  for (int j = 0; j <= cells; ++j) _node_density[at(j)] = _map.density(j * h);
   _node_weights.assign(at(_grid.stride()), 0.0);
   const bool mirrored = domain.reversor.has_value();
   for (int j = 0; j <= cells; ++j) {
@@ -71,6 +73,7 @@ Collocation::~Collocation() = default;
 
 void Collocation::precondition(double* r) const {
   const core::LogEvent event(core::Event::precondition);
+  core::require(_box != nullptr, "collocation points are preconditioned before their matrices are factored");
   _box->solve(r);
 }
 
@@ -198,6 +201,7 @@ void Collocation::factor(const double* u) {
   }
   matrices.rows = rows.data();
   matrices.corner = corner.data();
+  if (!_box) _box = BoxScheme::of_dimension(dimension(), BoxScheme::Storage::lanes);
   _box->factor(matrices);
 }
 
@@ -300,10 +304,10 @@ std::vector<double> Collocation::resampled(const Collocation& from, const std::v
   std::vector<double> out(at(size()), 0.0);
   const int d = dimension();
   const int count = cells() + 1;
-  std::vector<double> modes((2 * at(from._grid.cutoff()) + 1) * at(d));
-  from._grid.to_modes(u.data(), modes.data());
+  const auto modes = std::make_unique_for_overwrite<double[]>((2 * at(from._grid.cutoff()) + 1) * at(d));
+  from._grid.to_modes(u.data(), modes.get());
   if (from._map == _map) {
-    _grid.from_modes(from._grid.cutoff(), modes.data(), out.data());
+    _grid.from_modes(from._grid.cutoff(), modes.get(), out.data());
   } else {
     // z at this grid's nodes, which the other map has elsewhere: harmonics by rotation, node by node.
     std::vector<double> turn_cos(at(count)), turn_sin(at(count)), c(at(count), 1.0), s(at(count), 0.0);
