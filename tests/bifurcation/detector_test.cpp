@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "orbweaver/bifurcation/detector.hpp"
-#include "orbweaver/bifurcation/locate.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/numerics/locate.hpp"
 
 namespace {
 
@@ -299,8 +299,8 @@ TEST(Detector, FindsWhatADenseSamplingFinds) {
     for (std::size_t f = 0; f < 3; ++f) {
       const double width = positions.back() / 20000.0;
       for (int n = 0; n < 20000; ++n) {
-        const auto root =
-            locate_root([&](double x) { return family.functions[f](x).value; }, n * width, (n + 1) * width, 1e-13);
+        const auto root = numerics::locate_root([&](double x) { return family.functions[f](x).value; }, n * width,
+                                                (n + 1) * width, 1e-13);
         if (root) events.push_back({f, root->position});
       }
     }

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
-#include <utility>
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
+#include "orbweaver/numerics/locate.hpp"
 
 namespace orbweaver::loop {
 
@@ -14,9 +15,7 @@ namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr double below_rounding = 1e-17;  // of a density of mean 1
-constexpr int most_steps = 200;           // of Newton's method: bisection alone needs 53
-constexpr double settled = 1e-15;         // a step in s that no longer changes it
-constexpr double newton_settled = 1e-9;   // Newton's next step would be of the order of its square
+constexpr double settled = 1e-15;         // a change of s that is rounding
 constexpr double whole = 1e-12;           // turns that differ from a whole number by less are rounding
 
 // cos ks and sin ks, from k to k + 1 by one turn.
@@ -43,62 +42,50 @@ int pulse_harmonics(double kappa) {
   return q == 0.0 ? 0 : 2 * static_cast<int>(std::ceil(std::log(below_rounding) / std::log(q)));
 }
 
-// Both at once: they share the harmonics.
-std::pair<double, double> phase_and_density(const TimeMap& map, double s) {
-  const double sine = std::sin(s);
-  const double cosine = std::cos(s);
-  double phase = s;
-  double density = 1.0;
-  if (map.kappa != 1.0) {
-    phase += std::atan2((map.kappa - 1.0) * sine * cosine, cosine * cosine + map.kappa * sine * sine);
-    density = pulse_density(map.kappa, cosine, sine);
-  }
-  Wave wave{cosine, sine};
-  for (std::size_t n = 0; 2 * n + 1 < map.coefficients.size(); ++n) {
-    const double c = map.coefficients[2 * n];
-    const double d = map.coefficients[2 * n + 1];
-    phase += (c * wave.sine + d * (1.0 - wave.cosine)) / static_cast<double>(n + 1);
-    density += c * wave.cosine + d * wave.sine;
-    wave.turn(cosine, sine);
-  }
-  return {phase, density};
-}
-
 }  // namespace
 
 bool TimeMap::is_identity() const {
   return kappa == 1.0 && std::all_of(coefficients.begin(), coefficients.end(), [](double c) { return c == 0.0; });
 }
 
-double TimeMap::phase(double s) const { return phase_and_density(*this, s).first; }
+double TimeMap::phase(double s) const {
+  const double sine = std::sin(s);
+  const double cosine = std::cos(s);
+  double phase = s;
+  if (kappa != 1.0) phase += std::atan2((kappa - 1.0) * sine * cosine, cosine * cosine + kappa * sine * sine);
+  Wave wave{cosine, sine};
+  for (std::size_t n = 0; 2 * n + 1 < coefficients.size(); ++n) {
+    phase +=
+        (coefficients[2 * n] * wave.sine + coefficients[2 * n + 1] * (1.0 - wave.cosine)) / static_cast<double>(n + 1);
+    wave.turn(cosine, sine);
+  }
+  return phase;
+}
 
-double TimeMap::density(double s) const { return phase_and_density(*this, s).second; }
+double TimeMap::density(double s) const {
+  const double sine = std::sin(s);
+  const double cosine = std::cos(s);
+  double density = kappa == 1.0 ? 1.0 : pulse_density(kappa, cosine, sine);
+  Wave wave{cosine, sine};
+  for (std::size_t n = 0; 2 * n + 1 < coefficients.size(); ++n) {
+    density += coefficients[2 * n] * wave.cosine + coefficients[2 * n + 1] * wave.sine;
+    wave.turn(cosine, sine);
+  }
+  return density;
+}
 
 double TimeMap::inverse(double phase_wanted) const {
   const double turns = std::floor(phase_wanted / two_pi);
   const double wanted = phase_wanted - two_pi * turns;
-  double low = 0.0;
-  double high = two_pi;
-  double s = wanted;
-  if (coefficients.empty()) {  // tan s = tan(phase) / kappa, on the same branch
-    s = wanted + std::atan2((1.0 / kappa - 1.0) * std::sin(wanted) * std::cos(wanted),
-                            std::cos(wanted) * std::cos(wanted) + std::sin(wanted) * std::sin(wanted) / kappa);
-    return s + two_pi * turns;
-  }
-  double last = two_pi;
-  for (int n = 0; n < most_steps; ++n) {
-    const auto [here, slope] = phase_and_density(*this, s);
-    const double excess = here - wanted;
-    (excess > 0.0 ? high : low) = s;
-    double next = s - excess / slope;
-    // Newton's steps may go to and fro within the bracket for ever: they must halve.
-    const bool newton = next > low && next < high && std::abs(next - s) <= 0.5 * last;
-    if (!newton) next = 0.5 * (low + high);
-    last = std::abs(next - s);
-    s = next;
-    if (last < settled || (newton && last < newton_settled)) break;
-  }
-  return s + two_pi * turns;
+  if (coefficients.empty())  // tan s = tan(phase) / kappa, on the same branch
+    return wanted +
+           std::atan2((1.0 / kappa - 1.0) * std::sin(wanted) * std::cos(wanted),
+                      std::cos(wanted) * std::cos(wanted) + std::sin(wanted) * std::sin(wanted) / kappa) +
+           two_pi * turns;
+  const double remaining = std::clamp(wanted, 0.0, two_pi);  // rounding of the turns may take it outside
+  const auto excess = [&](double s) { return phase(s) - remaining; };
+  const auto root = numerics::locate_root(excess, {0.0, -remaining}, {two_pi, two_pi - remaining}, settled);
+  return root ? root->position + two_pi * turns : std::numeric_limits<double>::quiet_NaN();
 }
 
 bool TimeMap::is_invariant_under_shift(double turns) const {
