@@ -6,8 +6,6 @@
 #include <numbers>
 #include <numeric>
 
-#include <fmt/format.h>
-
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/symmetry/shift_search.hpp"
@@ -58,12 +56,6 @@ struct SymmetryWatch::Products {
   double mixed;   // <c(A), c(B)>
   double second;  // <c(B), c(B)>
 };
-
-std::string to_text(const Gained& gained) {
-  if (gained.reversing) return gained.name;
-  if (gained.shift_numerator == 0) return gained.name + "@0";
-  return fmt::format("{}@{}/{}", gained.name, gained.shift_numerator, gained.shift_denominator);
-}
 
 SymmetryWatch::SymmetryWatch(const systems::Structure& system, const loop::Isotropy& own, int largest_order)
     : _system(system), _own(own) {
@@ -208,16 +200,6 @@ std::vector<Gained> SymmetryWatch::all_passed(const Seen& from, const Seen& to) 
   std::vector<Gained> out;
   for (auto& [order, gained] : found) out.push_back(std::move(gained));
   return out;
-}
-
-std::optional<Gained> SymmetryWatch::passed(const loop::Loop& a, const loop::Loop& b) const {
-  return passed(see(a), see(b));
-}
-
-std::optional<Gained> SymmetryWatch::passed(const Seen& a, const Seen& b) const {
-  std::vector<Gained> all = all_passed(a, b);
-  if (all.empty()) return std::nullopt;
-  return std::move(all.front());
 }
 
 double SymmetryWatch::signed_part(const Gained& gained, const loop::Loop& a, const loop::Loop& at) const {

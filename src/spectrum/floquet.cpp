@@ -219,8 +219,6 @@ Integrated integrated(const systems::System& system, const loop::Loop& loop, con
 
 }  // namespace
 
-double Stability::relative_error() const { return largest_relative(full, full_error); }
-
 Stability floquet(const systems::System& system, const loop::Loop& loop, const loop::Isotropy& isotropy,
                   const FloquetOptions& options) {
   const core::LogStage stage(core::Stage::spectrum);
