@@ -28,8 +28,8 @@ struct OffBranchTriplet {
                                                             const std::vector<int>& signs, const loop::Tangent& tangent,
                                                             const spectrum::TripletOptions& options);
 
-/// The smallest eigenvalue of H over all of these perturbations: the paper's off-branch eigenvalue (section III C). With
-/// `krylov_from` coefficients or more the whole space is solved at once and matrix-free, which is then faster than
+/// The smallest eigenvalue of H over all of these perturbations: the paper's off-branch eigenvalue (section III C).
+/// With `krylov_from` coefficients or more the whole space is solved at once and matrix-free, which is then faster than
 /// sector by sector (docs/performance.md); NaN where that does not converge. It belongs to the coefficients of the loop
 /// with s even in time: under a time map the loop and its tangent are expanded so first.
 [[nodiscard]] double off_branch_eigenvalue(const systems::System& system, const loop::Loop& loop,
