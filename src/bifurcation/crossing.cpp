@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "orbweaver/bifurcation/locate.hpp"
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/numerics/locate.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -58,8 +58,8 @@ class EventFunction {
 };
 
 /// The least or largest period or energy between two positions, if it lies within.
-std::optional<Located> extremum(const systems::System& system, continuation::FamilyCurve& family, const Event& event,
-                                double from, double to, double tolerance) {
+std::optional<numerics::Located> extremum(const systems::System& system, continuation::FamilyCurve& family,
+                                          const Event& event, double from, double to, double tolerance) {
   const auto quantity = [&](double position) {
     const std::optional<continuation::CurvePoint> point = family.at(position);
     if (!point) return nan;
@@ -67,8 +67,8 @@ std::optional<Located> extremum(const systems::System& system, continuation::Fam
   };
   const double ends = 0.5 * (quantity(from) + quantity(to));
   for (const double sign : {1.0, -1.0}) {
-    std::optional<Located> found =
-        locate_minimum([&](double position) { return sign * (quantity(position) - ends); }, from, to, tolerance);
+    std::optional<numerics::Located> found = numerics::locate_minimum(
+        [&](double position) { return sign * (quantity(position) - ends); }, from, to, tolerance);
     const double margin = off_ends * (to - from);
     if (found && found->position > from + margin && found->position < to - margin) return found;
   }
@@ -115,9 +115,10 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
   constexpr double widest = 1e-10;  // what |index - value| <= |dk/ds| 1e-10 allows
   const double absolute = std::min(tolerance * (1.0 + std::max(std::abs(from), std::abs(to))), widest);
   const auto along = [&](double position) { return function(position); };
-  std::optional<Located> located =
-      event.tangency ? locate_minimum([&](double position) { return std::abs(function(position)); }, from, to, absolute)
-                     : locate_root(along, from, to, absolute);
+  std::optional<numerics::Located> located =
+      event.tangency
+          ? numerics::locate_minimum([&](double position) { return std::abs(function(position)); }, from, to, absolute)
+          : numerics::locate_root(along, from, to, absolute);
   // Where directions along the family are uncertain, the extremum itself is looked for.
   if (!located && event.kind != Event::Kind::test_function)
     located = extremum(system, family, event, from, to, absolute);

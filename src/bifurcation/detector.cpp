@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "orbweaver/bifurcation/locate.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/numerics/locate.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -130,7 +130,7 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
     return sign * reading.value;
   };
   const double length = right.position - left.position;
-  (void)locate_minimum(size, left.position, right.position, minimum_width * length, _options.probes);
+  (void)numerics::locate_minimum(size, left.position, right.position, minimum_width * length, _options.probes);
   std::sort(nodes.begin(), nodes.end(), [](const Node& a, const Node& b) { return a.position < b.position; });
   double& examined_to = _state.watches[function].examined_to;
   if (crossed) {

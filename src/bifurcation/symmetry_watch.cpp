@@ -6,8 +6,6 @@
 #include <numbers>
 #include <numeric>
 
-#include <fmt/format.h>
-
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/curve/time_samples.hpp"
@@ -66,12 +64,6 @@ struct SymmetryWatch::Products {
   double mixed;   // <c(A), c(B)>
   double second;  // <c(B), c(B)>
 };
-
-std::string to_text(const SymmetryGain& gain) {
-  if (gain.reversing) return gain.name;
-  if (gain.shift_numerator == 0) return gain.name + "@0";
-  return fmt::format("{}@{}/{}", gain.name, gain.shift_numerator, gain.shift_denominator);
-}
 
 SymmetryWatch::SymmetryWatch(const systems::Structure& system, const loop::Isotropy& own, int largest_order)
     : _system(system), _own(own) {
@@ -137,7 +129,7 @@ SymmetryWatch::Products SymmetryWatch::compare(const SymmetryGain& gain, const S
 }
 
 // <c(A), c(B)> of one matrix for all its shifts, from correlations harmonic by harmonic: cheap, but known only to
-// rounding of |A||B|, which decides where nothing is gained.
+// rounding of |A||B|, which decides where nothing is gain.
 class SymmetryWatch::Correlation {
  public:
   Correlation(const systems::AffineMap& inverse, const SampledOrbit& a, const SampledOrbit& b,
@@ -218,16 +210,6 @@ std::vector<SymmetryGain> SymmetryWatch::all_passed(const SampledOrbit& from, co
   std::vector<SymmetryGain> out;
   for (auto& [order, gain] : found) out.push_back(std::move(gain));
   return out;
-}
-
-std::optional<SymmetryGain> SymmetryWatch::passed(const loop::Loop& a, const loop::Loop& b) const {
-  return passed(sampled(a), sampled(b));
-}
-
-std::optional<SymmetryGain> SymmetryWatch::passed(const SampledOrbit& a, const SampledOrbit& b) const {
-  std::vector<SymmetryGain> all = all_passed(a, b);
-  if (all.empty()) return std::nullopt;
-  return std::move(all.front());
 }
 
 double SymmetryWatch::signed_part(const SymmetryGain& gain, const loop::Loop& a, const loop::Loop& at) const {

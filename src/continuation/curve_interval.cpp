@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/numerics/lagrange.hpp"
 
 namespace orbweaver::continuation {
 
@@ -32,28 +34,22 @@ loop::Loop under_map(const loop::Loop& loop, const loop::TimeMap& map) {
   return out;
 }
 
-/// Weights of a polynomial through those of `positions` (nearest first, well apart) for its value at `position`; zero
-/// for the others. `length` is that of the interval.
-std::vector<double> lagrange_weights(const std::vector<double>& positions, double position, double length) {
-  std::vector<std::size_t> nearest(positions.size());
-  for (std::size_t n = 0; n < nearest.size(); ++n) nearest[n] = n;
+/// Up to four nodes, nearest to `position` first, well apart so that their rounding is not amplified: what is nearer
+/// than `apart` of the interval's `length` is not.
+std::vector<std::size_t> nodes_near(const std::vector<TracePoint>& points, double position, double length) {
+  std::vector<std::size_t> nearest(points.size());
+  std::iota(nearest.begin(), nearest.end(), std::size_t{0});
   std::stable_sort(nearest.begin(), nearest.end(), [&](std::size_t a, std::size_t b) {
-    return std::abs(positions[a] - position) < std::abs(positions[b] - position);
+    return std::abs(points[a].parameter - position) < std::abs(points[b].parameter - position);
   });
-  std::vector<std::size_t> used;  // well apart, so that their rounding is not amplified
+  std::vector<std::size_t> used;
   for (const std::size_t n : nearest) {
     const bool is_apart = std::all_of(used.begin(), used.end(), [&](std::size_t other) {
-      return std::abs(positions[n] - positions[other]) > apart * length;
+      return std::abs(points[n].parameter - points[other].parameter) > apart * length;
     });
     if (is_apart && used.size() < used_orbits) used.push_back(n);
   }
-  std::vector<double> weights(positions.size(), 0.0);
-  for (const std::size_t n : used) {
-    weights[n] = 1.0;
-    for (const std::size_t other : used)
-      if (other != n) weights[n] *= (position - positions[other]) / (positions[n] - positions[other]);
-  }
-  return weights;
+  return used;
 }
 
 }  // namespace
@@ -125,17 +121,17 @@ bool CurveInterval::slipped(const Trial& trial, const Prediction& prediction) {
 
 /// On the polynomial through the nearest points, moved along the chord to its share of it.
 Prediction CurveInterval::prediction_at(double position) {
+  const std::vector<std::size_t> used = nodes_near(_points, position, _to - _from);
   std::vector<double> positions;
-  for (const TracePoint& point : _points) positions.push_back(point.parameter);
-  const std::vector<double> weights = lagrange_weights(positions, position, _to - _from);
+  for (const std::size_t n : used) positions.push_back(_points[n].parameter);
+  const std::vector<double> weights = numerics::lagrange_weights(positions, position).value;
   const std::vector<double>& first = _points[_first].values;
   const std::vector<double>& last = _points[_last].values;
   Prediction out;
   out.values.assign(first.size(), 0.0);
   out.tangent.resize(first.size());
-  for (std::size_t p = 0; p < weights.size(); ++p)
-    if (weights[p] != 0.0)
-      for (std::size_t n = 0; n < out.values.size(); ++n) out.values[n] += weights[p] * _points[p].values[n];
+  for (std::size_t p = 0; p < used.size(); ++p)
+    for (std::size_t n = 0; n < out.values.size(); ++n) out.values[n] += weights[p] * _points[used[p]].values[n];
   for (std::size_t n = 0; n < first.size(); ++n) out.tangent[n] = last[n] - first[n];
   _problem->settle(out, first);
   std::vector<double> end = first;

@@ -1,13 +1,25 @@
 #include "limit_orbit.hpp"
 
 #include <cmath>
+#include <limits>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/numerics/locate.hpp"
 
 namespace orbweaver::continuation {
 
 namespace {
+
+/// Width of a bracket that is left, in parts of the position: rounding.
+constexpr double position_width = 1e-14;
+/// An orbit whose quantity is so near to a limit, in parts of 1 + |limit|, lies on it.
+constexpr double on_limit = 1e-13;
+/// The same where rounding lets none come nearer.
+constexpr double near_limit = 1e-10;
 
 OnLimit failure(const Passed& passed, std::string_view why) {
   return {std::nullopt,
@@ -18,15 +30,14 @@ OnLimit failure(const Passed& passed, std::string_view why) {
 /// Where the polynomial through the last points and the one beyond has the limit.
 Prediction predicted_at_scalar(const Stepper& stepper, const Passed& passed, std::size_t at) {
   std::vector<TracePoint> points = stepper.frontier().points;
-  double low = points.back().parameter;
-  points.push_back({passed.beyond.values, points.back().parameter + passed.length});
-  double high = points.back().parameter;
+  const double last = points.back().parameter;
+  points.push_back({passed.beyond.values, last + passed.length});
   const int order = stepper.options().predictor_order;
-  for (int n = 0; n < 60 && high - low > 1e-14 * high; ++n) {
-    const double middle = 0.5 * (low + high);
-    (extrapolate(points, order, middle).values[at] > passed.limit ? high : low) = middle;
-  }
-  Prediction prediction = extrapolate(points, order, low);
+  const auto root = numerics::locate_root(
+      [&](double parameter) { return extrapolate(points, order, parameter).values[at] - passed.limit; }, last,
+      last + passed.length, position_width * (last + passed.length));
+  core::require(root.has_value(), "a limit that a step has passed lies between its ends");
+  Prediction prediction = extrapolate(points, order, root->position);
   prediction.values[at] = passed.limit;
   return prediction;
 }
@@ -57,38 +68,39 @@ OnLimit orbit_at_scalar(Stepper& stepper, const Passed& passed, int scalar) {
 OnLimit orbit_at_value(Stepper& stepper, const Passed& passed, double from,
                        const std::function<double(const Trial&)>& quantity) {
   stepper.begin();
-  double low = 0.0;
-  double low_value = from - passed.limit;
-  double high = passed.length;
-  double high_value = quantity(passed.beyond) - passed.limit;
   const double scale = 1.0 + std::abs(passed.limit);
-  Trial trial;
-  bool found = false;
-  for (int n = 0; n < 60 && (!found || std::abs(high_value) > 1e-13 * scale); ++n) {
-    const double middle = (low * high_value - high * low_value) / (high_value - low_value);
-    trial = stepper.step(middle);
-    found = !stepper.needs_more_harmonics(trial);
-    if (!found) {
-      if (!stepper.refine(trial))
-        return {std::nullopt,
-                {EndReason::cutoff_limit,
-                 fmt::format("the next orbit needs more than K = {}", stepper.options().cutoff_to)}};
-      continue;
+  double nearest = std::numeric_limits<double>::infinity();
+  OnLimit found;
+  std::optional<OnLimit> failed;
+  const auto excess = [&](double length) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    Trial trial = stepper.step(length);
+    while (stepper.needs_more_harmonics(trial)) {
+      if (!stepper.refine(trial)) {
+        failed = {std::nullopt,
+                  {EndReason::cutoff_limit,
+                   fmt::format("the next orbit needs more than K = {}", stepper.options().cutoff_to)}};
+        return none;
+      }
+      trial = stepper.step(length);
     }
-    if (!trial.is_orbit) return failure(passed, trial.reason);
+    if (!trial.is_orbit) {
+      failed = failure(passed, trial.reason);
+      return none;
+    }
     const double value = quantity(trial) - passed.limit;
-    if ((value > 0.0) != (high_value > 0.0)) {
-      low = high;
-      low_value = high_value;
-    } else {
-      low_value *= 0.5;
+    if (std::abs(value) < nearest) {
+      nearest = std::abs(value);
+      found.trial = std::move(trial);
     }
-    high = middle;
-    high_value = value;
-  }
-  if (!found || std::abs(high_value) > 1e-10 * scale)
-    return failure(passed, fmt::format("the bracket ends {:.1e} beside it", high_value));
-  return {std::move(trial), {}};
+    return std::abs(value) <= on_limit * scale ? 0.0 : value;
+  };
+  (void)numerics::locate_root(excess, {0.0, from - passed.limit},
+                              {passed.length, quantity(passed.beyond) - passed.limit}, position_width * passed.length);
+  if (failed) return *std::move(failed);
+  if (!(nearest <= near_limit * scale))
+    return failure(passed, fmt::format("the nearest orbit is {:.1e} beside it", nearest));
+  return found;
 }
 
 }  // namespace orbweaver::continuation

@@ -23,7 +23,6 @@ constexpr double contained = 1e-8;
 // What is perturbed, and what is known to be flat there.
 struct Sector {
   loss::Unknowns unknowns;
-  std::vector<int> signs;
   loss::Slice slice;
 };
 
@@ -54,10 +53,10 @@ std::vector<loss::Scalar> scalars_of(bool all_kept) {
 // All sign patterns of the generators, or the unrestricted space where they do not split the modes completely.
 std::vector<Sector> sectors_of(const loop::Loop& loop, const loop::Isotropy& isotropy, const loop::Tangent& tangent) {
   std::vector<Sector> sectors;
-  const auto add = [&](loop::Subspace subspace, std::vector<int> signs, bool period) {
+  const auto add = [&](loop::Subspace subspace, bool period) {
     loss::Unknowns unknowns{std::move(subspace), scalars_of(period)};
     loss::Slice slice = complement(unknowns, loop, tangent);
-    if (slice.free() > 0) sectors.push_back({std::move(unknowns), std::move(signs), std::move(slice)});
+    if (slice.free() > 0) sectors.push_back({std::move(unknowns), std::move(slice)});
   };
   int covered = 0;
   if (!isotropy.empty())
@@ -67,12 +66,12 @@ std::vector<Sector> sectors_of(const loop::Loop& loop, const loop::Isotropy& iso
       loop::Subspace sector(loop.dimension, loop.cutoff, isotropy, signs);
       covered += sector.size();
       // The first pattern has all signs positive: the only one that a change of T belongs to.
-      if (sector.size() > 0) add(std::move(sector), std::move(signs), pattern == 0);
+      if (sector.size() > 0) add(std::move(sector), pattern == 0);
     }
   loop::Subspace whole = loop::Subspace::unrestricted(loop.dimension, loop.cutoff);
   if (covered != whole.size()) {
     sectors.clear();
-    add(std::move(whole), {}, true);
+    add(std::move(whole), true);
   }
   return sectors;
 }
@@ -85,50 +84,31 @@ double matrix_free_eigenvalue(const systems::System& system, const loop::Loop& l
   }
 }
 
-std::vector<OffBranchTriplet> triplets_in(const systems::System& system, const loop::Loop& loop, const Sector& sector,
-                                          const spectrum::TripletOptions& options) {
-  spectrum::TripletOptions here = options;
-  here.count = std::min(options.count, sector.slice.free());
-  const spectrum::SingularTriplets found =
-      spectrum::smallest_singular_triplets(system, loop, sector.unknowns, sector.slice, here);
-  std::vector<OffBranchTriplet> all;
-  for (std::size_t n = 0; n < found.values.size(); ++n) {
-    OffBranchTriplet t;
-    t.singular_value = found.values[n];
-    const Eigen::VectorXd v = found.right.col(static_cast<Eigen::Index>(n));
-    t.direction = sector.unknowns.tangent_of(std::span(v.data(), static_cast<std::size_t>(v.size())));
-    t.signs = sector.signs;
-    t.residual = found.residuals[n];
-    t.left_residual = found.left_residuals[n];
-    all.push_back(std::move(t));
-  }
-  return all;
-}
-
 }  // namespace
-
-std::vector<OffBranchTriplet> off_branch_triplets(const systems::System& system, const loop::Loop& loop,
-                                                  const loop::Isotropy& isotropy, const loop::Tangent& tangent,
-                                                  const spectrum::TripletOptions& options) {
-  std::vector<OffBranchTriplet> all;
-  for (const Sector& sector : sectors_of(loop, isotropy, tangent))
-    for (OffBranchTriplet& t : triplets_in(system, loop, sector, options)) all.push_back(std::move(t));
-  std::stable_sort(all.begin(), all.end(), [](const OffBranchTriplet& a, const OffBranchTriplet& b) {
-    return a.singular_value < b.singular_value;
-  });
-  if (all.size() > static_cast<std::size_t>(options.count)) all.resize(static_cast<std::size_t>(options.count));
-  return all;
-}
 
 std::vector<OffBranchTriplet> sector_triplets(const systems::System& system, const loop::Loop& loop,
                                               const loop::Isotropy& isotropy, const std::vector<int>& signs,
                                               const loop::Tangent& tangent, const spectrum::TripletOptions& options) {
   const bool all_kept = std::all_of(signs.begin(), signs.end(), [](int sign) { return sign > 0; });
-  loss::Unknowns unknowns{loop::Subspace(loop.dimension, loop.cutoff, isotropy, signs), scalars_of(all_kept)};
+  const loss::Unknowns unknowns{loop::Subspace(loop.dimension, loop.cutoff, isotropy, signs), scalars_of(all_kept)};
   if (unknowns.subspace.size() == 0) return {};
-  loss::Slice slice = complement(unknowns, loop, tangent);
+  const loss::Slice slice = complement(unknowns, loop, tangent);
   if (slice.free() == 0) return {};
-  return triplets_in(system, loop, {std::move(unknowns), signs, std::move(slice)}, options);
+  spectrum::TripletOptions here = options;
+  here.count = std::min(options.count, slice.free());
+  const spectrum::SingularTriplets found = spectrum::smallest_singular_triplets(system, loop, unknowns, slice, here);
+  std::vector<OffBranchTriplet> all;
+  for (std::size_t n = 0; n < found.values.size(); ++n) {
+    OffBranchTriplet t;
+    t.singular_value = found.values[n];
+    const Eigen::VectorXd v = found.right.col(static_cast<Eigen::Index>(n));
+    t.direction = unknowns.tangent_of(std::span(v.data(), static_cast<std::size_t>(v.size())));
+    t.signs = signs;
+    t.residual = found.residuals[n];
+    t.left_residual = found.left_residuals[n];
+    all.push_back(std::move(t));
+  }
+  return all;
 }
 
 double off_branch_eigenvalue(const systems::System& system, const loop::Loop& loop, const loop::Isotropy& isotropy,

@@ -1,18 +1,16 @@
 #include "orbweaver/continuation/orbit.hpp"
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "orbweaver/loop/curve/measures.hpp"
 
 namespace orbweaver::continuation {
 
-double energy_at(const systems::System& system, std::span<const double> state) {
-  return system.structure().conservative() ? system.conserved(0, state) : std::numeric_limits<double>::quiet_NaN();
-}
-
 double energy_of(const systems::System& system, const loop::Loop& loop) {
-  return energy_at(system, loop::state_at(loop, 0.0));
+  if (!system.structure().conservative()) return std::numeric_limits<double>::quiet_NaN();
+  return system.conserved(0, loop::state_at(loop, 0.0));
 }
 
 double action_of(const systems::System& system, const loop::Loop& loop) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/numerics/lagrange.hpp"
 
 namespace orbweaver::continuation {
 
@@ -14,20 +15,14 @@ Prediction extrapolate(std::span<const TracePoint> points, int order, double par
   out.order = static_cast<int>(used) - 1;
   out.values.assign(last[0].values.size(), 0.0);
   out.tangent.assign(last[0].values.size(), 0.0);
+  std::vector<double> parameters;
+  for (const TracePoint& point : last) parameters.push_back(point.parameter);
+  const numerics::LagrangeWeights weights = numerics::lagrange_weights(parameters, parameter);
   for (std::size_t i = 0; i < used; ++i) {
-    double weight = 1.0;
-    double slope = 0.0;
-    for (std::size_t l = 0; l < used; ++l) {
-      if (l == i) continue;
-      const double gap = last[i].parameter - last[l].parameter;
-      const double distance = parameter - last[l].parameter;
-      slope = (slope * distance + weight) / gap;
-      weight *= distance / gap;
-    }
     const std::vector<double>& v = last[i].values;
     for (std::size_t n = 0; n < v.size(); ++n) {
-      out.values[n] += weight * v[n];
-      out.tangent[n] += slope * v[n];
+      out.values[n] += weights.value[i] * v[n];
+      out.tangent[n] += weights.slope[i] * v[n];
     }
   }
   return out;

@@ -48,15 +48,6 @@ Tracer::Tracer(std::shared_ptr<const systems::System> system, Start start, Optio
       _problem(make_point_problem({*_system, _start.base, _start.isotropy}, _options, _frontier.problem)),
       _stepper(*_problem, _options, _frontier) {}
 
-/// At s = 0, where no harmonic needs a cosine.
-double Tracer::energy(const Trial& trial) const {
-  const loop::Loop& loop = trial.loop;
-  std::vector<double> z(loop.modes.begin(), loop.modes.begin() + loop.dimension);
-  for (int k = loop.cutoff; k >= 1; --k)
-    for (int i = 0; i < loop.dimension; ++i) z[static_cast<std::size_t>(i)] += loop.cosine(k, i);
-  return energy_at(*_system, z);
-}
-
 void Tracer::go_on_from(Frontier frontier) {
   _frontier = std::move(frontier);
   _problem->state_replaced();
@@ -95,7 +86,7 @@ std::optional<Orbit> Tracer::first_orbit() {
     }
     if (trial.is_orbit) {
       _frontier.points = {{base, 0.0}};
-      _ending = beyond_limits(scalar(trial, 0), energy(trial), _options);
+      _ending = beyond_limits(scalar(trial, 0), energy_of(*_system, trial.loop), _options);
       if (_ending) return std::nullopt;
       _frontier.next_length =
           std::min(growth_after_first * _problem->distance(trial.values, base), _options.largest_step);
@@ -182,11 +173,11 @@ std::optional<Orbit> Tracer::accept_within_limits(Trial trial, double length) {
     on_limit = orbit_at_scalar(_stepper, {EndReason::period_limit, "T", _options.period_limit, length, trial}, period);
     if (on_limit.trial) on_limit.trial->loop.period = _options.period_limit;
   } else {
-    const double value = energy(trial);
+    const double value = energy_of(*_system, trial.loop);
     if (!(value > _options.energy_to || value < _options.energy_from)) return accept(trial);
     const double limit = value > _options.energy_to ? _options.energy_to : _options.energy_from;
     on_limit = orbit_at_value(_stepper, {EndReason::energy_limit, "E", limit, length, trial}, _frontier.orbit.energy,
-                              [this](const Trial& other) { return energy(other); });
+                              [this](const Trial& other) { return energy_of(*_system, other.loop); });
     _frontier.on_energy_limit = on_limit.trial.has_value();
   }
   if (on_limit.trial) return accept(*on_limit.trial);
@@ -196,7 +187,7 @@ std::optional<Orbit> Tracer::accept_within_limits(Trial trial, double length) {
 Orbit Tracer::accept(const Trial& trial) {
   Orbit orbit;
   orbit.loop = trial.loop;
-  orbit.energy = energy(trial);
+  orbit.energy = energy_of(*_system, trial.loop);
   orbit.action = _problem->action(trial);
   orbit.loss_rms = trial.loss_rms;
   orbit.tail = loop::tail(orbit.loop);

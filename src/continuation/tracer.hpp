@@ -26,7 +26,6 @@ class Tracer {
  private:
   [[nodiscard]] bool begun() const { return !here().modes.empty(); }
   [[nodiscard]] const loop::Loop& here() const { return _frontier.orbit.loop; }
-  [[nodiscard]] double energy(const Trial& trial) const;
   [[nodiscard]] double scalar(const Trial& trial, int number) {
     return trial.values[_problem->scalars_at() + static_cast<std::size_t>(number)];
   }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
+#include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::equations {
 
@@ -11,11 +11,11 @@ namespace {
 
 using VectorMap = Eigen::Map<Eigen::VectorXd>;
 using ConstVectorMap = Eigen::Map<const Eigen::VectorXd>;
+using ConstMatrixMap = Eigen::Map<const Eigen::MatrixXd>;
 
-// Of the normal equations with a unit diagonal: what is added there, and the least square of a pivot. Both are at the
-// rounding of their entries, so that pairs that depend on each other get some weights and none that are huge.
+// Added to the unit diagonal of the normal equations: at the rounding of their entries, so that pairs that depend on
+// each other get some weights and none that are huge.
 constexpr double regularisation = 1e-14;
-constexpr double least_pivot = 1e-16;
 // Keeps the scale of a pair without any change finite.
 constexpr double least_square = 1e-300;
 
@@ -48,7 +48,7 @@ void AndersonSolver::remember(int slot) {
   const ConstVectorMap added(_change_differences.data() + slot * _size, _size);
   for (int n = 0; n < used; ++n) {
     const double product = added.dot(ConstVectorMap(_change_differences.data() + n * _size, _size));
-    _gram[slot][n] = _gram[n][slot] = product;
+    _gram(slot, n) = _gram(n, slot) = product;
   }
 }
 
@@ -58,32 +58,14 @@ void AndersonSolver::mix(std::vector<double>& u) {
   VectorMap point(u.data(), _size);
   const ConstVectorMap change(_last_change.data(), _size);
   if (used > 0) {
-    // Normal equations, scaled to a unit diagonal and slightly regularised. Not Eigen's LLT, which has no least pivot.
-    double scale[depth];
-    double matrix[depth][depth];
-    double y[depth];
-    for (int a = 0; a < used; ++a) scale[a] = 1.0 / std::sqrt(_gram[a][a] + least_square);
-    for (int a = 0; a < used; ++a) {
-      y[a] = scale[a] * ConstVectorMap(_change_differences.data() + a * _size, _size).dot(change);
-      for (int b = 0; b <= a; ++b) matrix[a][b] = scale[a] * scale[b] * _gram[a][b];
-      matrix[a][a] += regularisation;
-    }
+    // Normal equations, scaled to a unit diagonal and slightly regularised: pairs may depend on each other.
+    const ConstMatrixMap differences(_change_differences.data(), _size, used);
+    const Eigen::VectorXd scale = (_gram.diagonal().head(used).array() + least_square).sqrt().inverse();
+    Eigen::MatrixXd matrix = scale.asDiagonal() * _gram.topLeftCorner(used, used) * scale.asDiagonal();
+    matrix.diagonal().array() += regularisation;
+    const Eigen::VectorXd y = matrix.ldlt().solve(scale.cwiseProduct(differences.transpose() * change));
     for (int a = 0; a < used; ++a)
-      for (int b = 0; b <= a; ++b) {
-        double sum = matrix[a][b];
-        for (int c = 0; c < b; ++c) sum -= matrix[a][c] * matrix[b][c];
-        matrix[a][b] = a == b ? std::sqrt(std::max(sum, least_pivot)) : sum / matrix[b][b];
-      }
-    for (int a = 0; a < used; ++a) {
-      for (int c = 0; c < a; ++c) y[a] -= matrix[a][c] * y[c];
-      y[a] /= matrix[a][a];
-    }
-    for (int a = used - 1; a >= 0; --a) {
-      for (int c = a + 1; c < used; ++c) y[a] -= matrix[c][a] * y[c];
-      y[a] /= matrix[a][a];
-    }
-    for (int a = 0; a < used; ++a)
-      point -= (y[a] * scale[a]) * (ConstVectorMap(_point_differences.data() + a * _size, _size) -
+      point -= (y(a) * scale(a)) * (ConstVectorMap(_point_differences.data() + a * _size, _size) -
                                     ConstVectorMap(_change_differences.data() + a * _size, _size));
   }
   point -= change;

@@ -22,7 +22,7 @@ namespace {
 struct Value {
   std::string key;
   std::string text;
-  bool is_limit = false;
+  std::optional<LimitKey> limit = std::nullopt;
   double lower = 0.0;  ///< of a limit
   double upper = 0.0;
 };
@@ -62,7 +62,7 @@ class Values {
     add_system(scene.system);
     add_starts(scene);
     add_continuation(scene.continuation);
-    add_limit("survey.depth", scene.survey.depth);
+    add_limit("survey.depth", LimitKey::depth, scene.survey.depth);
     add("survey.subharmonics", scene.survey.subharmonics);
     add("survey.spectrum", scene.survey.spectrum == Spectrum::all ? "all" : "events");
     add("survey.team_size", scene.survey.team_size);
@@ -81,9 +81,11 @@ class Values {
   void add(const std::string& key, const std::string& text) { _values.push_back({key, text}); }
   void add(const std::string& key, double value) { add(key, text_of(value)); }
   void add_range(const std::string& key, double from, double to) { add(key, list_text(std::array{from, to}, text_of)); }
-  void add_limit(const std::string& key, double value) { _values.push_back({key, text_of(value), true, 0.0, value}); }
-  void add_limits(const std::string& key, double from, double to) {
-    _values.push_back({key, list_text(std::array{from, to}, text_of), true, from, to});
+  void add_limit(const std::string& key, LimitKey limit, double value) {
+    _values.push_back({key, text_of(value), limit, 0.0, value});
+  }
+  void add_limits(const std::string& key, LimitKey limit, double from, double to) {
+    _values.push_back({key, list_text(std::array{from, to}, text_of), limit, from, to});
   }
 
   void add_system(const SystemChoice& choice) {
@@ -125,10 +127,10 @@ class Values {
   }
 
   void add_limits(const Limits& limits) {
-    add_limit("limits.period", limits.period);
-    add_limits("limits.energy", limits.energy_from, limits.energy_to);
-    add_limit("limits.families", limits.families);
-    add_limit("limits.steps", limits.steps);
+    add_limit("limits.period", LimitKey::period, limits.period);
+    add_limits("limits.energy", LimitKey::energy, limits.energy_from, limits.energy_to);
+    add_limit("limits.families", LimitKey::families, limits.families);
+    add_limit("limits.steps", LimitKey::steps, limits.steps);
     add("limits.time", limits.time);
     add("limits.task_time", limits.task_time);
   }
@@ -194,7 +196,7 @@ bool is_free(const std::string& key) {
 
 Change change_of(const Value& before, const Value& now) {
   if (is_free(before.key)) return Change::free;
-  if (!before.is_limit || !now.is_limit) return Change::other;
+  if (!before.limit || !now.limit) return Change::other;
   return now.lower <= before.lower && now.upper >= before.upper ? Change::widened : Change::narrowed;
 }
 
@@ -217,7 +219,7 @@ std::vector<Difference> differences(const Scene& before, const Scene& now) {
     const Value old_value = find(old_values, key);
     const Value new_value = find(new_values, key);
     if (old_value.text != new_value.text)
-      result.push_back({key, old_value.text, new_value.text, change_of(old_value, new_value)});
+      result.push_back({key, old_value.limit, old_value.text, new_value.text, change_of(old_value, new_value)});
   }
   return result;
 }

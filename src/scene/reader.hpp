@@ -44,7 +44,6 @@ class Field {
   [[nodiscard]] std::string key() const;
   /// What stands here, for messages.
   [[nodiscard]] std::string got() const;
-  [[nodiscard]] bool is_list() const { return _node.IsSequence(); }
 
   [[noreturn]] void fail(const std::string& problem) const;
   [[noreturn]] void fail(const std::string& expected, const std::string& came, const std::string& advice) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include <fmt/format.h>
@@ -13,6 +14,7 @@
 #include "orbit_correction.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/numerics/random.hpp"
 #include "transverse_flow.hpp"
 
 namespace orbweaver::spectrum {
@@ -105,17 +107,14 @@ void add_probes(const systems::Structure& system, const TransverseFlow& flow, in
   constexpr int probes = 4;
   constexpr double enlarged = 16.0;
   constexpr double divided = 0.25;
+  constexpr std::uint64_t first_seed = 12345;
   Eigen::MatrixXd answers(2 * (indices.full.size() + indices.fundamental.size()), probes);
   const auto ask = [&](int begin, int end) {
-    unsigned state = 12345;
-    const auto random = [&state] {  // 24 bits of the generator of Numerical Recipes (Press et al.), in [-1, 1)
-      state = state * 1664525u + 1013904223u;
-      return static_cast<double>(state >> 8) / 0x1p23 - 1.0;
-    };
-    for (int probe = 0; probe < end; ++probe) {  // those before `begin` for their random numbers alone
+    for (int probe = begin; probe < end; ++probe) {
+      numerics::Random random(first_seed + static_cast<std::uint64_t>(probe));
       TransverseFlow changed = flow;
       for (Eigen::Index m = 0; m < flow.factors.cols(); ++m) changed.factors.col(m) += enlarged * change(m, random);
-      if (probe >= begin) answers.col(probe) = numbers_of(floquet_indices(system, changed, order));
+      answers.col(probe) = numbers_of(floquet_indices(system, changed, order));
     }
   };
   if (team != nullptr)
@@ -134,7 +133,7 @@ TraceError add_truncation(const systems::Structure& system, const Chain& chain, 
     stability.fundamental_error[0] += error.truncation;
     return error;
   }
-  const auto change = [&](Eigen::Index m, const auto& random) -> Eigen::VectorXd {
+  const auto change = [&](Eigen::Index m, auto& random) -> Eigen::VectorXd {
     return std::copysign(truncation_share, random()) * flow.errors.col(m);
   };
   add_probes(system, flow, order, indices, change, team, stability);
@@ -143,7 +142,7 @@ TraceError add_truncation(const systems::Structure& system, const Chain& chain, 
 
 void add_rounding_probes(const systems::Structure& system, const Chain& chain, const TransverseFlow& flow, int order,
                          const FloquetIndices& indices, core::Team* team, Stability& stability) {
-  const auto change = [&](Eigen::Index m, const auto& random) {
+  const auto change = [&](Eigen::Index m, auto& random) {
     const double scale = rounding_of(chain, m) * flow.factors.col(m).norm();
     Eigen::VectorXd changes(flow.factors.rows());
     for (double& entry : changes) entry = scale * random();
@@ -226,8 +225,6 @@ Integrated integrated(const systems::System& system, const loop::Loop& loop, con
 }
 
 }  // namespace
-
-double Stability::relative_error() const { return largest_relative(full, full_error); }
 
 Stability floquet(const systems::System& system, const loop::Loop& loop, const loop::Isotropy& isotropy,
                   const FloquetOptions& options) {

@@ -2,14 +2,13 @@
 
 #include <cmath>
 #include <complex>
-#include <cstdint>
+#include <limits>
 #include <numbers>
 #include <vector>
 
-#include <boost/math/tools/toms748_solve.hpp>
-
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
+#include "orbweaver/numerics/locate.hpp"
 
 namespace orbweaver::starts {
 
@@ -99,6 +98,7 @@ std::optional<LinearModes::Root> LinearModes::bordered_root(int k, double low, d
   const Border border(matrix(k, near), borders);
   constexpr double difference = 1e-4;  // of the bracket: the slope sets the sign and scale of the function only
   constexpr double vanished = 1e-10;   // of |A|: rounding of M at a root, with room for defective eigenvalues
+  constexpr double position_width = 4.0 * std::numeric_limits<double>::epsilon();  // of T: rounding
   const double h = difference * (high - low);
   const Eigen::MatrixXcd slope = (border.value(matrix(k, near + h)) - border.value(matrix(k, near - h))) / (2.0 * h);
   const Eigen::MatrixXcd inverse_slope = slope.inverse();
@@ -108,10 +108,9 @@ std::optional<LinearModes::Root> LinearModes::bordered_root(int k, double low, d
   const double at_low = signed_distance(low);
   const double at_high = signed_distance(high);
   if (!(at_low * at_high < 0.0)) return std::nullopt;
-  std::uintmax_t evaluations = 100;  // TOMS 748 needs about ten
-  const auto [left, right] = boost::math::tools::toms748_solve(
-      signed_distance, low, high, at_low, at_high, boost::math::tools::eps_tolerance<double>(52), evaluations);
-  const double period = std::abs(signed_distance(left)) < std::abs(signed_distance(right)) ? left : right;
+  const auto root = numerics::locate_root(signed_distance, {low, at_low}, {high, at_high}, position_width * near);
+  if (!root) return std::nullopt;
+  const double period = root->position;
   const auto svd = singular_vectors(matrix(k, period));
   const Eigen::Index first = svd.singularValues().size() - borders;
   Root out{period, static_cast<int>(borders), svd.singularValues()(first), svd.matrixV().rightCols(borders)};

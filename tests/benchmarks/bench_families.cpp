@@ -19,6 +19,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
+#include "support/relative_error.hpp"
 
 namespace {
 
@@ -70,8 +71,8 @@ Trace trace(const benchmarks::FamilyStart& from, const Settings& s, bool keep) {
   continuation::Branch branch(from.system, start, options_of(s));
   while (const auto orbit = branch.advance()) {
     if (s.multipliers)
-      out.worst_index_error = std::max(out.worst_index_error,
-                                       spectrum::floquet(*from.system, orbit->loop, start.isotropy).relative_error());
+      out.worst_index_error = std::max(
+          out.worst_index_error, test::relative_error(spectrum::floquet(*from.system, orbit->loop, start.isotropy)));
     out.cutoff = std::max(out.cutoff, orbit->loop.cutoff);
     ++out.orbits;
     if (keep) out.loops.push_back(orbit->loop);

@@ -3,6 +3,7 @@
 
 #include "family_orbit.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
+#include "support/relative_error.hpp"
 
 namespace orbweaver::benchmarks {
 
@@ -32,7 +33,7 @@ void multipliers(benchmark::State& state, Family family, bool symmetric, bool ma
   state.counters["K"] = loop.cutoff;
   state.counters["kappa"] = loop.time_map.kappa;
   state.counters["k"] = stability.full[0].real();
-  state.counters["bound"] = stability.relative_error();
+  state.counters["bound"] = test::relative_error(stability);
 }
 
 void multipliers_full(benchmark::State& s) { multipliers(s, Family::in_phase, false, false); }

@@ -11,6 +11,7 @@
 #include "orbweaver/spectrum/eigenpairs.hpp"
 #include "orbweaver/spectrum/loop_triplets.hpp"
 #include "orbweaver/spectrum/singular_triplets.hpp"
+#include "support/off_branch_triplets.hpp"
 
 namespace orbweaver::benchmarks {
 
@@ -79,7 +80,7 @@ struct OnFamily {
     spectrum::TripletOptions options;
     options.count = 2;
     options.krylov_from = 1;
-    return continuation::off_branch_triplets(*orbit.system, at.loop, isotropy, tangent, options);
+    return test::off_branch_triplets(*orbit.system, at.loop, isotropy, tangent, options);
   }
 
   const FamilyOrbit& orbit;

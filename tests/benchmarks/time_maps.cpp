@@ -7,6 +7,7 @@
 #include "family_orbit.hpp"
 #include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/loop/grid/time_map_fit.hpp"
+#include "support/best_pulse.hpp"
 
 using namespace orbweaver;
 
@@ -18,7 +19,7 @@ int main() {
   for (int n = 0; n < 4; ++n)
     for (const double period : {10.0, 15.0, 20.0, 25.0, 30.0}) {
       const benchmarks::FamilyOrbit& orbit = benchmarks::family_orbit(static_cast<benchmarks::Family>(n), period);
-      const loop::TimeMapFit pulse = loop::fit_kappa(orbit.loop, tolerance);
+      const loop::TimeMapFit pulse = test::best_pulse(orbit.loop, tolerance);
       const loop::TimeMapFit general = loop::fit_general(orbit.loop, orbit.isotropy, tolerance);
       const loop::Loop mapped = loop::with_time_map(orbit.loop, general.map, general.harmonics + 20);
       fmt::print("{} {} {} {:.2f} {} {} {}\n", names[static_cast<std::size_t>(n)], period,

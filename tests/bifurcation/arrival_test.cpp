@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bifurcation/branchings.hpp"
+#include "bifurcation/gain.hpp"
 #include "orbweaver/bifurcation/symmetry_watch.hpp"
 
 namespace orbweaver::bifurcation {
@@ -20,13 +21,13 @@ void expect_one_arrival(const Branching& branch, const std::string& text) {
   ASSERT_EQ(branch.before.size(), 6u);
   ASSERT_EQ(branch.after.size(), 6u);
   for (std::size_t n = 0; n + 1 < branch.after.size(); ++n) {
-    EXPECT_FALSE(watch.passed(branch.after[n].loop, branch.after[n + 1].loop).has_value()) << n;
-    EXPECT_FALSE(watch.passed(branch.before[n].loop, branch.before[n + 1].loop).has_value()) << n;
+    EXPECT_FALSE(test::first_passed(watch, branch.after[n].loop, branch.after[n + 1].loop).has_value()) << n;
+    EXPECT_FALSE(test::first_passed(watch, branch.before[n].loop, branch.before[n + 1].loop).has_value()) << n;
   }
   const loop::Loop& a = branch.before[4].loop;
-  const auto gain = watch.passed(a, branch.after.front().loop);
+  const auto gain = test::first_passed(watch, a, branch.after.front().loop);
   ASSERT_TRUE(gain.has_value());
-  EXPECT_EQ(to_text(*gain), text);
+  EXPECT_EQ(test::to_text(*gain), text);
   EXPECT_LT(watch.relative_size(*gain, a, branch.crossing), 1e-5);
   double last = 1.0;
   for (const loop::Loop& at : {branch.before[5].loop, branch.crossing, branch.after[0].loop, branch.after[1].loop}) {
@@ -47,7 +48,8 @@ TEST(Arrival, OfTheBaseFamilyThereIsNone) {
   const auto& orbits = test::family_to_twelve(test::in_phase()).orbits;
   const SymmetryWatch watch(test::pendulum()->structure(), test::pendulum_isotropy(*test::pendulum()));
   for (std::size_t n = 0; n + 1 < orbits.size(); ++n)
-    EXPECT_FALSE(watch.passed(orbits[n].loop, orbits[n + 1].loop).has_value()) << "T = " << orbits[n].loop.period;
+    EXPECT_FALSE(test::first_passed(watch, orbits[n].loop, orbits[n + 1].loop).has_value())
+        << "T = " << orbits[n].loop.period;
 }
 
 }  // namespace

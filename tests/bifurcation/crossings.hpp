@@ -56,8 +56,8 @@ inline Crossing crossing_at(const systems::System& system, const loop::Loop& orb
       spectrum::SlicedHessian(linearization, unknowns, loss::Slice(unknowns.size(), normal)).flat_direction(pinned);
   const loop::Tangent tangent = unknowns.tangent_of(std::span(flat.data(), static_cast<std::size_t>(flat.size())));
   Crossing out{loop::repeated(orbit, times), {}};
-  const auto found = continuation::off_branch_triplets(system, out.base, {}, loop::repeated(orbit, tangent, times),
-                                                       {.count = dimension + 1, .multiple = true});
+  const auto found = continuation::sector_triplets(system, out.base, {}, {}, loop::repeated(orbit, tangent, times),
+                                                   {.count = dimension + 1, .multiple = true});
   for (const continuation::OffBranchTriplet& t : found)
     if (t.singular_value < 1e-6 * found.back().singular_value) {
       EXPECT_LT(std::abs(t.direction.period()), 1e-6);

@@ -9,8 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "orbweaver/bifurcation/detector.hpp"
-#include "orbweaver/bifurcation/locate.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/numerics/locate.hpp"
+#include "orbweaver/numerics/random.hpp"
 
 namespace {
 
@@ -138,11 +139,8 @@ TEST(Detector, FamilyBornWhereAFunctionVanishesHasNoEventThere) {
 }
 
 TEST(Detector, NoiseBelowItsBoundIsNoEvent) {
-  unsigned state = 7;
-  const auto noise = [&](double bound) {
-    state = state * 1664525u + 1013904223u;
-    return bound * (static_cast<double>(state >> 8) / 8388608.0 - 1.0);
-  };
+  numerics::Random random(7);
+  const auto noise = [&](double bound) { return bound * random(); };
   for (const double bound : {1e-9, 0.02}) {
     Family around_zero{{[&](double) { return Reading{noise(bound), bound}; }}};
     EXPECT_TRUE(around_zero.run(evenly(0, 50, 200)).empty());
@@ -239,11 +237,8 @@ TEST(Detector, TouchingZeroIsATangency) {
 }
 
 TEST(Detector, TouchIsSeenThroughNoiseAndFromItsOwnStation) {
-  unsigned state = 7;
-  const auto noisy = [&](double x) {
-    state = state * 1664525u + 1013904223u;
-    return Reading{0.05 * (x - 4.2) * (x - 4.2) + 1e-7 * (static_cast<double>(state >> 8) / 8388608.0 - 1.0), 1e-7};
-  };
+  numerics::Random random(7);
+  const auto noisy = [&](double x) { return Reading{0.05 * (x - 4.2) * (x - 4.2) + 1e-7 * random(), 1e-7}; };
   Family rough{{noisy}};
   expect_events(rough.run({0.5, 1, 2, 3, 4, 5, 6, 7, 8}), {{0, 4.2, true}});
   // So narrow that only one point shows it.
@@ -275,11 +270,8 @@ TEST(Detector, DipBesideACrossingIsSeen) {
 
 TEST(Detector, FindsWhatADenseSamplingFinds) {
   // Sums of five cosines with periods from 4 to 20, seen through three test functions at uneven steps of 0.5 to 1.5.
-  unsigned state = 3;
-  const auto random = [&] {
-    state = state * 1664525u + 1013904223u;
-    return static_cast<double>(state >> 8) / 16777216.0;
-  };
+  numerics::Random symmetric(3);
+  const auto random = [&] { return 0.5 + 0.5 * symmetric(); };
   std::size_t zeros = 0;
   for (int run = 0; run < 40; ++run) {
     std::vector<double> draws(15);
@@ -299,8 +291,8 @@ TEST(Detector, FindsWhatADenseSamplingFinds) {
     for (std::size_t f = 0; f < 3; ++f) {
       const double width = positions.back() / 20000.0;
       for (int n = 0; n < 20000; ++n) {
-        const auto root =
-            locate_root([&](double x) { return family.functions[f](x).value; }, n * width, (n + 1) * width, 1e-13);
+        const auto root = numerics::locate_root([&](double x) { return family.functions[f](x).value; }, n * width,
+                                                (n + 1) * width, 1e-13);
         if (root) events.push_back({f, root->position});
       }
     }

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "orbweaver/bifurcation/detector.hpp"
-#include "orbweaver/bifurcation/locate.hpp"
 #include "orbweaver/bifurcation/test_functions.hpp"
+#include "orbweaver/numerics/locate.hpp"
 
 namespace orbweaver::test {
 
@@ -53,9 +53,10 @@ inline Detection detect(const systems::Structure& system, const StabilityAt& sta
   for (const Bracket& bracket : brackets) {
     const TestFunction& function = functions[bracket.function];
     const auto value = [&](double position) { return evaluate(function, system, stability_at(position)).value; };
-    const auto located = bracket.tangency ? locate_minimum([&](double position) { return std::abs(value(position)); },
-                                                           bracket.from, bracket.to, tolerance)
-                                          : locate_root(value, bracket.from, bracket.to, tolerance);
+    const auto located = bracket.tangency
+                             ? numerics::locate_minimum([&](double position) { return std::abs(value(position)); },
+                                                        bracket.from, bracket.to, tolerance)
+                             : numerics::locate_root(value, bracket.from, bracket.to, tolerance);
     if (!located) {
       ADD_FAILURE() << "nothing located in [" << bracket.from << ", " << bracket.to << "]";
       continue;

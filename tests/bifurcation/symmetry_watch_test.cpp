@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "bifurcation/gain.hpp"
 #include "loop/samples.hpp"
 #include "orbweaver/core/error.hpp"
 #include "support/stated_system.hpp"
@@ -72,9 +73,9 @@ void expect_arrival(const Pitchfork& p, const std::string& text) {
   const SymmetryWatch watch(p.system, p.own);
   const loop::Loop a = p.at(0.2);
   const loop::Loop b = p.at(-0.1);
-  const auto gain = watch.passed(a, b);
+  const auto gain = test::first_passed(watch, a, b);
   ASSERT_TRUE(gain.has_value()) << text;
-  EXPECT_EQ(to_text(*gain), text);
+  EXPECT_EQ(test::to_text(*gain), text);
   EXPECT_NEAR(watch.signed_part(*gain, a, a), 1.0, 1e-12);
   EXPECT_NEAR(watch.signed_part(*gain, a, b), -0.5, 1e-12);
   EXPECT_NEAR(watch.relative_size(*gain, a, b), 0.5, 1e-12);
@@ -89,7 +90,7 @@ TEST(SymmetryWatch, TakesWhatGeneratesMost) {
   const std::vector<SymmetryGain> all =
       SymmetryWatch(p.system, p.own).all_passed(SymmetryWatch::sampled(p.at(0.2)), SymmetryWatch::sampled(p.at(-0.1)));
   std::vector<std::string> texts;
-  for (const SymmetryGain& gain : all) texts.push_back(to_text(gain));
+  for (const SymmetryGain& gain : all) texts.push_back(test::to_text(gain));
   EXPECT_EQ(texts, (std::vector<std::string>{"S@1/4", "S@3/4", "1@1/2"}));
 }
 
@@ -109,18 +110,20 @@ TEST(SymmetryWatch, SeesRotationsOfThePlane) {
 TEST(SymmetryWatch, PassesNothingOnOneSide) {
   for (const Pitchfork& p : {loss_of_s(), threefold(), fourfold()}) {
     const SymmetryWatch watch(p.system, p.own);
-    EXPECT_FALSE(watch.passed(p.at(0.2), p.at(0.1)).has_value());
-    EXPECT_FALSE(watch.passed(p.at(1e-6), p.at(1e-4)).has_value()) << "the first orbits of a branch born here";
-    EXPECT_FALSE(watch.passed(p.at(-1e-4), p.at(-1e-6)).has_value());
-    EXPECT_FALSE(watch.passed(p.base, p.at(0.1)).has_value()) << "a broken part of rounding size has no sign";
+    EXPECT_FALSE(test::first_passed(watch, p.at(0.2), p.at(0.1)).has_value());
+    EXPECT_FALSE(test::first_passed(watch, p.at(1e-6), p.at(1e-4)).has_value())
+        << "the first orbits of a branch born here";
+    EXPECT_FALSE(test::first_passed(watch, p.at(-1e-4), p.at(-1e-6)).has_value());
+    EXPECT_FALSE(test::first_passed(watch, p.base, p.at(0.1)).has_value())
+        << "a broken part of rounding size has no sign";
   }
 }
 
 TEST(SymmetryWatch, SeesAnOrbitThatLiesOnTheCrossing) {
   const Pitchfork p = loss_of_s();
   const SymmetryWatch watch(p.system, p.own);
-  ASSERT_TRUE(watch.passed(p.at(0.2), p.base).has_value());
-  EXPECT_EQ(to_text(*watch.passed(p.at(0.2), p.base)), "S@1/2");
+  ASSERT_TRUE(test::first_passed(watch, p.at(0.2), p.base).has_value());
+  EXPECT_EQ(test::to_text(*test::first_passed(watch, p.at(0.2), p.base)), "S@1/2");
 }
 
 // The broken part turns over without becoming small: the size at the root tells.
@@ -132,7 +135,7 @@ TEST(SymmetryWatch, TellsATurnFromAnArrival) {
   const auto turned = [&](double angle) {
     return plus(plus(p.base, 0.2 * std::cos(angle), p.v), 0.2 * std::sin(angle), other);
   };
-  const auto gain = watch.passed(turned(0.0), turned(3.0));
+  const auto gain = test::first_passed(watch, turned(0.0), turned(3.0));
   ASSERT_TRUE(gain.has_value());
   double low = 0.0, high = 3.0;
   for (int n = 0; n < 50; ++n) {
@@ -153,14 +156,14 @@ TEST(SymmetryWatch, SeesReversorsAtAnyPhase) {
                       loop::time_shifted(in_subspace(r, {-1}, 91), irrational)};
     const SymmetryWatch watch(p.system, p.own);
     const loop::Loop a = p.at(0.05);
-    const auto gain = watch.passed(a, p.at(-0.03));
+    const auto gain = test::first_passed(watch, a, p.at(-0.03));
     ASSERT_TRUE(gain.has_value()) << name;
-    EXPECT_EQ(to_text(*gain), name);
+    EXPECT_EQ(test::to_text(*gain), name);
     EXPECT_TRUE(gain->reversing);
     EXPECT_NEAR(gain->phase, 1.0 - 2.0 * irrational, 0.05);
     EXPECT_LT(watch.signed_part(*gain, a, p.at(-0.03)), -0.3);
     EXPECT_LT(watch.relative_size(*gain, a, p.base), 1e-12);
-    EXPECT_FALSE(watch.passed(a, p.at(0.03)).has_value());
+    EXPECT_FALSE(test::first_passed(watch, a, p.at(0.03)).has_value());
     const SymmetryWatch with_reversor(p.system, r);
     for (const SymmetryGain& other :
          with_reversor.all_passed(SymmetryWatch::sampled(a), SymmetryWatch::sampled(p.at(-0.03))))
@@ -177,7 +180,7 @@ TEST(SymmetryWatch, ActsModuloTheLatticeOfAngles) {
   loop::Loop b = a;
   a.cosine(0, 1) = 0.5 * std::numbers::pi - 0.01;
   b.cosine(0, 1) = 0.5 * std::numbers::pi + 0.01;
-  EXPECT_FALSE(SymmetryWatch(p.system, p.own).passed(a, b).has_value());
+  EXPECT_FALSE(test::first_passed(SymmetryWatch(p.system, p.own), a, b).has_value());
 }
 
 TEST(SymmetryWatch, SeesRotationsArrive) {
@@ -190,7 +193,7 @@ TEST(SymmetryWatch, SeesRotationsArrive) {
   expect_arrival(p, "1@1/3");
   p.base.winding = {1.0, 0.0, 0.0, 0.0};
   p.base.cosine(0, 0) = 0.5 * std::numbers::pi;  // so that the mean has S@1/2
-  EXPECT_FALSE(SymmetryWatch(p.system, p.own).passed(p.at(0.2), p.at(-0.1)).has_value());
+  EXPECT_FALSE(test::first_passed(SymmetryWatch(p.system, p.own), p.at(0.2), p.at(-0.1)).has_value());
 }
 
 // S turns a rotation the other way round: no orbit that winds has it.
@@ -198,13 +201,13 @@ TEST(SymmetryWatch, LeavesOutWhatTurnsRotationsRound) {
   Pitchfork p = loss_of_s();
   p.base.winding = {1.0, 0.0, 0.0, 0.0};
   p.base.cosine(0, 0) = 0.5 * std::numbers::pi;  // so that the mean has S@1/2
-  EXPECT_FALSE(SymmetryWatch(p.system, p.own).passed(p.at(0.2), p.at(-0.1)).has_value());
+  EXPECT_FALSE(test::first_passed(SymmetryWatch(p.system, p.own), p.at(0.2), p.at(-0.1)).has_value());
 }
 
 TEST(SymmetryWatch, RespectsTheLargestOrder) {
   const Pitchfork p = threefold();
-  EXPECT_FALSE(SymmetryWatch(p.system, p.own, 2).passed(p.at(0.2), p.at(-0.1)).has_value());
-  EXPECT_TRUE(SymmetryWatch(p.system, p.own, 3).passed(p.at(0.2), p.at(-0.1)).has_value());
+  EXPECT_FALSE(test::first_passed(SymmetryWatch(p.system, p.own, 2), p.at(0.2), p.at(-0.1)).has_value());
+  EXPECT_TRUE(test::first_passed(SymmetryWatch(p.system, p.own, 3), p.at(0.2), p.at(-0.1)).has_value());
   EXPECT_THROW(SymmetryWatch(p.system, p.own, 0), core::MisuseError);
 }
 
@@ -212,7 +215,7 @@ TEST(SymmetryWatch, SeesThroughATimeMap) {
   const Pitchfork p = loss_of_s();
   const SymmetryWatch watch(p.system, p.own);
   const loop::TimeMap map{1.5, {}};
-  const auto gain = watch.passed(with_time_map(p.at(0.2), map, 140), p.at(-0.1));
+  const auto gain = test::first_passed(watch, with_time_map(p.at(0.2), map, 140), p.at(-0.1));
   ASSERT_TRUE(gain.has_value());
   EXPECT_NEAR(watch.signed_part(*gain, p.at(0.2), with_time_map(p.at(-0.1), map, 140)), -0.5, 1e-9);
 }

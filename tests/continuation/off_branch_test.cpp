@@ -10,6 +10,7 @@
 #include "orbweaver/loss/assembled.hpp"
 #include "orbweaver/spectrum/sliced_hessian.hpp"
 #include "spectrum/matrices.hpp"
+#include "support/off_branch_triplets.hpp"
 
 namespace orbweaver::continuation {
 namespace {
@@ -28,7 +29,7 @@ struct OnFamily {
   }
   [[nodiscard]] std::vector<OffBranchTriplet> triplets(const spectrum::TripletOptions& options, bool split) const {
     const loop::Isotropy isotropy = split ? test::pendulum_isotropy(*test::pendulum()) : loop::Isotropy{};
-    return off_branch_triplets(*test::pendulum(), loop, isotropy, tangent, options);
+    return test::off_branch_triplets(*test::pendulum(), loop, isotropy, tangent, options);
   }
   [[nodiscard]] double off_branch_eigenvalue() const {
     return off_branch_eigenvalue(test::pendulum_isotropy(*test::pendulum()));

@@ -80,9 +80,9 @@ TEST(Teams, FindTheSameSingularTriplets) {
   const Frontier& at = traced.frontier;
   spectrum::TripletOptions options;
   options.count = 2;
-  const auto alone = off_branch_triplets(*system, at.orbit.loop, {}, at.tangent, options);
+  const auto alone = sector_triplets(*system, at.orbit.loop, {}, {}, at.tangent, options);
   options.team = &team;
-  const auto shared = off_branch_triplets(*system, at.orbit.loop, {}, at.tangent, options);
+  const auto shared = sector_triplets(*system, at.orbit.loop, {}, {}, at.tangent, options);
   ASSERT_EQ(shared.size(), 2U);
   for (std::size_t n = 0; n < 2; ++n) {
     EXPECT_NEAR(shared[n].singular_value, alone[n].singular_value, 1e-9 * alone[n].singular_value);

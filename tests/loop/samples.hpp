@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
-#include <random>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -13,6 +12,7 @@
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/loop/symmetry/subspace.hpp"
+#include "orbweaver/numerics/random.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::test {
@@ -21,9 +21,9 @@ inline constexpr double two_pi = 2.0 * std::numbers::pi;
 
 /// Repeatable numbers in [-1, 1).
 inline std::vector<double> random_values(std::size_t count, std::uint64_t seed) {
-  std::mt19937_64 generator(seed);
+  numerics::Random random(seed);
   std::vector<double> values(count);
-  for (double& value : values) value = std::ldexp(static_cast<double>(generator() >> 11), -52) - 1.0;
+  for (double& value : values) value = random();
   return values;
 }
 

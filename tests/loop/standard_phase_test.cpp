@@ -23,51 +23,6 @@ Loop loop_with(const Isotropy& isotropy, const std::vector<double>& mean = {0.0,
   return test::random_loop_in(Subspace(4, 8, isotropy), constant_loop(mean, 5.0, 8), 71);
 }
 
-const systems::Symmetry& reversor(const char* name) {
-  for (const systems::Symmetry& r : pendulum().reversors)
-    if (r.name == name) return r;
-  throw std::invalid_argument(name);
-}
-
-TEST(ReversorPhase, MayBeAnyNumber) {
-  for (const char* name : {"R", "RS"}) {
-    const Loop loop = loop_with({element_of(pendulum(), name)});
-    for (const double late : {0.0, 0.125, irrational, 0.77}) {
-      const Loop shifted = time_shifted(loop, late);
-      const auto phase = reversor_phase(reversor(name), pendulum().angles, shifted, 1e-9);
-      ASSERT_TRUE(phase.has_value()) << name;
-      const double expected = -2.0 * late - std::floor(-2.0 * late);
-      EXPECT_NEAR(*phase, expected, 1e-13) << name << " " << late;
-      const Loop back = time_shifted(shifted, 0.5 * *phase);
-      EXPECT_LT(symmetry_defect(back, element_of(pendulum(), name), pendulum().angles), 1e-12);
-    }
-    const char* other = std::string(name) == "R" ? "RS" : "R";
-    EXPECT_FALSE(reversor_phase(reversor(other), pendulum().angles, loop, 1e-9).has_value());
-  }
-}
-
-TEST(ReversorPhase, HoldsToTheToleranceModuloTheLattice) {
-  Loop loop = loop_with({element_of(pendulum(), "RS")}, {pi, 0.0, 0.0, 0.0});
-  EXPECT_TRUE(reversor_phase(reversor("RS"), pendulum().angles, loop, 1e-9).has_value());
-  EXPECT_FALSE(reversor_phase(reversor("RS"), {}, loop, 1e-9).has_value());
-  loop.cosine(3, 0) += 1e-3;
-  EXPECT_FALSE(reversor_phase(reversor("RS"), pendulum().angles, loop, 1e-4).has_value());
-  EXPECT_TRUE(reversor_phase(reversor("RS"), pendulum().angles, loop, 1e-2).has_value());
-}
-
-TEST(ReversorPhase, OfRotationsFollowsTheWinding) {
-  Loop rotation = loop_with({element_of(pendulum(), "RS")});
-  rotation.winding = {1.0, 0.0, 0.0, 0.0};
-  const Loop shifted = time_shifted(with_time_map(rotation, {1.2, {}}, 60), irrational);
-  const auto phase = reversor_phase(reversor("RS"), pendulum().angles, shifted, 1e-9);
-  ASSERT_TRUE(phase.has_value());
-  EXPECT_NEAR(*phase, 1.0 - 2.0 * irrational, 1e-12);
-  Loop brake = loop_with({element_of(pendulum(), "R")});
-  EXPECT_TRUE(reversor_phase(reversor("R"), pendulum().angles, brake, 1e-9).has_value());
-  brake.winding = {0.0, -1.0, 0.0, 0.0};
-  EXPECT_FALSE(reversor_phase(reversor("R"), pendulum().angles, brake, 1e-9).has_value()) << "turned the other way";
-}
-
 // Whatever quarter the loop starts at, it is brought to rest with the first coordinate at its larger value.
 TEST(StandardPhase, LiesOnTheFirstReversorsFixedSet) {
   const Loop loop = loop_with({element_of(pendulum(), "S", 1, 2), element_of(pendulum(), "R")});

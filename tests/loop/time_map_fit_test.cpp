@@ -6,7 +6,7 @@
 
 #include "loop/samples.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/loop/curve/measures.hpp"
+#include "support/best_pulse.hpp"
 #include "support/stated_system.hpp"
 
 namespace orbweaver::loop {
@@ -37,7 +37,7 @@ TEST(TimeMapFit, CountsHarmonics) {
 TEST(TimeMapFit, FindsThePulseThatALoopWasMadeUnder) {
   for (const int j : {-4, 3, 6}) {
     const double kappa = std::pow(2.0, 0.25 * j);
-    const TimeMapFit fit = fit_kappa(unmapped({kappa, {}}), tolerance);
+    const TimeMapFit fit = test::best_pulse(unmapped({kappa, {}}), tolerance);
     EXPECT_DOUBLE_EQ(fit.map.kappa, kappa);
     EXPECT_EQ(fit.harmonics, 6);
   }
@@ -45,7 +45,7 @@ TEST(TimeMapFit, FindsThePulseThatALoopWasMadeUnder) {
 
 TEST(TimeMapFit, SavesHarmonicsOfAsymmetricLoops) {
   const Loop even = unmapped({1.0, {0.6, 0.3}});
-  const TimeMapFit fit = fit_time_map(even, {}, tolerance);
+  const TimeMapFit fit = fit_general(even, {}, tolerance);
   ASSERT_FALSE(fit.map.coefficients.empty());
   EXPECT_LT(fit.harmonics, 0.4 * harmonics_above(even, tolerance));
   const Loop mapped = with_time_map(even, fit.map, fit.harmonics + 10);
@@ -76,19 +76,8 @@ TEST(TimeMapFit, IsInvariantUnderTheIsotropy) {
   const systems::Structure& pendulum = test::structure_of("double_pendulum");
   const Isotropy quarter{test::element_of(pendulum, "R", 1, 4)};
   EXPECT_TRUE(is_invariant(fit_general(any, quarter, tolerance).map, quarter));
-  EXPECT_TRUE(is_invariant(fit_time_map(even, quarter, tolerance).map, quarter));
   EXPECT_FALSE(is_invariant({2.0, {}}, quarter));
   EXPECT_TRUE(is_invariant({2.0, {}}, group));
-}
-
-TEST(TimeMapFit, IsKeptUnlessAnotherPays) {
-  const Loop even = unmapped({4.0, {}});
-  const TimeMapFit fit = fit_time_map(even, {}, tolerance);
-  EXPECT_EQ(fit.map, (TimeMap{4.0, {}}));
-  const Loop mapped = with_time_map(even, {4.5, {}}, 40);
-  EXPECT_EQ(fit_time_map(mapped, {}, tolerance, 0.1).map, mapped.time_map);
-  const Loop best = with_time_map(even, fit.map, 20);
-  EXPECT_EQ(fit_time_map(best, {}, tolerance).map, best.time_map);
 }
 
 TEST(TimeMapFit, DensityStaysPositive) {
@@ -99,7 +88,7 @@ TEST(TimeMapFit, DensityStaysPositive) {
   const TimeMap gentle{1.0, {0.1, 0.2}};
   EXPECT_EQ(with_least_density(gentle, 0.1), gentle);
   EXPECT_THROW(static_cast<void>(with_least_density({2.0, {}}, 0.1)), core::MisuseError);
-  EXPECT_TRUE(fit_time_map(constant_loop(std::vector<double>{1.0}, 1.0, 3), {}, tolerance).map.is_identity());
+  EXPECT_TRUE(fit_general(constant_loop(std::vector<double>{1.0}, 1.0, 3), {}, tolerance).map.is_identity());
   EXPECT_THROW(static_cast<void>(fit_general(unmapped({}), {}, tolerance, 0)), core::MisuseError);
 }
 

@@ -195,7 +195,8 @@ TEST(Run, PayloadsOfEverySizeArriveWhole) {
   const auto bytes_of = [](const std::string& key) {
     const std::uint64_t size = hash(key, 1) % 3 == 0 ? hash(key, 2) % 6'000'000 : hash(key, 2) % 9000;
     std::string bytes(key == "t0" ? 0 : size, '\0');
-    for (std::size_t i = 0; i < bytes.size(); i += 7) bytes[i] = static_cast<char>(hash(key, 3) + i);
+    const std::uint64_t first = hash(key, 3);
+    for (std::size_t i = 0; i < bytes.size(); i += 7) bytes[i] = static_cast<char>(first + i);
     return bytes;
   };
   Work work([&](const Task& t, TaskContext&) {

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <random>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -20,13 +21,13 @@ namespace synthetic {
 
 namespace queue = orbweaver::queue;
 
-/// Mixes a key (and a number) into 64 bits: FNV-1a, then the finaliser of splitmix64.
+/// 64 bits that depend on a key and a number alone.
 inline std::uint64_t hash(std::string_view key, std::uint64_t salt) {
-  std::uint64_t h = 14695981039346656037ULL ^ salt;
-  for (const char c : key) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  h = (h ^ (h >> 27)) * 0x94d049bb133111ebULL;
-  return h ^ (h >> 31);
+  std::vector<std::uint32_t> seed(key.begin(), key.end());
+  seed.push_back(static_cast<std::uint32_t>(salt));
+  seed.push_back(static_cast<std::uint32_t>(salt >> 32));
+  std::seed_seq sequence(seed.begin(), seed.end());
+  return std::mt19937_64(sequence)();
 }
 
 inline void sleep_us(std::uint64_t microseconds) {

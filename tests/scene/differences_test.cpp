@@ -1,4 +1,5 @@
 #include <map>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -147,6 +148,22 @@ TEST(Differences, LimitsAreWiderOnlyIfNoEndMovesInward) {
   EXPECT_EQ(change("limits.energy=[-2, 2]", "limits.energy=[-1, 3]"), Change::narrowed);
   EXPECT_EQ(change("limits.energy=[-2, 2]", "limits.energy=[-3, 1]"), Change::narrowed);
   EXPECT_EQ(change("limits.time=20", "limits.time=10"), Change::free);
+}
+
+TEST(Differences, LimitsAreNamed) {
+  using scene::LimitKey;
+  const std::map<std::string, std::optional<LimitKey>> limits{{"limits.period", LimitKey::period},
+                                                              {"limits.energy", LimitKey::energy},
+                                                              {"limits.steps", LimitKey::steps},
+                                                              {"survey.depth", LimitKey::depth},
+                                                              {"limits.families", LimitKey::families}};
+  for (const auto& [key, values] : cases) {
+    if (values.other.empty()) continue;
+    const auto limit = limits.find(key);
+    const auto found = differences(with({key + "=" + values.standard}), with({key + "=" + values.other}));
+    ASSERT_FALSE(found.empty()) << key;
+    EXPECT_EQ(found[0].limit, limit == limits.end() ? std::nullopt : limit->second) << key;
+  }
 }
 
 TEST(Differences, SayBothValuesAsAUserWouldWriteThem) {

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "orbweaver/survey/tree/family_end.hpp"
+
 namespace orbweaver::test {
 
 namespace {
@@ -79,9 +81,12 @@ class Tree {
 
   void check_ends(std::size_t allowed) {
     std::vector<std::string> failed;
-    for (std::size_t family = 0; family < _families.rows(); ++family)
-      if (_families.texts("end_reason")[family].starts_with("failure"))
-        failed.push_back(fmt::format("{}: {}", name(family), _families.texts("end_reason")[family]));
+    for (std::size_t family = 0; family < _families.rows(); ++family) {
+      const std::string& reason = _families.texts("end_reason")[family];
+      const std::vector<survey::EndKind> ends = survey::ends_in(reason);
+      if (std::find(ends.begin(), ends.end(), survey::EndKind::failure) != ends.end())
+        failed.push_back(fmt::format("{}: {}", name(family), reason));
+    }
     if (failed.size() > allowed) _problems.insert(_problems.end(), failed.begin(), failed.end());
   }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,9 +21,6 @@ struct SymmetryGain {
   double phase =
       0.0;  ///< of a reversor at the first of the two orbits: the phi at which z(T phi - t) is closest to M z(t)
 };
-
-/// "S@1/4", "1@1/3" (three times around a shorter orbit), "R" (at some phase).
-[[nodiscard]] std::string to_text(const SymmetryGain& gain);
 
 /// Watches a branch for orbits with more symmetry than its own isotropy: there it meets a more symmetric family, at one
 /// of that family's crossings (docs/mathematics.md, "Arrivals").
@@ -51,9 +47,6 @@ class SymmetryWatch {
   /// nothing. Where it vanishes at `b` to that size, `b` lies on the crossing, or the corrector has slipped onto the
   /// symmetric family.
   [[nodiscard]] std::vector<SymmetryGain> all_passed(const SampledOrbit& a, const SampledOrbit& b) const;
-  /// The first of them.
-  [[nodiscard]] std::optional<SymmetryGain> passed(const SampledOrbit& a, const SampledOrbit& b) const;
-  [[nodiscard]] std::optional<SymmetryGain> passed(const loop::Loop& a, const loop::Loop& b) const;
 
   /// The signed part of `at` seen from `a`: its root between two orbits is where `gain` may hold.
   [[nodiscard]] double signed_part(const SymmetryGain& gain, const loop::Loop& a, const loop::Loop& at) const;

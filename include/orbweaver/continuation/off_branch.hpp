@@ -18,25 +18,18 @@ struct OffBranchTriplet {
   double left_residual = 0.0;   ///< |J' u - sigma v|, both on the slice
 };
 
-/// The `options.count` smallest, over all perturbations of the loop and its period, the time shift and the family's own
-/// direction excluded, smallest first, in the loop's own coefficients (those under its time map). J falls apart into
-/// the sectors of the isotropy (perturbations that keep or flip the sign under each generator), which are solved one by
-/// one; where a generator is not an involution, or without any, the whole space is taken. Matrix-free where that is
-/// faster. Throws what spectrum::smallest_singular_triplets does.
-[[nodiscard]] std::vector<OffBranchTriplet> off_branch_triplets(const systems::System& system, const loop::Loop& loop,
-                                                                const loop::Isotropy& isotropy,
-                                                                const loop::Tangent& tangent,
-                                                                const spectrum::TripletOptions& options);
-
-/// The same within one sector: `signs` under the generators of `isotropy` (+1 kept, -1 broken), which must be
-/// involutions. Empty where the sector holds nothing but the time shift and the family's direction.
+/// The `options.count` smallest within one sector of an isotropy, smallest first: perturbations of the loop that keep
+/// or flip the sign under each of its generators as `signs` says (+1 kept, -1 broken), which must be involutions (none:
+/// all perturbations), and with all kept changes of the period; the time shift and the family's own direction excluded.
+/// In the loop's own coefficients (those under its time map). Empty where the sector holds nothing else. Matrix-free
+/// where that is faster. Throws what spectrum::smallest_singular_triplets does.
 [[nodiscard]] std::vector<OffBranchTriplet> sector_triplets(const systems::System& system, const loop::Loop& loop,
                                                             const loop::Isotropy& isotropy,
                                                             const std::vector<int>& signs, const loop::Tangent& tangent,
                                                             const spectrum::TripletOptions& options);
 
-/// The smallest eigenvalue of H over the same perturbations: the paper's off-branch eigenvalue (section III C). With
-/// `krylov_from` coefficients or more the whole space is solved at once and matrix-free, which is then faster than
+/// The smallest eigenvalue of H over all of these perturbations: the paper's off-branch eigenvalue (section III C).
+/// With `krylov_from` coefficients or more the whole space is solved at once and matrix-free, which is then faster than
 /// sector by sector (docs/performance.md); NaN where that does not converge. It belongs to the coefficients of the loop
 /// with s even in time: under a time map the loop and its tangent are expanded so first.
 [[nodiscard]] double off_branch_eigenvalue(const systems::System& system, const loop::Loop& loop,

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <limits>
-#include <span>
 
 #include "orbweaver/core/serialization.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
@@ -29,10 +28,7 @@ struct Orbit {
   }
 };
 
-/// The first conserved quantity at a state; NaN for systems without one.
-[[nodiscard]] double energy_at(const systems::System& system, std::span<const double> state);
-
-/// Energy of a loop: that of its state at s = 0.
+/// The first conserved quantity at a loop's state at s = 0; NaN for systems without one.
 [[nodiscard]] double energy_of(const systems::System& system, const loop::Loop& loop);
 
 /// Action over one period: T times the mean over time of p . dq/dt, on the loss's nodes (spectrally accurate).

@@ -3,6 +3,8 @@
 #include <functional>
 #include <vector>
 
+#include <Eigen/Dense>
+
 #include "orbweaver/equations/preconditioned_equations.hpp"
 
 namespace orbweaver::equations {
@@ -51,7 +53,7 @@ class AndersonSolver {
   int _count = 0;  // pairs remembered since the last start
   std::vector<double> _change, _last_change, _last_point, _prediction;
   std::vector<double> _point_differences, _change_differences;  // depth x size, a ring
-  double _gram[depth][depth];
+  Eigen::Matrix<double, depth, depth> _gram;
 };
 
 }  // namespace orbweaver::equations

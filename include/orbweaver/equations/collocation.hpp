@@ -85,8 +85,6 @@ class Collocation final : public PreconditionedEquations {
   [[nodiscard]] bool keeps_mean(int coordinate) const;
   /// Weights of the nodes in a mean over the loop (stride numbers, of sum 1).
   [[nodiscard]] const std::vector<double>& node_weights() const { return _node_weights; }
-  /// The time map's densities at the nodes (cells + 1 numbers).
-  [[nodiscard]] const std::vector<double>& node_densities() const { return _node_density; }
   [[nodiscard]] const std::vector<double>& centre() const { return _centre; }
   [[nodiscard]] const std::vector<double>& winding() const { return _winding; }
 

@@ -41,7 +41,6 @@ class TaskQueue {
   /// Where a running task would go on from.
   void set_state(const std::string& key, std::string state);
 
-  [[nodiscard]] bool knows(const std::string& key) const { return _states.contains(key); }
   [[nodiscard]] TaskState state(const std::string& key) const;
   [[nodiscard]] const Task& running(const std::string& key) const;
   [[nodiscard]] const TaskCounts& counts() const noexcept { return _counts; }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,11 +16,14 @@ enum class Change {
   other,     ///< anything else: another survey
 };
 
+/// Limits that a survey which goes on may widen.
+enum class LimitKey { period, energy, steps, depth, families };
+
 struct Difference {
-  std::string key;  ///< as users write it: "limits.period"
-  std::string
-      /// as a scene would say it, defaults filled in: "30", "0.5deg", "[-.inf, 2]"; empty where it has no value
-      before;
+  std::string key;                ///< as users write it: "limits.period"
+  std::optional<LimitKey> limit;  ///< where the key is one
+  /// As a scene would say it, defaults filled in: "30", "0.5deg", "[-.inf, 2]"; empty where it has no value.
+  std::string before;
   std::string now;
   Change change = Change::other;
 };

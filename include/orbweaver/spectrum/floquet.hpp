@@ -34,9 +34,6 @@ struct Stability {
   int fundamental_order = 1;                      ///< p
   std::vector<std::complex<double>> fundamental;  ///< of P
   std::vector<double> fundamental_error;          ///< bound on the absolute error of each
-
-  /// The largest of `full_error`, relative to 1 + the modulus of its entry.
-  [[nodiscard]] double relative_error() const;
 };
 
 /// Stability of an accepted orbit, at a cost proportional to the number of its harmonics.

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <utility>
+
+#include <boost/math/tools/roots.hpp>
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
@@ -15,8 +18,9 @@ namespace {
 constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr double below_rounding = 1e-17;  // of a density of mean 1
 constexpr int most_steps = 200;           // of Newton's method: bisection alone needs 53
-constexpr double settled = 1e-15;         // a step in s that no longer changes it
-constexpr double newton_settled = 1e-9;   // Newton's next step would be of the order of its square
+// Newton's method within a bracket, since the slope is at hand: 5 to 6 values, where TOMS 748 takes 9 to 10 and 1.5 to 3
+// times as long. A step of 2^-29 is the last: its square is rounding.
+constexpr int newton_bits = 30;
 constexpr double whole = 1e-12;           // turns that differ from a whole number by less are rounding
 
 // cos ks and sin ks, from k to k + 1 by one turn.
@@ -77,27 +81,17 @@ double TimeMap::density(double s) const { return phase_and_density(*this, s).sec
 double TimeMap::inverse(double phase_wanted) const {
   const double turns = std::floor(phase_wanted / two_pi);
   const double wanted = phase_wanted - two_pi * turns;
-  double low = 0.0;
-  double high = two_pi;
-  double s = wanted;
-  if (coefficients.empty()) {  // tan s = tan(phase) / kappa, on the same branch
-    s = wanted + std::atan2((1.0 / kappa - 1.0) * std::sin(wanted) * std::cos(wanted),
-                            std::cos(wanted) * std::cos(wanted) + std::sin(wanted) * std::sin(wanted) / kappa);
-    return s + two_pi * turns;
-  }
-  double last = two_pi;
-  for (int n = 0; n < most_steps; ++n) {
-    const auto [here, slope] = phase_and_density(*this, s);
-    const double excess = here - wanted;
-    (excess > 0.0 ? high : low) = s;
-    double next = s - excess / slope;
-    // Newton's steps may go to and fro within the bracket for ever: they must halve.
-    const bool newton = next > low && next < high && std::abs(next - s) <= 0.5 * last;
-    if (!newton) next = 0.5 * (low + high);
-    last = std::abs(next - s);
-    s = next;
-    if (last < settled || (newton && last < newton_settled)) break;
-  }
+  if (coefficients.empty())  // tan s = tan(phase) / kappa, on the same branch
+    return wanted +
+           std::atan2((1.0 / kappa - 1.0) * std::sin(wanted) * std::cos(wanted),
+                      std::cos(wanted) * std::cos(wanted) + std::sin(wanted) * std::sin(wanted) / kappa) +
+           two_pi * turns;
+  const auto excess = [&](double s) {
+    auto [here, slope] = phase_and_density(*this, s);
+    return std::pair(here - wanted, slope);
+  };
+  std::uintmax_t steps = most_steps;
+  const double s = boost::math::tools::newton_raphson_iterate(excess, wanted, 0.0, two_pi, newton_bits, steps);
   return s + two_pi * turns;
 }
 

@@ -15,11 +15,6 @@ namespace {
 constexpr double two_pi = 2.0 * std::numbers::pi;
 /// A fiftieth of the even density at least: below it the slow parts of the orbit would be resolved too coarsely.
 constexpr double least_density = 0.02;
-/// Pulses are tried in steps of 2^(1/4) up to kappa = 2^(20/4) = 32: densities from 1/32 to 32.
-constexpr int ladder_end = 20;
-constexpr double ladder_step = 0.25;
-/// A pulse that needs so many times the best number of harmonics is past the optimum.
-constexpr double past_optimum = 1.3;
 /// Below the squares of all derivatives: keeps logarithms finite.
 constexpr double tiny_square = 1e-300;
 /// Coefficients of a density of mean 1 that differ by less are rounding.
@@ -132,18 +127,6 @@ TimeMap with_least_density(TimeMap map, double least) {
   return map;
 }
 
-TimeMapFit fit_kappa(const Loop& loop, double tolerance) {
-  const Loop shorter = without_tail(loop, tolerance);
-  TimeMapFit best = under(shorter, {}, tolerance);
-  for (const int direction : {1, -1})
-    for (int j = 1; j <= ladder_end; ++j) {
-      const TimeMapFit next = under(shorter, {std::pow(2.0, ladder_step * direction * j), {}}, tolerance);
-      if (next.harmonics < best.harmonics) best = next;
-      if (next.harmonics > past_optimum * best.harmonics) break;
-    }
-  return best;
-}
-
 TimeMapFit fit_general(const Loop& loop, const Isotropy& isotropy, double tolerance, int most) {
   core::require(most >= 1, "a general time map needs at least one harmonic");
   const Loop shorter = without_tail(loop, tolerance);
@@ -166,15 +149,6 @@ TimeMapFit fit_general(const Loop& loop, const Isotropy& isotropy, double tolera
     map.coefficients.push_back(low_pass * d);
   }
   return under(shorter, with_least_density(map, least_density), tolerance);
-}
-
-TimeMapFit fit_time_map(const Loop& loop, const Isotropy& isotropy, double tolerance, double pays) {
-  const TimeMapFit own{loop.time_map, harmonics_above(loop, tolerance)};
-  TimeMapFit best = fit_kappa(loop, tolerance);
-  if (!is_invariant(best.map, isotropy)) best = under(without_tail(loop, tolerance), {}, tolerance);
-  const TimeMapFit general = fit_general(loop, isotropy, tolerance);
-  if (general.harmonics < best.harmonics) best = general;
-  return best.harmonics <= pays * own.harmonics ? best : own;
 }
 
 bool is_invariant(const TimeMap& map, const Isotropy& isotropy) {

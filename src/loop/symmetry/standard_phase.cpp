@@ -4,11 +4,11 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <vector>
 
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
-#include "orbweaver/loop/symmetry/shift_search.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
 
 namespace orbweaver::loop {
@@ -16,16 +16,10 @@ namespace orbweaver::loop {
 namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
-constexpr double rounding = 1e-13;  // of a shift in periods
 /// Coordinates of two instants that are nearer, relative to 1 + the loop's size, are the same: the next one decides.
 constexpr double same_coordinate = 1e-9;
 constexpr double settled = 1e-15;  // a step in s that no longer changes it
 constexpr int most_steps = 30;     // of Newton's method from a grid finer than the harmonics: it needs three or four
-
-double in_period(double shift) {
-  const double part = shift - std::floor(shift);
-  return part < 1.0 - rounding ? part : 0.0;
-}
 
 // The state at a point of a reversor's fixed set, angles that wind within [-pi/2, 3 pi/2): on such a set they are 0 or
 // pi.
@@ -76,21 +70,6 @@ double turns_of_maximum(const Loop& even, int i) {
 }
 
 }  // namespace
-
-std::optional<double> reversor_phase(const systems::Symmetry& reversor, const std::vector<int>& angles,
-                                     const Loop& loop, double tolerance) {
-  const Loop even = resolved_in_time(loop);
-  const Loop image = transformed(even, reversor.map, true, 0.0);
-  if (image.winding != even.winding) return std::nullopt;
-  std::optional<double> phase;
-  for (const ShiftMinimum& minimum : shift_minima(image, even, angles)) {
-    // R^-1 z(-(t + psi)) = z(t): the phase is -psi.
-    const double found = in_period(-minimum.shift);
-    if (rms_size(difference_at(image, even, angles, minimum.shift)) <= tolerance && (!phase || found < *phase))
-      phase = found;
-  }
-  return phase;
-}
 
 Loop in_standard_phase(const systems::Structure& system, const Loop& loop, const Isotropy& isotropy) {
   const SymmetryGroup group(system, isotropy);

@@ -117,7 +117,7 @@ void FamilyDifferences::note_deviation(const std::string& quantity, double value
 void FamilyDifferences::run() {
   for (std::size_t row = 0; row < _a.families.size(); ++row) {
     const int other = _match.family_of_a[row];
-    if (other >= 0) compare({static_cast<int>(row), other, _a.families[row], _b.families[index(other)]});
+    if (other >= 0) compare({static_cast<int>(row), _a.families[row], _b.families[index(other)]});
   }
   add_missing(_a, _match.family_of_a, true);
   add_missing(_b, _match.family_of_b, false);

@@ -22,7 +22,6 @@ class FamilyDifferences {
  private:
   struct Pair {
     int row_a;
-    int row_b;
     const TreeFamily& a;
     const TreeFamily& b;
   };

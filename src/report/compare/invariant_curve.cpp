@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include "orbweaver/numerics/lagrange.hpp"
+
 namespace orbweaver::report {
 
 namespace {
@@ -38,13 +40,11 @@ Window window_around(std::size_t segment, std::size_t count, std::size_t points)
 
 double interpolated(const std::vector<Invariants>& points, const Window& window, Invariant variable, Invariant value,
                     double at) {
+  std::vector<double> nodes;
+  for (std::size_t n = 0; n < window.count; ++n) nodes.push_back(points[window.first + n].value(variable));
+  const std::vector<double> weights = numerics::lagrange_weights(nodes, at).value;
   double sum = 0.0;
-  for (std::size_t i = window.first; i < window.first + window.count; ++i) {
-    double weight = 1.0;
-    for (std::size_t j = window.first; j < window.first + window.count; ++j)
-      if (j != i) weight *= (at - points[j].value(variable)) / (points[i].value(variable) - points[j].value(variable));
-    sum += weight * points[i].value(value);
-  }
+  for (std::size_t n = 0; n < window.count; ++n) sum += weights[n] * points[window.first + n].value(value);
   return sum;
 }
 

@@ -31,12 +31,14 @@ int limits_of(const EndedTask& entry) {
 int widened_limits(const scene::Scene& before, const scene::Scene& now) {
   int limits = 0;
   for (const scene::Difference& difference : scene::differences(before, now)) {
-    if (difference.change != scene::Change::widened) continue;
-    if (difference.key == "limits.period") limits |= period_limited;
-    if (difference.key == "limits.energy") limits |= energy_limited;
-    if (difference.key == "limits.steps") limits |= step_limited;
-    if (difference.key == "survey.depth") limits |= depth_limited;
-    // limits.families: families left out wait in the checkpoint, and are asked again.
+    if (difference.change != scene::Change::widened || !difference.limit) continue;
+    switch (*difference.limit) {
+      case scene::LimitKey::period: limits |= period_limited; break;
+      case scene::LimitKey::energy: limits |= energy_limited; break;
+      case scene::LimitKey::steps: limits |= step_limited; break;
+      case scene::LimitKey::depth: limits |= depth_limited; break;
+      case scene::LimitKey::families: break;  // families left out wait in the checkpoint, and are asked again
+    }
   }
   return limits;
 }

@@ -8,7 +8,7 @@
 
 namespace orbweaver::survey {
 
-/// Bits of Limit (work.hpp) for the limits that lie farther out in `now`; `families_limited` among them.
+/// Bits of Limit (task_kind.hpp) for the limits that lie farther out in `now`.
 [[nodiscard]] int widened_limits(const scene::Scene& before, const scene::Scene& now);
 
 /// Decides, entry by entry in the order in which tasks ended, what a survey with wider limits keeps. What ended at one

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "orbweaver/numerics/lagrange.hpp"
+
 namespace orbweaver::survey {
 
 namespace {
@@ -14,13 +16,11 @@ struct Sample {
 
 /// The value at part = 0 of the polynomial through the samples.
 double at_zero(const std::vector<Sample>& samples, double Sample::*value) {
+  std::vector<double> parts;
+  for (const Sample& sample : samples) parts.push_back(sample.part);
+  const std::vector<double> weights = numerics::lagrange_weights(parts, 0.0).value;
   double sum = 0.0;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    double weight = 1.0;
-    for (std::size_t l = 0; l < samples.size(); ++l)
-      if (l != i) weight *= samples[l].part / (samples[l].part - samples[i].part);
-    sum += weight * samples[i].*value;
-  }
+  for (std::size_t i = 0; i < samples.size(); ++i) sum += weights[i] * samples[i].*value;
   return sum;
 }
 

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "orbweaver/bifurcation/locate.hpp"
 #include "orbweaver/loss/linearization.hpp"
+#include "orbweaver/numerics/locate.hpp"
 
 namespace orbweaver::survey {
 
@@ -27,7 +27,7 @@ std::optional<continuation::CurvePoint> orbit_with(const Value& value, double wa
     return point ? value(point->loop) - wanted : std::numeric_limits<double>::quiet_NaN();
   };
   const auto located =
-      bifurcation::locate_root(along, from.arclength, to.arclength, position_width * (1.0 + to.arclength));
+      numerics::locate_root(along, from.arclength, to.arclength, position_width * (1.0 + to.arclength));
   return located ? family.at(located->position) : std::nullopt;
 }
 

@@ -23,7 +23,7 @@ struct TimeMap {
   [[nodiscard]] double phase(double s) const;
   /// 2 pi phi'(s) > 0, with mean 1.
   [[nodiscard]] double density(double s) const;
-  /// The s with phase(s) = `phase` (Newton, bracketed; to rounding).
+  /// The s with phase(s) = `phase`, to rounding.
   [[nodiscard]] double inverse(double phase) const;
 
   /// True if phase(s + 2 pi turns) = phase(s) + 2 pi turns for all s: only every q-th coefficient for turns = p/q, and

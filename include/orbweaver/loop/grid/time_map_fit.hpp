@@ -14,9 +14,6 @@ struct TimeMapFit {
 /// The highest k with sqrt(|a_k|^2 + |b_k|^2) > `tolerance`; 0 if there is none.
 [[nodiscard]] int harmonics_above(const Loop& loop, double tolerance);
 
-/// The pulse, kappa = 2^(j/4) between 1/32 and 32, that needs the fewest harmonics.
-[[nodiscard]] TimeMapFit fit_kappa(const Loop& loop, double tolerance);
-
 /// The map with its coefficients shrunk alike until the density is nowhere below `least` < 1. Throws MisuseError where
 /// kappa is not 1.
 [[nodiscard]] TimeMap with_least_density(TimeMap map, double least);
@@ -25,11 +22,6 @@ struct TimeMapFit {
 /// of order 4 to 7 show it: s advances in proportion to (|z^(q)| / q!)^(1/q). Invariant under `isotropy`, density >=
 /// 0.02.
 [[nodiscard]] TimeMapFit fit_general(const Loop& loop, const Isotropy& isotropy, double tolerance, int most = 16);
-
-/// The loop's own map unless another needs at most `pays` times its harmonics: identity, the best pulse (where
-/// `isotropy` allows one) or the general map, whichever needs fewest. A pure function of the loop; O(nodes x cutoff) a
-/// candidate.
-[[nodiscard]] TimeMapFit fit_time_map(const Loop& loop, const Isotropy& isotropy, double tolerance, double pays = 0.8);
 
 /// True if the time map goes with the symmetries: they then act on the loop's harmonics as without a map.
 [[nodiscard]] bool is_invariant(const TimeMap& map, const Isotropy& isotropy);

@@ -1,18 +1,10 @@
 #pragma once
 
-#include <optional>
-#include <vector>
-
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/systems/structure.hpp"
 
 namespace orbweaver::loop {
-
-/// The phase phi in [0, 1), any real number, with z(T phi - t) = R z(t), if there is one to `tolerance` (mean distance,
-/// angles modulo 2 pi): the smallest. Started phi/2 later, the loop has R@0.
-[[nodiscard]] std::optional<double> reversor_phase(const systems::Symmetry& reversor, const std::vector<int>& angles,
-                                                   const Loop& loop, double tolerance);
 
 /// The orbit with s = 0 where the archive has it. `isotropy`: the loop's, at its present phase.
 ///

@@ -3,14 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include "orbweaver/bifurcation/locate.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/numerics/locate.hpp"
 
 namespace {
 
 using namespace orbweaver;
-using bifurcation::locate_minimum;
-using bifurcation::locate_root;
+using numerics::locate_minimum;
+using numerics::locate_root;
 
 TEST(LocateRoot, FindsARootToItsTolerance) {
   for (const double tolerance : {1e-3, 1e-8, 1e-13}) {

@@ -1,4 +1,4 @@
-#include "orbweaver/bifurcation/locate.hpp"
+#include "orbweaver/numerics/locate.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include "orbweaver/core/error.hpp"
 
-namespace orbweaver::bifurcation {
+namespace orbweaver::numerics {
 
 namespace {
 
@@ -21,7 +21,7 @@ struct NoValue {};
 
 /// Counts evaluations, and leaves the library's algorithm where there is no value.
 struct Counted {
-  const PositionFunction& function;
+  const Function& function;
   int evaluations = 0;
 
   double operator()(double position) {
@@ -38,40 +38,42 @@ void check_interval(double from, double to, double tolerance) {
 
 }  // namespace
 
-std::optional<Located> locate_root(const PositionFunction& function, double from, double to, double tolerance,
+std::optional<Located> locate_root(const Function& function, double from, double to, double tolerance,
                                    int max_evaluations) {
   check_interval(from, to, tolerance);
+  const Place low{from, function(from)};
+  const Place high{to, function(to)};
+  std::optional<Located> root = locate_root(function, low, high, tolerance, max_evaluations - 2);
+  if (root) root->evaluations += 2;
+  return root;
+}
+
+std::optional<Located> locate_root(const Function& function, const Place& from, const Place& to, double tolerance,
+                                   int max_evaluations) {
+  check_interval(from.position, to.position, tolerance);
+  if (std::isnan(from.value) || std::isnan(to.value)) return std::nullopt;
+  if (from.value == 0.0) return Located{from.position, 0.0, 0.0, 0, true};
+  if (to.value == 0.0) return Located{to.position, 0.0, 0.0, 0, true};
+  if (std::signbit(from.value) == std::signbit(to.value)) return std::nullopt;
+  Place best = std::abs(to.value) < std::abs(from.value) ? to : from;
   Counted counted{function};
+  const auto watched = [&](double position) {
+    const double value = counted(position);
+    if (std::abs(value) < std::abs(best.value)) best = {position, value};
+    return value;
+  };
+  const auto close = [tolerance](double a, double b) { return std::abs(b - a) <= tolerance; };
+  auto budget = static_cast<std::uintmax_t>(std::max(1, max_evaluations));
   try {
-    const double at_from = counted(from);
-    const double at_to = counted(to);
-    if (at_from == 0.0) return Located{from, 0.0, 0.0, counted.evaluations, true};
-    if (at_to == 0.0) return Located{to, 0.0, 0.0, counted.evaluations, true};
-    if (std::signbit(at_from) == std::signbit(at_to)) return std::nullopt;
-    double best = from;
-    double least = std::abs(at_from);
-    const auto watched = [&](double position) {
-      const double value = counted(position);
-      if (std::abs(value) < std::abs(least)) {
-        best = position;
-        least = value;
-      }
-      return value;
-    };
-    if (std::abs(at_to) < std::abs(least)) {
-      best = to;
-      least = at_to;
-    }
-    const auto close = [tolerance](double a, double b) { return std::abs(b - a) <= tolerance; };
-    auto budget = static_cast<std::uintmax_t>(std::max(1, max_evaluations - 2));
-    const auto [a, b] = boost::math::tools::toms748_solve(watched, from, to, at_from, at_to, close, budget);
-    return Located{best, least, b - a, counted.evaluations, close(a, b)};
+    const auto [a, b] =
+        boost::math::tools::toms748_solve(watched, from.position, to.position, from.value, to.value, close, budget);
+    return Located{best.position, best.value, b - a, counted.evaluations, close(a, b)};
   } catch (const NoValue&) {
     return std::nullopt;
   }
 }
 
-std::optional<Located> locate_minimum(const PositionFunction& function, double from, double to, double tolerance,
+std::optional<Located> locate_minimum(const Function& function, double from, double to, double tolerance,
                                       int max_evaluations) {
   check_interval(from, to, tolerance);
   Counted counted{function};
@@ -90,4 +92,4 @@ std::optional<Located> locate_minimum(const PositionFunction& function, double f
   }
 }
 
-}  // namespace orbweaver::bifurcation
+}  // namespace orbweaver::numerics
