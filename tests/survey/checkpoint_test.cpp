@@ -9,7 +9,7 @@
 #include "state/checkpoint_keeper.hpp"
 #include "state/reopen.hpp"
 #include "survey/scenes.hpp"
-#include "tasks/work.hpp"
+#include "tasks/work/work.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "tasks/keys.hpp"
+#include "tasks/work/keys.hpp"
 
 #include <gtest/gtest.h>
 

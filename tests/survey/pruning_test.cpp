@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-#include "tasks/keys.hpp"
+#include "tasks/work/keys.hpp"
 
 namespace {
 

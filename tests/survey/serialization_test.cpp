@@ -6,8 +6,8 @@
 #include "state/branch_state.hpp"
 #include "state/checkpoint.hpp"
 #include "support/serialized.hpp"
-#include "tasks/payload.hpp"
-#include "tasks/work.hpp"
+#include "tasks/work/payload.hpp"
+#include "tasks/work/work.hpp"
 
 namespace orbweaver::test {
 

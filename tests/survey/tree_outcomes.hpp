@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "orbweaver/queue/task.hpp"
-#include "tasks/work.hpp"
+#include "tasks/work/work.hpp"
 
 namespace orbweaver::test {
 

@@ -5,8 +5,8 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "support/stated_system.hpp"
-#include "tasks/payload.hpp"
-#include "tasks/work.hpp"
+#include "tasks/work/payload.hpp"
+#include "tasks/work/work.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 #include "branch_state.hpp"
 
-#include "tasks/payload.hpp"
+#include "tasks/work/payload.hpp"
 
 namespace orbweaver::survey {
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/log/log.hpp"
-#include "tasks/work.hpp"
+#include "tasks/work/work.hpp"
 
 namespace orbweaver::survey {
 

@@ -6,7 +6,7 @@
 
 #include "branch_state.hpp"
 #include "orbweaver/scene/differences.hpp"
-#include "tasks/keys.hpp"
+#include "tasks/work/keys.hpp"
 
 namespace orbweaver::survey {
 

@@ -9,13 +9,13 @@
 
 #include "arrival.hpp"
 #include "executor.hpp"
-#include "keys.hpp"
 #include "orbit_row.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/bifurcation/family_jump.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "requested.hpp"
+#include "tasks/work/keys.hpp"
 
 namespace orbweaver::survey {
 

@@ -12,7 +12,7 @@
 #include "orbweaver/queue/executor.hpp"
 #include "orbweaver/scene/scene.hpp"
 #include "state/branch_state.hpp"
-#include "work.hpp"
+#include "tasks/work/work.hpp"
 
 namespace orbweaver::survey {
 

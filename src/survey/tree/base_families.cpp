@@ -7,7 +7,7 @@
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
-#include "tasks/work.hpp"
+#include "tasks/work/work.hpp"
 
 namespace orbweaver::survey {
 

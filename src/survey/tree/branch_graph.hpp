@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "tasks/work.hpp"
+#include "tasks/work/work.hpp"
 
 namespace orbweaver::survey {
 

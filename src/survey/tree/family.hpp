@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tasks/work.hpp"
+#include "tasks/work/work.hpp"
 
 namespace orbweaver::survey {
 
