@@ -19,10 +19,10 @@ inline std::string to_text(const bifurcation::SymmetryGain& gain) {
 }
 
 /// The first symmetry that the branch passes from one orbit to the next.
-inline std::optional<bifurcation::SymmetryGain> first_passed(const bifurcation::SymmetryWatch& watch, const loop::Loop& a,
-                                                       const loop::Loop& b) {
+inline std::optional<bifurcation::SymmetryGain> first_passed(const bifurcation::SymmetryWatch& watch,
+                                                             const loop::Loop& a, const loop::Loop& b) {
   std::vector<bifurcation::SymmetryGain> all =
-      watch.all_passed(bifurcation::SymmetryWatch::see(a), bifurcation::SymmetryWatch::see(b));
+      watch.all_passed(bifurcation::SymmetryWatch::sampled(a), bifurcation::SymmetryWatch::sampled(b));
   if (all.empty()) return std::nullopt;
   return std::move(all.front());
 }

@@ -6,6 +6,7 @@
 
 #include "loop/samples.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "support/best_pulse.hpp"
 #include "support/stated_system.hpp"
 
