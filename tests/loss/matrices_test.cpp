@@ -1,6 +1,10 @@
 #include "orbweaver/loss/assembled.hpp"
 
+#include <functional>
 #include <memory>
+#include <span>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -8,7 +12,6 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/petsc/check.hpp"
 #include "orbweaver/loss/dense.hpp"
-#include "shells.hpp"
 
 namespace orbweaver::loss {
 namespace {
@@ -23,27 +26,14 @@ Eigen::MatrixXd dense(const core::Handle<Mat>& matrix) {
   return copy;
 }
 
-Eigen::VectorXd times(const core::Handle<Mat>& matrix, const Eigen::VectorXd& x, bool transposed = false) {
-  PetscInt rows = 0;
-  PetscInt columns = 0;
-  core::check(MatGetSize(matrix.get(), &rows, &columns), "MatGetSize");
-  const core::Handle<Vec> in = create_vector(static_cast<int>(x.size()));
-  const core::Handle<Vec> out = create_vector(static_cast<int>(transposed ? columns : rows));
-  assign(in.get(), x);
-  if (transposed)
-    core::check(MatMultTranspose(matrix.get(), in.get(), out.get()), "MatMultTranspose");
-  else
-    core::check(MatMult(matrix.get(), in.get(), out.get()), "MatMult");
-  return to_eigen(out.get());
-}
-
-// Every column of a matrix by its products with unit vectors.
-Eigen::MatrixXd columns_of(const core::Handle<Mat>& matrix) {
-  PetscInt rows = 0;
-  PetscInt columns = 0;
-  core::check(MatGetSize(matrix.get(), &rows, &columns), "MatGetSize");
-  Eigen::MatrixXd out(rows, columns);
-  for (PetscInt n = 0; n < columns; ++n) out.col(n) = times(matrix, Eigen::VectorXd::Unit(columns, n));
+/// The matrix of a linear function of `size` numbers.
+Eigen::MatrixXd matrix_of(int size, const std::function<std::vector<double>(std::span<const double>)>& function) {
+  Eigen::MatrixXd out;
+  for (int n = 0; n < size; ++n) {
+    const Eigen::VectorXd column = test::vector_of(function(test::view(Eigen::VectorXd::Unit(size, n))));
+    out.conservativeResize(column.size(), size);
+    out.col(n) = column;
+  }
   return out;
 }
 
@@ -59,10 +49,13 @@ TEST_P(LossMatrices, JacobianIsTheSameAssembledAndMatrixFree) {
   const Eigen::MatrixXd assembled = dense(assemble_jacobian(*here, *unknowns));
   EXPECT_EQ(assembled.rows(), here->rows());
   EXPECT_EQ(assembled.cols(), unknowns->size());
-  const core::Handle<Mat> shell = shell_jacobian(here, unknowns);
-  EXPECT_LT((columns_of(shell) - assembled).norm(), 1e-12 * assembled.norm());
+  const Eigen::MatrixXd products =
+      matrix_of(unknowns->size(), [&](auto v) { return here->apply_jacobian(*unknowns, v); });
+  EXPECT_LT((products - assembled).norm(), 1e-12 * assembled.norm());
   const Eigen::VectorXd y = test::unit_direction(here->rows(), 21);
-  EXPECT_LT((times(shell, y, true) - assembled.transpose() * y).norm(), 1e-12 * assembled.norm());
+  EXPECT_LT(
+      (test::vector_of(here->apply_jacobian_transposed(*unknowns, test::view(y))) - assembled.transpose() * y).norm(),
+      1e-12 * assembled.norm());
 }
 
 TEST_P(LossMatrices, HessianIsTheSameAssembledAndMatrixFree) {
@@ -70,10 +63,9 @@ TEST_P(LossMatrices, HessianIsTheSameAssembledAndMatrixFree) {
     const Eigen::MatrixXd assembled = dense(assemble_hessian(*here, *unknowns, curvature));
     EXPECT_EQ(assembled.rows(), unknowns->size());
     EXPECT_EQ(assembled, assembled.transpose());
-    const core::Handle<Mat> shell = shell_hessian(here, unknowns, curvature);
-    EXPECT_LT((columns_of(shell) - assembled).norm(), 1e-12 * assembled.norm());
-    const Eigen::VectorXd v = test::unit_direction(unknowns->size(), 22);
-    EXPECT_LT((times(shell, v, true) - assembled * v).norm(), 1e-12 * assembled.norm());
+    const Eigen::MatrixXd products =
+        matrix_of(unknowns->size(), [&](auto v) { return here->apply_hessian(*unknowns, v, curvature); });
+    EXPECT_LT((products - assembled).norm(), 1e-12 * assembled.norm());
   }
 }
 
@@ -92,30 +84,6 @@ TEST_P(LossMatrices, FullHessianDiffersAwayFromAnOrbit) {
 
 INSTANTIATE_TEST_SUITE_P(Cases, LossMatrices, ::testing::ValuesIn(test::all_case_names()),
                          [](const auto& param) { return param.param; });
-
-TEST(ShellMatrices, KeepWhatTheyNeed) {
-  core::Handle<Mat> shell;
-  Eigen::VectorXd expected;
-  const Eigen::VectorXd v = test::unit_direction(make_case("pendulum_symmetric_period").unknowns.size(), 23);
-  {
-    const Case sample = make_case("pendulum_symmetric_period");
-    auto here = std::make_shared<Linearization>(test::linearize(sample, Order::second));
-    auto unknowns = std::make_shared<Unknowns>(sample.unknowns);
-    expected = test::vector_of(here->apply_hessian(*unknowns, test::view(v), Curvature::full));
-    shell = shell_hessian(std::move(here), std::move(unknowns), Curvature::full);
-  }
-  EXPECT_EQ(times(shell, v), expected);
-}
-
-TEST(ShellMatrices, ReportMisuseAsAnErrorOfPetsc) {
-  const Case sample = make_case("pendulum_symmetric");
-  const auto here = std::make_shared<Linearization>(test::linearize(sample, Order::jacobian));
-  const auto unknowns = std::make_shared<Unknowns>(sample.unknowns);
-  const core::Handle<Mat> shell = shell_hessian(here, unknowns, Curvature::full);
-  const core::Handle<Vec> x = create_vector(unknowns->size());
-  const core::Handle<Vec> y = create_vector(unknowns->size());
-  EXPECT_NE(MatMult(shell.get(), x.get(), y.get()), 0);
-}
 
 TEST(MatricesMisuse, IsRefused) {
   const Case sample = make_case("pendulum_symmetric_period");
