@@ -16,9 +16,9 @@ namespace orbweaver::equations {
 template <class Scalar, int Packets>
 class BoxElimination final : public BoxScheme, private BoxBlocks<Scalar, Packets> {
   using Blocks = BoxBlocks<Scalar, Packets>;
-  using typename Blocks::Vector;
   using Blocks::d, Blocks::n, Blocks::square, Blocks::vector, Blocks::scalars, Blocks::number, Blocks::add,
       Blocks::combine, Blocks::multiply, Blocks::products, Blocks::total, Blocks::subtract_transposed, Blocks::width;
+  using typename Blocks::Vector;
 
  public:
   explicit BoxElimination(int dimension) : Blocks(dimension), _reduction(dimension) {}

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bifurcation/branchings.hpp"
-#include "bifurcation/gain.hpp"
+#include "bifurcation/symmetry_gain.hpp"
 #include "orbweaver/bifurcation/symmetry_watch.hpp"
 
 namespace orbweaver::bifurcation {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bifurcation/gain.hpp"
+#include "bifurcation/symmetry_gain.hpp"
 #include "loop/samples.hpp"
 #include "orbweaver/core/error.hpp"
 #include "support/stated_system.hpp"

@@ -14,8 +14,8 @@ namespace orbweaver::equations {
 
 class BoxScheme;
 
-/// The bordered equations of an orbit on a fundamental domain, and their box preconditioner (docs/mathematics.md, "The
-/// fast solve"):
+/// The bordered equations of an orbit on a fundamental domain, and their box preconditioner (docs/mathematics.md,
+/// "Collocation on the fundamental domain"):
 ///
 ///   y_(j+1) - y_j + n h - c_j (f(z_j; p) + sum_k mu_k grad H_k(z_j)) = 0 at the midpoints, c_j = h T density / (2 pi),
 ///   end conditions of the domain,   weights_q . (u - reference) = 0 for each border.
