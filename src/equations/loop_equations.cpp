@@ -307,48 +307,43 @@ void LoopEquations::factor(const systems::System& system, const loop::Loop& loop
   _box->factor(m, _team);
 }
 
-void LoopEquations::precondition(const In& r, Out out) const {
-  const core::LogEvent event(core::Event::precondition);
+void LoopEquations::solve_boxes(const In& given, Out out, void (BoxScheme::*solve)(double*) const) const {
   const int cutoff = _linearization.cutoff();
   const int dimension = _linearization.dimension();
-  const auto d = static_cast<std::size_t>(dimension);
-  const int nodes = 2 * cutoff + 1;
-  const double half_cell = std::numbers::pi / nodes;
-  const loop::FourierGrid& grid = loop::FourierGrid::of_size(nodes);
+  const loop::FourierGrid& grid = loop::FourierGrid::of_size(2 * cutoff + 1);
   const auto borders = _slice.conditions().cols();
+  grid.synthesize(cutoff, dimension, _modes.data(), _boxed.data());
+  _boxed.tail(borders) = given.tail(borders);
+  (*_box.*solve)(_boxed.data());
+  grid.analyze(cutoff, dimension, _boxed.data(), _modes.data());
+  out.tail(borders) = _boxed.tail(borders);
+}
+
+void LoopEquations::precondition(const In& r, Out out) const {
+  const core::LogEvent event(core::Event::precondition);
+  const auto d = static_cast<std::size_t>(_linearization.dimension());
+  const double half_cell = std::numbers::pi / (2 * _linearization.cutoff() + 1);
   std::fill(_modes.begin(), _modes.end(), 0.0);
   _image.add_to(view(r, _image.size()), _modes);
   shift(_modes, d, half_cell);
-  grid.synthesize(cutoff, dimension, _modes.data(), _boxed.data());
-  _boxed.tail(borders) = r.tail(borders);
-  _box->solve(_boxed.data());
-  grid.analyze(cutoff, dimension, _boxed.data(), _modes.data());
+  solve_boxes(r, out, &BoxScheme::solve);
   smooth(_modes, d, half_cell);
   _unknowns.subspace.project(_modes, view(out, _unknowns.subspace.size()));
-  out.tail(borders) = _boxed.tail(borders);
 }
 
 void LoopEquations::precondition_transposed(const In& u, Out out) const {
   const core::LogEvent event(core::Event::precondition);
-  const int cutoff = _linearization.cutoff();
-  const int dimension = _linearization.dimension();
-  const auto d = static_cast<std::size_t>(dimension);
-  const int nodes = 2 * cutoff + 1;
+  const auto d = static_cast<std::size_t>(_linearization.dimension());
+  const int nodes = 2 * _linearization.cutoff() + 1;
   const double half_cell = std::numbers::pi / nodes;
-  const loop::FourierGrid& grid = loop::FourierGrid::of_size(nodes);
-  const auto borders = _slice.conditions().cols();
   std::fill(_modes.begin(), _modes.end(), 0.0);
   _unknowns.subspace.add_to(view(u, _unknowns.subspace.size()), _modes);
   smooth(_modes, d, half_cell);
   scale(_modes, d, 1.0 / nodes, 2.0 / nodes);
-  grid.synthesize(cutoff, dimension, _modes.data(), _boxed.data());
-  _boxed.tail(borders) = u.tail(borders);
-  _box->solve_transposed(_boxed.data());
-  grid.analyze(cutoff, dimension, _boxed.data(), _modes.data());
+  solve_boxes(u, out, &BoxScheme::solve_transposed);
   scale(_modes, d, nodes, 0.5 * nodes);
   shift(_modes, d, -half_cell);
   _image.project(_modes, view(out, _image.size()));
-  out.tail(borders) = _boxed.tail(borders);
 }
 
 }  // namespace orbweaver::equations

@@ -98,22 +98,28 @@ FloquetIndices indices_of(const Eigen::VectorXd& numbers, FloquetIndices sizes) 
   return sizes;
 }
 
-/// Where there is no trace to read: the largest response to four sets of such errors, `change(m, random)` being that of
-/// factor m. They are enlarged sixteenfold and the response divided by four, which covers an eigenvalue about to
-/// split, whose response grows with the root only.
+/// Where there is no trace to read: the responses to six sets of such errors, `change(m, random)` being that of factor
+/// m, are added. Two sets have the same random numbers at every factor: equal segments make equal errors, which add up
+/// over the loop, where independent ones grow with the root of their number only. They are enlarged sixteenfold and the
+/// response divided by four, which covers an eigenvalue about to split, whose response grows with the root only.
 template <class Change>
 void add_probes(const systems::Structure& system, const TransverseFlow& flow, int order, const FloquetIndices& indices,
                 const Change& change, core::Team* team, Stability& stability) {
-  constexpr int probes = 4;
+  constexpr int probes = 6;
+  constexpr int repeated = 2;
   constexpr double enlarged = 16.0;
   constexpr double divided = 0.25;
   constexpr std::uint64_t first_seed = 12345;
   Eigen::MatrixXd answers(2 * (indices.full.size() + indices.fundamental.size()), probes);
   const auto ask = [&](int begin, int end) {
     for (int probe = begin; probe < end; ++probe) {
-      numerics::Random random(first_seed + static_cast<std::uint64_t>(probe));
+      const auto seed = first_seed + static_cast<std::uint64_t>(probe);
+      numerics::Random random(seed);
       TransverseFlow changed = flow;
-      for (Eigen::Index m = 0; m < flow.factors.cols(); ++m) changed.factors.col(m) += enlarged * change(m, random);
+      for (Eigen::Index m = 0; m < flow.factors.cols(); ++m) {
+        if (probe < repeated) random = numerics::Random(seed);
+        changed.factors.col(m) += enlarged * change(m, random);
+      }
       answers.col(probe) = numbers_of(floquet_indices(system, changed, order));
     }
   };

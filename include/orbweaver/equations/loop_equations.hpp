@@ -79,6 +79,8 @@ class LoopEquations {
   [[nodiscard]] Eigen::Index columns() const { return size() - first_column(); }
   void weigh() const;
   void project_nodal(Out out) const;
+  /// The box scheme's solution for the nodal values of `_modes` and the borders of `given`, into `_modes` and `out`.
+  void solve_boxes(const In& given, Out out, void (BoxScheme::*solve)(double*) const) const;
 
   const loss::Unknowns& _unknowns;
   const loop::Subspace& _image;
