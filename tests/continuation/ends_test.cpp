@@ -17,6 +17,7 @@ namespace orbweaver::continuation {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 /// A start from an orbit of a traced family towards smaller amplitudes.
 Start downwards(const test::Trace& family, double period) {
@@ -189,23 +190,42 @@ class Spring final : public test::StatedSystem {
   double _wall;
 };
 
-// The correction takes T below 0 and the loop to where the field is NaN: there is no orbit of this amplitude.
-TEST(Ends, NotFiniteWhereThePeriodIsLost) {
-  const Spring spring(-1.5e4, 0.02);
+struct FirstTrial {
+  Trial trial;
+  double period;
+};
+
+/// The correction at amplitude 0.01 from the equilibrium's period.
+FirstTrial first_trial(const Spring& spring) {
+  constexpr double amplitude = 0.01;
   const Start start = circles(spring);
   ProblemState state;
   const Options options;
   const auto problem = make_point_problem({spring, start.base, start.isotropy}, options, state);
   problem->resolve(problem->resolution_for(10, {}, 100));
-  state.amplitude = 0.01;
+  state.amplitude = amplitude;
   Prediction prediction{problem->from_loop(start.base),
                         problem->from_change(loop::perturbation(start.base, start.direction)), 1};
-  for (std::size_t n = 0; n < prediction.values.size(); ++n) prediction.values[n] += 0.01 * prediction.tangent[n];
+  for (std::size_t n = 0; n < prediction.values.size(); ++n) prediction.values[n] += amplitude * prediction.tangent[n];
   const std::vector<double> conditions = problem->conditions_at(prediction);
-  const Trial trial = problem->correct(std::move(prediction), conditions);
-  EXPECT_FALSE(trial.converged);
-  EXPECT_LT(trial.values[problem->scalars_at()], 0.0);
-  EXPECT_THAT(trial.reason, HasSubstr("the vector field of test_spring is not finite"));
+  FirstTrial out{problem->correct(std::move(prediction), conditions), 0.0};
+  out.period = out.trial.values[problem->scalars_at()];
+  return out;
+}
+
+// The correction takes T below 0 and the loop to where the field is NaN: there is no orbit of this amplitude.
+TEST(Ends, NotFiniteWhereThePeriodIsLost) {
+  const FirstTrial first = first_trial(Spring(-1.5e4, 0.02));
+  EXPECT_FALSE(first.trial.converged);
+  EXPECT_LT(first.period, 0.0);
+  EXPECT_THAT(first.trial.reason, HasSubstr("the vector field of test_spring is not finite"));
+}
+
+TEST(Ends, DivergenceSaysHowFar) {
+  const FirstTrial first = first_trial(Spring(-1.1e4, std::numeric_limits<double>::infinity()));
+  EXPECT_FALSE(first.trial.converged);
+  EXPECT_THAT(first.trial.reason, HasSubstr("no convergence in 1 iterations, the last change "));
+  EXPECT_THAT(first.trial.reason, Not(testing::EndsWith(" 0")));
 }
 
 // The arclength of a step is then a dozen times the problem's length of it.
