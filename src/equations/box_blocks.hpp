@@ -27,8 +27,8 @@ inline double sum_of(const Packet& v) { return (v[0] + v[2]) + (v[1] + v[3]); }
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// Vectors of d numbers and matrices of d rows as rows of packets, the same for both storages of a BoxScheme. `Scalar` is
-/// a Packet of one number of each of four stretches, or a double. A vector, or a column of a matrix, is one packet a
+/// Vectors of d numbers and matrices of d rows as rows of packets, the same for both storages of a BoxScheme. `Scalar`
+/// is a Packet of one number of each of four stretches, or a double. A vector, or a column of a matrix, is one packet a
 /// coordinate with lanes, four coordinates in each without, the last filled up with zeros. `Packets`: so many a vector,
 /// 0 where that is known at run time.
 template <class Scalar, int Packets>
@@ -40,7 +40,9 @@ class BoxBlocks {
 
   [[nodiscard]] int d() const { return Packets > 0 && width > 1 ? Packets : _dimension; }
   /// Packets of a vector, and of a matrix of d columns.
-  [[nodiscard]] int n() const { return Packets > 0 ? Packets : (_dimension * width + BoxScheme::lanes - 1) / BoxScheme::lanes; }
+  [[nodiscard]] int n() const {
+    return Packets > 0 ? Packets : (_dimension * width + BoxScheme::lanes - 1) / BoxScheme::lanes;
+  }
   [[nodiscard]] int square() const { return d() * n(); }
 
   using Vector = std::conditional_t<(Packets > 0), std::array<Packet, at(std::max(Packets, 1))>, std::vector<Packet>>;

@@ -7,8 +7,8 @@
 
 namespace orbweaver::equations {
 
-/// The elimination of one node from two relations, (first, y_j, ..) and (.., y_j, next): a QR by Householder reflections
-/// of the 2 d x d matrix of what stands before y_j.
+/// The elimination of one node from two relations, (first, y_j, ..) and (.., y_j, next): a QR by Householder
+/// reflections of the 2 d x d matrix of what stands before y_j.
 template <class Scalar, int Packets>
 class BoxReduction : private BoxBlocks<Scalar, Packets> {
   using Blocks = BoxBlocks<Scalar, Packets>;
@@ -19,8 +19,8 @@ class BoxReduction : private BoxBlocks<Scalar, Packets> {
   explicit BoxReduction(int dimension)
       : Blocks(dimension), _panel(at(6 * square())), _reflectors(at(2 * square())), _reflections(at(d())) {}
 
-  /// With Q R = (above, below): invert (d x 2 d) is R^-1 of the first rows of Q', keep its other rows. All of d rows, by
-  /// columns.
+  /// With Q R = (above, below): invert (d x 2 d) is R^-1 of the first rows of Q', keep its other rows. All of d rows,
+  /// by columns.
   void run(const Packet* above, const Packet* below, Packet* invert, Packet* keep) {
     for (int b = 0; b < d(); ++b) {
       std::copy_n(above + b * n(), n(), column(b));
