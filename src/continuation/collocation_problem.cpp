@@ -251,11 +251,13 @@ void CollocationProblem::judge(Trial& trial) {
 /// The sentence that the loss has for a field that is not finite.
 std::string CollocationProblem::not_finite_at(const std::vector<double>& values, const std::vector<double>& predicted) {
   for (const std::vector<double>* point : {&predicted, &values}) {
-    const bool finite = std::all_of(point->begin(), point->end(), [](double v) { return std::isfinite(v); });
-    if (!finite) continue;
+    loop::Loop there = equations().to_loop(point->data());
+    // The field does not depend on T, which a correction that fails may have taken below 0.
+    if (!(there.period > 0.0)) there.period = predicted[scalars_at()];
+    const auto finite = [](double v) { return std::isfinite(v); };
+    if (!finite(there.period) || !std::all_of(there.modes.begin(), there.modes.end(), finite)) continue;
     try {
-      const loss::Linearization probe(_system, equations().to_loop(point->data()),
-                                      loss::Linearization::Order::jacobian);
+      const loss::Linearization probe(_system, there, loss::Linearization::Order::jacobian);
     } catch (const core::NotFiniteError& error) {
       return error.what();
     }

@@ -137,8 +137,9 @@ Prediction CurveInterval::prediction_at(double position) {
   std::vector<double> end = first;
   for (std::size_t n = 0; n < end.size(); ++n) end[n] += out.tangent[n];
   const double share = (position - _from) / (_to - _from);
-  const double off =
-      share - _problem->product(out.values, first, end, first) / _problem->product(end, first, end, first);
+  // In the product of the conditions, or the orbit would depend on the guess.
+  const double off = share - _problem->condition_product(out.values, first, end, first) /
+                                 _problem->condition_product(end, first, end, first);
   for (std::size_t n = 0; n < end.size(); ++n) out.values[n] += off * out.tangent[n];
   return out;
 }

@@ -112,6 +112,13 @@ double LoopProblem::product(const std::vector<double>& a, const std::vector<doub
   return sum + (a.back() - b.back()) * (c.back() - d.back()) / (unit * unit);
 }
 
+double LoopProblem::condition_product(const std::vector<double>& a, const std::vector<double>& b,
+                                      const std::vector<double>& c, const std::vector<double>& d) {
+  double sum = 0.0;
+  for (std::size_t n = 0; n < a.size(); ++n) sum += (a[n] - b[n]) * (c[n] - d[n]);
+  return sum;
+}
+
 double LoopProblem::distance(const std::vector<double>& a, const std::vector<double>& b) {
   return arclength_between(to_loop(b), to_loop(a));
 }

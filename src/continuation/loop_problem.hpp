@@ -26,6 +26,8 @@ class LoopProblem final : public PointProblem {
 
   [[nodiscard]] double product(const std::vector<double>& a, const std::vector<double>& b, const std::vector<double>& c,
                                const std::vector<double>& d) override;
+  [[nodiscard]] double condition_product(const std::vector<double>& a, const std::vector<double>& b,
+                                         const std::vector<double>& c, const std::vector<double>& d) override;
   [[nodiscard]] double distance(const std::vector<double>& a, const std::vector<double>& b) override;
   [[nodiscard]] double change_at_start(const std::vector<double>& change) override;
   [[nodiscard]] bool inverted(const Trial& trial, const std::vector<double>& last) override;

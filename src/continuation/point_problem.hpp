@@ -70,6 +70,12 @@ class PointProblem {
   /// The inner product of the steps a - b and c - d in which the branch measures its parameter.
   [[nodiscard]] virtual double product(const std::vector<double>& a, const std::vector<double>& b,
                                        const std::vector<double>& c, const std::vector<double>& d) = 0;
+  /// The inner product in which a change that the first of `conditions_at` allows is orthogonal to the prediction's
+  /// direction.
+  [[nodiscard]] virtual double condition_product(const std::vector<double>& a, const std::vector<double>& b,
+                                                 const std::vector<double>& c, const std::vector<double>& d) {
+    return product(a, b, c, d);
+  }
   /// The archive's arclength between neighbours (see `arclength_between`).
   [[nodiscard]] virtual double distance(const std::vector<double>& a, const std::vector<double>& b) = 0;
   /// |dz(s = 0)| of a change of a point.

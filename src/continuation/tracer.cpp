@@ -27,6 +27,8 @@ constexpr double least_start = 1e-6;
 constexpr double still_at_start = 1e-16;
 /// Of a step's length where the step went over to another family: the next attempt.
 constexpr double shortened_after_jump = 0.3;
+/// The same of the length allowed to the attempt before, once an attempt has come out no shorter.
+constexpr double halved_where_stuck = 0.5;
 /// A step that may not be longer than a given length may be halved three times all the same.
 constexpr double least_of_longest = 0.1;
 /// A prediction that is wrong by so many times the wanted error (0.3 rad) has met another family: errors of one family
@@ -116,11 +118,17 @@ std::optional<Orbit> Tracer::next_on_family() {
   constexpr double unlimited = std::numeric_limits<double>::infinity();
   if (!_options.jumped) return next_orbit(unlimited);
   const Frontier before = _frontier;
-  std::optional<Orbit> next = next_orbit(unlimited);
+  double at_most = unlimited;
+  double increment = unlimited;
+  bool is_stuck = false;
+  std::optional<Orbit> next = next_orbit(at_most);
   while (next && _frontier.last_increment > _options.smallest_jump && _options.jumped(before.orbit, *next)) {
-    const double length = shortened_after_jump * _frontier.last_increment;
+    // Where T changes fast an increment is many times the problem's length of a step, and shortens nothing.
+    is_stuck = is_stuck || _frontier.last_increment >= increment;
+    increment = _frontier.last_increment;
+    at_most = std::min(shortened_after_jump * increment, is_stuck ? halved_where_stuck * at_most : unlimited);
     go_on_from(before);
-    next = next_orbit(length);
+    next = next_orbit(at_most);
   }
   return next;
 }
@@ -165,16 +173,19 @@ double Tracer::length_to_try() {
                   fixed_in_largest * _options.largest_step);
 }
 
-/// The last orbit of a branch lies on the scene's limit, not beyond it.
+/// The last orbit of a branch lies on the scene's limit, not beyond it; where a step passes two, on the first.
 std::optional<Orbit> Tracer::accept_within_limits(Trial trial, double length) {
   constexpr int period = 0;  // among the scalars
+  const double value = energy_of(*_system, trial.loop);
+  const bool is_late = scalar(trial, period) > _options.period_limit;
+  const bool is_outside = is_beyond_energies(value);
+  if (!is_late && !is_outside) return accept(trial);
   OnLimit on_limit;
-  if (scalar(trial, period) > _options.period_limit) {
+  if (is_late) {
     on_limit = orbit_at_scalar(_stepper, {EndReason::period_limit, "T", _options.period_limit, length, trial}, period);
     if (on_limit.trial) on_limit.trial->loop.period = _options.period_limit;
-  } else {
-    const double value = energy_of(*_system, trial.loop);
-    if (!(value > _options.energy_to || value < _options.energy_from)) return accept(trial);
+  }
+  if (is_outside && (!is_late || (on_limit.trial && is_beyond_energies(energy_of(*_system, on_limit.trial->loop))))) {
     const double limit = value > _options.energy_to ? _options.energy_to : _options.energy_from;
     on_limit = orbit_at_value(_stepper, {EndReason::energy_limit, "E", limit, length, trial}, _frontier.orbit.energy,
                               [this](const Trial& other) { return energy_of(*_system, other.loop); });

@@ -26,6 +26,9 @@ class Tracer {
  private:
   [[nodiscard]] bool begun() const { return !here().modes.empty(); }
   [[nodiscard]] const loop::Loop& here() const { return _frontier.orbit.loop; }
+  [[nodiscard]] bool is_beyond_energies(double value) const {
+    return value > _options.energy_to || value < _options.energy_from;
+  }
   [[nodiscard]] double scalar(const Trial& trial, int number) {
     return trial.values[_problem->scalars_at() + static_cast<std::size_t>(number)];
   }

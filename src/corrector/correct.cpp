@@ -52,6 +52,9 @@ double length(const loop::Loop& loop) {
   return std::sqrt(sum);
 }
 
+/// A loop that the loss would refuse.
+bool is_lost(double period) { return !(period > 0.0) || !std::isfinite(period); }
+
 struct Polished {
   loop::Loop loop;
   std::shared_ptr<const systems::System> system;
@@ -72,7 +75,7 @@ Polished polish(const std::shared_ptr<const systems::System>& system, const loop
   if (!apply_step) return out;
   const std::span<const double> by(step.data(), static_cast<std::size_t>(step.size()));
   const loop::Loop moved = unknowns.moved(found, by);
-  if (!(moved.period > 0.0)) return out;
+  if (is_lost(moved.period)) return out;
   const std::shared_ptr<const systems::System> there = unknowns.moved(*system, by);
   const loss::Linearization after(*there, moved, loss::Linearization::Order::residual);
   if (std::sqrt(after.loss()) <= out.loss_rms) {
@@ -159,7 +162,7 @@ Result correct_by_tao(const systems::System& system, const loop::Loop& guess, co
   result.loop = objective.loop_at(run.x);
   const std::shared_ptr<const systems::System> here = objective.system_at(run.x);
   result.parameters = unknowns.parameters_of(*here);
-  if (!(result.loop.period > 0.0)) return period_lost(result);
+  if (is_lost(result.loop.period)) return period_lost(result);
   const loss::Linearization& lin = objective.at(run.x);
   result.loss_rms = std::sqrt(lin.loss());
   result.threshold = acceptance_threshold(result.loop, lin, options.tolerance);
@@ -185,7 +188,7 @@ Result correct_by_newton_krylov(const systems::System& system, const loop::Loop&
   result.inner_iterations = run.inner_iterations;
   result.newton_step = run.newton_step;
   result.flat_direction = std::move(run.flat_direction);
-  if (!(result.loop.period > 0.0)) return period_lost(result);
+  if (is_lost(result.loop.period)) return period_lost(result);
   const loss::Linearization lin(*run.system, result.loop, loss::Linearization::Order::jacobian);
   result.loss_rms = std::sqrt(lin.loss());
   result.threshold = acceptance_threshold(result.loop, lin, options.tolerance);
@@ -229,7 +232,7 @@ Result correct(const systems::System& system, const loop::Loop& guess, const los
   Result result;
   result.loop = guess;
   result.parameters = unknowns.parameters_of(system);
-  if (!(guess.period > 0.0)) {
+  if (is_lost(guess.period)) {
     result.outcome = Outcome::period_not_positive;
     result.detail = fmt::format("the guess has the period {:.6g}", guess.period);
     return result;

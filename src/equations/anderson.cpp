@@ -126,6 +126,7 @@ AndersonSolver::Result AndersonSolver::solve(PreconditionedEquations& equations,
       return result;
     }
     if (diverged || since_factor > (result.factored ? options.fresh_iterations : options.stale_iterations)) {
+      if (diverged) result.last_change = size;
       if (result.factored) return result;
       if (diverged) u = _prediction;
       equations.factor(u.data());

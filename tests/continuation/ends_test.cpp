@@ -1,4 +1,6 @@
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <numbers>
 #include <set>
 #include <string>
@@ -9,11 +11,13 @@
 #include "continuation/families.hpp"
 #include "corrector/oscillator.hpp"
 #include "orbweaver/core/error.hpp"
+#include "point_problem.hpp"
 
 namespace orbweaver::continuation {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 /// A start from an orbit of a traced family towards smaller amplitudes.
 Start downwards(const test::Trace& family, double period) {
@@ -48,6 +52,21 @@ TEST(Ends, PeriodLimitIsHitExactly) {
     EXPECT_EQ(trace.last().loop.period, limit);
     for (std::size_t n = 0; n + 1 < trace.orbits.size(); ++n) EXPECT_LT(trace.orbits[n].loop.period, limit);
   }
+}
+
+// T = 10 and E = 0.6726 are passed in one step: the branch ends at what comes first.
+TEST(Ends, TheFirstOfTwoLimitsIsHit) {
+  constexpr double energy_at_ten = 0.672600806149962748;
+  const test::Trace by_energy =
+      test::trace_of(test::in_phase(), {.period_limit = 10.0, .energy_to = energy_at_ten - 1e-4});
+  EXPECT_EQ(by_energy.ending.reason, EndReason::energy_limit) << by_energy.ending.text();
+  EXPECT_NEAR(by_energy.last().energy, energy_at_ten - 1e-4, 1e-12);
+  EXPECT_LT(by_energy.last().loop.period, 10.0);
+  const test::Trace by_period =
+      test::trace_of(test::in_phase(), {.period_limit = 10.0, .energy_to = energy_at_ten + 1e-4});
+  EXPECT_EQ(by_period.ending.reason, EndReason::period_limit) << by_period.ending.text();
+  EXPECT_EQ(by_period.last().loop.period, 10.0);
+  EXPECT_NEAR(by_period.last().energy, energy_at_ten, 1e-10);
 }
 
 TEST(Ends, StartsBeyondTheLimitsGiveNoOrbit) {
@@ -139,6 +158,86 @@ TEST(Ends, FailureAtTheVeryStart) {
   EXPECT_EQ(trace.ending.reason, EndReason::failure);
   EXPECT_THAT(trace.ending.text(), HasSubstr("no orbit near the start"));
   EXPECT_THAT(trace.ending.text(), HasSubstr("not finite"));
+}
+
+/// q' = p, p' = -q - stiffness q^3: the period depends on the amplitude. The field is NaN where |p| > wall.
+class Spring final : public test::StatedSystem {
+ public:
+  Spring(double stiffness, double wall)
+      : StatedSystem(test::Oscillator(0.0).structure(), "test_spring"), _stiffness(stiffness), _wall(wall) {}
+
+  void field(std::size_t nodes, const double* z, double* f) const override {
+    for (std::size_t j = 0; j < nodes; ++j) {
+      f[j] = z[nodes + j];
+      f[nodes + j] = std::abs(z[nodes + j]) > _wall ? std::numeric_limits<double>::quiet_NaN()
+                                                    : -z[j] * (1.0 + _stiffness * z[j] * z[j]);
+    }
+  }
+  void field_jacobian(std::size_t nodes, const double* z, double* f, double* jacobian) const override {
+    field(nodes, z, f);
+    for (std::size_t j = 0; j < nodes; ++j) {
+      jacobian[j] = jacobian[3 * nodes + j] = 0.0;
+      jacobian[nodes + j] = 1.0;
+      jacobian[2 * nodes + j] = -1.0 - 3.0 * _stiffness * z[j] * z[j];
+    }
+  }
+  [[nodiscard]] double conserved(int, std::span<const double> z) const override {
+    return 0.5 * (z[1] * z[1] + z[0] * z[0] * (1.0 + 0.5 * _stiffness * z[0] * z[0]));
+  }
+
+ private:
+  double _stiffness;
+  double _wall;
+};
+
+struct FirstTrial {
+  Trial trial;
+  double period;
+};
+
+/// The correction at amplitude 0.01 from the equilibrium's period.
+FirstTrial first_trial(const Spring& spring) {
+  constexpr double amplitude = 0.01;
+  const Start start = circles(spring);
+  ProblemState state;
+  const Options options;
+  const auto problem = make_point_problem({spring, start.base, start.isotropy}, options, state);
+  problem->resolve(problem->resolution_for(10, {}, 100));
+  state.amplitude = amplitude;
+  Prediction prediction{problem->from_loop(start.base),
+                        problem->from_change(loop::perturbation(start.base, start.direction)), 1};
+  for (std::size_t n = 0; n < prediction.values.size(); ++n) prediction.values[n] += amplitude * prediction.tangent[n];
+  const std::vector<double> conditions = problem->conditions_at(prediction);
+  FirstTrial out{problem->correct(std::move(prediction), conditions), 0.0};
+  out.period = out.trial.values[problem->scalars_at()];
+  return out;
+}
+
+// The correction takes T below 0 and the loop to where the field is NaN: there is no orbit of this amplitude.
+TEST(Ends, NotFiniteWhereThePeriodIsLost) {
+  const FirstTrial first = first_trial(Spring(-1.5e4, 0.02));
+  EXPECT_FALSE(first.trial.converged);
+  EXPECT_LT(first.period, 0.0);
+  EXPECT_THAT(first.trial.reason, HasSubstr("the vector field of test_spring is not finite"));
+}
+
+TEST(Ends, DivergenceSaysHowFar) {
+  const FirstTrial first = first_trial(Spring(-1.1e4, std::numeric_limits<double>::infinity()));
+  EXPECT_FALSE(first.trial.converged);
+  EXPECT_THAT(first.trial.reason, HasSubstr("no convergence in 1 iterations, the last change "));
+  EXPECT_THAT(first.trial.reason, Not(testing::EndsWith(" 0")));
+}
+
+// The arclength of a step is then a dozen times the problem's length of it.
+TEST(Ends, JumpsAreGivenUpWhereThePeriodChangesFast) {
+  const auto spring = std::make_shared<const Spring>(1e3, std::numeric_limits<double>::infinity());
+  int asked = 0;
+  constexpr int too_often = 200;
+  Options options{.step_limit = 4};
+  options.start_amplitude = 0.05;
+  options.jumped = [&](const Orbit&, const Orbit&) { return ++asked % too_often != 0; };
+  (void)test::trace_of(spring, circles(*spring), options);
+  EXPECT_LT(asked, too_often);
 }
 
 TEST(Ends, NamesDiffer) {

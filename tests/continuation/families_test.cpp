@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "continuation/families.hpp"
+#include "orbweaver/continuation/family_curve.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loss/linearization.hpp"
@@ -247,6 +248,29 @@ TEST(Families, RepeatBitForBit) {
     EXPECT_EQ(again.orbits[n].loop.modes, once.orbits[n].loop.modes) << n;
     EXPECT_EQ(again.orbits[n].loop.period, once.orbits[n].loop.period) << n;
   }
+}
+
+// Between two orbits the place decides which one is found, not what has been found before.
+TEST(FamilyCurves, AnOrbitHasOnePlace) {
+  const test::Trace& trace = test::even_family_to_twelve(test::in_phase());
+  for (const corrector::Method method : {corrector::Method::automatic, corrector::Method::newton_krylov})
+    for (const std::size_t n : {2u, 10u, 15u}) {
+      const Options options{.corrector = {.method = method}, .fit_time_map = false};
+      const Orbit& first = trace.orbits[n];
+      const Orbit& last = trace.orbits[n + 1];
+      const auto period_at = [&](const std::vector<double>& shares) {
+        FamilyCurve curve(test::pendulum(), test::pendulum_isotropy(*test::pendulum()), options);
+        curve.add(first.arclength, first.loop, 2);
+        curve.add(last.arclength, last.loop, 2);
+        std::optional<CurvePoint> found;
+        for (const double share : shares)
+          found = curve.at(first.arclength + share * (last.arclength - first.arclength), false);
+        return found ? found->loop.period : std::nan("");
+      };
+      const double at_once = period_at({0.3});
+      EXPECT_NEAR(period_at({0.6, 0.3}), at_once, 1e-10) << n;
+      EXPECT_NEAR(period_at({0.6, 0.1, 0.35, 0.3}), at_once, 1e-10) << n;
+    }
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ using namespace orbweaver;
 using archive::Records;
 using report::Comparison;
 using report::DifferenceKind;
+using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -285,6 +286,30 @@ TEST(Comparison, OrbitsLieOnACurve) {
     for (const DifferenceKind kind : kinds(comparison)) EXPECT_EQ(kind, DifferenceKind::orbits);
     EXPECT_EQ(comparison.differences[0].family_a, "Other");
   }
+}
+
+TEST(Comparison, NumbersAreKnownInBoth) {
+  const auto unknown = [](int steps, auto value) {
+    return changed([steps, value](Records& records) {
+      for (archive::OrbitRecord& orbit : records.orbits)
+        if (orbit.family_key == other_root.key && orbit.step < steps) value(orbit) = archive::not_computed;
+    });
+  };
+  const auto energy = [](archive::OrbitRecord& orbit) -> double& { return orbit.energy; };
+  const auto action = [](archive::OrbitRecord& orbit) -> double& { return orbit.action; };
+  const auto stability = [](archive::OrbitRecord& orbit) -> double& { return orbit.stability[0]; };
+  for (const Records& less : {unknown(100, energy), unknown(1, energy), unknown(3, action), unknown(100, stability)}) {
+    EXPECT_TRUE(compared(less, less).same());
+    for (const Comparison& comparison : {compared(tree(), less), compared(less, tree())}) {
+      ASSERT_FALSE(comparison.same());
+      EXPECT_THAT(kinds(comparison), Each(DifferenceKind::orbits));
+      EXPECT_THAT(comparison.differences[0].text, HasSubstr(" is known in "));
+    }
+  }
+  EXPECT_TRUE(compared(tree(), unknown(3, stability)).same());
+  const Records nowhere = changed([](Records& r) { r.crossings[1].energy = archive::not_computed; });
+  EXPECT_TRUE(compared(nowhere, nowhere).same());
+  EXPECT_THAT(kinds(compared(tree(), nowhere)), ElementsAre(DifferenceKind::crossing_place));
 }
 
 TEST(Comparison, FamiliesHaveAnIsotropy) {

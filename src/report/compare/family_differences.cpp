@@ -155,7 +155,30 @@ void FamilyDifferences::compare_birth(const Pair& pair) {
       fmt::format("isotropy is '{}' in A, '{}' in B", pair.a.isotropy, pair.b.isotropy));
 }
 
+/// Numbers that one has for its orbits and the other has not: no curve shows that.
+void FamilyDifferences::compare_known(const Pair& pair) {
+  if (pair.a.orbits() == 0 || pair.b.orbits() == 0) return;
+  for (const Invariant invariant : all_invariants) {
+    const auto unknown_in = [invariant](const TreeFamily& family) {
+      const std::vector<Invariants>& points = family.curve.points();
+      return static_cast<std::size_t>(std::count_if(
+          points.begin(), points.end(), [invariant](const Invariants& x) { return std::isnan(x.value(invariant)); }));
+    };
+    const std::size_t in_a = unknown_in(pair.a);
+    const std::size_t in_b = unknown_in(pair.b);
+    if ((in_a == 0) == (in_b == 0)) continue;
+    const std::size_t unknown = std::max(in_a, in_b);
+    const std::size_t orbits = in_a > 0 ? pair.a.orbits() : pair.b.orbits();
+    // Where its error is too large the stability is left out, and orbits at other places lie on the other side of that.
+    if (invariant == Invariant::trace && unknown < orbits) continue;
+    add(DifferenceKind::orbits, pair,
+        fmt::format("{} is known in {}, and for {} of {} orbits of {} it is not", name_of(invariant),
+                    in_a > 0 ? "B" : "A", unknown, orbits, in_a > 0 ? "A" : "B"));
+  }
+}
+
 void FamilyDifferences::compare_orbits(const Pair& pair) {
+  compare_known(pair);
   std::vector<CurveFit> fits_a = fit_all(pair.b.curve, pair.a.curve.points());
   std::vector<CurveFit> fits_b = fit_all(pair.a.curve, pair.b.curve.points());
   decide_by_loops(_a, pair.a, _b, pair.b, fits_a);
@@ -392,6 +415,9 @@ void FamilyDifferences::compare_places(const Pair& pair, int crossing_a, int cro
   ++_result.crossings;
   const std::string where = fmt::format("{}, {}", pair.a.name, place_text(a));
   const auto compare_place = [&](const char* quantity, double x, double y, double scale) {
+    if (std::isnan(x) != std::isnan(y))
+      add(DifferenceKind::crossing_place, pair,
+          fmt::format("{}: {} is {:.15g} in A, {:.15g} in B", place_text(a), quantity, x, y));
     const double by = std::abs(x - y) / scale;
     note_deviation(fmt::format("{} of crossings", quantity), by, _options.tolerance, where);
     if (by > _options.tolerance)

@@ -28,6 +28,7 @@ class FamilyDifferences {
 
   void compare(const Pair& pair);
   void compare_birth(const Pair& pair);
+  void compare_known(const Pair& pair);
   void compare_orbits(const Pair& pair);
   void decide_by_loops(const AtlasTree& own, const TreeFamily& family, const AtlasTree& other, const TreeFamily& beside,
                        std::vector<CurveFit>& fits);
