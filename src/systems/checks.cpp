@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -10,6 +11,9 @@
 namespace orbweaver::systems {
 
 namespace {
+
+/// The identity's name, in isotropies.
+constexpr const char* identity_name = "1";
 
 template <class Named>
 std::string names_of(const std::vector<Named>& list) {
@@ -69,9 +73,13 @@ void check(const Structure& structure, const ModelInfo& info, int dimension, int
   for (const int i : structure.angles)
     core::require(i >= 0 && i < dimension && !info.winding_names[static_cast<std::size_t>(i)].empty(),
                   "an angle is a coordinate whose winding number has a name");
+  std::set<std::string> names{identity_name};
   for (const auto* symmetries : {&structure.equivariances, &structure.reversors})
-    for (const Symmetry& s : *symmetries)
+    for (const Symmetry& s : *symmetries) {
       core::require(s.map.dimension() == dimension, "a symmetry acts on as many coordinates as its model has");
+      core::require(!s.name.empty() && names.insert(s.name).second,
+                    "symmetries have names, each its own, and none is \"1\", the name of the identity");
+    }
 }
 
 std::string joined(const std::vector<std::string>& names) {

@@ -189,6 +189,11 @@ TEST(Structure, OnesThatDoNotFitTheirModelAreRefused) {
   bad.reversors.push_back({"Q", Eigen::Matrix2d::Identity()});
   EXPECT_THROW(check(bad, info, 4, 2), core::MisuseError);
   EXPECT_THROW(check(good, info, 4, 0), core::MisuseError);
+  for (const char* taken : {"S", "1", ""}) {
+    bad = good;
+    bad.reversors.front().name = taken;
+    EXPECT_THROW(check(bad, info, 4, 2), core::MisuseError) << taken;
+  }
 }
 
 TEST(AffineMap, ComposesAndInverts) {
