@@ -28,6 +28,10 @@ void print_group(const std::string& title, const Lines& lines) {
 
 std::string in_degrees(double radians) { return fmt::format("{:.6g} deg", radians / std::numbers::pi * 180.0); }
 
+std::string length_text(const systems::System& system, double length) {
+  return system.structure().has_angles() ? in_degrees(length) : fmt::format("{:.6g}", length);
+}
+
 std::string value_text(const systems::System& system, std::size_t coordinate, double value) {
   return system.structure().is_angle(coordinate) ? in_degrees(value) : fmt::format("{:.6g}", value);
 }
@@ -87,10 +91,10 @@ void print_starts(const scene::Scene& scene, const systems::System& system) {
   print_group("Starts", lines);
 }
 
-void print_continuation(const scene::Scene& scene) {
+void print_continuation(const scene::Scene& scene, const systems::System& system) {
   const scene::Continuation& c = scene.continuation;
-  print_group("Continuation", {{"first orbit", in_degrees(c.start_amplitude) + " from its equilibrium"},
-                               {"step", c.fixed_step ? "fixed, " + in_degrees(*c.fixed_step) : "adaptive"},
+  print_group("Continuation", {{"first orbit", length_text(system, c.start_amplitude) + " from its equilibrium"},
+                               {"step", c.fixed_step ? "fixed, " + length_text(system, *c.fixed_step) : "adaptive"},
                                {"tolerance", fmt::format("sqrt(loss) < {:g} * min(1, rms |dz/dt|)", c.tolerance)},
                                {"harmonics", fmt::format("K from {} to {}", c.cutoff_from, c.cutoff_to)},
                                {"corrector", c.corrector}});
@@ -179,7 +183,7 @@ int check(const SceneOptions& options, const Invocation& invocation) {
   fmt::print("{}: a valid scene, \"{}\"\n", options.file.string(), scene.name);
   print_system(scene, system);
   print_starts(scene, system);
-  print_continuation(scene);
+  print_continuation(scene, system);
   print_survey(scene);
   print_limits(scene);
   print_events(scene);

@@ -19,18 +19,21 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
 constexpr double table_step = 0.5 * degree;  // the paper's
+constexpr double plain_step = 0.01;          // about as long, where there are no degrees
 
-// How far the flow returns beside its start after a small step along a direction of unit length at s = 0, in degrees.
-double deviation_degrees(const systems::System& system, const std::vector<double>& point,
-                         const loop::Tangent& direction, double period) {
+// How far the flow returns beside its start after a small step along a direction of unit length at s = 0.
+double deviation(const systems::System& system, const std::vector<double>& point, const loop::Tangent& direction,
+                 double period) {
+  const bool angles = system.structure().has_angles();
+  const double step = angles ? table_step : plain_step;
   std::vector<double> start = point;
   const std::size_t d = point.size();
   for (std::size_t i = 0; i < d; ++i)
-    start[i] += table_step * direction.modes[d + i];  // a_1: the only cosine of a normal mode
+    start[i] += step * direction.modes[d + i];  // a_1: the only cosine of a normal mode
   const std::vector<double> end = certificate::integrate(system, start, period, certificate::Options{}.tolerance);
   double sum = 0.0;
   for (std::size_t i = 0; i < d; ++i) sum += (end[i] - start[i]) * (end[i] - start[i]);
-  return std::sqrt(sum) / degree;
+  return std::sqrt(sum) / (angles ? degree : 1.0);
 }
 
 }  // namespace
@@ -43,13 +46,17 @@ std::vector<EquilibriumReport> sweep_report(const scene::Scene& scene) {
   options.step = scene.sweep.step;
   std::vector<EquilibriumReport> reports;
   for (const std::vector<double>& point : starts::find_fixed_points(*system, scene.fixed_points.grid)) {
-    EquilibriumReport report{point, survey::point_text(*system, point), starts::sweep(*system, point, options), {}};
+    EquilibriumReport report{point,
+                             survey::point_text(*system, point),
+                             system->structure().has_angles(),
+                             starts::sweep(*system, point, options),
+                             {}};
     for (const starts::NormalMode& mode : bifurcation::small_oscillations(*system, report.sweep, options.cutoff))
-      report.modes.push_back(
-          {survey::base_family_name(scene, *system, point, static_cast<int>(reports.size()),
-                                    static_cast<int>(report.modes.size())),
-           mode.period, mode.grid_period, deviation_degrees(*system, point, mode.direction, mode.period),
-           deviation_degrees(*system, point, mode.grid_direction, mode.grid_period), loop::to_text(mode.isotropy)});
+      report.modes.push_back({survey::base_family_name(scene, *system, point, static_cast<int>(reports.size()),
+                                                       static_cast<int>(report.modes.size())),
+                              mode.period, mode.grid_period, deviation(*system, point, mode.direction, mode.period),
+                              deviation(*system, point, mode.grid_direction, mode.grid_period),
+                              loop::to_text(mode.isotropy)});
     reports.push_back(std::move(report));
   }
   return reports;
@@ -59,9 +66,10 @@ std::string to_text(const std::vector<EquilibriumReport>& reports) {
   std::size_t width = 6;
   for (const EquilibriumReport& r : reports)
     for (const ModeRow& m : r.modes) width = std::max(width, m.name.size());
-  std::string text =
-      "Normal modes; deviation: how far the flow returns from its start, in degrees, after a step of 0.5 degrees along "
-      "the mode\n";
+  const bool degrees = reports.empty() || reports.front().angles;
+  std::string text = fmt::format(
+      "Normal modes; deviation: how far the flow returns from its start{} along the mode\n",
+      degrees ? ", in degrees, after a step of 0.5 degrees" : fmt::format(" after a step of {}", plain_step));
   for (const EquilibriumReport& r : reports) {
     text += fmt::format("\n{}\n", r.text);
     if (r.modes.empty())

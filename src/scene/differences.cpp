@@ -25,7 +25,10 @@ struct Value {
   std::optional<LimitKey> limit = std::nullopt;
   double lower = 0.0;  ///< of a limit
   double upper = 0.0;
+  std::optional<double> length = std::nullopt;  ///< whose unit depends on the system
 };
+
+bool is_same(const Value& a, const Value& b) { return a.length && b.length ? a.length == b.length : a.text == b.text; }
 
 std::string text_of(double value) {
   if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";
@@ -81,6 +84,10 @@ class Values {
   void add(const std::string& key, const std::string& text) { _values.push_back({key, text}); }
   void add(const std::string& key, double value) { add(key, text_of(value)); }
   void add_range(const std::string& key, double from, double to) { add(key, list_text(std::array{from, to}, text_of)); }
+  void add_length(const std::string& key, double length) {
+    const bool angles = _system->structure().has_angles();
+    _values.push_back({.key = key, .text = angles ? angle_with_unit(length) : text_of(length), .length = length});
+  }
   void add_limit(const std::string& key, LimitKey limit, double value) {
     _values.push_back({key, text_of(value), limit, 0.0, value});
   }
@@ -119,8 +126,11 @@ class Values {
 
   void add_continuation(const Continuation& continuation) {
     const auto& step = continuation.fixed_step;
-    add("continuation.step", step ? angle_with_unit(*step) : "adaptive");
-    add("continuation.start", angle_with_unit(continuation.start_amplitude));
+    if (step)
+      add_length("continuation.step", *step);
+    else
+      add("continuation.step", "adaptive");
+    add_length("continuation.start", continuation.start_amplitude);
     add("continuation.tolerance", continuation.tolerance);
     add_range("continuation.cutoff", continuation.cutoff_from, continuation.cutoff_to);
     add("continuation.corrector", continuation.corrector);
@@ -218,7 +228,7 @@ std::vector<Difference> differences(const Scene& before, const Scene& now) {
   for (const std::string& key : keys) {
     const Value old_value = find(old_values, key);
     const Value new_value = find(new_values, key);
-    if (old_value.text != new_value.text)
+    if (!is_same(old_value, new_value))
       result.push_back({key, old_value.limit, old_value.text, new_value.text, change_of(old_value, new_value)});
   }
   return result;

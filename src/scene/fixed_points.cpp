@@ -16,8 +16,17 @@ namespace {
 
 constexpr double most_grid_points = 1e6;  // Newton's method from each on one rank; not measured
 constexpr double same_angle = 1e-9;       // radians: two spellings of one angle in degrees differ by rounding
-constexpr std::string_view grid_example = "[[0, 180], [0, 180]]";
-constexpr std::string_view names_example = "{[0, 180]: [Down-Up]}";
+
+struct Examples {
+  std::string_view grid;
+  std::string_view point;
+  std::string_view names;
+};
+
+Examples examples(const systems::System& system) {
+  if (system.structure().has_angles()) return {"[[0, 180], [0, 180]]", "[0, 180]", "{[0, 180]: [Down-Up]}"};
+  return {"[[0], [0]]", "[0, 0]", "{[0, 0]: [Straight]}"};
+}
 
 bool same_value(double a, double b, bool angle) {
   return angle ? std::abs(std::remainder(a - b, 2 * std::numbers::pi)) < same_angle : a == b;
@@ -43,17 +52,18 @@ void check_size(const Field& field, std::size_t size, const systems::System& sys
 }
 
 void read_grid(const Field& field, const systems::System& system, FixedPoints& points) {
-  const std::vector<Field> coordinates = field.list(grid_example);
+  const std::vector<Field> coordinates = field.list(examples(system).grid);
   check_size(field, coordinates.size(), system);
   double count = 1;
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    const bool angle = system.structure().is_angle(i);
     std::vector<double> values;
-    for (const Field& item : coordinates[i].list("[0, 180]")) {
-      const double value = read_value(item, system.structure().is_angle(i));
-      const auto same = [&](double other) { return same_value(value, other, system.structure().is_angle(i)); };
+    for (const Field& item : coordinates[i].list(angle ? "[0, 180]" : "[0]")) {
+      const double value = read_value(item, angle);
+      const auto same = [&](double other) { return same_value(value, other, angle); };
       if (std::any_of(values.begin(), values.end(), same))
-        item.fail("a value that the list does not hold yet", item.got() + " again (angles count modulo 360)",
-                  "remove one");
+        item.fail("a value that the list does not hold yet",
+                  item.got() + (angle ? " again (angles count modulo 360)" : " again"), "remove one");
       values.push_back(value);
     }
     if (values.empty()) coordinates[i].fail("at least one value", "an empty list", "for example [0]");
@@ -65,7 +75,7 @@ void read_grid(const Field& field, const systems::System& system, FixedPoints& p
 }
 
 std::vector<double> read_point(const Field& key, const systems::System& system) {
-  const std::vector<Field> coordinates = key.list("[0, 180]");
+  const std::vector<Field> coordinates = key.list(examples(system).point);
   check_size(key, coordinates.size(), system);
   std::vector<double> point;
   for (const Field& coordinate : coordinates)
@@ -75,7 +85,7 @@ std::vector<double> read_point(const Field& key, const systems::System& system) 
 
 void read_names(const Field& field, const systems::System& system, FixedPoints& points) {
   std::set<std::string> used;
-  for (const Field::Entry& entry : field.entries(names_example, true)) {
+  for (const Field::Entry& entry : field.entries(examples(system).names, true)) {
     FixedPoints::Names named{.point = read_point(entry.key, system), .names = {}};
     for (const FixedPoints::Names& other : points.names)
       if (same_point(system, named.point, other.point))

@@ -123,6 +123,19 @@ int Field::integer(const IntegerRule& rule) const {
   return *value;
 }
 
+double Field::length(bool angles, std::string_view also) const { return angles ? angle(also) : plain_length(also); }
+
+double Field::plain_length(std::string_view also) const {
+  const std::optional<std::string> scalar = plain_scalar();
+  const std::optional<double> value = scalar ? parse_number(*scalar) : std::nullopt;
+  if (!value || !std::isfinite(*value) || !(*value > 0)) {
+    const bool has_unit = scalar && parse_angle(*scalar);
+    fail(fmt::format("{}a number > 0 in the coordinates' own units, for the system has no angles", also), got(),
+         has_unit ? fmt::format("write {:g}", *parse_angle(*scalar)) : "for example 0.01");
+  }
+  return *value;
+}
+
 double Field::angle(std::string_view also) const {
   const std::optional<std::string> scalar = plain_scalar();
   const std::optional<double> value = scalar ? parse_angle(*scalar) : std::nullopt;

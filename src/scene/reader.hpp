@@ -54,8 +54,9 @@ class Field {
   [[nodiscard]] std::string choice(const std::vector<std::string>& known) const;
   [[nodiscard]] double number(const NumberRule& rule) const;
   [[nodiscard]] int integer(const IntegerRule& rule) const;
-  /// An angle with its unit, in radians, in (0, 90 degrees]; `also` names what else the key takes, for the message.
-  [[nodiscard]] double angle(std::string_view also = "") const;
+  /// A length in the space of states, > 0. Where a coordinate is an angle: with `deg` or `rad`, in radians, at most 90
+  /// degrees. Elsewhere: a bare number, in the coordinates' own units. `also` names what else the key takes.
+  [[nodiscard]] double length(bool angles, std::string_view also = "") const;
   /// A plain scalar as written; none for anything else.
   [[nodiscard]] std::optional<std::string> plain_scalar() const;
 
@@ -70,6 +71,8 @@ class Field {
   [[nodiscard]] std::vector<Entry> entries(std::string_view example, bool complex_keys = false) const;
 
  private:
+  [[nodiscard]] double angle(std::string_view also) const;
+  [[nodiscard]] double plain_length(std::string_view also) const;
   [[nodiscard]] std::string example_advice(std::string_view example) const;
 
   const Source* _source;

@@ -42,7 +42,7 @@ Scene read_scene(const Field& root) {
   scene.name = scene.system.name;
   if (const auto name = keys.find("name")) scene.name = name->text("double-pendulum");
   read_starts(require_key(keys, root, "starts", "starts: {fixed_points: {grid: [[0, 180], [0, 180]]}}"), system, scene);
-  if (const auto field = keys.find("continuation")) read_continuation(*field, scene.continuation);
+  if (const auto field = keys.find("continuation")) read_continuation(*field, system, scene.continuation);
   if (const auto field = keys.find("survey")) read_survey(*field, scene.survey);
   if (const auto field = keys.find("limits")) read_limits(*field, scene.limits);
   if (const auto field = keys.find("events")) read_events(*field, scene.events);

@@ -9,7 +9,7 @@ namespace orbweaver::scene {
 // One reader a section of a scene; each fills its struct and leaves the defaults of absent keys alone. All throw
 // core::InputError as Field does.
 void read_sweep(const Field& field, Sweep& sweep);
-void read_continuation(const Field& field, Continuation& continuation);
+void read_continuation(const Field& field, const systems::System& system, Continuation& continuation);
 void read_survey(const Field& field, Survey& survey);
 void read_limits(const Field& field, Limits& limits);
 void read_events(const Field& field, Events& events);

@@ -16,7 +16,7 @@ namespace orbweaver::scene {
 /// A whole YAML scalar as a decimal integer that fits an int; none for anything else.
 [[nodiscard]] std::optional<int> parse_integer(std::string_view text);
 
-/// `0.5deg` or `0.01rad` in radians; none without a unit or for anything else.
+/// `0.5deg` or `0.01rad` in radians; none without one of these units or for anything else.
 [[nodiscard]] std::optional<double> parse_angle(std::string_view text);
 
 }  // namespace orbweaver::scene

@@ -24,6 +24,8 @@ constexpr std::array registry{
     line<class DoublePendulum>,
     line<class HarmonicOscillator>,
     line<class HenonHeiles>,
+    line<class Pcr3bp>,
+    line<class SwingingSpring>,
 };
 
 namespace {

@@ -12,6 +12,7 @@ namespace {
 using namespace orbweaver;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 const std::vector<report::EquilibriumReport>& reports() {
   static const auto made =
@@ -134,8 +135,9 @@ TEST(SweepReport, ModesOfAResonance) {
   }
   // y'' = y^2 - y along the axis of symmetry: frequency 1 - 5 a^2 / 12 at amplitude a, so that after 2 pi the momentum
   // is a 2 pi (5 a^2 / 12).
-  const double a = 0.5 * std::numbers::pi / 180.0;
-  expect_close(report[0].modes[0].deviation, 0.5 * 2.0 * std::numbers::pi * 5.0 / 12.0 * a * a, 0.02, "deviation");
+  const double a = 0.01;
+  expect_close(report[0].modes[0].deviation, 2.0 * std::numbers::pi * 5.0 / 12.0 * a * a * a, 0.02, "deviation");
+  EXPECT_THAT(report::to_text(report), AllOf(HasSubstr("start after a step of 0.01 along"), Not(HasSubstr("deg"))));
 }
 
 }  // namespace

@@ -177,6 +177,16 @@ TEST(Differences, SayBothValuesAsAUserWouldWriteThem) {
   EXPECT_EQ(found[2].now, ".inf");
 }
 
+TEST(Differences, SayLengthsWithoutAUnitWhereThereAreNoAngles) {
+  const std::string text = "system: {name: henon_heiles}\nstarts: {}\n";
+  const auto found = differences(scene::parse(text, "one"),
+                                 scene::parse(text, "two", {"continuation.step=0.5", "continuation.start=1e-3"}));
+  ASSERT_THAT(found, SizeIs(2));
+  EXPECT_EQ(found[0].now, "0.5");
+  EXPECT_EQ(found[1].before, "0.008726646259971648");
+  EXPECT_EQ(found[1].now, "0.001");
+}
+
 TEST(Differences, NotationUnitsAndOrderOfKeysDoNotCount) {
   const std::string one = R"(# the one
 name: double-pendulum

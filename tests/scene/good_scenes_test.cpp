@@ -90,6 +90,16 @@ TEST(GoodScene, ASectionOnAVelocityIsNotConverted) {
   EXPECT_EQ(scene::parse(text, "text").section.value, 45.0);
 }
 
+TEST(GoodScene, LengthsWithoutAnglesAreInTheCoordinatesOwnUnits) {
+  const std::string text = "system: {name: henon_heiles}\nstarts: {}\n";
+  const scene::Scene s = scene::parse(text, "text", {"continuation.step=0.25", "continuation.start=2.5e3"});
+  ASSERT_TRUE(s.continuation.fixed_step.has_value());
+  EXPECT_EQ(*s.continuation.fixed_step, 0.25);
+  EXPECT_EQ(s.continuation.start_amplitude, 2500.0);
+  EXPECT_FALSE(scene::parse(text, "text", {"continuation.step=adaptive"}).continuation.fixed_step.has_value());
+  EXPECT_DOUBLE_EQ(scene::parse(text, "text").continuation.start_amplitude, pi / 360);
+}
+
 TEST(GoodScene, EveryKeyButSystemAndStartsHasItsDefault) {
   const scene::Scene s = scene::parse("system: {name: double_pendulum}\nstarts: {}\n", "text");
   EXPECT_EQ(s.name, "double_pendulum");
@@ -141,7 +151,7 @@ TEST(SceneFolder, EverySceneLoads) {
     ++count;
     EXPECT_NO_THROW(static_cast<void>(scene::load(entry.path()))) << entry.path();
   }
-  EXPECT_GE(count, 4);
+  EXPECT_GE(count, 7);
 }
 
 TEST(SceneFolder, TheQuickstartSceneIsTheContracts) {
@@ -169,6 +179,27 @@ TEST(SceneFolder, HenonHeilesBeginsAtTheOrigin) {
   EXPECT_LT(s.limits.energy_to, 1.0 / 6) << "orbits escape above";
   EXPECT_EQ(s.survey.depth, 1);
   EXPECT_EQ(s.survey.subharmonics, 3);
+}
+
+TEST(SceneFolder, ThreeBodyScenesNameTheFiveLagrangePoints) {
+  for (const auto& [file, mu] :
+       {std::pair{"pcr3bp_earth_moon.yaml", 0.01215058560962404}, {"pcr3bp_mu_0.001.yaml", 0.001}}) {
+    const scene::Scene s = scene::load(source / "drivers/scenes" / file);
+    EXPECT_EQ(s.system.name, "pcr3bp");
+    EXPECT_THAT(s.system.parameters, ElementsAre(Pair("mu", mu)));
+    ASSERT_EQ(s.fixed_points.names.size(), 5U);
+    EXPECT_THAT(s.fixed_points.names[3].point, ElementsAre(testing::DoubleNear(0.5 - mu, 1e-9), testing::_));
+    EXPECT_THAT(s.fixed_points.names[3].names, ElementsAre("Long-4", "Short-4"));
+    EXPECT_EQ(s.survey.depth, 2);
+    EXPECT_EQ(s.survey.subharmonics, 3);
+  }
+}
+
+TEST(SceneFolder, TheSwingingSpringIsInResonance) {
+  const scene::Scene s = scene::load(source / "drivers/scenes/swinging_spring.yaml");
+  const auto& p = s.system.parameters;
+  EXPECT_EQ(p.at("stiffness") * p.at("length"), 3.0 * p.at("mass") * p.at("gravity"));
+  EXPECT_LT(s.sweep.period_to, 30.0);
 }
 
 TEST(SceneFolder, TheDeepAndTheHalfDegreeSceneDifferWhereTheySay) {

@@ -35,7 +35,7 @@ scene::Scene chain_scene(int team, const std::vector<std::string>& more = {}) {
   return scene::parse(
       "system: {name: harmonic_oscillator}\n"
       "starts: {fixed_points: {grid: [[0]]}, sweep: {period: [5.2, 6.3], step: 0.05}}\n"
-      "continuation: {start: 17deg, corrector: newton-krylov}\n"
+      "continuation: {start: 0.3, corrector: newton-krylov}\n"
       "survey: {depth: 0}\n"
       "limits: {steps: 9}\n"
       "output: {flush_seconds: 0.05, flush_orbits: 3}\n",

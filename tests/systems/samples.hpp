@@ -26,4 +26,17 @@ inline std::vector<double> random_numbers(std::size_t count, std::mt19937& gener
   return numbers;
 }
 
+/// Coordinates in [-2.5, 2.5], where every guard of the system is at least 0.5: differences of a few hundredths stay
+/// clear of its singularities.
+inline std::vector<double> random_state(const System& system, std::mt19937& generator) {
+  constexpr double room = 0.5;
+  const auto guards = static_cast<int>(system.structure().guards.size());
+  for (;;) {
+    std::vector<double> state = random_numbers(static_cast<std::size_t>(system.dimension()), generator);
+    bool clear = true;
+    for (int k = 0; k < guards; ++k) clear = clear && system.guard(k, state) >= room;
+    if (clear) return state;
+  }
+}
+
 }  // namespace orbweaver::systems

@@ -8,20 +8,22 @@
 
 namespace orbweaver::report {
 
-/// A normal mode with how well a step along it closes (paper, Table I).
+/// A normal mode with how well a step along it closes (paper, Table I): after a step of 0.5 degrees, in degrees, or in a
+/// system without angles after one of 0.01, in the coordinates' own units.
 struct ModeRow {
   std::string name;
   double period = 0.0;          ///< refined
   double grid_period = 0.0;     ///< of the sweep's grid, as in the paper
-  double deviation = 0.0;       ///< degrees: |Phi_T(z) - z| after a step of 0.5 degrees, refined period and direction
-  double grid_deviation = 0.0;  ///< degrees: the same with the period and eigenvector of the grid
+  double deviation = 0.0;       ///< |Phi_T(z) - z| after the step, refined period and direction
+  double grid_deviation = 0.0;  ///< the same with the period and eigenvector of the grid
   std::string isotropy;
 };
 
 /// The sweep at one equilibrium.
 struct EquilibriumReport {
   std::vector<double> point;
-  std::string text;  ///< "th1 = 0 deg, ..."
+  std::string text;     ///< "th1 = 0 deg, ..."
+  bool angles = false;  ///< deviations are in degrees
   starts::SweepResult sweep;
   std::vector<ModeRow> modes;
 };

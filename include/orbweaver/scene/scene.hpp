@@ -35,8 +35,10 @@ struct Sweep {
 };
 
 struct Continuation {
-  std::optional<double> fixed_step;                         ///< |dz(s = 0)| in radians; none = adaptive
-  double start_amplitude = 0.5 / 180.0 * std::numbers::pi;  ///< |dz(s = 0)| of the first orbit, radians
+  /// |dz(s = 0)|, in radians where the system has angles, elsewhere in the coordinates' own units; none = adaptive
+  std::optional<double> fixed_step;
+  /// |dz(s = 0)| of the first orbit, in the same units; the default is the paper's half degree, as a number
+  double start_amplitude = 0.5 / 180.0 * std::numbers::pi;
   double tolerance = 1e-10;
   int cutoff_from = 8;
   int cutoff_to = 4096;

@@ -29,6 +29,7 @@ struct Structure {
   [[nodiscard]] bool is_angle(std::size_t coordinate) const {
     return std::find(angles.begin(), angles.end(), static_cast<int>(coordinate)) != angles.end();
   }
+  [[nodiscard]] bool has_angles() const { return !angles.empty(); }
   [[nodiscard]] bool conservative() const { return !conserved.empty(); }
   /// Number of nontrivial stability indices of an orbit (pairs of multipliers).
   [[nodiscard]] int pairs() const { return symplectic ? dimension / 2 - 1 : dimension - 1; }
