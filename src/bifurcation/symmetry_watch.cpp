@@ -5,6 +5,8 @@
 #include <complex>
 #include <numbers>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
@@ -21,6 +23,8 @@ constexpr double two_pi = 2.0 * std::numbers::pi;
 /// Of a broken part, relative to the loop: orbits that have the symmetry have it to the corrector's accuracy, and a
 /// branch is born with a part of the size of its first amplitude.
 constexpr double negligible = 1e-8;
+/// What samples leave out may be this share of the broken part. Not measured.
+constexpr double small_share = 0.01;
 /// Phases of a reversor that are watched, the closest ones. Not measured.
 constexpr std::size_t phases = 3;
 /// Windings are whole numbers: anything below a half would do.
@@ -86,11 +90,20 @@ SymmetryWatch::SymmetryWatch(const systems::Structure& system, const loop::Isotr
   if (std::none_of(group.begin(), group.end(), is_reversing)) _reversors = system.reversors;
 }
 
-SymmetryWatch::SampledOrbit SymmetryWatch::sampled(const loop::Loop& loop) {
-  SampledOrbit out{loop::interpolant(loop::time_samples(loop)), {}, 0.0};
+namespace {
+
+SymmetryWatch::SampledOrbit sampled_with(const loop::Loop& source, loop::Loop even) {
+  SymmetryWatch::SampledOrbit out{source, std::move(even), {}, 0.0, 0.0};
   out.coefficients = coefficients_of(out.loop);
   out.size = loop::rms_size(out.loop);
+  if (!source.time_map.is_identity()) out.left_out = loop::tail(out.loop);
   return out;
+}
+
+}  // namespace
+
+SymmetryWatch::SampledOrbit SymmetryWatch::sampled(const loop::Loop& loop) {
+  return sampled_with(loop, loop.time_map.is_identity() ? loop : loop::interpolant(loop::time_samples(loop)));
 }
 
 // The coefficients of M^-1 z(t + T shift) - z(t), or of M^-1 z(-t - T shift) - z(t) for a reversor.
@@ -125,7 +138,35 @@ SymmetryWatch::Products SymmetryWatch::compare(const SymmetryGain& gain, const S
   reduce(_system.angles, mean_a, mean_b);
   broken_a.col(0) = mean_a;
   broken_b.col(0) = mean_b;
-  return {broken_a.squaredNorm(), broken_a.cwiseProduct(broken_b.conjugate()).sum().real(), broken_b.squaredNorm()};
+  const Eigen::Index both = std::min(broken_a.cols(), broken_b.cols());
+  const double mixed = broken_a.leftCols(both).cwiseProduct(broken_b.leftCols(both).conjugate()).sum().real();
+  return {broken_a.squaredNorm(), mixed, broken_b.squaredNorm()};
+}
+
+SymmetryWatch::Products SymmetryWatch::compare_resolved(SymmetryGain& gain, const SampledOrbit& a,
+                                                        const SampledOrbit& b) const {
+  Products products = compare(gain, a, b);
+  std::optional<SampledOrbit> finer_a, finer_b;
+  // What is left out looks like a broken part; that may be smaller than it seemed, which asks for more again.
+  while (true) {
+    const SampledOrbit& of_a = finer_a ? *finer_a : a;
+    const SampledOrbit& of_b = finer_b ? *finer_b : b;
+    const double part = std::sqrt(std::min(products.first, products.second));
+    const double wanted = std::max(small_share * part, negligible * std::min(of_a.size, of_b.size));
+    if (std::max(of_a.left_out, of_b.left_out) <= wanted) return products;
+    SampledOrbit next_a = sampled_with(a.source, loop::resolved_in_time(a.source, wanted));
+    SampledOrbit next_b = sampled_with(b.source, loop::resolved_in_time(b.source, wanted));
+    const bool is_finest = next_a.loop.cutoff <= of_a.loop.cutoff && next_b.loop.cutoff <= of_b.loop.cutoff;
+    if (is_finest) return products;
+    finer_a = std::move(next_a);
+    finer_b = std::move(next_b);
+    if (gain.reversing) {
+      const loop::Loop image = loop::transformed(finer_a->loop, gain.map, true, 0.0);
+      const double shift = loop::shift_minimum_near(image, finer_a->loop, _system.angles, -gain.phase).shift;
+      gain.phase = -shift + std::ceil(shift);
+    }
+    products = compare(gain, *finer_a, *finer_b);
+  }
 }
 
 // <c(A), c(B)> of one matrix for all its shifts, from correlations harmonic by harmonic: cheap, but known only to
@@ -134,7 +175,11 @@ class SymmetryWatch::Correlation {
  public:
   Correlation(const systems::AffineMap& inverse, const SampledOrbit& a, const SampledOrbit& b,
               const std::vector<int>& angles)
-      : _inverse(inverse), _a(a), _b(b), _angles(angles), _sums(a.coefficients.cols()) {
+      : _inverse(inverse),
+        _a(a),
+        _b(b),
+        _angles(angles),
+        _sums(std::min(a.coefficients.cols(), b.coefficients.cols())) {
     const Eigen::MatrixXcd image_a = inverse.matrix * a.coefficients;
     const Eigen::MatrixXcd image_b = inverse.matrix * b.coefficients;
     for (Eigen::Index k = 1; k < _sums.size(); ++k) {
@@ -180,8 +225,8 @@ std::size_t SymmetryWatch::generated_with(const SymmetryGain& gain) const {
 
 std::vector<SymmetryGain> SymmetryWatch::all_passed(const SampledOrbit& from, const SampledOrbit& to) const {
   std::vector<std::pair<std::size_t, SymmetryGain>> found;
-  const auto consider = [&](const SymmetryGain& candidate) {
-    const Products products = compare(candidate, from, to);
+  const auto consider = [&](SymmetryGain candidate) {
+    const Products products = compare_resolved(candidate, from, to);
     if (std::sqrt(products.first) <= negligible * from.size) return;
     if (products.mixed < 0.0 || std::sqrt(products.second) <= negligible * to.size)
       found.emplace_back(generated_with(candidate), candidate);
@@ -190,7 +235,8 @@ std::vector<SymmetryGain> SymmetryWatch::all_passed(const SampledOrbit& from, co
     const Eigen::Map<const Eigen::VectorXd> winding(from.loop.winding.data(), from.loop.dimension);
     return (sign * (matrix * winding) - winding).isZero(same_winding);
   };
-  const double rounding = correlation_rounding * (from.size * from.size + to.size * to.size);
+  const double rounding = correlation_rounding * (from.size * from.size + to.size * to.size) +
+                          (from.left_out + to.left_out) * (from.size + to.size);
   for (const auto& [symmetry, candidates] : _equivariances) {
     if (!keeps_winding(symmetry.map.matrix, 1.0)) continue;
     const systems::AffineMap inverse = symmetry.map.inverse();
@@ -213,12 +259,14 @@ std::vector<SymmetryGain> SymmetryWatch::all_passed(const SampledOrbit& from, co
 }
 
 double SymmetryWatch::signed_part(const SymmetryGain& gain, const loop::Loop& a, const loop::Loop& at) const {
-  const Products products = compare(gain, sampled(a), sampled(at));
+  SymmetryGain seen = gain;
+  const Products products = compare_resolved(seen, sampled(a), sampled(at));
   return products.mixed / products.first;
 }
 
 double SymmetryWatch::relative_size(const SymmetryGain& gain, const loop::Loop& a, const loop::Loop& at) const {
-  const Products products = compare(gain, sampled(a), sampled(at));
+  SymmetryGain seen = gain;
+  const Products products = compare_resolved(seen, sampled(a), sampled(at));
   return std::sqrt(products.second / products.first);
 }
 

@@ -28,17 +28,21 @@ struct SymmetryGain {
 /// Candidates are every declared equivariance and the identity with shifts p/q, q <= `largest_order`, that the own
 /// isotropy does not generate, and, if it has no reversor, the declared reversors at any phase. With c(z) = e z - z,
 /// the broken part, the signed part of an orbit B seen from A is <c(A), c(B)> / <c(A), c(A)>: 1 at A, and of the other
-/// sign beyond an orbit with the symmetry e. Inner products are means over time, of 240 samples: q that do not divide
-/// 240 need orbits that those resolve. Orbits A and B are neighbours of one branch, with its phase convention.
+/// sign beyond an orbit with the symmetry e. Inner products are means over time, of as many samples as it takes for what
+/// they leave out to be small beside the broken part. Orbits A and B are neighbours of one branch, with its phase
+/// convention.
 class SymmetryWatch {
  public:
   SymmetryWatch(const systems::Structure& system, const loop::Isotropy& own, int largest_order = 12);
 
-  /// An orbit as the watch sees it: the harmonics of its 240 samples in time. Worth keeping from one step to the next.
+  /// An orbit as the watch sees it: its harmonics in time, those of 240 samples at first. Worth keeping from one step to
+  /// the next.
   struct SampledOrbit {
-    loop::Loop loop;
+    loop::Loop source;              ///< the orbit, under any time map
+    loop::Loop loop;                ///< evenly in time
     Eigen::MatrixXcd coefficients;  ///< dimension x harmonics, sum of |.|^2 = mean of |z|^2 (less the winding)
     double size = 0.0;
+    double left_out = 0.0;  ///< size of the harmonics that `loop` leaves out or takes for lower ones
   };
   [[nodiscard]] static SampledOrbit sampled(const loop::Loop& loop);
 
@@ -60,6 +64,8 @@ class SymmetryWatch {
   [[nodiscard]] Eigen::MatrixXcd broken_part(const SymmetryGain& gain, const systems::AffineMap& inverse,
                                              const SampledOrbit& orbit, double shift) const;
   [[nodiscard]] Products compare(const SymmetryGain& gain, const SampledOrbit& a, const SampledOrbit& b) const;
+  /// The same with as many harmonics as the broken parts ask for; the phase of a reversor moves along.
+  [[nodiscard]] Products compare_resolved(SymmetryGain& gain, const SampledOrbit& a, const SampledOrbit& b) const;
   [[nodiscard]] std::size_t generated_with(const SymmetryGain& gain) const;
 
   systems::Structure _system;

@@ -25,12 +25,12 @@ Loop interpolant(const TimeSamples& samples) {
   return out;
 }
 
-Loop resolved_in_time(const Loop& loop) {
+Loop resolved_in_time(const Loop& loop, double negligible) {
   if (loop.time_map.is_identity()) return loop;
-  const double negligible = std::max(negligible_harmonic, 2.0 * tail(loop));
+  const double allowed = std::max(negligible, 2.0 * tail(loop));
   for (int count = time_sample_count;; count *= 2) {
     Loop out = interpolant(time_samples(loop, count));
-    if (tail(out) <= negligible || out.cutoff >= 8 * loop.cutoff) return out;
+    if (tail(out) <= allowed || out.cutoff >= 8 * loop.cutoff) return out;
   }
 }
 
