@@ -7,6 +7,7 @@
 
 #include "corrector/oscillator.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/scene/scene.hpp"
 #include "orbweaver/systems/registry.hpp"
 
 namespace orbweaver::starts {
@@ -50,6 +51,33 @@ TEST(FixedPoints, OfHenonHeiles) {
                                    [&](const auto& p) { return std::hypot(p[0] - w[0], p[1] - w[1]) < 1e-13; });
     EXPECT_TRUE(found) << w[0] << " " << w[1];
   }
+}
+
+// Each point where the scene names it, to the digits that names are given with.
+TEST(FixedPoints, OfTheThreeBodyScenesAreTheFiveLagrangePoints) {
+  for (const char* file : {"pcr3bp_earth_moon.yaml", "pcr3bp_mu_0.001.yaml"}) {
+    SCOPED_TRACE(file);
+    const scene::Scene scene = scene::load(std::string(ORBWEAVER_SOURCE_DIR "/drivers/scenes/") + file);
+    const auto system = systems::make_system(scene.system.name, scene.system.parameters);
+    const auto points = find_fixed_points(*system, scene.fixed_points.grid);
+    ASSERT_EQ(points.size(), 5u);
+    ASSERT_EQ(scene.fixed_points.names.size(), 5u);
+    for (const auto& named : scene.fixed_points.names) {
+      const auto places = std::count_if(points.begin(), points.end(), [&](const auto& p) {
+        return std::hypot(p[0] - named.point[0], p[1] - named.point[1]) < 1e-9;
+      });
+      EXPECT_EQ(places, 1) << named.names.front();
+    }
+  }
+}
+
+TEST(FixedPoints, OfTheSwingingSpringIsWhereItHangs) {
+  const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/swinging_spring.yaml");
+  const auto system = systems::make_system(scene.system.name, scene.system.parameters);
+  const auto points = find_fixed_points(*system, scene.fixed_points.grid);
+  ASSERT_EQ(points.size(), 1u);
+  EXPECT_EQ(points[0][0], 0.0);
+  EXPECT_NEAR(points[0][1], -4.0 / 3.0, 1e-15);
 }
 
 TEST(FixedPoints, EmptyGridStartsAtZero) {

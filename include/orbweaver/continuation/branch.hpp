@@ -28,8 +28,9 @@ struct Options {
   corrector::Options corrector{};
   int cutoff_from = 8;
   int cutoff_to = 4096;
-  std::optional<double> fixed_step{};  ///< |dz(s = 0)| of every step, radians (paper: 0.5 degrees); none = adaptive
-  double start_amplitude = 8.7e-3;     ///< |dz(s = 0)| of the first orbit, radians: the paper's 0.5 degrees
+  /// Lengths at s = 0 are in the coordinates' units, radians where the system has angles.
+  std::optional<double> fixed_step{};  ///< |dz(s = 0)| of every step (paper: 0.5 degrees); none = adaptive
+  double start_amplitude = 8.7e-3;     ///< |dz(s = 0)| of the first orbit (paper: 0.5 degrees)
   /// Last harmonics, relative to min(1, rms amplitude): above it K is raised. Harmonic k weighs 2 pi k/T times in the
   /// residual, hence two digits below `corrector.tolerance`.
   double tail_tolerance = 1e-12;

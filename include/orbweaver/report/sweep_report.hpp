@@ -8,7 +8,7 @@
 
 namespace orbweaver::report {
 
-/// A normal mode with how well a step along it closes (paper, Table I): after a step of 0.5 degrees, in degrees, or in a
+/// A normal mode with how well a step along it closes (paper, Table I): after a step of 0.5 degrees, in degrees; in a
 /// system without angles after one of 0.01, in the coordinates' own units.
 struct ModeRow {
   std::string name;

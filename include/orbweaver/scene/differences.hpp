@@ -22,7 +22,8 @@ enum class LimitKey { period, energy, steps, depth, families };
 struct Difference {
   std::string key;                ///< as users write it: "limits.period"
   std::optional<LimitKey> limit;  ///< where the key is one
-  /// As a scene would say it, defaults filled in: "30", "0.5deg" ("0.01" without angles), "[-.inf, 2]"; empty where it has no value.
+  /// As a scene would say it, defaults filled in: "30", "0.5deg" ("0.01" without angles), "[-.inf, 2]"; empty where it
+  /// has no value.
   std::string before;
   std::string now;
   Change change = Change::other;
