@@ -11,7 +11,6 @@ namespace orbweaver::systems {
 /// At rest it hangs at y = -(length + mass gravity/stiffness), where it oscillates up and down with the frequency
 /// sqrt(stiffness/mass) and swings with the frequency sqrt(gravity/|y|). These are 2:1 if
 ///   stiffness length = 3 mass gravity,
-/// as the standard values are (Lynch 2002, doi:10.1016/S0020-7462(00)00121-9).
 class SwingingSpring {
  public:
   static constexpr int dimension = 4;
