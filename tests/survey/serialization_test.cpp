@@ -98,7 +98,7 @@ TEST(Travellers, LimitsAndEnumsThatAreNoneAreRefused) {
   expect_refused(outcome, "limits 0x20");
   LocateOutcome located;
   located.limited_by = -1;
-  expect_refused(located, "limits 0x");
+  expect_refused(located, "limits -0x1");
   outcome.limited_by = 0;
   outcome.end.reason = static_cast<continuation::EndReason>(99);
   EXPECT_THROW((void)pack(outcome), core::EnvironmentError);
