@@ -18,8 +18,8 @@ namespace {
 constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr double below_rounding = 1e-17;  // of a density of mean 1
 constexpr int most_steps = 200;           // of Newton's method: bisection alone needs 53
-// Newton's method within a bracket, since the slope is at hand: 5 to 6 values, where TOMS 748 takes 9 to 10 and 1.5 to 3
-// times as long. A step of 2^-29 is the last: its square is rounding.
+// Newton's method within a bracket, since the slope is at hand: 5 to 6 values, where TOMS 748 takes 9 to 10 and 1.5 to
+// 3 times as long. A step of 2^-29 is the last: its square is rounding.
 constexpr int newton_bits = 30;
 constexpr double whole = 1e-12;           // turns that differ from a whole number by less are rounding
 
