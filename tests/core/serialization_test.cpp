@@ -1,5 +1,8 @@
 #include "orbweaver/core/serialization.hpp"
 
+#include <cstdint>
+#include <optional>
+
 #include <gmock/gmock.h>
 
 #include "orbweaver/core/error.hpp"
@@ -62,11 +65,30 @@ struct Repeating {
   }
 };
 
-/// An archive of one number.
+struct Numbers {
+  bool flag = false;
+  int signed_one = 0;
+  unsigned unsigned_one = 0;
+  std::uint64_t longer = 0;
+  float real = 0.0F;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, flag, signed_one, unsigned_one, longer, real);
+  }
+};
+
+/// An archive of one number, which may be absent.
 template <bool loads>
 struct OneNumber {
   using is_loading = std::bool_constant<loads>;
   int number = 0;
+  bool present = false;
+  OneNumber& operator&(bool& value) {
+    (loads ? value : present) = loads ? present : value;
+    return *this;
+  }
   OneNumber& operator&(int& value) {
     (loads ? value : number) = loads ? number : value;
     return *this;
@@ -95,9 +117,26 @@ TEST(Serialization, NumbersThatAreNoEnumAreRefused) {
   }
 }
 
+TEST(Serialization, OptionalMembersTravelBehindAFlag) {
+  OneNumber<false> out;
+  std::optional<Colour> colour = Colour::green;
+  core::serialize_members(out, colour);
+  EXPECT_TRUE(out.present);
+  EXPECT_EQ(out.number, 1);
+  OneNumber<true> nothing{2, false};
+  core::serialize_members(nothing, colour);
+  EXPECT_EQ(colour, std::nullopt);
+  core::serialize_members(out, colour);
+  EXPECT_FALSE(out.present);
+  OneNumber<true> in{2, true};
+  core::serialize_members(in, colour);
+  EXPECT_EQ(colour, Colour::blue);
+}
+
 TEST(Layouts, TellWhatIsListedWithAllVersions) {
   EXPECT_EQ(core::layout_of<Part>(), "{3:f8e2}");
   EXPECT_EQ(core::layout_of<Whole>(), "{1:s[{3:f8e2}]?e2b1}");
+  EXPECT_EQ(core::layout_of<Numbers>(), "{1:b1i4u4u8f4}");
 }
 
 TEST(Completeness, OfTypesThatListAll) {

@@ -112,6 +112,25 @@ TEST_F(Team, AMemberThatLeavesAloneIsMetWhereverTheOthersAre) {
   EXPECT_TRUE(team.fallen_apart());
 }
 
+TEST_F(Team, ANumericalErrorOfAMemberThatIsElsewhereIsNoneOfAll) {
+  if (team.size() == 1) return;
+  const std::string text = thrown_by([&] {
+    if (team.rank() == last)
+      team.together("pivot", [] { throw core::NumericalError("a pivot is zero"); });
+    else
+      divided();
+  });
+  EXPECT_THAT(text, HasSubstr("T member " + std::to_string(last)));
+  EXPECT_THAT(text, HasSubstr("a pivot is zero"));
+}
+
+TEST_F(Team, AMemberThatHasBegunAnotherTaskIsMet) {
+  divided();
+  if (team.rank() == last) team.begin();
+  const std::string text = thrown_by([&] { team.compare("here", 1); });
+  EXPECT_THAT(text, team.size() == 1 ? testing::IsEmpty() : testing::Matcher<std::string>(HasSubstr("different")));
+}
+
 TEST_F(Team, MembersAtDifferentPlacesAreToldSo) {
   if (team.size() == 1) return;
   EXPECT_THAT(thrown_by([&] { team.compare(team.rank() == last ? "here" : "there", 1); }), HasSubstr("different"));

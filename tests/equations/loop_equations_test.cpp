@@ -23,13 +23,17 @@ using namespace loss;
 /// Loop equations of a pendulum's loop (no orbit) over a sector of S@1/2 R@0, or over all modes; conditions as a
 /// corrector or a spectrum has them.
 struct Problem {
-  Problem(const std::string& sector, int cutoff)
-      : loop(test::linear_loop(test::in_phase(), 0.8, cutoff)),
+  Problem(const std::string& sector, int cutoff, double turns = 0.0)
+      : loop(winding(test::linear_loop(test::in_phase(), 0.8, cutoff), turns)),
         unknowns{subspace(sector, cutoff), scalars(sector)},
         image(unknowns.subspace.image()),
         slice(unknowns.size(), conditions()),
         equations(*system, loop, unknowns, image, slice) {}
 
+  [[nodiscard]] static loop::Loop winding(loop::Loop loop, double turns) {
+    loop.winding[1] = turns;
+    return loop;
+  }
   [[nodiscard]] static std::vector<Scalar> scalars(const std::string& sector) {
     if (sector == "all" || sector == "++") return {Scalar::period()};
     return {};
@@ -65,12 +69,9 @@ struct Problem {
 
 class InSectors : public testing::TestWithParam<std::string> {};
 
-TEST_P(InSectors, AreTheProjectedJacobianWithItsBorders) {
-  const Problem problem(GetParam(), 7);
-  const Eigen::MatrixXd j = test::to_dense(assemble_jacobian(problem.equations.linearization(), problem.unknowns));
-  const int unfoldings = LoopEquations::unfoldings(problem.unknowns, problem.image, problem.slice);
-  ASSERT_EQ(unfoldings, GetParam() == "all" || GetParam() == "+-" ? 1 : 0);
-  // The rows of J are nodal values over sqrt(N): waves of the image over them, doubled but for the mean, project.
+/// Waves of the image over the rows of the Jacobian, which are nodal values over sqrt(N); doubled but for the mean,
+/// they project.
+Eigen::MatrixXd waves_of(const Problem& problem) {
   const Linearization& l = problem.equations.linearization();
   Eigen::MatrixXd waves(l.rows(), problem.image.size());
   for (int n = 0; n < problem.image.size(); ++n) {
@@ -79,6 +80,16 @@ TEST_P(InSectors, AreTheProjectedJacobianWithItsBorders) {
     l.grid().synthesize(l.cutoff(), l.dimension(), modes.data(), waves.col(n).data());
     waves.col(n) *= (problem.image.harmonic(n) == 0 ? 1.0 : 2.0) / std::sqrt(static_cast<double>(l.nodes()));
   }
+  return waves;
+}
+
+TEST_P(InSectors, AreTheProjectedJacobianWithItsBorders) {
+  const Problem problem(GetParam(), 7);
+  const Eigen::MatrixXd j = test::to_dense(assemble_jacobian(problem.equations.linearization(), problem.unknowns));
+  const int unfoldings = LoopEquations::unfoldings(problem.unknowns, problem.image, problem.slice);
+  ASSERT_EQ(unfoldings, GetParam() == "all" || GetParam() == "+-" ? 1 : 0);
+  const Linearization& l = problem.equations.linearization();
+  const Eigen::MatrixXd waves = waves_of(problem);
   const Eigen::MatrixXd a = problem.matrix();
   const auto size = static_cast<Eigen::Index>(problem.unknowns.size());
   const Eigen::MatrixXd projected = waves.transpose() * j;
@@ -156,6 +167,20 @@ INSTANTIATE_TEST_SUITE_P(LoopEquations, InSectors, testing::Values("all", "++", 
                            for (char& c : name) c = c == '+' ? 'p' : c == '-' ? 'm' : c;
                            return name;
                          });
+
+TEST(LoopEquations, OfALoopThatWindsAreTheProjectedJacobian) {
+  const Problem problem("all", 7, -2.0);
+  const Eigen::MatrixXd j = test::to_dense(assemble_jacobian(problem.equations.linearization(), problem.unknowns));
+  const Eigen::MatrixXd projected = waves_of(problem).transpose() * j;
+  const Eigen::MatrixXd a = problem.matrix();
+  EXPECT_LT((a.topLeftCorner(projected.rows(), projected.cols()) - projected).norm(), 1e-12 * projected.norm());
+}
+
+TEST(LoopEquations, NeedAsManyConditionsAsScalars) {
+  const Problem all("all", 4);
+  const Slice none(all.unknowns.size(), Eigen::MatrixXd(all.unknowns.size(), 0));
+  EXPECT_THROW(LoopEquations(*all.system, all.loop, all.unknowns, all.image, none), core::MisuseError);
+}
 
 TEST(LoopEquations, AreSquareWithAnUnfoldingOnlyWhereEnergyIsConserved) {
   const Problem all("all", 4);

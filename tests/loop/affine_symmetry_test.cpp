@@ -78,6 +78,10 @@ TEST(AffineSymmetry, GroupsAndPerturbationsAreTheSame) {
     for (std::size_t n = 0; n < group.elements().size(); ++n) {
       const Loop image = transformed(there(sample({})), group.elements()[n]);
       EXPECT_LT(mean_distance(image, there(transformed(sample({}), here.elements()[n]))), 1e-12);
+      // A perturbation knows nothing of the place.
+      EXPECT_LT(mean_distance(transformed_perturbation(sample({}), group.elements()[n]),
+                              transformed_perturbation(sample({}), here.elements()[n])),
+                1e-12);
     }
   }
 }

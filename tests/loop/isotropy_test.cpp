@@ -35,6 +35,15 @@ TEST(Isotropy, ReadsEquivariancesFirst) {
   EXPECT_EQ(to_text({element_of(galaxy(), "C", 2, 3)}), "C@2/3");
 }
 
+TEST(Isotropy, OfATaskIsRefusedUnlessItIsOneOfTheSystem) {
+  const systems::Structure& system = test::structure_of("double_pendulum");
+  const Isotropy good = with_declared_matrices({{"S", false, {}, 1, 2}}, system);
+  EXPECT_EQ(good.at(0).map.matrix, element_of(system, "S").map.matrix);
+  EXPECT_THROW((void)with_declared_matrices({{"Q", false, {}, 1, 2}}, system), core::EnvironmentError);
+  EXPECT_THROW((void)with_declared_matrices({{"S", true, {}, 1, 2}}, system), core::EnvironmentError);
+  EXPECT_THROW((void)with_declared_matrices({{"S", false, {}, 0, 0}}, system), core::EnvironmentError);
+}
+
 TEST(Isotropy, IsFoundWithoutProducts) {
   const SymmetryElement s = element_of(pendulum(), "S", 1, 2);
   const SymmetryElement r = element_of(pendulum(), "R");

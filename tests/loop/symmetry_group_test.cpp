@@ -83,6 +83,15 @@ TEST(SymmetryGroup, TheLeastShiftMayBelongToAProduct) {
   EXPECT_EQ(domain.coordinates_with_mean(), (std::vector<bool>{false, false}));
 }
 
+// C@1/2 generates 1@1/2 as well, whose square is the identity: maps around the loop close with that one.
+TEST(SymmetryGroup, TheMapIsOneWhosePowersClose) {
+  const systems::Structure structure = sixfold();
+  const SymmetryGroup group(structure, {element_of(structure, "C", 1, 2)});
+  EXPECT_EQ(group.order(), 2);
+  EXPECT_EQ(group.elements().size(), 6U);
+  EXPECT_LT((group.generator().matrix - Eigen::Matrix2d::Identity()).norm(), 1e-14);
+}
+
 TEST(SymmetryGroup, APartThatIsAGroupHasAMapOfItsOwn) {
   const systems::Structure structure = sixfold();
   const SymmetryGroup all(structure, {element_of(structure, "S", 1, 2), element_of(structure, "C", 1, 3)});

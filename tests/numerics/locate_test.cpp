@@ -55,7 +55,25 @@ TEST(LocateRoot, EndsCount) {
   EXPECT_EQ(falling->position, 1.0);
 }
 
+TEST(LocateRoot, GivesTheSmallestValueThatItSaw) {
+  for (const int evaluations : {6, 7, 8, 9, 10}) {
+    const auto root = locate_root([](double x) { return x < 0.123 ? -0.5 : 1.0; }, 0.0, 1.0, 1e-12, evaluations);
+    ASSERT_TRUE(root);
+    EXPECT_EQ(root->value, -0.5);
+    EXPECT_LT(root->position, 0.123);
+  }
+}
+
 TEST(LocateRoot, SaysWhereThereIsNone) {
+  int calls = 0;
+  const auto counted = [&](double x) {
+    ++calls;
+    return x - 0.5;
+  };
+  EXPECT_FALSE(locate_root(counted, {0.0, std::nan("")}, {1.0, 0.5}, 1e-9));
+  EXPECT_FALSE(locate_root(counted, {0.0, -0.5}, {1.0, std::nan("")}, 1e-9));
+  EXPECT_EQ(calls, 0);
+
   EXPECT_FALSE(locate_root([](double x) { return 1.0 + x * x; }, -1.0, 2.0, 1e-9));
   EXPECT_FALSE(locate_root([](double x) { return x > 0.4 && x < 0.7 ? std::nan("") : x - 0.5; }, 0.0, 1.0, 1e-9));
   EXPECT_THROW((void)locate_root([](double x) { return x; }, 1.0, -1.0, 1e-9), core::MisuseError);
@@ -69,6 +87,17 @@ TEST(LocateMinimum, FindsAMinimum) {
   EXPECT_NEAR(least->position, 20.3, 1e-6);
   EXPECT_NEAR(least->value, 0.25, 1e-12);
   EXPECT_LE(least->evaluations, 12);
+}
+
+TEST(LocateMinimum, SaysHowFarItCame) {
+  const auto parabola = [](double x) { return (x - 300.0) * (x - 300.0); };
+  const auto least = locate_minimum(parabola, 0.0, 1000.0, 1e-3);
+  ASSERT_TRUE(least);
+  EXPECT_TRUE(least->converged);
+  EXPECT_NEAR(least->width, 1e-3, 1e-15);
+  const auto early = locate_minimum([](double x) { return std::cosh(0.01 * (x - 300.0)); }, 0.0, 1000.0, 1e-3, 4);
+  ASSERT_TRUE(early);
+  EXPECT_FALSE(early->converged);
 }
 
 TEST(LocateMinimum, FindsTheKinkOfAModulus) {

@@ -162,6 +162,89 @@ TEST(Comparison, RootsAreMatchedByTheirOrbits) {
   EXPECT_THAT(comparison.renamed, SizeIs(2));
 }
 
+/// The tree with other energies on one family, from s = `from` on.
+Records bent(
+    const std::string& key, double from, const std::function<void(Records&)>& change = [](Records&) {}) {
+  return changed([&](Records& records) {
+    for (archive::OrbitRecord& orbit : records.orbits)
+      if (orbit.family_key == key && orbit.arclength > from + 1e-9) orbit.energy += 0.3 * (orbit.arclength - from);
+    change(records);
+  });
+}
+
+TEST(Comparison, FamiliesThatShareAFewOrbitsAreTwo) {
+  const Comparison comparison =
+      compared(tree(), bent(other_root.key, 0.35, [](Records& r) { r.families[1].name = "X"; }));
+  EXPECT_THAT(kinds(comparison), ElementsAre(DifferenceKind::only_in_a, DifferenceKind::only_in_b));
+}
+
+TEST(Comparison, FamiliesOfANameOrAPlaceAreComparedWhateverTheirOrbits) {
+  for (const std::string& key : {other_root.key, first_twin.key})
+    for (const DifferenceKind kind : kinds(compared(tree(), bent(key, -0.5)))) EXPECT_EQ(kind, DifferenceKind::orbits);
+  const Comparison renamed =
+      compared(tree(), bent(first_twin.key, -0.5, [](Records& r) { r.families[2].name = "RDc"; }));
+  EXPECT_THAT(renamed.renamed, SizeIs(1));
+  for (const DifferenceKind kind : kinds(renamed)) EXPECT_EQ(kind, DifferenceKind::orbits);
+  EXPECT_THAT(kinds(compared(tree(), bent(first_twin.key, -0.5, [](Records& r) { r.families[2].isotropy = "RS@0"; }))),
+              ElementsAre(DifferenceKind::only_in_a, DifferenceKind::only_in_b));
+  // Of two, those of one name.
+  const Records both = bent(first_twin.key, -0.5, [](Records& records) {
+    for (archive::OrbitRecord& orbit : records.orbits)
+      if (orbit.family_key == second_twin.key) orbit.energy -= 0.7;
+    std::swap(records.families[2].name, records.families[3].name);
+  });
+  EXPECT_THAT(compared(tree(), both).renamed, IsEmpty());
+}
+
+void keep(Records& records, const std::string& key, double from, double to) {
+  std::erase_if(records.orbits, [&](const archive::OrbitRecord& orbit) {
+    return orbit.family_key == key && (orbit.arclength < from - 1e-9 || orbit.arclength > to + 1e-9);
+  });
+}
+
+TEST(Comparison, OrbitsThatOnlyOneHasSayNothingOfIdentity) {
+  const auto with = [](double from, double to) {
+    return changed([&](Records& records) { keep(records, other_root.key, from, to); });
+  };
+  Records late = with(1.0, 2.0);
+  late.families[1].name = "X";
+  const Comparison comparison = compared(with(0.0, 1.2), late);
+  EXPECT_EQ(comparison.families, 4);
+  EXPECT_THAT(comparison.renamed, SizeIs(1));
+  EXPECT_THAT(kinds(comparison), ElementsAre(DifferenceKind::range));
+}
+
+TEST(Comparison, FamiliesMayBeginALittleApart) {
+  const auto from = [](double s) {
+    return changed([&](Records& records) { keep(records, other_root.key, s, limit); });
+  };
+  EXPECT_TRUE(compared(tree(), from(0.8)).same());
+  EXPECT_THAT(kinds(compared(tree(), from(1.3))), ElementsAre(DifferenceKind::range));
+}
+
+TEST(Comparison, FamiliesMayPart) {
+  const Comparison comparison = compared(tree(), bent(other_root.key, 1.2));
+  EXPECT_THAT(kinds(comparison), ElementsAre(DifferenceKind::orbits));
+  EXPECT_THAT(comparison.differences.at(0).text, HasSubstr("A and B part at"));
+}
+
+TEST(Comparison, FewOrbitsAreHeldAgainstAChordOrAPoint) {
+  const auto without = [](double from, double to, double energy) {
+    return changed([&](Records& records) {
+      std::erase_if(records.orbits, [&](const archive::OrbitRecord& orbit) {
+        return orbit.family_key == other_root.key && orbit.arclength > from && orbit.arclength < to;
+      });
+      for (archive::OrbitRecord& orbit : records.orbits)
+        if (orbit.family_key == other_root.key) orbit.energy += energy;
+    });
+  };
+  EXPECT_TRUE(compared(tree(), without(0.05, 1.95, 0.0)).same());
+  EXPECT_TRUE(compared(without(0.05, 3.0, 0.0), without(0.05, 3.0, 0.0)).same());
+  EXPECT_THAT(kinds(compared(without(0.05, 3.0, 0.0), without(0.05, 3.0, 1e-6))),
+              ElementsAre(DifferenceKind::orbits, DifferenceKind::orbits));
+  EXPECT_THAT(kinds(compared(tree(), without(-1.0, 3.0, 0.0))), ::testing::Contains(DifferenceKind::range));
+}
+
 TEST(Comparison, SaysWhatIsInOneOnly) {
   const Records without = changed([](Records& records) {
     records.families.pop_back();
@@ -178,6 +261,7 @@ TEST(Comparison, SaysWhereAFamilyWasBornElsewhere) {
   const Records moved = changed([](Records& records) {
     records.families[3].crossing = 2;
     records.families[3].parent_key = "0001";
+    records.families[3].end_reason = "period limit (T = 15.1)";  // at the other end
   });
   const Comparison comparison = compared(tree(), moved);
   EXPECT_THAT(kinds(comparison), ElementsAre(DifferenceKind::birth));
@@ -198,14 +282,38 @@ TEST(Comparison, CrossingsHaveAPlace) {
   EXPECT_TRUE(compared(tree(), moved_by(1e-7), loose).same());
   EXPECT_THAT(kinds(compared(tree(), changed([](Records& r) { r.crossings[1].energy += 1e-6; }))),
               ElementsAre(DifferenceKind::crossing_place));
-  EXPECT_THAT(kinds(compared(tree(), moved_by(0.05))),
-              ElementsAre(DifferenceKind::crossing_only_in_a, DifferenceKind::crossing_only_in_b));
+  for (const Records& far : {moved_by(0.05), changed([](Records& r) { r.crossings[1].energy += 0.5; })})
+    EXPECT_THAT(kinds(compared(tree(), far)),
+                ElementsAre(DifferenceKind::crossing_only_in_a, DifferenceKind::crossing_only_in_b));
+}
+
+TEST(Comparison, CrossingsBesideOneAnotherGoToTheNearest) {
+  const auto with = [](const std::vector<double>& places) {
+    return changed([&](Records& records) {
+      records.crossings.pop_back();
+      for (const double s : places)
+        records.crossings.push_back(crossing_of(other_root, archive::CrossingKind::period_doubling, 2, s));
+    });
+  };
+  EXPECT_THAT(kinds(compared(with({0.3505}), with({0.35, 0.3505}))), ElementsAre(DifferenceKind::crossing_only_in_b));
+  EXPECT_THAT(kinds(compared(with({0.35, 0.3505}), with({0.3505}))), ElementsAre(DifferenceKind::crossing_only_in_a));
+}
+
+TEST(Comparison, CrossingsOfAFamilyThatTurnsAreNotInTheOrderOfPeriods) {
+  const Records turned = changed([](Records& records) {
+    records.crossings.push_back(crossing_of(root, archive::CrossingKind::branch_point, 1, 1.5));
+    records.crossings.back().period = 6.2;
+  });
+  const Comparison comparison = compared(turned, turned);
+  EXPECT_TRUE(comparison.same());
+  EXPECT_EQ(comparison.crossings, 4);
 }
 
 TEST(Comparison, CrossingsAreOfAKindAndASector) {
   for (const auto& change : std::vector<std::function<void(Records&)>>{
            [](Records& r) { r.crossings[1].kind = archive::CrossingKind::torus; },
-           [](Records& r) { r.crossings[1].multiplicity = 3; }, [](Records& r) { r.crossings[1].sector_q = 3; }})
+           [](Records& r) { r.crossings[1].multiplicity = 3; }, [](Records& r) { r.crossings[1].sector_q = 3; },
+           [](Records& r) { r.crossings[2].sector_j = 0; }})
     EXPECT_THAT(kinds(compared(tree(), changed(change))),
                 ElementsAre(DifferenceKind::crossing_only_in_a, DifferenceKind::crossing_only_in_b));
   for (const auto& change :
@@ -237,6 +345,59 @@ TEST(Comparison, EndsAtALimitHaveAPlace) {
   EXPECT_THAT(kinds(compared(limited_at(7.5), limited_at(7.49))), ElementsAre(DifferenceKind::end_place));
 }
 
+TEST(Comparison, AFamilyThatRunsBackwardsEndsAtItsFirstOrbit) {
+  const auto backwards_to = [](double energy) {
+    return changed([&](Records& records) {
+      records.families[1].end_reason = "energy limit (E = 1.5)";
+      for (archive::OrbitRecord& orbit : records.orbits) {
+        if (orbit.family_key != other_root.key) continue;
+        if (orbit.arclength == limit) orbit.energy += energy;
+        orbit.step = -1 - orbit.step;
+        orbit.arclength = -orbit.arclength;
+      }
+    });
+  };
+  EXPECT_TRUE(compared(backwards_to(0.0), backwards_to(0.0)).same());
+  EXPECT_THAT(kinds(compared(backwards_to(0.0), backwards_to(1e-5))), ::testing::Contains(DifferenceKind::end_place));
+}
+
+TEST(Comparison, AFamilyWithTwoEndsMayRunTheOtherWay) {
+  const auto two_ends = [](double first, const std::string& reason, bool reversed) {
+    return changed([&](Records& records) {
+      records.families[1].end_reason = reason;
+      std::erase_if(records.crossings, [](const auto& crossing) { return crossing.family_key == other_root.key; });
+      for (archive::OrbitRecord& orbit : records.orbits) {
+        if (orbit.family_key != other_root.key) continue;
+        if (orbit.arclength == 0.0) orbit = orbit_of(other_root, orbit.step, first);
+        if (orbit.arclength == first) orbit.arclength = 0.0;
+        if (!reversed) continue;
+        orbit.step = 100 - orbit.step;
+        orbit.arclength = limit - orbit.arclength;
+      }
+    });
+  };
+  const std::string ends = "forwards: period limit (T = 7.5); backwards: energy limit (E = 0.5)";
+  const std::string swapped = "forwards: energy limit (E = 0.5); backwards: period limit (T = 7.5)";
+  const Records own = two_ends(0.0, ends, false);
+  EXPECT_TRUE(compared(own, own).same());
+  EXPECT_TRUE(compared(own, two_ends(0.0, swapped, true)).same());
+  const Comparison moved = compared(own, two_ends(0.01, ends, false));
+  EXPECT_THAT(kinds(moved), ElementsAre(DifferenceKind::end_place));
+  EXPECT_THAT(moved.differences.at(0).text, HasSubstr("ends with energy = 0.5 in A"));
+  EXPECT_THAT(kinds(compared(own, two_ends(0.0, swapped, false))),
+              ElementsAre(DifferenceKind::end_reason, DifferenceKind::end_reason));
+  EXPECT_THAT(kinds(compared(own, two_ends(0.0, "period limit (T = 7.5)", false))),
+              ElementsAre(DifferenceKind::end_reason));
+  // Shorter at its beginning, which is the other's end.
+  Records shorter = two_ends(0.0, swapped, true);
+  std::erase_if(shorter.orbits,
+                [](const auto& orbit) { return orbit.family_key == other_root.key && orbit.arclength < 0.5; });
+  const Comparison further = compared(own, shorter);
+  EXPECT_THAT(kinds(further), ElementsAre(DifferenceKind::range, DifferenceKind::end_place));
+  EXPECT_THAT(further.differences.at(0).text, HasSubstr("further in A, to T = 7.5"));
+  EXPECT_THAT(further.differences.at(0).text, HasSubstr("than in B, which ends at T = 6.9,"));
+}
+
 TEST(Comparison, EndsAreAtACrossing) {
   const auto joined = [](int crossing) {
     return changed([crossing](Records& records) {
@@ -248,7 +409,15 @@ TEST(Comparison, EndsAreAtACrossing) {
   EXPECT_TRUE(compared(joined(1), joined(1)).same());
   const Comparison comparison = compared(joined(1), joined(0));
   EXPECT_THAT(kinds(comparison), ElementsAre(DifferenceKind::end_target));
-  EXPECT_THAT(comparison.differences[0].text, HasSubstr("joined Root at branch-point T 7.25 in A"));
+  EXPECT_THAT(comparison.differences.at(0).text, HasSubstr("joined Root at branch-point T 7.25 in A"));
+  // What only one has is not the same as nothing.
+  const Records nowhere = changed([](Records& records) {
+    records.crossings.erase(records.crossings.begin() + 1);
+    records.families[2].end_reason = "joined Root at T = 7 (crossing at T = 7, 1 times around)";
+    records.families[2].end_family_key = root.key;
+  });
+  EXPECT_THAT(kinds(compared(joined(1), nowhere)),
+              ElementsAre(DifferenceKind::crossing_only_in_a, DifferenceKind::end_target));
 }
 
 TEST(Comparison, OneMayGoFurther) {
@@ -280,6 +449,7 @@ TEST(Comparison, OrbitsLieOnACurve) {
   const auto action = [](archive::OrbitRecord& orbit) -> double& { return orbit.action; };
   const auto stability = [](archive::OrbitRecord& orbit) -> double& { return orbit.stability[0]; };
   EXPECT_TRUE(compared(tree(), off_by(1e-11, energy)).same());
+  EXPECT_FALSE(compared(tree(), off_by(1e-8, energy)).same());
   for (const Comparison& comparison : {compared(tree(), off_by(1e-6, energy)), compared(tree(), off_by(1e-6, action)),
                                        compared(tree(), off_by(1e-5, stability))}) {
     ASSERT_FALSE(comparison.same());
@@ -312,6 +482,33 @@ TEST(Comparison, NumbersAreKnownInBoth) {
   EXPECT_THAT(kinds(compared(tree(), nowhere)), ElementsAre(DifferenceKind::crossing_place));
 }
 
+TEST(Comparison, StabilityCountsAsFarAsItIsCertain) {
+  const auto off_by = [](double part, double error) {
+    return changed([&](Records& records) {
+      for (archive::OrbitRecord& orbit : records.orbits) {
+        orbit.stability_error = error;
+        if (orbit.family_key == other_root.key && orbit.step == 7) orbit.stability[0] += part;
+      }
+    });
+  };
+  EXPECT_FALSE(compared(off_by(0.0, 1e-12), off_by(1e-5, 1e-12)).same());
+  EXPECT_TRUE(compared(off_by(0.0, 1e-4), off_by(1e-5, 1e-4)).same());
+  EXPECT_TRUE(compared(off_by(0.0, 1e-2), off_by(1.0, 1e-2)).same());
+}
+
+TEST(Comparison, TheWorstOrbitIsNamed) {
+  const Comparison comparison = compared(tree(), changed([](Records& records) {
+                                           for (archive::OrbitRecord& orbit : records.orbits) {
+                                             if (orbit.family_key != other_root.key) continue;
+                                             if (orbit.step == 3) orbit.energy += 1e-6;
+                                             if (orbit.step == 14) orbit.energy += 1e-4;
+                                           }
+                                         }));
+  std::string all;
+  for (const report::Difference& difference : comparison.differences) all += difference.text + "\n";
+  EXPECT_THAT(all, HasSubstr("orbits of B lie off the curve of the other: action at T = 6.9,"));
+}
+
 TEST(Comparison, FamiliesHaveAnIsotropy) {
   EXPECT_THAT(kinds(compared(tree(), changed([](Records& r) { r.families[2].isotropy = "RS@0"; }))),
               ElementsAre(DifferenceKind::isotropy));
@@ -323,6 +520,11 @@ TEST(Comparison, OtherCoordinatesAreTheOnlyDifference) {
   const Comparison comparison = report::compare(written("a", tree()), written("b", tree(0.3), header));
   EXPECT_THAT(kinds(comparison), ElementsAre(DifferenceKind::system));
   EXPECT_THAT(comparison.differences[0].text, HasSubstr("q, p in B"));
+}
+
+TEST(Comparison, AFamilyGoesAroundItsParentAsOften) {
+  EXPECT_THAT(kinds(compared(tree(), changed([](Records& r) { r.families[2].multiplicity = 4; }))),
+              ElementsAre(DifferenceKind::birth));
 }
 
 TEST(Comparison, OtherParametersAreAnotherSystem) {

@@ -5,6 +5,7 @@ set(longest 120)
 file(GLOB_RECURSE files RELATIVE "${ROOT}"
   "${ROOT}/include/*.hpp" "${ROOT}/src/*.hpp" "${ROOT}/src/*.cpp" "${ROOT}/drivers/*.hpp" "${ROOT}/drivers/*.cpp"
   "${ROOT}/tests/*.hpp" "${ROOT}/tests/*.cpp")
+list(FILTER files EXCLUDE REGEX "^tests/structure/fixtures/")
 list(LENGTH files count)
 if(count EQUAL 0)
   message(FATAL_ERROR "no sources below ${ROOT}")

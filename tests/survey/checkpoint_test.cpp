@@ -6,6 +6,7 @@
 
 #include "archive/sample.hpp"
 #include "orbweaver/core/error.hpp"
+#include "state/branch_state.hpp"
 #include "state/checkpoint_keeper.hpp"
 #include "state/reopen.hpp"
 #include "survey/scenes.hpp"
@@ -144,6 +145,25 @@ class Reopened : public ::testing::Test {
     return entry;
   }
 
+  /// A branch that ended at the period limit; before it, `orbits` orbits and `events` events.
+  static EndedTask branch_with_state(const std::string& key, int side, int orbits, int events) {
+    BranchWork work;
+    work.key = key;
+    work.lineage.family = key;
+    work.lineage.side = side;
+    BranchState state;
+    state.outcome.orbits = orbits;
+    state.events = events;
+    BranchOutcome end;
+    end.key = key;
+    end.orbits = orbits + 2;
+    end.limited_by = period_limited;
+    end.before_limit = pack(state);
+    EndedTask entry{task_of(work), {}, true};
+    entry.outcome.payload = pack(end);
+    return entry;
+  }
+
   EndedTask started(const std::string& key, int limited_by) {
     EndedTask entry{task("start " + key, TaskKind::start), outcome("start " + key), true};
     entry.outcome.payload = pack(StartOutcome{limited_by});
@@ -183,6 +203,67 @@ TEST_F(Reopened, ABranchWithAllThatHangsOnIt) {
   EXPECT_EQ(checkpoint.voided[0].family_key, "0000.0000");
   EXPECT_EQ(checkpoint.voided[0].first_step, 0) << "without a state the branch begins again";
   EXPECT_EQ(checkpoint.voided[0].before_segment, 3);
+}
+
+TEST_F(Reopened, ABranchFromTheStateBeforeItsLimit) {
+  for (const int side : {1, -1}) {
+    SCOPED_TRACE(side);
+    Checkpoint kept = checkpoint;
+    const EndedTask entry = branch_with_state("0000.0002", side, 3, 1);
+    Reopening reopening(period_limited, kept);
+    EXPECT_FALSE(reopening.stays(entry));
+    EXPECT_TRUE(reopening.stays(located("0000.0002/000.q4.j1", 0))) << "found before the state";
+    EXPECT_FALSE(reopening.stays(located("0000.0002/001.q4.j1", 0)));
+    reopening.finish();
+    ASSERT_EQ(kept.unfinished.size(), 1U);
+    EXPECT_EQ(kept.unfinished[0].payload, entry.task.payload);
+    EXPECT_EQ(kept.unfinished[0].state, unpack_branch_outcome(entry.outcome.payload).before_limit);
+    ASSERT_EQ(kept.voided.size(), 1U);
+    const bool forwards = side > 0;
+    EXPECT_EQ(kept.voided[0].first_step, forwards ? 3 : archive::VoidedRows{}.first_step);
+    EXPECT_EQ(kept.voided[0].last_step, forwards ? archive::VoidedRows{}.last_step : -4);
+  }
+}
+
+TEST_F(Reopened, AStartWithTheBranchThatItMade) {
+  const std::string key = "0000.0001/000.q4.j1/0";
+  const auto branch_at = [](const std::string& at) {
+    BranchWork work;
+    work.key = work.lineage.family = at;
+    BranchOutcome end;
+    end.key = at;
+    EndedTask entry{task_of(work), {}, true};
+    entry.outcome.payload = pack(end);
+    return entry;
+  };
+  const std::string born = key + "/000.q2.j1/0";
+  const std::string waiting = key + "/001.q2.j1/0";
+  checkpoint.unfinished = {branch_at(waiting).task};
+  EndedTask start = started(key, energy_limited);
+  start.task.state = "of the last try";
+  Reopening reopening(energy_limited, checkpoint);
+  EXPECT_FALSE(reopening.stays(start));
+  EXPECT_FALSE(reopening.stays(branch_at(key)));
+  EXPECT_FALSE(reopening.stays(located(key + "/000.q2.j1", 0)));
+  EXPECT_FALSE(reopening.stays(branch_at(born)));
+  EXPECT_TRUE(reopening.stays(branch_at("0000.0001/000.q4.j1/1")));
+  reopening.finish();
+  EXPECT_THAT(keys_of(checkpoint.unfinished), ElementsAre("start " + key));
+  EXPECT_EQ(checkpoint.unfinished[0].state, "");
+  std::vector<std::string> voided;
+  for (const archive::VoidedRows& rows : checkpoint.voided) {
+    voided.push_back(rows.family_key);
+    EXPECT_EQ(rows.first_step, 0);
+  }
+  EXPECT_THAT(voided, ElementsAre(key, born, waiting));
+}
+
+TEST_F(Reopened, NoRowsAreVoidBeforeThereIsASegment) {
+  checkpoint.segments.clear();
+  Reopening reopening(period_limited, checkpoint);
+  EXPECT_FALSE(reopening.stays(branch));
+  reopening.finish();
+  EXPECT_THAT(checkpoint.voided, IsEmpty());
 }
 
 TEST(WidenedLimits, AreKnownByTheirKeys) {

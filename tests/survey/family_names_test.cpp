@@ -64,6 +64,21 @@ TEST_F(FamilyNames, OfManyTwinsDiffer) {
   for (const std::string& name : all) EXPECT_EQ(name.find(' '), std::string::npos) << name;
 }
 
+TEST_F(FamilyNames, OfTwinsGoByKeyWhateverTheirOrder) {
+  base("0", "In-Phase");
+  place("0/0", "0", 1.0);
+  for (const int n : {2, 0, 1}) born("0/0", n, 1, 2);
+  EXPECT_THAT(names(), ElementsAre("In-Phase", "IDc", "IDa", "IDb"));
+}
+
+TEST_F(FamilyNames, ThatABaseFamilyHasAddTheKey) {
+  base("0", "In-Phase");
+  base("1", "ID");
+  place("0/0", "0", 1.0);
+  born("0/0", 0, 1, 2);
+  EXPECT_THAT(names(), ElementsAre("In-Phase", "ID", "ID (0/0/000)"));
+}
+
 TEST_F(FamilyNames, ThatAreTakenAddTheKey) {
   base("0", "In-Phase");
   base("1", "Odd");

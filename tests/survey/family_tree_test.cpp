@@ -161,6 +161,42 @@ TEST_F(Families, ThatArriveElsewhereDropNothing) {
   EXPECT_EQ(family(result, "ID1").end_family_key, "");
 }
 
+TEST_F(Families, ThatArriveOutsideTheWindowDropNothing) {
+  const auto with = [&](double period, double energy) {
+    Ended stray = arrived(work_from(p, 0), 16, q, 0);
+    BranchOutcome outcome = unpack_branch_outcome(stray.outcome.payload);
+    outcome.arrival.front().period = period;
+    outcome.arrival.front().energy = energy;
+    stray.outcome.payload = pack(outcome);
+    return names(resolve({ended(base_work(), EndReason::period_limit, 5, 12), located(p), located(q), stray,
+                          ended(work_from(q, 0), EndReason::period_limit, 18, 20)}));
+  };
+  const double period = 2.0 * q.period;
+  EXPECT_THAT(with(period * 1.0009, q.energy() + 0.0015), ElementsAre("In-Phase", "ID"));
+  EXPECT_THAT(with(period * 1.0015, q.energy()), ElementsAre("In-Phase", "ID1", "ID2"));
+  EXPECT_THAT(with(period, q.energy() + 0.0025), ElementsAre("In-Phase", "ID1", "ID2"));
+}
+
+TEST_F(Families, ThatArriveBetweenTwoDirectionsComeAlongTheNearer) {
+  Ended place = located(q);
+  LocateOutcome crossing = unpack_locate_outcome(place.outcome.payload);
+  const std::vector<double> own = crossing.leaving[0].direction.modes;
+  crossing.leaving[1].isotropy = crossing.leaving[0].isotropy;
+  for (const double nearby : {0.2, -0.2}) {
+    const std::vector<double> turned = kernel_vector(q, nearby);
+    for (const std::size_t along : {0U, 1U}) {
+      crossing.leaving[along].direction.modes = own;
+      crossing.leaving[1 - along].direction.modes = turned;
+      place.outcome.payload = pack(crossing);
+      const FamilyTree::Result result =
+          resolve({ended(base_work(), EndReason::period_limit, 5, 12), located(p), place,
+                   arrived(work_from(p, 0), 16, q, 0), ended(work_from(q, 0), EndReason::closed_loop, 18, 20),
+                   ended(work_from(q, 1), EndReason::closed_loop, 18, 20)});
+      EXPECT_THAT(result.tables.left_out_keys, ElementsAre(q.leaving(static_cast<int>(along))));
+    }
+  }
+}
+
 TEST_F(Families, OfAnotherDirectionStay) {
   std::vector<Ended> events{ended(base_work(), EndReason::period_limit, 5, 12),
                             located(p),
@@ -239,6 +275,14 @@ TEST_F(Families, OnALocationThatDidNotSucceedAreNotCrossings) {
   EXPECT_THAT(result.failures, IsEmpty()) << "of a branch that is left out";
 }
 
+Ended with_energies(Ended branch, double from, double to) {
+  BranchOutcome outcome = unpack_branch_outcome(branch.outcome.payload);
+  outcome.energy_from = from;
+  outcome.energy_to = to;
+  branch.outcome.payload = pack(outcome);
+  return branch;
+}
+
 // Both sides of a direction are different orbits: three times around.
 TEST_F(Families, WithTwoSidesAreOneAndOneSideMayBeLeftOut) {
   const Place at{"0000.0000/000.q3.j1", 8.0, 1.0, 3};
@@ -248,12 +292,15 @@ TEST_F(Families, WithTwoSidesAreOneAndOneSideMayBeLeftOut) {
     more.insert(more.begin(), begin.begin(), begin.end());
     return resolve(more);
   };
-  FamilyTree::Result result = with({ended(work_from(at, 0, 1), EndReason::period_limit, 24, 40, 10),
-                                    ended(work_from(at, 0, -1), EndReason::energy_limit, 20, 24, 7)});
+  FamilyTree::Result result =
+      with({with_energies(ended(work_from(at, 0, 1), EndReason::period_limit, 24, 40, 10), -2, 2),
+            with_energies(ended(work_from(at, 0, -1), EndReason::energy_limit, 20, 24, 7), -3, -2)});
   ASSERT_THAT(names(result), ElementsAre("In-Phase", "IT3"));
   EXPECT_EQ(result.families[1].orbits, 17);
   EXPECT_EQ(result.families[1].period_from, 20.0);
   EXPECT_EQ(result.families[1].period_to, 40.0);
+  EXPECT_EQ(result.families[1].energy_from, -3.0);
+  EXPECT_EQ(result.families[1].energy_to, 2.0);
   EXPECT_EQ(result.families[1].end_reason, "forwards: period limit; backwards: energy limit");
   EXPECT_EQ(result.tables.families[1].first_step, first);
   EXPECT_EQ(result.tables.families[1].last_step, last);
@@ -304,6 +351,77 @@ TEST_F(Families, BeyondTheLimitAreLeftOut) {
   const FamilyTree::Result result = resolve(events);
   EXPECT_THAT(names(result), ElementsAre("In-Phase", "IDa", "IDb"));
   EXPECT_THAT(result.tables.left_out_keys, ElementsAre(r.leaving(0), r.leaving(1)));
+}
+
+TEST_F(Families, WithinTheLimitKeepBothSides) {
+  const Place at{"0000.0000/000.q3.j1", 8.0, 1.0, 3};
+  scene.limits.families = 2;
+  const FamilyTree::Result result = resolve({ended(base_work(), EndReason::period_limit, 5, 12), located(at, 1),
+                                             ended(work_from(at, 0, 1), EndReason::period_limit, 24, 40, 10),
+                                             ended(work_from(at, 0, -1), EndReason::energy_limit, 20, 24, 7)});
+  ASSERT_THAT(names(result), ElementsAre("In-Phase", "IT3"));
+  EXPECT_EQ(result.families[1].orbits, 17);
+  EXPECT_EQ(result.tables.families[1].first_step, first);
+}
+
+TEST_F(Families, CrossingsAreRowsAsTheyWereLocated) {
+  Ended place = located(p, 0);
+  LocateOutcome crossing = unpack_locate_outcome(place.outcome.payload);
+  crossing.residual = 1e-11;
+  crossing.kernel_singular_value = 2e-9;
+  crossing.next_singular_value = 0.3;
+  crossing.test_value = -4e-8;
+  crossing.state = {0.1, 0.2, 0.3, 0.4};
+  crossing.q = 4;
+  crossing.j = 1;
+  crossing.fundamental_order = 2;
+  place.outcome.payload = pack(crossing);
+  const FamilyTree::Result result = resolve({ended(base_work(), EndReason::period_limit, 5, 12), place});
+  ASSERT_EQ(result.tables.crossings.size(), 1U);
+  const archive::CrossingRecord& row = result.tables.crossings[0];
+  EXPECT_EQ(row.family_key, "0000.0000");
+  EXPECT_EQ(row.arclength, p.arclength);
+  EXPECT_EQ(row.period, p.period);
+  EXPECT_EQ(row.energy, p.energy());
+  EXPECT_EQ(row.kind, archive::CrossingKind::period_doubling);
+  EXPECT_EQ(row.multiplicity, 2);
+  EXPECT_EQ(row.kernel_dimension, 2);
+  EXPECT_EQ(row.residual, 1e-11);
+  EXPECT_EQ(row.kernel_residual, 2e-9);
+  EXPECT_EQ(row.test_value, -4e-8);
+  EXPECT_EQ(row.state, crossing.state);
+  EXPECT_EQ(row.sector_q, 4);
+  EXPECT_EQ(row.sector_j, 1);
+  EXPECT_EQ(row.fundamental_order, 2);
+}
+
+// Two readings of one fold differ by rounding of their location; other folds and those of another kind are their own.
+TEST_F(Families, FoldsThatAreReadTwiceAreOneRow) {
+  const auto fold = [](int number, double arclength, archive::CrossingKind kind) {
+    Ended place = located({fmt::format("0000.0000/{:03}.fold", number), 8.0, arclength, 1}, 0);
+    LocateOutcome crossing = unpack_locate_outcome(place.outcome.payload);
+    crossing.kind = kind;
+    place.outcome.payload = pack(crossing);
+    return place;
+  };
+  using archive::CrossingKind;
+  const FamilyTree::Result result =
+      resolve({ended(base_work(), EndReason::period_limit, 5, 12), fold(0, 2.0, CrossingKind::fold_energy),
+               fold(1, 2.0001, CrossingKind::fold_energy), fold(2, 1.9999, CrossingKind::fold_energy),
+               fold(3, 2.0, CrossingKind::fold_period), fold(4, 2.01, CrossingKind::fold_energy),
+               fold(5, 2.0, CrossingKind::branch_point), fold(6, 2.0, CrossingKind::branch_point)});
+  std::vector<std::pair<CrossingKind, double>> rows;
+  for (const archive::CrossingRecord& row : result.tables.crossings) rows.emplace_back(row.kind, row.arclength);
+  EXPECT_THAT(rows, ElementsAre(std::pair(CrossingKind::fold_energy, 2.0), std::pair(CrossingKind::fold_period, 2.0),
+                                std::pair(CrossingKind::fold_energy, 2.01), std::pair(CrossingKind::branch_point, 2.0),
+                                std::pair(CrossingKind::branch_point, 2.0)));
+}
+
+TEST_F(Families, ThatWouldBeBeyondThePeriodLimitAreCounted) {
+  scene.limits.period = 2.0 * p.period + 1.0;
+  const FamilyTree::Result result =
+      resolve({ended(base_work(), EndReason::period_limit, 5, 12), located(p, 0), located(q, 0), located(r, 0)});
+  EXPECT_THAT(result.remarks, ElementsAre(StartsWith("2 crossings lead to orbits beyond limits.period")));
 }
 
 TEST_F(Families, AreNotWantedWhereAnArrivalHasBeen) {

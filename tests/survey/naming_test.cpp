@@ -57,4 +57,10 @@ TEST(Naming, PointsAreTextInDegreesForAngles) {
             "th1 = 180 deg, th2 = 0 deg, w1 = 0.5, w2 = 0");
 }
 
+TEST(Naming, LongTextsAreCutToWhatAColumnHolds) {
+  const std::string fits(2000, 'x');
+  EXPECT_EQ(survey::limited(fits), fits);
+  EXPECT_EQ(survey::limited(fits + "y"), fits + " ...");
+}
+
 }  // namespace

@@ -94,6 +94,12 @@ TEST(Travellers, LoopsThatAreNoneAreRefused) {
 TEST(Travellers, LimitsAndEnumsThatAreNoneAreRefused) {
   expect_refused(StartOutcome{16}, "limits 0x10");
   BranchOutcome outcome;
+  outcome.limited_by = 32;
+  expect_refused(outcome, "limits 0x20");
+  LocateOutcome located;
+  located.limited_by = -1;
+  expect_refused(located, "limits -0x1");
+  outcome.limited_by = 0;
   outcome.end.reason = static_cast<continuation::EndReason>(99);
   EXPECT_THROW((void)pack(outcome), core::EnvironmentError);
 }

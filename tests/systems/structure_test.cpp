@@ -183,8 +183,10 @@ TEST(Structure, OnesThatDoNotFitTheirModelAreRefused) {
   bad.dimension = 5;
   EXPECT_THROW(check(bad, info, 4, 2), core::MisuseError);
   bad = good;
-  bad.angles = {0};  // its winding number has no name
-  EXPECT_THROW(check(bad, info, 4, 2), core::MisuseError);
+  for (const int angle : {0, -1, 4}) {  // the winding number of 0 has no name
+    bad.angles = {angle};
+    EXPECT_THROW(check(bad, info, 4, 2), core::MisuseError);
+  }
   bad = good;
   bad.reversors.push_back({"Q", Eigen::Matrix2d::Identity()});
   EXPECT_THROW(check(bad, info, 4, 2), core::MisuseError);
@@ -214,6 +216,9 @@ TEST(AffineMap, IsTheSameModuloWholeTurnsOfAngles) {
   EXPECT_TRUE(turned.is_same(identity, {0}));
   const AffineMap third{identity, Eigen::Vector2d(2.0, 0.0)};
   EXPECT_FALSE(third.is_same(identity, {0}));
+  const AffineMap half{identity, Eigen::Vector2d(std::acos(-1.0), 0.0)};
+  EXPECT_FALSE(half.is_same(identity, {0}));
+  EXPECT_TRUE((half * half).is_same(identity, {0}));
 }
 
 }  // namespace
