@@ -5,6 +5,8 @@
 #include <vector>
 
 #include <fcntl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include "command.hpp"
@@ -25,6 +27,12 @@ std::vector<Command> add_commands(CLI::App& program) {
       make_check_command(program), make_compare_command(program), make_consolidate_command(program),
       make_show_command(program),  make_survey_command(program),  make_sweep_command(program),
   };
+}
+
+std::vector<std::string> names_of(const std::vector<Command>& commands) {
+  std::vector<std::string> names;
+  for (const Command& command : commands) names.push_back(command.parser->get_name());
+  return names;
 }
 
 /// Cuts the words after the first `--` off `words`.
@@ -49,9 +57,15 @@ int run(std::vector<std::string> words) {
   program.require_subcommand(1);
   const std::vector<Command> commands = add_commands(program);
   const Invocation invocation = take_petsc_options(words);
+  const std::string first = words.empty() ? "" : words.front();
   std::reverse(words.begin(), words.end());  // the order in which CLI11 wants a vector
   try {
     program.parse(words);
+  } catch (const CLI::RequiredError& error) {
+    if (!first.empty() && !first.starts_with('-') && program.get_subcommands().empty())
+      throw orbweaver::core::InputError(fmt::format("expected a command, one of {}, got `{}`; see orbweaver --help",
+                                                    fmt::join(names_of(commands), ", "), first));
+    return program.exit(error) == 0 ? 0 : wrong_input;
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? 0 : wrong_input;
   }

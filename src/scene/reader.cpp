@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -18,8 +19,7 @@ constexpr std::size_t longest_text = 64;
 bool is_quoted(const YAML::Node& node) { return node.Tag() == "!"; }
 
 std::string shorten(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  text = printable(std::move(text));
   return text.size() <= 40 ? text : text.substr(0, 37) + "...";
 }
 
@@ -32,6 +32,15 @@ std::string written(const YAML::Node& node) {
     text += node[i].IsScalar() ? shorten(node[i].Scalar()) : "...";
   }
   return shorten(text + "]");
+}
+
+/// What to do about a key that is not known. YAML takes `period:30` for a key, not for a key with a value.
+std::string advice_for(const std::string& key, const std::vector<std::string>& known) {
+  const std::size_t colon = key.find(':');
+  if (colon != std::string::npos && std::find(known.begin(), known.end(), key.substr(0, colon)) != known.end())
+    return fmt::format("write a space after the colon of `{}:`", key.substr(0, colon));
+  const std::string near = nearest(key, known);
+  return near.empty() ? "remove it" : fmt::format("did you mean `{}`?", near);
 }
 
 int line_of(const YAML::Node& node) { return node.Mark().is_null() ? 0 : node.Mark().line + 1; }
@@ -207,9 +216,8 @@ Keys::Keys(const Field& field, std::vector<std::string> known, std::string_view 
   for (const Field::Entry& entry : _entries) {
     const std::string name = entry.key.path().substr(field.path().empty() ? 0 : field.path().size() + 1);
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    const std::string near = nearest(name, known);
-    entry.key.fail(fmt::format("unknown key, expected one of {}, got {}; {}", alternatives(known), entry.key.got(),
-                               near.empty() ? "remove it" : fmt::format("did you mean `{}`?", near)));
+    entry.key.fail(fmt::format("unknown key, expected {}{}, got {}; {}", known.size() > 1 ? "one of " : "",
+                               alternatives(known), entry.key.got(), advice_for(name, known)));
   }
 }
 

@@ -76,6 +76,11 @@ constexpr std::size_t longest_scene = 60000;
 Scene parse(const std::string& text, const std::string& origin, const std::vector<std::string>& overrides) {
   std::vector<Override> changes;
   for (const std::string& words : overrides) changes.push_back(parse_override(words));
+  if (text.find('\0') != std::string::npos)
+    throw core::InputError(
+        fmt::format("{}: expected a scene, text in UTF-8, got a file with zero bytes; give the scene, not an archive "
+                    "or a program, and save it as UTF-8",
+                    origin));
   const YAML::Node document = parse_document(text, origin, true);
   const Source source(origin, std::move(changes));
   if (!document.IsMap()) {
@@ -104,8 +109,8 @@ std::vector<std::string> not_built_yet(const Scene& scene) {
     if (asked) sentences.push_back(sentence);
   };
   const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
-  say(!system->structure().conservative() || !scene.system.effects.empty(),
-      "system: continuation of systems without a conserved energy, or with effects, is not built yet.");
+  say(!system->structure().conservative(),
+      "system: continuation of systems without a conserved energy is not built yet.");
   say(!scene.section.coordinate.empty(),
       fmt::format("section: crossings of the Poincare section {} = {:g} are not computed yet.",
                   scene.section.coordinate, scene.section.value));

@@ -18,6 +18,12 @@ bool is_inside(std::string_view path, std::string_view outer) {
 
 }  // namespace
 
+std::string printable(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  return text;
+}
+
 Source::Source(std::string origin, std::vector<Override> overrides)
     : _origin(std::move(origin)), _overrides(std::move(overrides)) {}
 
@@ -32,7 +38,8 @@ std::string Source::place(std::string_view path, int line) const {
 }
 
 void Source::fail(std::string_view path, int line, const std::string& problem) const {
-  throw core::InputError(fmt::format("{}: {}: {}", place(path, line), path.empty() ? "scene" : path, problem));
+  const std::string subject = path.empty() ? "scene" : printable(std::string(path));
+  throw core::InputError(fmt::format("{}: {}: {}", place(path, line), subject, problem));
 }
 
 YAML::Node parse_document(const std::string& text, const std::string& place, bool lines) {
@@ -41,8 +48,10 @@ YAML::Node parse_document(const std::string& text, const std::string& place, boo
     documents = YAML::LoadAll(text);
   } catch (const YAML::Exception& error) {
     const std::string where = lines && !error.mark.is_null() ? fmt::format("{}:{}", place, error.mark.line + 1) : place;
-    throw core::InputError(fmt::format(
-        "{}: expected YAML, got a syntax error ({}); check brackets, colons and indentation", where, error.msg));
+    throw core::InputError(
+        fmt::format("{}: expected YAML, got a syntax error ({}); check brackets, colons and indentation, which takes "
+                    "spaces and no tabs",
+                    where, printable(error.msg)));
   }
   if (documents.size() > 1) {
     const YAML::Mark mark = documents[1].Mark();

@@ -34,6 +34,9 @@ class Source {
   std::vector<Override> _overrides;
 };
 
+/// The text with control characters replaced by blanks, for messages that quote what came.
+[[nodiscard]] std::string printable(std::string text);
+
 /// Parses exactly one YAML document. Throws core::InputError on a syntax error ("place:line: ..." with `lines`, else
 /// "place: ..."), and on more than one document; returns a null node for an empty one.
 [[nodiscard]] YAML::Node parse_document(const std::string& text, const std::string& place, bool lines);

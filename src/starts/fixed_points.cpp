@@ -42,8 +42,10 @@ std::optional<Eigen::VectorXd> newton(const systems::System& system, Eigen::Vect
     system.field_jacobian(1, z.data(), f.data(), a.data());
     if (!f.allFinite() || !a.allFinite()) {
       if (iteration > 0) return std::nullopt;
-      throw core::NotFiniteError(fmt::format("the vector field of {} is not finite at the grid point ({:.6g})",
-                                             system.info().name, fmt::join(start, ", ")));
+      throw core::NotFiniteError(
+          fmt::format("the vector field of {} is not finite at the grid point ({:.6g}); "
+                      "take it out of the grid",
+                      system.info().name, fmt::join(start, ", ")));
     }
     Eigen::VectorXd step = a.completeOrthogonalDecomposition().solve(f);
     if (step.norm() > longest_step) step *= longest_step / step.norm();

@@ -129,8 +129,7 @@ TEST(OverrideErrors, MustHaveAKeyAndAValue) {
 TEST(OverrideErrors, BadYamlIsRefused) {
   EXPECT_EQ(message({"starts.sweep.period=[1"}),
             "--set starts.sweep.period=[1: expected YAML, got a syntax error (end of sequence flow not found); check "
-            "brackets, "
-            "colons and indentation");
+            "brackets, colons and indentation, which takes spaces and no tabs");
 }
 
 TEST(OverrideErrors, DoNotFillAnEmptyScene) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "corrector/oscillator.hpp"
@@ -90,7 +91,8 @@ TEST(FixedPoints, MisuseAndNotFinite) {
   const auto system = systems::make_system("harmonic_oscillator");
   EXPECT_THROW(static_cast<void>(find_fixed_points(*system, {{0.0}, {0.0}, {0.0}})), core::MisuseError);
   const test::Oscillator walled(0.0, 0.5);
-  EXPECT_THROW(static_cast<void>(find_fixed_points(walled, {{1.0}})), core::NotFiniteError);
+  EXPECT_THAT(([&] { static_cast<void>(find_fixed_points(walled, {{1.0}})); }),
+              testing::ThrowsMessage<core::NotFiniteError>(testing::HasSubstr("take it out of the grid")));
   EXPECT_EQ(find_fixed_points(walled, {{0.4}}).size(), 1u);
 }
 
