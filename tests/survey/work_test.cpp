@@ -2,6 +2,8 @@
 
 #include <sstream>
 
+#include "orbweaver/archive/schema/crossing_kind.hpp"
+#include "orbweaver/bifurcation/test_functions.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "support/stated_system.hpp"
@@ -177,6 +179,16 @@ TEST(WorkTasks, BranchesThenCrossingsThenStartsThenDeeperBranches) {
 TEST(WorkTasks, TheOtherSideCountsBackwardsFromTheFirstOrbit) {
   EXPECT_EQ(signed_arclength({"", "", 1, 3, 1}, 0.25, 2.0), 2.0);
   EXPECT_EQ(signed_arclength({"", "", 1, 3, -1}, 0.25, 2.0), -2.5);
+}
+
+TEST(Work, WhatCrossesWithoutASectorHasAKindInTheArchive) {
+  using Kind = bifurcation::TestFunction::Kind;
+  for (int n = 0; n <= static_cast<int>(last_of(Kind{})); ++n) {
+    const auto kind = static_cast<Kind>(n);
+    if (bifurcation::has_sector(kind)) continue;
+    EXPECT_NE(archive::crossing_kind_of(bifurcation::name_of(kind)), archive::CrossingKind::unknown)
+        << bifurcation::name_of(kind);
+  }
 }
 
 }  // namespace

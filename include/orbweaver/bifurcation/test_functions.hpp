@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "orbweaver/bifurcation/sector.hpp"
@@ -26,6 +27,7 @@ struct Reading {
 
 /// A continuous function along a family, within [-1, 1], that changes sign where another family may cross.
 struct TestFunction {
+  /// What each does is a file in src/bifurcation/test_functions.
   enum class Kind {
     sector,  ///< a multiplier passes exp(+-2 pi i j/q)
     krein,   ///< two pairs of multipliers meet and leave the unit circle, or come back to it (symplectic)
@@ -43,6 +45,11 @@ struct TestFunction {
     core::serialize_members(archive, kind, sector);
   }
 };
+
+/// "sector", "krein", "torus".
+[[nodiscard]] std::string_view name_of(TestFunction::Kind kind);
+/// Whether functions of this kind are of one sector, in which families are born.
+[[nodiscard]] bool has_sector(TestFunction::Kind kind);
 
 /// What can happen to orbits of the system whose fundamental map has this order: all sectors (for dissipative systems q
 /// = 1 and 2), then krein (two pairs or more) or torus (two multipliers or more). Empty where no multiplier is

@@ -218,12 +218,15 @@ void BranchTask::detect(const continuation::Orbit& orbit, const std::optional<sp
 void BranchTask::add_event(const bifurcation::Event& event, double from, double to) {
   // A family's own birth is no event: its index leaves 2 there like a power of the distance, first within its error.
   const bool at_birth = _work.lineage.depth > 0 && from <= 0.0;
-  if (at_birth && event.kind == bifurcation::Event::Kind::test_function && event.function.sector.q == 1) return;
+  const bool is_fold = event.kind != bifurcation::Event::Kind::test_function;
+  const bool is_in_sector = !is_fold && bifurcation::has_sector(event.function.kind);
+  if (at_birth && is_in_sector && event.function.sector.q == 1) return;
   LocateWork work;
   work.event = event;
-  const bool is_fold = event.kind != bifurcation::Event::Kind::test_function;
-  work.key = event_key(_work.key, _events++,
-                       is_fold ? "fold" : fmt::format("q{}.j{}", event.function.sector.q, event.function.sector.j));
+  const std::string what = is_fold        ? "fold"
+                           : is_in_sector ? fmt::format("q{}.j{}", event.function.sector.q, event.function.sector.j)
+                                          : std::string(bifurcation::name_of(event.function.kind));
+  work.key = event_key(_work.key, _events++, what);
   work.name = _work.name;
   work.lineage = _work.lineage;
   work.isotropy = _work.isotropy;

@@ -20,15 +20,23 @@ namespace {
 
 using archive::CrossingKind;
 using bifurcation::Event;
-using bifurcation::TestFunction;
 
 CrossingKind kind_of(const Event& event, int multiplicity) {
   if (event.kind == Event::Kind::fold_period) return CrossingKind::fold_period;
   if (event.kind == Event::Kind::fold_energy) return CrossingKind::fold_energy;
-  if (event.function.kind == TestFunction::Kind::krein) return CrossingKind::krein;
-  if (event.function.kind == TestFunction::Kind::torus) return CrossingKind::torus;
+  if (!bifurcation::has_sector(event.function.kind)) {
+    const std::string_view name = bifurcation::name_of(event.function.kind);
+    const CrossingKind kind = archive::crossing_kind_of(name);
+    if (kind == CrossingKind::unknown)
+      throw core::MisuseError(fmt::format("the archive has no kind of crossings called {}", name));
+    return kind;
+  }
   if (multiplicity == 1) return CrossingKind::branch_point;
   return multiplicity == 2 ? CrossingKind::period_doubling : CrossingKind::subharmonic;
+}
+
+bool is_in_sector(const Event& event) {
+  return event.kind == Event::Kind::test_function && bifurcation::has_sector(event.function.kind);
 }
 
 /// Pairs of multipliers count as in the sector within this or so many of their error bounds. A location leaves 1e-9
@@ -99,7 +107,7 @@ class Location {
 
   queue::TaskOutcome located(const bifurcation::Crossing& crossing, continuation::FamilyCurve& family) {
     describe(crossing);
-    if (_event.kind == Event::Kind::test_function && _event.function.kind == TestFunction::Kind::sector) try {
+    if (is_in_sector(_event)) try {
         leave(crossing, family);
       } catch (const core::NumericalError& error) {  // the crossing itself is located, and stays
         _failure = error.what();
@@ -130,8 +138,7 @@ class Location {
     _outcome.period = loop.period;
     _outcome.energy = continuation::energy_of(*_system, loop);
     _outcome.fundamental_order = crossing.stability.fundamental_order;
-    const bool by_sector =
-        _event.kind == Event::Kind::test_function && _event.function.kind == TestFunction::Kind::sector;
+    const bool by_sector = is_in_sector(_event);
     _outcome.multiplicity = by_sector ? _event.function.sector.multiplicity(_outcome.fundamental_order) : 1;
     _outcome.kind = kind_of(_event, _outcome.multiplicity);
     _outcome.residual = crossing.reading.value;

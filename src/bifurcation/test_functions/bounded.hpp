@@ -1,0 +1,43 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <vector>
+
+namespace orbweaver::bifurcation {
+
+/// A number and a bound on its absolute error.
+struct Bounded {
+  std::complex<double> value;
+  double error = 0.0;
+};
+
+/// (x - c)/(scale + |x|) for |c| <= scale: then an error e of x changes it by at most 2 e/(scale + |x + e|).
+inline Bounded scaled(const Bounded& x, double c, double scale) {
+  const double size = std::abs(x.value);
+  return {(x.value - c) / (scale + size), 2.0 * x.error / std::max(scale, scale + size - x.error)};
+}
+
+inline Bounded product(const Bounded& a, const Bounded& b) {
+  return {a.value * b.value, std::abs(a.value) * b.error + std::abs(b.value) * a.error + a.error * b.error};
+}
+
+template <class Factor>
+std::vector<Bounded> over_pairs(const std::vector<Bounded>& indices, const Factor& factor) {
+  std::vector<Bounded> factors;
+  for (std::size_t i = 0; i < indices.size(); ++i)
+    for (std::size_t j = i + 1; j < indices.size(); ++j) factors.push_back(factor(indices[i], indices[j]));
+  return factors;
+}
+
+/// Of the pair whose factor is the smallest (`factors` over pairs of `indices`): the sum of the two.
+inline double sum_at_smallest(const std::vector<Bounded>& indices, const std::vector<Bounded>& factors) {
+  const auto sums = over_pairs(indices, [](const Bounded& a, const Bounded& b) { return Bounded{a.value + b.value}; });
+  const auto smallest = std::min_element(factors.begin(), factors.end(), [](const Bounded& a, const Bounded& b) {
+    return std::abs(a.value) < std::abs(b.value);
+  });
+  return sums[static_cast<std::size_t>(smallest - factors.begin())].value.real();
+}
+
+}  // namespace orbweaver::bifurcation
