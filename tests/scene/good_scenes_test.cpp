@@ -48,8 +48,8 @@ TEST(GoodScene, StartsAreReadWithAnglesInRadians) {
   EXPECT_THAT(s.fixed_points.names[1].point, ElementsAre(pi));
   EXPECT_THAT(s.fixed_points.names[1].names, ElementsAre("Up-Down"));
   EXPECT_THAT(s.fixed_points.letters, ElementsAre(Pair("Down-Up", "DU")));
-  EXPECT_EQ(s.sweep.period_from, 2.0);
-  EXPECT_EQ(s.sweep.period_to, 8.5);
+  EXPECT_EQ(s.sweep.period.value().from, 2.0);
+  EXPECT_EQ(s.sweep.period.value().to, 8.5);
   EXPECT_EQ(s.sweep.step, 0.25);
 }
 
@@ -95,9 +95,8 @@ TEST(GoodScene, EveryKeyButSystemAndStartsHasItsDefault) {
   EXPECT_EQ(s.name, "double_pendulum");
   EXPECT_THAT(s.system.parameters, IsEmpty());
   EXPECT_THAT(s.fixed_points.grid, IsEmpty());
-  EXPECT_EQ(s.sweep.period_from, 1.0);
-  EXPECT_EQ(s.sweep.period_to, 12.0);
-  EXPECT_EQ(s.sweep.step, 0.01);
+  EXPECT_FALSE(s.sweep.period.has_value()) << "auto";
+  EXPECT_FALSE(s.sweep.step.has_value()) << "auto";
   EXPECT_FALSE(s.continuation.fixed_step.has_value());
   EXPECT_DOUBLE_EQ(s.continuation.start_amplitude, pi / 360);
   EXPECT_EQ(s.continuation.tolerance, 1e-10);
@@ -164,8 +163,8 @@ TEST(SceneFolder, HenonHeilesBeginsAtTheOrigin) {
   EXPECT_THAT(s.fixed_points.grid, ElementsAre(ElementsAre(0.0), ElementsAre(0.0)));
   ASSERT_EQ(s.fixed_points.names.size(), 1U);
   EXPECT_THAT(s.fixed_points.names[0].names, ElementsAre("Straight", "Curved", "Loop"));
-  EXPECT_LT(s.sweep.period_from, 2 * pi);
-  EXPECT_GT(s.sweep.period_to, 2 * pi);
+  EXPECT_LT(s.sweep.period.value().from, 2 * pi);
+  EXPECT_GT(s.sweep.period.value().to, 2 * pi);
   EXPECT_LT(s.limits.energy_to, 1.0 / 6) << "orbits escape above";
   EXPECT_EQ(s.survey.depth, 1);
   EXPECT_EQ(s.survey.subharmonics, 3);
