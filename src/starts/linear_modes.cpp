@@ -134,7 +134,7 @@ class Spectrum {
         near, [](const Group& a, const Group& b) { return distance(a.mean, b.mean) <= a.bound + b.bound; });
     std::vector<Group> decided;
     for (Group& group : linked) {
-      analyse(group);
+      if (group.parts > 1) analyse(group);
       // Real ones do not oscillate, with or without their vectors; a Jordan block at zero is one of a translation.
       const bool real = std::abs(to_double(group.mean.im)) <= group.bound;
       const bool away = std::abs(to_double(group.mean.re)) > group.bound;
@@ -155,7 +155,7 @@ class Spectrum {
   }
 
  private:
-  /// Groups of which one can be reached from another by steps between `linked` ones.
+  /// Groups of which one can be reached from another by steps between `linked` ones; a single one as it is.
   template <class Linked>
   static std::vector<Group> joined(const std::vector<Group>& groups, const Linked& linked) {
     std::vector<std::size_t> label(groups.size());
@@ -172,6 +172,11 @@ class Spectrum {
       Group group;
       group.parts = static_cast<int>(std::count(label.begin(), label.end(), first));
       if (group.parts == 0) continue;
+      if (group.parts == 1) {
+        out.push_back(groups[first]);
+        out.back().parts = 1;
+        continue;
+      }
       for (std::size_t i = 0; i < groups.size(); ++i)
         if (label[i] == first)
           group.members.insert(group.members.end(), groups[i].members.begin(), groups[i].members.end());

@@ -9,6 +9,9 @@ namespace orbweaver::systems {
 class QuadSystem {
  public:
   virtual ~QuadSystem() = default;
+  QuadSystem() = default;
+  QuadSystem(const QuadSystem&) = delete;
+  QuadSystem& operator=(const QuadSystem&) = delete;
 
   /// f and df/dz at one state; sizes dimension, and dimension x dimension. Throws MisuseError for a state of another
   /// dimension.

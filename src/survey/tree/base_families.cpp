@@ -18,7 +18,7 @@ void check_names(const scene::Scene& scene, const systems::System& system, const
   const std::size_t given = names_given(scene, system, found.point);
   if (given > static_cast<std::size_t>(found.families))
     throw core::InputError(fmt::format(
-        "starts.fixed_points.names: expected at most {} names for the equilibrium at {}, one for each family of small "
+        "starts.fixed_points.names: expected at most {} for the equilibrium at {}, a name for each family of small "
         "oscillations, got {}; remove those that name none",
         found.families, point_text(system, found.point), given));
 }
