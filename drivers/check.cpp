@@ -64,8 +64,9 @@ std::string name_list(const scene::FixedPoints& points, const std::vector<std::s
 }
 
 std::string sweep_text(const scene::Sweep& sweep) {
-  const std::string range = sweep.period ? fmt::format("with periods from {} to {}", sweep.period->from, sweep.period->to)
-                                         : "of every period";
+  const std::string range = sweep.period
+                                ? fmt::format("with periods from {} to {}", sweep.period->from, sweep.period->to)
+                                : "of every period";
   const std::string step = sweep.step     ? fmt::format("in steps of {}", *sweep.step)
                            : sweep.period ? fmt::format("in steps of {}", scene::Sweep::standard_step)
                                           : "in a thousand steps";

@@ -40,8 +40,7 @@ SmallOscillations small_oscillations(const systems::System& system, const starts
     for (const Direction& direction :
          equilibrium_directions(system, sweep.fixed_point, mode.period, mode.kernel, cutoff)) {
       const loop::Tangent tangent = at_unit_start(direction.tangent, sweep.fixed_point.size());
-      all.families.push_back(
-          {{mode.period, mode.grid_period, mode.residual, tangent, tangent, direction.isotropy}, 0});
+      all.families.push_back({{mode.period, mode.grid_period, mode.residual, tangent, tangent, direction.isotropy}, 0});
     }
   std::stable_sort(all.families.begin(), all.families.end(),
                    [](const auto& a, const auto& b) { return a.mode.period > b.mode.period; });
@@ -50,8 +49,7 @@ SmallOscillations small_oscillations(const systems::System& system, const starts
   auto family = all.families.begin();
   auto left_out = all.left_out.begin();
   while (family != all.families.end() || left_out != all.left_out.end())
-    if (left_out == all.left_out.end() ||
-        (family != all.families.end() && family->mode.period > left_out->period)) {
+    if (left_out == all.left_out.end() || (family != all.families.end() && family->mode.period > left_out->period)) {
       (family++)->place = all.count++;
     } else {
       left_out->place = all.count;

@@ -65,12 +65,12 @@ std::vector<EquilibriumReport> sweep_report(const scene::Scene& scene) {
     };
     const bifurcation::SmallOscillations all = bifurcation::small_oscillations(*system, report.sweep, options.cutoff);
     for (const auto& [mode, place] : all.families)
-      report.modes.push_back({name(place), mode.period, mode.grid_period,
-                              deviation_degrees(*system, point, mode.direction, mode.period),
-                              deviation_degrees(*system, point, mode.grid_direction, mode.grid_period),
-                              loop::to_text(mode.isotropy)});
+      report.modes.push_back(
+          {name(place), mode.period, mode.grid_period, deviation_degrees(*system, point, mode.direction, mode.period),
+           deviation_degrees(*system, point, mode.grid_direction, mode.grid_period), loop::to_text(mode.isotropy)});
     for (const bifurcation::LeftOut& left_out : all.left_out)
-      for (int n = 0; n < left_out.families; ++n) report.left_out.push_back({name(left_out.place + n), left_out.period});
+      for (int n = 0; n < left_out.families; ++n)
+        report.left_out.push_back({name(left_out.place + n), left_out.period});
     reports.push_back(std::move(report));
   }
   return reports;
@@ -120,7 +120,8 @@ std::string eigenvalue_table(const std::vector<EquilibriumReport>& reports) {
     for (std::size_t n = 0; n < reports.size(); ++n) {
       const std::vector<starts::SweepPoint>& table = reports[n].sweep.table;
       const bool there = row < table.size();
-      if (!shared) text += fmt::format("{}{:>12}", n == 0 ? "" : "  ", there ? fmt::format("{:.6g}", table[row].period) : "");
+      if (!shared)
+        text += fmt::format("{}{:>12}", n == 0 ? "" : "  ", there ? fmt::format("{:.6g}", table[row].period) : "");
       text += fmt::format("  {:>14}", there ? fmt::format("{:.6e}", table[row].eigenvalue) : "");
     }
     text += "\n";
@@ -143,7 +144,8 @@ std::string eigenvalue_csv(const std::vector<EquilibriumReport>& reports) {
     for (std::size_t n = 0; n < reports.size(); ++n) {
       const std::vector<starts::SweepPoint>& table = reports[n].sweep.table;
       const bool there = row < table.size();
-      if (!shared) line += fmt::format("{}{}", n == 0 ? "" : ",", there ? fmt::format("{:.17g}", table[row].period) : "");
+      if (!shared)
+        line += fmt::format("{}{}", n == 0 ? "" : ",", there ? fmt::format("{:.17g}", table[row].period) : "");
       line += there ? fmt::format(",{:.17g}", table[row].eigenvalue) : ",";
     }
     text += line + "\n";

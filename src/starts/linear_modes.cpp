@@ -6,9 +6,9 @@
 #include <numbers>
 #include <utility>
 
-#include <boost/math/constants/constants.hpp>
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
+#include <boost/math/constants/constants.hpp>
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
@@ -92,9 +92,7 @@ struct Value {
   Quad im;
 };
 
-double distance(const Value& a, const Value& b) {
-  return std::hypot(to_double(a.re - b.re), to_double(a.im - b.im));
-}
+double distance(const Value& a, const Value& b) { return std::hypot(to_double(a.re - b.re), to_double(a.im - b.im)); }
 
 /// Eigenvalues that are taken for one.
 struct Group {
@@ -115,7 +113,8 @@ class Spectrum {
     _rounding = entry_rounding * _moduli.norm();
     const Eigen::EigenSolver<QuadMatrix> solver(_a, false);
     if (solver.info() != Eigen::Success)
-      throw core::NumericalError("the eigenvalues of the Jacobian at a fixed point: the QR iteration does not converge");
+      throw core::NumericalError(
+          "the eigenvalues of the Jacobian at a fixed point: the QR iteration does not converge");
     for (Eigen::Index i = 0; i < _a.rows(); ++i)
       _values.push_back({solver.eigenvalues()(i).real(), solver.eigenvalues()(i).imag()});
   }
@@ -128,10 +127,11 @@ class Spectrum {
       group.members = {value};
       group.mean = value;
     }
-    near = joined(std::move(near), [&](const Group& a, const Group& b) { return distance(a.mean, b.mean) <= _rounding; });
+    near =
+        joined(std::move(near), [&](const Group& a, const Group& b) { return distance(a.mean, b.mean) <= _rounding; });
     for (Group& group : near) analyse(group);
-    std::vector<Group> linked = joined(
-        near, [](const Group& a, const Group& b) { return distance(a.mean, b.mean) <= a.bound + b.bound; });
+    std::vector<Group> linked =
+        joined(near, [](const Group& a, const Group& b) { return distance(a.mean, b.mean) <= a.bound + b.bound; });
     std::vector<Group> decided;
     for (Group& group : linked) {
       if (group.parts > 1) analyse(group);
@@ -220,8 +220,7 @@ class Spectrum {
     double defect_right = 0.0;
     double defect_left = 0.0;
     group.right = kernel(_a, group.mean, group.count(), defect_right);
-    const Eigen::MatrixXcd left =
-        kernel(_a.transpose(), {group.mean.re, -group.mean.im}, group.count(), defect_left);
+    const Eigen::MatrixXcd left = kernel(_a.transpose(), {group.mean.re, -group.mean.im}, group.count(), defect_left);
     const Eigen::VectorXd overlap = Eigen::JacobiSVD<Eigen::MatrixXcd>(left.adjoint() * group.right).singularValues();
     const double overlapping = overlap(overlap.size() - 1);
     const double weight = (left.cwiseAbs().transpose() * _moduli * group.right.cwiseAbs()).norm();
@@ -301,13 +300,15 @@ double UndecidedEigenvalues::period() const { return 2.0 * std::numbers::pi / st
 std::string to_text(const UndecidedEigenvalues& eigenvalues) {
   switch (eigenvalues.doubt) {
     case Doubt::defective:
-      return fmt::format("{} eigenvalues of the Jacobian are one, with fewer oscillations: the linear problem does not "
-                         "tell which families start here",
-                         eigenvalues.count);
+      return fmt::format(
+          "{} eigenvalues of the Jacobian are one, with fewer oscillations: the linear problem does not "
+          "tell which families start here",
+          eigenvalues.count);
     case Doubt::unresolved:
-      return fmt::format("rounding does not tell {} eigenvalues of the Jacobian apart, nor how many oscillations they "
-                         "have: no family is started here",
-                         eigenvalues.count);
+      return fmt::format(
+          "rounding does not tell {} eigenvalues of the Jacobian apart, nor how many oscillations they "
+          "have: no family is started here",
+          eigenvalues.count);
     case Doubt::real_part:
       return "an eigenvalue of the Jacobian whose real part is rounding, and nothing that holds it at zero: no family "
              "is started here";
@@ -330,8 +331,7 @@ LinearModes linear_modes(const systems::System& system, std::span<const double> 
   core::require(fixed_point.size() == static_cast<std::size_t>(system.dimension()),
                 "a fixed point of another dimension");
   const QuadMatrix jacobian = jacobian_at(system, fixed_point);
-  if (!jacobian.cast<double>().allFinite())
-    throw core::NotFiniteError("the Jacobian at a fixed point is not finite");
+  if (!jacobian.cast<double>().allFinite()) throw core::NotFiniteError("the Jacobian at a fixed point is not finite");
   const Spectrum spectrum(jacobian);
   const bool pairs = has_pairs(system, fixed_point);
   LinearModes modes;

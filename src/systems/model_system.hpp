@@ -82,7 +82,8 @@ class ModelSystem final : public ComplexSystem, public QuadSystem {
     for (std::size_t i = 0; i < size; ++i) {
       const auto row = static_cast<Eigen::Index>(i);
       f(row) = result.value[i];
-      for (std::size_t l = 0; l < size; ++l) jacobian(row, static_cast<Eigen::Index>(l)) = result.jacobian[i * size + l];
+      for (std::size_t l = 0; l < size; ++l)
+        jacobian(row, static_cast<Eigen::Index>(l)) = result.jacobian[i * size + l];
     }
   }
 

@@ -220,8 +220,8 @@ double assembled_eigenvalue(const systems::System& system, const std::vector<dou
   const loop::Loop loop = loop::constant_loop(point, period, cutoff);
   const loss::Linearization linearization(system, loop, loss::Linearization::Order::jacobian);
   const loss::Unknowns unknowns{loop::Subspace::unrestricted(loop.dimension, cutoff), {}};
-  return spectrum::smallest_eigenpairs(
-             loss::assemble_hessian(linearization, unknowns, loss::Curvature::gauss_newton), {.count = 1})
+  return spectrum::smallest_eigenpairs(loss::assemble_hessian(linearization, unknowns, loss::Curvature::gauss_newton),
+                                       {.count = 1})
       .values.front();
 }
 
@@ -259,8 +259,7 @@ TEST(Sweep, OfFourEquilibriaInMilliseconds) {
   for (int attempt = 0; attempt < 5; ++attempt) {
     const auto began = std::chrono::steady_clock::now();
     for (const std::vector<double>& point : points) EXPECT_EQ(sweep(*system, point, {}).table.size(), 1101u);
-    least = std::min(least,
-                     std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
+    least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
   }
   RecordProperty("seconds", fmt::format("{:.4f}", least));
   std::cout << fmt::format("four equilibria, 1101 periods each: {:.1f} ms\n", 1e3 * least);

@@ -160,10 +160,10 @@ TEST(RunSurvey, AllModesOfPendulumsOfAnyProportionsAreFoundAndNamed) {
   int number = 0;
   for (const char* proportion : {"m2=1e-3", "m2=1e-6", "m2=1e3", "m2=1e6", "l2=1e-3", "l2=1e3"}) {
     const auto folder = test::fresh_folder(own_folder(comm, "proportion" + std::to_string(number++) + "_"), comm.get());
-    const scene::Scene scene =
-        scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/double_pendulum.yaml",
-                    {"starts.sweep.period=auto", "starts.sweep.step=0.1237", "survey.depth=0", "limits.steps=1",
-                     "limits.period=1e9", "continuation.tolerance=1e-6", std::string("system.parameters.") + proportion});
+    const scene::Scene scene = scene::load(
+        ORBWEAVER_SOURCE_DIR "/drivers/scenes/double_pendulum.yaml",
+        {"starts.sweep.period=auto", "starts.sweep.step=0.1237", "survey.depth=0", "limits.steps=1",
+         "limits.period=1e9", "continuation.tolerance=1e-6", std::string("system.parameters.") + proportion});
     const survey::Summary summary = run(comm, scene, folder);
     if (!comm.is_root()) continue;
     std::vector<std::string> names;
@@ -177,8 +177,7 @@ TEST(RunSurvey, AllModesOfPendulumsOfAnyProportionsAreFoundAndNamed) {
 TEST(RunSurvey, AModeOutsideTheRangeKeepsItsNameAndIsToldOf) {
   const core::Communicator comm;
   const auto folder = test::fresh_folder(own_folder(comm, "excluded"), comm.get());
-  const survey::Summary summary =
-      run(comm, test::quick_scene({"limits.steps=2", "starts.sweep.period=[3,4]"}), folder);
+  const survey::Summary summary = run(comm, test::quick_scene({"limits.steps=2", "starts.sweep.period=[3,4]"}), folder);
   if (!comm.is_root()) return;
   ASSERT_EQ(summary.families.size(), 1U);
   EXPECT_EQ(summary.families[0].name, "Out-Phase");
@@ -193,12 +192,14 @@ TEST(RunSurvey, MoreNamesThanModesAreRefused) {
   const core::Communicator comm;
   const auto folder = test::fresh_folder(own_folder(comm, "names"), comm.get());
   try {
-    (void)run(comm, test::quick_scene({"starts.fixed_points.names={[0, 180]: [Down-Up, Other]}",
-                                       "starts.fixed_points.letters={}"}),
-              folder);
+    (void)run(
+        comm,
+        test::quick_scene({"starts.fixed_points.names={[0, 180]: [Down-Up, Other]}", "starts.fixed_points.letters={}"}),
+        folder);
     ADD_FAILURE() << "accepted";
   } catch (const core::InputError& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("at most 1 for the equilibrium"), HasSubstr("th2 = 180 deg"), HasSubstr("got 2")));
+    EXPECT_THAT(error.what(),
+                AllOf(HasSubstr("at most 1 for the equilibrium"), HasSubstr("th2 = 180 deg"), HasSubstr("got 2")));
   }
 }
 

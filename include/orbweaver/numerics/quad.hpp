@@ -1,8 +1,8 @@
 #pragma once
 
+#include <Eigen/Dense>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/eigen.hpp>
-#include <Eigen/Dense>
 
 namespace orbweaver::numerics {
 

@@ -61,9 +61,10 @@ enum class LinearStability {
 
 /// All that the Jacobian at an equilibrium says of small motions.
 struct LinearModes {
-  std::vector<Oscillation> oscillations;   ///< longest period first
-  std::vector<Resonance> resonances;       ///< in the order of `slow`, then `fast`
-  std::vector<std::complex<double>> rest;  ///< decided eigenvalues that do not oscillate for ever, by descending real part
+  std::vector<Oscillation> oscillations;  ///< longest period first
+  std::vector<Resonance> resonances;      ///< in the order of `slow`, then `fast`
+  std::vector<std::complex<double>>
+      rest;  ///< decided eigenvalues that do not oscillate for ever, by descending real part
   std::vector<UndecidedEigenvalues> undecided;
   LinearStability stability = LinearStability::undecided;
 };

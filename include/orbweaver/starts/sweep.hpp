@@ -67,7 +67,7 @@ struct SweepResult {
   std::vector<SweepPoint> table;
   std::vector<NormalMode> modes;  ///< in the range, longest period first
   std::vector<DegenerateMode> degenerate;
-  std::vector<Oscillation> left_out;   ///< oscillations with periods outside the range, longest first
+  std::vector<Oscillation> left_out;  ///< oscillations with periods outside the range, longest first
   std::vector<RejectedDip> rejected;  ///< period multiples, near misses, resonances, undecided eigenvalues
 };
 

@@ -60,10 +60,10 @@ std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const syst
     if (found.modes.empty() && found.rejected.empty()) {
       const std::string range =
           scene.sweep.period ? fmt::format(" for T in [{:g}, {:g}]", found.period_from, found.period_to) : "";
-      summary.remarks.push_back(fmt::format("no small oscillations around {}{}", point_text(system, found.point), range));
+      summary.remarks.push_back(
+          fmt::format("no small oscillations around {}{}", point_text(system, found.point), range));
     }
-    for (const LeftOutMode& mode : found.left_out)
-      summary.remarks.push_back(left_out_text(scene, system, found, mode));
+    for (const LeftOutMode& mode : found.left_out) summary.remarks.push_back(left_out_text(scene, system, found, mode));
     for (const std::string& reason : found.rejected)
       summary.remarks.push_back(fmt::format("dip passed over at {}: {}", point_text(system, found.point), reason));
     for (const FoundMode& mode : found.modes) {
