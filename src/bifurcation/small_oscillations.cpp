@@ -46,6 +46,10 @@ SmallOscillations small_oscillations(const systems::System& system, const starts
                    [](const auto& a, const auto& b) { return a.mode.period > b.mode.period; });
   for (const starts::Oscillation& oscillation : sweep.left_out)
     all.left_out.push_back({oscillation.period, 0, families_of(system, sweep, oscillation, cutoff)});
+  for (const starts::UndecidedEigenvalues& eigenvalues : sweep.linear.undecided)
+    if (std::isfinite(eigenvalues.period())) all.left_out.push_back({eigenvalues.period(), 0, eigenvalues.count, true});
+  std::stable_sort(all.left_out.begin(), all.left_out.end(),
+                   [](const LeftOut& a, const LeftOut& b) { return a.period > b.period; });
   auto family = all.families.begin();
   auto left_out = all.left_out.begin();
   while (family != all.families.end() || left_out != all.left_out.end())

@@ -69,7 +69,7 @@ std::vector<EquilibriumReport> sweep_report(const scene::Scene& scene) {
           {name(place), mode.period, mode.grid_period, deviation_degrees(*system, point, mode.direction, mode.period),
            deviation_degrees(*system, point, mode.grid_direction, mode.grid_period), loop::to_text(mode.isotropy)});
     for (const bifurcation::LeftOut& left_out : all.left_out)
-      for (int n = 0; n < left_out.families; ++n)
+      for (int n = 0; n < left_out.families && !left_out.undecided; ++n)
         report.left_out.push_back({name(left_out.place + n), left_out.period});
     reports.push_back(std::move(report));
   }

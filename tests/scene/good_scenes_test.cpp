@@ -129,6 +129,16 @@ TEST(GoodScene, TheGreatestDepthAndSubharmonicsAreTaken) {
   EXPECT_EQ(s.limits.time, infinity);
 }
 
+TEST(GoodScene, ASweepMayFindItsRange) {
+  const std::string text = "system: {name: double_pendulum}\nstarts: {sweep: {period: auto, step: auto}}\n";
+  const scene::Scene automatic = scene::parse(text, "text");
+  EXPECT_FALSE(automatic.sweep.period.has_value());
+  EXPECT_FALSE(automatic.sweep.step.has_value());
+  const scene::Scene fine = scene::parse(text, "text", {"starts.sweep.step=1e-5"});
+  EXPECT_FALSE(fine.sweep.period.has_value());
+  EXPECT_EQ(fine.sweep.step, 1e-5);
+}
+
 TEST(GoodScene, TextIsTheFileWordForWord) {
   EXPECT_EQ(every_key().text, read(source / "tests/scene/good/every_key.yaml"));
 }

@@ -12,6 +12,7 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/numerics/quad.hpp"
+#include "orbweaver/starts/sweep.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "spectrum/point_systems.hpp"
 
@@ -202,6 +203,15 @@ TEST(LinearModes, ACollisionIsSaidAndNotGuessed) {
     EXPECT_NEAR(at.undecided[0].period(), 2 * pi, 1e-6);
     EXPECT_FALSE(to_text(at.undecided[0]).empty());
   }
+}
+
+TEST(LinearModes, WhatIsUndecidedIsAmongTheRejected) {
+  const LinearField system(test::structure_of(4, true, true), krein(0.25, 0.25));
+  const SweepResult result = sweep(system, std::vector<double>(4, 0.0), {.period_from = 5.0, .period_to = 7.0});
+  EXPECT_TRUE(result.modes.empty());
+  ASSERT_FALSE(result.rejected.empty());
+  EXPECT_NEAR(result.rejected.back().period, 2 * pi, 1e-6);
+  EXPECT_THAT(result.rejected.back().reason, HasSubstr("2 eigenvalues of the Jacobian are one"));
 }
 
 TEST(LinearModes, WithoutAStructureARealPartOfRoundingIsUndecided) {

@@ -19,6 +19,7 @@
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "spectrum/pendulum_loops.hpp"
+#include "spectrum/point_systems.hpp"
 
 namespace orbweaver::starts {
 namespace {
@@ -273,6 +274,18 @@ TEST(Sweep, HarmonicOscillatorWithItsMultiples) {
   EXPECT_NEAR(result.modes[0].period, pi, 1e-14);
   EXPECT_EQ(loop::to_text(result.modes[0].isotropy), "S@1/2 R@0");
   expect_rejected(result, {{2 * pi, "2 times around"}, {3 * pi, "3 times around"}});
+}
+
+TEST(Sweep, AWholeRatioOfPeriodsIsSaid) {
+  const test::Oscillators system({1.0, 4.0});
+  const std::vector<double> origin(4, 0.0);
+  const SweepResult result = sweep(system, origin, {.period_from = 5.0, .period_to = 7.0});
+  ASSERT_EQ(result.modes.size(), 1u);
+  EXPECT_NEAR(result.modes[0].period, 2 * pi, 1e-14);
+  expect_rejected(result, {{2 * pi, "2 times around the oscillation with T = 3.1415926"},
+                           {2 * pi, "a resonance: 2 times the period of the oscillation with T = 3.1415926"}});
+  EXPECT_EQ(sweep(test::Oscillators({1.0, 4.0 + 1e-9}), origin, {.period_from = 5.0, .period_to = 7.0}).rejected.size(),
+            1u);
 }
 
 TEST(Sweep, ResonanceOfHenonHeilesIsHandedOutWithItsKernel) {

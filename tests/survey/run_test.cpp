@@ -165,6 +165,7 @@ TEST(RunSurvey, AllModesOfPendulumsOfAnyProportionsAreFoundAndNamed) {
         {"starts.sweep.period=auto", "starts.sweep.step=0.1237", "survey.depth=0", "limits.steps=1",
          "limits.period=1e9", "continuation.tolerance=1e-6", std::string("system.parameters.") + proportion});
     const survey::Summary summary = run(comm, scene, folder);
+    EXPECT_EQ(summary.failures, 0U) << proportion;
     if (!comm.is_root()) continue;
     std::vector<std::string> names;
     for (const survey::FamilySummary& family : summary.families) names.push_back(family.name);

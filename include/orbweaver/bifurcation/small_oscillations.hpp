@@ -13,17 +13,19 @@ struct SmallOscillation {
   int place = 0;
 };
 
-/// Families with one period outside the range, which keep their places.
+/// Families with one period that keep their places: outside the range, or perhaps families, as rounding does not tell
+/// what their eigenvalues are.
 struct LeftOut {
   double period = 0.0;
   int place = 0;  ///< of the first
   int families = 1;
+  bool undecided = false;
 };
 
 struct SmallOscillations {
   std::vector<SmallOscillation> families;  ///< in the range, longest period first
   std::vector<LeftOut> left_out;           ///< longest period first
-  int count = 0;                           ///< of all families
+  int count = 0;                           ///< of all places
 };
 
 /// The families of small oscillations at an equilibrium, by a sweep with loops of `cutoff` harmonics: its simple modes,

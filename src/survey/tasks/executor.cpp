@@ -75,7 +75,8 @@ queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
   const bifurcation::SmallOscillations all = bifurcation::small_oscillations(*_system, result, options.cutoff);
   outcome.families = all.count;
   for (const bifurcation::LeftOut& left_out : all.left_out)
-    outcome.left_out.push_back({left_out.period, left_out.place, left_out.families});
+    if (!left_out.undecided)  // those are among the rejected
+      outcome.left_out.push_back({left_out.period, left_out.place, left_out.families});
   for (const auto& [mode, place] : all.families) {
     FoundMode found;
     found.place = place;

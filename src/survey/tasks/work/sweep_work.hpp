@@ -59,7 +59,7 @@ struct SweepOutcome {
   std::vector<FoundMode> modes;       ///< longest period first
   std::vector<std::string> rejected;  ///< a sentence a dip
   std::vector<LeftOutMode> left_out;  ///< longest period first
-  int families = 0;                   ///< of the equilibrium, those left out included
+  int families = 0;                   ///< of the equilibrium, those left out and undecided included
   double period_from = 0.0;           ///< the range swept
   double period_to = 0.0;
 
