@@ -62,8 +62,8 @@ QuadMatrix jacobian_at(const systems::System& system, std::span<const double> po
   return a;
 }
 
-/// D^-1 A D with powers of two on D's diagonal, so that the sums of the moduli in each row and column, the diagonal left
-/// out, are near one another.
+/// D^-1 A D with powers of two on D's diagonal, so that the sums of the moduli in each row and column, the diagonal
+/// left out, are near one another.
 QuadMatrix balanced(QuadMatrix a, QuadVector& scale) {
   const Eigen::Index d = a.rows();
   scale = QuadVector::Ones(d);

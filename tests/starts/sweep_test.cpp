@@ -168,8 +168,8 @@ TEST(Sweep, ADipBehindAMultipleIsFound) {
   expect_rejected(result, {{4 * 1.86983807304, "4 times around the oscillation with T = 1.869838"}});
 }
 
-// A light or a heavy outer bob, a short or a long outer rod: both modes at [0, 0] in any range that holds them, whatever
-// the step of the picture. Their periods are tested in linear_modes_test.cpp.
+// A light or a heavy outer bob, a short or a long outer rod: both modes at [0, 0] in any range that holds them,
+// whatever the step of the picture. Their periods are tested in linear_modes_test.cpp.
 TEST(Sweep, NoModeIsLostToTheStep) {
   const std::vector<std::map<std::string, double>> cases = {{{"m2", 1e-3}}, {{"m2", 1e-6}}, {{"m2", 1e3}},
                                                             {{"m2", 1e6}},  {{"l2", 1e-3}}, {{"l2", 1e3}}};
