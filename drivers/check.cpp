@@ -67,6 +67,16 @@ std::string name_list(const scene::FixedPoints& points, const std::vector<std::s
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
+std::string sweep_text(const scene::Sweep& sweep) {
+  const std::string range = sweep.period
+                                ? fmt::format("with periods from {} to {}", sweep.period->from, sweep.period->to)
+                                : "of every period";
+  const std::string step = sweep.step     ? fmt::format("in steps of {}", *sweep.step)
+                           : sweep.period ? fmt::format("in steps of {}", scene::Sweep::standard_step)
+                                          : "in a thousand steps";
+  return fmt::format("small oscillations {}; smallest eigenvalue {}", range, step);
+}
+
 void print_starts(const scene::Scene& scene, const systems::System& system) {
   const scene::FixedPoints& points = scene.fixed_points;
   std::size_t count = 1;
@@ -86,8 +96,7 @@ void print_starts(const scene::Scene& scene, const systems::System& system) {
     lines.emplace_back(lines.size() == 1 ? "names" : "",
                        fmt::format("at ({}): {}", fmt::join(texts, ", "), name_list(points, named.names)));
   }
-  lines.emplace_back("sweep", fmt::format("smallest eigenvalue for periods from {} to {} in steps of {}",
-                                          scene.sweep.period_from, scene.sweep.period_to, scene.sweep.step));
+  lines.emplace_back("sweep", sweep_text(scene.sweep));
   print_group("Starts", lines);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "orbweaver/certificate/certificate.hpp"
 #include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
+#include "orbweaver/survey/tasks/sweep_options.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
 #include "orbweaver/systems/registry.hpp"
 
@@ -36,27 +38,47 @@ double deviation(const systems::System& system, const std::vector<double>& point
   return std::sqrt(sum) / (angles ? degree : 1.0);
 }
 
+// The eigenvalues that do not oscillate.
+std::string rest_text(const std::vector<std::complex<double>>& values) {
+  std::string text;
+  for (const std::complex<double>& value : values)
+    text += fmt::format("{} {:.6g}{}", text.empty() ? ": eigenvalues" : ",", value.real(),
+                        value.imag() == 0.0 ? "" : fmt::format(" {:+.6g}i", value.imag()));
+  return text;
+}
+
+bool have_one_range(const std::vector<EquilibriumReport>& reports) {
+  return std::all_of(reports.begin(), reports.end(), [&](const EquilibriumReport& r) {
+    const starts::SweepOptions& first = reports.front().sweep.range;
+    const starts::SweepOptions& here = r.sweep.range;
+    return here.period_from == first.period_from && here.period_to == first.period_to && here.step == first.step;
+  });
+}
+
 }  // namespace
 
 std::vector<EquilibriumReport> sweep_report(const scene::Scene& scene) {
   const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
-  starts::SweepOptions options;
-  options.period_from = scene.sweep.period_from;
-  options.period_to = scene.sweep.period_to;
-  options.step = scene.sweep.step;
   std::vector<EquilibriumReport> reports;
   for (const std::vector<double>& point : starts::find_fixed_points(*system, scene.fixed_points.grid)) {
+    const starts::SweepOptions options = survey::sweep_options(scene.sweep, *system, point);
     EquilibriumReport report{point,
                              survey::point_text(*system, point),
                              system->structure().has_angles(),
                              starts::sweep(*system, point, options),
+                             {},
                              {}};
-    for (const starts::NormalMode& mode : bifurcation::small_oscillations(*system, report.sweep, options.cutoff))
-      report.modes.push_back({survey::base_family_name(scene, *system, point, static_cast<int>(reports.size()),
-                                                       static_cast<int>(report.modes.size())),
-                              mode.period, mode.grid_period, deviation(*system, point, mode.direction, mode.period),
-                              deviation(*system, point, mode.grid_direction, mode.grid_period),
-                              loop::to_text(mode.isotropy)});
+    const auto name = [&](int place) {
+      return survey::base_family_name(scene, *system, point, static_cast<int>(reports.size()), place);
+    };
+    const bifurcation::SmallOscillations all = bifurcation::small_oscillations(*system, report.sweep, options.cutoff);
+    for (const auto& [mode, place] : all.families)
+      report.modes.push_back(
+          {name(place), mode.period, mode.grid_period, deviation(*system, point, mode.direction, mode.period),
+           deviation(*system, point, mode.grid_direction, mode.grid_period), loop::to_text(mode.isotropy)});
+    for (const bifurcation::LeftOut& left_out : all.left_out)
+      for (int n = 0; n < left_out.families && !left_out.undecided; ++n)
+        report.left_out.push_back({name(left_out.place + n), left_out.period});
     reports.push_back(std::move(report));
   }
   return reports;
@@ -81,34 +103,61 @@ std::string to_text(const std::vector<EquilibriumReport>& reports) {
     for (const ModeRow& m : r.modes)
       text += fmt::format("  {:<{}}  {:>18.15g}  {:>9.2e}  {:>11.6g}  {:>8}  {:>11.2e}  {}\n", m.name, width, m.period,
                           m.deviation, m.grid_period, "", m.grid_deviation, m.isotropy);
+    for (const LeftOutRow& m : r.left_out)
+      text += fmt::format("  left out: {} with T = {:.15g}, outside the range [{:g}, {:g}]\n", m.name, m.period,
+                          r.sweep.range.period_from, r.sweep.range.period_to);
     for (const starts::RejectedDip& dip : r.sweep.rejected)
       text += fmt::format("  dip at T = {:.9g}: {}\n", dip.period, dip.reason);
+    text += fmt::format("  {}{}\n", starts::to_text(r.sweep.linear.stability), rest_text(r.sweep.linear.rest));
   }
   return text;
 }
 
 std::string eigenvalue_table(const std::vector<EquilibriumReport>& reports) {
-  std::string text = fmt::format("{:>12}", "T");
-  for (std::size_t n = 0; n < reports.size(); ++n) text += fmt::format("  {:>14}", fmt::format("lambda_{}", n + 1));
+  const bool shared = have_one_range(reports);
+  std::string text;
+  if (shared) text += fmt::format("{:>12}", "T");
+  std::size_t rows = 0;
+  for (std::size_t n = 0; n < reports.size(); ++n) {
+    if (!shared) text += fmt::format("{}{:>12}", n == 0 ? "" : "  ", fmt::format("T_{}", n + 1));
+    text += fmt::format("  {:>14}", fmt::format("lambda_{}", n + 1));
+    rows = std::max(rows, reports[n].sweep.table.size());
+  }
   text += "\n";
-  if (reports.empty()) return text;
-  for (std::size_t row = 0; row < reports.front().sweep.table.size(); ++row) {
-    text += fmt::format("{:>12.6g}", reports.front().sweep.table[row].period);
-    for (const EquilibriumReport& r : reports) text += fmt::format("  {:>14.6e}", r.sweep.table[row].eigenvalue);
+  for (std::size_t row = 0; row < rows; ++row) {
+    if (shared) text += fmt::format("{:>12.6g}", reports.front().sweep.table[row].period);
+    for (std::size_t n = 0; n < reports.size(); ++n) {
+      const std::vector<starts::SweepPoint>& table = reports[n].sweep.table;
+      const bool there = row < table.size();
+      if (!shared)
+        text += fmt::format("{}{:>12}", n == 0 ? "" : "  ", there ? fmt::format("{:.6g}", table[row].period) : "");
+      text += fmt::format("  {:>14}", there ? fmt::format("{:.6e}", table[row].eigenvalue) : "");
+    }
     text += "\n";
   }
   return text;
 }
 
 std::string eigenvalue_csv(const std::vector<EquilibriumReport>& reports) {
-  std::string text = "period";
-  for (const EquilibriumReport& r : reports) text += fmt::format(",\"smallest eigenvalue at {}\"", r.text);
+  const bool shared = have_one_range(reports);
+  std::string text = shared ? "period" : "";
+  std::size_t rows = 0;
+  for (const EquilibriumReport& r : reports) {
+    if (!shared) text += fmt::format("{}\"period at {}\"", text.empty() ? "" : ",", r.text);
+    text += fmt::format(",\"smallest eigenvalue at {}\"", r.text);
+    rows = std::max(rows, r.sweep.table.size());
+  }
   text += "\n";
-  if (reports.empty()) return text;
-  for (std::size_t row = 0; row < reports.front().sweep.table.size(); ++row) {
-    text += fmt::format("{:.17g}", reports.front().sweep.table[row].period);
-    for (const EquilibriumReport& r : reports) text += fmt::format(",{:.17g}", r.sweep.table[row].eigenvalue);
-    text += "\n";
+  for (std::size_t row = 0; row < rows; ++row) {
+    std::string line = shared ? fmt::format("{:.17g}", reports.front().sweep.table[row].period) : "";
+    for (std::size_t n = 0; n < reports.size(); ++n) {
+      const std::vector<starts::SweepPoint>& table = reports[n].sweep.table;
+      const bool there = row < table.size();
+      if (!shared)
+        line += fmt::format("{}{}", n == 0 ? "" : ",", there ? fmt::format("{:.17g}", table[row].period) : "");
+      line += there ? fmt::format(",{:.17g}", table[row].eigenvalue) : ",";
+    }
+    text += line + "\n";
   }
   return text;
 }

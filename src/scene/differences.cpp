@@ -56,6 +56,8 @@ std::string list_text(const Items& items, const Text& text) {
   return "[" + list + "]";
 }
 
+std::string range_text(double from, double to) { return list_text(std::array{from, to}, text_of); }
+
 // All keys of a scene with their values, the ones it does not give included.
 class Values {
  public:
@@ -83,7 +85,7 @@ class Values {
  private:
   void add(const std::string& key, const std::string& text) { _values.push_back({key, text}); }
   void add(const std::string& key, double value) { add(key, text_of(value)); }
-  void add_range(const std::string& key, double from, double to) { add(key, list_text(std::array{from, to}, text_of)); }
+  void add_range(const std::string& key, double from, double to) { add(key, range_text(from, to)); }
   void add_length(const std::string& key, double length) {
     const bool angles = _system->structure().has_angles();
     _values.push_back({.key = key, .text = angles ? angle_with_unit(length) : text_of(length), .length = length});
@@ -120,8 +122,9 @@ class Values {
     add("starts.fixed_points.letters", list_text(points.letters, [](const auto& family_and_letters) {
           return family_and_letters.first + ": " + family_and_letters.second;
         }));
-    add_range("starts.sweep.period", scene.sweep.period_from, scene.sweep.period_to);
-    add("starts.sweep.step", scene.sweep.step);
+    const Sweep& sweep = scene.sweep;
+    add("starts.sweep.period", sweep.period ? range_text(sweep.period->from, sweep.period->to) : "auto");
+    add("starts.sweep.step", sweep.step ? text_of(*sweep.step) : "auto");
   }
 
   void add_continuation(const Continuation& continuation) {

@@ -11,17 +11,19 @@ namespace orbweaver::scene {
 
 void read_sweep(const Field& field, Sweep& sweep) {
   const Keys keys(field, {"period", "step"}, "sweep: {period: [1, 12], step: 0.01}");
-  if (const auto period = keys.find("period"))
-    std::tie(sweep.period_from, sweep.period_to) =
-        period->range({.lower = 0, .lower_open = true, .example = "[1, 12]"});
-  const double width = sweep.period_to - sweep.period_from;
   const auto step = keys.find("step");
-  if (step) sweep.step = step->number({.lower = 0, .lower_open = true, .example = "0.01"});
-  constexpr double most_steps = 1e6;
-  if (sweep.step > width || width / sweep.step > most_steps)
+  if (step && step->plain_scalar() != "auto")
+    sweep.step = step->number({.lower = 0, .lower_open = true, .example = "0.01"});
+  const auto period = keys.find("period");
+  if (!period || period->plain_scalar() == "auto") return;
+  const auto [from, to] = period->range({.lower = 0, .lower_open = true, .example = "[1, 12]"});
+  sweep.period = {from, to};
+  const double width = to - from;
+  const double length = sweep.step.value_or(Sweep::standard_step);
+  if (length > width || width / length > Sweep::most_steps)
     step.value_or(field).fail(fmt::format("a step from {:g} to {:g}, the width of the sweep over [{}, {}]",
-                                          width / most_steps, width, sweep.period_from, sweep.period_to),
-                              fmt::format("{:g}", sweep.step), "change the step or the periods");
+                                          width / Sweep::most_steps, width, from, to),
+                              fmt::format("{:g}", length), "change the step or the periods");
 }
 
 void read_continuation(const Field& field, const systems::System& system, Continuation& continuation) {

@@ -1,121 +1,369 @@
-#include "linear_modes.hpp"
+#include "orbweaver/starts/linear_modes.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
 #include <numbers>
-#include <vector>
+#include <utility>
+
+#include <fmt/format.h>
+#include <Eigen/Eigenvalues>
+#include <boost/math/constants/constants.hpp>
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
-#include "orbweaver/numerics/locate.hpp"
+#include "orbweaver/systems/quad_system.hpp"
 
 namespace orbweaver::starts {
 
 namespace {
 
-using Complex = std::complex<double>;
+using numerics::Quad;
+using numerics::QuadMatrix;
+using numerics::QuadVector;
 
-Eigen::JacobiSVD<Eigen::MatrixXcd> singular_vectors(const Eigen::MatrixXcd& m) {
-  return Eigen::JacobiSVD<Eigen::MatrixXcd>(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+/// Parameters are doubles, and so are the entries of A to a few roundings: what moves by less under relative changes of
+/// the entries of this size cannot be told apart.
+constexpr double entry_rounding = 16.0 * std::numeric_limits<double>::epsilon();
+/// A fixed point is known to rounding, so that Newton's method in quadruple precision, which squares the error, needs
+/// two steps. One that is longer, relative to 1 + |z|, comes from a singular Jacobian and is not made.
+constexpr int polishing_steps = 2;
+constexpr double longest_polishing = 1e-6;
+/// Parlett and Reinsch 1969 (doi:10.1007/BF02165404): a scaling is worth it if it shortens row and column by 5 %.
+constexpr double worth_scaling = 0.95;
+/// Rounding of the coordinates of a fixed point, where it is asked whether a reversor leaves it alone.
+constexpr double same_point = 1e-9;
+/// Largest whole ratio of two frequencies that is a resonance: harmonics beyond it carry nothing that double sees.
+constexpr double highest_ratio = 4096.0;
+
+double to_double(const Quad& value) { return value.convert_to<double>(); }
+
+/// The Jacobian at the fixed point nearest to `point`.
+QuadMatrix jacobian_at(const systems::System& system, std::span<const double> point) {
+  const auto d = static_cast<Eigen::Index>(system.dimension());
+  const Eigen::Map<const Eigen::VectorXd> given(point.data(), d);
+  const auto* quad = dynamic_cast<const systems::QuadSystem*>(&system);
+  if (quad == nullptr) {
+    Eigen::VectorXd f(d);
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> a(d, d);
+    system.field_jacobian(1, point.data(), f.data(), a.data());
+    return a.cast<Quad>();
+  }
+  QuadVector z = given.cast<Quad>();
+  QuadVector f(d);
+  QuadMatrix a(d, d);
+  quad->linearize(z, f, a);
+  for (int step = 0; step < polishing_steps; ++step) {
+    const QuadVector newton = a.partialPivLu().solve(f);
+    if (!(to_double(newton.norm()) <= longest_polishing * (1.0 + given.norm()))) break;
+    z -= newton;
+    quad->linearize(z, f, a);
+  }
+  return a;
 }
 
-// g of [M B; C' 0] [X; g] = [0; 1]: singular exactly where M is, and smooth in T.
-class Border {
+/// D^-1 A D with powers of two on D's diagonal, so that the sums of the moduli in each row and column, the diagonal
+/// left out, are near one another.
+QuadMatrix balanced(QuadMatrix a, QuadVector& scale) {
+  const Eigen::Index d = a.rows();
+  scale = QuadVector::Ones(d);
+  for (bool settled = false; !settled;) {
+    settled = true;
+    for (Eigen::Index i = 0; i < d; ++i) {
+      const Quad column = a.col(i).cwiseAbs().sum() - abs(a(i, i));
+      const Quad row = a.row(i).cwiseAbs().sum() - abs(a(i, i));
+      if (column == 0 || row == 0) continue;
+      Quad factor = 1;
+      Quad scaled = column;
+      for (; scaled < row / 2; scaled *= 4) factor *= 2;
+      for (; scaled >= row * 2; scaled /= 4) factor /= 2;
+      if ((scaled + row) / factor >= worth_scaling * (column + row)) continue;
+      settled = false;
+      scale(i) *= factor;
+      a.col(i) *= factor;
+      a.row(i) /= factor;
+    }
+  }
+  return a;
+}
+
+struct Value {
+  Quad re;
+  Quad im;
+};
+
+double distance(const Value& a, const Value& b) { return std::hypot(to_double(a.re - b.re), to_double(a.im - b.im)); }
+
+/// Eigenvalues that are taken for one.
+struct Group {
+  std::vector<Value> members;
+  Value mean;
+  int parts = 1;           ///< groups that it was joined from
+  bool defective = false;  ///< with fewer eigenvectors than members; they are not computed
+  Eigen::MatrixXcd right;  ///< eigenvectors of the balanced matrix, orthonormal
+  double bound = 0.0;      ///< how far `entry_rounding` could move the mean
+
+  [[nodiscard]] int count() const { return static_cast<int>(members.size()); }
+};
+
+class Spectrum {
  public:
-  Border(const Eigen::MatrixXcd& near_singular, Eigen::Index borders) : _size(near_singular.rows()), _borders(borders) {
-    const auto svd = singular_vectors(near_singular);
-    _left = svd.matrixU().rightCols(borders);
-    _right = svd.matrixV().rightCols(borders);
+  explicit Spectrum(const QuadMatrix& jacobian) : _a(balanced(jacobian, _scale)) {
+    _moduli = _a.cwiseAbs().cast<double>();
+    _rounding = entry_rounding * _moduli.norm();
+    const Eigen::EigenSolver<QuadMatrix> solver(_a, false);
+    if (solver.info() != Eigen::Success)
+      throw core::NumericalError(
+          "the eigenvalues of the Jacobian at a fixed point: the QR iteration does not converge");
+    for (Eigen::Index i = 0; i < _a.rows(); ++i)
+      _values.push_back({solver.eigenvalues()(i).real(), solver.eigenvalues()(i).imag()});
   }
 
-  [[nodiscard]] Eigen::MatrixXcd value(const Eigen::MatrixXcd& m) const {
-    Eigen::MatrixXcd whole = Eigen::MatrixXcd::Zero(_size + _borders, _size + _borders);
-    whole.topLeftCorner(_size, _size) = m;
-    whole.topRightCorner(_size, _borders) = _left;
-    whole.bottomLeftCorner(_borders, _size) = _right.adjoint();
-    Eigen::MatrixXcd right_side = Eigen::MatrixXcd::Zero(_size + _borders, _borders);
-    right_side.bottomRows(_borders).setIdentity();
-    return whole.partialPivLu().solve(right_side).bottomRows(_borders);
+  /// Groups that rounding tells apart, and in `undecided` those of which it does not.
+  [[nodiscard]] std::vector<Group> groups(std::vector<UndecidedEigenvalues>& undecided) const {
+    std::vector<Group> near;
+    for (const Value& value : _values) {
+      Group& group = near.emplace_back();
+      group.members = {value};
+      group.mean = value;
+    }
+    near =
+        joined(std::move(near), [&](const Group& a, const Group& b) { return distance(a.mean, b.mean) <= _rounding; });
+    for (Group& group : near) analyse(group);
+    std::vector<Group> linked =
+        joined(near, [](const Group& a, const Group& b) { return distance(a.mean, b.mean) <= a.bound + b.bound; });
+    std::vector<Group> decided;
+    for (Group& group : linked) {
+      if (group.parts > 1) analyse(group);
+      // Real ones do not oscillate, with or without their vectors; a Jordan block at zero is one of a translation.
+      const bool real = std::abs(to_double(group.mean.im)) <= group.bound;
+      const bool away = std::abs(to_double(group.mean.re)) > group.bound;
+      if (!group.defective || (real && (away || group.parts == 1)))
+        decided.push_back(std::move(group));
+      else if (real || group.mean.im > 0)
+        undecided.push_back({{to_double(group.mean.re), to_double(group.mean.im)},
+                             group.count(),
+                             group.parts == 1 ? Doubt::defective : Doubt::unresolved});
+    }
+    return decided;
+  }
+
+  /// Vectors of the balanced matrix in the coordinates of the system, orthonormal.
+  [[nodiscard]] Eigen::MatrixXcd in_coordinates(const Eigen::MatrixXcd& vectors) const {
+    const Eigen::VectorXd scale = (_scale / _scale.maxCoeff()).cast<double>();
+    return span_of(scale.cast<std::complex<double>>().asDiagonal() * vectors, vectors.cols());
   }
 
  private:
-  Eigen::Index _size;
-  Eigen::Index _borders;
-  Eigen::MatrixXcd _left;
-  Eigen::MatrixXcd _right;
+  /// Groups of which one can be reached from another by steps between `linked` ones; a single one as it is.
+  template <class Linked>
+  static std::vector<Group> joined(const std::vector<Group>& groups, const Linked& linked) {
+    std::vector<std::size_t> label(groups.size());
+    for (std::size_t i = 0; i < label.size(); ++i) label[i] = i;
+    for (std::size_t i = 0; i < groups.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (linked(groups[i], groups[j])) {
+          const std::size_t from = label[i];
+          for (std::size_t& l : label)
+            if (l == from) l = label[j];
+        }
+    std::vector<Group> out;
+    for (std::size_t first = 0; first < groups.size(); ++first) {
+      Group group;
+      group.parts = static_cast<int>(std::count(label.begin(), label.end(), first));
+      if (group.parts == 0) continue;
+      if (group.parts == 1) {
+        out.push_back(groups[first]);
+        out.back().parts = 1;
+        continue;
+      }
+      for (std::size_t i = 0; i < groups.size(); ++i)
+        if (label[i] == first)
+          group.members.insert(group.members.end(), groups[i].members.begin(), groups[i].members.end());
+      group.mean = {0, 0};
+      for (const Value& value : group.members) {
+        group.mean.re += value.re / group.count();
+        group.mean.im += value.im / group.count();
+      }
+      out.push_back(std::move(group));
+    }
+    return out;
+  }
+
+  /// Orthonormal columns that span the largest `rank` directions of others.
+  static Eigen::MatrixXcd span_of(const Eigen::MatrixXcd& vectors, Eigen::Index rank) {
+    return Eigen::JacobiSVD<Eigen::MatrixXcd>(vectors, Eigen::ComputeThinU | Eigen::ComputeThinV)
+        .matrixU()
+        .leftCols(rank);
+  }
+
+  /// The kernel of matrix - value, `count` columns; `defect` is the largest of the pivots that should vanish.
+  static Eigen::MatrixXcd kernel(const QuadMatrix& matrix, const Value& value, int count, double& defect) {
+    const Eigen::Index d = matrix.rows();
+    // As real equations for real and imaginary part: each kernel vector shows twice, as v and i v.
+    QuadMatrix whole(2 * d, 2 * d);
+    const QuadMatrix shifted = matrix - value.re * QuadMatrix::Identity(d, d);
+    whole << shifted, value.im * QuadMatrix::Identity(d, d), -value.im * QuadMatrix::Identity(d, d), shifted;
+    const Eigen::ColPivHouseholderQR<QuadMatrix> factors(whole.transpose());
+    defect = to_double(abs(factors.matrixQR()(2 * (d - count), 2 * (d - count))));
+    const QuadMatrix frame = factors.householderQ();
+    const Eigen::MatrixXd last = frame.rightCols(2 * count).cast<double>();
+    Eigen::MatrixXcd vectors(d, 2 * count);
+    vectors.real() = last.topRows(d);
+    vectors.imag() = last.bottomRows(d);
+    return span_of(vectors, count);
+  }
+
+  void analyse(Group& group) const {
+    double spread = 0.0;
+    for (const Value& value : group.members) spread = std::max(spread, distance(value, group.mean));
+    double defect_right = 0.0;
+    double defect_left = 0.0;
+    group.right = kernel(_a, group.mean, group.count(), defect_right);
+    const Eigen::MatrixXcd left = kernel(_a.transpose(), {group.mean.re, -group.mean.im}, group.count(), defect_left);
+    const Eigen::VectorXd overlap = Eigen::JacobiSVD<Eigen::MatrixXcd>(left.adjoint() * group.right).singularValues();
+    const double overlapping = overlap(overlap.size() - 1);
+    const double weight = (left.cwiseAbs().transpose() * _moduli * group.right.cwiseAbs()).norm();
+    // To first order, and no more than the eigenvalues of a Jordan block move.
+    group.bound = std::min(entry_rounding * weight / overlapping,
+                           _moduli.norm() * std::pow(entry_rounding, 1.0 / std::max(group.count(), 2)));
+    // Members of a group with all its vectors are spread by what moved them, and M by no more; one without has a vector
+    // that M maps to something of the size of A.
+    const double vanishing = _rounding + group.count() * spread;
+    group.defective = group.count() > 1 && std::max(defect_right, defect_left) > vanishing;
+    if (group.defective) group.bound = _moduli.norm() * std::pow(entry_rounding, 1.0 / group.count());
+  }
+
+  QuadVector _scale;
+  QuadMatrix _a;
+  Eigen::MatrixXd _moduli;
+  double _rounding = 0.0;
+  std::vector<Value> _values;
 };
+
+/// Whether lambda and -lambda are eigenvalues alike: A is Hamiltonian, or anticommutes with a reversor, or has a
+/// quadratic form that it conserves.
+bool has_pairs(const systems::System& system, std::span<const double> point) {
+  const systems::Structure& structure = system.structure();
+  if (structure.symplectic || structure.conservative()) return true;
+  const Eigen::VectorXd z = Eigen::Map<const Eigen::VectorXd>(point.data(), static_cast<Eigen::Index>(point.size()));
+  return std::any_of(structure.reversors.begin(), structure.reversors.end(), [&](const systems::Symmetry& r) {
+    Eigen::VectorXd gap = r.map(z) - z;
+    for (const int i : structure.angles) gap(i) = std::remainder(gap(i), 2.0 * std::numbers::pi);
+    return gap.norm() < same_point * (1.0 + z.norm());
+  });
+}
+
+Oscillation oscillation_of(const QuadMatrix& jacobian, const Group& group, Eigen::MatrixXcd kernel) {
+  const Quad turn = boost::math::constants::two_pi<Quad>();
+  Oscillation out;
+  out.period = to_double(turn / group.mean.im);
+  out.period_error = out.period * group.bound / to_double(group.mean.im);
+  const Quad rate = turn / Quad(out.period);
+  for (Eigen::Index n = 0; n < kernel.cols(); ++n) {
+    const QuadVector re = kernel.col(n).real().cast<Quad>();
+    const QuadVector im = kernel.col(n).imag().cast<Quad>();
+    const QuadVector first = -rate * im - jacobian * re;
+    const QuadVector second = rate * re - jacobian * im;
+    out.residual = std::max(out.residual, std::hypot(to_double(first.norm()), to_double(second.norm())));
+  }
+  out.kernel = std::move(kernel);
+  return out;
+}
+
+std::vector<Resonance> resonances_of(const std::vector<Oscillation>& oscillations) {
+  std::vector<Resonance> out;
+  for (std::size_t slow = 0; slow < oscillations.size(); ++slow)
+    for (std::size_t fast = slow + 1; fast < oscillations.size(); ++fast) {
+      const Oscillation& a = oscillations[slow];
+      const Oscillation& b = oscillations[fast];
+      const double ratio = std::round(a.period / b.period);
+      if (ratio < 2.0 || ratio > highest_ratio) continue;
+      if (std::abs(a.period - ratio * b.period) <= a.period_error + ratio * b.period_error)
+        out.push_back({slow, fast, static_cast<int>(ratio)});
+    }
+  return out;
+}
+
+LinearStability stability_of(const LinearModes& modes) {
+  if (!modes.rest.empty() && modes.rest.front().real() > 0.0) return LinearStability::unstable;
+  if (!modes.undecided.empty()) return LinearStability::undecided;
+  if (modes.rest.empty()) return LinearStability::elliptic;
+  return modes.oscillations.empty() && modes.rest.front().real() < 0.0 ? LinearStability::stable
+                                                                       : LinearStability::neutral;
+}
 
 }  // namespace
 
-LinearModes::LinearModes(const systems::System& system, std::span<const double> fixed_point) {
-  const auto d = static_cast<Eigen::Index>(system.dimension());
-  core::require(static_cast<Eigen::Index>(fixed_point.size()) == d, "a fixed point of another dimension");
-  std::vector<double> f(fixed_point.size());
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> a(d, d);
-  system.field_jacobian(1, fixed_point.data(), f.data(), a.data());
-  _a = a;
-}
+double UndecidedEigenvalues::period() const { return 2.0 * std::numbers::pi / std::abs(mean.imag()); }
 
-Eigen::MatrixXcd LinearModes::matrix(int k, double period) const {
-  const Complex rate(0.0, 2.0 * std::numbers::pi * k / period);
-  return rate * Eigen::MatrixXcd::Identity(_a.rows(), _a.cols()) - _a.cast<Complex>();
-}
-
-Eigen::VectorXcd LinearModes::smallest_right_singular_vector(int k, double period) const {
-  return singular_vectors(matrix(k, period)).matrixV().rightCols(1);
-}
-
-std::vector<LinearModes::Root> LinearModes::roots(int k, double low, double near, double high, int depth) const {
-  constexpr int deepest = 4;  // divisions of a bracket: parts^4 tells periods apart that differ by 1e-6 of it
-  constexpr int parts = 40;
-  // Singular values of M move no faster than |dM/dT| = 2 pi k / T^2: only those within reach of 0 in the bracket can
-  // vanish.
-  const double reach = 2.0 * std::numbers::pi * k / (low * low) * (high - low);
-  const auto smallest_at = [&](double period) { return singular_vectors(matrix(k, period)).singularValues(); };
-  const Eigen::VectorXd sigma = smallest_at(near);
-  const Eigen::Index vanishing = (sigma.array() <= reach).count();
-  if (vanishing < 1) return {};
-  if (const auto together = bordered_root(k, low, near, high, vanishing)) return {*together};
-  std::vector<Root> found;
-  if (vanishing > 1 && depth < deepest) {
-    std::vector<double> dips;
-    for (int n = 0; n <= parts; ++n) dips.push_back(smallest_at(low + (high - low) * n / parts).minCoeff());
-    for (int n = 1; n < parts; ++n) {
-      const auto i = static_cast<std::size_t>(n);
-      if (!(dips[i] < dips[i - 1] && dips[i] <= dips[i + 1])) continue;
-      const auto at = [&](int m) { return low + (high - low) * m / parts; };
-      for (const Root& root : roots(k, at(n - 1), at(n), at(n + 1), depth + 1)) found.push_back(root);
-    }
+std::string to_text(const UndecidedEigenvalues& eigenvalues) {
+  switch (eigenvalues.doubt) {
+    case Doubt::defective:
+      return fmt::format(
+          "{} eigenvalues of the Jacobian are one, with fewer oscillations: the linear problem does not "
+          "tell which families start here",
+          eigenvalues.count);
+    case Doubt::unresolved:
+      return fmt::format(
+          "rounding does not tell {} eigenvalues of the Jacobian apart, nor how many oscillations they "
+          "have: no family is started here",
+          eigenvalues.count);
+    case Doubt::real_part:
+      return "an eigenvalue of the Jacobian whose real part is rounding, and nothing that holds it at zero: no family "
+             "is started here";
   }
-  for (Eigen::Index borders = vanishing - 1; borders >= 1 && found.empty(); --borders)
-    if (const auto fewer = bordered_root(k, low, near, high, borders)) found.push_back(*fewer);
-  return found;
+  return "";
 }
 
-std::optional<LinearModes::Root> LinearModes::bordered_root(int k, double low, double near, double high,
-                                                            Eigen::Index borders) const {
-  const Border border(matrix(k, near), borders);
-  constexpr double difference = 1e-4;  // of the bracket: the slope sets the sign and scale of the function only
-  constexpr double vanished = 1e-10;   // of |A|: rounding of M at a root, with room for defective eigenvalues
-  constexpr double position_width = 4.0 * std::numeric_limits<double>::epsilon();  // of T: rounding
-  const double h = difference * (high - low);
-  const Eigen::MatrixXcd slope = (border.value(matrix(k, near + h)) - border.value(matrix(k, near - h))) / (2.0 * h);
-  const Eigen::MatrixXcd inverse_slope = slope.inverse();
-  const auto signed_distance = [&](double period) {
-    return (border.value(matrix(k, period)) * inverse_slope).trace().real() / static_cast<double>(borders);
-  };
-  const double at_low = signed_distance(low);
-  const double at_high = signed_distance(high);
-  if (!(at_low * at_high < 0.0)) return std::nullopt;
-  const auto root = numerics::locate_root(signed_distance, {low, at_low}, {high, at_high}, position_width * near);
-  if (!root) return std::nullopt;
-  const double period = root->position;
-  const auto svd = singular_vectors(matrix(k, period));
-  const Eigen::Index first = svd.singularValues().size() - borders;
-  Root out{period, static_cast<int>(borders), svd.singularValues()(first), svd.matrixV().rightCols(borders)};
-  if (out.residual > vanished * scale()) return std::nullopt;
-  return out;
+std::string to_text(LinearStability stability) {
+  switch (stability) {
+    case LinearStability::elliptic: return "elliptic";
+    case LinearStability::stable: return "stable";
+    case LinearStability::unstable: return "unstable";
+    case LinearStability::neutral: return "neutral";
+    case LinearStability::undecided: return "undecided";
+  }
+  return "";
+}
+
+LinearModes linear_modes(const systems::System& system, std::span<const double> fixed_point) {
+  core::require(fixed_point.size() == static_cast<std::size_t>(system.dimension()),
+                "a fixed point of another dimension");
+  const QuadMatrix jacobian = jacobian_at(system, fixed_point);
+  if (!jacobian.cast<double>().allFinite()) throw core::NotFiniteError("the Jacobian at a fixed point is not finite");
+  const Spectrum spectrum(jacobian);
+  const bool pairs = has_pairs(system, fixed_point);
+  LinearModes modes;
+  const std::vector<Group> groups = spectrum.groups(modes.undecided);
+  for (const Group& group : groups) {
+    const double re = to_double(group.mean.re);
+    const double im = to_double(group.mean.im);
+    if (std::abs(re) > group.bound || std::abs(im) <= group.bound) {
+      const bool zero = std::abs(re) <= group.bound;
+      modes.rest.insert(modes.rest.end(), group.members.size(), zero ? std::complex<double>() : std::complex(re, im));
+      continue;
+    }
+    if (im < 0.0) continue;  // its conjugate says the same
+    // With lambda, -conj(lambda) is an eigenvalue. If no other is nearer to it than lambda itself, they are one, and
+    // the real part is zero.
+    const Value mirror{-group.mean.re, group.mean.im};
+    const bool alone = std::all_of(groups.begin(), groups.end(), [&](const Group& other) {
+      return distance(other.mean, mirror) >= 2.0 * std::abs(re);
+    });
+    if (pairs && alone)
+      modes.oscillations.push_back(oscillation_of(jacobian, group, spectrum.in_coordinates(group.right)));
+    else
+      modes.undecided.push_back({{re, im}, group.count(), Doubt::real_part});
+  }
+  std::sort(modes.oscillations.begin(), modes.oscillations.end(),
+            [](const Oscillation& a, const Oscillation& b) { return a.period > b.period; });
+  std::sort(modes.rest.begin(), modes.rest.end(), [](const std::complex<double>& a, const std::complex<double>& b) {
+    return a.real() != b.real() ? a.real() > b.real() : a.imag() < b.imag();
+  });
+  modes.resonances = resonances_of(modes.oscillations);
+  modes.stability = stability_of(modes);
+  return modes;
 }
 
 }  // namespace orbweaver::starts

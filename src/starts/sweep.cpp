@@ -4,51 +4,32 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <set>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "linear_modes.hpp"
+#include "constant_loop_hessian.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
-#include "orbweaver/loss/assembled.hpp"
-#include "orbweaver/loss/linearization.hpp"
-#include "orbweaver/spectrum/eigenpairs.hpp"
 
 namespace orbweaver::starts {
 
 namespace {
 
-constexpr std::string_view no_zero =
-    "a dip that does not reach zero, or zeros too close together to tell apart: no family starts here";
+constexpr std::string_view no_zero = "a dip that does not reach zero: no family starts here";
 
-/// Kernel vectors of unit length come out of an SVD: their entries, and equations between them, hold to rounding times
-/// the inverse of the gap to the next singular value. What is larger is seen, what is smaller is taken for zero.
+/// Kernel vectors of unit length: their entries, and equations between them, hold to rounding times the inverse of the
+/// gap to the next singular value. What is larger is seen, what is smaller is taken for zero.
 constexpr double negligible_entry = 1e-9;
 constexpr double reversible = 1e-8;
-/// Roots of neighbouring dips that are nearer, relative to the period, are one: brackets overlap, roots are right to
-/// rounding.
-constexpr double same_root = 1e-9;
 /// Rounding of the ends of a range of periods, relative to them.
 constexpr double at_range_end = 1e-12;
-
-struct Sample {
-  SweepPoint point;
-  int harmonic;  // the one that carries the smallest eigenvector
-};
-
-Sample sample(const systems::System& system, std::span<const double> fixed_point, double period, int cutoff) {
-  const loop::Loop loop = loop::constant_loop(fixed_point, period, cutoff);
-  const loss::Linearization linearization(system, loop, loss::Linearization::Order::jacobian);
-  const loss::Unknowns unknowns{loop::Subspace::unrestricted(loop.dimension, cutoff), {}};
-  const spectrum::Eigenpairs pairs = spectrum::smallest_eigenpairs(
-      loss::assemble_hessian(linearization, unknowns, loss::Curvature::gauss_newton), {.count = 1});
-  std::vector<double> weight(static_cast<std::size_t>(cutoff) + 1, 0.0);
-  for (int n = 0; n < unknowns.subspace.size(); ++n)
-    weight[static_cast<std::size_t>(unknowns.subspace.harmonic(n))] += pairs.vectors(n, 0) * pairs.vectors(n, 0);
-  const auto strongest = std::max_element(weight.begin(), weight.end());
-  return {{period, pairs.values.front()}, static_cast<int>(strongest - weight.begin())};
-}
+/// An automatic range: so much longer and shorter than the periods that it covers, so that the outermost dips are seen
+/// whole, in so many steps.
+constexpr double range_margin = 1.25;
+constexpr int range_steps = 1000;
 
 // A phase e^{i alpha} of the mode v so that s = 0 lies on the fixed set of the system's first reversor that the mode
 // has, else at the largest first coordinate; the sign so that the first coordinate that moves does so upwards.
@@ -84,75 +65,161 @@ loop::Isotropy isotropy_of(const systems::Structure& system, std::span<const dou
   return loop::find_isotropy(system, loop, loop::symmetry_tolerance);
 }
 
-NormalMode normal_mode(const systems::System& system, std::span<const double> fixed_point, const LinearModes& linear,
-                       const LinearModes::Root& root, double grid_period, int cutoff) {
-  const systems::Structure& structure = system.structure();
-  NormalMode mode;
-  mode.period = root.period;
-  mode.grid_period = grid_period;
-  mode.residual = root.residual;
-  mode.direction = direction_of(with_standard_phase(structure, root.kernel.col(0)), cutoff);
-  mode.grid_direction =
-      direction_of(with_standard_phase(structure, linear.smallest_right_singular_vector(1, grid_period)), cutoff);
-  mode.isotropy = isotropy_of(structure, fixed_point, mode.period, mode.direction, cutoff);
-  return mode;
-}
+class Sweep {
+ public:
+  Sweep(const systems::System& system, std::span<const double> fixed_point, const SweepOptions& options)
+      : _system(system), _hessian(jacobian(system, fixed_point), options.cutoff) {
+    _result.fixed_point.assign(fixed_point.begin(), fixed_point.end());
+    _result.range = options;
+    _result.linear = linear_modes(system, fixed_point);
+  }
+
+  SweepResult run() {
+    take_samples();
+    for (const Oscillation& oscillation : _result.linear.oscillations)
+      if (is_inside(oscillation.period))
+        add(oscillation);
+      else
+        _result.left_out.push_back(oscillation);
+    explain_dips();
+    add_doubts();
+    return std::move(_result);
+  }
+
+ private:
+  struct Sample {
+    SweepPoint point;
+    int harmonic;  // the one that carries the smallest eigenvector
+  };
+
+  static Eigen::MatrixXd jacobian(const systems::System& system, std::span<const double> point) {
+    const Eigen::Index d = system.dimension();
+    core::require(static_cast<Eigen::Index>(point.size()) == d, "a fixed point of another dimension");
+    Eigen::VectorXd f(d);
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> a(d, d);
+    system.field_jacobian(1, point.data(), f.data(), a.data());
+    return a;
+  }
+
+  [[nodiscard]] bool is_inside(double period) const {
+    return period >= _result.range.period_from * (1.0 - at_range_end) &&
+           period <= _result.range.period_to * (1.0 + at_range_end);
+  }
+
+  void take_samples() {
+    const SweepOptions& range = _result.range;
+    const auto last =
+        static_cast<int>(std::floor((range.period_to - range.period_from) / range.step * (1.0 + at_range_end)));
+    // One sample beyond each end, so that a dip at an end is seen; only roots within the range count.
+    const int first = range.period_from > range.step ? -1 : 0;
+    for (int n = first; n <= last + 1; ++n) {
+      const double period = range.period_from + n * range.step;
+      const ConstantLoopHessian::Smallest smallest = _hessian.smallest(period);
+      _samples.push_back({{period, smallest.eigenvalue}, smallest.harmonic});
+      if (n >= 0 && n <= last) _result.table.push_back(_samples.back().point);
+    }
+  }
+
+  // Of the two samples beside a period that with the smaller eigenvalue.
+  [[nodiscard]] double grid_period(double period) const {
+    const auto above = std::lower_bound(_samples.begin(), _samples.end(), period,
+                                        [](const Sample& s, double value) { return s.point.period < value; });
+    if (above == _samples.begin()) return above->point.period;
+    const SweepPoint& below = std::prev(above)->point;
+    if (above == _samples.end()) return below.period;
+    return above->point.eigenvalue <= below.eigenvalue ? above->point.period : below.period;
+  }
+
+  void add(const Oscillation& oscillation) {
+    const systems::Structure& structure = _system.structure();
+    const int cutoff = _result.range.cutoff;
+    const double seen = grid_period(oscillation.period);
+    if (oscillation.multiplicity() > 1) {
+      _result.degenerate.push_back({oscillation.period, seen, oscillation.residual, oscillation.kernel});
+      return;
+    }
+    NormalMode mode;
+    mode.period = oscillation.period;
+    mode.grid_period = seen;
+    mode.residual = oscillation.residual;
+    mode.direction = direction_of(with_standard_phase(structure, oscillation.kernel.col(0)), cutoff);
+    mode.grid_direction = direction_of(with_standard_phase(structure, _hessian.first_harmonic(seen)), cutoff);
+    mode.isotropy = isotropy_of(structure, _result.fixed_point, mode.period, mode.direction, cutoff);
+    _result.modes.push_back(std::move(mode));
+  }
+
+  void explain_dips() {
+    std::set<std::pair<int, double>> told;
+    for (std::size_t n = 1; n + 1 < _samples.size(); ++n) {
+      const SweepPoint& here = _samples[n].point;
+      const SweepPoint& before = _samples[n - 1].point;
+      const SweepPoint& after = _samples[n + 1].point;
+      if (!(here.eigenvalue < before.eigenvalue && here.eigenvalue <= after.eigenvalue)) continue;
+      bool reaches_zero = false;
+      // All harmonics, not only that of the smallest eigenvalue: dips that lie closer together than a step show as one.
+      for (int k = 1; k <= _result.range.cutoff; ++k)
+        for (const Oscillation& oscillation : _result.linear.oscillations) {
+          const double period = k * oscillation.period;
+          if (period < before.period || period > after.period) continue;
+          reaches_zero = true;
+          if (k > 1 && is_inside(period) && told.emplace(k, oscillation.period).second)
+            _result.rejected.push_back(
+                {period, fmt::format("{} times around the oscillation with T = {:.12g}", k, oscillation.period)});
+        }
+      // Harmonic 0 is the mean of the loop: it does not depend on T, its minima are rounding.
+      if (!reaches_zero && _samples[n].harmonic > 0) {
+        RejectedDip& dip = _result.rejected.emplace_back();
+        dip.period = here.period;
+        dip.reason = no_zero;
+      }
+    }
+  }
+
+  void add_doubts() {
+    const LinearModes& linear = _result.linear;
+    for (const Resonance& resonance : linear.resonances) {
+      const double period = linear.oscillations[resonance.slow].period;
+      if (is_inside(period))
+        _result.rejected.push_back(
+            {period, fmt::format("a resonance: {} times the period of the oscillation with T = {:.12g}; families that "
+                                 "start along combinations of the two are not looked for",
+                                 resonance.ratio, linear.oscillations[resonance.fast].period)});
+    }
+    for (const UndecidedEigenvalues& eigenvalues : linear.undecided)
+      _result.rejected.push_back({eigenvalues.period(), to_text(eigenvalues)});
+  }
+
+  const systems::System& _system;
+  ConstantLoopHessian _hessian;
+  SweepResult _result;
+  std::vector<Sample> _samples;
+};
 
 }  // namespace
+
+SweepOptions automatic_range(const LinearModes& modes) {
+  std::vector<double> periods;
+  const auto add = [&](double period) {
+    if (std::isfinite(period)) periods.push_back(period);
+  };
+  for (const Oscillation& oscillation : modes.oscillations) add(oscillation.period);
+  for (const UndecidedEigenvalues& eigenvalues : modes.undecided) add(eigenvalues.period());
+  if (periods.empty())
+    for (const std::complex<double>& value : modes.rest) add(2.0 * std::numbers::pi / std::abs(value));
+  SweepOptions range;
+  if (periods.empty()) return range;
+  const auto [shortest, longest] = std::minmax_element(periods.begin(), periods.end());
+  range.period_from = *shortest / range_margin;
+  range.period_to = *longest * range_margin;
+  range.step = (range.period_to - range.period_from) / range_steps;
+  return range;
+}
 
 SweepResult sweep(const systems::System& system, std::span<const double> fixed_point, const SweepOptions& options) {
   const core::LogStage stage(core::Stage::sweep);
   core::require(options.step > 0.0 && options.period_from > 0.0 && options.period_to > options.period_from,
                 "a sweep needs 0 < period_from < period_to and a positive step");
-  SweepResult result;
-  result.fixed_point.assign(fixed_point.begin(), fixed_point.end());
-  const LinearModes linear(system, fixed_point);
-
-  const auto last =
-      static_cast<int>(std::floor((options.period_to - options.period_from) / options.step * (1.0 + at_range_end)));
-  // One sample beyond each end, so that a dip at an end is seen; only roots within the range count.
-  const int first = options.period_from > options.step ? -1 : 0;
-  std::vector<Sample> samples;
-  for (int n = first; n <= last + 1; ++n)
-    samples.push_back(sample(system, fixed_point, options.period_from + n * options.step, options.cutoff));
-  for (int n = 0; n <= last; ++n) result.table.push_back(samples[static_cast<std::size_t>(n - first)].point);
-
-  std::vector<std::vector<double>> known(static_cast<std::size_t>(options.cutoff) + 1);
-  for (std::size_t n = 1; n + 1 < samples.size(); ++n) {
-    const SweepPoint& here = samples[n].point;
-    const double low = samples[n - 1].point.period;
-    const double high = samples[n + 1].point.period;
-    if (!(here.eigenvalue < samples[n - 1].point.eigenvalue && here.eigenvalue <= samples[n + 1].point.eigenvalue))
-      continue;
-    bool reaches_zero = false;
-    // All harmonics, not only that of the smallest eigenvalue: dips that lie closer together than a step show as one.
-    for (int k = 1; k <= options.cutoff; ++k)
-      for (const LinearModes::Root& root : linear.roots(k, low, here.period, high)) {
-        reaches_zero = true;
-        std::vector<double>& found = known[static_cast<std::size_t>(k)];
-        const auto is_same = [&](double period) { return std::abs(root.period - period) < same_root * period; };
-        const bool outside = root.period < options.period_from * (1.0 - at_range_end) ||
-                             root.period > options.period_to * (1.0 + at_range_end);
-        if (outside || std::any_of(found.begin(), found.end(), is_same)) continue;
-        found.push_back(root.period);
-        if (k == 1 && root.multiplicity == 1)
-          result.modes.push_back(normal_mode(system, fixed_point, linear, root, here.period, options.cutoff));
-        else if (k == 1)
-          result.degenerate.push_back({root.period, here.period, root.residual, root.kernel});
-        else
-          result.rejected.push_back(
-              {root.period, fmt::format("{} times around the oscillation with T = {:.12g}", k, root.period / k)});
-      }
-    // Harmonic 0 is the mean of the loop: it does not depend on T, its minima are rounding.
-    if (!reaches_zero && samples[n].harmonic > 0) {
-      RejectedDip& dip = result.rejected.emplace_back();
-      dip.period = here.period;
-      dip.reason = no_zero;
-    }
-  }
-  std::stable_sort(result.modes.begin(), result.modes.end(),
-                   [](const NormalMode& a, const NormalMode& b) { return a.period > b.period; });
-  return result;
+  return Sweep(system, fixed_point, options).run();
 }
 
 }  // namespace orbweaver::starts

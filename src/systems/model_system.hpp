@@ -13,6 +13,7 @@
 #include "complex_system.hpp"
 #include "orbweaver/ad/derivatives.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/systems/quad_system.hpp"
 #include "registered.hpp"
 
 namespace orbweaver::systems {
@@ -23,7 +24,8 @@ namespace orbweaver::systems {
 ///   static ModelInfo info();
 ///   static Structure structure(const Bound& bound);           // what holds with these parameters and effects
 ///   template <class P> class With;                            // the model with parameters of type P
-/// and With<P>, P being double or (to differentiate by a parameter) the scalar S of the field, has
+/// and With<P>, P being double or (to differentiate by a parameter, and in quadruple precision) the scalar S of the
+/// field, has
 ///   explicit With(const BoundTo<P>& bound);
 ///   template <class S> void field(const S* z, S* f) const;
 ///   template <int K, class S> S conserved(const S* z) const;  // quantity K of the structure, K < quantities
@@ -31,7 +33,7 @@ namespace orbweaver::systems {
 /// and, if its structure may name guards,
 ///   double guard(int k, const double* z) const;
 template <class Model>
-class ModelSystem final : public ComplexSystem {
+class ModelSystem final : public ComplexSystem, public QuadSystem {
  public:
   explicit ModelSystem(const Bound& bound) : _model(bound), _structure(Model::structure(bound)), _bound(bound) {
     check(_structure, Registered<Model>::info(), Model::dimension, Model::quantities);
@@ -64,6 +66,25 @@ class ModelSystem final : public ComplexSystem {
       const State weight = load(nodes, j, count, weights);
       store(nodes, j, count, ad::second_derivatives<Model::dimension>(_field, state.data(), weight.data()), contracted);
     });
+  }
+
+  void linearize(const numerics::QuadVector& z, numerics::QuadVector& f,
+                 numerics::QuadMatrix& jacobian) const override {
+    using S = ad::First<Model::dimension, numerics::Quad>;
+    core::require(z.size() == Model::dimension, "a state of another dimension");
+    BoundTo<S> bound{{}, _bound.effects};
+    for (const auto& [name, value] : _bound.parameters) bound.parameters.emplace(name, S(value));
+    const typename Model::template With<S> model(bound);
+    const auto whole = [&model](const S* state, S* value) { model.field(state, value); };
+    const auto result = ad::field_jacobian<Model::dimension>(whole, z.data());
+    f.resize(Model::dimension);
+    jacobian.resize(Model::dimension, Model::dimension);
+    for (std::size_t i = 0; i < size; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      f(row) = result.value[i];
+      for (std::size_t l = 0; l < size; ++l)
+        jacobian(row, static_cast<Eigen::Index>(l)) = result.jacobian[i * size + l];
+    }
   }
 
   void parameter_derivatives(const std::string& name, std::size_t nodes, const double* z,

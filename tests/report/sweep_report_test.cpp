@@ -113,6 +113,41 @@ TEST(SweepReport, TableHasALineAPeriod) {
   for (const std::string& line : lines) EXPECT_EQ(line.size(), lines[0].size());
 }
 
+TEST(SweepReport, ModesOutsideTheRangeAreToldOfByName) {
+  const auto report = report::sweep_report(
+      scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/double_pendulum.yaml", {"starts.sweep.period=[3, 4]"}));
+  ASSERT_EQ(report[0].modes.size(), 1U);
+  EXPECT_EQ(report[0].modes[0].name, "Out-Phase");
+  EXPECT_THAT(report::to_text(report),
+              AllOf(HasSubstr("left out: In-Phase with T = 8.209377223816"), HasSubstr("outside the range [3, 4]"),
+                    HasSubstr("left out: Down-Up with T = 5.28350800118")));
+}
+
+TEST(SweepReport, SaysHowStableAnEquilibriumIs) {
+  const std::string text = report::to_text(reports());
+  EXPECT_THAT(text, AllOf(HasSubstr("\n  elliptic\n"), HasSubstr("\n  unstable: eigenvalues 1.18921, -1.18921\n"),
+                          HasSubstr("\n  unstable: eigenvalues 1.84776, 0.765367, -0.765367, -1.84776\n")));
+}
+
+TEST(SweepReport, AutomaticRangesHaveColumnsOfTheirOwnPeriods) {
+  const auto report =
+      report::sweep_report(scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/double_pendulum_half_degree.yaml"));
+  const std::vector<std::string> lines = lines_of(report::eigenvalue_csv(report));
+  ASSERT_EQ(lines.size(), 1002U);
+  EXPECT_THAT(lines[0],
+              AllOf(HasSubstr("\"period at th1 = 0 deg, th2 = 0 deg"), HasSubstr("\"period at th1 = 180 deg")));
+  for (const std::string& line : lines_of(report::eigenvalue_table(report))) EXPECT_EQ(line.size(), 4 * 30U - 2U);
+  std::istringstream cells(lines[1]);
+  for (const report::EquilibriumReport& r : report) {
+    std::string period;
+    std::string value;
+    std::getline(cells, period, ',');
+    std::getline(cells, value, ',');
+    EXPECT_EQ(std::stod(period), r.sweep.table[0].period);
+    EXPECT_EQ(std::stod(value), r.sweep.table[0].eigenvalue);
+  }
+}
+
 TEST(SweepReport, NoEquilibriumGivesHeadingsOnly) {
   EXPECT_EQ(lines_of(report::eigenvalue_csv({})).size(), 1U);
   EXPECT_EQ(lines_of(report::eigenvalue_table({})).size(), 1U);

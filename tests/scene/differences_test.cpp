@@ -42,8 +42,8 @@ const std::map<std::string, Case> cases{
     {"starts.fixed_points.grid", {"[[90]]", "[[91]]"}},
     {"starts.fixed_points.names", {"{}", "{[0, 180]: [Down-Up]}"}},
     {"starts.fixed_points.letters", {"{}", ""}},  // none without names
-    {"starts.sweep.period", {"[1, 12]", "[1, 13]"}},
-    {"starts.sweep.step", {"0.01", "0.02"}},
+    {"starts.sweep.period", {"auto", "[1, 13]"}},
+    {"starts.sweep.step", {"auto", "0.02"}},
     {"continuation.step", {"adaptive", "0.5deg"}},
     {"continuation.start", {"0.5deg", "0.4deg"}},
     {"continuation.tolerance", {"1e-10", "1e-12"}},

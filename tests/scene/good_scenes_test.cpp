@@ -48,8 +48,8 @@ TEST(GoodScene, StartsAreReadWithAnglesInRadians) {
   EXPECT_THAT(s.fixed_points.names[1].point, ElementsAre(pi));
   EXPECT_THAT(s.fixed_points.names[1].names, ElementsAre("Up-Down"));
   EXPECT_THAT(s.fixed_points.letters, ElementsAre(Pair("Down-Up", "DU")));
-  EXPECT_EQ(s.sweep.period_from, 2.0);
-  EXPECT_EQ(s.sweep.period_to, 8.5);
+  EXPECT_EQ(s.sweep.period.value().from, 2.0);
+  EXPECT_EQ(s.sweep.period.value().to, 8.5);
   EXPECT_EQ(s.sweep.step, 0.25);
 }
 
@@ -105,9 +105,8 @@ TEST(GoodScene, EveryKeyButSystemAndStartsHasItsDefault) {
   EXPECT_EQ(s.name, "double_pendulum");
   EXPECT_THAT(s.system.parameters, IsEmpty());
   EXPECT_THAT(s.fixed_points.grid, IsEmpty());
-  EXPECT_EQ(s.sweep.period_from, 1.0);
-  EXPECT_EQ(s.sweep.period_to, 12.0);
-  EXPECT_EQ(s.sweep.step, 0.01);
+  EXPECT_FALSE(s.sweep.period.has_value()) << "auto";
+  EXPECT_FALSE(s.sweep.step.has_value()) << "auto";
   EXPECT_FALSE(s.continuation.fixed_step.has_value());
   EXPECT_DOUBLE_EQ(s.continuation.start_amplitude, pi / 360);
   EXPECT_EQ(s.continuation.tolerance, 1e-10);
@@ -138,6 +137,16 @@ TEST(GoodScene, TheGreatestDepthAndSubharmonicsAreTaken) {
   EXPECT_EQ(s.survey.depth, 16);
   EXPECT_EQ(s.survey.subharmonics, 16);
   EXPECT_EQ(s.limits.time, infinity);
+}
+
+TEST(GoodScene, ASweepMayFindItsRange) {
+  const std::string text = "system: {name: double_pendulum}\nstarts: {sweep: {period: auto, step: auto}}\n";
+  const scene::Scene automatic = scene::parse(text, "text");
+  EXPECT_FALSE(automatic.sweep.period.has_value());
+  EXPECT_FALSE(automatic.sweep.step.has_value());
+  const scene::Scene fine = scene::parse(text, "text", {"starts.sweep.step=1e-5"});
+  EXPECT_FALSE(fine.sweep.period.has_value());
+  EXPECT_EQ(fine.sweep.step, 1e-5);
 }
 
 TEST(GoodScene, TextIsTheFileWordForWord) {
@@ -174,8 +183,8 @@ TEST(SceneFolder, HenonHeilesBeginsAtTheOrigin) {
   EXPECT_THAT(s.fixed_points.grid, ElementsAre(ElementsAre(0.0), ElementsAre(0.0)));
   ASSERT_EQ(s.fixed_points.names.size(), 1U);
   EXPECT_THAT(s.fixed_points.names[0].names, ElementsAre("Straight", "Curved", "Loop"));
-  EXPECT_LT(s.sweep.period_from, 2 * pi);
-  EXPECT_GT(s.sweep.period_to, 2 * pi);
+  EXPECT_LT(s.sweep.period.value().from, 2 * pi);
+  EXPECT_GT(s.sweep.period.value().to, 2 * pi);
   EXPECT_LT(s.limits.energy_to, 1.0 / 6) << "orbits escape above";
   EXPECT_EQ(s.survey.depth, 1);
   EXPECT_EQ(s.survey.subharmonics, 3);
@@ -199,7 +208,8 @@ TEST(SceneFolder, TheSwingingSpringIsInResonance) {
   const scene::Scene s = scene::load(source / "drivers/scenes/swinging_spring.yaml");
   const auto& p = s.system.parameters;
   EXPECT_EQ(p.at("stiffness") * p.at("length"), 3.0 * p.at("mass") * p.at("gravity"));
-  EXPECT_LT(s.sweep.period_to, 30.0);
+  ASSERT_TRUE(s.sweep.period.has_value());
+  EXPECT_LT(s.sweep.period->to, 30.0);
 }
 
 TEST(SceneFolder, TheDeepAndTheHalfDegreeSceneDifferWhereTheySay) {

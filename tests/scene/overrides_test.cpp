@@ -37,7 +37,7 @@ TEST(Overrides, ReplaceAValueAndLeaveItsNeighbours) {
 TEST(Overrides, CreateMissingMaps) {
   const scene::Scene s = with({"survey.depth=2", "starts.sweep.period=[1,8]", "continuation.step=0.01rad"});
   EXPECT_EQ(s.survey.depth, 2);
-  EXPECT_EQ(s.sweep.period_to, 8.0);
+  EXPECT_EQ(s.sweep.period.value().to, 8.0);
   EXPECT_EQ(s.continuation.fixed_step, 0.01);
 }
 

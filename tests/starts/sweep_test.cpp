@@ -1,18 +1,25 @@
 #include "orbweaver/starts/sweep.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <iostream>
 #include <map>
 #include <numbers>
 #include <string>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loss/assembled.hpp"
+#include "orbweaver/loss/linearization.hpp"
+#include "orbweaver/spectrum/eigenpairs.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "spectrum/pendulum_loops.hpp"
+#include "spectrum/point_systems.hpp"
 
 namespace orbweaver::starts {
 namespace {
@@ -161,6 +168,105 @@ TEST(Sweep, ADipBehindAMultipleIsFound) {
   expect_rejected(result, {{4 * 1.86983807304, "4 times around the oscillation with T = 1.869838"}});
 }
 
+// A light or a heavy outer bob, a short or a long outer rod: both modes at [0, 0] in any range that holds them,
+// whatever the step of the picture. Their periods are tested in linear_modes_test.cpp.
+TEST(Sweep, NoModeIsLostToTheStep) {
+  const std::vector<std::map<std::string, double>> cases = {{{"m2", 1e-3}}, {{"m2", 1e-6}}, {{"m2", 1e3}},
+                                                            {{"m2", 1e6}},  {{"l2", 1e-3}}, {{"l2", 1e3}}};
+  for (const auto& parameters : cases) {
+    const auto system = systems::make_system("double_pendulum", parameters);
+    const std::vector<double> origin(4, 0.0);
+    const LinearModes linear = linear_modes(*system, origin);
+    ASSERT_EQ(linear.oscillations.size(), 2u);
+    const double slow = linear.oscillations[0].period;
+    const double fast = linear.oscillations[1].period;
+    for (const double step : {0.1237, 0.37}) {
+      const SweepResult result =
+          sweep(*system, origin, {.period_from = 0.9 * fast, .period_to = 1.1 * slow + 1.0, .step = step});
+      ASSERT_EQ(result.modes.size(), 2u) << step;
+      EXPECT_EQ(result.modes[0].period, slow);
+      EXPECT_EQ(result.modes[1].period, fast);
+      EXPECT_EQ(loop::to_text(result.modes[0].isotropy), "S@1/2 R@0");
+    }
+    const SweepResult automatic = sweep(*system, origin, automatic_range(linear));
+    EXPECT_EQ(automatic.modes.size(), 2u);
+    EXPECT_EQ(automatic.table.size(), 1001u);
+  }
+}
+
+TEST(Sweep, WhatARangeExcludesIsKept) {
+  const auto system = systems::make_system("double_pendulum");
+  const SweepResult result = sweep(*system, std::vector<double>(4, 0.0), {.period_from = 3.0, .period_to = 4.0});
+  ASSERT_EQ(result.modes.size(), 1u);
+  EXPECT_NEAR(result.modes[0].period, test::out_phase().period(), 1e-14);
+  ASSERT_EQ(result.left_out.size(), 1u);
+  EXPECT_NEAR(result.left_out[0].period, test::in_phase().period(), 1e-14);
+}
+
+TEST(Sweep, AnAutomaticRangeHoldsAllPeriodsOfTheEquilibrium) {
+  const auto system = systems::make_system("double_pendulum");
+  const SweepOptions down = automatic_range(linear_modes(*system, std::vector<double>(4, 0.0)));
+  EXPECT_LT(down.period_from, 0.9 * test::out_phase().period());
+  EXPECT_GT(down.period_to, 1.1 * test::in_phase().period());
+  // Nothing oscillates: the saddle's time scales, which are those of the modes below.
+  const SweepOptions up = automatic_range(linear_modes(*system, std::vector<double>{pi, pi, 0, 0}));
+  EXPECT_NEAR(up.period_from, down.period_from, 1e-12);
+  EXPECT_NEAR(up.period_to, down.period_to, 1e-12);
+  EXPECT_EQ(automatic_range({}).period_to, SweepOptions{}.period_to);
+}
+
+/// The smallest eigenvalue of the assembled Hessian of the constant loop.
+double assembled_eigenvalue(const systems::System& system, const std::vector<double>& point, double period,
+                            int cutoff) {
+  const loop::Loop loop = loop::constant_loop(point, period, cutoff);
+  const loss::Linearization linearization(system, loop, loss::Linearization::Order::jacobian);
+  const loss::Unknowns unknowns{loop::Subspace::unrestricted(loop.dimension, cutoff), {}};
+  return spectrum::smallest_eigenpairs(loss::assemble_hessian(linearization, unknowns, loss::Curvature::gauss_newton),
+                                       {.count = 1})
+      .values.front();
+}
+
+// The eigenvalues of an assembled H are known to rounding of |H|: to 1e-12 relative where they are not much smaller.
+TEST(Sweep, BlocksGiveTheEigenvaluesOfTheAssembledHessian) {
+  double worst = 0.0;
+  int compared = 0;
+  for (const char* name : {"double_pendulum", "henon_heiles"}) {
+    const auto system = systems::make_system(name);
+    std::vector<std::vector<double>> points{{0, 0, 0, 0}};
+    if (name[0] == 'd') points = {{0, 0, 0, 0}, {0, pi, 0, 0}, {pi, 0, 0, 0}, {pi, pi, 0, 0}};
+    for (const std::vector<double>& point : points)
+      for (const int cutoff : {1, 3, 10}) {
+        const SweepOptions options{.period_from = 1.0, .period_to = 12.0, .step = 0.11, .cutoff = cutoff};
+        for (const SweepPoint& sample : sweep(*system, point, options).table) {
+          const double assembled = assembled_eigenvalue(*system, point, sample.period, cutoff);
+          const double rate = 2 * pi * cutoff / sample.period;
+          const double size = std::max(9.0, rate * rate);  // of H
+          EXPECT_NEAR(sample.eigenvalue, assembled, 1e-14 * size) << name << " " << sample.period;
+          if (assembled < 1e-3 * size) continue;
+          worst = std::max(worst, std::abs(sample.eigenvalue / assembled - 1.0));
+          ++compared;
+        }
+      }
+  }
+  RecordProperty("worst_relative_error", fmt::format("{:.3e}", worst));
+  EXPECT_LT(worst, 1e-12);
+  EXPECT_GT(compared, 500);
+}
+
+TEST(Sweep, OfFourEquilibriaInMilliseconds) {
+  const auto system = systems::make_system("double_pendulum");
+  const auto points = find_fixed_points(*system, {{0.0, pi}, {0.0, pi}});
+  double least = 1.0;
+  for (int attempt = 0; attempt < 5; ++attempt) {
+    const auto began = std::chrono::steady_clock::now();
+    for (const std::vector<double>& point : points) EXPECT_EQ(sweep(*system, point, {}).table.size(), 1101u);
+    least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
+  }
+  RecordProperty("seconds", fmt::format("{:.4f}", least));
+  std::cout << fmt::format("four equilibria, 1101 periods each: {:.1f} ms\n", 1e3 * least);
+  EXPECT_LT(least, 0.25) << "50 ms where nothing else runs; assembled Hessians took 1.6 s";
+}
+
 TEST(Sweep, HarmonicOscillatorWithItsMultiples) {
   const auto system = systems::make_system("harmonic_oscillator", {{"omega", 2.0}});
   const SweepResult result = sweep(*system, std::vector<double>{0.0, 0.0}, {});
@@ -168,6 +274,18 @@ TEST(Sweep, HarmonicOscillatorWithItsMultiples) {
   EXPECT_NEAR(result.modes[0].period, pi, 1e-14);
   EXPECT_EQ(loop::to_text(result.modes[0].isotropy), "S@1/2 R@0");
   expect_rejected(result, {{2 * pi, "2 times around"}, {3 * pi, "3 times around"}});
+}
+
+TEST(Sweep, AWholeRatioOfPeriodsIsSaid) {
+  const test::Oscillators system({1.0, 4.0});
+  const std::vector<double> origin(4, 0.0);
+  const SweepResult result = sweep(system, origin, {.period_from = 5.0, .period_to = 7.0});
+  ASSERT_EQ(result.modes.size(), 1u);
+  EXPECT_NEAR(result.modes[0].period, 2 * pi, 1e-14);
+  expect_rejected(result, {{2 * pi, "2 times around the oscillation with T = 3.1415926"},
+                           {2 * pi, "a resonance: 2 times the period of the oscillation with T = 3.1415926"}});
+  EXPECT_EQ(sweep(test::Oscillators({1.0, 4.0 + 1e-9}), origin, {.period_from = 5.0, .period_to = 7.0}).rejected.size(),
+            1u);
 }
 
 TEST(Sweep, ResonanceOfHenonHeilesIsHandedOutWithItsKernel) {

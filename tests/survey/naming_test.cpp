@@ -47,6 +47,12 @@ TEST(Naming, CoordinatesThatAreNotGivenDoNotMatter) {
   EXPECT_EQ(named(scene_with_names(), {pi, 1.0, 2.0, 3.0}, 0), "By th1 alone");
 }
 
+TEST(Naming, CountsTheNamesOfAPlace) {
+  const auto system = systems::make_system("double_pendulum");
+  EXPECT_EQ(survey::names_given(scene_with_names(), *system, {0.0, 2.0 * pi, 0.0, 0.0}), 2U);
+  EXPECT_EQ(survey::names_given(scene_with_names(), *system, {0.0, 1.0, 0.0, 0.0}), 0U);
+}
+
 TEST(Naming, CountsWhereTheSceneGivesNoName) {
   EXPECT_EQ(named(scene_with_names(), {0.0, 0.0, 0.0, 0.0}, 2, 4), "Equilibrium 5, mode 3");
   EXPECT_EQ(named(scene::Scene{}, {0.0, 0.0, 0.0, 0.0}, 0, 1), "Equilibrium 2, mode 1");

@@ -21,8 +21,8 @@ TEST(RestrictedProblem, ShortFamiliesEndOnThatOfL3) {
     const scene::Scene scene =
         scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_mu_0.001.yaml",
                     {"continuation.start=" + first, "starts.fixed_points.grid=[[-1, 0.499], [-0.866, 0, 0.866]]",
-                     "starts.fixed_points.names={[-1.0004166666, 0]: [L3], [0.499, 0.8660254038]: [L4], "
-                     "[0.499, -0.8660254038]: [L5]}",
+                     "starts.fixed_points.names={[-1.0004166666, 0]: [L3], [0.499, 0.8660254038]: [Long-4, L4], "
+                     "[0.499, -0.8660254038]: [Long-5, L5]}",
                      "starts.fixed_points.letters={}", "starts.sweep.period=[6.2, 6.5]", "starts.sweep.step=0.01",
                      "survey.depth=1", "survey.subharmonics=1", "limits.period=8"});
     const survey::Summary summary = test::run(comm, scene, "short");

@@ -13,6 +13,7 @@
 namespace {
 
 using namespace orbweaver;
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
@@ -150,6 +151,57 @@ TEST(RunSurvey, FollowsNoMoreFamiliesThanAllowed) {
   EXPECT_EQ(summary.families[2].name, "Down-Up");
   EXPECT_EQ(summary.families[2].end_reason, "step limit (2 orbits)");
   EXPECT_THAT(summary.remarks, ::testing::Contains("4 families found, 3 followed (limits.families)"));
+}
+
+// A light outer bob has two modes that a step of 0.1237 saw as one, a heavy one ended the eigenvalue solver of whole
+// equilibria. All are found, and named by the mode.
+TEST(RunSurvey, AllModesOfPendulumsOfAnyProportionsAreFoundAndNamed) {
+  const core::Communicator comm;
+  int number = 0;
+  for (const char* proportion : {"m2=1e-3", "m2=1e-6", "m2=1e3", "m2=1e6", "l2=1e-3", "l2=1e3"}) {
+    const auto folder = test::fresh_folder(own_folder(comm, "proportion" + std::to_string(number++) + "_"), comm.get());
+    const scene::Scene scene = scene::load(
+        ORBWEAVER_SOURCE_DIR "/drivers/scenes/double_pendulum.yaml",
+        {"starts.sweep.period=auto", "starts.sweep.step=0.1237", "survey.depth=0", "limits.steps=1",
+         "limits.period=1e9", "continuation.tolerance=1e-6", std::string("system.parameters.") + proportion});
+    const survey::Summary summary = run(comm, scene, folder);
+    EXPECT_EQ(summary.failures, 0U) << proportion;
+    if (!comm.is_root()) continue;
+    std::vector<std::string> names;
+    for (const survey::FamilySummary& family : summary.families) names.push_back(family.name);
+    EXPECT_THAT(names, ElementsAre("In-Phase", "Out-Phase", "Down-Up", "Up-Down")) << proportion;
+    ASSERT_EQ(summary.families.size(), 4U);
+    EXPECT_GT(summary.families[0].period_from, summary.families[1].period_from) << proportion;
+  }
+}
+
+TEST(RunSurvey, AModeOutsideTheRangeKeepsItsNameAndIsToldOf) {
+  const core::Communicator comm;
+  const auto folder = test::fresh_folder(own_folder(comm, "excluded"), comm.get());
+  const survey::Summary summary = run(comm, test::quick_scene({"limits.steps=2", "starts.sweep.period=[3,4]"}), folder);
+  if (!comm.is_root()) return;
+  ASSERT_EQ(summary.families.size(), 1U);
+  EXPECT_EQ(summary.families[0].name, "Out-Phase");
+  EXPECT_EQ(summary.families[0].key, "0000.0001");
+  EXPECT_THAT(summary.remarks,
+              IsSupersetOf({AllOf(HasSubstr("left out at th1 = 0 deg, th2 = 0 deg"),
+                                  HasSubstr("In-Phase with T = 8.20937722, outside starts.sweep.period [3, 4]")),
+                            AllOf(HasSubstr("left out"), HasSubstr("Up-Down with T = 5.28"))}));
+}
+
+TEST(RunSurvey, MoreNamesThanModesAreRefused) {
+  const core::Communicator comm;
+  const auto folder = test::fresh_folder(own_folder(comm, "names"), comm.get());
+  try {
+    (void)run(
+        comm,
+        test::quick_scene({"starts.fixed_points.names={[0, 180]: [Down-Up, Other]}", "starts.fixed_points.letters={}"}),
+        folder);
+    ADD_FAILURE() << "accepted";
+  } catch (const core::InputError& error) {
+    EXPECT_THAT(error.what(),
+                AllOf(HasSubstr("at most 1 for the equilibrium"), HasSubstr("th2 = 180 deg"), HasSubstr("got 2")));
+  }
 }
 
 TEST(RunSurvey, ASceneWithNothingToFindGivesAnEmptyArchive) {

@@ -26,6 +26,7 @@ loop::Loop sample_loop() { return {2, 1, 3.5, {1.0, 2.0, 3.0, 4.0, 5.0, 6.0}, {0
 FoundMode sample_mode() {
   FoundMode mode;
   mode.period = 3.25;
+  mode.place = 3;
   mode.direction = {{0.5, -0.25, 1e-300, 7.0}, {-1e300, 0.125}};
   mode.cutoff = 13;
   mode.isotropy = sample_isotropy();
@@ -33,7 +34,9 @@ FoundMode sample_mode() {
   return mode;
 }
 
-SweepOutcome sample_sweep_outcome() { return {2, {1.5}, {sample_mode(), {}}, {"T = 6.8: twice around", ""}}; }
+SweepOutcome sample_sweep_outcome() {
+  return {2, {1.5}, {sample_mode(), {}}, {"T = 6.8: twice around", ""}, {{0.5, 2, 3}}, 5, 1.0, 12.0};
+}
 BranchWork sample_branch_work() {
   return {"0001.0002/003.q4.j1/0-", "Naïve", sample_lineage(), sample_loop(), {{0.25, -0.5}, {1e-300}},
           sample_isotropy(),        0.125};
@@ -76,7 +79,7 @@ TEST(Payload, EqualWorkHasEqualBytes) { EXPECT_EQ(pack(sample_branch_work()), pa
 TEST(Payload, AnotherKindIsRefusedByName) {
   const std::string text = environment_error_of([] { (void)unpack_branch_work(pack(sample_sweep_outcome())); });
   EXPECT_THAT(text, AllOf(HasSubstr("expected a branch work of version 1"),
-                          HasSubstr("got a sweep outcome of version 1"), HasSubstr("same build")));
+                          HasSubstr("got a sweep outcome of version 2"), HasSubstr("same build")));
 }
 
 TEST(Payload, AnotherVersionIsRefused) {

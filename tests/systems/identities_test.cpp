@@ -9,6 +9,7 @@
 
 #include "complex_system.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/systems/quad_system.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "systems/samples.hpp"
 
@@ -67,6 +68,39 @@ TEST_P(Identities, JacobianAgreesWithComplexStep) {
       for (std::size_t i = 0; i < dimension; ++i)
         EXPECT_NEAR(entries[i * dimension + l], f[i].imag() / h, 1e-13 * (1.0 + largest(entries)));
     }
+  }
+}
+
+TEST_P(Identities, QuadruplePrecisionAgreesWithDouble) {
+  for (int sample = 0; sample < samples; ++sample) {
+    const auto system = random_system();
+    const auto& quad_system = dynamic_cast<const QuadSystem&>(*system);
+    const Eigen::VectorXd z = vector(random_state(*system));
+    const std::vector<double> entries = jacobian(*system, {z.begin(), z.end()});
+    numerics::QuadVector f;
+    numerics::QuadMatrix derivatives;
+    quad_system.linearize(z.cast<numerics::Quad>(), f, derivatives);
+    EXPECT_LT((f.cast<double>() - field(*system, z)).norm(), 1e-13 * (1.0 + f.cast<double>().norm()));
+    for (std::size_t i = 0; i < dimension; ++i)
+      for (std::size_t l = 0; l < dimension; ++l)
+        EXPECT_NEAR(entries[i * dimension + l],
+                    derivatives(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(l)).convert_to<double>(),
+                    1e-13 * (1.0 + largest(entries)));
+    // A difference over 1e-12 is right to 1e-20 only if the field is evaluated in quadruple precision.
+    const numerics::Quad h = 1e-12;
+    for (Eigen::Index l = 0; l < z.size(); ++l) {
+      numerics::QuadVector beside = z.cast<numerics::Quad>();
+      numerics::QuadVector above;
+      numerics::QuadVector below;
+      numerics::QuadMatrix unused;
+      beside(l) += h;
+      quad_system.linearize(beside, above, unused);
+      beside(l) -= 2 * h;
+      quad_system.linearize(beside, below, unused);
+      const numerics::QuadVector error = (above - below) / (2 * h) - derivatives.col(l);
+      EXPECT_LT(error.norm().convert_to<double>(), 1e-17 * (1.0 + largest(entries)));
+    }
+    EXPECT_THROW(quad_system.linearize(numerics::QuadVector::Zero(1), f, derivatives), core::MisuseError);
   }
 }
 

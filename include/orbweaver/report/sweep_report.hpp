@@ -19,6 +19,12 @@ struct ModeRow {
   std::string isotropy;
 };
 
+/// A mode outside the range of periods.
+struct LeftOutRow {
+  std::string name;
+  double period = 0.0;
+};
+
 /// The sweep at one equilibrium.
 struct EquilibriumReport {
   std::vector<double> point;
@@ -26,17 +32,18 @@ struct EquilibriumReport {
   bool angles = false;  ///< deviations are in degrees
   starts::SweepResult sweep;
   std::vector<ModeRow> modes;
+  std::vector<LeftOutRow> left_out;
 };
 
 /// Finds the scene's equilibria and sweeps the period at each; not collective. Throws as find_fixed_points and sweep
 /// do.
 [[nodiscard]] std::vector<EquilibriumReport> sweep_report(const scene::Scene& scene);
 
-/// The modes, dips passed over, and equilibria without oscillations, for people.
+/// The modes, those left out, dips passed over, equilibria without oscillations and the stability of each, for people.
 [[nodiscard]] std::string to_text(const std::vector<EquilibriumReport>& reports);
 
 /// Smallest eigenvalue against period as text with aligned columns (one column an equilibrium), or as CSV with full
-/// precision.
+/// precision. Where ranges differ, as automatic ones do, each equilibrium has a column of its own periods.
 [[nodiscard]] std::string eigenvalue_table(const std::vector<EquilibriumReport>& reports);
 [[nodiscard]] std::string eigenvalue_csv(const std::vector<EquilibriumReport>& reports);
 

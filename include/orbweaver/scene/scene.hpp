@@ -28,10 +28,16 @@ struct FixedPoints {
   std::map<std::string, std::string> letters;  ///< family name -> letter for its branches
 };
 
+/// At which periods small oscillations are looked for, and how finely the picture of their eigenvalue is drawn.
 struct Sweep {
-  double period_from = 1.0;
-  double period_to = 12.0;
-  double step = 0.01;
+  struct Range {
+    double from = 0.0;
+    double to = 0.0;
+  };
+  static constexpr double most_steps = 1e6;  ///< of a range; a finer step is refused, or lengthened with `period: auto`
+  static constexpr double standard_step = 0.01;  ///< the paper's
+  std::optional<Range> period;  ///< none (`auto`): at each equilibrium a range that covers its oscillations
+  std::optional<double> step;   ///< none (`auto`): the standard step, or a thousandth of an automatic range
 };
 
 struct Continuation {

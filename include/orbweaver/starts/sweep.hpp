@@ -8,6 +8,7 @@
 
 #include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
+#include "orbweaver/starts/linear_modes.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::starts {
@@ -24,6 +25,10 @@ struct SweepOptions {
   int cutoff = 10;  ///< harmonics of the loop space whose Hessian is taken
 };
 
+/// The range that covers the periods of all oscillations, decided or not, with a margin, in a thousand steps. Where
+/// nothing oscillates, the time scales of the other eigenvalues stand for them, and where there is none the default.
+[[nodiscard]] SweepOptions automatic_range(const LinearModes& modes);
+
 /// The smallest eigenvalue of H of the constant loop with one period (over all coefficients, period held).
 struct SweepPoint {
   double period = 0.0;
@@ -32,9 +37,9 @@ struct SweepPoint {
 
 /// A family of small oscillations that starts at the fixed point.
 struct NormalMode {
-  double period = 0.0;           ///< refined to rounding
-  double grid_period = 0.0;      ///< the swept period where the dip was seen
-  double residual = 0.0;         ///< smallest singular value of the linearised problem at `period`
+  double period = 0.0;           ///< to rounding
+  double grid_period = 0.0;      ///< the swept period where it shows
+  double residual = 0.0;         ///< |(2 pi i/T) v - A v| of its vector of unit length
   loop::Tangent direction;       ///< of a loop with cutoff `SweepOptions::cutoff`, |dz(s = 0)| = 1 (`still_at_start`)
   loop::Tangent grid_direction;  ///< the same from the eigenvector at `grid_period`
   loop::Isotropy isotropy;       ///< of the small oscillations
@@ -45,11 +50,11 @@ struct NormalMode {
 struct DegenerateMode {
   double period = 0.0;
   double grid_period = 0.0;
-  double residual = 0.0;    ///< the largest singular value that should vanish
+  double residual = 0.0;    ///< the largest |(2 pi i/T) v - A v|
   Eigen::MatrixXcd kernel;  ///< orthonormal v, one a column
 };
 
-/// A dip of the eigenvalue that starts no family, and why.
+/// A dip of the eigenvalue, or a doubt about the modes, that starts no family, and why.
 struct RejectedDip {
   double period = 0.0;
   std::string reason;
@@ -57,15 +62,19 @@ struct RejectedDip {
 
 struct SweepResult {
   std::vector<double> fixed_point;
+  SweepOptions range;  ///< as swept
+  LinearModes linear;
   std::vector<SweepPoint> table;
-  std::vector<NormalMode> modes;  ///< longest period first
+  std::vector<NormalMode> modes;  ///< in the range, longest period first
   std::vector<DegenerateMode> degenerate;
-  std::vector<RejectedDip> rejected;  ///< period multiples, near misses
+  std::vector<Oscillation> left_out;  ///< oscillations with periods outside the range, longest first
+  std::vector<RejectedDip> rejected;  ///< period multiples, near misses, resonances, undecided eigenvalues
 };
 
-/// Sweeps the period at a fixed point (paper, section III A): the smallest eigenvalue of the Hessian against T, each of
-/// its local minima refined to a root of a signed bordered function of the linearised problem at the dip's harmonic.
-/// Throws MisuseError for an empty or reversed range, a step that is not positive, or a state of another dimension.
+/// The small oscillations at a fixed point whose periods lie in a range, from the Jacobian, and the picture of the
+/// paper (section III A): the smallest eigenvalue of the Hessian against T, whose dips the oscillations explain. The
+/// step decides about the picture only. Throws MisuseError for an empty or reversed range, a step that is not positive,
+/// or a state of another dimension; NotFiniteError where the Hessian is not finite; and as linear_modes does.
 [[nodiscard]] SweepResult sweep(const systems::System& system, std::span<const double> fixed_point,
                                 const SweepOptions& options);
 

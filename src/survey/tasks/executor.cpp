@@ -10,6 +10,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/corrector/method.hpp"
 #include "orbweaver/starts/sweep.hpp"
+#include "orbweaver/survey/tasks/sweep_options.hpp"
 #include "start_task.hpp"
 
 namespace orbweaver::survey {
@@ -64,16 +65,21 @@ queue::TaskOutcome Executor::execute(const queue::Task& task, queue::TaskContext
 }
 
 queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
-  starts::SweepOptions options;
-  options.period_from = _scene.sweep.period_from;
-  options.period_to = _scene.sweep.period_to;
-  options.step = _scene.sweep.step;
+  const starts::SweepOptions options = sweep_options(_scene.sweep, *_system, work.point);
   const starts::SweepResult result = starts::sweep(*_system, work.point, options);
   SweepOutcome outcome;
   outcome.index = work.index;
   outcome.point = work.point;
-  for (const starts::NormalMode& mode : bifurcation::small_oscillations(*_system, result, options.cutoff)) {
+  outcome.period_from = options.period_from;
+  outcome.period_to = options.period_to;
+  const bifurcation::SmallOscillations all = bifurcation::small_oscillations(*_system, result, options.cutoff);
+  outcome.families = all.count;
+  for (const bifurcation::LeftOut& left_out : all.left_out)
+    if (!left_out.undecided)  // those are among the rejected
+      outcome.left_out.push_back({left_out.period, left_out.place, left_out.families});
+  for (const auto& [mode, place] : all.families) {
     FoundMode found;
+    found.place = place;
     found.period = mode.period;
     found.direction = mode.direction;
     found.cutoff = options.cutoff;

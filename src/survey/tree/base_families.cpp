@@ -1,6 +1,7 @@
 #include "base_families.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "end_text.hpp"
 #include "orbweaver/core/error.hpp"
@@ -11,12 +12,37 @@
 
 namespace orbweaver::survey {
 
+namespace {
+
+void check_names(const scene::Scene& scene, const systems::System& system, const SweepOutcome& found) {
+  const std::size_t given = names_given(scene, system, found.point);
+  if (given > static_cast<std::size_t>(found.families))
+    throw core::InputError(fmt::format(
+        "starts.fixed_points.names: expected at most {} for the equilibrium at {}, a name for each family of small "
+        "oscillations, got {}; remove those that name none",
+        found.families, point_text(system, found.point), given));
+}
+
+std::string left_out_text(const scene::Scene& scene, const systems::System& system, const SweepOutcome& found,
+                          const LeftOutMode& mode) {
+  std::vector<std::string> names;
+  for (int n = 0; n < mode.families; ++n)
+    names.push_back(base_family_name(scene, system, found.point, found.index, mode.place + n));
+  return fmt::format("left out at {}: {} with T = {:.9g}, outside starts.sweep.period [{:g}, {:g}]",
+                     point_text(system, found.point), fmt::join(names, ", "), mode.period, found.period_from,
+                     found.period_to);
+}
+
+}  // namespace
+
 std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::System& system) {
   std::vector<queue::Task> tasks;
   for (const std::vector<double>& point : starts::find_fixed_points(system, scene.fixed_points.grid))
     tasks.push_back(task_of(SweepWork{static_cast<int>(tasks.size()), point}));
-  core::log_info(fmt::format("{} equilibria; sweeping the period from {:g} to {:g} at each", tasks.size(),
-                             scene.sweep.period_from, scene.sweep.period_to));
+  const std::string range = scene.sweep.period
+                                ? fmt::format("from {:g} to {:g}", scene.sweep.period->from, scene.sweep.period->to)
+                                : "over all oscillations";
+  core::log_info(fmt::format("{} equilibria; sweeping the period {} at each", tasks.size(), range));
   if (tasks.empty())
     throw core::InputError(
         "Newton's method finds no equilibrium from starts.fixed_points.grid: give start values nearer to one");
@@ -30,16 +56,19 @@ std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const syst
     const auto& [task, outcome] = ended;
     if (outcome.failed) continue;  // gather_failed_sweeps
     const SweepOutcome found = unpack_sweep_outcome(outcome.payload);
-    if (found.modes.empty() && found.rejected.empty())
-      summary.remarks.push_back(fmt::format("no small oscillations around {} for T in [{:g}, {:g}]",
-                                            point_text(system, found.point), scene.sweep.period_from,
-                                            scene.sweep.period_to));
+    check_names(scene, system, found);
+    if (found.modes.empty() && found.rejected.empty()) {
+      const std::string range =
+          scene.sweep.period ? fmt::format(" for T in [{:g}, {:g}]", found.period_from, found.period_to) : "";
+      summary.remarks.push_back(
+          fmt::format("no small oscillations around {}{}", point_text(system, found.point), range));
+    }
+    for (const LeftOutMode& mode : found.left_out) summary.remarks.push_back(left_out_text(scene, system, found, mode));
     for (const std::string& reason : found.rejected)
       summary.remarks.push_back(fmt::format("dip passed over at {}: {}", point_text(system, found.point), reason));
-    for (std::size_t n = 0; n < found.modes.size(); ++n) {
-      const std::string name = base_family_name(scene, system, found.point, found.index, static_cast<int>(n));
-      const std::string branch_key = fmt::format("{:04}.{:04}", found.index, n);
-      const FoundMode& mode = found.modes[n];
+    for (const FoundMode& mode : found.modes) {
+      const std::string name = base_family_name(scene, system, found.point, found.index, mode.place);
+      const std::string branch_key = fmt::format("{:04}.{:04}", found.index, mode.place);
       BranchWork work;
       work.key = work.lineage.family = branch_key;
       work.name = name;

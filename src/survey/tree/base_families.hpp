@@ -20,7 +20,8 @@ using SweepsEnded = std::map<std::string, std::pair<queue::Task, queue::TaskOutc
 [[nodiscard]] std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::System& system);
 
 /// The families at equilibria in the order of their keys: equilibria sorted, longest period first; no more than the
-/// scene allows. What was passed over is remarked in the summary.
+/// scene allows. What was passed over or left out is remarked in the summary. Throws InputError where the scene names
+/// more families than an equilibrium has.
 [[nodiscard]] std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const systems::System& system,
                                                          const SweepsEnded& sweeps, Summary& summary);
 

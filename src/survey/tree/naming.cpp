@@ -26,6 +26,13 @@ bool is_at(const systems::System& system, const std::vector<double>& point, cons
 
 }  // namespace
 
+std::size_t names_given(const scene::Scene& scene, const systems::System& system, const std::vector<double>& point) {
+  std::size_t most = 0;
+  for (const scene::FixedPoints::Names& entry : scene.fixed_points.names)
+    if (is_at(system, point, entry.point)) most = std::max(most, entry.names.size());
+  return most;
+}
+
 std::string base_family_name(const scene::Scene& scene, const systems::System& system, const std::vector<double>& point,
                              int index, int mode) {
   for (const scene::FixedPoints::Names& entry : scene.fixed_points.names)

@@ -8,10 +8,14 @@
 
 namespace orbweaver::survey {
 
-/// The name of the `mode`-th family (longest period first) of small oscillations around `point`: the scene's, if it
-/// names the equilibrium (angles modulo 2 pi), else "Equilibrium 2, mode 1".
+/// The name of the `mode`-th family of small oscillations around `point`, of all that there are, longest period first:
+/// the scene's, if it names the equilibrium (angles modulo 2 pi), else "Equilibrium 2, mode 1".
 [[nodiscard]] std::string base_family_name(const scene::Scene& scene, const systems::System& system,
                                            const std::vector<double>& point, int index, int mode);
+
+/// How many families the scene names at `point`.
+[[nodiscard]] std::size_t names_given(const scene::Scene& scene, const systems::System& system,
+                                      const std::vector<double>& point);
 
 /// The text, cut to what the archive's text columns hold (4096 bytes) with room to spare.
 [[nodiscard]] std::string limited(std::string text);

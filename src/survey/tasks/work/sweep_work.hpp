@@ -26,15 +26,29 @@ struct SweepWork {
 /// A family found by a sweep: where and how it starts.
 struct FoundMode {
   double period = 0.0;
+  int place = 0;            ///< among all families of the equilibrium, those outside the range included
   loop::Tangent direction;  ///< of a loop with cutoff `cutoff`
   int cutoff = 0;
   loop::Isotropy isotropy;
   bool one_direction = true;  ///< a symmetry maps one direction of the start onto the other
 
+  static constexpr int wire_version = 2;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, period, place, direction, cutoff, isotropy, one_direction);
+  }
+};
+
+/// Families with a period outside the range of the sweep.
+struct LeftOutMode {
+  double period = 0.0;
+  int place = 0;  ///< of the first
+  int families = 1;
+
   static constexpr int wire_version = 1;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, period, direction, cutoff, isotropy, one_direction);
+    core::serialize_members(archive, period, place, families);
   }
 };
 
@@ -44,11 +58,15 @@ struct SweepOutcome {
   std::vector<double> point;
   std::vector<FoundMode> modes;       ///< longest period first
   std::vector<std::string> rejected;  ///< a sentence a dip
+  std::vector<LeftOutMode> left_out;  ///< longest period first
+  int families = 0;                   ///< of the equilibrium, those left out and undecided included
+  double period_from = 0.0;           ///< the range swept
+  double period_to = 0.0;
 
-  static constexpr int wire_version = 1;
+  static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, index, point, modes, rejected);
+    core::serialize_members(archive, index, point, modes, rejected, left_out, families, period_from, period_to);
   }
 };
 
