@@ -28,15 +28,15 @@ struct SymmetryGain {
 /// Candidates are every declared equivariance and the identity with shifts p/q, q <= `largest_order`, that the own
 /// isotropy does not generate, and, if it has no reversor, the declared reversors at any phase. With c(z) = e z - z,
 /// the broken part, the signed part of an orbit B seen from A is <c(A), c(B)> / <c(A), c(A)>: 1 at A, and of the other
-/// sign beyond an orbit with the symmetry e. Inner products are means over time, of as many samples as it takes for what
-/// they leave out to be small beside the broken part. Orbits A and B are neighbours of one branch, with its phase
+/// sign beyond an orbit with the symmetry e. Inner products are means over time, of as many samples as it takes for
+/// what they leave out to be small beside the broken part. Orbits A and B are neighbours of one branch, with its phase
 /// convention.
 class SymmetryWatch {
  public:
   SymmetryWatch(const systems::Structure& system, const loop::Isotropy& own, int largest_order = 12);
 
-  /// An orbit as the watch sees it: its harmonics in time, those of 240 samples at first. Worth keeping from one step to
-  /// the next.
+  /// An orbit as the watch sees it: its harmonics in time, those of 240 samples at first. Worth keeping from one step
+  /// to the next.
   struct SampledOrbit {
     loop::Loop source;              ///< the orbit, under any time map
     loop::Loop loop;                ///< evenly in time
