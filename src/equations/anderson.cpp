@@ -11,7 +11,6 @@ namespace {
 
 using VectorMap = Eigen::Map<Eigen::VectorXd>;
 using ConstVectorMap = Eigen::Map<const Eigen::VectorXd>;
-using ConstMatrixMap = Eigen::Map<const Eigen::MatrixXd>;
 
 // Added to the unit diagonal of the normal equations: at the rounding of their entries, so that pairs that depend on
 // each other get some weights and none that are huge.
@@ -59,11 +58,15 @@ void AndersonSolver::mix(std::vector<double>& u) {
   const ConstVectorMap change(_last_change.data(), _size);
   if (used > 0) {
     // Normal equations, scaled to a unit diagonal and slightly regularised: pairs may depend on each other.
-    const ConstMatrixMap differences(_change_differences.data(), _size, used);
-    const Eigen::VectorXd scale = (_gram.diagonal().head(used).array() + least_square).sqrt().inverse();
-    Eigen::MatrixXd matrix = scale.asDiagonal() * _gram.topLeftCorner(used, used) * scale.asDiagonal();
+    using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, depth, depth>;
+    using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, depth, 1>;
+    const SmallVector scale = (_gram.diagonal().head(used).array() + least_square).sqrt().inverse();
+    Small matrix = scale.asDiagonal() * _gram.topLeftCorner(used, used) * scale.asDiagonal();
     matrix.diagonal().array() += regularisation;
-    const Eigen::VectorXd y = matrix.ldlt().solve(scale.cwiseProduct(differences.transpose() * change));
+    SmallVector side(used);
+    for (int a = 0; a < used; ++a)
+      side(a) = scale(a) * ConstVectorMap(_change_differences.data() + a * _size, _size).dot(change);
+    const SmallVector y = matrix.ldlt().solve(side);
     for (int a = 0; a < used; ++a)
       point -= (y(a) * scale(a)) * (ConstVectorMap(_point_differences.data() + a * _size, _size) -
                                     ConstVectorMap(_change_differences.data() + a * _size, _size));

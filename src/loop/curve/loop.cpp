@@ -72,8 +72,8 @@ std::vector<double> state_at(const Loop& loop, double time) {
   std::vector<double> z(d);
   for (std::size_t i = 0; i < d; ++i) z[i] = loop.winding[i] * (two_pi * whole + s) + loop.modes[i];
   for (int k = loop.cutoff; k >= 1; --k) {
-    const double c = std::cos(k * s);
-    const double sn = std::sin(k * s);
+    const double c = s == 0.0 ? 1.0 : std::cos(k * s);  // energies are taken at s = 0, at every orbit
+    const double sn = s == 0.0 ? 0.0 : std::sin(k * s);
     for (int i = 0; i < loop.dimension; ++i)
       z[static_cast<std::size_t>(i)] += loop.cosine(k, i) * c + loop.sine(k, i) * sn;
   }
