@@ -15,7 +15,7 @@
 #include "orbweaver/systems/system.hpp"
 #include "support/stated_system.hpp"
 #include "survey/tree_outcomes.hpp"
-#include "tasks/work/keys.hpp"
+#include "tasks/payload/keys.hpp"
 #include "tree/family_tree.hpp"
 
 namespace {

@@ -10,7 +10,7 @@
 #include "state/checkpoint_keeper.hpp"
 #include "state/reopen.hpp"
 #include "survey/scenes.hpp"
-#include "tasks/work/work.hpp"
+#include "tasks/payload/work.hpp"
 
 namespace {
 

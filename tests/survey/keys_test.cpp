@@ -1,4 +1,4 @@
-#include "tasks/work/keys.hpp"
+#include "tasks/payload/keys.hpp"
 
 #include <gtest/gtest.h>
 

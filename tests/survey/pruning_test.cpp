@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-#include "tasks/work/keys.hpp"
+#include "tasks/payload/keys.hpp"
 
 namespace {
 

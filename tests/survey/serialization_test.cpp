@@ -6,8 +6,8 @@
 #include "state/branch_state.hpp"
 #include "state/checkpoint.hpp"
 #include "support/serialized.hpp"
-#include "tasks/work/payload.hpp"
-#include "tasks/work/work.hpp"
+#include "tasks/payload/payload.hpp"
+#include "tasks/payload/work.hpp"
 
 namespace orbweaver::test {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "orbweaver/queue/task.hpp"
-#include "tasks/work/work.hpp"
+#include "tasks/payload/work.hpp"
 
 namespace orbweaver::test {
 

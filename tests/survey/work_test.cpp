@@ -7,8 +7,8 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "support/stated_system.hpp"
-#include "tasks/work/payload.hpp"
-#include "tasks/work/work.hpp"
+#include "tasks/payload/payload.hpp"
+#include "tasks/payload/work.hpp"
 
 namespace {
 

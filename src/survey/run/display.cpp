@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/log/log.hpp"
-#include "tasks/work/work.hpp"
+#include "tasks/payload/work.hpp"
 #include "tree/end_text.hpp"
 
 namespace orbweaver::survey {

@@ -1,6 +1,6 @@
 #include "branch_state.hpp"
 
-#include "tasks/work/payload.hpp"
+#include "tasks/payload/payload.hpp"
 
 namespace orbweaver::survey {
 

@@ -9,7 +9,7 @@
 #include "orbweaver/continuation/family_curve.hpp"
 #include "orbweaver/core/serialization.hpp"
 #include "orbweaver/queue/task.hpp"
-#include "tasks/work/work.hpp"
+#include "tasks/payload/work.hpp"
 
 namespace orbweaver::survey {
 

@@ -6,7 +6,7 @@
 
 #include "orbweaver/archive/file/sealed_file.hpp"
 #include "orbweaver/core/error.hpp"
-#include "tasks/work/payload.hpp"
+#include "tasks/payload/payload.hpp"
 
 namespace orbweaver::survey {
 

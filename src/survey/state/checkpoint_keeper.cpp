@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/log/log.hpp"
-#include "tasks/work/work.hpp"
+#include "tasks/payload/work.hpp"
 
 namespace orbweaver::survey {
 

@@ -6,7 +6,7 @@
 
 #include "branch_state.hpp"
 #include "orbweaver/scene/differences.hpp"
-#include "tasks/work/keys.hpp"
+#include "tasks/payload/keys.hpp"
 
 namespace orbweaver::survey {
 

@@ -6,7 +6,7 @@
 #include "orbweaver/continuation/family_curve.hpp"
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/systems/system.hpp"
-#include "tasks/work/work.hpp"
+#include "tasks/payload/work.hpp"
 
 namespace orbweaver::survey {
 

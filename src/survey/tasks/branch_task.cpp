@@ -15,7 +15,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "requested.hpp"
-#include "tasks/work/keys.hpp"
+#include "tasks/payload/keys.hpp"
 
 namespace orbweaver::survey {
 

@@ -12,7 +12,7 @@
 #include "orbweaver/queue/executor.hpp"
 #include "orbweaver/scene/scene.hpp"
 #include "state/branch_state.hpp"
-#include "tasks/work/work.hpp"
+#include "tasks/payload/work.hpp"
 
 namespace orbweaver::survey {
 

@@ -7,7 +7,7 @@
 #include "orbweaver/queue/executor.hpp"
 #include "orbweaver/scene/scene.hpp"
 #include "orbweaver/systems/system.hpp"
-#include "tasks/work/work.hpp"
+#include "tasks/payload/work.hpp"
 
 namespace orbweaver::survey {
 

@@ -8,7 +8,7 @@
 
 #include "branch_graph.hpp"
 #include "orbweaver/systems/structure.hpp"
-#include "tasks/work/work.hpp"
+#include "tasks/payload/work.hpp"
 
 namespace orbweaver::survey {
 

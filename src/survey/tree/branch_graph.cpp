@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
-#include "tasks/work/keys.hpp"
+#include "tasks/payload/keys.hpp"
 
 namespace orbweaver::survey {
 

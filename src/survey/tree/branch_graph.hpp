@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "tasks/work/work.hpp"
+#include "tasks/payload/work.hpp"
 
 namespace orbweaver::survey {
 

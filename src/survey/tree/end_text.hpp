@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "tasks/work/branch_work.hpp"
-#include "tasks/work/locate_work.hpp"
+#include "tasks/payload/branch_work.hpp"
+#include "tasks/payload/locate_work.hpp"
 
 namespace orbweaver::survey {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tasks/work/work.hpp"
+#include "tasks/payload/work.hpp"
 
 namespace orbweaver::survey {
 

@@ -11,7 +11,7 @@
 
 #include "family_names.hpp"
 #include "orbweaver/core/error.hpp"
-#include "tasks/work/keys.hpp"
+#include "tasks/payload/keys.hpp"
 
 namespace orbweaver::survey {
 
