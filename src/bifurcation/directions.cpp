@@ -125,6 +125,17 @@ Direction direction_along(const systems::Structure& system, const KernelActions&
   return out;
 }
 
+// A unit vector of the kernel, and `along` times as far along the base's own family; of length 1.
+loop::Tangent leaving_along(loop::Tangent in_kernel, double along, const loop::Tangent& family) {
+  if (family.modes.empty() || along == 0.0) return in_kernel;
+  double square = 0.0;
+  for (const double v : family.modes) square += v * v;
+  const double share = along / std::sqrt(square);
+  for (std::size_t n = 0; n < in_kernel.modes.size(); ++n) in_kernel.modes[n] += share * family.modes[n];
+  in_kernel.normalize();
+  return in_kernel;
+}
+
 // The lines that a symmetry group fixes; about an equilibrium also the oscillations (planes that time shifts turn) that
 // equivariances alone single out.
 std::vector<Eigen::VectorXd> fixed_lines(const KernelActions& group) {
@@ -196,7 +207,7 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   for (const double r : search_amplitudes(q, base, group.constant())) {
     SearchResult result =
         search_directions(system, base, group, kept, start_directions(group.dimension(), q, options.seeds),
-                          expected == 2 ? std::numbers::pi / q : 0.0, r, nudge, lines, options.corrector);
+                          expected == 2 ? std::numbers::pi / q : 0.0, r, nudge, lines, options);
     const auto count = static_cast<int>(result.found.size());
     const bool possible = expected == 0 || count <= expected;
     if (amplitude == 0.0 || (possible && result.found.size() > best.found.size())) {
@@ -214,7 +225,7 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   std::vector<Direction> out;
   for (const FoundOrbit& orbit : best.found)
     out.push_back(
-        {base, group.vector_at(orbit.coordinates),
+        {base, leaving_along(group.vector_at(orbit.coordinates), orbit.along, options.family),
          loop::find_isotropy(system.structure(), orbit.loop, found_tolerance * amplitude, group.denominator()),
          has_other_sides(group, orbit.coordinates), amplitude});
   return out;

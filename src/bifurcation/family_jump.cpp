@@ -38,8 +38,18 @@ bool passes_two_only_at_folds(const systems::Structure& system, const loop::Isot
          std::none_of(isotropy.begin(), isotropy.end(), [](const loop::SymmetryElement& e) { return e.reversing; });
 }
 
+bool passes_one_unseen(const spectrum::Stability& from, const spectrum::Stability& to) {
+  const auto is_elliptic = [](const spectrum::Stability& s) {
+    return s.fundamental.size() == 1 && std::abs(s.fundamental[0].real()) + s.fundamental_error[0] < 2.0;
+  };
+  if (!is_elliptic(from) || !is_elliptic(to)) return false;
+  return from.twist * to.twist < 0.0 && from.fundamental[0].real() + to.fundamental[0].real() > 0.0;
+}
+
 bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
                 const continuation::Options& options, const KnownStability& from, const KnownStability& to) {
+  if (passes_one_unseen(from.stability, to.stability)) return true;
+  if (!passes_two_only_at_folds(system->structure(), isotropy)) return false;
   const TestFunction two{TestFunction::Kind::sector, {1, 0}};
   const int before = evaluate(two, system->structure(), from.stability).sign();
   const int after = evaluate(two, system->structure(), to.stability).sign();

@@ -86,11 +86,12 @@ Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& 
   const loop::SymmetryGroup group(system.structure(), isotropy);
   const int multiplicity = sector.multiplicity(group.order());
   Kernel kernel;
-  loop::Tangent tangent = point.tangent;
+  kernel.family = point.tangent;
   if (even_in_time || multiplicity > 1) {
     const loop::Loop even = loop::evenly_in_time(point.loop);
     kernel.base = loop::repeated(even, multiplicity);
-    tangent = loop::repeated(even, loop::with_time_map(point.loop, tangent, {}, even.cutoff), multiplicity);
+    kernel.family =
+        loop::repeated(even, loop::with_time_map(point.loop, point.tangent, {}, even.cutoff), multiplicity);
   } else {
     kernel.base = point.loop;
   }
@@ -104,7 +105,7 @@ Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& 
   std::vector<OffBranchTriplet> all;
   for (const std::vector<int>& signs : split.signs)
     for (OffBranchTriplet& t :
-         continuation::sector_triplets(system, kernel.base, split.involutions, signs, tangent, options))
+         continuation::sector_triplets(system, kernel.base, split.involutions, signs, kernel.family, options))
       all.push_back(std::move(t));
   std::stable_sort(all.begin(), all.end(), [](const OffBranchTriplet& a, const OffBranchTriplet& b) {
     return a.singular_value < b.singular_value;

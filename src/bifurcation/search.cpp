@@ -18,6 +18,7 @@ namespace {
 constexpr double same_direction = 0.02;  // radians; settled ones agree much closer
 constexpr double settled = 1e-3;         // radians between the pinned direction and the one of the orbit found
 constexpr double largest_tilt = 1.0;     // radians; an orbit that leaves the base further off lies elsewhere
+constexpr double farthest_along = 10.0;  // of the part in the kernel: further along the family it is another place
 constexpr int most_pins = 8;             // each a Newton solve; not measured
 constexpr double returned = 0.2;         // of the nudge: what remains of it at an isolated direction, which is settled
 constexpr double least_length = 0.1;     // of a normal vector: shorter ones are rounded to few directions
@@ -36,17 +37,16 @@ struct Search {
   const KernelActions& group;
   const loop::Isotropy& isotropy;
   double amplitude;
-  const corrector::Options& options;
+  const DirectionOptions& options;
 
-  // Where the orbit leaves the base, or nothing if it is not near the base along the kernel.
-  [[nodiscard]] std::optional<Eigen::VectorXd> direction_of(const loop::Loop& orbit) const {
-    std::vector<double> gap = loop::with_cutoff(base, orbit.cutoff).modes;
-    for (std::size_t n = 0; n < gap.size(); ++n) gap[n] = orbit.modes[n] - gap[n];
-    const Eigen::VectorXd inside = group.coordinates_of(gap);
-    const double length = inside.norm();
-    const double whole = Eigen::Map<const Eigen::VectorXd>(gap.data(), static_cast<Eigen::Index>(gap.size())).norm();
-    if (!(length <= amplitude / std::cos(largest_tilt) && whole <= std::numbers::sqrt2 * length)) return std::nullopt;
-    return inside / length;
+  // Nothing if it is not near the base along the kernel and the base's family.
+  [[nodiscard]] std::optional<Gap> near_gap(const loop::Loop& orbit) const {
+    Gap gap = gap_between(base, orbit, group, options.family.modes);
+    const double length = gap.inside.norm();
+    if (!(length <= amplitude / std::cos(largest_tilt) && gap.beside <= length &&
+          std::abs(gap.along) <= farthest_along * length))
+      return std::nullopt;
+    return gap;
   }
 
   // Newton's method turns away from the direction that it is pinned to, or stalls on the way: it is pinned again to the
@@ -54,15 +54,17 @@ struct Search {
   template <class Unwanted>
   [[nodiscard]] std::optional<FoundOrbit> settle(Eigen::VectorXd pinned, const Unwanted& unwanted) const {
     for (int pins = 0; pins < most_pins; ++pins) {
-      const corrector::Result result = born_orbit(system, base, group.vector_at(pinned), isotropy, amplitude, options);
-      const auto direction = direction_of(result.loop);
-      if (!direction) return std::nullopt;
-      const double tilt = (*direction - pinned).norm();
-      pinned = *direction;
+      const corrector::Result result = born_orbit(system, base, group.vector_at(pinned), isotropy, amplitude,
+                                                 options.corrector);
+      const std::optional<Gap> gap = near_gap(result.loop);
+      if (!gap) return std::nullopt;
+      const double length = gap->inside.norm();
+      const double tilt = (gap->inside / length - pinned).norm();
+      pinned = gap->inside / length;
       if (result.converged() && unwanted(pinned)) return std::nullopt;
       if (tilt > settled) continue;
       if (!result.converged()) return std::nullopt;
-      return FoundOrbit{pinned, result.loop};
+      return FoundOrbit{pinned, gap->along / length, result.loop};
     }
     return std::nullopt;
   }
@@ -89,10 +91,28 @@ struct Search {
 
 }  // namespace
 
+Gap gap_between(const loop::Loop& base, const loop::Loop& orbit, const KernelActions& group,
+                const std::vector<double>& family) {
+  std::vector<double> gap = loop::with_cutoff(base, orbit.cutoff).modes;
+  for (std::size_t n = 0; n < gap.size(); ++n) gap[n] = orbit.modes[n] - gap[n];
+  Gap out;
+  out.inside = group.coordinates_of(gap);
+  Eigen::VectorXd rest = Eigen::Map<const Eigen::VectorXd>(gap.data(), static_cast<Eigen::Index>(gap.size()));
+  if (!family.empty()) {
+    const Eigen::Map<const Eigen::VectorXd> direction(family.data(), static_cast<Eigen::Index>(family.size()));
+    const Eigen::VectorXd unit = direction.normalized();
+    const Eigen::Index both = std::min(unit.size(), rest.size());
+    out.along = unit.head(both).dot(rest.head(both));
+    rest.head(both) -= out.along * unit.head(both);
+  }
+  out.beside = std::sqrt(std::max(0.0, rest.squaredNorm() - out.inside.squaredNorm()));
+  return out;
+}
+
 SearchResult search_directions(const systems::System& system, const loop::Loop& base, const KernelActions& group,
                                const loop::Isotropy& isotropy, std::vector<Eigen::VectorXd> starts, double partner,
                                double amplitude, double nudge, const std::vector<Eigen::VectorXd>& known,
-                               const corrector::Options& options) {
+                               const DirectionOptions& options) {
   const Search search{system, base, group, isotropy, amplitude, options};
   SearchResult out;
   std::vector<Eigen::VectorXd> taken = known;

@@ -27,6 +27,8 @@ constexpr double negligible = 1e-8;
 constexpr double small_share = 0.01;
 /// Phases of a reversor that are watched, the closest ones. Not measured.
 constexpr std::size_t phases = 3;
+/// Of the amplitude: what breaks a symmetry that is about to be gained. Not measured.
+constexpr double nearly = 0.2;
 /// Windings are whole numbers: anything below a half would do.
 constexpr double same_winding = 1e-9;
 /// Rounding of a correlation in parts of |A|^2 + |B|^2, with room: what is below is computed without cancellation.
@@ -54,6 +56,19 @@ void reduce(const std::vector<int>& angles, Eigen::VectorXd& of_a, Eigen::Vector
   }
 }
 
+bool keeps_winding(const Eigen::MatrixXd& matrix, double sign, const loop::Loop& loop) {
+  const Eigen::Map<const Eigen::VectorXd> winding(loop.winding.data(), loop.dimension);
+  return (sign * (matrix * winding) - winding).isZero(same_winding);
+}
+
+// Those that generate the most first.
+std::vector<SymmetryGain> ordered(std::vector<std::pair<std::size_t, SymmetryGain>> found) {
+  std::stable_sort(found.begin(), found.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
+  std::vector<SymmetryGain> out;
+  for (auto& [order, gain] : found) out.push_back(std::move(gain));
+  return out;
+}
+
 bool generates(const loop::Isotropy& group, const SymmetryGain& gain, const std::vector<int>& angles) {
   return std::any_of(group.begin(), group.end(), [&](const loop::SymmetryElement& e) {
     return !e.reversing && e.shift_numerator == gain.shift_numerator && e.shift_denominator == gain.shift_denominator &&
@@ -69,19 +84,20 @@ struct SymmetryWatch::Products {
   double second;  // <c(B), c(B)>
 };
 
-SymmetryWatch::SymmetryWatch(const systems::Structure& system, const loop::Isotropy& own, int largest_order)
+SymmetryWatch::SymmetryWatch(const systems::Structure& system, const loop::Isotropy& own, int largest_order,
+                             int largest_repetition)
     : _system(system), _own(own) {
-  core::require(largest_order >= 1, "a symmetry watch needs orders of 1 or more");
+  core::require(largest_order >= 1 && largest_repetition >= 1, "a symmetry watch needs orders of 1 or more");
   const loop::Isotropy group = loop::SymmetryGroup(system, own).elements();
   std::vector<systems::Symmetry> symmetries{{"1", systems::AffineMap::identity(system.dimension)}};
   symmetries.insert(symmetries.end(), system.equivariances.begin(), system.equivariances.end());
   for (const systems::Symmetry& s : symmetries) {
     const bool is_identity = &s == &symmetries.front();  // 1@p/q generates 1@1/q
     Shifted shifted{s, {}};
-    for (int q = is_identity ? 2 : 1; q <= largest_order; ++q)
-      for (int p = 0; p < q; ++p) {
+    for (int q = is_identity ? 2 : 1; q <= (is_identity ? largest_repetition : largest_order); ++q)
+      for (int p = is_identity ? 1 : 0; p < (is_identity ? 2 : q); ++p) {
         SymmetryGain candidate{s.name, false, s.map, p, q, 0.0};
-        const bool is_new = is_identity ? p == 1 : std::gcd(p, q) == 1;
+        const bool is_new = is_identity || std::gcd(p, q) == 1;
         if (is_new && !generates(group, candidate, system.angles)) shifted.candidates.push_back(std::move(candidate));
       }
     _equivariances.push_back(std::move(shifted));
@@ -223,6 +239,25 @@ std::size_t SymmetryWatch::generated_with(const SymmetryGain& gain) const {
   return loop::SymmetryGroup(_system, generators).elements().size();
 }
 
+std::vector<SymmetryGain> SymmetryWatch::nearly_gained(const SampledOrbit& from, const SampledOrbit& to) const {
+  const Eigen::Index moving = to.coefficients.cols() - 1;
+  const double small = nearly * to.coefficients.rightCols(moving).norm();
+  std::vector<std::pair<std::size_t, SymmetryGain>> found;
+  for (const auto& [symmetry, candidates] : _equivariances) {
+    if (!keeps_winding(symmetry.map.matrix, 1.0, to.loop)) continue;
+    const systems::AffineMap inverse = symmetry.map.inverse();
+    const Correlation correlation(inverse, to, to, _system.angles);
+    for (const SymmetryGain& candidate : candidates) {
+      if (!(correlation.at(shift_of(candidate)) < small * small)) continue;
+      SymmetryGain seen = candidate;
+      const Products products = compare_resolved(seen, from, to);
+      if (products.mixed > 0.0 && products.second < std::min(products.first, small * small))
+        found.emplace_back(generated_with(candidate), candidate);
+    }
+  }
+  return ordered(std::move(found));
+}
+
 std::vector<SymmetryGain> SymmetryWatch::all_passed(const SampledOrbit& from, const SampledOrbit& to) const {
   std::vector<std::pair<std::size_t, SymmetryGain>> found;
   const auto consider = [&](SymmetryGain candidate) {
@@ -231,31 +266,24 @@ std::vector<SymmetryGain> SymmetryWatch::all_passed(const SampledOrbit& from, co
     if (products.mixed < 0.0 || std::sqrt(products.second) <= negligible * to.size)
       found.emplace_back(generated_with(candidate), candidate);
   };
-  const auto keeps_winding = [&from](const Eigen::MatrixXd& matrix, double sign) {
-    const Eigen::Map<const Eigen::VectorXd> winding(from.loop.winding.data(), from.loop.dimension);
-    return (sign * (matrix * winding) - winding).isZero(same_winding);
-  };
   const double rounding = correlation_rounding * (from.size * from.size + to.size * to.size) +
                           (from.left_out + to.left_out) * (from.size + to.size);
   for (const auto& [symmetry, candidates] : _equivariances) {
-    if (!keeps_winding(symmetry.map.matrix, 1.0)) continue;
+    if (!keeps_winding(symmetry.map.matrix, 1.0, from.loop)) continue;
     const systems::AffineMap inverse = symmetry.map.inverse();
     const Correlation correlation(inverse, from, to, _system.angles);
     for (const SymmetryGain& candidate : candidates)
       if (correlation.at(shift_of(candidate)) <= rounding) consider(candidate);
   }
   for (const systems::Symmetry& r : _reversors) {
-    if (!keeps_winding(r.map.matrix, -1.0)) continue;
+    if (!keeps_winding(r.map.matrix, -1.0, from.loop)) continue;
     const loop::Loop image = loop::transformed(from.loop, r.map, true, 0.0);
     std::vector<loop::ShiftMinimum> minima = loop::shift_minima(image, from.loop, _system.angles);
     if (minima.size() > phases) minima.resize(phases);
     for (const loop::ShiftMinimum& minimum : minima)
       consider({r.name, true, r.map, 0, 1, -minimum.shift + std::ceil(minimum.shift)});
   }
-  std::stable_sort(found.begin(), found.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
-  std::vector<SymmetryGain> out;
-  for (auto& [order, gain] : found) out.push_back(std::move(gain));
-  return out;
+  return ordered(std::move(found));
 }
 
 double SymmetryWatch::signed_part(const SymmetryGain& gain, const loop::Loop& a, const loop::Loop& at) const {

@@ -22,6 +22,9 @@ namespace {
 /// Of the corrector's tolerance on sqrt(loss), for the estimated error of the nodal values: the residual multiplies it
 /// by the field's Jacobian and 2 pi K/T, and the loss judges afterwards. Not measured.
 constexpr double of_loss_tolerance = 1e-2;
+/// The tolerance on sqrt(loss) to which the way is solved where the scene's is larger: a scene's tolerance may decide how
+/// well an orbit is resolved, but not on which side of a narrow gap the branch goes on. The default.
+constexpr double of_the_way = 1e-10;
 /// A change that small, in parts of that tolerance, is good enough even if it shrinks no more. Not measured.
 constexpr double good_enough = 0.3;
 /// Roundings of nodal values after a filter over the whole loop and the elimination. Not measured.
@@ -181,7 +184,7 @@ equations::AndersonSolver::Options CollocationProblem::solver_options() {
   const double amplitude = std::min(1.0, std::max(state().amplitude, least_amplitude));
   double size = amplitude;
   for (const double c : e.centre()) size = std::max(size, std::abs(c));
-  solver.tolerance = of_loss_tolerance * _options.corrector.tolerance * amplitude;
+  solver.tolerance = of_loss_tolerance * std::min(_options.corrector.tolerance, of_the_way) * amplitude;
   solver.rounding = std::max(good_enough * solver.tolerance, nodal_rounding * size);
   solver.scaled_from = e.period_at();
   solver.border_scale = amplitude;

@@ -117,8 +117,12 @@ AndersonSolver::Result AndersonSolver::solve(PreconditionedEquations& equations,
     // As far as the digits go: the changes are small and shrink no more. What they leave is the loss's to judge.
     recent[since_factor % watched] = size;
     const double least = *std::min_element(recent, recent + watched);
-    const bool stagnant = since_factor >= before_stagnation && size < options.stagnation * options.tolerance &&
-                          least > shrinks * recent[(since_factor + 1) % watched];
+    const bool shrinks_no_more =
+        since_factor >= before_stagnation && least > shrinks * recent[(since_factor + 1) % watched];
+    const bool at_end =
+        result.factored && since_factor > (shrinks_no_more ? options.fresh_iterations : options.slow_iterations);
+    const double near = (at_end ? options.stagnation_at_end : options.stagnation) * options.tolerance;
+    const bool stagnant = shrinks_no_more && size < near;
     if (stagnant) {
       result.last_change = size;
       result.converged = true;
@@ -128,7 +132,7 @@ AndersonSolver::Result AndersonSolver::solve(PreconditionedEquations& equations,
       result.last_change = size;
       return result;
     }
-    if (diverged || since_factor > (result.factored ? options.fresh_iterations : options.stale_iterations)) {
+    if (diverged || at_end || (!result.factored && since_factor > options.stale_iterations)) {
       if (diverged) result.last_change = size;
       if (result.factored) return result;
       if (diverged) u = _prediction;

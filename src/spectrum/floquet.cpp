@@ -195,6 +195,7 @@ Stability without_errors(const FloquetIndices& indices, int order) {
   stability.full = indices.full;
   stability.fundamental = indices.fundamental;
   stability.fundamental_order = order;
+  stability.twist = indices.twist;
   stability.full_error.assign(indices.full.size(), 0.0);
   stability.fundamental_error.assign(indices.fundamental.size(), 0.0);
   return stability;

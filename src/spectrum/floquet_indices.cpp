@@ -41,10 +41,10 @@ Complex power(Complex mu, int order) {
   return result;
 }
 
-double trace_of_product(const TransverseFlow& flow) {
+Eigen::Matrix2d product_of_factors(const TransverseFlow& flow) {
   Eigen::Matrix2d product = matrix_in<2>(flow.factors, 0, 2);
   for (Eigen::Index m = 1; m < flow.factors.cols(); ++m) product = (matrix_in<2>(flow.factors, m, 2) * product).eval();
-  return product.trace();
+  return product;
 }
 
 std::vector<Eigen::MatrixXd> factors_of(const TransverseFlow& flow, int repeated) {
@@ -63,9 +63,11 @@ bool is_single_pair(const systems::Structure& system, const TransverseFlow& flow
 
 FloquetIndices floquet_indices(const systems::Structure& system, const TransverseFlow& flow, int order) {
   FloquetIndices result;
-  if (system.symplectic && flow.dimension() == 2)
-    result.fundamental = {trace_of_product(flow)};
-  else
+  if (system.symplectic && flow.dimension() == 2) {
+    const Eigen::Matrix2d map = product_of_factors(flow);
+    result.fundamental = {map.trace()};
+    if (flow.orientation != 0.0) result.twist = 0.5 * flow.orientation * (map(1, 0) - map(0, 1));
+  } else
     result.fundamental = product_eigenvalues(factors_of(flow, 1), system.symplectic);
   const int sign = sign_of(flow.around);
   if (sign == 0) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <complex>
+#include <limits>
 #include <vector>
 
 #include "orbweaver/systems/structure.hpp"
@@ -12,6 +13,7 @@ namespace orbweaver::spectrum {
 struct FloquetIndices {
   std::vector<std::complex<double>> full;         ///< of the whole period
   std::vector<std::complex<double>> fundamental;  ///< of the fundamental map
+  double twist = std::numeric_limits<double>::quiet_NaN();  ///< as in Stability
 };
 
 /// True where g^p is plus or minus the unit map of a plane: the index is a trace, the full one its Chebyshev

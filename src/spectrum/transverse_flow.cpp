@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "matrix_table.hpp"
 #include "orbweaver/ad/lanes.hpp"
@@ -159,6 +160,11 @@ TransverseFlow reduced(const Chain& chain, const FundamentalGroup& group, core::
   }
   const Eigen::MatrixXd frame = first;
   flow.around = frame.transpose() * group.around * frame;
+  if constexpr (D == 4 && C == 2) {
+    Eigen::Matrix4d all;
+    all << chain.fields.col(0), chain.gradients.col(0), first;
+    flow.orientation = std::copysign(1.0, all.determinant());
+  }
   return flow;
 }
 

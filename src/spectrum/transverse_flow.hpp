@@ -14,6 +14,9 @@ struct TransverseFlow {
   Eigen::MatrixXd factors;  ///< segment by segment (matrix_table.hpp); the last one ends with g^-1, in the first basis
   Eigen::MatrixXd errors;   ///< the chain's truncation estimates in the same bases; empty if it has none
   Eigen::MatrixXd around;   ///< g^p in the first basis
+  /// In four dimensions with a conserved energy: +1 or -1, the orientation of the first basis behind f and the gradient
+  /// of the energy. 0 otherwise.
+  double orientation = 0.0;
 
   [[nodiscard]] Eigen::Index dimension() const { return around.rows(); }
 };

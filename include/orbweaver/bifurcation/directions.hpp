@@ -16,7 +16,8 @@ namespace orbweaver::bifurcation {
 struct Direction {
   loop::Loop base;          ///< the crossing's orbit as the born family sees it: m times around, started where the born
                             ///< orbits' reversor, if they have one, has phase 0
-  loop::Tangent tangent;    ///< in the modes of `base`, unit length
+  loop::Tangent tangent;    ///< in the modes of `base`, unit length: in the kernel, and where the born family moves along
+                            ///< the base's own in first order too (q = 3), so far along that
   loop::Isotropy isotropy;  ///< of the born orbits (and of base): generators as loop::find_isotropy gives them
   bool both_sides =
       false;               ///< true: the opposite leads to other orbits; false: a symmetry or time shift maps the sides
@@ -29,6 +30,9 @@ struct DirectionOptions {
   /// How far symmetries may take kernel vectors out of the kernel: these are good to 1e-6, and one that is missing or
   /// wrong shows as a number of order 1.
   double kernel_tolerance = 1e-4;
+  /// The direction of the base's own family, in the modes of the base: orbits that are born may lie along it. Empty at
+  /// an equilibrium.
+  loop::Tangent family{};
   int seeds = 12;                  ///< of a search in a plane; 2^(n-1) times as many in n > 2 dimensions
   corrector::Options corrector{};  ///< of a search
 };

@@ -21,6 +21,10 @@ struct KnownStability {
   const spectrum::Stability& stability;
 };
 
+/// True if the sense in which neighbours go around (`Stability::twist`) differs between two elliptic orbits that are
+/// nearer to the index 2 than to -2. Along one family it would have had to pass 2 twice on the way.
+[[nodiscard]] bool passes_one_unseen(const spectrum::Stability& from, const spectrum::Stability& to);
+
 /// True if a step along a family that passes 2 only at folds has gone over to another one: an index has passed 2, and
 /// the energy does not turn on the way. Also where that cannot be told, which a shorter step may change: the directions
 /// of the family at the two orbits cannot be had, or one turns too far from the chord

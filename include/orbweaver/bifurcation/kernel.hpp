@@ -13,6 +13,7 @@ namespace orbweaver::bifurcation {
 /// The flat directions at a crossing besides the family's own and the time shift.
 struct Kernel {
   loop::Loop base;                      ///< the crossing's orbit, as many times around as born orbits take to close
+  loop::Tangent family;                 ///< the direction of the crossing's own family, in the modes of `base`
   std::vector<loop::Tangent> vectors;   ///< with orthonormal modes
   std::vector<double> singular_values;  ///< of the loop's Jacobian in the sector, smallest first
 

@@ -25,15 +25,16 @@ struct SymmetryGain {
 /// Watches a branch for orbits with more symmetry than its own isotropy: there it meets a more symmetric family, at one
 /// of that family's crossings (docs/mathematics.md, "Arrivals").
 ///
-/// Candidates are every declared equivariance and the identity with shifts p/q, q <= `largest_order`, that the own
-/// isotropy does not generate, and, if it has no reversor, the declared reversors at any phase. With c(z) = e z - z,
+/// Candidates are every declared equivariance with shifts p/q, q <= `largest_order`, and the identity with shifts 1/q,
+/// q <= `largest_repetition`, that the own isotropy does not generate, and, if it has no reversor, the declared reversors at any phase. With c(z) = e z - z,
 /// the broken part, the signed part of an orbit B seen from A is <c(A), c(B)> / <c(A), c(A)>: 1 at A, and of the other
 /// sign beyond an orbit with the symmetry e. Inner products are means over time, of as many samples as it takes for
 /// what they leave out to be small beside the broken part. Orbits A and B are neighbours of one branch, with its phase
 /// convention.
 class SymmetryWatch {
  public:
-  SymmetryWatch(const systems::Structure& system, const loop::Isotropy& own, int largest_order = 12);
+  SymmetryWatch(const systems::Structure& system, const loop::Isotropy& own, int largest_order = 12,
+                int largest_repetition = 100);
 
   /// An orbit as the watch sees it: its harmonics in time, those of 240 samples at first. Worth keeping from one step
   /// to the next.
@@ -51,6 +52,10 @@ class SymmetryWatch {
   /// nothing. Where it vanishes at `b` to that size, `b` lies on the crossing, or the corrector has slipped onto the
   /// symmetric family.
   [[nodiscard]] std::vector<SymmetryGain> all_passed(const SampledOrbit& a, const SampledOrbit& b) const;
+
+  /// The candidates without reversors whose broken part is less than a fifth of the amplitude at `b`, and smaller than
+  /// at `a`, those that generate the most first: the branch is on its way to an orbit that has them.
+  [[nodiscard]] std::vector<SymmetryGain> nearly_gained(const SampledOrbit& a, const SampledOrbit& b) const;
 
   /// The signed part of `at` seen from `a`: its root between two orbits is where `gain` may hold.
   [[nodiscard]] double signed_part(const SymmetryGain& gain, const loop::Loop& a, const loop::Loop& at) const;

@@ -21,9 +21,13 @@ class AndersonSolver {
     int scaled_from = -1;      ///< changes of unknowns from here on (the borders) count `border_scale` times; -1: none
     double border_scale = 1.0;
     double stagnation = 1000.0;  ///< changes below this many tolerances that shrink no more are as far as digits go
+    /// The same at the end of the iterations with a new factor: beside a narrow gap between families the preconditioner
+    /// enlarges rounding so much in the direction across it.
+    double stagnation_at_end = 1e6;
     double divergence = 5.0;     ///< a change this large is a failure: angles and momenta of an orbit are of order 1
     int stale_iterations = 10;   ///< with a kept factor; then it is renewed, which costs as much as some ten iterations
-    int fresh_iterations = 18;   ///< with a new factor; then the solve has failed
+    int fresh_iterations = 18;   ///< with a new factor; then the solve has failed, unless changes still shrink,
+    int slow_iterations = 60;    ///< which may go on for so many
     int most_iterations = 1000;  ///< over all factors: a bound from outside, which the two above do not reach
   };
   /// Called in each iteration with its number, from 0, and the size of the change: its largest entry, borders scaled.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <complex>
+#include <limits>
 #include <vector>
 
 #include "orbweaver/core/mpi/team.hpp"
@@ -34,6 +35,10 @@ struct Stability {
   int fundamental_order = 1;                      ///< p
   std::vector<std::complex<double>> fundamental;  ///< of P
   std::vector<double> fundamental_error;          ///< bound on the absolute error of each
+  /// In four dimensions, symplectic: (P_21 - P_12)/2 of the transverse map in an orthonormal basis that is oriented the
+  /// same way along a family. Of an elliptic orbit (|k| < 2) its sign is the sense in which neighbours go around, and
+  /// |twist| >= |sin| of the angle: along a family it changes only where a multiplier passes 1 or -1. NaN otherwise.
+  double twist = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Stability of an accepted orbit, at a cost proportional to the number of its harmonics.

@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "orbweaver/bifurcation/subharmonic_crossing.hpp"
+#include "orbweaver/loop/curve/time_samples.hpp"
+#include "orbweaver/loop/symmetry/alignment.hpp"
 #include "orbweaver/numerics/lagrange.hpp"
 
 namespace orbweaver::survey {
@@ -37,8 +40,18 @@ constexpr double on_the_way = 0.7;
 /// A part that turns instead of vanishing keeps a size of about 1.
 constexpr double proportional = 2.0;
 constexpr double still_vanishing = 0.05;
+/// The first resonance whose families leave so nearly in all directions that rounding may decide among them: terms of
+/// order q - 2 fix the angle beside one of order 2 (docs/mathematics.md, "Kernels and directions").
+constexpr int least_weak_resonance = 5;
+/// How far an orbit may be from the crossing beneath it, in parts of what of it does not repeat: within 30 degrees of the
+/// directions in which orbits leave there. Not measured.
+constexpr double beside = 1.15;
 /// A smaller broken part does not say in which direction the branch came.
 constexpr double telling = 1e-2;
+
+int multiplicity_of(const bifurcation::SymmetryGain& gain) {
+  return gain.name == "1" && !gain.reversing ? gain.shift_denominator : 1;
+}
 
 std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuation::FamilyCurve& family,
                                         const bifurcation::SymmetryWatch& watch, const bifurcation::SymmetryGain& gain,
@@ -77,7 +90,17 @@ std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuat
   record.period = at_zero(samples, &Sample::period);
   record.energy = at_zero(samples, &Sample::energy);
   record.near = sketch_of(near);
+  record.multiplicity = multiplicity_of(gain);
   return record;
+}
+
+/// What of a loop (even in time) does not repeat `times` times a period: rms over time.
+double not_repeated(const loop::Loop& loop, int times) {
+  double square = 0.0;
+  for (int k = 1; k <= loop.cutoff; ++k)
+    for (int i = 0; k % times != 0 && i < loop.dimension; ++i)
+      square += 0.5 * (loop.cosine(k, i) * loop.cosine(k, i) + loop.sine(k, i) * loop.sine(k, i));
+  return std::sqrt(square);
 }
 
 }  // namespace
@@ -94,6 +117,37 @@ std::optional<ArrivalRecord> arrival_between(const systems::System& system, cont
                                              const bifurcation::SymmetryWatch::SampledOrbit& to_sampled) {
   for (const bifurcation::SymmetryGain& gain : watch.all_passed(from_sampled, to_sampled))
     if (auto record = arrival_by(system, family, watch, gain, from, to)) return record;
+  return std::nullopt;
+}
+
+bool locate_beneath(const std::shared_ptr<const systems::System>& system, const continuation::Options& options,
+                    const loop::Loop& last, ArrivalRecord& arrival) {
+  if (arrival.multiplicity == 1) return false;
+  const loop::Loop even = loop::evenly_in_time(last);
+  const auto crossing = bifurcation::crossing_beneath(system, even, arrival.multiplicity, options);
+  if (!crossing) return false;
+  const loop::Loop met = loop::repeated(loop::evenly_in_time(crossing->point.loop), arrival.multiplicity);
+  const double distance = loop::align(system->structure(), even, met).distance;
+  if (distance > beside * not_repeated(even, arrival.multiplicity)) return false;
+  arrival.period = met.period;
+  arrival.energy = continuation::energy_of(*system, met);
+  arrival.located = true;
+  return true;
+}
+
+std::optional<ArrivalRecord> arrival_ahead(const std::shared_ptr<const systems::System>& system,
+                                           const continuation::FamilyCurve& family,
+                                           const bifurcation::SymmetryWatch& watch) {
+  const loop::Loop& last = family.known().back().loop;
+  for (const bifurcation::SymmetryGain& gain :
+       watch.nearly_gained(bifurcation::SymmetryWatch::sampled(family.known().front().loop),
+                           bifurcation::SymmetryWatch::sampled(last))) {
+    ArrivalRecord record;
+    record.multiplicity = multiplicity_of(gain);
+    record.near = sketch_of(last);
+    if (record.multiplicity >= least_weak_resonance && locate_beneath(system, family.options(), last, record))
+      return record;
+  }
   return std::nullopt;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "orbweaver/bifurcation/symmetry_watch.hpp"
@@ -17,6 +18,18 @@ namespace orbweaver::survey {
     const systems::System& system, continuation::FamilyCurve& family, const bifurcation::SymmetryWatch& watch,
     const continuation::Orbit& from, const bifurcation::SymmetryWatch::SampledOrbit& from_sampled,
     const continuation::Orbit& to, const bifurcation::SymmetryWatch::SampledOrbit& to_sampled);
+
+/// Locates the crossing that the branch meets, as often around as it goes, near `last`, the branch's last orbit, and
+/// takes period and energy from there. False, and nothing changes, where `last` does not lie beside such a crossing.
+bool locate_beneath(const std::shared_ptr<const systems::System>& system, const continuation::Options& options,
+                    const loop::Loop& last, ArrivalRecord& arrival);
+
+/// Where the branch is about to meet a family at a resonance of order 5 or more, if its last known orbit lies beside such
+/// a crossing, and nearer than the first. Close to such a crossing rounding decides in which direction an orbit lies from
+/// it, so that no branch goes all the way, unless a reversor holds the direction.
+[[nodiscard]] std::optional<ArrivalRecord> arrival_ahead(const std::shared_ptr<const systems::System>& system,
+                                                         const continuation::FamilyCurve& family,
+                                                         const bifurcation::SymmetryWatch& watch);
 
 /// A loop with few harmonics and s even in time, for comparisons.
 [[nodiscard]] loop::Loop sketch_of(const loop::Loop& loop, int cutoff = 60);

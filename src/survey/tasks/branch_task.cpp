@@ -24,6 +24,10 @@ namespace {
 /// Known orbits that a location gets along: the two around the event and their neighbours.
 constexpr std::size_t kept_orbits = 5;
 
+/// Of an index from 2, where a branch may be on the way to a crossing that rounding hides. Only then is it looked for.
+/// Not measured.
+constexpr double nearly_two = 1e-4;
+
 continuation::Options options_of(const scene::Scene& scene, const BranchWork& work, core::Team* team) {
   continuation::Options options = branch_options(scene, team);
   if (work.amplitude > 0.0) options.start_amplitude = work.amplitude;
@@ -48,7 +52,10 @@ BranchTask::BranchTask(const scene::Scene& scene, std::shared_ptr<const systems:
                                              loop::SymmetryGroup(_system->structure(), _start.isotropy).order(),
                                              scene.survey.subharmonics)) {
   _outcome.key = _work.key;
-  if (bifurcation::passes_two_only_at_folds(_system->structure(), _start.isotropy))
+  _may_arrive_ahead = _system->structure().symplectic &&
+                      std::none_of(_start.isotropy.begin(), _start.isotropy.end(),
+                                   [](const loop::SymmetryElement& e) { return e.reversing; });
+  if (_system->structure().symplectic)
     _options.jumped = [this](const auto& from, const auto& to) { return jumped(from, to); };
   begin(state);
 }
@@ -100,18 +107,23 @@ continuation::Ending BranchTask::follow() {
     const continuation::Frontier before = _branch->restart_frontier();
     const std::optional<continuation::Orbit> orbit = _branch->advance();
     if (!orbit) {
+      if (_branch->ending()->failed() && _last && arrives_ahead()) return met();
       note_limits(_branch->ending().value(), before);
       return _branch->ending().value();
     }
     // The branch ends with an orbit on a limit, which it would not have under a wider one: no state may hold it.
     const bool on_limit = orbit->loop.period >= _options.period_limit || _branch->restart_frontier().on_energy_limit;
     if (on_limit) limited_by(period_limited | energy_limited, before);
-    if (!take(*orbit)) return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", orbit->loop.period)};
+    if (!take(*orbit)) return met();
     if (on_limit) continue;
     _stopped = !_context.report({_outcome.orbits, 1, {orbit->loop.period, orbit->energy, orbit->loop.cutoff * 1.0}},
                                 [&] { return pack(state_at(_branch->restart_frontier())); });
     if (_stopped) return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", orbit->loop.period)};
   }
+}
+
+continuation::Ending BranchTask::met() const {
+  return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", _outcome.arrival.front().period)};
 }
 
 void BranchTask::note_limits(const continuation::Ending& ending, const continuation::Frontier& before) {
@@ -159,7 +171,20 @@ bool BranchTask::take(const continuation::Orbit& orbit) {
   store(orbit, stability);
   _last = orbit;
   _last_stability = stability;
-  return true;
+  return !(stability && is_nearly_two(*stability) && arrives_ahead());
+}
+
+/// Whether an index is so near to 2 that the orbit hardly has a place of its own.
+bool BranchTask::is_nearly_two(const spectrum::Stability& stability) {
+  return std::any_of(stability.full.begin(), stability.full.end(),
+                     [](const std::complex<double>& k) { return std::abs(k - 2.0) < nearly_two; });
+}
+
+bool BranchTask::arrives_ahead() {
+  if (!_may_arrive_ahead || _curve.known().size() < 2) return false;
+  const auto ahead = arrival_ahead(_system, _curve, _symmetry);
+  if (ahead) _outcome.arrival.push_back(*ahead);
+  return ahead.has_value();
 }
 
 /// Not computed again for the orbit that was asked for last.
@@ -182,8 +207,12 @@ bool BranchTask::jumped(const continuation::Orbit& from, const continuation::Orb
 bool BranchTask::arrive(const continuation::Orbit& orbit) {
   bifurcation::SymmetryWatch::SampledOrbit sampled = bifurcation::SymmetryWatch::sampled(orbit.loop);
   if (_last) {
-    if (const auto arrival = arrival_between(*_system, _curve, _symmetry, *_last, *_sampled, orbit, sampled))
-      _outcome.arrival.push_back(*arrival);
+    if (auto arrival = arrival_between(*_system, _curve, _symmetry, *_last, *_sampled, orbit, sampled)) {
+      // The met family looks only for crossings of the orders that the scene asks for.
+      if (arrival->multiplicity > _scene.survey.subharmonics)
+        (void)locate_beneath(_system, _curve.options(), _last->loop, *arrival);
+      _outcome.arrival.push_back(std::move(*arrival));
+    }
   }
   _sampled = std::move(sampled);
   return !_outcome.arrival.empty();

@@ -37,6 +37,9 @@ class BranchTask {
   const std::optional<spectrum::Stability>& stability_at(const continuation::Orbit& orbit);
   bool jumped(const continuation::Orbit& from, const continuation::Orbit& to);
   bool arrive(const continuation::Orbit& orbit);
+  [[nodiscard]] static bool is_nearly_two(const spectrum::Stability& stability);
+  bool arrives_ahead();
+  [[nodiscard]] continuation::Ending met() const;
   void detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability);
   void add_event(const bifurcation::Event& event, double from, double to);
   void solve_requested(const continuation::Orbit& orbit);
@@ -62,6 +65,7 @@ class BranchTask {
   bifurcation::FoldWatch _folds;
   std::optional<continuation::Orbit> _last;
   std::optional<bifurcation::SymmetryWatch::SampledOrbit> _sampled;  // of the last orbit
+  bool _may_arrive_ahead = false;  // no reversor holds the direction
   std::optional<spectrum::Stability> _last_stability;                // of the last orbit
   std::vector<double> _asked;                     // modes of the orbit whose stability was asked for last,
   std::optional<spectrum::Stability> _stability;  // and its stability

@@ -173,8 +173,10 @@ class Location {
     if (!starts) return;
     report();
     int number = 0;
+    bifurcation::DirectionOptions options;
+    options.family = kernel.family;
     for (const bifurcation::Direction& direction :
-         bifurcation::directions(*_system, kernel.base, isotropy, kernel.vectors)) {
+         bifurcation::directions(*_system, kernel.base, isotropy, kernel.vectors, options)) {
       LeavingRecord leaving;
       leaving.key = fmt::format("{}/{}", _work.key, number++);
       leaving.isotropy = direction.isotropy;

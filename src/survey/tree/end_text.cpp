@@ -10,7 +10,11 @@ namespace orbweaver::survey {
 std::string end_text(const BranchOutcome& outcome) {
   if (outcome.arrival.empty() || outcome.end.failed()) return outcome.end.text();
   const ArrivalRecord& arrival = outcome.arrival.front();
-  return fmt::format("{} (T = {:.9g}, E = {:.9g})", name_of(EndKind::met), arrival.period, arrival.energy);
+  std::string where = fmt::format("T = {:.9g}, E = {:.9g}", arrival.period, arrival.energy);
+  if (arrival.located)
+    where = fmt::format("T = {:.12g}, E = {:.12g}, {} times around T = {:.12g}", arrival.period, arrival.energy,
+                        arrival.multiplicity, arrival.period / arrival.multiplicity);
+  return fmt::format("{} ({})", name_of(EndKind::met), where);
 }
 
 std::string failure_text(const std::string& why) {

@@ -34,14 +34,16 @@ struct BranchWork {
 
 /// A branch has come to an orbit with more symmetry than its own: a crossing of another family, or of its own.
 struct ArrivalRecord {
-  double period = 0.0;  ///< where it meets, by interpolation
+  double period = 0.0;  ///< where it meets, by interpolation, or as the crossing there was located
   double energy = 0.0;
-  loop::Loop near;  ///< an orbit of the branch shortly before
+  loop::Loop near;       ///< an orbit of the branch shortly before
+  int multiplicity = 1;  ///< times that it goes around the orbit it meets, where that is all it gains
+  bool located = false;  ///< the crossing on the family that is met, of an order beyond the scene's subharmonics
 
   static constexpr int wire_version = 1;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, period, energy, near);
+    core::serialize_members(archive, period, energy, near, multiplicity, located);
   }
 };
 
