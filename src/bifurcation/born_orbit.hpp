@@ -1,8 +1,11 @@
 #pragma once
 
+#include <vector>
+
 #include "orbweaver/corrector/correct.hpp"
 #include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
+#include "orbweaver/loss/unknowns.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::bifurcation {
@@ -12,5 +15,11 @@ namespace orbweaver::bifurcation {
 [[nodiscard]] corrector::Result born_orbit(const systems::System& system, const loop::Loop& base,
                                            const loop::Tangent& along, const loop::Isotropy& isotropy, double amplitude,
                                            const corrector::Options& options = {});
+
+/// The orbit at guess + u with u orthogonal to `held` (the modes of each) and to the time shift, solved for T and `scalars`
+/// too.
+[[nodiscard]] corrector::Result held_orbit(const systems::System& system, const loop::Loop& guess,
+                                           const std::vector<loop::Tangent>& held, std::vector<loss::Scalar> scalars,
+                                           const loop::Isotropy& isotropy, const corrector::Options& options = {});
 
 }  // namespace orbweaver::bifurcation

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "angle_search.hpp"
 #include "fixed_spaces.hpp"
 #include "kernel_actions.hpp"
 #include "orbweaver/core/error.hpp"
@@ -192,6 +193,37 @@ std::vector<double> search_amplitudes(int q, const loop::Loop& base, bool consta
   return out;
 }
 
+/// Directions at which orbits were found, as the whole way from the base to each: the smaller the term that fixes the angle,
+/// the nearer a first orbit must be guessed.
+std::vector<Direction> by_angles(const systems::System& system, const KernelActions& group, const loop::Loop& base,
+                                 const loop::Isotropy& kept, int q, const DirectionOptions& options) {
+  const double scale = std::min(1.0, loop::rms_amplitude(base));
+  const AnglesFound angles = search_angles(system, base, group, kept, q, scale, options);
+  if (!angles.decided())
+    throw UndecidedError(fmt::format(
+        "a kernel of dimension 2 (q = {}): at amplitude {:.2g} what decides in which directions families leave is {:.1e}, "
+        "and rounding {:.1e}",
+        q, angles.amplitude, angles.force, angles.noise));
+  std::vector<Direction> out;
+  for (const FoundOrbit& orbit : angles.found) {
+    Direction direction;
+    direction.base = loop::with_cutoff(base, orbit.loop.cutoff);
+    direction.tangent.modes.resize(orbit.loop.modes.size());
+    for (std::size_t n = 0; n < orbit.loop.modes.size(); ++n)
+      direction.tangent.modes[n] = orbit.loop.modes[n] - direction.base.modes[n];
+    direction.tangent.scalars = {orbit.loop.period - base.period};
+    double square = 0.0;
+    for (const double v : direction.tangent.modes) square += v * v;
+    direction.amplitude = std::sqrt(square);
+    direction.tangent *= 1.0 / direction.amplitude;
+    direction.isotropy = loop::find_isotropy(system.structure(), orbit.loop, found_tolerance * angles.amplitude,
+                                             group.denominator());
+    direction.both_sides = has_other_sides(group, orbit.coordinates);
+    out.push_back(std::move(direction));
+  }
+  return out;
+}
+
 std::vector<Direction> searched(const systems::System& system, const KernelActions& group, const loop::Loop& base,
                                 const std::vector<Eigen::VectorXd>& lines, const DirectionOptions& options) {
   const bool plane = group.dimension() == 2;
@@ -200,6 +232,8 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   const Eigen::VectorXd generic = Eigen::VectorXd::LinSpaced(group.dimension(), 1.0, std::sqrt(2.0)).array().sin();
   const loop::Isotropy kept =
       isotropy_along(system.structure(), group, base, group.vector_at(generic.normalized()), options);
+  if (plane && q >= 3 && lines.empty() && !group.constant() && system.structure().conservative())
+    return by_angles(system, group, base, kept, q, options);
   const double nudge = plane ? nudge_in_plane * std::numbers::pi / q : nudge_in_space;
   const int expected = plane && q > 2 ? (q % 2 == 0 ? 2 : 1) : 0;
   SearchResult best;

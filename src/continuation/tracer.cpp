@@ -68,14 +68,15 @@ std::optional<Orbit> Tracer::end(EndReason reason, std::string detail) {
 }
 
 std::optional<Orbit> Tracer::first_orbit() {
-  const loop::Loop direction = start_direction();
+  const loop::Tangent direction = start_direction();
   double amplitude = _options.start_amplitude;
   _problem->resolve(_problem->resolution_for(std::max(_start.base.cutoff, _options.cutoff_from), _start.base.time_map,
                                              _options.cutoff_to));
   while (true) {
     _frontier.problem.amplitude = amplitude;
     const std::vector<double> base = _problem->from_loop(_start.base);
-    Prediction prediction{base, _problem->from_change(direction), 1};
+    Prediction prediction{base, _problem->from_change(loop::perturbation(_start.base, direction)), 1};
+    prediction.tangent[_problem->scalars_at()] += direction.period();
     for (std::size_t n = 0; n < base.size(); ++n) prediction.values[n] += amplitude * prediction.tangent[n];
     const std::vector<double> conditions = _problem->conditions_at(prediction);
     Trial trial = _problem->correct(std::move(prediction), conditions);
@@ -101,15 +102,16 @@ std::optional<Orbit> Tracer::first_orbit() {
   }
 }
 
-/// The start's direction as a loop of unit |dz(s = 0)| (or unit length where z(s = 0) does not move).
-loop::Loop Tracer::start_direction() const {
-  loop::Loop direction = loop::perturbation(_start.base, _start.direction);
+/// The start's direction with unit |dz(s = 0)| (or unit length of its modes where z(s = 0) does not move).
+loop::Tangent Tracer::start_direction() const {
   double square = 0.0;
-  for (const double v : loop::state_at(direction, 0.0)) square += v * v;
+  for (const double v : loop::state_at(loop::perturbation(_start.base, _start.direction), 0.0)) square += v * v;
   double length = 0.0;
   for (const double v : _start.direction.modes) length += v * v;
   const double unit = square > still_at_start * length ? std::sqrt(square) : std::sqrt(length);
-  for (double& v : direction.modes) v /= unit;
+  loop::Tangent direction = _start.direction;
+  for (std::vector<double>* numbers : {&direction.modes, &direction.scalars})
+    for (double& v : *numbers) v /= unit;
   return direction;
 }
 

@@ -34,7 +34,7 @@ class Tracer {
   }
 
   std::optional<Orbit> first_orbit();
-  [[nodiscard]] loop::Loop start_direction() const;
+  [[nodiscard]] loop::Tangent start_direction() const;
   std::optional<Orbit> next_on_family();
   /// With a step of at most this length.
   std::optional<Orbit> next_orbit(double at_most);

@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 
+#include "orbweaver/core/error.hpp"
 #include "orbweaver/corrector/correct.hpp"
 #include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
@@ -16,8 +17,8 @@ namespace orbweaver::bifurcation {
 struct Direction {
   loop::Loop base;          ///< the crossing's orbit as the born family sees it: m times around, started where the born
                             ///< orbits' reversor, if they have one, has phase 0
-  loop::Tangent tangent;    ///< in the modes of `base`, unit length: in the kernel, and where the born family moves along
-                            ///< the base's own in first order too (q = 3), so far along that
+  loop::Tangent tangent;    ///< in the modes of `base`, which have unit length: in the kernel, or the whole way to an orbit
+                            ///< found, T with it
   loop::Isotropy isotropy;  ///< of the born orbits (and of base): generators as loop::find_isotropy gives them
   bool both_sides =
       false;               ///< true: the opposite leads to other orbits; false: a symmetry or time shift maps the sides
@@ -37,6 +38,12 @@ struct DirectionOptions {
   corrector::Options corrector{};  ///< of a search
 };
 
+/// Rounding decides in which directions families leave: terms of high order that alone do are too small.
+class UndecidedError : public core::NumericalError {
+ public:
+  using core::NumericalError::NumericalError;
+};
+
 /// The directions in which families leave `base` along its kernel (docs/mathematics.md, "Kernels and directions"),
 /// those with a reversor first, in the system's order of reversors.
 ///
@@ -44,7 +51,8 @@ struct DirectionOptions {
 /// isotropy: generators of the crossing's orbit; base must have each of them, whatever its shift.
 /// kernel: null vectors with orthonormal modes; at an equilibrium of harmonic 1 alone, both phases of each
 /// oscillation. Throws MisuseError for sizes that disagree or vectors that are not orthonormal, NumericalError where
-/// the symmetries do not map the kernel to itself isometrically, or where directions are not isolated (a continuum).
+/// the symmetries do not map the kernel to itself isometrically, or where directions are not isolated (a continuum),
+/// UndecidedError where they are, but not to double precision.
 [[nodiscard]] std::vector<Direction> directions(const systems::System& system, const loop::Loop& base,
                                                 const loop::Isotropy& isotropy,
                                                 const std::vector<loop::Tangent>& kernel,

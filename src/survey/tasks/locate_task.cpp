@@ -109,6 +109,8 @@ class Location {
     describe(crossing);
     if (is_in_sector(_event)) try {
         leave(crossing, family);
+      } catch (const bifurcation::UndecidedError& error) {
+        _outcome.remark = error.what();
       } catch (const core::NumericalError& error) {  // the crossing itself is located, and stays
         _failure = error.what();
       }

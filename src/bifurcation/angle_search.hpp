@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "search.hpp"
+
+namespace orbweaver::bifurcation {
+
+struct AnglesFound {
+  std::vector<FoundOrbit> found;
+  double amplitude = 0.0;  ///< of their parts in the kernel
+  double force = 0.0;      ///< the largest push that holds an orbit at another angle there
+  double noise = 0.0;      ///< what rounding leaves of it
+  [[nodiscard]] bool decided() const { return !found.empty(); }
+};
+
+/// The angles at which orbits leave `base` in a plane kernel of a conservative system that q rotations map to itself, q >= 3.
+///
+/// At an amplitude r and any angle there is an orbit of the PushedSystem whose part in the kernel lies there; its push is
+/// an odd function of the reduced action's derivative by the angle, r^(q - 2) sin(q (angle - a)) to lowest order, and
+/// vanishes where orbits of the system itself lie. Its sign changes over a turn by 2 pi/q are located, which is possible
+/// as long as the push exceeds its noise, far below the loss's tolerance. Amplitudes grow from `least` times `scale`, each
+/// orbit guessed from the one before, until the push is seen. One of each pair of opposite directions where q is odd.
+[[nodiscard]] AnglesFound search_angles(const systems::System& system, const loop::Loop& base,
+                                        const KernelActions& group, const loop::Isotropy& isotropy, int q, double scale,
+                                        const DirectionOptions& options);
+
+}  // namespace orbweaver::bifurcation
