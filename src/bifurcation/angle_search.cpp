@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -18,12 +20,19 @@ namespace {
 
 /// Angles in a turn by 2 pi/q at which the push is looked at: a sine needs three, its first harmonics a few more.
 constexpr int samples = 8;
-/// Amplitudes, in parts of the scale. Beyond the largest an orbit is not near the crossing.
-constexpr double least = 0.01;
-constexpr double largest = 0.35;
-constexpr double growth = 2.0;
+/// Amplitudes, in parts of the scale: the first for which guesses along the kernel alone are good enough. They grow as long
+/// as orbits are found and lie within 30 degrees of the kernel and the family, by the first of the factors that serves.
+constexpr double first[] = {0.01, 0.003, 0.001, 0.0003};
+constexpr double growths[] = {1.4, 1.1};
+constexpr double farthest_beside = 0.5;
+constexpr int most_growths = 40;
+/// A way from one angle to another is halved so often, at most.
+constexpr int halvings = 4;
 /// The push must exceed its noise so many times for its zeros to be where the family's are. Not measured.
 constexpr double clear = 30.0;
+/// A push that any solver sees: a thousand times the tolerance on sqrt(loss). Amplitudes grow up to it if they can, so that
+/// the family can be followed from there on.
+constexpr double plain = 1e-7;
 /// Accuracy of an angle, in parts of a turn by 2 pi/q.
 constexpr double of_angle = 1e-7;
 
@@ -53,6 +62,17 @@ class Plane {
     return loop::moved(_base, _group.vector_at(unit(angle)), amplitude);
   }
 
+  /// The orbit with its part in the kernel turned to another angle.
+  [[nodiscard]] loop::Loop turned(const loop::Loop& orbit, double angle, double amplitude) const {
+    const Eigen::VectorXd change = amplitude * unit(angle) - gap_between(_base, orbit, _group, {}).inside;
+    return loop::moved(orbit, loop::with_cutoff(_group.vector_at(change), orbit.cutoff, orbit.dimension), 1.0);
+  }
+
+  [[nodiscard]] bool is_near(const loop::Loop& orbit) const {
+    const Gap gap = gap_between(_base, orbit, _group, _options.family.modes);
+    return gap.beside <= farthest_beside * gap.inside.norm();
+  }
+
   /// At `factor` times the amplitude: what lies in the kernel grows with it, the rest and T with its square.
   [[nodiscard]] loop::Loop enlarged(const loop::Loop& orbit, double factor) const {
     loop::Loop out = orbit;
@@ -74,11 +94,83 @@ class Plane {
   const DirectionOptions& _options;
 };
 
-int sign_changes(const std::vector<Held>& around) {
-  int changes = 0;
-  for (int n = 0; n < samples; ++n)
-    if (around[static_cast<std::size_t>(n)].push * around[static_cast<std::size_t>(n + 1)].push < 0.0) ++changes;
-  return changes;
+/// Orbits of one amplitude, the last a turn from the first: the same orbit, by other roundings.
+struct Circle {
+  double amplitude = 0.0;
+  std::vector<double> angles;
+  std::vector<Held> orbits;
+
+  [[nodiscard]] double noise() const { return std::abs(orbits.back().push - orbits.front().push); }
+  [[nodiscard]] double force() const {
+    double largest_push = 0.0;
+    for (const Held& h : orbits) largest_push = std::max(largest_push, std::abs(h.push));
+    return largest_push;
+  }
+  [[nodiscard]] bool is_clear() const { return force() > clear * noise(); }
+  [[nodiscard]] int sign_changes() const {
+    int changes = 0;
+    for (std::size_t n = 0; n + 1 < orbits.size(); ++n)
+      if (orbits[n].push * orbits[n + 1].push < 0.0) ++changes;
+    return changes;
+  }
+};
+
+/// The orbits at `angles`, each from its guess; none where one is not found or not near.
+std::optional<Circle> held_circle(const Plane& plane, double amplitude, std::vector<double> angles,
+                                  const std::function<loop::Loop(std::size_t)>& guess) {
+  Circle out{amplitude, std::move(angles), {}};
+  for (std::size_t a = 0; a < out.angles.size(); ++a) {
+    std::optional<Held> held = plane.held(guess(a));
+    if (!held || !plane.is_near(held->loop)) return std::nullopt;
+    out.orbits.push_back(std::move(*held));
+  }
+  return out;
+}
+
+/// The circle at a few angles, at the amplitude where the push is plain, or as near to that as orbits are found.
+std::optional<Circle> grown(const Plane& plane, double turn, double scale) {
+  const std::vector<double> angles{0.0, 0.25 * turn, turn};
+  std::optional<Circle> circle;
+  for (const double part : first) {
+    circle = held_circle(plane, part * scale, angles,
+                         [&](std::size_t a) { return plane.beside(angles[a], part * scale); });
+    if (circle) break;
+  }
+  for (int n = 0; circle && n < most_growths && !(circle->is_clear() && circle->force() > plain); ++n) {
+    std::optional<Circle> next;
+    for (const double factor : growths) {
+      next = held_circle(plane, factor * circle->amplitude, angles,
+                         [&](std::size_t a) { return plane.enlarged(circle->orbits[a].loop, factor); });
+      if (next) break;
+    }
+    if (!next) break;
+    circle = std::move(next);
+  }
+  return circle;
+}
+
+/// From an orbit at one angle to the one at another.
+std::optional<Held> turned_to(const Plane& plane, const Held& orbit, double from, double to, double amplitude,
+                              int halved = 0) {
+  std::optional<Held> held = plane.held(plane.turned(orbit.loop, to, amplitude));
+  if (held && plane.is_near(held->loop)) return held;
+  if (halved == halvings) return std::nullopt;
+  const double middle = 0.5 * (from + to);
+  const std::optional<Held> there = turned_to(plane, orbit, from, middle, amplitude, halved + 1);
+  return there ? turned_to(plane, *there, middle, to, amplitude, halved + 1) : std::nullopt;
+}
+
+/// The circle with all its samples.
+std::optional<Circle> completed(const Plane& plane, const Circle& circle, double turn) {
+  Circle out{circle.amplitude, {0.0}, {circle.orbits.front()}};
+  for (int n = 1; n <= samples; ++n) {
+    const double angle = n * turn / samples;
+    std::optional<Held> held = turned_to(plane, out.orbits.back(), out.angles.back(), angle, out.amplitude);
+    if (!held) return std::nullopt;
+    out.angles.push_back(angle);
+    out.orbits.push_back(std::move(*held));
+  }
+  return out;
 }
 
 }  // namespace
@@ -89,46 +181,30 @@ AnglesFound search_angles(const systems::System& system, const loop::Loop& base,
   const Plane plane(system, base, group, isotropy, options);
   const double turn = 2.0 * std::numbers::pi / q;
   AnglesFound out;
-  std::vector<Held> around;  // samples + 1: the last one a turn from the first, and the same orbit
-  for (double r = least; r <= largest; r *= growth) {
-    std::vector<Held> here;
-    for (int n = 0; n <= samples; ++n) {
-      const loop::Loop guess = around.empty()
-                                   ? plane.beside(n * turn / samples, r * scale)
-                                   : plane.enlarged(around[static_cast<std::size_t>(n)].loop, growth);
-      std::optional<Held> held = plane.held(guess);
-      if (!held) return out;
-      here.push_back(std::move(*held));
-    }
-    around = std::move(here);
-    out.amplitude = r * scale;
-    out.noise = std::abs(around.back().push - around.front().push);
-    out.force = 0.0;
-    for (const Held& h : around) out.force = std::max(out.force, std::abs(h.push));
-    if (out.force > clear * out.noise && sign_changes(around) == 2) break;
-    if (r * growth > largest) return out;
-  }
+  std::optional<Circle> few = grown(plane, turn, scale);
+  if (!few) return out;
+  const std::optional<Circle> all = few->is_clear() ? completed(plane, *few, turn) : std::nullopt;
+  const Circle& circle = all ? *all : *few;
+  out.amplitude = circle.amplitude;
+  out.force = circle.force();
+  out.noise = circle.noise();
+  fprintf(stderr, "DBG q %d r %g (%g) force %g noise %g changes %d K %d T %.12g\n", q, circle.amplitude, circle.amplitude/scale, circle.force(), circle.noise(), all ? circle.sign_changes() : -1, circle.orbits[0].loop.cutoff, circle.orbits[0].loop.period);
+  if (!all || !circle.is_clear() || circle.sign_changes() != 2) return out;
   const int wanted = q % 2 == 0 ? 2 : 1;
-  for (int n = 0; n < samples && static_cast<int>(out.found.size()) < wanted; ++n) {
-    const Held& before = around[static_cast<std::size_t>(n)];
-    const Held& after = around[static_cast<std::size_t>(n + 1)];
-    if (!(before.push * after.push < 0.0)) continue;
-    const double from = n * turn / samples;
-    const double to = (n + 1) * turn / samples;
-    Held last = before;
-    // From the nearest orbit known, turned in the kernel.
+  for (std::size_t n = 0; n + 1 < circle.orbits.size() && static_cast<int>(out.found.size()) < wanted; ++n) {
+    const numerics::Place from{circle.angles[n], circle.orbits[n].push};
+    const numerics::Place to{circle.angles[n + 1], circle.orbits[n + 1].push};
+    if (!(from.value * to.value < 0.0)) continue;
+    Held last = circle.orbits[n];
+    double last_angle = from.position;
     const auto push_at = [&](double angle) {
-      loop::Loop guess = last.loop;
-      const Gap gap = gap_between(base, guess, group, {});
-      const Eigen::VectorXd change = out.amplitude * Plane::unit(angle) - gap.inside;
-      guess = loop::moved(guess, loop::with_cutoff(group.vector_at(change), guess.cutoff, guess.dimension), 1.0);
-      std::optional<Held> held = plane.held(guess);
+      std::optional<Held> held = turned_to(plane, last, last_angle, angle, circle.amplitude);
       if (!held) return std::nan("");
       last = std::move(*held);
+      last_angle = angle;
       return last.push;
     };
-    const auto located = numerics::locate_root(push_at, numerics::Place{from, before.push},
-                                               numerics::Place{to, after.push}, of_angle * turn);
+    const auto located = numerics::locate_root(push_at, from, to, of_angle * turn);
     if (!located || std::isnan(push_at(located->position))) continue;
     const Gap gap = gap_between(base, last.loop, group, options.family.modes);
     const double length = gap.inside.norm();
