@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "born_orbit.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/numerics/lagrange.hpp"
 #include "orbweaver/numerics/locate.hpp"
 #include "pushed_system.hpp"
 
@@ -24,21 +25,42 @@ constexpr int samples = 8;
 /// as orbits are found and lie within 30 degrees of the kernel and the family, by the first of the factors that serves.
 constexpr double first[] = {0.01, 0.003, 0.001, 0.0003};
 constexpr double growths[] = {1.4, 1.1};
+/// Orbits behind one another that a guess for the next is made from, besides the base.
+constexpr std::size_t remembered = 4;
 constexpr double farthest_beside = 0.5;
-constexpr int most_growths = 40;
+constexpr std::size_t most_circles = 40;
 /// A way from one angle to another is halved so often, at most.
 constexpr int halvings = 4;
 /// The push must exceed its noise so many times for its zeros to be where the family's are. Not measured.
 constexpr double clear = 30.0;
-/// A push that any solver sees: a thousand times the tolerance on sqrt(loss). Amplitudes grow up to it if they can, so that
-/// the family can be followed from there on.
-constexpr double plain = 1e-7;
 /// Accuracy of an angle, in parts of a turn by 2 pi/q.
 constexpr double of_angle = 1e-7;
 
 struct Held {
   double push = 0.0;
   loop::Loop loop;
+};
+
+/// Orbits of one amplitude, the last a turn from the first: the same orbit, by other roundings.
+struct Circle {
+  double amplitude = 0.0;
+  std::vector<double> angles;
+  std::vector<Held> orbits;
+
+  [[nodiscard]] double noise() const { return std::abs(orbits.back().push - orbits.front().push); }
+  [[nodiscard]] double force() const {
+    double largest_push = 0.0;
+    for (const Held& h : orbits) largest_push = std::max(largest_push, std::abs(h.push));
+    return largest_push;
+  }
+  [[nodiscard]] bool is_clear() const { return force() > clear * noise(); }
+  [[nodiscard]] AnglesFound summary() const { return {{}, amplitude, force(), noise()}; }
+  [[nodiscard]] int sign_changes() const {
+    int changes = 0;
+    for (std::size_t n = 0; n + 1 < orbits.size(); ++n)
+      if (orbits[n].push * orbits[n + 1].push < 0.0) ++changes;
+    return changes;
+  }
 };
 
 class Plane {
@@ -73,16 +95,21 @@ class Plane {
     return gap.beside <= farthest_beside * gap.inside.norm();
   }
 
-  /// At `factor` times the amplitude: what lies in the kernel grows with it, the rest and T with its square.
-  [[nodiscard]] loop::Loop enlarged(const loop::Loop& orbit, double factor) const {
-    loop::Loop out = orbit;
-    const loop::Loop base = loop::with_cutoff(_base, orbit.cutoff);
-    const Gap gap = gap_between(_base, orbit, _group, {});
-    const std::vector<double> inside =
-        loop::with_cutoff(_group.vector_at(gap.inside), orbit.cutoff, orbit.dimension).modes;
-    for (std::size_t n = 0; n < out.modes.size(); ++n)
-      out.modes[n] = base.modes[n] + factor * inside[n] + factor * factor * (orbit.modes[n] - base.modes[n] - inside[n]);
-    out.period = _base.period + factor * factor * (orbit.period - _base.period);
+  /// The orbit of another amplitude: by the polynomial in it through the base and the last circles' orbits of this place.
+  [[nodiscard]] loop::Loop continued(const std::vector<Circle>& circles, std::size_t place, double amplitude) const {
+    const std::size_t used = std::min(circles.size(), remembered);
+    const auto last = std::span(circles).last(used);
+    std::vector<double> amplitudes{0.0};
+    for (const Circle& circle : last) amplitudes.push_back(circle.amplitude);
+    const std::vector<double> weights = numerics::lagrange_weights(amplitudes, amplitude).value;
+    loop::Loop out = loop::with_cutoff(_base, last.back().orbits[place].loop.cutoff);
+    for (double& v : out.modes) v *= weights[0];
+    out.period *= weights[0];
+    for (std::size_t n = 0; n < used; ++n) {
+      const loop::Loop orbit = loop::with_cutoff(last[n].orbits[place].loop, out.cutoff);
+      for (std::size_t c = 0; c < out.modes.size(); ++c) out.modes[c] += weights[n + 1] * orbit.modes[c];
+      out.period += weights[n + 1] * orbit.period;
+    }
     return out;
   }
 
@@ -92,27 +119,6 @@ class Plane {
   const KernelActions& _group;
   const loop::Isotropy& _isotropy;
   const DirectionOptions& _options;
-};
-
-/// Orbits of one amplitude, the last a turn from the first: the same orbit, by other roundings.
-struct Circle {
-  double amplitude = 0.0;
-  std::vector<double> angles;
-  std::vector<Held> orbits;
-
-  [[nodiscard]] double noise() const { return std::abs(orbits.back().push - orbits.front().push); }
-  [[nodiscard]] double force() const {
-    double largest_push = 0.0;
-    for (const Held& h : orbits) largest_push = std::max(largest_push, std::abs(h.push));
-    return largest_push;
-  }
-  [[nodiscard]] bool is_clear() const { return force() > clear * noise(); }
-  [[nodiscard]] int sign_changes() const {
-    int changes = 0;
-    for (std::size_t n = 0; n + 1 < orbits.size(); ++n)
-      if (orbits[n].push * orbits[n + 1].push < 0.0) ++changes;
-    return changes;
-  }
 };
 
 /// The orbits at `angles`, each from its guess; none where one is not found or not near.
@@ -127,26 +133,30 @@ std::optional<Circle> held_circle(const Plane& plane, double amplitude, std::vec
   return out;
 }
 
-/// The circle at a few angles, at the amplitude where the push is plain, or as near to that as orbits are found.
-std::optional<Circle> grown(const Plane& plane, double turn, double scale) {
+/// Circles at a few angles, up to the amplitude where the push is plain, or as near to that as orbits are found.
+std::vector<Circle> grown(const Plane& plane, double turn, double scale) {
   const std::vector<double> angles{0.0, 0.25 * turn, turn};
-  std::optional<Circle> circle;
+  std::vector<Circle> circles;
   for (const double part : first) {
-    circle = held_circle(plane, part * scale, angles,
-                         [&](std::size_t a) { return plane.beside(angles[a], part * scale); });
-    if (circle) break;
+    auto circle = held_circle(plane, part * scale, angles,
+                              [&](std::size_t a) { return plane.beside(angles[a], part * scale); });
+    if (!circle) continue;
+    circles.push_back(std::move(*circle));
+    break;
   }
-  for (int n = 0; circle && n < most_growths && !(circle->is_clear() && circle->force() > plain); ++n) {
+  const auto is_seen = [](const Circle& circle) { return circle.is_clear() && circle.summary().is_plain(); };
+  while (!circles.empty() && circles.size() < most_circles && !is_seen(circles.back())) {
     std::optional<Circle> next;
     for (const double factor : growths) {
-      next = held_circle(plane, factor * circle->amplitude, angles,
-                         [&](std::size_t a) { return plane.enlarged(circle->orbits[a].loop, factor); });
+      const double amplitude = factor * circles.back().amplitude;
+      next = held_circle(plane, amplitude, angles,
+                         [&](std::size_t a) { return plane.continued(circles, a, amplitude); });
       if (next) break;
     }
     if (!next) break;
-    circle = std::move(next);
+    circles.push_back(std::move(*next));
   }
-  return circle;
+  return circles;
 }
 
 /// From an orbit at one angle to the one at another.
@@ -180,16 +190,15 @@ AnglesFound search_angles(const systems::System& system, const loop::Loop& base,
   core::require(group.dimension() == 2 && q >= 3, "angles are searched in a plane, from q = 3 on");
   const Plane plane(system, base, group, isotropy, options);
   const double turn = 2.0 * std::numbers::pi / q;
-  AnglesFound out;
-  std::optional<Circle> few = grown(plane, turn, scale);
-  if (!few) return out;
-  const std::optional<Circle> all = few->is_clear() ? completed(plane, *few, turn) : std::nullopt;
-  const Circle& circle = all ? *all : *few;
-  out.amplitude = circle.amplitude;
-  out.force = circle.force();
-  out.noise = circle.noise();
-  fprintf(stderr, "DBG q %d r %g (%g) force %g noise %g changes %d K %d T %.12g\n", q, circle.amplitude, circle.amplitude/scale, circle.force(), circle.noise(), all ? circle.sign_changes() : -1, circle.orbits[0].loop.cutoff, circle.orbits[0].loop.period);
-  if (!all || !circle.is_clear() || circle.sign_changes() != 2) return out;
+  std::vector<Circle> circles = grown(plane, turn, scale);
+  if (circles.empty()) return {};
+  AnglesFound out = circles.back().summary();
+  std::optional<Circle> all;
+  for (; !all && !circles.empty() && circles.back().is_clear(); circles.pop_back())
+    all = completed(plane, circles.back(), turn);
+  if (!all || !all->is_clear() || all->sign_changes() != 2) return out;
+  const Circle& circle = *all;
+  out = circle.summary();
   const int wanted = q % 2 == 0 ? 2 : 1;
   for (std::size_t n = 0; n + 1 < circle.orbits.size() && static_cast<int>(out.found.size()) < wanted; ++n) {
     const numerics::Place from{circle.angles[n], circle.orbits[n].push};

@@ -13,6 +13,8 @@ struct AnglesFound {
   double force = 0.0;      ///< the largest push that holds an orbit at another angle there
   double noise = 0.0;      ///< what rounding leaves of it
   [[nodiscard]] bool decided() const { return !found.empty(); }
+  /// The push is so large that any solver sees it: a thousand times the tolerance on sqrt(loss).
+  [[nodiscard]] bool is_plain() const { return force > 1e-7; }
 };
 
 /// The angles at which orbits leave `base` in a plane kernel of a conservative system that q rotations map to itself, q >= 3.

@@ -14,6 +14,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/loss/unknowns.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
 #include "search.hpp"
 
@@ -126,6 +127,22 @@ Direction direction_along(const systems::Structure& system, const KernelActions&
   return out;
 }
 
+// A direction less its part along the time shift, which orbits that are found have none of.
+loop::Tangent across_time(const loop::Loop& base, loop::Tangent direction) {
+  core::require(direction.modes.size() == base.modes.size(), "the family's direction needs the size of the base's modes");
+  const loss::Unknowns all{loop::Subspace(base.dimension, base.cutoff, {}), {}};
+  const std::vector<double> shift = all.tangent_of(all.time_shift_direction(base)).modes;
+  double along = 0.0;
+  double square = 0.0;
+  for (std::size_t n = 0; n < shift.size(); ++n) {
+    along += shift[n] * direction.modes[n];
+    square += shift[n] * shift[n];
+  }
+  if (square == 0.0) return direction;
+  for (std::size_t n = 0; n < shift.size(); ++n) direction.modes[n] -= along / square * shift[n];
+  return direction;
+}
+
 // A unit vector of the kernel, and `along` times as far along the base's own family; of length 1.
 loop::Tangent leaving_along(loop::Tangent in_kernel, double along, const loop::Tangent& family) {
   if (family.modes.empty() || along == 0.0) return in_kernel;
@@ -219,6 +236,7 @@ std::vector<Direction> by_angles(const systems::System& system, const KernelActi
     direction.isotropy = loop::find_isotropy(system.structure(), orbit.loop, found_tolerance * angles.amplitude,
                                              group.denominator());
     direction.both_sides = has_other_sides(group, orbit.coordinates);
+    direction.is_hidden = !angles.is_plain();
     out.push_back(std::move(direction));
   }
   return out;
@@ -268,11 +286,13 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
 }  // namespace
 
 std::vector<Direction> directions(const systems::System& system, const loop::Loop& base, const loop::Isotropy& isotropy,
-                                  const std::vector<loop::Tangent>& kernel, const DirectionOptions& options) {
+                                  const std::vector<loop::Tangent>& kernel, const DirectionOptions& given) {
   loop::validate(base);
   core::require(base.time_map.is_identity(), "directions need a base loop that runs evenly in time");
   core::require(!kernel.empty() && kernel.size() <= largest_kernel, "directions need a kernel of dimension 1 to 8");
   const systems::Structure& structure = system.structure();
+  DirectionOptions options = given;
+  if (!options.family.empty()) options.family = across_time(base, options.family);
   const KernelActions group(structure, base, kernel, options);
   for (const loop::SymmetryElement& g : isotropy)
     if (std::none_of(group.actions().begin(), group.actions().end(),

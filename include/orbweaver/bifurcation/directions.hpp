@@ -24,6 +24,8 @@ struct Direction {
       false;               ///< true: the opposite leads to other orbits; false: a symmetry or time shift maps the sides
   double amplitude = 0.0;  ///< 0: exact, any amplitude leads there; else found by a search at this amplitude, below
                            ///< which the loss hardly tells neighbouring directions apart
+  bool is_hidden = false;  ///< what tells it from neighbouring directions is so small, as far from the crossing as orbits
+                           ///< were found, that the family cannot be followed: it is known for what arrives along it
 };
 
 struct DirectionOptions {

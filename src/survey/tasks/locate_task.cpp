@@ -185,7 +185,10 @@ class Location {
       leaving.both_sides = direction.both_sides;
       leaving.base = sketch_of(direction.base);
       leaving.direction = loop::with_cutoff(direction.tangent, leaving.base.cutoff, leaving.base.dimension);
-      add_starts(direction, leaving);
+      if (direction.is_hidden)
+        _outcome.remark = "families leave so nearly in all directions that rounding hides them close by";
+      else
+        add_starts(direction, leaving);
       _outcome.leaving.push_back(std::move(leaving));
     }
   }

@@ -1,7 +1,6 @@
 #include "arrivals.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "orbweaver/loop/curve/measures.hpp"
@@ -48,7 +47,6 @@ std::optional<Meeting> Arrivals::meeting(const ArrivalRecord& arrival, const Loc
       if (side < 0 && !leaving.both_sides) continue;
       const loop::Loop expected = loop::moved(base, leaving.direction, side * distance / unit);
       const double away = loop::align(_system, near, expected).distance / distance;
-      fprintf(stderr, "DBG MEET %s at T %.9g side %d distance %g away %g\n", leaving.key.c_str(), arrival.period, side, distance, away);
       if (away < nearest) {
         nearest = away;
         best = Meeting{crossing.key, {leaving.key, side}, away};
