@@ -29,8 +29,10 @@ constexpr double growths[] = {1.4, 1.1};
 constexpr std::size_t remembered = 4;
 constexpr double farthest_beside = 0.5;
 constexpr std::size_t most_circles = 40;
+/// Circles, from the largest on, whose other orbits are tried for.
+constexpr int most_completions = 3;
 /// A way from one angle to another is halved so often, at most.
-constexpr int halvings = 4;
+constexpr int halvings = 2;
 /// The push must exceed its noise so many times for its zeros to be where the family's are. Not measured.
 constexpr double clear = 30.0;
 /// Accuracy of an angle, in parts of a turn by 2 pi/q.
@@ -92,7 +94,7 @@ class Plane {
 
   [[nodiscard]] bool is_near(const loop::Loop& orbit) const {
     const Gap gap = gap_between(_base, orbit, _group, _options.family.modes);
-    return gap.beside <= farthest_beside * gap.inside.norm();
+    return gap.beside <= farthest_beside * (gap.inside.norm() + std::abs(gap.along));
   }
 
   /// The orbit of another amplitude: by the polynomial in it through the base and the last circles' orbits of this place.
@@ -194,8 +196,10 @@ AnglesFound search_angles(const systems::System& system, const loop::Loop& base,
   if (circles.empty()) return {};
   AnglesFound out = circles.back().summary();
   std::optional<Circle> all;
-  for (; !all && !circles.empty() && circles.back().is_clear(); circles.pop_back())
+  for (int tries = 0; !all && tries < most_completions && circles.back().is_clear(); ++tries, circles.pop_back()) {
     all = completed(plane, circles.back(), turn);
+    if (circles.size() == 1) break;
+  }
   if (!all || !all->is_clear() || all->sign_changes() != 2) return out;
   const Circle& circle = *all;
   out = circle.summary();
