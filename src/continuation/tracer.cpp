@@ -157,7 +157,11 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
     if (trial.is_orbit && !jumped) {
       _frontier.next_length =
           std::min(next_step_length(length, trial.prediction_error, wanted, trial.order), _options.largest_step);
-      return accept_within_limits(std::move(trial), length);
+      Ending refused;
+      if (std::optional<Orbit> orbit = accept_within_limits(trial, length, refused)) return orbit;
+      // The step may have gone over to another family, on which there is no such orbit.
+      if (!refused.failed() || 0.5 * length < least) return end(refused.reason, std::move(refused.detail));
+      trial.reason = std::move(refused.detail);
     }
     _frontier.problem.factor_point.clear();
     length *= 0.5;
@@ -176,7 +180,8 @@ double Tracer::length_to_try() {
 }
 
 /// The last orbit of a branch lies on the scene's limit, not beyond it; where a step passes two, on the first.
-std::optional<Orbit> Tracer::accept_within_limits(Trial trial, double length) {
+/// None with the reason in `refused` where there is no such orbit.
+std::optional<Orbit> Tracer::accept_within_limits(const Trial& trial, double length, Ending& refused) {
   constexpr int period = 0;  // among the scalars
   const double value = energy_of(*_system, trial.loop);
   const bool is_late = scalar(trial, period) > _options.period_limit;
@@ -194,7 +199,8 @@ std::optional<Orbit> Tracer::accept_within_limits(Trial trial, double length) {
     _frontier.on_energy_limit = on_limit.trial.has_value();
   }
   if (on_limit.trial) return accept(*on_limit.trial);
-  return end(on_limit.ending.reason, std::move(on_limit.ending.detail));
+  refused = std::move(on_limit.ending);
+  return std::nullopt;
 }
 
 Orbit Tracer::accept(const Trial& trial) {

@@ -39,7 +39,7 @@ class Tracer {
   /// With a step of at most this length.
   std::optional<Orbit> next_orbit(double at_most);
   [[nodiscard]] double length_to_try();
-  std::optional<Orbit> accept_within_limits(Trial trial, double length);
+  std::optional<Orbit> accept_within_limits(const Trial& trial, double length, Ending& refused);
   Orbit accept(const Trial& trial);
   /// Makes `orbit`, whose loop and numbers are set, the frontier's; `increment`: arclength from the one before.
   void keep(Orbit& orbit, double increment, double amplitude);

@@ -1,6 +1,7 @@
-// The planar circular restricted three-body problem with mu = 0.001, whose loops pass near a body: what a tree says may
-// not hang on the first step.
+// The planar circular restricted three-body problem: what a tree says may not hang on the first step, on the tolerance or
+// on which of two mirror images is looked at.
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,65 @@ TEST(RestrictedProblem, ShortFamiliesEndOnThatOfL3) {
     for (const std::string family : {"L4", "L5"})
       EXPECT_NE(atlas.end_of(family).find("joined L3 at T = 6.28164868"), std::string::npos) << atlas.end_of(family);
   }
+}
+
+// Henrard 1970 and 2002 have the long-period family end on an orbit of the short-period family gone around 13 times; the
+// short orbit of that resonance was located on the short-period family itself. On the way a narrow gap must not be stepped
+// over: the family turns there, at T = 82.0097.
+TEST(RestrictedProblem, LongFamiliesEndAtTheirResonance) {
+  constexpr double short_period = 6.289847916;
+  constexpr double energy = -1.234482545;
+  struct Case {
+    std::string tolerance;
+    std::string first;
+    std::string y;
+  };
+  const core::Communicator comm;
+  for (const Case& with : {Case{"1e-8", "0.01", "0.866"}, Case{"1e-9", "0.01", "0.866"}, Case{"1e-10", "0.01", "0.866"},
+                           Case{"1e-10", "0.003", "0.866"}, Case{"1e-10", "0.005", "0.866"},
+                           Case{"1e-10", "0.0087", "0.866"}, Case{"1e-10", "0.02", "0.866"},
+                           Case{"1e-10", "0.01", "-0.866"}}) {
+    SCOPED_TRACE(with.tolerance + " " + with.first + " " + with.y);
+    const scene::Scene scene = scene::load(
+        ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_mu_0.001.yaml",
+        {"continuation.start=" + with.first, "continuation.tolerance=" + with.tolerance,
+         "starts.fixed_points.grid=[[0.499], [" + with.y + "]]",
+         "starts.sweep.period=[70, 80]", "starts.sweep.step=0.1", "survey.depth=0",
+         "limits.period=120"});
+    const survey::Summary summary = test::run(comm, scene, "long");
+    if (!comm.is_root()) continue;
+    EXPECT_EQ(summary.failures, 0U);
+    ASSERT_EQ(summary.families.size(), 1U);
+    const std::string& end = summary.families.front().end_reason;
+    double period = 0.0;
+    double found = 0.0;
+    double once = 0.0;
+    ASSERT_EQ(std::sscanf(end.c_str(), "met a family of more symmetry (T = %lf, E = %lf, 13 times around T = %lf", &period,
+                          &found, &once),
+              3)
+        << end;
+    EXPECT_NEAR(period, 13 * short_period, 13e-9);
+    EXPECT_NEAR(once, short_period, 1e-9);
+    EXPECT_NEAR(found, energy, 1e-9);
+    EXPECT_NEAR(summary.families.front().period_to, 82.0097, 1e-4);
+  }
+}
+
+// No reversor maps these orbits to themselves, so nothing but a search tells in which directions families leave; at a
+// tripling they move along the short-period family as fast as away from it.
+TEST(RestrictedProblem, FamiliesAreBornAtTriplingsWithoutReversor) {
+  const core::Communicator comm;
+  const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_earth_moon.yaml",
+                                         {"starts.fixed_points.grid=[[0.488], [0.866]]", "starts.sweep.period=[6, 7]",
+                                          "survey.depth=1", "survey.subharmonics=3"});
+  const survey::Summary summary = test::run(comm, scene, "tripling");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  ASSERT_EQ(summary.families.size(), 2U);
+  const test::Atlas atlas(summary.atlas);
+  const std::string end = atlas.end_of("SfT3");
+  EXPECT_NE(end.find("forwards: joined Short-4 at T = 19.1077714"), std::string::npos) << end;
+  EXPECT_NE(end.find("backwards: joined Short-4 at T = 19.1077714"), std::string::npos) << end;
 }
 
 }  // namespace
