@@ -21,8 +21,9 @@ namespace {
 
 /// Angles in a turn by 2 pi/q at which the push is looked at: a sine needs three, its first harmonics a few more.
 constexpr int samples = 8;
-/// Amplitudes, in parts of the scale: the first for which guesses along the kernel alone are good enough. They grow as long
-/// as orbits are found and lie within 30 degrees of the kernel and the family, by the first of the factors that serves.
+/// Amplitudes, in parts of the scale: the first for which guesses along the kernel alone are good enough. They grow as
+/// long as orbits are found and lie within 30 degrees of the kernel and the family, by the first of the factors that
+/// serves.
 constexpr double first[] = {0.01, 0.003, 0.001, 0.0003};
 constexpr double growths[] = {1.4, 1.1};
 /// Orbits behind one another that a guess for the next is made from, besides the base.
@@ -75,7 +76,8 @@ class Plane {
 
   /// The orbit held at an angle, from a guess that has its part in the kernel there.
   [[nodiscard]] std::optional<Held> held(const loop::Loop& guess) const {
-    const std::vector<loop::Tangent> axes{_group.vector_at(Eigen::Vector2d(1, 0)), _group.vector_at(Eigen::Vector2d(0, 1))};
+    const std::vector<loop::Tangent> axes{_group.vector_at(Eigen::Vector2d(1, 0)),
+                                          _group.vector_at(Eigen::Vector2d(0, 1))};
     const corrector::Result result = held_orbit(_system, guess, axes, {loss::Scalar::of_parameter(PushedSystem::push)},
                                                 _isotropy, _options.corrector);
     if (!result.converged()) return std::nullopt;
@@ -97,7 +99,8 @@ class Plane {
     return gap.beside <= farthest_beside * (gap.inside.norm() + std::abs(gap.along));
   }
 
-  /// The orbit of another amplitude: by the polynomial in it through the base and the last circles' orbits of this place.
+  /// The orbit of another amplitude: by the polynomial in it through the base and the last circles' orbits of this
+  /// place.
   [[nodiscard]] loop::Loop continued(const std::vector<Circle>& circles, std::size_t place, double amplitude) const {
     const std::size_t used = std::min(circles.size(), remembered);
     const auto last = std::span(circles).last(used);
@@ -140,8 +143,8 @@ std::vector<Circle> grown(const Plane& plane, double turn, double scale) {
   const std::vector<double> angles{0.0, 0.25 * turn, turn};
   std::vector<Circle> circles;
   for (const double part : first) {
-    auto circle = held_circle(plane, part * scale, angles,
-                              [&](std::size_t a) { return plane.beside(angles[a], part * scale); });
+    auto circle =
+        held_circle(plane, part * scale, angles, [&](std::size_t a) { return plane.beside(angles[a], part * scale); });
     if (!circle) continue;
     circles.push_back(std::move(*circle));
     break;
@@ -151,8 +154,8 @@ std::vector<Circle> grown(const Plane& plane, double turn, double scale) {
     std::optional<Circle> next;
     for (const double factor : growths) {
       const double amplitude = factor * circles.back().amplitude;
-      next = held_circle(plane, amplitude, angles,
-                         [&](std::size_t a) { return plane.continued(circles, a, amplitude); });
+      next =
+          held_circle(plane, amplitude, angles, [&](std::size_t a) { return plane.continued(circles, a, amplitude); });
       if (next) break;
     }
     if (!next) break;

@@ -17,13 +17,14 @@ struct AnglesFound {
   [[nodiscard]] bool is_plain() const { return force > 1e-7; }
 };
 
-/// The angles at which orbits leave `base` in a plane kernel of a conservative system that q rotations map to itself, q >= 3.
+/// The angles at which orbits leave `base` in a plane kernel of a conservative system that q rotations map to itself, q
+/// >= 3.
 ///
-/// At an amplitude r and any angle there is an orbit of the PushedSystem whose part in the kernel lies there; its push is
-/// an odd function of the reduced action's derivative by the angle, r^(q - 2) sin(q (angle - a)) to lowest order, and
-/// vanishes where orbits of the system itself lie. Its sign changes over a turn by 2 pi/q are located, which is possible
-/// as long as the push exceeds its noise, far below the loss's tolerance. Amplitudes grow from a hundredth of `scale` until
-/// the push is plain. One of each pair of opposite directions where q is odd.
+/// At an amplitude r and any angle there is an orbit of the PushedSystem whose part in the kernel lies there; its push
+/// is an odd function of the reduced action's derivative by the angle, r^(q - 2) sin(q (angle - a)) to lowest order,
+/// and vanishes where orbits of the system itself lie. Its sign changes over a turn by 2 pi/q are located, which is
+/// possible as long as the push exceeds its noise, far below the loss's tolerance. Amplitudes grow from a hundredth of
+/// `scale` until the push is plain. One of each pair of opposite directions where q is odd.
 [[nodiscard]] AnglesFound search_angles(const systems::System& system, const loop::Loop& base,
                                         const KernelActions& group, const loop::Isotropy& isotropy, int q, double scale,
                                         const DirectionOptions& options);

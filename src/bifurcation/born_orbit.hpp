@@ -16,8 +16,8 @@ namespace orbweaver::bifurcation {
                                            const loop::Tangent& along, const loop::Isotropy& isotropy, double amplitude,
                                            const corrector::Options& options = {});
 
-/// The orbit at guess + u with u orthogonal to `held` (the modes of each) and to the time shift, solved for T and `scalars`
-/// too.
+/// The orbit at guess + u with u orthogonal to `held` (the modes of each) and to the time shift, solved for T and
+/// `scalars` too.
 [[nodiscard]] corrector::Result held_orbit(const systems::System& system, const loop::Loop& guess,
                                            const std::vector<loop::Tangent>& held, std::vector<loss::Scalar> scalars,
                                            const loop::Isotropy& isotropy, const corrector::Options& options = {});

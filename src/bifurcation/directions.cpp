@@ -129,7 +129,8 @@ Direction direction_along(const systems::Structure& system, const KernelActions&
 
 // A direction less its part along the time shift, which orbits that are found have none of.
 loop::Tangent across_time(const loop::Loop& base, loop::Tangent direction) {
-  core::require(direction.modes.size() == base.modes.size(), "the family's direction needs the size of the base's modes");
+  core::require(direction.modes.size() == base.modes.size(),
+                "the family's direction needs the size of the base's modes");
   const loss::Unknowns all{loop::Subspace(base.dimension, base.cutoff, {}), {}};
   const std::vector<double> shift = all.tangent_of(all.time_shift_direction(base)).modes;
   double along = 0.0;
@@ -210,17 +211,18 @@ std::vector<double> search_amplitudes(int q, const loop::Loop& base, bool consta
   return out;
 }
 
-/// Directions at which orbits were found, as the whole way from the base to each: the smaller the term that fixes the angle,
-/// the nearer a first orbit must be guessed.
+/// Directions at which orbits were found, as the whole way from the base to each: the smaller the term that fixes the
+/// angle, the nearer a first orbit must be guessed.
 std::vector<Direction> by_angles(const systems::System& system, const KernelActions& group, const loop::Loop& base,
                                  const loop::Isotropy& kept, int q, const DirectionOptions& options) {
   const double scale = std::min(1.0, loop::rms_amplitude(base));
   const AnglesFound angles = search_angles(system, base, group, kept, q, scale, options);
   if (!angles.decided())
-    throw UndecidedError(fmt::format(
-        "a kernel of dimension 2 (q = {}): at amplitude {:.2g} what decides in which directions families leave is {:.1e}, "
-        "and rounding {:.1e}",
-        q, angles.amplitude, angles.force, angles.noise));
+    throw UndecidedError(
+        fmt::format("a kernel of dimension 2 (q = {}): at amplitude {:.2g} what decides in which directions families "
+                    "leave is {:.1e}, "
+                    "and rounding {:.1e}",
+                    q, angles.amplitude, angles.force, angles.noise));
   std::vector<Direction> out;
   for (const FoundOrbit& orbit : angles.found) {
     Direction direction;
@@ -233,8 +235,8 @@ std::vector<Direction> by_angles(const systems::System& system, const KernelActi
     for (const double v : direction.tangent.modes) square += v * v;
     direction.amplitude = std::sqrt(square);
     direction.tangent *= 1.0 / direction.amplitude;
-    direction.isotropy = loop::find_isotropy(system.structure(), orbit.loop, found_tolerance * angles.amplitude,
-                                             group.denominator());
+    direction.isotropy =
+        loop::find_isotropy(system.structure(), orbit.loop, found_tolerance * angles.amplitude, group.denominator());
     direction.both_sides = has_other_sides(group, orbit.coordinates);
     direction.is_hidden = !angles.is_plain();
     out.push_back(std::move(direction));

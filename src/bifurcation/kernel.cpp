@@ -90,8 +90,7 @@ Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& 
   if (even_in_time || multiplicity > 1) {
     const loop::Loop even = loop::evenly_in_time(point.loop);
     kernel.base = loop::repeated(even, multiplicity);
-    kernel.family =
-        loop::repeated(even, loop::with_time_map(point.loop, point.tangent, {}, even.cutoff), multiplicity);
+    kernel.family = loop::repeated(even, loop::with_time_map(point.loop, point.tangent, {}, even.cutoff), multiplicity);
   } else {
     kernel.base = point.loop;
   }

@@ -9,8 +9,8 @@
 
 namespace orbweaver::bifurcation {
 
-/// f + push w, with w(z) = (z - centre) less its part along the gradient of the first conserved quantity (angles are left
-/// out): a conservative system whose volume grows, which has the same conserved quantity. Its periodic orbits with
+/// f + push w, with w(z) = (z - centre) less its part along the gradient of the first conserved quantity (angles are
+/// left out): a conservative system whose volume grows, which has the same conserved quantity. Its periodic orbits with
 /// push = 0 are those of f. The Jacobian is that of f: it is meant for small pushes.
 class PushedSystem final : public systems::System {
  public:

@@ -54,8 +54,8 @@ struct Search {
   template <class Unwanted>
   [[nodiscard]] std::optional<FoundOrbit> settle(Eigen::VectorXd pinned, const Unwanted& unwanted) const {
     for (int pins = 0; pins < most_pins; ++pins) {
-      const corrector::Result result = born_orbit(system, base, group.vector_at(pinned), isotropy, amplitude,
-                                                 options.corrector);
+      const corrector::Result result =
+          born_orbit(system, base, group.vector_at(pinned), isotropy, amplitude, options.corrector);
       const std::optional<Gap> gap = near_gap(result.loop);
       if (!gap) return std::nullopt;
       const double length = gap->inside.norm();

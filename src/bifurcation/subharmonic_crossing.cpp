@@ -36,8 +36,8 @@ std::optional<loop::Loop> orbit_of_amplitude(const systems::System& system, loop
     Eigen::MatrixXd conditions(unknowns.size(), 2);
     conditions.col(0) = Eigen::Map<const Eigen::VectorXd>(along.data(), unknowns.size()).normalized();
     conditions.col(1) = Eigen::Map<const Eigen::VectorXd>(shift.data(), unknowns.size()).normalized();
-    corrector::Result result = corrector::correct(system, guess, unknowns, loss::Slice(unknowns.size(), conditions),
-                                                  options.corrector);
+    corrector::Result result =
+        corrector::correct(system, guess, unknowns, loss::Slice(unknowns.size(), conditions), options.corrector);
     if (result.converged()) return std::move(result.loop);
     const int larger = loop::next_cutoff(guess.cutoff);
     if (result.outcome != corrector::Outcome::under_resolved || larger > options.cutoff_to) return std::nullopt;

@@ -22,8 +22,8 @@ namespace {
 /// Of the corrector's tolerance on sqrt(loss), for the estimated error of the nodal values: the residual multiplies it
 /// by the field's Jacobian and 2 pi K/T, and the loss judges afterwards. Not measured.
 constexpr double of_loss_tolerance = 1e-2;
-/// The tolerance on sqrt(loss) to which the way is solved where the scene's is larger: a scene's tolerance may decide how
-/// well an orbit is resolved, but not on which side of a narrow gap the branch goes on. The default.
+/// The tolerance on sqrt(loss) to which the way is solved where the scene's is larger: a scene's tolerance may decide
+/// how well an orbit is resolved, but not on which side of a narrow gap the branch goes on. The default.
 constexpr double of_the_way = 1e-10;
 /// A change that small, in parts of that tolerance, is good enough even if it shrinks no more. Not measured.
 constexpr double good_enough = 0.3;

@@ -11,8 +11,8 @@ namespace orbweaver::spectrum {
 
 /// Stability indices (symplectic) or multipliers of the transverse flow.
 struct FloquetIndices {
-  std::vector<std::complex<double>> full;         ///< of the whole period
-  std::vector<std::complex<double>> fundamental;  ///< of the fundamental map
+  std::vector<std::complex<double>> full;                   ///< of the whole period
+  std::vector<std::complex<double>> fundamental;            ///< of the fundamental map
   double twist = std::numeric_limits<double>::quiet_NaN();  ///< as in Stability
 };
 

@@ -1,5 +1,5 @@
-// The planar circular restricted three-body problem: what a tree says may not hang on the first step, on the tolerance or
-// on which of two mirror images is looked at.
+// The planar circular restricted three-body problem: what a tree says may not hang on the first step, on the tolerance
+// or on which of two mirror images is looked at.
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -40,9 +40,9 @@ TEST(RestrictedProblem, ShortFamiliesEndOnThatOfL3) {
   }
 }
 
-// Henrard 1970 and 2002 have the long-period family end on an orbit of the short-period family gone around 13 times; the
-// short orbit of that resonance was located on the short-period family itself. On the way a narrow gap must not be stepped
-// over: the family turns there, at T = 82.0097.
+// Henrard 1970 and 2002 have the long-period family end on an orbit of the short-period family gone around 13 times;
+// the short orbit of that resonance was located on the short-period family itself. On the way a narrow gap must not be
+// stepped over: the family turns there, at T = 82.0097.
 TEST(RestrictedProblem, LongFamiliesEndAtTheirResonance) {
   constexpr double short_period = 6.289847916;
   constexpr double energy = -1.234482545;
@@ -52,17 +52,16 @@ TEST(RestrictedProblem, LongFamiliesEndAtTheirResonance) {
     std::string y;
   };
   const core::Communicator comm;
-  for (const Case& with : {Case{"1e-8", "0.01", "0.866"}, Case{"1e-9", "0.01", "0.866"}, Case{"1e-10", "0.01", "0.866"},
-                           Case{"1e-10", "0.003", "0.866"}, Case{"1e-10", "0.005", "0.866"},
-                           Case{"1e-10", "0.0087", "0.866"}, Case{"1e-10", "0.02", "0.866"},
-                           Case{"1e-10", "0.01", "-0.866"}}) {
+  for (const Case& with :
+       {Case{"1e-8", "0.01", "0.866"}, Case{"1e-9", "0.01", "0.866"}, Case{"1e-10", "0.01", "0.866"},
+        Case{"1e-10", "0.003", "0.866"}, Case{"1e-10", "0.005", "0.866"}, Case{"1e-10", "0.0087", "0.866"},
+        Case{"1e-10", "0.02", "0.866"}, Case{"1e-10", "0.01", "-0.866"}}) {
     SCOPED_TRACE(with.tolerance + " " + with.first + " " + with.y);
-    const scene::Scene scene = scene::load(
-        ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_mu_0.001.yaml",
-        {"continuation.start=" + with.first, "continuation.tolerance=" + with.tolerance,
-         "starts.fixed_points.grid=[[0.499], [" + with.y + "]]",
-         "starts.sweep.period=[70, 80]", "starts.sweep.step=0.1", "survey.depth=0",
-         "limits.period=120"});
+    const scene::Scene scene =
+        scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_mu_0.001.yaml",
+                    {"continuation.start=" + with.first, "continuation.tolerance=" + with.tolerance,
+                     "starts.fixed_points.grid=[[0.499], [" + with.y + "]]", "starts.sweep.period=[70, 80]",
+                     "starts.sweep.step=0.1", "survey.depth=0", "limits.period=120"});
     const survey::Summary summary = test::run(comm, scene, "long");
     if (!comm.is_root()) continue;
     EXPECT_EQ(summary.failures, 0U);
@@ -71,8 +70,8 @@ TEST(RestrictedProblem, LongFamiliesEndAtTheirResonance) {
     double period = 0.0;
     double found = 0.0;
     double once = 0.0;
-    ASSERT_EQ(std::sscanf(end.c_str(), "met a family of more symmetry (T = %lf, E = %lf, 13 times around T = %lf", &period,
-                          &found, &once),
+    ASSERT_EQ(std::sscanf(end.c_str(), "met a family of more symmetry (T = %lf, E = %lf, 13 times around T = %lf",
+                          &period, &found, &once),
               3)
         << end;
     EXPECT_NEAR(period, 13 * short_period, 13e-9);

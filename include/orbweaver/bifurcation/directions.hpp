@@ -17,15 +17,16 @@ namespace orbweaver::bifurcation {
 struct Direction {
   loop::Loop base;          ///< the crossing's orbit as the born family sees it: m times around, started where the born
                             ///< orbits' reversor, if they have one, has phase 0
-  loop::Tangent tangent;    ///< in the modes of `base`, which have unit length: in the kernel, or the whole way to an orbit
-                            ///< found, T with it
+  loop::Tangent tangent;    ///< in the modes of `base`, which have unit length: in the kernel, or the whole way to an
+                            ///< orbit found, T with it
   loop::Isotropy isotropy;  ///< of the born orbits (and of base): generators as loop::find_isotropy gives them
   bool both_sides =
       false;               ///< true: the opposite leads to other orbits; false: a symmetry or time shift maps the sides
   double amplitude = 0.0;  ///< 0: exact, any amplitude leads there; else found by a search at this amplitude, below
                            ///< which the loss hardly tells neighbouring directions apart
-  bool is_hidden = false;  ///< what tells it from neighbouring directions is so small, as far from the crossing as orbits
-                           ///< were found, that the family cannot be followed: it is known for what arrives along it
+  bool is_hidden = false;  ///< what tells it from neighbouring directions is so small, as far from the crossing as
+                           ///< orbits were found, that the family cannot be followed: it is known for what arrives
+                           ///< along it
 };
 
 struct DirectionOptions {

@@ -26,11 +26,11 @@ struct SymmetryGain {
 /// of that family's crossings (docs/mathematics.md, "Arrivals").
 ///
 /// Candidates are every declared equivariance with shifts p/q, q <= `largest_order`, and the identity with shifts 1/q,
-/// q <= `largest_repetition`, that the own isotropy does not generate, and, if it has no reversor, the declared reversors at any phase. With c(z) = e z - z,
-/// the broken part, the signed part of an orbit B seen from A is <c(A), c(B)> / <c(A), c(A)>: 1 at A, and of the other
-/// sign beyond an orbit with the symmetry e. Inner products are means over time, of as many samples as it takes for
-/// what they leave out to be small beside the broken part. Orbits A and B are neighbours of one branch, with its phase
-/// convention.
+/// q <= `largest_repetition`, that the own isotropy does not generate, and, if it has no reversor, the declared
+/// reversors at any phase. With c(z) = e z - z, the broken part, the signed part of an orbit B seen from A is <c(A),
+/// c(B)> / <c(A), c(A)>: 1 at A, and of the other sign beyond an orbit with the symmetry e. Inner products are means
+/// over time, of as many samples as it takes for what they leave out to be small beside the broken part. Orbits A and B
+/// are neighbours of one branch, with its phase convention.
 class SymmetryWatch {
  public:
   SymmetryWatch(const systems::Structure& system, const loop::Isotropy& own, int largest_order = 12,

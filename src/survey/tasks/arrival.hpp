@@ -24,9 +24,9 @@ namespace orbweaver::survey {
 bool locate_beneath(const std::shared_ptr<const systems::System>& system, const continuation::Options& options,
                     const loop::Loop& last, ArrivalRecord& arrival);
 
-/// Where the branch is about to meet a family at a resonance of order 5 or more, if its last known orbit lies beside such
-/// a crossing, and nearer than the first. Close to such a crossing rounding decides in which direction an orbit lies from
-/// it, so that no branch goes all the way, unless a reversor holds the direction.
+/// Where the branch is about to meet a family at a resonance of order 5 or more, if its last known orbit lies beside
+/// such a crossing, and nearer than the first. Close to such a crossing rounding decides in which direction an orbit
+/// lies from it, so that no branch goes all the way, unless a reversor holds the direction.
 [[nodiscard]] std::optional<ArrivalRecord> arrival_ahead(const std::shared_ptr<const systems::System>& system,
                                                          const continuation::FamilyCurve& family,
                                                          const bifurcation::SymmetryWatch& watch);

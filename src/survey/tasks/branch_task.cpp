@@ -52,9 +52,9 @@ BranchTask::BranchTask(const scene::Scene& scene, std::shared_ptr<const systems:
                                              loop::SymmetryGroup(_system->structure(), _start.isotropy).order(),
                                              scene.survey.subharmonics)) {
   _outcome.key = _work.key;
-  _may_arrive_ahead = _system->structure().symplectic &&
-                      std::none_of(_start.isotropy.begin(), _start.isotropy.end(),
-                                   [](const loop::SymmetryElement& e) { return e.reversing; });
+  _may_arrive_ahead =
+      _system->structure().symplectic && std::none_of(_start.isotropy.begin(), _start.isotropy.end(),
+                                                      [](const loop::SymmetryElement& e) { return e.reversing; });
   if (_system->structure().symplectic)
     _options.jumped = [this](const auto& from, const auto& to) { return jumped(from, to); };
   begin(state);

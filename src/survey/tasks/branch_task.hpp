@@ -65,7 +65,7 @@ class BranchTask {
   bifurcation::FoldWatch _folds;
   std::optional<continuation::Orbit> _last;
   std::optional<bifurcation::SymmetryWatch::SampledOrbit> _sampled;  // of the last orbit
-  bool _may_arrive_ahead = false;  // no reversor holds the direction
+  bool _may_arrive_ahead = false;                                    // no reversor holds the direction
   std::optional<spectrum::Stability> _last_stability;                // of the last orbit
   std::vector<double> _asked;                     // modes of the orbit whose stability was asked for last,
   std::optional<spectrum::Stability> _stability;  // and its stability
