@@ -40,6 +40,17 @@ class WrongReversor final : public test::DelegatingSystem {
   systems::Structure _structure;
 };
 
+class WithTwoQuantities final : public test::DelegatingSystem {
+ public:
+  WithTwoQuantities() : DelegatingSystem(systems::make_system("double_pendulum")), _structure(whole().structure()) {
+    _structure.conserved.emplace_back("momentum");
+  }
+  [[nodiscard]] const systems::Structure& structure() const override { return _structure; }
+
+ private:
+  systems::Structure _structure;
+};
+
 /// x'' = -x - x'/2 and y'' = -2 y - y'/2, which conserve nothing.
 class Damped final : public test::StatedSystem, public systems::QuadSystem {
  public:
@@ -310,6 +321,17 @@ TEST(RunSurvey, AFamilyBeyondALimitIsLeftOutByIt) {
   EXPECT_EQ(summary.families[0].orbits, 0);
   EXPECT_THAT(summary.families[0].end_reason, HasSubstr("period limit (left out: begins at T = 8.20"));
   EXPECT_EQ(survey::ends_in(summary.families[0].end_reason), std::vector{survey::EndKind::period_limit});
+}
+
+TEST(RunSurvey, ASystemWithTwoConservedQuantitiesIsRefused) {
+  const core::Communicator comm;
+  const auto folder = test::fresh_folder(own_folder(comm, "two"), comm.get());
+  try {
+    (void)survey::run_survey(comm, test::quick_scene({}), std::make_shared<WithTwoQuantities>(), folder, {});
+    ADD_FAILURE() << "surveyed";
+  } catch (const core::InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("conserves one quantity, got double_pendulum with energy, momentum"));
+  }
 }
 
 TEST(RunSurvey, AModelThatContradictsItsStructureIsRefusedOnEveryRank) {
