@@ -39,9 +39,9 @@ struct IdentityError {
                                                              double size);
 
 /// Throws core::InputError where the system contradicts its structure beyond rounding, at `equilibria` (sizes
-/// dimension) and around them, as far as their largest coordinate and 1: an identity above, eigenvalues that do not pair though it is symplectic, or a guard that is
-/// not positive at an equilibrium. The message says which, by how much, and where. Takes well below a millisecond for
-/// an equilibrium.
+/// dimension) and around them, as far as their largest coordinate and 1: an identity above, eigenvalues that do not
+/// pair though it is symplectic, or a guard that is not positive at an equilibrium. The message says which, by how
+/// much, and where. Takes well below a millisecond for an equilibrium.
 void require_identities(const System& system, const std::vector<std::vector<double>>& equilibria);
 
 }  // namespace orbweaver::systems
