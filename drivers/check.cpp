@@ -12,6 +12,8 @@
 #include "common_options.hpp"
 #include "failure.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/starts/fixed_points.hpp"
+#include "orbweaver/systems/identities.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 
@@ -184,11 +186,12 @@ void print_not_built(const scene::Scene& scene) {
 int check(const SceneOptions& options, const Invocation& invocation) {
   if (!invocation.petsc_options.empty())
     throw core::InputError(
-        fmt::format("check: expected no PETSc options, got `{}`; it computes nothing, so drop `--` and what follows",
+        fmt::format("check: expected no PETSc options, got `{}`; it follows no family, so drop `--` and what follows",
                     fmt::join(invocation.petsc_options, " ")));
   const scene::Scene scene = options.load();
   const auto bound = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
   const systems::System& system = *bound;
+  systems::require_identities(system, starts::find_fixed_points(system, scene.fixed_points.grid));
   fmt::print("{}: a valid scene, \"{}\"\n", options.file.string(), scene.name);
   print_system(scene, system);
   print_starts(scene, system);

@@ -9,6 +9,7 @@
 #include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/report/summary_text.hpp"
 #include "orbweaver/survey/run/survey.hpp"
+#include "unused_options.hpp"
 
 namespace orbweaver::drivers {
 
@@ -33,7 +34,11 @@ int run(const Options& options, const Invocation& invocation) {
   const core::Communicator comm;
   core::start_logging(options.log.level(), comm.rank(), comm.size());
   try {
-    return run_on_ranks(comm, [&] { return consolidate_on(comm, options); });
+    return run_on_ranks(comm, [&] {
+      const int status = consolidate_on(comm, options);
+      warn_of_unused_options(session, comm);
+      return status;
+    });
   } catch (...) {  // as in survey.cpp
     return report_failure(std::current_exception());
   }

@@ -19,6 +19,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "signals.hpp"
 #include "terminal.hpp"
+#include "unused_options.hpp"
 
 namespace orbweaver::drivers {
 
@@ -93,7 +94,11 @@ int run(const Options& options, const Invocation& invocation) {
   const core::Communicator comm;
   core::start_logging(options.log.level(), comm.rank(), comm.size());
   try {
-    return run_on_ranks(comm, [&] { return survey_on(comm, options); });
+    return run_on_ranks(comm, [&] {
+      const int status = survey_on(comm, options);
+      warn_of_unused_options(session, comm);
+      return status;
+    });
   } catch (
       // reported before MPI ends: mpirun kills a job when its first rank exits, maybe before another has printed
       ...) {

@@ -11,6 +11,7 @@
 #include "orbweaver/core/mpi/communicator.hpp"
 #include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/report/sweep_report.hpp"
+#include "unused_options.hpp"
 
 namespace orbweaver::drivers {
 
@@ -40,6 +41,7 @@ int run(const Options& options, const Invocation& invocation) {
   print_result(report::to_text(reports));
   if (options.table) print_result("\n" + report::eigenvalue_table(reports));
   if (!options.csv.empty()) write_file(options.csv, report::eigenvalue_csv(reports));
+  warn_of_unused_options(session, core::Communicator(MPI_COMM_SELF));
   return 0;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -29,18 +30,22 @@ class EventFunction {
     return there ? there->reading.value : nan;
   }
 
+  /// Why the function had no value where it was asked for last without one.
+  [[nodiscard]] const std::optional<NotLocated>& without_value() const { return _without_value; }
+
   std::optional<Crossing> at(double position, bool with_tangent = false) {
     const bool fold = _event.kind != Event::Kind::test_function;
     std::optional<continuation::CurvePoint> point = _family.at(position, with_tangent || fold);
-    if (!point) return std::nullopt;
+    if (!point) return without_value(NotLocated::Reason::no_orbit, position, period_before(position));
     Crossing out;
     out.point = std::move(*point);
     try {
       spectrum::FloquetOptions options;
       options.team = _family.options().corrector.team;
       out.stability = spectrum::floquet(_system, out.point.loop, _family.isotropy(), options);
-    } catch (const core::NumericalError&) {
-      if (_event.kind == Event::Kind::test_function) return std::nullopt;
+    } catch (const core::NumericalError& error) {
+      if (_event.kind == Event::Kind::test_function)
+        return without_value(NotLocated::Reason::no_multipliers, position, out.point.loop.period, error.what());
     }
     if (_event.kind == Event::Kind::test_function)
       out.reading = evaluate(_event.function, _system.structure(), out.stability);
@@ -48,13 +53,29 @@ class EventFunction {
       out.reading = {period_slope(out.point), 0.0};
     else
       out.reading = {energy_slope(_system, out.point), 0.0};
+    if (std::isnan(out.reading.value))
+      return without_value(NotLocated::Reason::no_value, position, out.point.loop.period);
     return out;
   }
 
  private:
+  std::optional<Crossing> without_value(NotLocated::Reason reason, double position, double period,
+                                        std::string detail = "") {
+    _without_value = {.reason = reason, .position = position, .period = period, .detail = std::move(detail)};
+    return std::nullopt;
+  }
+
+  [[nodiscard]] double period_before(double position) const {
+    double period = _family.known().front().loop.period;
+    for (const continuation::FamilyCurve::Known& known : _family.known())
+      if (known.position <= position) period = known.loop.period;
+    return period;
+  }
+
   const systems::System& _system;
   continuation::FamilyCurve& _family;
   const Event& _event;
+  std::optional<NotLocated> _without_value;
 };
 
 /// The least or largest period or energy between two positions, if it lies within.
@@ -103,7 +124,17 @@ std::string to_text(const NotLocated& why) {
     case NotLocated::Reason::no_zero:
       return fmt::format("no zero between positions {:.9g} and {:.9g}, where the function is {:.3g} and {:.3g}",
                          why.from, why.to, why.at_from, why.at_to);
-    case NotLocated::Reason::no_orbit: return fmt::format("no orbit at position {:.12g}", why.position);
+    case NotLocated::Reason::no_orbit:
+      return fmt::format("no orbit converges at position {:.12g}, after the one with T = {:.12g}", why.position,
+                         why.period);
+    case NotLocated::Reason::no_multipliers:
+      return fmt::format("no multipliers of the orbit with T = {:.12g} at position {:.12g}: {}", why.period,
+                         why.position, why.detail);
+    case NotLocated::Reason::no_value:
+      return fmt::format(
+          "the multipliers of the orbit with T = {:.12g} at position {:.12g} are so large that the test "
+          "function is not a number",
+          why.period, why.position);
     case NotLocated::Reason::no_event: return "two multipliers pass one another there: nothing leaves";
   }
   return "unknown";
@@ -123,12 +154,14 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
   if (!located && event.kind != Event::Kind::test_function)
     located = extremum(system, family, event, from, to, absolute);
   if (!located) {
-    why = {NotLocated::Reason::no_zero, from, to, function(from), function(to)};
+    const double at_from = function(from);
+    const double at_to = function(to);
+    why = function.without_value().value_or(NotLocated{NotLocated::Reason::no_zero, from, to, at_from, at_to});
     return std::nullopt;
   }
   std::optional<Crossing> crossing = function.at(located->position, true);
   if (!crossing) {
-    why = {.reason = NotLocated::Reason::no_orbit, .position = located->position};
+    why = function.without_value().value();
     return std::nullopt;
   }
   if (event.kind == Event::Kind::test_function &&

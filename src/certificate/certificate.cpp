@@ -60,6 +60,29 @@ double energy_drift_of(const systems::System& system, const std::vector<State>& 
   return largest;
 }
 
+double norm(const State& state) {
+  double sum = 0.0;
+  for (const double value : state) sum += value * value;
+  return std::sqrt(sum);
+}
+
+double reach_of(const std::vector<State>& states) {
+  double largest = 0.0;
+  for (const State& state : states) largest = std::max(largest, norm(state));
+  return largest;
+}
+
+double steepness_of(const systems::System& system, const std::vector<State>& states) {
+  if (!system.structure().conservative()) return 0.0;
+  double largest = 0.0;
+  State gradient(states.front().size());
+  for (const State& state : states) {
+    system.conserved_gradient(0, state, gradient);
+    largest = std::max(largest, norm(gradient));
+  }
+  return largest;
+}
+
 // NaN where the orbit is so unstable that the integration leaves the region where the system is defined.
 double single_shot_of(const systems::System& system, const std::vector<State>& states, double period,
                       double tolerance) {
@@ -82,6 +105,8 @@ Certificate certify(const systems::System& system, const loop::Loop& loop, const
   certificate.closure = closure_of(system, loop, states, options);
   certificate.single_shot = single_shot_of(system, states, loop.period, options.tolerance);
   certificate.energy_drift = energy_drift_of(system, states);
+  certificate.reach = reach_of(states);
+  certificate.steepness = steepness_of(system, states);
   return certificate;
 }
 

@@ -47,9 +47,11 @@ std::optional<Ending> end_at(const Frontier& frontier, const Options& options) {
 
 std::optional<Ending> beyond_limits(double period, double energy, const Options& options) {
   if (period > options.period_limit)
-    return Ending{EndReason::period_limit, fmt::format("begins beyond it, at T = {:.9g}", period)};
+    return Ending{EndReason::period_limit,
+                  fmt::format("left out: begins at T = {:.9g}, beyond {:g}", period, options.period_limit)};
   if (energy > options.energy_to || energy < options.energy_from)
-    return Ending{EndReason::energy_limit, fmt::format("begins beyond it, at E = {:.9g}", energy)};
+    return Ending{EndReason::energy_limit, fmt::format("left out: begins at E = {:.9g}, outside [{:g}, {:g}]", energy,
+                                                       options.energy_from, options.energy_to)};
   return std::nullopt;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/numerics/lagrange.hpp"
@@ -72,6 +73,7 @@ CurveInterval::CurveInterval(const systems::System& system, const loop::Isotropy
   for (std::size_t n = 0; n < loops.size(); ++n) _points.push_back({_problem->from_loop(loops[n]), known[n].position});
   _first = last - 1;
   _last = last;
+  _ends = {std::move(loops[_first]), std::move(loops[_last])};
 }
 
 std::optional<CurvePoint> CurveInterval::at(double position, bool with_tangent) {
@@ -84,6 +86,7 @@ std::optional<CurvePoint> CurveInterval::at(double position, bool with_tangent) 
     _state.factor_point.clear();
     trial = solve(position);
   }
+  if (!trial) trial = known_at(position);
   if (!trial) return std::nullopt;
   CurvePoint found{position, std::move(trial->loop), {}};
   if (with_tangent)
@@ -91,6 +94,17 @@ std::optional<CurvePoint> CurveInterval::at(double position, bool with_tangent) 
   _points.push_back({std::move(trial->values), position});
   _found.push_back(found);
   return found;
+}
+
+std::optional<Trial> CurveInterval::known_at(double position) const {
+  for (const std::size_t n : {_first, _last})
+    if (_points[n].parameter == position) {
+      Trial trial;
+      trial.values = _points[n].values;
+      trial.loop = _ends[n - _first];
+      return trial;
+    }
+  return std::nullopt;
 }
 
 std::optional<Trial> CurveInterval::solve(double position) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -22,6 +23,8 @@ class CurveInterval {
 
  private:
   [[nodiscard]] std::optional<Trial> solve(double position);
+  /// A known orbit itself, which the corrector may fail to find again; none between the two.
+  [[nodiscard]] std::optional<Trial> known_at(double position) const;
   [[nodiscard]] bool slipped(const Trial& trial, const Prediction& prediction);
   [[nodiscard]] Prediction prediction_at(double position);
 
@@ -33,6 +36,7 @@ class CurveInterval {
   std::vector<TracePoint> _points;  // known and found
   std::size_t _first = 0;           // of the interval, among the points
   std::size_t _last = 0;
+  std::array<loop::Loop, 2> _ends;  // under the interval's time map
   std::vector<CurvePoint> _found;
 };
 

@@ -77,6 +77,52 @@ double boundary(const archive::Archive& atlas, std::size_t family, std::size_t s
   return atlas.orbits().reals("period")[stable];
 }
 
+/// The turns of T that an interval names, at most; with more of them it is said how often T turns.
+constexpr std::size_t most_turns = 3;
+
+/// The period at which T turns at or next to an orbit: that of the fold located there if there is one.
+double turn_near(const archive::Archive& atlas, std::size_t family, std::size_t orbit) {
+  const auto& arclengths = atlas.orbits().reals("arclength");
+  const archive::Table& crossings = atlas.crossings();
+  for (std::size_t row = 0; row < crossings.rows(); ++row) {
+    const double where = crossings.reals("arclength")[row];
+    if (atlas.crossing_kinds()[row] == archive::CrossingKind::fold_period &&
+        crossings.integers("family")[row] == static_cast<std::int64_t>(family) && where >= arclengths[orbit - 1] &&
+        where <= arclengths[orbit + 1])
+      return crossings.reals("period")[row];
+  }
+  return atlas.orbits().reals("period")[orbit];
+}
+
+/// "8.44 .. 9.1"; "25.2693 .. 25.2999 .. 25.2621" where T turns between the ends, in the order along the family.
+std::string interval_text(const archive::Archive& atlas, std::size_t family, double from, double to, std::size_t first,
+                          std::size_t last) {
+  const auto& periods = atlas.orbits().reals("period");
+  std::vector<std::string> places{fmt::format("{:.6g}", from)};
+  const auto add = [&](double period) {
+    const std::string text = fmt::format("{:.6g}", period);
+    if (text != places.back()) places.push_back(text);
+  };
+  double before = from;
+  bool rising = false;
+  bool moves = false;
+  const auto pass = [&](double period, std::size_t orbit_before) {
+    if (period == before) return;
+    if (moves && rising != (period > before)) add(turn_near(atlas, family, orbit_before));
+    moves = true;
+    rising = period > before;
+    before = period;
+  };
+  for (std::size_t orbit = first; orbit <= last; ++orbit) pass(periods[orbit], orbit - 1);
+  pass(to, last);
+  add(to);
+  if (places.size() <= most_turns + 2) return fmt::format("{}", fmt::join(places, " .. "));
+  const auto [least, most] = std::minmax_element(periods.begin() + static_cast<std::ptrdiff_t>(first),
+                                                 periods.begin() + static_cast<std::ptrdiff_t>(last) + 1);
+  return fmt::format("{} .. {} (within {:.6g} .. {:.6g}, turning {} times)", places.front(), places.back(), *least,
+                     *most, places.size() - 2);
+}
+
 }  // namespace
 
 std::string stability_text(const archive::Archive& atlas, std::size_t family) {
@@ -96,7 +142,7 @@ std::string stability_text(const archive::Archive& atlas, std::size_t family) {
     if (orbit > begin) {
       const double from = begin == first ? periods[begin] : boundary(atlas, family, begin, begin - 1);
       const double to = orbit == end ? periods[orbit - 1] : boundary(atlas, family, orbit - 1, orbit);
-      intervals.push_back(from == to ? fmt::format("{:.6g}", from) : fmt::format("{:.6g} .. {:.6g}", from, to));
+      intervals.push_back(interval_text(atlas, family, from, to, begin, orbit - 1));
     }
     begin = orbit + 1;
   }

@@ -34,7 +34,10 @@ std::string to_text(const survey::Summary& summary) {
                         summary.atlas.string());
   for (const std::string& remark : summary.remarks) text += fmt::format("note: {}\n", remark);
   for (const std::string& failed : summary.failed_tasks) text += fmt::format("failed: {}\n", failed);
-  text += fmt::format("{} families, {} crossings, {} orbits, {} failed", summary.families.size(), summary.crossings,
+  const auto left_out = std::count_if(summary.families.begin(), summary.families.end(),
+                                      [](const survey::FamilySummary& f) { return f.orbits == 0 && !f.failed; });
+  text += fmt::format("{} families{}, {} crossings, {} orbits, {} failed", summary.families.size(),
+                      left_out > 0 ? fmt::format(" ({} of them left out by limits)", left_out) : "", summary.crossings,
                       summary.orbits, summary.failures);
   if (!summary.peak_memory_mib.empty())
     text += fmt::format(", {:.2f} s; peak memory per rank: {:.0f} MiB", summary.seconds,

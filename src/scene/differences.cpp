@@ -99,7 +99,7 @@ class Values {
 
   void add_system(const SystemChoice& choice) {
     add("system.name", choice.name);
-    for (const systems::Parameter& parameter : known_parameters(choice)) {
+    for (const systems::Parameter& parameter : known_parameters(systems::model_info(choice.name), choice)) {
       const auto given = choice.parameters.find(parameter.name);
       add("system.parameters." + parameter.name, given == choice.parameters.end() ? parameter.standard : given->second);
     }

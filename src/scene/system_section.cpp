@@ -9,15 +9,6 @@
 
 namespace orbweaver::scene {
 
-std::vector<systems::Parameter> known_parameters(const SystemChoice& choice) {
-  const systems::ModelInfo& info = systems::model_info(choice.name);
-  std::vector<systems::Parameter> known = info.parameters;
-  for (const systems::Effect& effect : info.effects)
-    if (std::count(choice.effects.begin(), choice.effects.end(), effect.name) > 0)
-      known.insert(known.end(), effect.parameters.begin(), effect.parameters.end());
-  return known;
-}
-
 namespace {
 
 // The layer `systems` knows what is allowed; the scene knows where it was asked for.
@@ -40,11 +31,37 @@ void read_effects(const Field& field, SystemChoice& choice) {
   }
 }
 
-void read_parameters(const Field& field, SystemChoice& choice) {
-  const std::vector<systems::Parameter> known = known_parameters(choice);
+/// The effect that brings the parameter, where the scene does not ask for it.
+void refuse_without_effect(const Keys& keys, const systems::Effect& effect) {
+  for (const systems::Parameter& parameter : effect.parameters)
+    if (const auto value = keys.find(parameter.name))
+      value->fail("a parameter of the system or of an effect asked for",
+                  fmt::format("one of the effect `{}`, which is not", effect.name),
+                  fmt::format("add `effects: [{}]`, or remove it", effect.name));
+}
+
+bool is_asked_for(const SystemChoice& choice, const systems::Effect& effect) {
+  return std::count(choice.effects.begin(), choice.effects.end(), effect.name) > 0;
+}
+
+}  // namespace
+
+std::vector<systems::Parameter> known_parameters(const systems::ModelInfo& info, const SystemChoice& choice) {
+  std::vector<systems::Parameter> known = info.parameters;
+  for (const systems::Effect& effect : info.effects)
+    if (is_asked_for(choice, effect)) known.insert(known.end(), effect.parameters.begin(), effect.parameters.end());
+  return known;
+}
+
+void read_parameters(const Field& field, const systems::ModelInfo& info, SystemChoice& choice) {
+  const std::vector<systems::Parameter> known = known_parameters(info, choice);
   std::vector<std::string> names;
-  for (const systems::Parameter& parameter : known) names.push_back(parameter.name);
+  for (const systems::Parameter& parameter : info.parameters) names.push_back(parameter.name);
+  for (const systems::Effect& effect : info.effects)
+    for (const systems::Parameter& parameter : effect.parameters) names.push_back(parameter.name);
   const Keys keys(field, names, "parameters: {m1: 1}");
+  for (const systems::Effect& effect : info.effects)
+    if (!is_asked_for(choice, effect)) refuse_without_effect(keys, effect);
   for (const systems::Parameter& parameter : known) {
     const auto value = keys.find(parameter.name);
     if (!value) continue;
@@ -55,15 +72,14 @@ void read_parameters(const Field& field, SystemChoice& choice) {
   }
 }
 
-}  // namespace
-
 void read_system(const Field& field, SystemChoice& system) {
   const Keys keys(field, {"name", "parameters", "effects"}, "system: {name: double_pendulum}");
   const auto name = keys.find("name");
   if (!name) field.fail("the system's `name`", "a map without it", "add for example `name: double_pendulum`");
   system.name = name->choice(systems::system_names());
   if (const auto effects = keys.find("effects")) read_effects(*effects, system);
-  if (const auto parameters = keys.find("parameters")) read_parameters(*parameters, system);
+  if (const auto parameters = keys.find("parameters"))
+    read_parameters(*parameters, systems::model_info(system.name), system);
 }
 
 }  // namespace orbweaver::scene

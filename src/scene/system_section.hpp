@@ -11,7 +11,12 @@ namespace orbweaver::scene {
 /// Fills `system`, effects before parameters; throws core::InputError as Field does.
 void read_system(const Field& field, SystemChoice& system);
 
-/// The parameters that the system has with the effects chosen.
-[[nodiscard]] std::vector<systems::Parameter> known_parameters(const SystemChoice& choice);
+/// Fills `choice.parameters` from the map of parameters of the model chosen; throws core::InputError as Field does, for
+/// a parameter of an effect that is not chosen too.
+void read_parameters(const Field& field, const systems::ModelInfo& info, SystemChoice& choice);
+
+/// The parameters that the model has with the effects chosen.
+[[nodiscard]] std::vector<systems::Parameter> known_parameters(const systems::ModelInfo& info,
+                                                               const SystemChoice& choice);
 
 }  // namespace orbweaver::scene

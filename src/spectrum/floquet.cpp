@@ -241,6 +241,7 @@ Stability floquet(const systems::System& system, const loop::Loop& loop, const l
   core::require(loop.dimension == system.dimension(), "Floquet multipliers: the loop is not of the system's dimension");
   core::require(moves(loop), "Floquet multipliers need an orbit that moves; this loop is constant");
   const systems::Structure& structure = system.structure();
+  core::require(structure.conserved.size() <= 1, "Floquet multipliers: those of one conserved quantity are taken out");
   const FundamentalGroup group = fundamental_group(system, loop, isotropy);
   if (loop.dimension == (structure.conservative() ? 2 : 1)) return without_errors({}, group.order);
   core::Team* const team = core::worth_dividing(options.team, loop.dimension);

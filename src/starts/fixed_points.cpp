@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -37,16 +37,9 @@ std::optional<Eigen::VectorXd> newton(const systems::System& system, Eigen::Vect
   const Eigen::Index d = z.size();
   Eigen::VectorXd f(d);
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> a(d, d);
-  const std::vector<double> start(z.begin(), z.end());
   for (int iteration = 0; iteration < most_steps; ++iteration) {
     system.field_jacobian(1, z.data(), f.data(), a.data());
-    if (!f.allFinite() || !a.allFinite()) {
-      if (iteration > 0) return std::nullopt;
-      throw core::NotFiniteError(
-          fmt::format("the vector field of {} is not finite at the grid point ({:.6g}); "
-                      "take it out of the grid",
-                      system.info().name, fmt::join(start, ", ")));
-    }
+    if (!f.allFinite() || !a.allFinite()) return std::nullopt;
     Eigen::VectorXd step = a.completeOrthogonalDecomposition().solve(f);
     if (step.norm() > longest_step) step *= longest_step / step.norm();
     z -= step;
@@ -58,15 +51,49 @@ std::optional<Eigen::VectorXd> newton(const systems::System& system, Eigen::Vect
   return z;
 }
 
+bool is_finite_at(const systems::System& system, const Eigen::VectorXd& z) {
+  const Eigen::Index d = z.size();
+  Eigen::VectorXd f(d);
+  Eigen::VectorXd jacobian(d * d);
+  system.field_jacobian(1, z.data(), f.data(), jacobian.data());
+  return f.allFinite() && jacobian.allFinite();
+}
+
+bool is_same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return (a - b).norm() < same_point * (1.0 + a.norm());
+}
+
+Eigen::VectorXd vector_of(std::span<const double> point) {
+  return Eigen::Map<const Eigen::VectorXd>(point.data(), static_cast<Eigen::Index>(point.size()));
+}
+
 }  // namespace
 
+bool is_same_fixed_point(std::span<const double> a, std::span<const double> b) {
+  return is_same(vector_of(a), vector_of(b));
+}
+
+std::optional<std::vector<double>> fixed_point_near(const systems::System& system, std::span<const double> start,
+                                                    double within) {
+  Eigen::VectorXd from = vector_of(start);
+  reduce_angles(system, from);
+  const std::optional<Eigen::VectorXd> point = newton(system, from);
+  if (!point) return std::nullopt;
+  Eigen::VectorXd away = *point - from;
+  for (const int i : system.structure().angles) away(i) = std::remainder(away(i), two_pi);
+  if (away.norm() > within) return std::nullopt;
+  return std::vector<double>(point->begin(), point->end());
+}
+
 std::vector<std::vector<double>> find_fixed_points(const systems::System& system,
-                                                   const std::vector<std::vector<double>>& grid) {
+                                                   const std::vector<std::vector<double>>& grid,
+                                                   std::vector<std::vector<double>>* not_finite) {
   const auto d = static_cast<std::size_t>(system.dimension());
   core::require(grid.size() <= d, "more grid lists than coordinates");
   std::size_t starts = 1;
   for (const std::vector<double>& values : grid) starts *= std::max<std::size_t>(values.size(), 1);
   std::vector<Eigen::VectorXd> found;
+  std::vector<std::vector<double>> passed_over;
   for (std::size_t n = 0; n < starts; ++n) {
     Eigen::VectorXd z = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(d));
     std::size_t rest = n;
@@ -75,13 +102,22 @@ std::vector<std::vector<double>> find_fixed_points(const systems::System& system
       z(static_cast<Eigen::Index>(i)) = grid[i][rest % grid[i].size()];
       rest /= grid[i].size();
     }
+    if (!is_finite_at(system, z)) {
+      passed_over.emplace_back(z.begin(), z.end());
+      continue;
+    }
     std::optional<Eigen::VectorXd> point = newton(system, std::move(z));
     if (!point) continue;
-    const bool known = std::any_of(found.begin(), found.end(), [&](const Eigen::VectorXd& w) {
-      return (w - *point).norm() < same_point * (1.0 + w.norm());
-    });
+    const bool known =
+        std::any_of(found.begin(), found.end(), [&](const Eigen::VectorXd& w) { return is_same(w, *point); });
     if (!known) found.push_back(*point);
   }
+  if (passed_over.size() == starts)
+    throw core::NotFiniteError(
+        fmt::format("the vector field of {} is not finite at any grid point, such as ({:.6g}): expected a grid with "
+                    "points where it is",
+                    system.info().name, fmt::join(passed_over.front(), ", ")));
+  if (not_finite != nullptr) *not_finite = std::move(passed_over);
   std::vector<std::vector<double>> points;
   for (const Eigen::VectorXd& z : found) points.emplace_back(z.begin(), z.end());
   std::sort(points.begin(), points.end());

@@ -5,6 +5,7 @@
 #include <random>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "file/h5_handle.hpp"
 #include "orbweaver/archive/schema/schema.hpp"
@@ -178,16 +179,31 @@ std::map<std::string, std::string> dataset_bytes(const std::filesystem::path& pa
   return bytes;
 }
 
+namespace {
+
+/// CTest gives every test a working folder of its own; a test that is run by hand leaves nothing where it was started.
+std::filesystem::path folder_of_folders(MPI_Comm comm) {
+  const std::filesystem::path here = std::filesystem::current_path();
+  const std::filesystem::path runs = std::filesystem::path(ORBWEAVER_BINARY_DIR) / "test_runs";
+  if (std::mismatch(runs.begin(), runs.end(), here.begin(), here.end()).first == runs.end()) return {};
+  long of_root = getpid();
+  MPI_Bcast(&of_root, 1, MPI_LONG, 0, comm);
+  return std::filesystem::temp_directory_path() / fmt::format("orbweaver_test_{}", of_root);
+}
+
+}  // namespace
+
 std::filesystem::path fresh_folder(const std::string& name, MPI_Comm comm) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   MPI_Barrier(comm);
+  const std::filesystem::path folder = folder_of_folders(comm) / name;
   if (rank == 0) {
-    std::filesystem::remove_all(name);
-    std::filesystem::create_directories(name);
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
   }
   MPI_Barrier(comm);
-  return name;
+  return folder;
 }
 
 }  // namespace orbweaver::test

@@ -33,7 +33,8 @@ std::filesystem::path write_sample_atlas(const std::filesystem::path& folder, co
 /// Name -> extents, type and raw bytes of every dataset of an HDF5 file.
 std::map<std::string, std::string> dataset_bytes(const std::filesystem::path& path);
 
-/// An empty folder of this name in the working folder. Collective over `comm`.
+/// An empty folder of this name, in the working folder that CTest gave the test, or among the temporary files where it
+/// was started by hand. Collective over `comm`.
 std::filesystem::path fresh_folder(const std::string& name, MPI_Comm comm = MPI_COMM_SELF);
 
 }  // namespace orbweaver::test

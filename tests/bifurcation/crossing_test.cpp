@@ -1,11 +1,15 @@
 #include "orbweaver/bifurcation/crossing.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "continuation/families.hpp"
 #include "orbweaver/bifurcation/kernel.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
+#include "support/delegating_system.hpp"
 
 namespace {
 
@@ -73,6 +77,58 @@ TEST(Crossings, AZeroThatIsNotThereIsSaid) {
   EXPECT_FALSE(bifurcation::locate(*test::pendulum(), curve, event, known[2].position, known[3].position, why));
   EXPECT_EQ(why.reason, bifurcation::NotLocated::Reason::no_zero);
   EXPECT_NE(to_text(why).find("no zero between"), std::string::npos);
+}
+
+TEST(Crossings, WithoutAnOrbitThePlaceIsSaid) {
+  continuation::FamilyCurve curve(test::pendulum(), test::pendulum_isotropy(*test::pendulum()), {});
+  curve.add(0.0, test::orbit_at(test::family_to_twelve(test::in_phase()), 8.3).loop);
+  curve.add(1.0, test::orbit_at(test::family_to_twelve(test::out_phase()), 8.3).loop);
+  const Event event{Event::Kind::test_function, {bifurcation::TestFunction::Kind::sector, {1, 0}}, false};
+  bifurcation::NotLocated why;
+  EXPECT_FALSE(bifurcation::locate(*test::pendulum(), curve, event, 0.25, 0.75, why));
+  EXPECT_EQ(why.reason, bifurcation::NotLocated::Reason::no_orbit);
+  EXPECT_EQ(to_text(why), "no orbit converges at position 0.75, after the one with T = 8.3");
+}
+
+/// The pendulum, whose derivatives are not finite.
+class WithoutDerivatives final : public test::DelegatingSystem {
+ public:
+  WithoutDerivatives() : DelegatingSystem(test::pendulum()) {}
+  void field_jacobian(std::size_t nodes, const double* z, double* f, double* jacobian) const override {
+    whole().field_jacobian(nodes, z, f, jacobian);
+    std::fill_n(jacobian, 16 * nodes, std::nan(""));
+  }
+};
+
+TEST(Crossings, WithoutMultipliersTheOrbitAndTheReasonAreSaid) {
+  const auto system = std::make_shared<const WithoutDerivatives>();
+  continuation::FamilyCurve curve(system, test::pendulum_isotropy(*system), {});
+  curve.add(0.0, test::orbit_at(test::family_to_twelve(test::in_phase()), 8.3).loop);
+  curve.add(1.0, test::orbit_at(test::family_to_twelve(test::in_phase()), 8.4).loop);
+  const Event event{Event::Kind::test_function, {bifurcation::TestFunction::Kind::sector, {1, 0}}, false};
+  bifurcation::NotLocated why;
+  EXPECT_FALSE(bifurcation::locate(*system, curve, event, 0.0, 1.0, why));
+  EXPECT_EQ(why.reason, bifurcation::NotLocated::Reason::no_multipliers);
+  EXPECT_NE(to_text(why).find("no multipliers of the orbit with T = 8.4 at position 1: "), std::string::npos)
+      << to_text(why);
+  EXPECT_NE(to_text(why).find("finite"), std::string::npos) << to_text(why);
+}
+
+TEST(FamilyCurve, AKnownOrbitIsThereWithoutTheCorrector) {
+  continuation::Options options;
+  options.corrector.tolerance = 1e-30;
+  continuation::FamilyCurve curve(test::pendulum(), test::pendulum_isotropy(*test::pendulum()), options);
+  const loop::Loop from = test::orbit_at(test::family_to_twelve(test::in_phase()), 8.3).loop;
+  const loop::Loop to = test::orbit_at(test::family_to_twelve(test::in_phase()), 8.4).loop;
+  curve.add(0.0, from);
+  curve.add(1.0, to);
+  EXPECT_FALSE(curve.at(0.5));
+  const auto a = curve.at(0.0, true);
+  const auto b = curve.at(1.0);
+  ASSERT_TRUE(a && b);
+  EXPECT_LT(loop::mean_distance(a->loop, from), 1e-10);
+  EXPECT_LT(loop::mean_distance(b->loop, to), 1e-10);
+  EXPECT_GT(bifurcation::period_slope(*a), 0.0);
 }
 
 TEST(FamilyCurve, AnOrbitDoesNotDependOnWhatWasAskedBefore) {

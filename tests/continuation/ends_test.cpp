@@ -73,7 +73,7 @@ TEST(Ends, StartsBeyondTheLimitsGiveNoOrbit) {
   for (const Options& options : {Options{.period_limit = 8.0}, Options{.energy_to = -2.9999999}}) {
     const test::Trace trace = test::trace_of(test::in_phase(), options);
     EXPECT_TRUE(trace.orbits.empty());
-    EXPECT_THAT(trace.ending.text(), HasSubstr("begins beyond it, at"));
+    EXPECT_THAT(trace.ending.text(), HasSubstr("left out: begins at"));
     EXPECT_FALSE(trace.ending.failed());
   }
 }

@@ -134,5 +134,21 @@ TEST(Collective, RanksAddUp) {
   EXPECT_TRUE(std::is_sorted(rows.begin(), rows.end()));
 }
 
+TEST(Collective, NobodyWaitsForARankWithoutMemory) {
+  const Communicator comm;
+  const int row = comm.rank();
+  std::vector<int> all;
+  const bool last = comm.rank() == comm.size() - 1;
+  const auto allocate = [&](std::size_t rows) -> void* {
+    if (last) throw std::bad_alloc();
+    all.resize(rows);
+    return all.data();
+  };
+  if (last)
+    EXPECT_THROW(detail::gather_bytes(comm.get(), &row, 1, sizeof row, allocate), std::bad_alloc);
+  else
+    EXPECT_THROW(detail::gather_bytes(comm.get(), &row, 1, sizeof row, allocate), EnvironmentError);
+}
+
 }  // namespace
 }  // namespace orbweaver::core

@@ -2,6 +2,7 @@
 // starts it outside. Exit status 0 when everything was as it should be, else the number of things that were not.
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include <mpi.h>
 #include <petscvec.h>
@@ -66,9 +67,13 @@ void run_session() {
   Handle<Vec> survivor;
   expect(!petsc_runs() && !slepc_runs(), "nothing of PETSc or SLEPc runs before a session");
   {
-    const Session session({"-orbweaver_probe", "17"});
+    const Session session({"-orbweaver_probe", "17", "-orbweaver_unasked", "-3", "-options_view", "0"});
     expect_all_running();
+    expect(session.unused_options(MPI_COMM_WORLD) == std::vector<std::string>{"-orbweaver_probe", "-orbweaver_unasked"},
+           "options are unused until something asks for them");
     expect_option();
+    expect(session.unused_options(MPI_COMM_WORLD) == std::vector<std::string>{"-orbweaver_unasked"},
+           "an option that something has asked for is not unused");
     expect_errors_are_returned();
     make_survivor(survivor);
   }

@@ -53,6 +53,15 @@ TEST(SummaryText, NothingFoundIsSaidToo) {
   EXPECT_THAT(text, AllOf(Not(HasSubstr("note:")), Not(HasSubstr("failed:"))));
 }
 
+TEST(SummaryText, FamiliesLeftOutByLimitsAreCounted) {
+  survey::Summary summary = sample_summary();
+  summary.families.push_back({"0002.0000", "Long-4", "", 0, 0.0, 0.0, 0.0, 0.0,
+                              "period limit (left out: begins at T = 21, beyond 20)", false});
+  EXPECT_THAT(report::to_text(summary),
+              AllOf(HasSubstr("period limit (left out: begins at T = 21, beyond 20)\n"),
+                    HasSubstr("\n3 families (1 of them left out by limits), 5 crossings, 37 orbits, 1 failed")));
+}
+
 TEST(SummaryText, ChildrenAreIndented) {
   survey::Summary summary = sample_summary();
   summary.families[1].depth = 2;

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <sstream>
 
@@ -155,12 +154,13 @@ TEST(SweepReport, NoEquilibriumGivesHeadingsOnly) {
 
 // Two oscillations share one period: the directions in their common kernel are modes like the others.
 TEST(SweepReport, ModesOfAResonance) {
-  std::ofstream("henon_heiles.yaml") << "name: henon-heiles\n"
+  const auto report =
+      report::sweep_report(scene::parse("name: henon-heiles\n"
                                         "system: {name: henon_heiles}\n"
                                         "starts:\n"
                                         "  fixed_points: {grid: [[0], [0]]}\n"
-                                        "  sweep: {period: [6, 6.5], step: 0.05}\n";
-  const auto report = report::sweep_report(scene::load("henon_heiles.yaml"));
+                                        "  sweep: {period: [6, 6.5], step: 0.05}\n",
+                                        "henon_heiles.yaml"));
   ASSERT_EQ(report.size(), 1U);
   ASSERT_EQ(report[0].modes.size(), 3U);
   const char* isotropies[] = {"S@0 R@0", "S@1/2 R@0", "C@1/3 RS@0"};

@@ -87,13 +87,34 @@ TEST(FixedPoints, EmptyGridStartsAtZero) {
   EXPECT_EQ(points[0], (std::vector<double>{0.0, 0.0}));
 }
 
-TEST(FixedPoints, MisuseAndNotFinite) {
+TEST(FixedPoints, Misuse) {
   const auto system = systems::make_system("harmonic_oscillator");
   EXPECT_THROW(static_cast<void>(find_fixed_points(*system, {{0.0}, {0.0}, {0.0}})), core::MisuseError);
+}
+
+TEST(FixedPoints, AGridPointWhereTheFieldIsNotFiniteIsPassedOver) {
   const test::Oscillator walled(0.0, 0.5);
-  EXPECT_THAT(([&] { static_cast<void>(find_fixed_points(walled, {{1.0}})); }),
-              testing::ThrowsMessage<core::NotFiniteError>(testing::HasSubstr("take it out of the grid")));
-  EXPECT_EQ(find_fixed_points(walled, {{0.4}}).size(), 1u);
+  std::vector<std::vector<double>> not_finite;
+  EXPECT_EQ(find_fixed_points(walled, {{1.0, 0.4, 2.0}}, &not_finite).size(), 1u);
+  EXPECT_EQ(not_finite, (std::vector<std::vector<double>>{{1.0, 0.0}, {2.0, 0.0}}));
+  EXPECT_EQ(find_fixed_points(walled, {{0.4}}, &not_finite).size(), 1u);
+  EXPECT_TRUE(not_finite.empty());
+  EXPECT_THAT(
+      ([&] {
+        static_cast<void>(find_fixed_points(walled, {{1.0, 2.0}}));
+      }),
+      testing::ThrowsMessage<core::NotFiniteError>(testing::HasSubstr("not finite at any grid point, such as (1, 0)")));
+}
+
+TEST(FixedPoints, TheOneNearAState) {
+  const auto system = systems::make_system("double_pendulum");
+  const std::vector<double> near{-pi + 0.01, 2 * pi + 0.02, 0.0, -0.01};
+  const auto found = fixed_point_near(*system, near, 0.1);
+  ASSERT_TRUE(found);
+  const auto known = find_fixed_points(*system, {{0.0, pi}, {0.0, pi}});
+  EXPECT_TRUE(is_same_fixed_point(*found, known[2]));
+  EXPECT_FALSE(is_same_fixed_point(*found, known[3]));
+  EXPECT_FALSE(fixed_point_near(*system, near, 0.01)) << "the nearest one is farther away";
 }
 
 }  // namespace

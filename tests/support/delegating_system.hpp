@@ -30,6 +30,7 @@ class DelegatingSystem : public systems::System {
     _system->conserved_gradient(k, z, gradient);
   }
   [[nodiscard]] double action_density(std::span<const double> z) const override { return _system->action_density(z); }
+  [[nodiscard]] double guard(int k, std::span<const double> z) const override { return _system->guard(k, z); }
 
  protected:
   [[nodiscard]] const systems::System& whole() const { return *_system; }

@@ -7,7 +7,11 @@
 #include "orbweaver/archive/read/reader.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/survey/run/survey.hpp"
+#include "orbweaver/survey/tree/family_end.hpp"
+#include "orbweaver/systems/quad_system.hpp"
 #include "orbweaver/systems/registry.hpp"
+#include "support/delegating_system.hpp"
+#include "support/stated_system.hpp"
 #include "survey/scenes.hpp"
 
 namespace {
@@ -23,6 +27,62 @@ survey::Summary run(const core::Communicator& comm, const scene::Scene& scene, c
   const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
   return survey::run_survey(comm, scene, system, folder, {});
 }
+
+/// The pendulum, with a sign missing in its first reversor.
+class WrongReversor final : public test::DelegatingSystem {
+ public:
+  WrongReversor() : DelegatingSystem(systems::make_system("double_pendulum")), _structure(whole().structure()) {
+    _structure.reversors.front().map.matrix(3, 3) *= -1.0;
+  }
+  [[nodiscard]] const systems::Structure& structure() const override { return _structure; }
+
+ private:
+  systems::Structure _structure;
+};
+
+class WithTwoQuantities final : public test::DelegatingSystem {
+ public:
+  WithTwoQuantities() : DelegatingSystem(systems::make_system("double_pendulum")), _structure(whole().structure()) {
+    _structure.conserved.emplace_back("momentum");
+  }
+  [[nodiscard]] const systems::Structure& structure() const override { return _structure; }
+
+ private:
+  systems::Structure _structure;
+};
+
+/// x'' = -x - x'/2 and y'' = -2 y - y'/2, which conserve nothing.
+class Damped final : public test::StatedSystem, public systems::QuadSystem {
+ public:
+  Damped() : StatedSystem(test::structure_of(4)) {}
+  void field(std::size_t nodes, const double* z, double* f) const override {
+    for (std::size_t j = 0; j < nodes; ++j)
+      for (std::size_t i = 0; i < 4; ++i) {
+        f[i * nodes + j] = 0.0;
+        for (std::size_t l = 0; l < 4; ++l) f[i * nodes + j] += matrix()(i, l) * z[l * nodes + j];
+      }
+  }
+  void field_jacobian(std::size_t nodes, const double* z, double* f, double* jacobian) const override {
+    field(nodes, z, f);
+    for (std::size_t i = 0; i < 16; ++i)
+      for (std::size_t j = 0; j < nodes; ++j) jacobian[i * nodes + j] = matrix()(i / 4, i % 4);
+  }
+  void linearize(const numerics::QuadVector& z, numerics::QuadVector& f,
+                 numerics::QuadMatrix& jacobian) const override {
+    jacobian = matrix().cast<numerics::Quad>();
+    f = jacobian * z;
+  }
+
+ private:
+  static Eigen::Matrix4d matrix() {
+    Eigen::Matrix4d matrix = Eigen::Matrix4d::Zero();
+    matrix(0, 2) = matrix(1, 3) = 1.0;
+    matrix(2, 0) = -1.0;
+    matrix(3, 1) = -2.0;
+    matrix(2, 2) = matrix(3, 3) = -0.5;
+    return matrix;
+  }
+};
 
 std::vector<std::string> files_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
@@ -204,14 +264,86 @@ TEST(RunSurvey, MoreNamesThanModesAreRefused) {
   }
 }
 
-TEST(RunSurvey, ASceneWithNothingToFindGivesAnEmptyArchive) {
+TEST(RunSurvey, ASceneWithNothingToFindGivesAnEmptyArchiveAndFails) {
   const core::Communicator comm;
   const auto folder = test::fresh_folder(own_folder(comm, "nothing"), comm.get());
   const survey::Summary summary = run(comm, test::quick_scene({"starts.fixed_points.grid=[[180],[180]]"}), folder);
-  EXPECT_EQ(summary.failures, 0U);
+  EXPECT_EQ(summary.failures, 1U);
   if (!comm.is_root()) return;
   EXPECT_TRUE(summary.families.empty());
+  EXPECT_THAT(summary.failed_tasks, ElementsAre(HasSubstr("no family found, and the archive is empty: none of the "
+                                                          "equilibria has small oscillations")));
   EXPECT_EQ(archive::Archive(folder / "atlas.h5").families().rows(), 0U);
+}
+
+TEST(RunSurvey, WhyNothingWasFoundIsSaid) {
+  const core::Communicator comm;
+  const auto excluded = test::fresh_folder(own_folder(comm, "nothing_in_range"), comm.get());
+  const survey::Summary summary =
+      run(comm,
+          test::quick_scene({"starts.sweep.period=[20,21]", "starts.fixed_points.grid=[[0],[0]]",
+                             "starts.fixed_points.names={}", "starts.fixed_points.letters={}"}),
+          excluded);
+  EXPECT_THAT(summary.failed_tasks.empty() ? "" : summary.failed_tasks.front(),
+              comm.is_root() ? HasSubstr("all their periods lie outside starts.sweep.period") : HasSubstr(""));
+
+  const auto damped = test::fresh_folder(own_folder(comm, "damped"), comm.get());
+  const survey::Summary rest =
+      survey::run_survey(comm,
+                         test::quick_scene({"starts.fixed_points.grid=[[0],[0]]", "starts.fixed_points.names={}",
+                                            "starts.fixed_points.letters={}"}),
+                         std::make_shared<Damped>(), damped, {});
+  EXPECT_EQ(rest.failures, 1U);
+  if (!comm.is_root()) return;
+  EXPECT_THAT(rest.failed_tasks, ElementsAre(AllOf(HasSubstr("no family found"), HasSubstr("conserves nothing"))));
+}
+
+TEST(RunSurvey, GridPointsWithoutAFieldArePassedOverAndTold) {
+  const core::Communicator comm;
+  const auto folder = test::fresh_folder(own_folder(comm, "hole"), comm.get());
+  const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/swinging_spring.yaml",
+                                         {"starts.fixed_points.grid=[[0],[0,-1]]", "limits.steps=2", "survey.depth=0"});
+  const survey::Summary summary = run(comm, scene, folder);
+  EXPECT_EQ(summary.failures, 0U);
+  if (!comm.is_root()) return;
+  EXPECT_FALSE(summary.families.empty());
+  EXPECT_THAT(summary.remarks,
+              ::testing::Contains("points of starts.fixed_points.grid passed over, where the field is not finite: 1, "
+                                  "the first x = 0, y = 0, vx = 0, vy = 0"));
+}
+
+TEST(RunSurvey, AFamilyBeyondALimitIsLeftOutByIt) {
+  const core::Communicator comm;
+  const auto folder = test::fresh_folder(own_folder(comm, "left_out"), comm.get());
+  const survey::Summary summary = run(comm, test::quick_scene({"limits.period=8"}), folder);
+  EXPECT_EQ(summary.failures, 0U);
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.families[0].orbits, 0);
+  EXPECT_THAT(summary.families[0].end_reason, HasSubstr("period limit (left out: begins at T = 8.20"));
+  EXPECT_EQ(survey::ends_in(summary.families[0].end_reason), std::vector{survey::EndKind::period_limit});
+}
+
+TEST(RunSurvey, ASystemWithTwoConservedQuantitiesIsRefused) {
+  const core::Communicator comm;
+  const auto folder = test::fresh_folder(own_folder(comm, "two"), comm.get());
+  try {
+    (void)survey::run_survey(comm, test::quick_scene({}), std::make_shared<WithTwoQuantities>(), folder, {});
+    ADD_FAILURE() << "surveyed";
+  } catch (const core::InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("conserves one quantity, got double_pendulum with energy, momentum"));
+  }
+}
+
+TEST(RunSurvey, AModelThatContradictsItsStructureIsRefusedOnEveryRank) {
+  const core::Communicator comm;
+  const auto folder = test::fresh_folder(own_folder(comm, "wrong"), comm.get());
+  try {
+    (void)survey::run_survey(comm, test::quick_scene({}), std::make_shared<WrongReversor>(), folder, {});
+    ADD_FAILURE() << "surveyed";
+  } catch (const core::InputError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("contradicts its structure"), HasSubstr("f(R z) = -R f(z)")));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "segments" / "checkpoint"));
 }
 
 }  // namespace

@@ -53,6 +53,8 @@ BranchOutcome sample_branch_outcome() {
           562,
           {continuation::EndReason::period_limit, "T = 30"},
           {{8.5, -1.5, sample_loop()}},
+          2,
+          {{{certificate::Verdict::says_nothing, 65.0, 1e-4, 29.0, 1e251}, 3}},
           {"a remark"},
           period_limited,
           "a state"};

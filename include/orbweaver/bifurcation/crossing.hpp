@@ -39,9 +39,11 @@ struct Crossing {
 /// Why an event was not located.
 struct NotLocated {
   enum class Reason {
-    no_zero,   ///< the function does not change sign between `from` and `to`, where it is `at_from` and `at_to`
-    no_orbit,  ///< none converges at `position`
-    no_event,  ///< the function vanishes at `position` for another reason than the event that it stands for
+    no_zero,         ///< the function does not change sign between `from` and `to`, where it is `at_from` and `at_to`
+    no_orbit,        ///< none converges at `position`
+    no_multipliers,  ///< those of the orbit at `position` cannot be computed; `detail` says why
+    no_value,        ///< the function of these multipliers is not a number at `position`
+    no_event,        ///< the function vanishes at `position` for another reason than the event that it stands for
   };
   Reason reason = Reason::no_zero;
   double from = 0.0;
@@ -49,6 +51,8 @@ struct NotLocated {
   double at_from = 0.0;
   double at_to = 0.0;
   double position = 0.0;
+  double period = 0.0;  ///< of the orbit at `position`; without one, of the known orbit before it
+  std::string detail{};
 };
 [[nodiscard]] std::string to_text(const NotLocated& why);
 

@@ -17,6 +17,8 @@ struct Certificate {
   double single_shot =
       0.0;  ///< |z(T) - Phi_T(z(0))|: once around without help; grows with the largest multiplier; NaN if that fails
   double energy_drift = 0.0;  ///< largest |H(z(t_m)) - H(z(0))|; NaN for a system that conserves no energy
+  double reach = 0.0;         ///< largest |z(t_m)|
+  double steepness = 0.0;     ///< largest |dH/dz(z(t_m))|; 0 for a system that conserves no energy
 };
 
 /// Integrates the loop's own states and compares. Deterministic; knows no residual, loss or Jacobian.

@@ -61,7 +61,8 @@ class FamilyCurve {
   [[nodiscard]] const Options& options() const { return _options; }
 
   /// The orbit at `position`, which lies between the first and the last known one, with the family's direction there if
-  /// that is asked for; none where the corrector fails. Throws MisuseError for a position outside.
+  /// that is asked for; none where the corrector fails, which at a known orbit gives that orbit itself. Throws
+  /// MisuseError for a position outside.
   [[nodiscard]] std::optional<CurvePoint> at(double position, bool with_tangent = false);
 
  private:

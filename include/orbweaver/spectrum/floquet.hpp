@@ -51,7 +51,8 @@ struct Stability {
 /// error: the response to one Newton step of multiple shooting, at (nearly) fixed period where the system is
 /// conservative.
 ///
-/// Throws MisuseError if the loop is not valid, not of the system's dimension, or constant; NotFiniteError if the field
+/// Throws MisuseError if the loop is not valid, not of the system's dimension, or constant, or if the system conserves
+/// more than one quantity, since only one's multipliers are taken out; NotFiniteError if the field
 /// or a product is not finite.
 [[nodiscard]] Stability floquet(const systems::System& system, const loop::Loop& loop, const loop::Isotropy& isotropy,
                                 const FloquetOptions& options = {});

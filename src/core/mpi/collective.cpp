@@ -157,7 +157,8 @@ void detail::gather_bytes(MPI_Comm comm, const void* mine, std::size_t count, st
     total += static_cast<std::uint64_t>(counts[r]);
   }
   require(total <= INT_MAX, "more than 2^31 rows are gathered");
-  void* all = allocate(total);
+  void* all = nullptr;
+  collectively(comm, [&] { all = allocate(total); });  // a rank without room for them leaves nobody waiting
   MPI_Datatype row = MPI_DATATYPE_NULL;
   check_mpi(MPI_Type_contiguous(static_cast<int>(row_bytes), MPI_BYTE, &row), "MPI_Type_contiguous");
   check_mpi(MPI_Type_commit(&row), "MPI_Type_commit");

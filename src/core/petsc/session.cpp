@@ -1,5 +1,8 @@
 #include "orbweaver/core/petsc/session.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include <slepcsys.h>
 
 #include "orbweaver/core/petsc/check.hpp"
@@ -22,9 +25,17 @@ Arguments& arguments() {
   return instance;
 }
 
+/// Beginnings of options that PetscFinalize asks for.
+constexpr std::array read_at_the_end{"-options_", "-malloc_", "-objects_dump", "-memory_", "-log_"};
+
+bool is_read_at_the_end(const std::string& option) {
+  return std::any_of(read_at_the_end.begin(), read_at_the_end.end(),
+                     [&](const char* beginning) { return option.starts_with(beginning); });
+}
+
 }  // namespace
 
-Session::Session(const std::vector<std::string>& petsc_options) {
+Session::Session(const std::vector<std::string>& petsc_options) : _options(petsc_options) {
   int initialized = 0;
   check_mpi(MPI_Initialized(&initialized), "MPI_Initialized");
   if (initialized == 0) {
@@ -42,6 +53,21 @@ Session::Session(const std::vector<std::string>& petsc_options) {
   check(SlepcInitialize(&a.count, &a.data, nullptr, nullptr), "SlepcInitialize");
   check(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr), "PetscPushErrorHandler");
   register_log_stages();
+}
+
+std::vector<std::string> Session::unused_options(MPI_Comm comm) const {
+  std::vector<std::string> unused;
+  for (const std::string& word : _options) {
+    PetscBool is_option = PETSC_FALSE;
+    check(PetscOptionsValidKey(word.c_str(), &is_option), "PetscOptionsValidKey");
+    if (is_option == PETSC_FALSE || is_read_at_the_end(word)) continue;
+    PetscBool used = PETSC_FALSE;
+    check(PetscOptionsUsed(nullptr, word.c_str() + 1, &used), "PetscOptionsUsed");
+    int anywhere = used == PETSC_TRUE ? 1 : 0;
+    check_mpi(MPI_Allreduce(MPI_IN_PLACE, &anywhere, 1, MPI_INT, MPI_MAX, comm), "MPI_Allreduce");
+    if (anywhere == 0) unused.push_back(word);
+  }
+  return unused;
 }
 
 Session::~Session() {

@@ -57,6 +57,7 @@ void write_archive(const core::Communicator& comm, const scene::Scene& scene, co
     for (const FamilySummary& family : summary.families) summary.orbits += family.orbits;
     summary.crossings = static_cast<long>(tables.crossings.size());
     gather_failed_sweeps(system, sweeps, summary, tables);
+    require_families(system, sweeps, summary);
     tables.voided = checkpoint.voided;
     tables.earlier_scenes = checkpoint.earlier_scenes;
     const std::filesystem::path folder = state_folder(summary.atlas.parent_path());

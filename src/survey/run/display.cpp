@@ -18,6 +18,7 @@ constexpr int most_live_lines = 16;
 constexpr auto time_between_lines = std::chrono::seconds(5);
 
 std::string line_of(const FamilyState& f) {
+  if (f.orbits == 0 && !f.running) return fmt::format("{:<10} {:>5} orbits  {}", f.name, f.orbits, f.end);
   const double seconds = std::chrono::duration<double>(f.changed - f.began).count();
   const std::string rate = seconds > 0.0 ? fmt::format("{:.1f} orbits/s", static_cast<double>(f.orbits) / seconds) : "";
   return fmt::format("{:<10} {:>5} orbits  T {:<8.4f} E {:<10.6f} K {:<4} {}", f.name, f.orbits, f.period, f.energy,

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "arrival.hpp"
+#include "equilibrium_end.hpp"
 #include "executor.hpp"
 #include "orbit_row.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
@@ -107,9 +108,15 @@ continuation::Ending BranchTask::follow() {
     const continuation::Frontier before = _branch->restart_frontier();
     const std::optional<continuation::Orbit> orbit = _branch->advance();
     if (!orbit) {
-      if (_branch->ending()->failed() && _last && arrives_ahead()) return met();
-      note_limits(_branch->ending().value(), before);
-      return _branch->ending().value();
+      continuation::Ending ending = _branch->ending().value();
+      if (ending.failed() && _last && arrives_ahead()) return met();
+      note_limits(ending, before);
+      if (ending.reason == continuation::EndReason::fixed_point) {
+        const EquilibriumEnd end = equilibrium_end(_scene, *_system, _last->loop);
+        _outcome.equilibrium = end.index;
+        ending.detail = fmt::format("{}; {}", end.text, ending.detail);
+      }
+      return ending;
     }
     // The branch ends with an orbit on a limit, which it would not have under a wider one: no state may hold it.
     const bool on_limit = orbit->loop.period >= _options.period_limit || _branch->restart_frontier().on_energy_limit;
@@ -284,7 +291,9 @@ void BranchTask::store(continuation::Orbit orbit, const std::optional<spectrum::
   // The other side of a crossing: counted backwards from it.
   orbit.step = _work.lineage.side > 0 ? _outcome.orbits : -1 - _outcome.orbits;
   orbit.arclength = signed_arclength(_work.lineage, _before_first, orbit.arclength);
-  _rows.orbits.push_back(orbit_row(*_system, _work.lineage.family, orbit, _start.isotropy, stability));
+  certificate::Judgement judgement;
+  _rows.orbits.push_back(orbit_row(*_system, _work.lineage.family, orbit, _start.isotropy, stability, judgement));
+  add(_outcome.doubtful, {judgement, 1});
   ++_outcome.orbits;
 }
 

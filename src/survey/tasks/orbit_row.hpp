@@ -4,6 +4,7 @@
 #include <string>
 
 #include "orbweaver/archive/schema/records.hpp"
+#include "orbweaver/certificate/verdict.hpp"
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
 #include "orbweaver/systems/system.hpp"
@@ -15,9 +16,11 @@ namespace orbweaver::survey {
                                                               const loop::Isotropy& isotropy,
                                                               core::Team* team = nullptr);
 
-/// The row of an accepted orbit, with its certificate; s = 0 as docs/file_format.md has it.
+/// The row of an accepted orbit, with its certificate, which `judgement` then says more of; s = 0 as
+/// docs/file_format.md has it.
 [[nodiscard]] archive::OrbitRecord orbit_row(const systems::System& system, const std::string& family,
                                              const continuation::Orbit& orbit, const loop::Isotropy& isotropy,
-                                             const std::optional<spectrum::Stability>& stability);
+                                             const std::optional<spectrum::Stability>& stability,
+                                             certificate::Judgement& judgement);
 
 }  // namespace orbweaver::survey

@@ -8,6 +8,7 @@
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
+#include "orbweaver/systems/identities.hpp"
 #include "tasks/payload/work.hpp"
 
 namespace orbweaver::survey {
@@ -33,11 +34,42 @@ std::string left_out_text(const scene::Scene& scene, const systems::System& syst
                      found.period_to);
 }
 
+void remark_grid(const scene::Scene& scene, const systems::System& system, Summary& summary) {
+  std::vector<std::vector<double>> passed_over;
+  (void)starts::find_fixed_points(system, scene.fixed_points.grid, &passed_over);
+  if (!passed_over.empty())
+    summary.remarks.push_back(
+        fmt::format("points of starts.fixed_points.grid passed over, where the field is not finite: {}, the first {}",
+                    passed_over.size(), point_text(system, passed_over.front())));
+}
+
+/// What to do where a survey has found no family at all.
+std::string nothing_found_advice(const systems::System& system, bool left_out) {
+  if (left_out) return "all their periods lie outside starts.sweep.period: make it wider, or `auto`";
+  if (!system.structure().conservative())
+    return "the system conserves nothing, and families of periodic orbits need a conserved quantity: leave out the "
+           "effects that take it away";
+  return "none of the equilibria has small oscillations: let starts.fixed_points.grid lead to others";
+}
+
+/// Of each further quantity two multipliers would be 1 along all families, and look like events.
+void require_one_quantity(const systems::System& system) {
+  const std::vector<std::string>& conserved = system.structure().conserved;
+  if (conserved.size() > 1)
+    throw core::InputError(
+        fmt::format("expected a system that conserves one quantity, got {} with {}: surveys with several are not "
+                    "built yet, so choose parameters or effects that leave one",
+                    system.info().name, fmt::join(conserved, ", ")));
+}
+
 }  // namespace
 
 std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::System& system) {
   std::vector<queue::Task> tasks;
-  for (const std::vector<double>& point : starts::find_fixed_points(system, scene.fixed_points.grid))
+  require_one_quantity(system);
+  const std::vector<std::vector<double>> points = starts::find_fixed_points(system, scene.fixed_points.grid);
+  systems::require_identities(system, points);
+  for (const std::vector<double>& point : points)
     tasks.push_back(task_of(SweepWork{static_cast<int>(tasks.size()), point}));
   const std::string range = scene.sweep.period
                                 ? fmt::format("from {:g} to {:g}", scene.sweep.period->from, scene.sweep.period->to)
@@ -52,6 +84,7 @@ std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::S
 std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const systems::System& system,
                                            const SweepsEnded& sweeps, Summary& summary) {
   std::vector<queue::Task> tasks;
+  remark_grid(scene, system, summary);
   for (const auto& [key, ended] : sweeps) {
     const auto& [task, outcome] = ended;
     if (outcome.failed) continue;  // gather_failed_sweeps
@@ -95,6 +128,15 @@ std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const syst
   return tasks;
 }
 
+void require_families(const systems::System& system, const SweepsEnded& sweeps, Summary& summary) {
+  if (!summary.families.empty() || summary.stopped_early) return;
+  bool left_out = false;
+  for (const auto& [key, ended] : sweeps)
+    left_out = left_out || (!ended.second.failed && !unpack_sweep_outcome(ended.second.payload).left_out.empty());
+  summary.failed_tasks.push_back(
+      fmt::format("no family found, and the archive is empty: {}", nothing_found_advice(system, left_out)));
+}
+
 void gather_failed_sweeps(const systems::System& system, const SweepsEnded& sweeps, Summary& summary,
                           archive::Records& tables) {
   for (const auto& [key, ended] : sweeps) {
@@ -103,7 +145,7 @@ void gather_failed_sweeps(const systems::System& system, const SweepsEnded& swee
     const SweepWork work = unpack_sweep_work(task.payload);
     archive::FamilyRecord record;
     record.key = fmt::format("{:04}", work.index);
-    record.name = fmt::format("Equilibrium {}", work.index + 1);
+    record.name = equilibrium_name(work.index);
     record.end_reason =
         limited(failure_text(fmt::format("the sweep at {}: {}", point_text(system, work.point), outcome.reason)));
     summary.families.push_back({record.key, record.name, "", 0, 0.0, 0.0, 0.0, 0.0, record.end_reason, true});

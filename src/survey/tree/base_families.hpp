@@ -16,7 +16,8 @@ namespace orbweaver::survey {
 /// Sweeps that have ended, by the key of their task.
 using SweepsEnded = std::map<std::string, std::pair<queue::Task, queue::TaskOutcome>>;
 
-/// A sweep for every equilibrium. Throws InputError if there is none.
+/// A sweep for every equilibrium. Throws InputError if there is none, where the system contradicts its structure
+/// (systems::require_identities), and for a system with more than one conserved quantity.
 [[nodiscard]] std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::System& system);
 
 /// The families at equilibria in the order of their keys: equilibria sorted, longest period first; no more than the
@@ -24,6 +25,9 @@ using SweepsEnded = std::map<std::string, std::pair<queue::Task, queue::TaskOutc
 /// more families than an equilibrium has.
 [[nodiscard]] std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const systems::System& system,
                                                          const SweepsEnded& sweeps, Summary& summary);
+
+/// A survey that came to its end without any family has failed: says so, and what to do.
+void require_families(const systems::System& system, const SweepsEnded& sweeps, Summary& summary);
 
 /// An equilibrium whose sweep failed is a family without orbits, so that the archive says so.
 void gather_failed_sweeps(const systems::System& system, const SweepsEnded& sweeps, Summary& summary,

@@ -38,8 +38,10 @@ std::string base_family_name(const scene::Scene& scene, const systems::System& s
   for (const scene::FixedPoints::Names& entry : scene.fixed_points.names)
     if (is_at(system, point, entry.point) && static_cast<std::size_t>(mode) < entry.names.size())
       return entry.names[static_cast<std::size_t>(mode)];
-  return fmt::format("Equilibrium {}, mode {}", index + 1, mode + 1);
+  return fmt::format("{}, mode {}", equilibrium_name(index), mode + 1);
 }
+
+std::string equilibrium_name(int index) { return fmt::format("Equilibrium {}", index + 1); }
 
 std::string limited(std::string text) {
   constexpr std::size_t longest = 2000;

@@ -71,7 +71,8 @@ struct Share {
 
 [[nodiscard]] std::uint64_t greatest(MPI_Comm comm, std::uint64_t mine);
 
-/// Collective. Concatenates the ranks' rows in the order of the ranks; `Row` is trivially copyable.
+/// Collective. Concatenates the ranks' rows in the order of the ranks; `Row` is trivially copyable. What a rank throws
+/// that has no memory for them, all throw.
 template <class Row>
 [[nodiscard]] std::vector<Row> gather_rows(MPI_Comm comm, const std::vector<Row>& mine);
 

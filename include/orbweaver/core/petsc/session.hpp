@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include <mpi.h>
+
 namespace orbweaver::core {
 
 /// Owns the order in which MPI, PETSc and SLEPc start and finish. Make one, first thing in main; every Handle and
@@ -20,7 +22,12 @@ class Session {
   Session& operator=(Session&&) = delete;
   ~Session();
 
+  /// Those of the options given that no object has asked for on any rank so far, with their `-`: misspelt ones, or ones
+  /// of solvers that were not needed. Options that PETSc reads when it ends are not among them. Collective over `comm`.
+  [[nodiscard]] std::vector<std::string> unused_options(MPI_Comm comm) const;
+
  private:
+  std::vector<std::string> _options;
   bool _owns_mpi = false;
 };
 

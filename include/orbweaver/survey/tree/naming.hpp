@@ -13,6 +13,9 @@ namespace orbweaver::survey {
 [[nodiscard]] std::string base_family_name(const scene::Scene& scene, const systems::System& system,
                                            const std::vector<double>& point, int index, int mode);
 
+/// "Equilibrium 2" for the second.
+[[nodiscard]] std::string equilibrium_name(int index);
+
 /// How many families the scene names at `point`.
 [[nodiscard]] std::size_t names_given(const scene::Scene& scene, const systems::System& system,
                                       const std::vector<double>& point);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "doubtful_orbits.hpp"
 #include "lineage.hpp"
 #include "orbweaver/continuation/branch.hpp"
 #include "orbweaver/continuation/ending.hpp"
@@ -59,16 +60,19 @@ struct BranchOutcome {
   double last_energy = 0.0;
   int last_cutoff = 0;
   continuation::Ending end;
-  std::vector<ArrivalRecord> arrival;  ///< one or none
+  std::vector<ArrivalRecord> arrival;    ///< one or none
+  int equilibrium = -1;                  ///< at which it ended, among the survey's; -1: at none of them
+  std::vector<DoubtfulOrbits> doubtful;  ///< an entry a verdict
   std::vector<std::string> remarks;
   int limited_by = 0;        ///< Limit: with wider ones the branch would have gone on
   std::string before_limit;  ///< the state (queue::Task) from which it would, without children; empty: from its start
 
-  static constexpr int wire_version = 1;
+  static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, key, orbits, period_from, period_to, energy_from, energy_to, last_period,
-                            last_energy, last_cutoff, end, arrival, remarks, limited_by, before_limit);
+                            last_energy, last_cutoff, end, arrival, equilibrium, doubtful, remarks, limited_by,
+                            before_limit);
     if constexpr (Archive::is_loading::value) check_limits(limited_by);
   }
 };
