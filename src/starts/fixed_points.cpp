@@ -37,7 +37,8 @@ std::optional<Eigen::VectorXd> newton(const systems::System& system, Eigen::Vect
   const Eigen::Index d = z.size();
   Eigen::VectorXd f(d);
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> a(d, d);
-  const std::vector<double> start(z.begin(), z.end());
+  std::vector<double> start(z.begin(), z.end());
+  for (std::size_t i = 0; i < start.size(); ++i) start[i] *= system.scales().coordinate(i);
   for (int iteration = 0; iteration < most_steps; ++iteration) {
     system.field_jacobian(1, z.data(), f.data(), a.data());
     if (!f.allFinite() || !a.allFinite()) {
