@@ -51,7 +51,7 @@ Ending trace(std::shared_ptr<const systems::System> system, const Start& start, 
              const Observer& observer) {
   Branch branch(std::move(system), start, options);
   while (const std::optional<Orbit> orbit = branch.advance())
-    if (!observer(*orbit)) return {EndReason::stopped, fmt::format("T = {:.9g}", orbit->loop.period)};
+    if (!observer(*orbit)) return {EndReason::stopped, fmt::format("T = {:.9g}", orbit->loop.period * system->scales().time)};
   return branch.ending().value();
 }
 

@@ -345,13 +345,13 @@ std::vector<VectorXd> grid_points(std::size_t d, const std::vector<std::vector<d
   return points;
 }
 
-}  // namespace
-
 std::vector<std::vector<double>> grid_in_scales(std::vector<std::vector<double>> grid, const systems::Scales& scales) {
   for (std::size_t i = 0; i < grid.size(); ++i)
     for (double& value : grid[i]) value /= scales.coordinate(i);
   return grid;
 }
+
+}  // namespace
 
 systems::Scales natural_scales(const systems::System& system, const std::vector<std::vector<double>>& grid) {
   const auto d = static_cast<std::size_t>(system.dimension());

@@ -14,8 +14,4 @@ namespace orbweaver::starts {
 [[nodiscard]] systems::Scales natural_scales(const systems::System& system,
                                              const std::vector<std::vector<double>>& grid);
 
-/// States in the units of the system as states in its scales, and values of one coordinate after the other alike.
-[[nodiscard]] std::vector<std::vector<double>> grid_in_scales(std::vector<std::vector<double>> grid,
-                                                              const systems::Scales& scales);
-
 }  // namespace orbweaver::starts

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "orbweaver/core/serialization.hpp"
+
 namespace orbweaver::systems {
 
 /// The units in which a system's numbers are told, each in the units of its parameters (docs/mathematics.md, "Scales"):
@@ -23,6 +25,12 @@ struct Scales {
            std::all_of(conserved.begin(), conserved.end(), is_one);
   }
   [[nodiscard]] bool operator==(const Scales&) const = default;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, time, coordinates, conserved);
+  }
 };
 
 }  // namespace orbweaver::systems

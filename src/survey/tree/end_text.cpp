@@ -7,19 +7,21 @@
 
 namespace orbweaver::survey {
 
-std::string end_text(const BranchOutcome& outcome) {
+std::string end_text(const BranchOutcome& outcome, const systems::Scales& units) {
   if (outcome.arrival.empty() || outcome.end.failed()) return outcome.end.text();
   const ArrivalRecord& arrival = outcome.arrival.front();
-  return fmt::format("{} (T = {:.9g}, E = {:.9g})", name_of(EndKind::met), arrival.period, arrival.energy);
+  return fmt::format("{} (T = {:.9g}, E = {:.9g})", name_of(EndKind::met), arrival.period * units.time,
+                     arrival.energy * units.energy());
 }
 
 std::string failure_text(const std::string& why) {
   return continuation::Ending{continuation::EndReason::failure, why}.text();
 }
 
-std::string joined_text(const std::string& name, const LocateOutcome& crossing) {
+std::string joined_text(const std::string& name, const LocateOutcome& crossing, const systems::Scales& units) {
+  const double period = crossing.period * units.time;
   return fmt::format("{} {} at T = {:.12g} (crossing at T = {:.12g}, {} times around)", name_of(EndKind::joined), name,
-                     crossing.multiplicity * crossing.period, crossing.period, crossing.multiplicity);
+                     crossing.multiplicity * period, period, crossing.multiplicity);
 }
 
 }  // namespace orbweaver::survey

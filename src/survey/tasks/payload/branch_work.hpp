@@ -49,6 +49,7 @@ struct BranchOutcome {
   static constexpr const char* payload_name = "branch outcome";
   std::string key;
   int orbits = 0;
+  /// Ranges and last values in the units of the scene.
   double period_from = 0.0;
   double period_to = 0.0;
   double energy_from = 0.0;
