@@ -242,9 +242,12 @@ void CollocationProblem::judge(Trial& trial) {
     trial.reason = not_finite_at(trial.values, trial.values);
   } else if (trial.loss_rms < trial.threshold) {
     trial.is_orbit = true;
+  } else if (trial.loss_rms < corrector::rounding_floor(e.grid().cutoff(),
+                                                        trial.values[static_cast<std::size_t>(e.period_at())],
+                                                        quality.size, quality.speed_rms)) {
+    trial.is_orbit = trial.at_rounding = true;  // unless truncation explains the loss: `resolved`
   } else {
-    trial.reason = fmt::format("sqrt(loss) = {:.3g} at rounding, wanted {:.3g}: the tolerance is out of reach",
-                               trial.loss_rms, trial.threshold);
+    trial.reason = fmt::format("sqrt(loss) = {:.3g} falls no further, wanted {:.3g}", trial.loss_rms, trial.threshold);
   }
 }
 

@@ -206,6 +206,7 @@ Orbit Tracer::accept(const Trial& trial) {
   orbit.energy = energy_of(*_system, trial.loop);
   orbit.action = _problem->action(trial);
   orbit.loss_rms = trial.loss_rms;
+  if (trial.at_rounding) orbit.tolerance_met = _options.corrector.tolerance * trial.loss_rms / trial.threshold;
   orbit.tail = loop::tail(orbit.loop);
   orbit.iterations = trial.iterations;
   const std::vector<double>& before = _stepper.last();

@@ -17,14 +17,16 @@ struct Orbit {
   double action = 0.0;  ///< closed integral of p dq
   double loss_rms = 0.0;
   double tail = 0.0;
+  /// Where rounding keeps sqrt(loss) above the tolerance: the tolerance that it meets; else 0.
+  double tolerance_met = 0.0;
   int iterations = 0;
   double off_branch_eigenvalue = std::numeric_limits<double>::quiet_NaN();
 
-  static constexpr int wire_version = 1;
+  static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, loop, step, arclength, energy, action, loss_rms, tail, iterations,
-                            off_branch_eigenvalue);
+    core::serialize_members(archive, loop, step, arclength, energy, action, loss_rms, tail, tolerance_met,
+                            iterations, off_branch_eigenvalue);
   }
 };
 

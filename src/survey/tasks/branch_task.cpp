@@ -87,6 +87,9 @@ queue::TaskOutcome BranchTask::run() {
       _outcome.limited_by = period_limited | energy_limited;  // from its start: where it stands is not known
   }
   _outcome.end = ending;
+  if (_outcome.tolerance_met > 0.0)
+    _outcome.remarks.push_back(fmt::format("the tolerance {:.2g} is below what rounding allows here: {:.2g} met",
+                                           _scene.continuation.tolerance, _outcome.tolerance_met));
   queue::TaskOutcome done;
   done.failed = ending.failed();
   done.reason = ending.failed() ? ending.text() : "";
@@ -106,11 +109,12 @@ continuation::Ending BranchTask::follow() {
     // The branch ends with an orbit on a limit, which it would not have under a wider one: no state may hold it.
     const bool on_limit = orbit->loop.period >= _options.period_limit || _branch->restart_frontier().on_energy_limit;
     if (on_limit) limited_by(period_limited | energy_limited, before);
-    if (!take(*orbit)) return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", orbit->loop.period * units().time)};
+    const double period = orbit->loop.period * units().time;
+    if (!take(*orbit)) return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", period)};
     if (on_limit) continue;
-    _stopped = !_context.report({_outcome.orbits, 1, {orbit->loop.period * units().time, orbit->energy * units().energy(), orbit->loop.cutoff * 1.0}},
+    _stopped = !_context.report({_outcome.orbits, 1, {period, orbit->energy * units().energy(), orbit->loop.cutoff * 1.0}},
                                 [&] { return pack(state_at(_branch->restart_frontier())); });
-    if (_stopped) return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", orbit->loop.period * units().time)};
+    if (_stopped) return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", period)};
   }
 }
 
@@ -253,6 +257,7 @@ void BranchTask::store(continuation::Orbit orbit, const std::optional<spectrum::
   _outcome.last_period = period;
   _outcome.last_energy = energy;
   _outcome.last_cutoff = orbit.loop.cutoff;
+  _outcome.tolerance_met = std::max(_outcome.tolerance_met, orbit.tolerance_met);
   // The other side of a crossing: counted backwards from it.
   orbit.step = _work.lineage.side > 0 ? _outcome.orbits : -1 - _outcome.orbits;
   orbit.arclength = signed_arclength(_work.lineage, _before_first, _curve.arclength_at(orbit.arclength));

@@ -73,7 +73,7 @@ struct LocateOutcome {
   std::string remark;
   int limited_by = 0;  ///< Limit: with wider ones more would have been looked for
 
-  static constexpr int wire_version = 1;
+  static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, key, lineage, arclength, arclength_unit, period, energy, kind, multiplicity, kernel_dimension,
