@@ -24,6 +24,8 @@ namespace {
 constexpr double of_loss_tolerance = 1e-2;
 /// A change that small, in parts of that tolerance, is good enough even if it shrinks no more. Not measured.
 constexpr double good_enough = 0.3;
+/// Of the change that would bring the loss to its threshold. Not measured.
+constexpr double sharpened = 0.1;
 /// Roundings of nodal values after a filter over the whole loop and the elimination. Not measured.
 constexpr double nodal_rounding = 50.0 * std::numeric_limits<double>::epsilon();
 /// Roundings of a mode, some of the transforms' own: their number was not measured.
@@ -174,15 +176,21 @@ bool CollocationProblem::inverted(const Trial& trial, const std::vector<double>&
   return is_upside_down(equations(), last, trial.values);
 }
 
+double CollocationProblem::bounded_amplitude() { return std::min(1.0, std::max(state().amplitude, least_amplitude)); }
+
+double CollocationProblem::rounding_of_nodes() {
+  double size = bounded_amplitude();
+  for (const double c : equations().centre()) size = std::max(size, std::abs(c));
+  return nodal_rounding * size;
+}
+
 equations::AndersonSolver::Options CollocationProblem::solver_options() {
   const Collocation& e = equations();
   equations::AndersonSolver::Options solver;
   // At a small amplitude A the equations see a change of T only A times.
-  const double amplitude = std::min(1.0, std::max(state().amplitude, least_amplitude));
-  double size = amplitude;
-  for (const double c : e.centre()) size = std::max(size, std::abs(c));
+  const double amplitude = bounded_amplitude();
   solver.tolerance = of_loss_tolerance * _options.corrector.tolerance * amplitude;
-  solver.rounding = std::max(good_enough * solver.tolerance, nodal_rounding * size);
+  solver.rounding = std::max(good_enough * solver.tolerance, rounding_of_nodes());
   solver.scaled_from = e.period_at();
   solver.border_scale = amplitude;
   return solver;
@@ -220,7 +228,31 @@ Trial CollocationProblem::correct(Prediction prediction, const std::vector<doubl
     trial.reason = error.what();
   }
   if (trial.converged) judge(trial);
+  // The solver's tolerance foresees a field whose Jacobian is of order 1.
+  if (trial.converged && (!trial.is_orbit || trial.at_rounding) && resolved(trial)) sharpen(trial);
   return trial;
+}
+
+/// Solves on, as far as rounding allows, where the loss is not what the tolerance lets expect.
+void CollocationProblem::sharpen(Trial& trial) {
+  equations::AndersonSolver::Options options = solver_options();
+  const double sharper = sharpened * trial.threshold / trial.loss_rms;
+  options.tolerance *= sharper;
+  options.stagnation /= sharper;
+  options.rounding = std::max(good_enough * options.tolerance, rounding_of_nodes());
+  Trial other = trial;
+  try {
+    const auto result = _solver.solve(equations(), other.values, !state().factor_point.empty(), options);
+    if (result.factored) state().factor_point.clear();  // built under conditions that the state would have to name
+    if (!result.converged) return;
+    other.iterations += result.iterations;
+  } catch (const core::NumericalError&) {
+    state().factor_point.clear();
+    return;
+  }
+  other.is_orbit = other.at_rounding = false;
+  judge(other);
+  if (other.converged && other.loss_rms < trial.loss_rms) trial = std::move(other);
 }
 
 /// Accepts by the loss over the whole loop.
@@ -244,7 +276,7 @@ void CollocationProblem::judge(Trial& trial) {
     trial.is_orbit = true;
   } else if (trial.loss_rms < corrector::rounding_floor(e.grid().cutoff(),
                                                         trial.values[static_cast<std::size_t>(e.period_at())],
-                                                        quality.size, quality.speed_rms)) {
+                                                        quality.size, quality.speed_rms, e.field_jacobian_rms())) {
     trial.is_orbit = trial.at_rounding = true;  // unless truncation explains the loss: `resolved`
   } else {
     trial.reason = fmt::format("sqrt(loss) = {:.3g} falls no further, wanted {:.3g}", trial.loss_rms, trial.threshold);

@@ -47,10 +47,6 @@ double rms_field_jacobian(const loss::Linearization& lin) {
   return std::sqrt(sum / lin.nodes());
 }
 
-double rounding_floor(const loop::Loop& loop) {
-  return corrector::rounding_floor(loop.cutoff, loop.period, loop::rms_size(loop), loop::rms_speed(loop));
-}
-
 double length(const loop::Loop& loop) {
   double sum = 0.0;
   for (const double v : loop.modes) sum += v * v;
@@ -122,8 +118,14 @@ double acceptance_threshold(double tolerance, double speed, double size, double 
   return std::max(tolerance * std::min(1.0, speed), roundings * size * field_jacobian);
 }
 
-double rounding_floor(int cutoff, double period, double size, double speed) {
-  return of_rounding * (2.0 * M_PI / period * cutoff * size + speed);
+double rounding_floor(int cutoff, double period, double size, double speed, double field_jacobian) {
+  return of_rounding * ((2.0 * M_PI / period * cutoff + field_jacobian) * size + speed);
+}
+
+double rounding_floor(const loop::Loop& loop, const loss::Linearization& linearization) {
+  const bool residual_only = linearization.order() == loss::Linearization::Order::residual;
+  return rounding_floor(loop.cutoff, loop.period, loop::rms_size(loop), loop::rms_speed(loop),
+                        residual_only ? 0.0 : rms_field_jacobian(linearization));
 }
 
 double acceptance_threshold(const loop::Loop& loop, const loss::Linearization& linearization, double tolerance) {
@@ -137,9 +139,9 @@ double acceptance_threshold(const loop::Loop& loop, const loss::Linearization& l
 namespace {
 
 // Whether a run that came no further ended where rounding lets it.
-bool is_at_rounding(Stop stop, const Result& result, const Options& options) {
+bool is_at_rounding(Stop stop, const Result& result, const loss::Linearization& lin, const Options& options) {
   return (stop == Stop::stagnation || stop == Stop::iterations) && result.loss_rms >= result.threshold &&
-         result.loss_rms < rounding_floor(result.loop) &&
+         result.loss_rms < rounding_floor(result.loop, lin) &&
          !tail_explains(result.loop, result.loss_rms, result.threshold, options);
 }
 
@@ -180,7 +182,7 @@ Result correct_by_tao(const systems::System& system, const loop::Loop& guess, co
   const loss::Linearization& lin = objective.at(run.x);
   result.loss_rms = std::sqrt(lin.loss());
   result.threshold = acceptance_threshold(result.loop, lin, options.tolerance);
-  result.at_rounding = is_at_rounding(run.stop, result, options);
+  result.at_rounding = is_at_rounding(run.stop, result, lin, options);
   const Stop stop = result.at_rounding ? Stop::threshold : run.stop;
   if (stop == Stop::threshold) {
     const Polished polished = polish(here, result.loop, unknowns, slice, normal, is_second_order(options.method));
@@ -210,7 +212,7 @@ Result correct_by_newton_krylov(const systems::System& system, const loop::Loop&
   result.threshold = acceptance_threshold(result.loop, lin, options.tolerance);
   const bool kept = result.loss_rms < result.threshold;
   const Stop stop = run.stop == Stop::threshold && !kept ? Stop::stagnation : run.stop;
-  result.at_rounding = is_at_rounding(stop, result, options);
+  result.at_rounding = is_at_rounding(stop, result, lin, options);
   judge(result, result.at_rounding ? Stop::threshold : stop, "newton-krylov", options);
   return result;
 }

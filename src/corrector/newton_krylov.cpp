@@ -5,7 +5,6 @@
 
 #include "orbweaver/equations/loop_equations.hpp"
 #include "orbweaver/equations/loop_solver.hpp"
-#include "orbweaver/loop/curve/measures.hpp"
 
 namespace orbweaver::corrector {
 
@@ -44,8 +43,7 @@ NewtonKrylovRun run_newton_krylov(const systems::System& system, const loop::Loo
     // Where rounding lets the loss fall no further the tolerance is met as far as it can be.
     const bool at_rounding =
         without_progress >= most_without_progress &&
-        std::sqrt(equations.loss()) < rounding_floor(run.loop.cutoff, run.loop.period, loop::rms_size(run.loop),
-                                                     loop::rms_speed(run.loop));
+        std::sqrt(equations.loss()) < rounding_floor(run.loop, equations.linearization());
     const bool under_threshold = std::sqrt(equations.loss()) < threshold || at_rounding;
     if (!under_threshold && without_progress >= most_without_progress) run.stop = Stop::stagnation;
     if (!under_threshold && run.iterations >= most) run.stop = Stop::iterations;

@@ -73,8 +73,11 @@ inline constexpr double least_explained = 1e-2;
                                           double tolerance);
 
 /// What rounding may leave of sqrt(loss) of a loop with K harmonics, whatever the tolerance: that of the modes, of rms
-/// size `size`, reaches the residual multiplied by 2 pi K/T, that of the field by rms |dz/dt| `speed`.
-[[nodiscard]] double rounding_floor(int cutoff, double period, double size, double speed);
+/// size `size`, reaches the residual multiplied by 2 pi K/T and by rms |df/dz| `field_jacobian`, that of the field by rms
+/// |dz/dt| `speed`.
+[[nodiscard]] double rounding_floor(int cutoff, double period, double size, double speed, double field_jacobian);
+/// The same at a loop, with the field's Jacobian where the linearization has it.
+[[nodiscard]] double rounding_floor(const loop::Loop& loop, const loss::Linearization& linearization);
 
 /// Optimises the loss over `guess` + slice. `normal`: the slice's condition (the tangent) if the flat direction through
 /// it is wanted at the end. Never throws for a numerical outcome. Throws MisuseError for sizes that disagree, and
