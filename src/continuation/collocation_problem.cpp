@@ -24,8 +24,10 @@ namespace {
 constexpr double of_loss_tolerance = 1e-2;
 /// A change that small, in parts of that tolerance, is good enough even if it shrinks no more. Not measured.
 constexpr double good_enough = 0.3;
-/// Of the change that would bring the loss to its threshold. Not measured.
-constexpr double sharpened = 0.1;
+/// Of the change that would bring the loss to its threshold, and iterations spent on it with a new factor: where fast
+/// and slow motions are 50 times apart the changes shrink by 0.9 each (m2 = 1000).
+constexpr double sharpened = 0.3;
+constexpr int patience = 60;
 /// Roundings of nodal values after a filter over the whole loop and the elimination. Not measured.
 constexpr double nodal_rounding = 50.0 * std::numeric_limits<double>::epsilon();
 /// Roundings of a mode, some of the transforms' own: their number was not measured.
@@ -207,11 +209,13 @@ Trial CollocationProblem::correct(Prediction prediction, const std::vector<doubl
     return trial;
   }
   const std::vector<double> predicted = trial.values;
+  double last_change = 0.0;
   try {
     auto result = _solver.solve(e, trial.values, !state().factor_point.empty(), solver_options());
     trial.iterations = result.iterations;
     trial.prediction_error = result.first_change;
     trial.converged = result.converged;
+    last_change = result.last_change;
     if (result.factored) {
       state().factor_point = std::move(result.factor_point);
       state().factor_conditions = conditions;
@@ -228,23 +232,24 @@ Trial CollocationProblem::correct(Prediction prediction, const std::vector<doubl
     trial.reason = error.what();
   }
   if (trial.converged) judge(trial);
-  // The solver's tolerance foresees a field whose Jacobian is of order 1.
-  if (trial.converged && (!trial.is_orbit || trial.at_rounding) && resolved(trial)) sharpen(trial);
+  if (trial.converged && (!trial.is_orbit || trial.at_rounding) && resolved(trial))
+    sharpen(trial, last_change, conditions);
   return trial;
 }
 
-/// Solves on, as far as rounding allows, where the loss is not what the tolerance lets expect.
-void CollocationProblem::sharpen(Trial& trial) {
+/// Solves on where the loss is above its threshold and harmonics would not help: the solver's own tolerance foresees a
+/// field whose Jacobian is of order 1, and its look for stagnation a preconditioner that resolves the fastest motion.
+void CollocationProblem::sharpen(Trial& trial, double last_change, const std::vector<double>& conditions) {
   equations::AndersonSolver::Options options = solver_options();
-  const double sharper = sharpened * trial.threshold / trial.loss_rms;
-  options.tolerance *= sharper;
-  options.stagnation /= sharper;
+  options.tolerance = sharpened * trial.threshold / trial.loss_rms * std::max(last_change, options.tolerance);
   options.rounding = std::max(good_enough * options.tolerance, rounding_of_nodes());
+  options.stagnation = 0.0;
+  options.fresh_iterations = patience;
   Trial other = trial;
   try {
-    const auto result = _solver.solve(equations(), other.values, !state().factor_point.empty(), options);
-    if (result.factored) state().factor_point.clear();  // built under conditions that the state would have to name
-    if (!result.converged) return;
+    auto result = _solver.solve(equations(), other.values, false, options);
+    state().factor_point = std::move(result.factor_point);
+    state().factor_conditions = conditions;
     other.iterations += result.iterations;
   } catch (const core::NumericalError&) {
     state().factor_point.clear();

@@ -53,7 +53,7 @@ class CollocationProblem final : public PointProblem {
   [[nodiscard]] equations::AndersonSolver::Options solver_options();
   [[nodiscard]] double bounded_amplitude();
   [[nodiscard]] double rounding_of_nodes();
-  void sharpen(Trial& trial);
+  void sharpen(Trial& trial, double last_change, const std::vector<double>& conditions);
   void judge(Trial& trial);
   [[nodiscard]] std::string not_finite_at(const std::vector<double>& values, const std::vector<double>& predicted);
   [[nodiscard]] double period_unit(double period);
