@@ -103,8 +103,10 @@ class Values {
       const auto given = choice.parameters.find(parameter.name);
       add("system.parameters." + parameter.name, given == choice.parameters.end() ? parameter.standard : given->second);
     }
-    if (choice.scales.empty()) add("system.scales", "auto");
-    for (const auto& [name, scale] : choice.scales) add("system.scales." + name, scale);
+    for (const std::string& name : scale_names(*_system)) {
+      const auto given = choice.scales.find(name);
+      add("system.scales." + name, given == choice.scales.end() ? "auto" : text_of(given->second));
+    }
     add("system.effects", list_text(std::set(choice.effects.begin(), choice.effects.end()), std::identity{}));
   }
 
@@ -139,7 +141,7 @@ class Values {
     if (continuation.start_is_given || _system->structure().has_angles())
       add_length("continuation.start", continuation.start_amplitude);
     else
-      add("continuation.start", "auto");
+      _values.push_back({.key = "continuation.start", .text = "auto", .length = continuation.start_amplitude});
     add("continuation.tolerance", continuation.tolerance);
     add_range("continuation.cutoff", continuation.cutoff_from, continuation.cutoff_to);
     add("continuation.corrector", continuation.corrector);

@@ -31,7 +31,7 @@ void read_continuation(const Field& field, const systems::System& system, Contin
   const Keys keys(field, {"step", "start", "tolerance", "cutoff", "corrector"}, "continuation: {step: adaptive}");
   if (const auto step = keys.find("step"); step && step->plain_scalar() != "adaptive")
     continuation.fixed_step = step->length(angles, "`adaptive` or ");
-  if (const auto start = keys.find("start")) {
+  if (const auto start = keys.find("start"); start && start->plain_scalar() != "auto") {
     continuation.start_amplitude = start->length(angles);
     continuation.start_is_given = true;
   }

@@ -62,13 +62,11 @@ void read_scales(const Field& field, SystemChoice& choice) {
   const auto system = systems::make_system(choice.name, choice.parameters, choice.effects);
   const systems::Structure& structure = system->structure();
   const std::vector<std::string>& coordinates = system->info().state_names;
-  std::vector<std::string> names{"time"};
-  names.insert(names.end(), coordinates.begin(), coordinates.end());
-  names.insert(names.end(), structure.conserved.begin(), structure.conserved.end());
+  const std::vector<std::string> names = scale_names(*system);
   const Keys keys(field, names, "scales: auto");
   for (const std::string& name : names) {
     const auto value = keys.find(name);
-    if (!value) continue;
+    if (!value || value->plain_scalar() == "auto") continue;
     const double scale = value->number({.lower = 0, .lower_open = true, .example = "1"});
     const auto i = static_cast<std::size_t>(std::find(coordinates.begin(), coordinates.end(), name) - coordinates.begin());
     if (i < coordinates.size() && structure.is_angle(i) && scale != 1.0)
@@ -87,6 +85,13 @@ void read_scales(const Field& field, SystemChoice& choice) {
 }
 
 }  // namespace
+
+std::vector<std::string> scale_names(const systems::System& system) {
+  std::vector<std::string> names{"time"};
+  for (const std::vector<std::string>* more : {&system.info().state_names, &system.structure().conserved})
+    names.insert(names.end(), more->begin(), more->end());
+  return names;
+}
 
 void read_system(const Field& field, SystemChoice& system) {
   const Keys keys(field, {"name", "parameters", "effects", "scales"}, "system: {name: double_pendulum}");
