@@ -161,9 +161,9 @@ void judge(Result& result, Stop stop, const std::string& solver_reason, const Op
   }
 }
 
-Result period_lost(Result result) {
+Result period_lost(Result result, const systems::System& system) {
   result.outcome = Outcome::period_not_positive;
-  result.detail = fmt::format("the period became {:.6g}", result.loop.period);
+  result.detail = fmt::format("the period became {:.6g}", result.loop.period * system.scales().time);
   return result;
 }
 
@@ -178,7 +178,7 @@ Result correct_by_tao(const systems::System& system, const loop::Loop& guess, co
   result.loop = objective.loop_at(run.x);
   const std::shared_ptr<const systems::System> here = objective.system_at(run.x);
   result.parameters = unknowns.parameters_of(*here);
-  if (is_lost(result.loop.period)) return period_lost(result);
+  if (is_lost(result.loop.period)) return period_lost(result, system);
   const loss::Linearization& lin = objective.at(run.x);
   result.loss_rms = std::sqrt(lin.loss());
   result.threshold = acceptance_threshold(result.loop, lin, options.tolerance);
@@ -206,7 +206,7 @@ Result correct_by_newton_krylov(const systems::System& system, const loop::Loop&
   result.inner_iterations = run.inner_iterations;
   result.newton_step = run.newton_step;
   result.flat_direction = std::move(run.flat_direction);
-  if (is_lost(result.loop.period)) return period_lost(result);
+  if (is_lost(result.loop.period)) return period_lost(result, system);
   const loss::Linearization lin(*run.system, result.loop, loss::Linearization::Order::jacobian);
   result.loss_rms = std::sqrt(lin.loss());
   result.threshold = acceptance_threshold(result.loop, lin, options.tolerance);
@@ -254,7 +254,7 @@ Result correct(const systems::System& system, const loop::Loop& guess, const los
   result.parameters = unknowns.parameters_of(system);
   if (is_lost(guess.period)) {
     result.outcome = Outcome::period_not_positive;
-    result.detail = fmt::format("the guess has the period {:.6g}", guess.period);
+    result.detail = fmt::format("the guess has the period {:.6g}", guess.period * system.scales().time);
     return result;
   }
   Options own = options;

@@ -54,6 +54,7 @@ BranchOutcome sample_branch_outcome() {
           {continuation::EndReason::period_limit, "T = 30"},
           {{8.5, -1.5, sample_loop()}},
           {"a remark"},
+          5e-13,
           period_limited,
           "a state"};
 }
