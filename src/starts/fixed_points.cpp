@@ -59,6 +59,27 @@ std::optional<Eigen::VectorXd> newton(const systems::System& system, Eigen::Vect
   return z;
 }
 
+/// Values of one coordinate that differ by rounding count as one: mirror images may not change places.
+void sort_by_coordinates(std::vector<std::vector<double>>& points) {
+  using Ranked = std::pair<std::vector<int>, std::vector<double>>;
+  std::vector<Ranked> ranked;
+  for (std::vector<double>& point : points) ranked.push_back({{}, std::move(point)});
+  const std::size_t d = ranked.empty() ? 0 : ranked.front().second.size();
+  for (std::size_t i = 0; i < d; ++i) {
+    std::vector<double> values;
+    for (const Ranked& point : ranked) values.push_back(point.second[i]);
+    std::sort(values.begin(), values.end());
+    for (Ranked& point : ranked) {
+      int rank = 0;
+      for (std::size_t n = 1; n < values.size() && values[n] <= point.second[i]; ++n)
+        if (values[n] - values[n - 1] > same_point * (1.0 + std::abs(values[n]))) ++rank;
+      point.first.push_back(rank);
+    }
+  }
+  std::sort(ranked.begin(), ranked.end());
+  for (std::size_t n = 0; n < points.size(); ++n) points[n] = std::move(ranked[n].second);
+}
+
 }  // namespace
 
 std::vector<std::vector<double>> find_fixed_points(const systems::System& system,
@@ -85,7 +106,7 @@ std::vector<std::vector<double>> find_fixed_points(const systems::System& system
   }
   std::vector<std::vector<double>> points;
   for (const Eigen::VectorXd& z : found) points.emplace_back(z.begin(), z.end());
-  std::sort(points.begin(), points.end());
+  sort_by_coordinates(points);
   return points;
 }
 
