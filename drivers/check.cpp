@@ -12,7 +12,9 @@
 #include "common_options.hpp"
 #include "failure.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/scene/in_scales.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
+#include "orbweaver/starts/natural_scales.hpp"
 #include "orbweaver/systems/identities.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
@@ -48,6 +50,23 @@ std::string parameter_text(const systems::System& system, const std::string& nam
   return fmt::format("{} = {}{} ({})", name, value, found->unit == "1" ? "" : " " + found->unit, found->meaning);
 }
 
+std::string scales_text(const scene::Scene& scene, const systems::System& system) {
+  try {
+    const systems::Scales scales =
+        scene::scales_of(scene, system, starts::natural_scales(system, scene.fixed_points.grid));
+    std::vector<std::string> texts{fmt::format("time {:.6g}", scales.time)};
+    for (std::size_t i = 0; i < system.info().state_names.size(); ++i)
+      if (!system.structure().is_angle(i))
+        texts.push_back(fmt::format("{} {:.6g}", system.info().state_names[i], scales.coordinate(i)));
+    for (std::size_t k = 0; k < system.structure().conserved.size(); ++k)
+      texts.push_back(
+          fmt::format("{} {:.6g}", system.structure().conserved[k], scales.conserved.empty() ? 1.0 : scales.conserved[k]));
+    return fmt::format("{}", fmt::join(texts, ", "));
+  } catch (const core::NumericalError& error) {
+    return fmt::format("not found: {}", error.what());
+  }
+}
+
 void print_system(const scene::Scene& scene, const systems::System& system) {
   std::vector<std::string> coordinates, parameters;
   for (std::size_t i = 0; i < system.info().state_names.size(); ++i)
@@ -57,6 +76,7 @@ void print_system(const scene::Scene& scene, const systems::System& system) {
     lines.emplace_back(lines.size() == 1 ? "parameters" : "", parameter_text(system, name, value));
   const auto& effects = scene.system.effects;
   lines.emplace_back("effects", effects.empty() ? "none" : fmt::format("{}", fmt::join(effects, ", ")));
+  lines.emplace_back("scales", scales_text(scene, system));
   print_group(fmt::format("System: {} ({})", system.info().title, system.info().name), lines);
 }
 

@@ -44,8 +44,9 @@ double closure_of(const systems::System& system, const loop::Loop& loop, const s
       const State end = integrate(system, states[here], loop.period / options.segments, options.tolerance);
       largest = std::max(largest, distance(end, states[here + 1]));
     } catch (const core::NumericalError& error) {
+      const double period = loop.period * system.scales().time;
       throw core::NumericalError(fmt::format("segment {} of {} of a loop with period {} (from t = {}): {}", m + 1,
-                                             options.segments, loop.period, loop.period * m / options.segments,
+                                             options.segments, period, period * m / options.segments,
                                              error.what()));
     }
   }

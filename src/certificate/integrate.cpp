@@ -40,7 +40,8 @@ double norm(const State& values) {
 
 [[noreturn]] void fail(const systems::System& system, double reached, double time, const char* reason) {
   throw core::NumericalError(fmt::format("integration of '{}' over a time of {} stopped at t = {}: {}",
-                                         system.info().name, time, reached, reason));
+                                         system.info().name, time * system.scales().time,
+                                         reached * system.scales().time, reason));
 }
 
 void require_usable(const systems::System& system, const State& state, double time, double tolerance) {

@@ -49,9 +49,10 @@ const Frontier& Branch::restart_frontier() const { return _tracer->frontier(); }
 
 Ending trace(std::shared_ptr<const systems::System> system, const Start& start, const Options& options,
              const Observer& observer) {
+  const double unit = system->scales().time;
   Branch branch(std::move(system), start, options);
   while (const std::optional<Orbit> orbit = branch.advance())
-    if (!observer(*orbit)) return {EndReason::stopped, fmt::format("T = {:.9g}", orbit->loop.period)};
+    if (!observer(*orbit)) return {EndReason::stopped, fmt::format("T = {:.9g}", orbit->loop.period * unit)};
   return branch.ending().value();
 }
 

@@ -25,33 +25,36 @@ constexpr double settled_energy = 1e-3;
 
 }  // namespace
 
-std::optional<Ending> end_at(const Frontier& frontier, const Options& options) {
+std::optional<Ending> end_at(const Frontier& frontier, const Options& options, const systems::Scales& units) {
   const Orbit& orbit = frontier.orbit;
-  if (frontier.on_energy_limit) return Ending{EndReason::energy_limit, fmt::format("E = {:.12g}", orbit.energy)};
+  const double period = orbit.loop.period * units.time;
+  if (frontier.on_energy_limit) return Ending{EndReason::energy_limit, fmt::format("E = {:.12g}", orbit.energy * units.energy())};
   if (orbit.loop.period >= options.period_limit)
-    return Ending{EndReason::period_limit, fmt::format("T = {:.12g}", orbit.loop.period)};
+    return Ending{EndReason::period_limit, fmt::format("T = {:.12g}", period)};
   if (orbit.step + 1 >= options.step_limit)
     return Ending{EndReason::step_limit, fmt::format("{} orbits", orbit.step + 1)};
   if (orbit.step <= first_orbits) return std::nullopt;
   const double amplitude = frontier.problem.amplitude;
   if (amplitude < vanishing_amplitude * std::min(frontier.first_amplitude, options.start_amplitude))
-    return Ending{EndReason::fixed_point, fmt::format("T = {:.9g}, amplitude {:.2e}", orbit.loop.period, amplitude)};
+    return Ending{EndReason::fixed_point, fmt::format("T = {:.9g}, amplitude {:.2e}", period, amplitude)};
   // Neither T nor the amplitude can be further apart than the loops are: a cheap look before the distance itself.
   const double near = closing * frontier.last_increment;
   if (near < was_away * frontier.farthest &&
       std::abs(orbit.loop.period - frontier.first.period) < near * frontier.first.period &&
       std::abs(amplitude - frontier.first_amplitude) < near && arclength_between(frontier.first, orbit.loop) < near)
-    return Ending{EndReason::closed_loop, fmt::format("T = {:.9g}, length {:.6g}", orbit.loop.period, orbit.arclength)};
+    return Ending{EndReason::closed_loop, fmt::format("T = {:.9g}, length {:.6g}", period, orbit.arclength)};
   return std::nullopt;
 }
 
-std::optional<Ending> beyond_limits(double period, double energy, const Options& options) {
+std::optional<Ending> beyond_limits(double period, double energy, const Options& options,
+                                    const systems::Scales& units) {
   if (period > options.period_limit)
-    return Ending{EndReason::period_limit,
-                  fmt::format("left out: begins at T = {:.9g}, beyond {:g}", period, options.period_limit)};
+    return Ending{EndReason::period_limit, fmt::format("left out: begins at T = {:.9g}, beyond {:g}",
+                                                       period * units.time, options.period_limit * units.time)};
   if (energy > options.energy_to || energy < options.energy_from)
-    return Ending{EndReason::energy_limit, fmt::format("left out: begins at E = {:.9g}, outside [{:g}, {:g}]", energy,
-                                                       options.energy_from, options.energy_to)};
+    return Ending{EndReason::energy_limit,
+                  fmt::format("left out: begins at E = {:.9g}, outside [{:g}, {:g}]", energy * units.energy(),
+                              options.energy_from * units.energy(), options.energy_to * units.energy())};
   return std::nullopt;
 }
 
@@ -66,10 +69,11 @@ bool period_diverges(const Frontier& frontier) {
 
 }  // namespace
 
-Ending end_between(const Frontier& frontier, EndReason reason, std::string detail) {
+Ending end_between(const Frontier& frontier, EndReason reason, std::string detail, const systems::Scales& units) {
   if (!period_diverges(frontier)) return {reason, std::move(detail)};
   return {EndReason::period_divergence,
-          fmt::format("T = {:.6g}, E = {:.12g}; {}", frontier.orbit.loop.period, frontier.orbit.energy, detail)};
+          fmt::format("T = {:.6g}, E = {:.12g}; {}", frontier.orbit.loop.period * units.time,
+                      frontier.orbit.energy * units.energy(), detail)};
 }
 
 }  // namespace orbweaver::continuation

@@ -51,6 +51,9 @@ class CollocationProblem final : public PointProblem {
   /// The highest harmonic on a grid of `cells`.
   [[nodiscard]] int cutoff_of(int cells) const { return (cells * _domain.copies() - 1) / 2; }
   [[nodiscard]] equations::AndersonSolver::Options solver_options();
+  [[nodiscard]] double bounded_amplitude();
+  [[nodiscard]] double rounding_of_nodes();
+  void sharpen(Trial& trial, double last_change, const std::vector<double>& conditions);
   void judge(Trial& trial);
   [[nodiscard]] std::string not_finite_at(const std::vector<double>& values, const std::vector<double>& predicted);
   [[nodiscard]] double period_unit(double period);

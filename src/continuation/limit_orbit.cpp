@@ -24,7 +24,7 @@ constexpr double near_limit = 1e-10;
 OnLimit failure(const Passed& passed, std::string_view why) {
   return {std::nullopt,
           {EndReason::failure, fmt::format("no orbit at the {} {} = {:.6g}: {}", name_of(passed.reason), passed.symbol,
-                                           passed.limit, why)}};
+                                           passed.limit * passed.unit, why)}};
 }
 
 /// Where the polynomial through the last points and the one beyond has the limit.
@@ -59,7 +59,7 @@ OnLimit orbit_at_scalar(Stepper& stepper, const Passed& passed, int scalar) {
     if (!finer)
       return {std::nullopt,
               {EndReason::cutoff_limit, fmt::format("the orbit at {} = {:.6g} needs more than K = {}", passed.symbol,
-                                                    passed.limit, stepper.options().cutoff_to)}};
+                                                    passed.limit * passed.unit, stepper.options().cutoff_to)}};
     prediction.values = (*finer)(prediction.values);
     prediction.tangent = (*finer)(prediction.tangent);
   }

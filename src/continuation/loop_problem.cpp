@@ -190,6 +190,7 @@ Trial LoopProblem::correct(Prediction prediction, const std::vector<double>& con
   Trial trial;
   trial.order = prediction.order;
   trial.converged = trial.is_orbit = result.converged();
+  trial.at_rounding = result.at_rounding;
   trial.under_resolved = result.outcome == corrector::Outcome::under_resolved;
   trial.reason = std::move(result.detail);
   trial.values = to_values(result.loop);

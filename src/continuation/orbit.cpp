@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 
 namespace orbweaver::continuation {
@@ -27,6 +28,10 @@ double action_of(const systems::System& system, const loop::Loop& loop) {
 
 double arclength_between(const loop::Loop& from, const loop::Loop& to) {
   return std::hypot(loop::mean_distance(from, to), (to.period - from.period) / from.period);
+}
+
+double arclength_in_units(const systems::System& system, const loop::Loop& from, const loop::Loop& to) {
+  return arclength_between(loop::in_units(from, system.scales()), loop::in_units(to, system.scales()));
 }
 
 }  // namespace orbweaver::continuation

@@ -58,12 +58,12 @@ void Tracer::go_on_from(Frontier frontier) {
 std::optional<Orbit> Tracer::advance() {
   if (_ending) return std::nullopt;
   if (!begun()) return first_orbit();
-  _ending = end_at(_frontier, _options);
+  _ending = end_at(_frontier, _options, _system->scales());
   return _ending ? std::nullopt : next_on_family();
 }
 
 std::optional<Orbit> Tracer::end(EndReason reason, std::string detail) {
-  _ending = end_between(_frontier, reason, std::move(detail));
+  _ending = end_between(_frontier, reason, std::move(detail), _system->scales());
   return std::nullopt;
 }
 
@@ -89,7 +89,7 @@ std::optional<Orbit> Tracer::first_orbit() {
     }
     if (trial.is_orbit) {
       _frontier.points = {{base, 0.0}};
-      _ending = beyond_limits(scalar(trial, 0), energy_of(*_system, trial.loop), _options);
+      _ending = beyond_limits(scalar(trial, 0), energy_of(*_system, trial.loop), _options, _system->scales());
       if (_ending) return std::nullopt;
       _frontier.next_length =
           std::min(growth_after_first * _problem->distance(trial.values, base), _options.largest_step);
@@ -167,7 +167,8 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
     length *= 0.5;
     if (!(length >= least))
       return end(EndReason::failure,
-                 fmt::format("the corrector fails at T = {:.6g} even with step {:.1e}: {}", here().period, length,
+                 fmt::format("the corrector fails at T = {:.6g} even with step {:.1e}: {}",
+                             here().period * _system->scales().time, length,
                              jumped ? "it leaves the family" : trial.reason));
   }
 }
@@ -189,12 +190,16 @@ std::optional<Orbit> Tracer::accept_within_limits(const Trial& trial, double len
   if (!is_late && !is_outside) return accept(trial);
   OnLimit on_limit;
   if (is_late) {
-    on_limit = orbit_at_scalar(_stepper, {EndReason::period_limit, "T", _options.period_limit, length, trial}, period);
+    on_limit = orbit_at_scalar(
+        _stepper,
+        {EndReason::period_limit, "T", _options.period_limit, length, trial, _system->scales().time}, period);
     if (on_limit.trial) on_limit.trial->loop.period = _options.period_limit;
   }
   if (is_outside && (!is_late || (on_limit.trial && is_beyond_energies(energy_of(*_system, on_limit.trial->loop))))) {
     const double limit = value > _options.energy_to ? _options.energy_to : _options.energy_from;
-    on_limit = orbit_at_value(_stepper, {EndReason::energy_limit, "E", limit, length, trial}, _frontier.orbit.energy,
+    on_limit = orbit_at_value(_stepper,
+                              {EndReason::energy_limit, "E", limit, length, trial, _system->scales().energy()},
+                              _frontier.orbit.energy,
                               [this](const Trial& other) { return energy_of(*_system, other.loop); });
     _frontier.on_energy_limit = on_limit.trial.has_value();
   }
@@ -209,6 +214,7 @@ Orbit Tracer::accept(const Trial& trial) {
   orbit.energy = energy_of(*_system, trial.loop);
   orbit.action = _problem->action(trial);
   orbit.loss_rms = trial.loss_rms;
+  if (trial.at_rounding) orbit.tolerance_met = _options.corrector.tolerance * trial.loss_rms / trial.threshold;
   orbit.tail = loop::tail(orbit.loop);
   orbit.iterations = trial.iterations;
   const std::vector<double>& before = _stepper.last();

@@ -33,8 +33,9 @@ namespace {
 
 /// Roundings of the mean state that reach the residual through the field's Jacobian: a few, not measured.
 constexpr double roundings = 4.0 * std::numeric_limits<double>::epsilon();
-/// A loss below so many roundings of its own terms cannot fall further; decides only what is said of a failure.
-constexpr double all_rounding = 10.0 * std::numeric_limits<double>::epsilon();
+/// Of the estimate of what rounding leaves of a loss, which is good to a factor of ten or so. Measured: losses that fall
+/// no further are 0.1 to 3 times the estimate without this factor.
+constexpr double of_rounding = 10.0 * std::numeric_limits<double>::epsilon();
 
 double rms_field_jacobian(const loss::Linearization& lin) {
   double sum = 0.0;
@@ -117,6 +118,16 @@ double acceptance_threshold(double tolerance, double speed, double size, double 
   return std::max(tolerance * std::min(1.0, speed), roundings * size * field_jacobian);
 }
 
+double rounding_floor(int cutoff, double period, double size, double speed, double field_jacobian) {
+  return of_rounding * ((2.0 * M_PI / period * cutoff + field_jacobian) * size + speed);
+}
+
+double rounding_floor(const loop::Loop& loop, const loss::Linearization& linearization) {
+  const bool residual_only = linearization.order() == loss::Linearization::Order::residual;
+  return rounding_floor(loop.cutoff, loop.period, loop::rms_size(loop), loop::rms_speed(loop),
+                        residual_only ? 0.0 : rms_field_jacobian(linearization));
+}
+
 double acceptance_threshold(const loop::Loop& loop, const loss::Linearization& linearization, double tolerance) {
   double mean_square = 0.0;
   for (const double v : loop::mean_state(loop)) mean_square += v * v;
@@ -127,6 +138,13 @@ double acceptance_threshold(const loop::Loop& loop, const loss::Linearization& l
 
 namespace {
 
+// Whether a run that came no further ended where rounding lets it.
+bool is_at_rounding(Stop stop, const Result& result, const loss::Linearization& lin, const Options& options) {
+  return (stop == Stop::stagnation || stop == Stop::iterations) && result.loss_rms >= result.threshold &&
+         result.loss_rms < rounding_floor(result.loop, lin) &&
+         !tail_explains(result.loop, result.loss_rms, result.threshold, options);
+}
+
 // Sets outcome and detail of a result whose loop, loss, threshold and Newton step are known.
 void judge(Result& result, Stop stop, const std::string& solver_reason, const Options& options) {
   result.outcome = outcome_of(stop, result.loop, result.loss_rms, result.threshold, options);
@@ -134,8 +152,6 @@ void judge(Result& result, Stop stop, const std::string& solver_reason, const Op
     result.detail = fmt::format("{} after {} iterations at sqrt(loss) = {:.3g}, wanted {:.3g}, K = {} ({})",
                                 name_of(result.outcome), result.iterations, result.loss_rms, result.threshold,
                                 result.loop.cutoff, solver_reason);
-    if (result.loss_rms < all_rounding * loop::rms_speed(result.loop))
-      result.detail += "; the loss is all rounding: the tolerance is out of reach";
   } else if (result.newton_step > options.step_tolerance * (1.0 + length(result.loop))) {
     result.outcome = Outcome::stalled;
     result.detail = fmt::format(
@@ -145,9 +161,9 @@ void judge(Result& result, Stop stop, const std::string& solver_reason, const Op
   }
 }
 
-Result period_lost(Result result) {
+Result period_lost(Result result, const systems::System& system) {
   result.outcome = Outcome::period_not_positive;
-  result.detail = fmt::format("the period became {:.6g}", result.loop.period);
+  result.detail = fmt::format("the period became {:.6g}", result.loop.period * system.scales().time);
   return result;
 }
 
@@ -162,11 +178,13 @@ Result correct_by_tao(const systems::System& system, const loop::Loop& guess, co
   result.loop = objective.loop_at(run.x);
   const std::shared_ptr<const systems::System> here = objective.system_at(run.x);
   result.parameters = unknowns.parameters_of(*here);
-  if (is_lost(result.loop.period)) return period_lost(result);
+  if (is_lost(result.loop.period)) return period_lost(result, system);
   const loss::Linearization& lin = objective.at(run.x);
   result.loss_rms = std::sqrt(lin.loss());
   result.threshold = acceptance_threshold(result.loop, lin, options.tolerance);
-  if (run.stop == Stop::threshold) {
+  result.at_rounding = is_at_rounding(run.stop, result, lin, options);
+  const Stop stop = result.at_rounding ? Stop::threshold : run.stop;
+  if (stop == Stop::threshold) {
     const Polished polished = polish(here, result.loop, unknowns, slice, normal, is_second_order(options.method));
     result.loop = polished.loop;
     result.parameters = unknowns.parameters_of(*polished.system);
@@ -174,7 +192,7 @@ Result correct_by_tao(const systems::System& system, const loop::Loop& guess, co
     result.newton_step = polished.newton_step;
     if (normal) result.flat_direction = polished.flat_direction;
   }
-  judge(result, run.stop, fmt::format("TAO: {}", run.tao_reason), options);
+  judge(result, stop, fmt::format("TAO: {}", run.tao_reason), options);
   return result;
 }
 
@@ -188,12 +206,14 @@ Result correct_by_newton_krylov(const systems::System& system, const loop::Loop&
   result.inner_iterations = run.inner_iterations;
   result.newton_step = run.newton_step;
   result.flat_direction = std::move(run.flat_direction);
-  if (is_lost(result.loop.period)) return period_lost(result);
+  if (is_lost(result.loop.period)) return period_lost(result, system);
   const loss::Linearization lin(*run.system, result.loop, loss::Linearization::Order::jacobian);
   result.loss_rms = std::sqrt(lin.loss());
   result.threshold = acceptance_threshold(result.loop, lin, options.tolerance);
   const bool kept = result.loss_rms < result.threshold;
-  judge(result, run.stop == Stop::threshold && !kept ? Stop::stagnation : run.stop, "newton-krylov", options);
+  const Stop stop = run.stop == Stop::threshold && !kept ? Stop::stagnation : run.stop;
+  result.at_rounding = is_at_rounding(stop, result, lin, options);
+  judge(result, result.at_rounding ? Stop::threshold : stop, "newton-krylov", options);
   return result;
 }
 
@@ -234,7 +254,7 @@ Result correct(const systems::System& system, const loop::Loop& guess, const los
   result.parameters = unknowns.parameters_of(system);
   if (is_lost(guess.period)) {
     result.outcome = Outcome::period_not_positive;
-    result.detail = fmt::format("the guess has the period {:.6g}", guess.period);
+    result.detail = fmt::format("the guess has the period {:.6g}", guess.period * system.scales().time);
     return result;
   }
   Options own = options;

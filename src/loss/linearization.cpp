@@ -114,11 +114,12 @@ void Linearization::check_finite(const systems::System& system, std::span<const 
   const auto n = static_cast<std::size_t>(_nodes);
   const std::size_t node = static_cast<std::size_t>(bad - values.begin()) % n;
   std::vector<double> state(static_cast<std::size_t>(_dimension));
-  for (std::size_t i = 0; i < state.size(); ++i) state[i] = _z[i * n + node];
+  for (std::size_t i = 0; i < state.size(); ++i) state[i] = _z[i * n + node] * system.scales().coordinate(i);
+  const double period = _period * system.scales().time;
   throw core::NotFiniteError(fmt::format(
       "the {} of {} is not finite ({}) at t = {:.6g} of a loop with T = {:.6g}, state ({:.6g}); the loop left the "
       "region where the system is defined: start from another guess or take smaller steps",
-      what, system.info().name, *bad, _period * static_cast<double>(node) / _nodes, _period, fmt::join(state, ", ")));
+      what, system.info().name, *bad, period * static_cast<double>(node) / _nodes, period, fmt::join(state, ", ")));
 }
 
 void Linearization::require_order(Order order) const {

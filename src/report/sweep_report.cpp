@@ -11,6 +11,7 @@
 #include "orbweaver/certificate/certificate.hpp"
 #include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
+#include "orbweaver/survey/run/scaled_scene.hpp"
 #include "orbweaver/survey/tasks/sweep_options.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
 #include "orbweaver/systems/registry.hpp"
@@ -47,6 +48,16 @@ std::string rest_text(const std::vector<std::complex<double>>& values) {
   return text;
 }
 
+// Periods, eigenvalues of the Jacobian and the point; deviations and eigenvalues of the Hessian stay in scales.
+void tell_in_units(EquilibriumReport& report, const systems::Scales& scales) {
+  for (std::size_t i = 0; i < report.point.size(); ++i) report.point[i] *= scales.coordinate(i);
+  starts::SweepResult& sweep = report.sweep;
+  for (starts::SweepPoint& sample : sweep.table) sample.period *= scales.time;
+  for (starts::RejectedDip& dip : sweep.rejected) dip.period *= scales.time;
+  for (std::complex<double>& value : sweep.linear.rest) value /= scales.time;
+  for (double* period : {&sweep.range.period_from, &sweep.range.period_to, &sweep.range.step}) *period *= scales.time;
+}
+
 bool have_one_range(const std::vector<EquilibriumReport>& reports) {
   return std::all_of(reports.begin(), reports.end(), [&](const EquilibriumReport& r) {
     const starts::SweepOptions& first = reports.front().sweep.range;
@@ -58,10 +69,13 @@ bool have_one_range(const std::vector<EquilibriumReport>& reports) {
 }  // namespace
 
 std::vector<EquilibriumReport> sweep_report(const scene::Scene& scene) {
-  const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  const survey::ScaledScene scaled(
+      scene, systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects));
+  const std::shared_ptr<const systems::System>& system = scaled.system();
+  const double time = system->scales().time;
   std::vector<EquilibriumReport> reports;
-  for (const std::vector<double>& point : starts::find_fixed_points(*system, scene.fixed_points.grid)) {
-    const starts::SweepOptions options = survey::sweep_options(scene.sweep, *system, point);
+  for (const std::vector<double>& point : starts::find_fixed_points(*system, scaled.scene().fixed_points.grid)) {
+    const starts::SweepOptions options = survey::sweep_options(scaled.scene().sweep, *system, point);
     EquilibriumReport report{point,
                              survey::point_text(*system, point),
                              system->structure().has_angles(),
@@ -69,16 +83,17 @@ std::vector<EquilibriumReport> sweep_report(const scene::Scene& scene) {
                              {},
                              {}};
     const auto name = [&](int place) {
-      return survey::base_family_name(scene, *system, point, static_cast<int>(reports.size()), place);
+      return survey::base_family_name(scaled.scene(), *system, point, static_cast<int>(reports.size()), place);
     };
     const bifurcation::SmallOscillations all = bifurcation::small_oscillations(*system, report.sweep, options.cutoff);
     for (const auto& [mode, place] : all.families)
       report.modes.push_back(
-          {name(place), mode.period, mode.grid_period, deviation(*system, point, mode.direction, mode.period),
+          {name(place), mode.period * time, mode.grid_period * time, deviation(*system, point, mode.direction, mode.period),
            deviation(*system, point, mode.grid_direction, mode.grid_period), loop::to_text(mode.isotropy)});
     for (const bifurcation::LeftOut& left_out : all.left_out)
       for (int n = 0; n < left_out.families && !left_out.undecided; ++n)
-        report.left_out.push_back({name(left_out.place + n), left_out.period});
+        report.left_out.push_back({name(left_out.place + n), left_out.period * time});
+    tell_in_units(report, system->scales());
     reports.push_back(std::move(report));
   }
   return reports;

@@ -103,6 +103,10 @@ class Values {
       const auto given = choice.parameters.find(parameter.name);
       add("system.parameters." + parameter.name, given == choice.parameters.end() ? parameter.standard : given->second);
     }
+    for (const std::string& name : scale_names(*_system)) {
+      const auto given = choice.scales.find(name);
+      add("system.scales." + name, given == choice.scales.end() ? "auto" : text_of(given->second));
+    }
     add("system.effects", list_text(std::set(choice.effects.begin(), choice.effects.end()), std::identity{}));
   }
 
@@ -133,7 +137,11 @@ class Values {
       add_length("continuation.step", *step);
     else
       add("continuation.step", "adaptive");
-    add_length("continuation.start", continuation.start_amplitude);
+    // The default is a number of the survey's scales, which in a system without angles are not the units.
+    if (continuation.start_is_given || _system->structure().has_angles())
+      add_length("continuation.start", continuation.start_amplitude);
+    else
+      _values.push_back({.key = "continuation.start", .text = "auto", .length = continuation.start_amplitude});
     add("continuation.tolerance", continuation.tolerance);
     add_range("continuation.cutoff", continuation.cutoff_from, continuation.cutoff_to);
     add("continuation.corrector", continuation.corrector);

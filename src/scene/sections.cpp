@@ -31,7 +31,10 @@ void read_continuation(const Field& field, const systems::System& system, Contin
   const Keys keys(field, {"step", "start", "tolerance", "cutoff", "corrector"}, "continuation: {step: adaptive}");
   if (const auto step = keys.find("step"); step && step->plain_scalar() != "adaptive")
     continuation.fixed_step = step->length(angles, "`adaptive` or ");
-  if (const auto start = keys.find("start")) continuation.start_amplitude = start->length(angles);
+  if (const auto start = keys.find("start"); start && start->plain_scalar() != "auto") {
+    continuation.start_amplitude = start->length(angles);
+    continuation.start_is_given = true;
+  }
   if (const auto tolerance = keys.find("tolerance"))
     continuation.tolerance = tolerance->number({.lower = 1e-14, .upper = 1e-3, .example = "1e-10"});
   if (const auto cutoff = keys.find("cutoff")) {

@@ -6,6 +6,7 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/registry.hpp"
+#include "orbweaver/systems/scaled_system.hpp"
 
 namespace orbweaver::scene {
 
@@ -72,14 +73,54 @@ void read_parameters(const Field& field, const systems::ModelInfo& info, SystemC
   }
 }
 
+namespace {
+
+// One number each, > 0, for time, coordinates that are no angles, and conserved quantities.
+void read_scales(const Field& field, SystemChoice& choice) {
+  if (field.plain_scalar() == "auto") return;
+  const auto system = systems::make_system(choice.name, choice.parameters, choice.effects);
+  const systems::Structure& structure = system->structure();
+  const std::vector<std::string>& coordinates = system->info().state_names;
+  const std::vector<std::string> names = scale_names(*system);
+  const Keys keys(field, names, "scales: auto");
+  for (const std::string& name : names) {
+    const auto value = keys.find(name);
+    if (!value || value->plain_scalar() == "auto") continue;
+    const double scale = value->number({.lower = 0, .lower_open = true, .example = "1"});
+    const auto i = static_cast<std::size_t>(std::find(coordinates.begin(), coordinates.end(), name) - coordinates.begin());
+    if (i < coordinates.size() && structure.is_angle(i) && scale != 1.0)
+      value->fail("1, the scale of every angle", value->got(), "remove it");
+    choice.scales[name] = scale;
+  }
+  const std::vector<std::size_t> first = systems::mixed_coordinates(structure);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const auto one = choice.scales.find(coordinates[i]);
+    const auto other = choice.scales.find(coordinates[first[i]]);
+    const auto none = choice.scales.end();
+    if ((one == none) == (other == none) && (one == none || one->second == other->second)) continue;
+    field.fail(fmt::format("one scale for {} and {}, which a symmetry mixes", coordinates[first[i]], coordinates[i]),
+               field.got(), "give both the same, or none");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> scale_names(const systems::System& system) {
+  std::vector<std::string> names{"time"};
+  for (const std::vector<std::string>* more : {&system.info().state_names, &system.structure().conserved})
+    names.insert(names.end(), more->begin(), more->end());
+  return names;
+}
+
 void read_system(const Field& field, SystemChoice& system) {
-  const Keys keys(field, {"name", "parameters", "effects"}, "system: {name: double_pendulum}");
+  const Keys keys(field, {"name", "parameters", "effects", "scales"}, "system: {name: double_pendulum}");
   const auto name = keys.find("name");
   if (!name) field.fail("the system's `name`", "a map without it", "add for example `name: double_pendulum`");
   system.name = name->choice(systems::system_names());
   if (const auto effects = keys.find("effects")) read_effects(*effects, system);
   if (const auto parameters = keys.find("parameters"))
     read_parameters(*parameters, systems::model_info(system.name), system);
+  if (const auto scales = keys.find("scales")) read_scales(*scales, system);
 }
 
 }  // namespace orbweaver::scene

@@ -67,6 +67,27 @@ Eigen::VectorXd vector_of(std::span<const double> point) {
   return Eigen::Map<const Eigen::VectorXd>(point.data(), static_cast<Eigen::Index>(point.size()));
 }
 
+/// Values of one coordinate that differ by rounding count as one: mirror images may not change places.
+void sort_by_coordinates(std::vector<std::vector<double>>& points) {
+  using Ranked = std::pair<std::vector<int>, std::vector<double>>;
+  std::vector<Ranked> ranked;
+  for (std::vector<double>& point : points) ranked.push_back({{}, std::move(point)});
+  const std::size_t d = ranked.empty() ? 0 : ranked.front().second.size();
+  for (std::size_t i = 0; i < d; ++i) {
+    std::vector<double> values;
+    for (const Ranked& point : ranked) values.push_back(point.second[i]);
+    std::sort(values.begin(), values.end());
+    for (Ranked& point : ranked) {
+      int rank = 0;
+      for (std::size_t n = 1; n < values.size() && values[n] <= point.second[i]; ++n)
+        if (values[n] - values[n - 1] > same_point * (1.0 + std::abs(values[n]))) ++rank;
+      point.first.push_back(rank);
+    }
+  }
+  std::sort(ranked.begin(), ranked.end());
+  for (std::size_t n = 0; n < points.size(); ++n) points[n] = std::move(ranked[n].second);
+}
+
 }  // namespace
 
 bool is_same_fixed_point(std::span<const double> a, std::span<const double> b) {
@@ -104,6 +125,7 @@ std::vector<std::vector<double>> find_fixed_points(const systems::System& system
     }
     if (!is_finite_at(system, z)) {
       passed_over.emplace_back(z.begin(), z.end());
+      for (std::size_t i = 0; i < d; ++i) passed_over.back()[i] *= system.scales().coordinate(i);
       continue;
     }
     std::optional<Eigen::VectorXd> point = newton(system, std::move(z));
@@ -120,7 +142,7 @@ std::vector<std::vector<double>> find_fixed_points(const systems::System& system
   if (not_finite != nullptr) *not_finite = std::move(passed_over);
   std::vector<std::vector<double>> points;
   for (const Eigen::VectorXd& z : found) points.emplace_back(z.begin(), z.end());
-  std::sort(points.begin(), points.end());
+  sort_by_coordinates(points);
   return points;
 }
 

@@ -164,7 +164,8 @@ class Sweep {
           reaches_zero = true;
           if (k > 1 && is_inside(period) && told.emplace(k, oscillation.period).second)
             _result.rejected.push_back(
-                {period, fmt::format("{} times around the oscillation with T = {:.12g}", k, oscillation.period)});
+                {period, fmt::format("{} times around the oscillation with T = {:.12g}", k,
+                                      oscillation.period * _system.scales().time)});
         }
       // Harmonic 0 is the mean of the loop: it does not depend on T, its minima are rounding.
       if (!reaches_zero && _samples[n].harmonic > 0) {
@@ -183,7 +184,7 @@ class Sweep {
         _result.rejected.push_back(
             {period, fmt::format("a resonance: {} times the period of the oscillation with T = {:.12g}; families that "
                                  "start along combinations of the two are not looked for",
-                                 resonance.ratio, linear.oscillations[resonance.fast].period)});
+                                 resonance.ratio, linear.oscillations[resonance.fast].period * _system.scales().time)});
     }
     for (const UndecidedEigenvalues& eigenvalues : linear.undecided)
       _result.rejected.push_back({eigenvalues.period(), to_text(eigenvalues)});

@@ -10,6 +10,11 @@ std::vector<std::string> System::winding_names() const {
   return names;
 }
 
+const Scales& System::scales() const {
+  static const Scales units;
+  return units;
+}
+
 void System::parameter_derivatives(const std::string&, std::size_t, const double*, double*) const {
   throw core::MisuseError("this system does not differentiate by its parameters");
 }

@@ -82,6 +82,24 @@ void set_integer(hid_t file, const char* name, hsize_t row, std::int64_t value) 
   check_h5(H5Dwrite(dataset.get(), H5T_NATIVE_INT64, memory.get(), place.get(), H5P_DEFAULT, &value), name);
 }
 
+void delete_attributes(hid_t file, const std::vector<const char*>& names) {
+  for (const char* name : names) check_h5(H5Adelete(file, name), name);
+}
+
+// An archive from before there was a format_minor.
+TEST_F(BadFiles, OlderFilesHaveNoScales) {
+  {
+    const Archive older(alter(atlas, [](hid_t file) {
+      delete_attributes(file, {"format_minor", "system", "effects", "parameter_names", "parameter_values",
+                               "scale_names", "scales"});
+    }));
+    EXPECT_TRUE(older.header().system.empty());
+    EXPECT_TRUE(older.header().scales.empty());
+    EXPECT_GT(older.orbits().rows(), 0U);
+  }
+  EXPECT_THAT(altered([](hid_t file) { delete_attributes(file, {"scales"}); }), HasSubstr("lacks the attribute 'scales'"));
+}
+
 TEST_F(BadFiles, AbsentAndForeignFilesAreNamed) {
   EXPECT_THAT(atlas_refusal(folder / "none.h5"), AllOf(HasSubstr("none.h5' does not exist"), HasSubstr("survey")));
   EXPECT_THAT(atlas_refusal(folder), HasSubstr("is a folder"));

@@ -80,6 +80,12 @@ void expect_round_trip(const std::string& folder, const Header& header) {
   EXPECT_EQ(atlas.header().winding_names, header.winding_names);
   EXPECT_EQ(atlas.header().orbweaver_version, header.orbweaver_version);
   EXPECT_EQ(atlas.header().pairs, header.pairs);
+  EXPECT_EQ(atlas.header().system, header.system);
+  EXPECT_EQ(atlas.header().effects, header.effects);
+  EXPECT_EQ(atlas.header().parameter_names, header.parameter_names);
+  EXPECT_EQ(atlas.header().parameter_values, header.parameter_values);
+  EXPECT_EQ(atlas.header().scale_names, header.scale_names);
+  EXPECT_EQ(atlas.header().scales, header.scales);
   const std::vector<std::string> keys{"0001", "0001.0002", "0002", "0003", "0003.0001"};
   ASSERT_EQ(atlas.orbits().rows(), 29u);
   for (const OrbitRecord& orbit : records.orbits) {

@@ -107,6 +107,12 @@ Header sample_header(int pairs, bool symplectic) {
   header.winding_names = {"n1"};
   header.pairs = pairs;
   header.symplectic = symplectic;
+  header.system = "made_up";
+  header.effects = {"friction"};
+  header.parameter_names = {"m", "g"};
+  header.parameter_values = {0.1, 9.81};
+  header.scale_names = {"time", "θ1", "w1", "energy"};
+  header.scales = {0.25, 1.0, 4.0, 16.0};
   return header;
 }
 

@@ -75,11 +75,13 @@ TEST(Outcomes, ATailOfRoundingAsksForNoHarmonics) {
   const test::Problem problem(test::in_phase(), 0.6, 87);  // resolved at K = 40
   for (const Method method : {Method::newton_krylov, Method::nls}) {
     const Result result = problem.correct(problem.guess, {.method = method, .tolerance = 1e-18});
-    expect_outcome(result, Outcome::stalled);
-    EXPECT_THAT(result.detail, HasSubstr("the tolerance is out of reach"));
+    EXPECT_TRUE(result.converged()) << name_of(method) << ": " << result.detail;
+    EXPECT_TRUE(result.at_rounding);
+    EXPECT_GT(result.loss_rms, result.threshold);
+    EXPECT_LT(result.loss_rms, 1e-13);
   }
   const test::Problem coarse(test::in_phase(), 0.6, 10);
-  EXPECT_THAT(coarse.correct(coarse.guess, {.method = Method::nls}).detail, testing::Not(HasSubstr("out of reach")));
+  EXPECT_FALSE(coarse.correct(coarse.guess, {.method = Method::nls}).at_rounding);
 }
 
 class EveryMethodFails : public testing::TestWithParam<Method> {};

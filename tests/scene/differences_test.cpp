@@ -39,6 +39,12 @@ const std::map<std::string, Case> cases{
     {"system.parameters.l2", {"1", "0.5"}},
     {"system.parameters.g", {"1", "9.81"}},
     {"system.effects", {"[]", ""}},  // no system has one yet
+    {"system.scales.time", {"auto", "2"}},
+    {"system.scales.th1", {"auto", ""}},  // 1, as of every angle
+    {"system.scales.th2", {"auto", ""}},
+    {"system.scales.w1", {"auto", "0.5"}},
+    {"system.scales.w2", {"auto", "0.5"}},
+    {"system.scales.energy", {"auto", "0.25"}},
     {"starts.fixed_points.grid", {"[[90]]", "[[91]]"}},
     {"starts.fixed_points.names", {"{}", "{[0, 180]: [Down-Up]}"}},
     {"starts.fixed_points.letters", {"{}", ""}},  // none without names
@@ -111,8 +117,10 @@ TEST(Differences, EachKeyIsFoundAloneAndNamed) {
     const scene::Scene standard = with({key + "=" + values.standard});
     const scene::Scene changed = with({key + "=" + values.other});
     std::vector<scene::Difference> found = differences(standard, changed);
-    if (key == "system.name") {  // brings other parameters and another standard name
-      std::erase_if(found, [](const auto& d) { return d.key.starts_with("system.parameters.") || d.key == "name"; });
+    if (key == "system.name") {  // brings other parameters and coordinates, and another standard name
+      std::erase_if(found, [](const auto& d) {
+        return d.key.starts_with("system.parameters.") || d.key.starts_with("system.scales.") || d.key == "name";
+      });
     }
     ASSERT_THAT(found, SizeIs(1));
     EXPECT_EQ(found[0].key, key);
@@ -183,7 +191,7 @@ TEST(Differences, SayLengthsWithoutAUnitWhereThereAreNoAngles) {
                                  scene::parse(text, "two", {"continuation.step=0.5", "continuation.start=1e-3"}));
   ASSERT_THAT(found, SizeIs(2));
   EXPECT_EQ(found[0].now, "0.5");
-  EXPECT_EQ(found[1].before, "0.008726646259971648");
+  EXPECT_EQ(found[1].before, "auto");  // a number of the survey's scales
   EXPECT_EQ(found[1].now, "0.001");
 }
 

@@ -8,8 +8,10 @@
 
 #include "corrector/oscillator.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/scene/in_scales.hpp"
 #include "orbweaver/scene/scene.hpp"
 #include "orbweaver/systems/registry.hpp"
+#include "orbweaver/systems/scaled_system.hpp"
 
 namespace orbweaver::starts {
 namespace {
@@ -69,6 +71,25 @@ TEST(FixedPoints, OfTheThreeBodyScenesAreTheFiveLagrangePoints) {
       });
       EXPECT_EQ(places, 1) << named.names.front();
     }
+  }
+}
+
+// L4 and L5 have one x, to rounding: their order may not hang on its last digit, which other units change.
+TEST(FixedPoints, MirrorImagesDoNotChangePlaces) {
+  for (const char* file : {"pcr3bp_earth_moon.yaml", "pcr3bp_mu_0.001.yaml"}) {
+    const scene::Scene scene = scene::load(std::string(ORBWEAVER_SOURCE_DIR "/drivers/scenes/") + file);
+    const auto system = systems::make_system(scene.system.name, scene.system.parameters);
+    for (const double speed : {1.0, 0.5, 0.25, 0.125})
+      for (const double y : {1.0, 0.5, 0.25}) {
+        const systems::Scales scales{2.0, {1.0, y, speed, 2.0 * speed}, {}};
+        const scene::Scene told = scene::in_scales(scene, *system, scales);
+        const auto points = find_fixed_points(*systems::scaled(system, scales), told.fixed_points.grid);
+        ASSERT_EQ(points.size(), 5u);
+        for (std::size_t n = 1; n < points.size(); ++n) {
+          if (std::abs(points[n][0] - points[n - 1][0]) > 1e-9) continue;
+          EXPECT_LT(points[n - 1][1], points[n][1]) << file << " " << speed << " " << y;
+        }
+      }
   }
 }
 

@@ -56,6 +56,7 @@ BranchOutcome sample_branch_outcome() {
           2,
           {{{certificate::Verdict::says_nothing, 65.0, 1e-4, 29.0, 1e251}, 3}},
           {"a remark"},
+          5e-13,
           period_limited,
           "a state"};
 }

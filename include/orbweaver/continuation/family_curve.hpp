@@ -38,6 +38,9 @@ class FamilyCurve {
 
   /// The next known orbit; positions increase. Only the last `keep` known orbits stay.
   void add(double position, const loop::Loop& loop, std::size_t keep = 5);
+  /// The same for one that another curve has known.
+  struct Known;
+  void add(const Known& known, std::size_t keep = 5);
 
   /// Forgets the orbits found in between, which later ones are sought from: as after `add`.
   void forget_found();
@@ -49,16 +52,22 @@ class FamilyCurve {
   struct Known {
     double position = 0.0;
     loop::Loop loop;
+    double arclength = 0.0;  ///< the position in the units of the scene, where scales are not 1
 
-    static constexpr int wire_version = 1;
+    static constexpr int wire_version = 2;
     template <class Archive>
     void serialize(Archive& archive, unsigned /*version*/) {
-      core::serialize_members(archive, position, loop);
+      core::serialize_members(archive, position, loop, arclength);
     }
   };
   [[nodiscard]] const std::vector<Known>& known() const { return _known; }
   [[nodiscard]] const loop::Isotropy& isotropy() const { return _isotropy; }
   [[nodiscard]] const Options& options() const { return _options; }
+
+  /// The archive's arclength at a position within the known orbits, in the units of the scene: linear between them.
+  [[nodiscard]] double arclength_at(double position) const;
+  /// How long a length of 1 is there in it.
+  [[nodiscard]] double arclength_unit_at(double position) const;
 
   /// The orbit at `position`, which lies between the first and the last known one, with the family's direction there if
   /// that is asked for; none where the corrector fails, which at a known orbit gives that orbit itself. Throws
@@ -66,6 +75,9 @@ class FamilyCurve {
   [[nodiscard]] std::optional<CurvePoint> at(double position, bool with_tangent = false);
 
  private:
+  /// The index of the known orbit at or behind a position.
+  [[nodiscard]] std::size_t interval_of(double position) const;
+
   std::shared_ptr<const systems::System> _system;
   loop::Isotropy _isotropy;
   Options _options;

@@ -17,14 +17,16 @@ struct Orbit {
   double action = 0.0;  ///< closed integral of p dq
   double loss_rms = 0.0;
   double tail = 0.0;
+  /// Where rounding keeps sqrt(loss) above the tolerance: the tolerance that it meets; else 0.
+  double tolerance_met = 0.0;
   int iterations = 0;
   double off_branch_eigenvalue = std::numeric_limits<double>::quiet_NaN();
 
-  static constexpr int wire_version = 1;
+  static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, loop, step, arclength, energy, action, loss_rms, tail, iterations,
-                            off_branch_eigenvalue);
+    core::serialize_members(archive, loop, step, arclength, energy, action, loss_rms, tail, tolerance_met,
+                            iterations, off_branch_eigenvalue);
   }
 };
 
@@ -34,7 +36,9 @@ struct Orbit {
 /// Action over one period: T times the mean over time of p . dq/dt, on the loss's nodes (spectrally accurate).
 [[nodiscard]] double action_of(const systems::System& system, const loop::Loop& loop);
 
-/// sqrt(mean |dz|^2 + (dT/T)^2) between neighbours: the archive's arclength.
+/// sqrt(mean |dz|^2 + (dT/T)^2) between neighbours.
 [[nodiscard]] double arclength_between(const loop::Loop& from, const loop::Loop& to);
+/// The same in the units of the scene, for loops told in the system's scales: the archive's arclength.
+[[nodiscard]] double arclength_in_units(const systems::System& system, const loop::Loop& from, const loop::Loop& to);
 
 }  // namespace orbweaver::continuation

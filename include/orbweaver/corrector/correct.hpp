@@ -19,7 +19,7 @@ namespace orbweaver::corrector {
 
 /// How a correction ended.
 enum class Outcome {
-  converged,       ///< an orbit: sqrt(loss) under the threshold and the Newton step small
+  converged,       ///< an orbit: sqrt(loss) under the threshold, or kept above by rounding, and the Newton step small
   under_resolved,  ///< at a minimum above the threshold, with weight in the last harmonics: raise the cutoff
   stalled,         ///< no further progress, resolution is not the reason
   iteration_limit,
@@ -53,6 +53,7 @@ struct Result {
   int inner_iterations = 0;                       ///< of GMRES, over all Newton steps (newton-krylov)
   double loss_rms = 0.0;                          ///< sqrt(loss) of `loop`
   double threshold = 0.0;                         ///< what loss_rms had to go under
+  bool at_rounding = false;  ///< converged above the threshold, where rounding keeps the loss (`rounding_floor`)
   double newton_step = 0.0;                       ///< length of the last Newton step (second-order: already applied)
   std::optional<Eigen::VectorXd> flat_direction;  ///< of the Hessian through the slice's first condition, if asked for
 
@@ -70,6 +71,13 @@ inline constexpr double least_explained = 1e-2;
 /// The same at a loop; the rounding error counts where the linearization has the field's Jacobian.
 [[nodiscard]] double acceptance_threshold(const loop::Loop& loop, const loss::Linearization& linearization,
                                           double tolerance);
+
+/// What rounding may leave of sqrt(loss) of a loop with K harmonics, whatever the tolerance: that of the modes, of rms
+/// size `size`, reaches the residual multiplied by 2 pi K/T and by rms |df/dz| `field_jacobian`, that of the field by rms
+/// |dz/dt| `speed`.
+[[nodiscard]] double rounding_floor(int cutoff, double period, double size, double speed, double field_jacobian);
+/// The same at a loop, with the field's Jacobian where the linearization has it.
+[[nodiscard]] double rounding_floor(const loop::Loop& loop, const loss::Linearization& linearization);
 
 /// Optimises the loss over `guess` + slice. `normal`: the slice's condition (the tangent) if the flat direction through
 /// it is wanted at the end. Never throws for a numerical outcome. Throws MisuseError for sizes that disagree, and

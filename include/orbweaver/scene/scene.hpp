@@ -14,6 +14,8 @@ struct SystemChoice {
   std::string name;
   std::map<std::string, double> parameters;
   std::vector<std::string> effects;
+  /// Scales that the scene gives, by name: time, a coordinate, a conserved quantity. The others are found (`auto`).
+  std::map<std::string, double> scales;
 };
 
 /// Where the search for equilibria starts, and what the user calls the families found there.
@@ -43,8 +45,10 @@ struct Sweep {
 struct Continuation {
   /// |dz(s = 0)|, in radians where the system has angles, elsewhere in the coordinates' own units; none = adaptive
   std::optional<double> fixed_step;
-  /// |dz(s = 0)| of the first orbit, in the same units; the default is the paper's half degree, as a number
+  /// |dz(s = 0)| of the first orbit, in the same units; the default is the paper's half degree, as a number, in the
+  /// survey's scales
   double start_amplitude = 0.5 / 180.0 * std::numbers::pi;
+  bool start_is_given = false;
   double tolerance = 1e-10;
   int cutoff_from = 8;
   int cutoff_to = 4096;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "orbweaver/systems/model_info.hpp"
+#include "orbweaver/systems/scales.hpp"
 #include "orbweaver/systems/structure.hpp"
 
 namespace orbweaver::systems {
@@ -31,6 +32,9 @@ class System {
   [[nodiscard]] virtual const Structure& structure() const = 0;
   /// Bound value of every parameter, by name (defaults filled in).
   [[nodiscard]] virtual const std::map<std::string, double>& parameters() const = 0;
+  /// The units in which its states, times and conserved quantities are told: 1 unless it is a scaled one
+  /// (systems/scaled_system.hpp).
+  [[nodiscard]] virtual const Scales& scales() const;
   [[nodiscard]] int dimension() const { return structure().dimension; }
   /// One an angle of the structure.
   [[nodiscard]] std::vector<std::string> winding_names() const;

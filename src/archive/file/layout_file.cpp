@@ -51,6 +51,14 @@ class Layout {
     write_text("scene", header.scene);
     write_texts("state_names", header.state_names);
     write_texts("winding_names", header.winding_names);
+    const std::int64_t minor = format_minor;
+    write_attribute("format_minor", h5_memory_type({"", ColumnType::integer, {}}), scalar_space(), &minor);
+    write_text("system", header.system);
+    write_texts("effects", header.effects);
+    write_texts("parameter_names", header.parameter_names);
+    write_numbers("parameter_values", header.parameter_values);
+    write_texts("scale_names", header.scale_names);
+    write_numbers("scales", header.scales);
   }
 
   void create_table(const TableSpec& table, std::uint64_t rows) {
@@ -85,6 +93,12 @@ class Layout {
 
   void write_text(const char* name, const std::string& text) {
     write_attribute(name, h5_text_type(std::max<std::size_t>(text.size(), 1)), scalar_space(), text.c_str());
+  }
+
+  void write_numbers(const char* name, const std::vector<double>& numbers) {
+    const double none = 0.0;  // HDF5 wants an address even for no values
+    write_attribute(name, h5_memory_type({"", ColumnType::real, {}}), dataspace({numbers.size()}),
+                    numbers.empty() ? &none : numbers.data());
   }
 
   void write_texts(const char* name, const std::vector<std::string>& texts) {

@@ -97,6 +97,17 @@ void SerialFile::read_header() {
   _header.state_names = text_attribute("state_names");
   _header.winding_names = text_attribute("winding_names");
   expect(!_header.state_names.empty(), "names no state coordinate (attribute 'state_names' is empty)");
+  if (H5Aexists(_file.get(), "format_minor") > 0 && integer_attribute("format_minor") >= 1) {
+    _header.system = single_text_attribute("system");
+    _header.effects = text_attribute("effects");
+    _header.parameter_names = text_attribute("parameter_names");
+    _header.parameter_values = real_attribute("parameter_values");
+    _header.scale_names = text_attribute("scale_names");
+    _header.scales = real_attribute("scales");
+    expect(_header.parameter_names.size() == _header.parameter_values.size(),
+           "has another number of parameter_values than parameter_names");
+    expect(_header.scale_names.size() == _header.scales.size(), "has another number of scales than scale_names");
+  }
   const std::vector<hsize_t> shape = extents(dataset("orbits/stability"));
   const bool is_real = shape.size() == 2 && shape[1] <= 1;
   const bool is_complex = shape.size() == 3 && shape[2] == 2;
@@ -116,7 +127,9 @@ H5Handle SerialFile::attribute(const char* name, H5T_class_t type) const {
   const bool is_fixed = H5Tget_class(actual.get()) != H5T_STRING || H5Tis_variable_str(actual.get()) == 0;
   expect(H5Tget_class(actual.get()) == type && is_fixed,
          fmt::format("has an attribute '{}' that is not {}", name,
-                     type == H5T_STRING ? "a fixed-length string" : "an integer"));
+                     type == H5T_STRING  ? "a fixed-length string"
+                     : type == H5T_FLOAT ? "real"
+                                         : "an integer"));
   return found;
 }
 
@@ -141,6 +154,16 @@ std::vector<std::string> SerialFile::text_attribute(const char* name) const {
   check_h5<core::InputError>(H5Aread(found.get(), type.get(), block.data()),
                              fmt::format("'{}': attribute '{}'", _path.string(), name));
   return split(block, count, width);
+}
+
+std::vector<double> SerialFile::real_attribute(const char* name) const {
+  const H5Handle found = attribute(name, H5T_FLOAT);
+  const H5Handle space(check_h5<core::InputError>(H5Aget_space(found.get()), "H5Aget_space"), H5Sclose);
+  std::vector<double> values(static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space.get()))));
+  if (!values.empty())
+    check_h5<core::InputError>(H5Aread(found.get(), H5T_NATIVE_DOUBLE, values.data()),
+                               fmt::format("'{}': attribute '{}'", _path.string(), name));
+  return values;
 }
 
 std::string SerialFile::single_text_attribute(const char* name) const {

@@ -27,11 +27,16 @@ struct Order {
 
 Order share_order(MPI_Comm comm, Order order) {
   Header& header = order.header;
-  std::vector<std::string> texts{order.output, header.orbweaver_version, header.scene};
+  std::vector<std::string> texts{order.output, header.orbweaver_version, header.scene, header.system};
   order.segments = core::agreed(comm, std::move(order.segments));
   texts = core::agreed(comm, std::move(texts));
   header.state_names = core::agreed(comm, std::move(header.state_names));
   header.winding_names = core::agreed(comm, std::move(header.winding_names));
+  header.effects = core::agreed(comm, std::move(header.effects));
+  header.parameter_names = core::agreed(comm, std::move(header.parameter_names));
+  header.parameter_values = core::gather_rows(comm, header.parameter_values);  // only rank 0 has any
+  header.scale_names = core::agreed(comm, std::move(header.scale_names));
+  header.scales = core::gather_rows(comm, header.scales);
   order.selection.keys = core::agreed(comm, std::move(order.selection.keys));
   order.selection.left_out = core::agreed(comm, std::move(order.selection.left_out));
   order.selection.voided_keys = core::agreed(comm, std::move(order.selection.voided_keys));
@@ -41,6 +46,7 @@ Order share_order(MPI_Comm comm, Order order) {
   order.output = texts[0];
   header.orbweaver_version = texts[1];
   header.scene = texts[2];
+  header.system = texts[3];
   header.pairs = core::agreed(comm, header.pairs);
   header.symplectic = core::agreed(comm, header.symplectic);
   order.block_values = core::agreed(comm, order.block_values);

@@ -11,6 +11,7 @@
 #include "orbweaver/scene/differences.hpp"
 #include "orbweaver/scene/scene.hpp"
 #include "orbweaver/systems/registry.hpp"
+#include "orbweaver/systems/scaled_system.hpp"
 
 namespace orbweaver::report {
 
@@ -30,6 +31,17 @@ std::optional<scene::Scene> scene_of(const archive::Archive& atlas) {
 
 std::shared_ptr<const systems::System> system_of(const scene::SystemChoice& choice) {
   return systems::make_system(choice.name, choice.parameters, choice.effects);
+}
+
+// Those of the survey; all 1 in an archive from before there were any, or with others than the system can have.
+systems::Scales scales_of(const archive::Header& header, const systems::System& system) {
+  systems::Scales scales;
+  const auto coordinates = static_cast<std::ptrdiff_t>(system.dimension());
+  if (header.scales.size() != 1 + system.info().state_names.size() + system.structure().conserved.size()) return scales;
+  scales.time = header.scales.front();
+  scales.coordinates.assign(header.scales.begin() + 1, header.scales.begin() + 1 + coordinates);
+  scales.conserved.assign(header.scales.begin() + 1 + coordinates, header.scales.end());
+  return scales;
 }
 
 std::string text_of(const systems::System& system, const std::vector<std::string>& effects) {
@@ -103,7 +115,7 @@ Comparison compare(const archive::Archive& a, const archive::Archive& b, const C
   }
   const AtlasTree tree_a(a, options.tolerance);
   const AtlasTree tree_b(b, options.tolerance);
-  const LoopCheck loops(system);
+  const LoopCheck loops(system ? systems::scaled(system, scales_of(a.header(), *system)) : system);
   const TreeMatch match = match_trees(tree_a, tree_b, loops);
   FamilyDifferences(tree_a, tree_b, match, loops, options, result).run();
   return result;

@@ -5,6 +5,7 @@
 
 #include "orbweaver/archive/read/loop_of.hpp"
 #include "orbweaver/bifurcation/identity.hpp"
+#include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
 #include "orbweaver/loop/symmetry/isotropy_text.hpp"
@@ -17,12 +18,13 @@ namespace {
 constexpr int most_tries = 3;
 
 continuation::Orbit orbit_of(const AtlasTree& tree, const TreeFamily& family, std::size_t orbit,
-                             const systems::Structure& system) {
+                             const systems::System& system) {
   const std::size_t row = family.first_orbit + orbit;
   continuation::Orbit out;
-  out.loop = archive::loop_of(tree.atlas, row, system.angles);
-  out.energy = tree.atlas.orbits().reals("energy")[row];
-  out.action = tree.atlas.orbits().reals("action")[row];
+  const systems::Scales& scales = system.scales();
+  out.loop = loop::in_scales(archive::loop_of(tree.atlas, row, system.structure().angles), scales);
+  out.energy = tree.atlas.orbits().reals("energy")[row] / scales.energy();
+  out.action = tree.atlas.orbits().reals("action")[row] / scales.action();
   return out;
 }
 
@@ -31,9 +33,9 @@ continuation::Orbit orbit_of(const AtlasTree& tree, const TreeFamily& family, st
 LoopAnswer LoopCheck::ask(const OrbitBeside& x) const {
   const systems::Structure& system = _system->structure();
   const bifurcation::IdentityOptions options;
-  const continuation::Orbit orbit = orbit_of(x.own, x.family, x.orbit, system);
-  const continuation::Orbit a = orbit_of(x.other, x.beside, x.segment, system);
-  const continuation::Orbit b = orbit_of(x.other, x.beside, x.segment + 1, system);
+  const continuation::Orbit orbit = orbit_of(x.own, x.family, x.orbit, *_system);
+  const continuation::Orbit a = orbit_of(x.other, x.beside, x.segment, *_system);
+  const continuation::Orbit b = orbit_of(x.other, x.beside, x.segment + 1, *_system);
   const double allowed = options.tolerance * (1.0 + loop::rms_size(orbit.loop));
   // Where both were followed with the same steps it is one of the two, and nothing need be corrected.
   for (const continuation::Orbit* node : {&a, &b}) {

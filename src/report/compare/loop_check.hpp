@@ -32,7 +32,7 @@ struct OrbitBeside {
 /// Holds loops of one atlas against families of the other.
 class LoopCheck {
  public:
-  /// `system`: null where the scene's is not known here; then no loop is compared.
+  /// `system`, in whose scales loops are compared: null where the scene's is not known here; then no loop is compared.
   explicit LoopCheck(std::shared_ptr<const systems::System> system) : _system(std::move(system)) {}
 
   [[nodiscard]] bool can_compare() const { return _system != nullptr; }

@@ -9,6 +9,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/systems/registry.hpp"
+#include "orbweaver/survey/run/scaled_scene.hpp"
 #include "state/branch_state.hpp"
 #include "state/resume.hpp"
 #include "version.hpp"
@@ -18,11 +19,11 @@ namespace orbweaver::survey {
 namespace {
 
 /// Branches that a stop has cut: their rows are kept, and so must the families be.
-void add_unfinished(const std::vector<queue::Task>& tasks, FamilyTree& tree) {
+void add_unfinished(const std::vector<queue::Task>& tasks, double unit, FamilyTree& tree) {
   for (const queue::Task& task : tasks) {
     if (kind_of(task) != TaskKind::branch || task.state.empty()) continue;
     BranchState state = unpack_branch_state(task.state);
-    state.outcome.end = {continuation::EndReason::stopped, fmt::format("T = {:.9g}", state.last.loop.period)};
+    state.outcome.end = {continuation::EndReason::stopped, fmt::format("T = {:.9g}", state.last.loop.period * unit)};
     queue::TaskOutcome outcome;
     outcome.key = task.key;
     outcome.payload = pack(state.outcome);
@@ -40,6 +41,23 @@ archive::Header header_of(const scene::Scene& scene, const systems::System& syst
   header.winding_names = system.winding_names();
   header.pairs = system.structure().pairs();
   header.symplectic = system.structure().symplectic;
+  header.system = system.info().name;
+  header.effects = scene.system.effects;
+  for (const auto& [name, value] : system.parameters()) {
+    header.parameter_names.push_back(name);
+    header.parameter_values.push_back(value);
+  }
+  const systems::Scales& scales = system.scales();
+  header.scale_names = {"time"};
+  header.scales = {scales.time};
+  for (std::size_t i = 0; i < header.state_names.size(); ++i) {
+    header.scale_names.push_back(header.state_names[i]);
+    header.scales.push_back(scales.coordinate(i));
+  }
+  for (std::size_t k = 0; k < system.structure().conserved.size(); ++k) {
+    header.scale_names.push_back(system.structure().conserved[k]);
+    header.scales.push_back(scales.conserved.empty() ? 1.0 : scales.conserved[k]);
+  }
   return header;
 }
 
@@ -48,7 +66,7 @@ void write_archive(const core::Communicator& comm, const scene::Scene& scene, co
   archive::Records tables;
   std::vector<std::filesystem::path> segments;
   core::on_root(comm.get(), [&] {
-    add_unfinished(checkpoint.unfinished, tree);
+    add_unfinished(checkpoint.unfinished, system.scales().time, tree);
     FamilyTree::Result found = tree.resolve();
     tables = std::move(found.tables);
     summary.families = std::move(found.families);
@@ -76,8 +94,10 @@ Summary archive_survey(const core::Communicator& comm, const std::filesystem::pa
   if (!found.found) throw core::InputError(fmt::format("{} holds no survey with a checkpoint", directory.string()));
   const std::string text = core::agreed(comm.get(), found.checkpoint.scene);
   const scene::Scene scene = scene::parse(text, "the checkpoint's scene");
-  const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
-  FamilyTree tree(scene, system->structure());
+  const ScaledScene scaled(scene, systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects));
+  const auto& system = scaled.system();
+  core::on_root(comm.get(), [&] { scaled.expect(found.checkpoint.scales); });
+  FamilyTree tree(scaled.scene(), system->structure(), system->scales());
   SweepsEnded sweeps;
   core::on_root(comm.get(), [&] {
     const Stage stage = found.checkpoint.stage;

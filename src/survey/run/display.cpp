@@ -54,7 +54,7 @@ void ProgressDisplay::ended(const queue::Task& task, const queue::TaskOutcome& o
     f.period = branch.last_period;
     f.energy = branch.last_energy;
     f.cutoff = branch.last_cutoff;
-    f.end = end_text(branch);
+    f.end = end_text(branch, _units);
   }
   if (_style == Display::lines) print_line(f);
   if (_style == Display::live) redraw();

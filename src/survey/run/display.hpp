@@ -27,7 +27,8 @@ struct FamilyState {
 /// Shows progress on stderr: a line a family, redrawn in place on a terminal, or a plain line now and then.
 class ProgressDisplay : public queue::Observer {
  public:
-  explicit ProgressDisplay(Display style) : _style(style) {}
+  /// `units` are those of the outcomes' numbers.
+  explicit ProgressDisplay(Display style, systems::Scales units = {}) : _style(style), _units(std::move(units)) {}
 
   void started(const queue::Task& task, int rank) override;
   void progress(const queue::Task& task, const queue::Progress& progress, int rank) override;
@@ -41,6 +42,7 @@ class ProgressDisplay : public queue::Observer {
   void print_line(FamilyState& family);
 
   Display _style;
+  systems::Scales _units;
   std::map<std::string, FamilyState> _families;
   int _drawn = 0;
   std::chrono::steady_clock::time_point _last = std::chrono::steady_clock::now();

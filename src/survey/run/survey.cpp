@@ -20,6 +20,7 @@
 #include "orbweaver/core/petsc/check.hpp"
 #include "orbweaver/queue/run.hpp"
 #include "orbweaver/queue/stop.hpp"
+#include "orbweaver/survey/run/scaled_scene.hpp"
 #include "segment_flusher.hpp"
 #include "state/checkpoint_keeper.hpp"
 #include "state/resume.hpp"
@@ -62,18 +63,19 @@ void make_folder(const std::filesystem::path& folder) {
 /// teams.
 class Run {
  public:
-  Run(const core::Communicator& comm, const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
+  Run(const core::Communicator& comm, const scene::Scene& scene, const ScaledScene& scaled,
       const std::filesystem::path& directory, const RunOptions& options, core::Team* team)
       : _comm(comm),
         _scene(scene),
-        _system(system),
+        _scaled(scaled),
+        _system(scaled.system()),
         _folder(state_folder(directory)),
-        _header(header_of(scene, *system)),
-        _member(scene, system, _rows, team),
+        _header(header_of(scene, *_system)),
+        _member(scaled.scene(), _system, _rows, team),
         _executor(team, _member),
-        _display(options.display),
+        _display(options.display, _system->scales()),
         _time(scene.limits.time, options.walltime),
-        _tree(scene, system->structure()) {
+        _tree(scaled.scene(), _system->structure(), _system->scales()) {
     _queue_options.flush_seconds = scene.output.flush_seconds;
     _queue_options.flush_rows = scene.output.flush_orbits;
     if (std::isfinite(scene.limits.task_time)) _queue_options.task_seconds = scene.limits.task_time;
@@ -99,7 +101,7 @@ class Run {
   void begin(bool resume) {
     // On every rank, so that a field that is not finite on the grid is the same error everywhere.
     std::vector<queue::Task> sweeps;
-    if (!resume) sweeps = sweep_tasks(_scene, *_system);
+    if (!resume) sweeps = sweep_tasks(_scaled.scene(), *_system);
     core::on_root(_comm.get(), [&] {
       make_folder(_folder);
       _lock = archive::FolderLock(_folder);
@@ -107,16 +109,18 @@ class Run {
     Found found;
     if (resume) found = find_checkpoint(_comm, _folder);
     if (!found.found) core::on_root(_comm.get(), [&] { expect_nothing(resume); });
-    if (resume && !found.found) sweeps = sweep_tasks(_scene, *_system);
+    if (resume && !found.found) sweeps = sweep_tasks(_scaled.scene(), *_system);
     core::on_root(_comm.get(), [&] {
       if (found.found) {
         _start = std::move(found.checkpoint);
+        _scaled.expect(_start.scales);
         continue_with(_scene, _folder, _start, [this](const EndedTask& entry) { restore(entry); });
         core::log_info(
             fmt::format("going on: {} segments, {} tasks waiting", _start.segments.size(), _start.unfinished.size()));
       } else {
         remove_unlisted(_folder, {});  // of a survey that had not come to a checkpoint
         _start.scene = _scene.text;
+        _start.scales = _system->scales();
         _start.unfinished = std::move(sweeps);
         write_checkpoint(_folder, _start);
       }
@@ -164,7 +168,7 @@ class Run {
       _keeper->set_stage(Stage::families);
       for (const queue::Task& task : tasks) _known.insert(task.key);
       for (const queue::Task& task : recorder.left_out_tasks()) _known.insert(task.key);
-      for (queue::Task& task : base_family_tasks(_scene, *_system, _sweeps_ended, _summary))
+      for (queue::Task& task : base_family_tasks(_scaled.scene(), *_system, _sweeps_ended, _summary))
         if (!_known.contains(task.key)) tasks.push_back(std::move(task));
     });
     do {
@@ -196,7 +200,8 @@ class Run {
   }
 
   const core::Communicator& _comm;
-  const scene::Scene& _scene;
+  const scene::Scene& _scene;  // as given
+  const ScaledScene& _scaled;
   const std::shared_ptr<const systems::System>& _system;
   std::filesystem::path _folder;
   archive::Header _header;
@@ -217,10 +222,9 @@ class Run {
   Clock::time_point _began = Clock::now();
 };
 
-Summary follow_survey(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
-                      core::Team& team) {
+Summary follow_survey(const ScaledScene& scaled, core::Team& team) {
   archive::Records rows;
-  Executor member(scene, system, rows, &team);
+  Executor member(scaled.scene(), scaled.system(), rows, &team);
   return follow(team, member, rows);
 }
 
@@ -229,13 +233,14 @@ Summary follow_survey(const scene::Scene& scene, const std::shared_ptr<const sys
 Summary run_survey(const core::Communicator& comm, const scene::Scene& scene,
                    const std::shared_ptr<const systems::System>& system, const std::filesystem::path& directory,
                    const RunOptions& options) {
+  const ScaledScene scaled(scene, system);
   Teams teams(comm, scene.survey.team_size);
   Summary summary;
   if (teams.follows()) {
-    summary = follow_survey(scene, system, *teams.team());
+    summary = follow_survey(scaled, *teams.team());
   } else {
     try {
-      summary = Run(teams.queue(), scene, system, directory, options, teams.team()).run(options.resume);
+      summary = Run(teams.queue(), scene, scaled, directory, options, teams.team()).run(options.resume);
     } catch (...) {
       dismiss(teams.team(), std::current_exception());
       throw;

@@ -8,6 +8,7 @@
 #include "orbweaver/archive/write/segment.hpp"
 #include "orbweaver/core/serialization.hpp"
 #include "orbweaver/queue/task.hpp"
+#include "orbweaver/systems/scales.hpp"
 
 namespace orbweaver::survey {
 
@@ -49,6 +50,7 @@ struct Checkpoint {
   static constexpr const char* payload_name = "checkpoint";
   std::string orbweaver_version;
   std::string scene;
+  systems::Scales scales;                   ///< in which the tasks are told
   std::vector<std::string> earlier_scenes;  ///< before limits were widened, for which segments may have been written
   Stage stage = Stage::sweeps;
   std::size_t failures = 0;  ///< of a finished survey
@@ -61,7 +63,7 @@ struct Checkpoint {
   static constexpr int wire_version = 1;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, orbweaver_version, scene, earlier_scenes, stage, failures, segments, journals,
+    core::serialize_members(archive, orbweaver_version, scene, scales, earlier_scenes, stage, failures, segments, journals,
                             voided, unfinished, left_out);
   }
 };

@@ -68,7 +68,7 @@ void BranchTask::begin(const std::string& bytes) {
   }
   BranchState state = unpack_branch_state(bytes);
   _branch.emplace(_system, _start, _options, std::move(state.frontier));
-  for (const continuation::FamilyCurve::Known& known : state.known) _curve.add(known.position, known.loop, kept_orbits);
+  for (const continuation::FamilyCurve::Known& known : state.known) _curve.add(known, kept_orbits);
   _detector = bifurcation::Detector(std::move(state.detector), {});
   _folds = state.folds;
   _sampled = bifurcation::SymmetryWatch::sampled(state.last.loop);
@@ -95,6 +95,9 @@ queue::TaskOutcome BranchTask::run() {
       _outcome.limited_by = period_limited | energy_limited;  // from its start: where it stands is not known
   }
   _outcome.end = ending;
+  if (_outcome.tolerance_met > 0.0)
+    _outcome.remarks.push_back(fmt::format("the tolerance {:.2g} is below what rounding allows here: {:.2g} met",
+                                           _scene.continuation.tolerance, _outcome.tolerance_met));
   queue::TaskOutcome done;
   done.failed = ending.failed();
   done.reason = ending.failed() ? ending.text() : "";
@@ -121,16 +124,17 @@ continuation::Ending BranchTask::follow() {
     // The branch ends with an orbit on a limit, which it would not have under a wider one: no state may hold it.
     const bool on_limit = orbit->loop.period >= _options.period_limit || _branch->restart_frontier().on_energy_limit;
     if (on_limit) limited_by(period_limited | energy_limited, before);
+    const double period = orbit->loop.period * units().time;
     if (!take(*orbit)) return met();
     if (on_limit) continue;
-    _stopped = !_context.report({_outcome.orbits, 1, {orbit->loop.period, orbit->energy, orbit->loop.cutoff * 1.0}},
+    _stopped = !_context.report({_outcome.orbits, 1, {period, orbit->energy * units().energy(), orbit->loop.cutoff * 1.0}},
                                 [&] { return pack(state_at(_branch->restart_frontier())); });
-    if (_stopped) return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", orbit->loop.period)};
+    if (_stopped) return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", period)};
   }
 }
 
 continuation::Ending BranchTask::met() const {
-  return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", _outcome.arrival.front().period)};
+  return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", _outcome.arrival.front().period * units().time)};
 }
 
 void BranchTask::note_limits(const continuation::Ending& ending, const continuation::Frontier& before) {
@@ -169,7 +173,7 @@ void BranchTask::finish() {
 /// False where the branch has arrived at another family.
 bool BranchTask::take(const continuation::Orbit& orbit) {
   if (!_last)
-    _before_first = _work.lineage.crossing.empty() ? 0.0 : continuation::arclength_between(_start.base, orbit.loop);
+    _before_first = _work.lineage.crossing.empty() ? 0.0 : continuation::arclength_in_units(*_system, _start.base, orbit.loop);
   _curve.add(orbit.arclength, orbit.loop, kept_orbits);
   if (arrive(orbit)) return false;
   const std::optional<spectrum::Stability>& stability = stability_at(orbit);
@@ -280,17 +284,19 @@ void BranchTask::solve_requested(const continuation::Orbit& orbit) {
 
 void BranchTask::store(continuation::Orbit orbit, const std::optional<spectrum::Stability>& stability) {
   const bool first = _outcome.orbits == 0;
-  const double period = orbit.loop.period;
+  const double period = orbit.loop.period * units().time;
+  const double energy = orbit.energy * units().energy();
   _outcome.period_from = first ? period : std::min(_outcome.period_from, period);
   _outcome.period_to = first ? period : std::max(_outcome.period_to, period);
-  _outcome.energy_from = first ? orbit.energy : std::min(_outcome.energy_from, orbit.energy);
-  _outcome.energy_to = first ? orbit.energy : std::max(_outcome.energy_to, orbit.energy);
+  _outcome.energy_from = first ? energy : std::min(_outcome.energy_from, energy);
+  _outcome.energy_to = first ? energy : std::max(_outcome.energy_to, energy);
   _outcome.last_period = period;
-  _outcome.last_energy = orbit.energy;
+  _outcome.last_energy = energy;
   _outcome.last_cutoff = orbit.loop.cutoff;
+  _outcome.tolerance_met = std::max(_outcome.tolerance_met, orbit.tolerance_met);
   // The other side of a crossing: counted backwards from it.
   orbit.step = _work.lineage.side > 0 ? _outcome.orbits : -1 - _outcome.orbits;
-  orbit.arclength = signed_arclength(_work.lineage, _before_first, orbit.arclength);
+  orbit.arclength = signed_arclength(_work.lineage, _before_first, _curve.arclength_at(orbit.arclength));
   certificate::Judgement judgement;
   _rows.orbits.push_back(orbit_row(*_system, _work.lineage.family, orbit, _start.isotropy, stability, judgement));
   add(_outcome.doubtful, {judgement, 1});

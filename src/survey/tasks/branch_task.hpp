@@ -27,6 +27,7 @@ class BranchTask {
   [[nodiscard]] queue::TaskOutcome run();
 
  private:
+  [[nodiscard]] const systems::Scales& units() const { return _system->scales(); }
   void begin(const std::string& state);
   [[nodiscard]] continuation::Ending follow();
   [[nodiscard]] BranchState state_at(const continuation::Frontier& frontier) const;
@@ -69,7 +70,7 @@ class BranchTask {
   std::optional<spectrum::Stability> _last_stability;                // of the last orbit
   std::vector<double> _asked;                     // modes of the orbit whose stability was asked for last,
   std::optional<spectrum::Stability> _stability;  // and its stability
-  double _before_first = 0.0;                     // arclength from the crossing to the first orbit
+  double _before_first = 0.0;                     // arclength from the crossing to the first orbit, in the scene's units
   int _events = 0;
   BranchOutcome _outcome;
   std::vector<queue::Task> _children;

@@ -88,7 +88,7 @@ queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
     outcome.modes.push_back(std::move(found));
   }
   for (const starts::RejectedDip& dip : result.rejected)
-    outcome.rejected.push_back(fmt::format("T = {:.9g}: {}", dip.period, dip.reason));
+    outcome.rejected.push_back(fmt::format("T = {:.9g}: {}", dip.period * _system->scales().time, dip.reason));
   queue::TaskOutcome done;
   done.payload = pack(outcome);
   return done;

@@ -77,7 +77,7 @@ class Location {
     continuation::FamilyCurve fast(_system, isotropy, options);
     add_known(fast);
     auto crossing = bifurcation::locate(*_system, fast, _event, _work.from, _work.to, why);
-    if (crossing || _event.tangency) return crossing ? located(*crossing, fast) : without_crossing(why);
+    if (crossing || _event.tangency) return crossing ? located(*crossing, fast) : without_crossing(why, fast);
     // Newton's method on whole loops is slower, and finds orbits that the fast way misses. Its positions between known
     // orbits are a little different ones.
     options.corrector.method = corrector::Method::newton_krylov;
@@ -90,7 +90,7 @@ class Location {
       if (known.position >= _work.to) to = std::min(to, known.position);
     }
     crossing = bifurcation::locate(*_system, any, _event, from, to, why);
-    return crossing ? located(*crossing, any) : without_crossing(why);
+    return crossing ? located(*crossing, any) : without_crossing(why, any);
   }
 
  private:
@@ -102,11 +102,11 @@ class Location {
   void add_known(continuation::FamilyCurve& family) const {
     family.before_each([this] { report(); });
     for (const continuation::FamilyCurve::Known& known : _work.known)
-      family.add(known.position, known.loop, _work.known.size());
+      family.add(known, _work.known.size());
   }
 
   queue::TaskOutcome located(const bifurcation::Crossing& crossing, continuation::FamilyCurve& family) {
-    describe(crossing);
+    describe(crossing, family);
     if (is_in_sector(_event)) try {
         leave(crossing, family);
       } catch (const bifurcation::UndecidedError& error) {
@@ -122,21 +122,23 @@ class Location {
     return done;
   }
 
-  queue::TaskOutcome without_crossing(const bifurcation::NotLocated& why) {
+  queue::TaskOutcome without_crossing(const bifurcation::NotLocated& why, const continuation::FamilyCurve& family) {
     queue::TaskOutcome done;
     // Only minima that come near zero, and functions that vanish for other reasons, may turn out to be nothing.
     done.failed = !_event.tangency && why.reason != bifurcation::NotLocated::Reason::no_event;
     _outcome.remark = to_text(why);
     if (done.failed)
-      done.reason = fmt::format("the event between arclength {:.6g} and {:.6g} was not located: {}", _work.from,
-                                _work.to, _outcome.remark);
+      done.reason = fmt::format("the event between arclength {:.6g} and {:.6g} was not located: {}",
+                                family.arclength_at(_work.from), family.arclength_at(_work.to), _outcome.remark);
     done.payload = pack(_outcome);
     return done;
   }
 
-  void describe(const bifurcation::Crossing& crossing) {
+  void describe(const bifurcation::Crossing& crossing, const continuation::FamilyCurve& family) {
     const loop::Loop& loop = crossing.point.loop;
-    _outcome.arclength = signed_arclength(_work.lineage, _work.before_first, crossing.point.position);
+    const double position = crossing.point.position;
+    _outcome.arclength = signed_arclength(_work.lineage, _work.before_first, family.arclength_at(position));
+    _outcome.arclength_unit = family.arclength_unit_at(position);
     _outcome.period = loop.period;
     _outcome.energy = continuation::energy_of(*_system, loop);
     _outcome.fundamental_order = crossing.stability.fundamental_order;
@@ -218,7 +220,7 @@ class Location {
       StartWork start;
       BranchWork& branch = start.branch;
       branch.key = leaving.key + (leaving.both_sides ? (side > 0 ? "+" : "-") : "");
-      branch.name = fmt::format("{}>{}@{:.4g}{}", _work.name, _outcome.multiplicity, _outcome.period,
+      branch.name = fmt::format("{}>{}@{:.4g}{}", _work.name, _outcome.multiplicity, _outcome.period * _system->scales().time,
                                 leaving.key.substr(_work.key.size()));
       branch.lineage = {leaving.key, _work.key, _work.lineage.depth + 1, _outcome.multiplicity, side};
       branch.base = direction.base;

@@ -5,6 +5,7 @@
 
 #include "orbweaver/certificate/certificate.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/standard_phase.hpp"
 #include "stability_columns.hpp"
@@ -40,16 +41,18 @@ archive::OrbitRecord orbit_row(const systems::System& system, const std::string&
   archive::OrbitRecord row;
   row.family_key = family;
   row.step = orbit.step;
+  const systems::Scales& units = system.scales();
+  const loop::Loop in_units = loop::in_units(stored, units);
   row.arclength = orbit.arclength;
-  row.period = orbit.loop.period;
-  row.energy = orbit.energy;
-  row.action = orbit.action;
+  row.period = in_units.period;
+  row.energy = orbit.energy * units.energy();
+  row.action = orbit.action * units.action();
   row.cutoff = stored.cutoff;
   row.loss_rms = orbit.loss_rms;
   row.off_branch_eigenvalue = orbit.off_branch_eigenvalue;
   row.tail = loop::tail(stored);
-  row.state = loop::state_at(stored, 0.0);
-  row.modes = stored.modes;
+  row.state = loop::state_at(in_units, 0.0);
+  row.modes = in_units.modes;
   row.time_map = loop::to_numbers(stored.time_map);
   for (const int angle : system.structure().angles)
     row.winding.push_back(orbit.loop.winding[static_cast<std::size_t>(angle)]);

@@ -50,9 +50,10 @@ std::vector<continuation::Orbit> requested_orbits(const scene::Scene& scene, con
                                                   continuation::FamilyCurve& family, const continuation::Orbit& from,
                                                   const continuation::Orbit& to, std::vector<std::string>& remarks) {
   std::vector<continuation::Orbit> found;
+  const systems::Scales& units = system.scales();
   const auto missing = [&](const char* what, double value) {
     remarks.push_back(fmt::format("the orbit of {} {:.12g} between arclength {:.6g} and {:.6g} could not be converged",
-                                  what, value, from.arclength, to.arclength));
+                                  what, value, family.arclength_at(from.arclength), family.arclength_at(to.arclength)));
   };
   for (const double period : scene.events.periods) {
     if (!between(period, from.loop.period, to.loop.period)) continue;
@@ -65,7 +66,7 @@ std::vector<continuation::Orbit> requested_orbits(const scene::Scene& scene, con
         continue;
       }
     }
-    missing("period", period);
+    missing("period", period * units.time);
   }
   for (const double energy : scene.events.energies) {
     if (!between(energy, from.energy, to.energy)) continue;
@@ -74,7 +75,7 @@ std::vector<continuation::Orbit> requested_orbits(const scene::Scene& scene, con
     if (there)
       found.push_back(orbit_of(system, there->loop, there->position));
     else
-      missing("energy", energy);
+      missing("energy", energy * units.energy());
   }
   std::sort(found.begin(), found.end(),
             [](const continuation::Orbit& a, const continuation::Orbit& b) { return a.arclength < b.arclength; });

@@ -29,9 +29,10 @@ std::string left_out_text(const scene::Scene& scene, const systems::System& syst
   std::vector<std::string> names;
   for (int n = 0; n < mode.families; ++n)
     names.push_back(base_family_name(scene, system, found.point, found.index, mode.place + n));
+  const double unit = system.scales().time;
   return fmt::format("left out at {}: {} with T = {:.9g}, outside starts.sweep.period [{:g}, {:g}]",
-                     point_text(system, found.point), fmt::join(names, ", "), mode.period, found.period_from,
-                     found.period_to);
+                     point_text(system, found.point), fmt::join(names, ", "), mode.period * unit, found.period_from * unit,
+                     found.period_to * unit);
 }
 
 void remark_grid(const scene::Scene& scene, const systems::System& system, Summary& summary) {
@@ -72,7 +73,8 @@ std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::S
   for (const std::vector<double>& point : points)
     tasks.push_back(task_of(SweepWork{static_cast<int>(tasks.size()), point}));
   const std::string range = scene.sweep.period
-                                ? fmt::format("from {:g} to {:g}", scene.sweep.period->from, scene.sweep.period->to)
+                                ? fmt::format("from {:g} to {:g}", scene.sweep.period->from * system.scales().time,
+                                              scene.sweep.period->to * system.scales().time)
                                 : "over all oscillations";
   core::log_info(fmt::format("{} equilibria; sweeping the period {} at each", tasks.size(), range));
   if (tasks.empty())
@@ -92,7 +94,9 @@ std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const syst
     check_names(scene, system, found);
     if (found.modes.empty() && found.rejected.empty()) {
       const std::string range =
-          scene.sweep.period ? fmt::format(" for T in [{:g}, {:g}]", found.period_from, found.period_to) : "";
+          scene.sweep.period ? fmt::format(" for T in [{:g}, {:g}]", found.period_from * system.scales().time,
+                                              found.period_to * system.scales().time)
+                                : "";
       summary.remarks.push_back(
           fmt::format("no small oscillations around {}{}", point_text(system, found.point), range));
     }

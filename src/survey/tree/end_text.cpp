@@ -7,13 +7,15 @@
 
 namespace orbweaver::survey {
 
-std::string end_text(const BranchOutcome& outcome) {
+std::string end_text(const BranchOutcome& outcome, const systems::Scales& units) {
   if (outcome.arrival.empty() || outcome.end.failed()) return outcome.end.text();
   const ArrivalRecord& arrival = outcome.arrival.front();
-  std::string where = fmt::format("T = {:.9g}, E = {:.9g}", arrival.period, arrival.energy);
+  const double period = arrival.period * units.time;
+  const double energy = arrival.energy * units.energy();
+  std::string where = fmt::format("T = {:.9g}, E = {:.9g}", period, energy);
   if (arrival.located)
-    where = fmt::format("T = {:.12g}, E = {:.12g}, {} times around T = {:.12g}", arrival.period, arrival.energy,
-                        arrival.multiplicity, arrival.period / arrival.multiplicity);
+    where = fmt::format("T = {:.12g}, E = {:.12g}, {} times around T = {:.12g}", period, energy, arrival.multiplicity,
+                        period / arrival.multiplicity);
   return fmt::format("{} ({})", name_of(EndKind::met), where);
 }
 
@@ -21,9 +23,10 @@ std::string failure_text(const std::string& why) {
   return continuation::Ending{continuation::EndReason::failure, why}.text();
 }
 
-std::string joined_text(const std::string& name, const LocateOutcome& crossing) {
+std::string joined_text(const std::string& name, const LocateOutcome& crossing, const systems::Scales& units) {
+  const double period = crossing.period * units.time;
   return fmt::format("{} {} at T = {:.12g} (crossing at T = {:.12g}, {} times around)", name_of(EndKind::joined), name,
-                     crossing.multiplicity * crossing.period, crossing.period, crossing.multiplicity);
+                     crossing.multiplicity * period, period, crossing.multiplicity);
 }
 
 }  // namespace orbweaver::survey

@@ -147,9 +147,9 @@ FamilyTree::Result FamilyTree::resolve() const {
   for (const auto& [key, crossing] : _crossings)
     if (on_kept(key)) crossings.push_back(&crossing);
 
-  const std::map<std::string, int> rows = add_crossings(crossings, result);
+  const std::map<std::string, int> rows = add_crossings(crossings, _units, result);
   add_families(
-      families, _crossings, rows, [this](const std::string& key) { return _pruning.arrival(key); }, result);
+      families, _crossings, rows, _units, [this](const std::string& key) { return _pruning.arrival(key); }, result);
   std::unordered_set<std::string> kept_families;
   for (const Family& family : families) kept_families.insert(family.key);
   std::set<std::string> left_out;

@@ -24,8 +24,9 @@ namespace orbweaver::survey {
 /// that the archive depends on tasks and outcomes only, not on when they came.
 class FamilyTree {
  public:
-  FamilyTree(const scene::Scene& scene, const systems::Structure& system)
-      : _scene(scene), _system(system), _arrivals(system), _limit(scene.limits.families) {}
+  /// Tasks and scene are told in `units`, the tables are not.
+  FamilyTree(const scene::Scene& scene, const systems::Structure& system, systems::Scales units = {})
+      : _scene(scene), _system(system), _units(std::move(units)), _arrivals(system), _limit(scene.limits.families) {}
 
   /// A task has ended: done, failed or stopped. Throws MisuseError if its branch or crossing had before.
   void add(const queue::Task& task, const queue::TaskOutcome& outcome);
@@ -45,6 +46,7 @@ class FamilyTree {
 
   const scene::Scene& _scene;
   const systems::Structure& _system;
+  systems::Scales _units;
   EndedBranches _branches;
   Crossings _crossings;                          // without loops
   std::map<std::string, std::string> _failures;  // of locations: by the crossing's key

@@ -12,7 +12,7 @@ namespace {
 
 /// Equilibria are found to rounding, and names are given for points with some digits.
 constexpr double same_place = 1e-6;
-/// In degrees or the coordinate's unit: printed as 0.
+/// In radians or the coordinate's scale: printed as 0.
 constexpr double printed_as_zero = 1e-9;
 
 bool is_at(const systems::System& system, const std::vector<double>& point, const std::vector<double>& given) {
@@ -52,9 +52,10 @@ std::string limited(std::string text) {
 std::string point_text(const systems::System& system, const std::vector<double>& point) {
   std::string text;
   for (std::size_t i = 0; i < point.size(); ++i) {
-    const double value = system.structure().is_angle(i) ? point[i] * 180.0 / std::numbers::pi : point[i];
+    const double told = point[i] * system.scales().coordinate(i);
+    const double value = system.structure().is_angle(i) ? told * 180.0 / std::numbers::pi : told;
     text += fmt::format("{}{} = {:.6g}{}", i == 0 ? "" : ", ", system.info().state_names[i],
-                        std::abs(value) < printed_as_zero ? 0.0 : value, system.structure().is_angle(i) ? " deg" : "");
+                        std::abs(point[i]) < printed_as_zero ? 0.0 : value, system.structure().is_angle(i) ? " deg" : "");
   }
   return text;
 }

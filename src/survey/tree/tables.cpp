@@ -25,7 +25,7 @@ class FoldsOnce {
     if (!is_fold(*crossing.kind)) return true;
     std::set<double>& places = _places[{crossing.lineage.family, *crossing.kind}];
     const auto is_same = [&](double place) {
-      return std::abs(place - crossing.arclength) < same_place * (1.0 + std::abs(crossing.arclength));
+      return std::abs(place - crossing.arclength) < same_place * (crossing.arclength_unit + std::abs(crossing.arclength));
     };
     const auto above = places.lower_bound(crossing.arclength);
     if (above != places.end() && is_same(*above)) return false;
@@ -40,17 +40,18 @@ class FoldsOnce {
   std::map<std::pair<std::string, archive::CrossingKind>, std::set<double>> _places;  // arclengths by family and kind
 };
 
-archive::CrossingRecord row_of(const LocateOutcome& crossing) {
+archive::CrossingRecord row_of(const LocateOutcome& crossing, const systems::Scales& units) {
   archive::CrossingRecord row;
   row.family_key = crossing.lineage.family;
   row.arclength = crossing.arclength;
-  row.period = crossing.period;
-  row.energy = crossing.energy;
+  row.period = crossing.period * units.time;
+  row.energy = crossing.energy * units.energy();
   row.kind = *crossing.kind;
   row.multiplicity = crossing.multiplicity;
   row.kernel_dimension = crossing.kernel_dimension;
   row.residual = crossing.residual;
   row.state = crossing.state;
+  for (std::size_t i = 0; i < row.state.size(); ++i) row.state[i] *= units.coordinate(i);
   row.sector_j = crossing.j;
   row.sector_q = crossing.q;
   row.fundamental_order = crossing.fundamental_order;
@@ -71,19 +72,20 @@ void add_orbits(const BranchOutcome& branch, FamilySummary& summary) {
 
 }  // namespace
 
-std::map<std::string, int> add_crossings(const std::vector<const LocateOutcome*>& crossings, TreeTables& tables) {
+std::map<std::string, int> add_crossings(const std::vector<const LocateOutcome*>& crossings,
+                                         const systems::Scales& units, TreeTables& tables) {
   std::map<std::string, int> rows;
   FoldsOnce folds;
   for (const LocateOutcome* crossing : crossings) {
     if (!folds.is_new(*crossing)) continue;
     rows[crossing->key] = static_cast<int>(tables.tables.crossings.size());
-    tables.tables.crossings.push_back(row_of(*crossing));
+    tables.tables.crossings.push_back(row_of(*crossing, units));
   }
   return rows;
 }
 
 void add_families(const std::vector<Family>& families, const Crossings& crossings,
-                  const std::map<std::string, int>& crossing_rows,
+                  const std::map<std::string, int>& crossing_rows, const systems::Scales& units,
                   const std::function<const Meeting*(const std::string&)>& arrival, TreeTables& tables) {
   std::map<std::string, std::string> names;
   for (const Family& family : families) names[family.key] = family.name;
@@ -102,7 +104,7 @@ void add_families(const std::vector<Family>& families, const Crossings& crossing
     summary.depth = family.lineage.depth;
     for (const FamilySide entry : family.sides) {
       const auto& [key, side] = *entry;
-      std::string reason = side.outcome ? end_text(*side.outcome) : failure_text(side.reason);
+      std::string reason = side.outcome ? end_text(*side.outcome, units) : failure_text(side.reason);
       if (const Meeting* meeting = arrival(key)) {
         const LocateOutcome& met = crossings.at(meeting->crossing);
         const auto row = crossing_rows.find(met.key);
@@ -110,7 +112,7 @@ void add_families(const std::vector<Family>& families, const Crossings& crossing
         if (row != crossing_rows.end() && name != names.end()) {
           record.end_family_key = met.lineage.family;
           record.end_crossing = row->second;
-          reason = joined_text(name->second, met);
+          reason = joined_text(name->second, met, units);
         }
       }
       record.end_reason = record.end_reason.empty() ? reason : both_ends_text(record.end_reason, reason);

@@ -13,7 +13,7 @@
 
 namespace orbweaver::survey {
 
-/// Rows of the archive and of the summary.
+/// Rows of the archive and of the summary, in the units of the scene: `units` are those of the outcomes' numbers.
 struct TreeTables {
   archive::Records tables;              ///< families and crossings, and what of the rows does not belong to them
   std::vector<FamilySummary> families;  ///< parents before children
@@ -24,11 +24,11 @@ struct TreeTables {
 /// Adds a row for every crossing (they lie on families that stay) but for the second of two at one fold. Returns the
 /// rows by key.
 [[nodiscard]] std::map<std::string, int> add_crossings(const std::vector<const LocateOutcome*>& crossings,
-                                                       TreeTables& tables);
+                                                       const systems::Scales& units, TreeTables& tables);
 
 /// Adds a row for every family. `arrival` says where the branch with a key has arrived; null if nowhere.
 void add_families(const std::vector<Family>& families, const Crossings& crossings,
-                  const std::map<std::string, int>& crossing_rows,
+                  const std::map<std::string, int>& crossing_rows, const systems::Scales& units,
                   const std::function<const Meeting*(const std::string&)>& arrival, TreeTables& tables);
 
 }  // namespace orbweaver::survey

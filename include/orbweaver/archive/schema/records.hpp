@@ -88,6 +88,13 @@ struct Header {
   std::vector<std::string> winding_names;
   int pairs = 0;  ///< width of the stability columns
   bool symplectic = true;
+  // Empty in files with format_minor 0.
+  std::string system;
+  std::vector<std::string> effects;
+  std::vector<std::string> parameter_names;
+  std::vector<double> parameter_values;
+  std::vector<std::string> scale_names;  ///< time, coordinates, conserved quantities
+  std::vector<double> scales;            ///< of the survey (docs/mathematics.md, "Scales")
 };
 
 /// Rows of one family that are no longer valid in the first `before_segment` segments (as listed to `consolidate`): a

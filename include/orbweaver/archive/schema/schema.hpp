@@ -12,6 +12,8 @@ namespace orbweaver::archive {
 inline constexpr const char* atlas_format = "orbweaver-atlas";
 inline constexpr const char* segment_format = "orbweaver-segment";
 inline constexpr int format_version = 1;
+/// Rises with what is added; older files of the version are read.
+inline constexpr int format_minor = 1;
 
 enum class ColumnType { integer, real, text };
 

@@ -52,6 +52,7 @@ struct BranchOutcome {
   static constexpr const char* payload_name = "branch outcome";
   std::string key;
   int orbits = 0;
+  /// Ranges and last values in the units of the scene.
   double period_from = 0.0;
   double period_to = 0.0;
   double energy_from = 0.0;
@@ -64,14 +65,15 @@ struct BranchOutcome {
   int equilibrium = -1;                  ///< at which it ended, among the survey's; -1: at none of them
   std::vector<DoubtfulOrbits> doubtful;  ///< an entry a verdict
   std::vector<std::string> remarks;
-  int limited_by = 0;        ///< Limit: with wider ones the branch would have gone on
+  double tolerance_met = 0.0;  ///< the largest of the orbits', where rounding keeps one above the tolerance; else 0
+  int limited_by = 0;          ///< Limit: with wider ones the branch would have gone on
   std::string before_limit;  ///< the state (queue::Task) from which it would, without children; empty: from its start
 
   static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, key, orbits, period_from, period_to, energy_from, energy_to, last_period,
-                            last_energy, last_cutoff, end, arrival, equilibrium, doubtful, remarks, limited_by,
+                            last_energy, last_cutoff, end, arrival, equilibrium, doubtful, remarks, tolerance_met, limited_by,
                             before_limit);
     if constexpr (Archive::is_loading::value) check_limits(limited_by);
   }

@@ -23,7 +23,7 @@ struct LocateWork {
   Lineage lineage;   ///< of the family that it lies on
   loop::Isotropy isotropy;
   std::vector<continuation::FamilyCurve::Known> known;
-  double before_first = 0.0;  ///< arclength from the crossing where the family was born to its first orbit
+  double before_first = 0.0;  ///< arclength from the crossing where the family was born to its first orbit, in the units of the scene
   bifurcation::Event event{};
   double from = 0.0;
   double to = 0.0;
@@ -54,7 +54,8 @@ struct LocateOutcome {
   static constexpr const char* payload_name = "locate outcome";
   std::string key;
   Lineage lineage;
-  double arclength = 0.0;
+  double arclength = 0.0;       ///< in the units of the scene, as the archive's
+  double arclength_unit = 1.0;  ///< how long a length of 1 in the survey's scales is there in it
   double period = 0.0;
   double energy = 0.0;
   std::optional<archive::CrossingKind> kind;  ///< none: nothing crosses there
@@ -72,10 +73,10 @@ struct LocateOutcome {
   std::string remark;
   int limited_by = 0;  ///< Limit: with wider ones more would have been looked for
 
-  static constexpr int wire_version = 1;
+  static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, key, lineage, arclength, period, energy, kind, multiplicity, kernel_dimension,
+    core::serialize_members(archive, key, lineage, arclength, arclength_unit, period, energy, kind, multiplicity, kernel_dimension,
                             residual, kernel_singular_value, next_singular_value, test_value, state, q, j,
                             fundamental_order, leaving, remark, limited_by);
     if constexpr (Archive::is_loading::value) check_limits(limited_by);

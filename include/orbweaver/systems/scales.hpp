@@ -1,0 +1,36 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "orbweaver/core/serialization.hpp"
+
+namespace orbweaver::systems {
+
+/// The units in which a system's numbers are told, each in the units of its parameters (docs/mathematics.md, "Scales"):
+/// a time t stands for t * time, coordinate i of a state z for z_i * coordinate(i). Angles have 1, in radians.
+struct Scales {
+  double time = 1.0;
+  std::vector<double> coordinates;  ///< one a coordinate; empty: all 1
+  std::vector<double> conserved;    ///< one a conserved quantity; empty: all 1
+
+  [[nodiscard]] double coordinate(std::size_t i) const { return coordinates.empty() ? 1.0 : coordinates[i]; }
+  /// Of the first conserved quantity.
+  [[nodiscard]] double energy() const { return conserved.empty() ? 1.0 : conserved.front(); }
+  [[nodiscard]] double action() const { return energy() * time; }
+  [[nodiscard]] bool are_one() const {
+    const auto is_one = [](double scale) { return scale == 1.0; };
+    return time == 1.0 && std::all_of(coordinates.begin(), coordinates.end(), is_one) &&
+           std::all_of(conserved.begin(), conserved.end(), is_one);
+  }
+  [[nodiscard]] bool operator==(const Scales&) const = default;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, time, coordinates, conserved);
+  }
+};
+
+}  // namespace orbweaver::systems

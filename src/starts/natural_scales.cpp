@@ -1,0 +1,372 @@
+#include "orbweaver/starts/natural_scales.hpp"
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
+#include "orbweaver/starts/fixed_points.hpp"
+#include "orbweaver/systems/scaled_system.hpp"
+
+namespace orbweaver::starts {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Of the largest entry or eigenvalue of a balanced matrix: what is smaller is rounding, or the square root of it at a
+/// Jordan block, and couples or scales nothing.
+constexpr double negligible_entry = 1e-10;
+constexpr double negligible_eigenvalue = 1e-7;
+/// Sweeps of the balancing: it converges within some ten, unless nothing couples one way, where no scale is best.
+constexpr int most_sweeps = 200;
+constexpr double balanced_to = 1e-9;
+/// log2 of the amplitudes between which a field departs from its linearisation, in the system's units: beyond, it is
+/// linear. Their steps, and how finely the amplitude is bisected: it is rounded to a power of two.
+constexpr double least_amplitude = -60.0;
+constexpr double largest_amplitude = 60.0;
+constexpr double amplitude_step = 1.0;
+constexpr int bisections = 20;
+/// Step of the differences that give the second derivatives of a conserved quantity, in parts of the scales.
+constexpr double difference_step = 0x1p-10;
+/// Grid points at which scales for the search of equilibria are taken, spread over the grid.
+constexpr std::size_t most_grid_points = 64;
+
+/// Logarithms (base 2) of the scales that one state lets expect; NaN where it says nothing.
+struct LogScales {
+  double time = std::numeric_limits<double>::quiet_NaN();
+  VectorXd coordinates;
+};
+
+/// The Jacobian at one state, in balanced coordinates.
+class LocalScales {
+ public:
+  LocalScales(const systems::System& system, VectorXd point)
+      : _system(system), _point(std::move(point)), _first(systems::mixed_coordinates(system.structure())) {}
+
+  /// None where the field is not finite.
+  [[nodiscard]] std::optional<LogScales> find() {
+    const Index d = _point.size();
+    const std::optional<MatrixXd> jacobian = jacobian_at(_point);
+    if (!jacobian) return std::nullopt;
+    _log = VectorXd::Zero(d);
+    balance(jacobian->cwiseAbs2(), false);
+    MatrixXd balanced = without_rounding(in_scales(*jacobian));
+    const double rate = mean_rate(balanced);
+    LogScales out;
+    out.coordinates = VectorXd::Constant(d, std::numeric_limits<double>::quiet_NaN());
+    if (!(rate > 0.0)) return out;
+    out.time = -std::log2(rate);
+    // What time does forwards and backwards counts alike: fast and slow modes have the same say.
+    MatrixXd weights = (balanced / rate).cwiseAbs2();
+    const Eigen::PartialPivLU<MatrixXd> factors(balanced);
+    const MatrixXd inverse = factors.inverse();
+    if (_invertible && inverse.allFinite()) weights += (without_rounding(inverse) * rate).cwiseAbs2();
+    for (Index i = 0; i < d; ++i)  // back in the units
+      for (Index l = 0; l < d; ++l) weights(i, l) *= std::exp2(2.0 * (_log(i) - _log(l)));
+    for (const int angle : _system.structure().angles) _log(angle) = 0.0;
+    balance(weights, true);
+    find_amplitudes(without_rounding(in_scales(*jacobian)), out.coordinates);
+    return out;
+  }
+
+ private:
+  [[nodiscard]] std::optional<MatrixXd> jacobian_at(const VectorXd& z) const {
+    VectorXd f(z.size());
+    RowMajor jacobian(z.size(), z.size());
+    _system.field_jacobian(1, z.data(), f.data(), jacobian.data());
+    if (!f.allFinite() || !jacobian.allFinite()) return std::nullopt;
+    return jacobian;
+  }
+
+  [[nodiscard]] MatrixXd in_scales(MatrixXd matrix) const {
+    for (Index i = 0; i < matrix.rows(); ++i)
+      for (Index l = 0; l < matrix.cols(); ++l) matrix(i, l) *= std::exp2(_log(l) - _log(i));
+    return matrix;
+  }
+
+  static MatrixXd without_rounding(MatrixXd matrix) {
+    const double least = negligible_entry * matrix.cwiseAbs().maxCoeff();
+    return (matrix.cwiseAbs().array() < least).select(0.0, matrix);
+  }
+
+  /// Geometric mean of the moduli of the eigenvalues that do not vanish.
+  [[nodiscard]] double mean_rate(const MatrixXd& balanced) {
+    const Eigen::EigenSolver<MatrixXd> solver(balanced, false);
+    if (solver.info() != Eigen::Success) return 0.0;
+    const VectorXd moduli = solver.eigenvalues().cwiseAbs();
+    double sum = 0.0;
+    int count = 0;
+    for (const double modulus : moduli)
+      if (modulus > negligible_eigenvalue * moduli.maxCoeff()) {
+        sum += std::log2(modulus);
+        ++count;
+      }
+    _invertible = count == moduli.size();
+    return count == 0 ? 0.0 : std::exp2(sum / count);
+  }
+
+  /// Osborne's balancing (1960, doi:10.1145/321043.321048): the scales s that make the sum of weights_il s_l^2/s_i^2
+  /// least, equal ones for coordinates that a symmetry mixes, and those of angles as they are if `angles_stay`.
+  void balance(const MatrixXd& weights, bool angles_stay) {
+    const Index d = _log.size();
+    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+      double largest = 0.0;
+      for (Index first = 0; first < d; ++first) {
+        if (group(first) != first || (angles_stay && has_angle(first))) continue;
+        double row = 0.0;
+        double column = 0.0;
+        for (Index i = 0; i < d; ++i)
+          for (Index l = 0; l < d; ++l) {
+            const double weight = weights(i, l) * std::exp2(2.0 * (_log(l) - _log(i)));
+            if (group(i) == first && group(l) != first) row += weight;
+            if (group(i) != first && group(l) == first) column += weight;
+          }
+        if (row == 0.0 || column == 0.0) continue;
+        const double change = 0.25 * (std::log2(row) - std::log2(column));
+        for (Index i = first; i < d; ++i)
+          if (group(i) == first) _log(i) += change;
+        largest = std::max(largest, std::abs(change));
+      }
+      if (largest < balanced_to) return;
+    }
+  }
+
+  [[nodiscard]] Index group(Index i) const { return static_cast<Index>(_first[static_cast<std::size_t>(i)]); }
+
+  [[nodiscard]] bool has_angle(Index first) const {
+    for (Index i = first; i < _log.size(); ++i)
+      if (group(i) == first && _system.structure().is_angle(static_cast<std::size_t>(i))) return true;
+    return false;
+  }
+
+  /// For each coordinate the first of those that the linear field, or a symmetry, couples to it.
+  [[nodiscard]] std::vector<Index> components(const MatrixXd& balanced) const {
+    const Index d = balanced.rows();
+    std::vector<Index> label;
+    for (Index i = 0; i < d; ++i) label.push_back(group(i));
+    for (bool settled = false; !settled;) {
+      settled = true;
+      for (Index i = 0; i < d; ++i)
+        for (Index l = 0; l < d; ++l) {
+          Index& a = label[static_cast<std::size_t>(i)];
+          Index& b = label[static_cast<std::size_t>(l)];
+          if (a == b || (balanced(i, l) == 0.0 && group(i) != group(l))) continue;
+          a = b = std::min(a, b);
+          settled = false;
+        }
+    }
+    return label;
+  }
+
+  /// Scales of the components that have an angle as balanced, those of the others by where the field is no more linear.
+  void find_amplitudes(const MatrixXd& balanced, VectorXd& scales) {
+    const Index d = _log.size();
+    const std::vector<Index> label = components(balanced);
+    const auto in = [&](Index i, Index component) { return label[static_cast<std::size_t>(i)] == component; };
+    std::vector<bool> by_angle(static_cast<std::size_t>(d), false);
+    for (const int angle : _system.structure().angles)
+      by_angle[static_cast<std::size_t>(label[static_cast<std::size_t>(angle)])] = true;
+    for (Index component = 0; component < d; ++component) {  // the geometric mean of a component's scales is 1
+      if (!in(component, component) || by_angle[static_cast<std::size_t>(component)]) continue;
+      double sum = 0.0;
+      double count = 0.0;
+      for (Index i = component; i < d; ++i)
+        if (in(i, component)) {
+          sum += _log(i);
+          count += 1.0;
+        }
+      for (Index i = component; i < d; ++i)
+        if (in(i, component)) _log(i) -= sum / count;
+    }
+    for (Index component = 0; component < d; ++component) {
+      if (!in(component, component)) continue;
+      double amplitude = 0.0;
+      if (!by_angle[static_cast<std::size_t>(component)]) {
+        double sum = 0.0;
+        double count = 0.0;
+        for (Index i = component; i < d; ++i) {
+          if (!in(i, component)) continue;
+          const double departs = departs_at(i, balanced, label);
+          if (!std::isfinite(departs)) continue;
+          sum += departs;
+          count += 1.0;
+        }
+        amplitude = sum / count;  // not a number where nothing departs
+      }
+      for (Index i = component; i < d; ++i)
+        if (in(i, component)) scales(i) = _log(i) + amplitude;
+    }
+  }
+
+  /// log2 of the amplitude along coordinate i at which the linear field of a component, averaged on the way there, has
+  /// changed by as much as it is; the smaller one of both ways. Infinite where it does not.
+  [[nodiscard]] double departs_at(Index i, const MatrixXd& balanced, const std::vector<Index>& label) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const double sign : {1.0, -1.0}) {
+      const auto departs = [&](double amplitude) {
+        return departure(i, sign * std::exp2(amplitude + _log(i)), balanced, label);
+      };
+      double upper = least_amplitude;
+      while (upper <= largest_amplitude && !departs(upper)) upper += amplitude_step;
+      if (upper > largest_amplitude) continue;
+      double lower = upper - amplitude_step;
+      for (int n = 0; n < bisections; ++n) (departs(0.5 * (lower + upper)) ? upper : lower) = 0.5 * (lower + upper);
+      least = std::min(least, upper);
+    }
+    return least;
+  }
+
+  [[nodiscard]] bool departure(Index i, double moved, const MatrixXd& balanced, const std::vector<Index>& label) const {
+    VectorXd z = _point;
+    z(i) = _point(i) + 0.5 * moved;
+    const std::optional<MatrixXd> middle = jacobian_at(z);
+    z(i) = _point(i) + moved;
+    const std::optional<MatrixXd> end = jacobian_at(z);
+    if (!middle || !end) return true;
+    // Simpson's rule, in which the change at the point itself is none.
+    const MatrixXd change = (4.0 * (in_scales(*middle) - balanced) + (in_scales(*end) - balanced)) / 6.0;
+    for (Index component = 0; component < z.size(); ++component) {
+      std::vector<Index> members;
+      for (Index l = 0; l < z.size(); ++l)
+        if (label[static_cast<std::size_t>(l)] == component) members.push_back(l);
+      if (members.empty()) continue;
+      const MatrixXd block = change(members, members);
+      const MatrixXd linear = balanced(members, members);
+      if (block.norm() < linear.norm() / std::sqrt(static_cast<double>(members.size()))) continue;
+      const auto norm = [](const MatrixXd& matrix) { return Eigen::JacobiSVD<MatrixXd>(matrix).singularValues()(0); };
+      if (norm(block) >= norm(linear) && norm(block) > 0.0) return true;
+    }
+    return false;
+  }
+
+  const systems::System& _system;
+  VectorXd _point;
+  std::vector<std::size_t> _first;
+  VectorXd _log;
+  bool _invertible = false;
+};
+
+double nearest_power(double log) { return std::exp2(std::round(log)); }
+
+/// log2 of the scale of conserved quantity k: the geometric mean of the eigenvalues of its second derivatives in the
+/// scales of the coordinates; NaN where they vanish.
+double log_quantity(const systems::System& system, int k, const VectorXd& point, const systems::Scales& scales) {
+  const Index d = point.size();
+  MatrixXd second(d, d);
+  VectorXd z = point;
+  VectorXd above(d);
+  VectorXd below(d);
+  for (Index i = 0; i < d; ++i) {
+    const double step = difference_step * scales.coordinate(static_cast<std::size_t>(i));
+    z(i) = point(i) + step;
+    system.conserved_gradients(k, 1, z.data(), above.data());
+    z(i) = point(i) - step;
+    system.conserved_gradients(k, 1, z.data(), below.data());
+    z(i) = point(i);
+    for (Index l = 0; l < d; ++l)
+      second(l, i) = (above(l) - below(l)) / (2.0 * difference_step) * scales.coordinate(static_cast<std::size_t>(l));
+  }
+  if (!second.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+  const VectorXd moduli = Eigen::JacobiSVD<MatrixXd>(second).singularValues();
+  double sum = 0.0;
+  double count = 0.0;
+  for (const double modulus : moduli)
+    if (modulus > negligible_eigenvalue * moduli(0)) {
+      sum += std::log2(modulus);
+      count += 1.0;
+    }
+  return sum / count;
+}
+
+/// Geometric means, in logarithms, over the states that say something.
+class Mean {
+ public:
+  void add(double log) {
+    if (!std::isfinite(log)) return;
+    _sum += log;
+    _count += 1.0;
+  }
+  [[nodiscard]] bool any() const { return _count > 0.0; }
+  [[nodiscard]] double log() const { return _sum / _count; }
+
+ private:
+  double _sum = 0.0;
+  double _count = 0.0;
+};
+
+systems::Scales scales_at(const systems::System& system, const std::vector<VectorXd>& states) {
+  const auto d = static_cast<std::size_t>(system.dimension());
+  Mean time;
+  // Families grow out of the neighbourhood of their equilibrium: the widest one serves all.
+  VectorXd widest = VectorXd::Constant(static_cast<Index>(d), -std::numeric_limits<double>::infinity());
+  for (const VectorXd& state : states) {
+    const std::optional<LogScales> local = LocalScales(system, state).find();
+    if (!local) continue;
+    time.add(local->time);
+    for (Index i = 0; i < widest.size(); ++i)
+      if (local->coordinates(i) > widest(i)) widest(i) = local->coordinates(i);
+  }
+  if (!time.any() || !widest.allFinite()) return {};
+  systems::Scales scales;
+  scales.time = nearest_power(time.log());
+  for (const double coordinate : widest) scales.coordinates.push_back(nearest_power(coordinate));
+  for (std::size_t k = 0; k < system.structure().conserved.size(); ++k) {
+    Mean quantity;
+    for (const VectorXd& state : states) quantity.add(log_quantity(system, static_cast<int>(k), state, scales));
+    scales.conserved.push_back(quantity.any() ? nearest_power(quantity.log()) : 1.0);
+  }
+  return scales;
+}
+
+std::vector<VectorXd> grid_points(std::size_t d, const std::vector<std::vector<double>>& grid) {
+  std::size_t count = 1;
+  for (const std::vector<double>& values : grid) count *= std::max<std::size_t>(values.size(), 1);
+  const std::size_t stride = (count + most_grid_points - 1) / most_grid_points;
+  std::vector<VectorXd> points;
+  for (std::size_t n = 0; n < count; n += stride) {
+    VectorXd z = VectorXd::Zero(static_cast<Index>(d));
+    std::size_t rest = n;
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+      if (grid[i].empty()) continue;
+      z(static_cast<Index>(i)) = grid[i][rest % grid[i].size()];
+      rest /= grid[i].size();
+    }
+    points.push_back(std::move(z));
+  }
+  return points;
+}
+
+std::vector<std::vector<double>> grid_in_scales(std::vector<std::vector<double>> grid, const systems::Scales& scales) {
+  for (std::size_t i = 0; i < grid.size(); ++i)
+    for (double& value : grid[i]) value /= scales.coordinate(i);
+  return grid;
+}
+
+}  // namespace
+
+systems::Scales natural_scales(const systems::System& system, const std::vector<std::vector<double>>& grid) {
+  const auto d = static_cast<std::size_t>(system.dimension());
+  core::require(grid.size() <= d, "more grid lists than coordinates");
+  // A view of the system, which outlives this call.
+  const std::shared_ptr<const systems::System> view(std::shared_ptr<const systems::System>(), &system);
+  // Newton's method bounds its steps: what it finds must not depend on units either.
+  const systems::Scales rough = scales_at(system, grid_points(d, grid));
+  std::vector<VectorXd> equilibria;
+  for (const std::vector<double>& point : find_fixed_points(*systems::scaled(view, rough), grid_in_scales(grid, rough))) {
+    VectorXd z(static_cast<Index>(d));
+    for (std::size_t i = 0; i < d; ++i) z(static_cast<Index>(i)) = point[i] * rough.coordinate(i);
+    equilibria.push_back(std::move(z));
+  }
+  return scales_at(system, equilibria);
+}
+
+}  // namespace orbweaver::starts

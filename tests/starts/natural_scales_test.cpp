@@ -1,0 +1,81 @@
+#include "orbweaver/starts/natural_scales.hpp"
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "orbweaver/systems/registry.hpp"
+
+namespace orbweaver::starts {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+using Grid = std::vector<std::vector<double>>;
+using Parameters = std::map<std::string, double>;
+using testing::ElementsAre;
+
+const Grid straight{{0.0, pi}, {0.0, pi}};
+
+systems::Scales pendulum(const Parameters& parameters) {
+  return natural_scales(*systems::make_system("double_pendulum", parameters), straight);
+}
+
+/// Lengths, times and masses are told in units so many times smaller.
+systems::Scales spring(double length, double time, double mass) {
+  const auto system = systems::make_system("swinging_spring", {{"mass", mass},
+                                                               {"stiffness", 3.0 * mass / (time * time)},
+                                                               {"length", length},
+                                                               {"gravity", length / (time * time)}});
+  return natural_scales(*system, {{0.0}, {-1.3 * length}});
+}
+
+TEST(NaturalScales, AreOneWhereParametersAreOne) {
+  EXPECT_TRUE(pendulum({}).are_one());
+  EXPECT_TRUE(natural_scales(*systems::make_system("henon_heiles"), {{0.0}, {0.0}}).are_one());
+}
+
+TEST(NaturalScales, AreOneWhereNothingSaysHowLargeMotionsAre) {
+  EXPECT_TRUE(natural_scales(*systems::make_system("harmonic_oscillator"), {{0.0}}).are_one());
+}
+
+TEST(NaturalScales, ChangeAsTheUnitsDo) {
+  const systems::Scales fast = pendulum({{"g", 0x1p20}});
+  EXPECT_EQ(fast.time, 0x1p-10);
+  EXPECT_THAT(fast.coordinates, ElementsAre(1.0, 1.0, 0x1p10, 0x1p10));
+  EXPECT_THAT(fast.conserved, ElementsAre(0x1p20));
+  const systems::Scales heavy = pendulum({{"m1", 0x1p-9}, {"m2", 0x1p-9}, {"l1", 16.0}, {"l2", 16.0}});
+  EXPECT_EQ(heavy.time, 4.0);
+  EXPECT_THAT(heavy.coordinates, ElementsAre(1.0, 1.0, 0.25, 0.25));
+  EXPECT_THAT(heavy.conserved, ElementsAre(0x1p-5));
+  const systems::Scales metres = spring(1.0, 1.0, 1.0);
+  for (const double length : {0x1p-20, 0x1p20})
+    for (const double time : {0x1p-10, 0x1p10})
+      for (const double mass : {0x1p-20, 0x1p20}) {
+        const systems::Scales scales = spring(length, time, mass);
+        EXPECT_EQ(scales.time, time * metres.time);
+        EXPECT_EQ(scales.coordinates[0], length * metres.coordinates[0]);
+        EXPECT_EQ(scales.coordinates[1], length * metres.coordinates[1]);
+        EXPECT_EQ(scales.coordinates[2], length / time * metres.coordinates[2]);
+        EXPECT_EQ(scales.coordinates[3], length / time * metres.coordinates[3]);
+        EXPECT_EQ(scales.conserved[0], mass * length * length / (time * time) * metres.conserved[0]);
+      }
+}
+
+TEST(NaturalScales, AreThatOfTheMotionsThemselves) {
+  const systems::Scales metres = spring(1.0, 1.0, 1.0);
+  EXPECT_THAT(metres.time, testing::AnyOf(0.5, 1.0));
+  for (const double scale : metres.coordinates) EXPECT_THAT(scale, testing::AllOf(testing::Ge(0.25), testing::Le(2.0)));
+  for (const double mass : {1e-6, 1e6}) {
+    const systems::Scales scales = pendulum({{"m2", mass}});
+    const double fast = std::sqrt(std::max(mass, 1.0));
+    for (const double speed : {scales.coordinates[2], scales.coordinates[3]})
+      EXPECT_THAT(speed, testing::AllOf(testing::Ge(0.25), testing::Le(2.0 * fast)));
+  }
+}
+
+}  // namespace
+}  // namespace orbweaver::starts
