@@ -6,6 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "orbweaver/continuation/least_guard.hpp"
+#include "orbweaver/core/error.hpp"
+
 namespace orbweaver::continuation {
 
 namespace {
@@ -22,11 +25,30 @@ constexpr double was_away = 0.25;
 /// where the period diverges. Not measured; both decide only how an end is called.
 constexpr double grown_period = 2.0;
 constexpr double settled_energy = 1e-3;
+/// A family collides if the smallest value of a guard, ever falling, has come below this share of where it began to
+/// fall, and lost this share of itself over the last `earlier_guards` steps: one that settles at a distance does not.
+/// The families of docs/pcr3bp.md end below 0.01 and 0.3. Not measured; both decide only how an end is called.
+constexpr double near_guard = 0.1;
+constexpr double guard_loss = 0.05;
+/// And its harmonics must have grown so many times: it is they that a close approach takes.
+constexpr int grown_cutoff = 4;
 
 }  // namespace
 
-std::optional<Ending> end_at(const Frontier& frontier, const Options& options) {
+int guard_number(const systems::Structure& structure, const std::string& name) {
+  const std::vector<systems::Guard>& guards = structure.guards;
+  const auto found = std::find_if(guards.begin(), guards.end(), [&](const auto& guard) { return guard.name == name; });
+  core::require(found != guards.end(), "a limit needs a guard that the system names");
+  return static_cast<int>(found - guards.begin());
+}
+
+std::optional<Ending> end_at(const Frontier& frontier, const systems::Structure& structure, const Options& options) {
   const Orbit& orbit = frontier.orbit;
+  if (frontier.on_guard_limit >= 0) {
+    const auto guard = static_cast<std::size_t>(frontier.on_guard_limit);
+    return Ending{EndReason::guard_limit,
+                  fmt::format("{} = {:.12g}", structure.guards[guard].name, frontier.guards[guard].least)};
+  }
   if (frontier.on_energy_limit) return Ending{EndReason::energy_limit, fmt::format("E = {:.12g}", orbit.energy)};
   if (orbit.loop.period >= options.period_limit)
     return Ending{EndReason::period_limit, fmt::format("T = {:.12g}", orbit.loop.period)};
@@ -45,11 +67,16 @@ std::optional<Ending> end_at(const Frontier& frontier, const Options& options) {
   return std::nullopt;
 }
 
-std::optional<Ending> beyond_limits(double period, double energy, const Options& options) {
+std::optional<Ending> beyond_limits(const systems::System& system, const loop::Loop& first, double period,
+                                    const Options& options) {
+  const double energy = energy_of(system, first);
   if (period > options.period_limit)
     return Ending{EndReason::period_limit, fmt::format("begins beyond it, at T = {:.9g}", period)};
   if (energy > options.energy_to || energy < options.energy_from)
     return Ending{EndReason::energy_limit, fmt::format("begins beyond it, at E = {:.9g}", energy)};
+  for (const auto& [name, limit] : options.guard_limits)
+    if (const double least = least_guard(system, guard_number(system.structure(), name), first); least < limit)
+      return Ending{EndReason::guard_limit, fmt::format("begins beyond it, at {} = {:.9g}", name, least)};
   return std::nullopt;
 }
 
@@ -62,10 +89,26 @@ bool period_diverges(const Frontier& frontier) {
   return std::abs(orbit.energy - frontier.earlier_energy) < settled_energy * range;
 }
 
+bool collides(const Frontier& frontier, const GuardTrace& guard) {
+  return guard.earlier.size() == earlier_guards && guard.least < near_guard * guard.fallen_from &&
+         guard.least < (1.0 - guard_loss) * guard.earlier.front() &&
+         frontier.orbit.loop.cutoff >= grown_cutoff * frontier.first.cutoff;
+}
+
 }  // namespace
 
-Ending end_between(const Frontier& frontier, EndReason reason, std::string detail) {
-  if (!period_diverges(frontier)) return {reason, std::move(detail)};
+Ending end_between(const Frontier& frontier, const systems::Structure& structure, EndReason reason,
+                   std::string detail) {
+  if (!period_diverges(frontier)) {
+    const double period = frontier.orbit.loop.period;
+    for (std::size_t k = 0; k < frontier.guards.size(); ++k)
+      if (collides(frontier, frontier.guards[k]))
+        return {EndReason::collision,
+                fmt::format("{} = {:.6g} at T = {:.6g}; {}", structure.guards[k].name, frontier.guards[k].least, period,
+                            detail),
+                "with " + structure.guards[k].body};
+    return {reason, std::move(detail)};
+  }
   return {EndReason::period_divergence,
           fmt::format("T = {:.6g}, E = {:.12g}; {}", frontier.orbit.loop.period, frontier.orbit.energy, detail)};
 }

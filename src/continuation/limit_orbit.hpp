@@ -21,6 +21,7 @@ struct Passed {
   double limit = 0.0;
   double length = 0.0;
   const Trial& beyond;
+  double unit = 1.0;  ///< of what is limited: how near to the limit an orbit lies on it
 };
 
 /// The orbit between the last point and the one beyond whose scalar of this number is the limit, exactly.

@@ -45,12 +45,13 @@ int harmonics_needed(const loop::Loop& loop, double limit) {
 }  // namespace
 
 std::optional<Resolution> general_resolution(const equations::Collocation& equations, const std::vector<double>& values,
-                                             const loop::Isotropy& isotropy, double tolerance, int least_cutoff) {
+                                             const loop::Isotropy& isotropy, double tolerance, int least_cutoff,
+                                             double least_density) {
   const loop::Loop loop = equations.to_loop(values.data());
   const int own = loop::harmonics_above(loop, tolerance);
   loop::TimeMapFit best{loop.time_map, own};
   for (const int most : density_harmonics) {
-    loop::TimeMapFit fit = loop::fit_general(loop, isotropy, tolerance, most);
+    loop::TimeMapFit fit = loop::fit_general(loop, isotropy, tolerance, most, least_density);
     if (fit.harmonics >= best.harmonics) break;
     best = std::move(fit);
   }

@@ -13,8 +13,6 @@ namespace orbweaver::loop {
 namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
-/// A fiftieth of the even density at least: below it the slow parts of the orbit would be resolved too coarsely.
-constexpr double least_density = 0.02;
 /// Below the squares of all derivatives: keeps logarithms finite.
 constexpr double tiny_square = 1e-300;
 /// Coefficients of a density of mean 1 that differ by less are rounding.
@@ -127,7 +125,7 @@ TimeMap with_least_density(TimeMap map, double least) {
   return map;
 }
 
-TimeMapFit fit_general(const Loop& loop, const Isotropy& isotropy, double tolerance, int most) {
+TimeMapFit fit_general(const Loop& loop, const Isotropy& isotropy, double tolerance, int most, double least) {
   core::require(most >= 1, "a general time map needs at least one harmonic");
   const Loop shorter = without_tail(loop, tolerance);
   if (harmonics_above(shorter, tolerance) == 0) return {};
@@ -148,7 +146,7 @@ TimeMapFit fit_general(const Loop& loop, const Isotropy& isotropy, double tolera
     map.coefficients.push_back(low_pass * c);
     map.coefficients.push_back(low_pass * d);
   }
-  return under(shorter, with_least_density(map, least_density), tolerance);
+  return under(shorter, with_least_density(map, least), tolerance);
 }
 
 bool is_invariant(const TimeMap& map, const Isotropy& isotropy) {
