@@ -36,8 +36,7 @@ Start second_point() {
   for (int n = 0; n < 50; ++n) {  // Newton's method for the force on the axis
     const double a = x + mu;
     const double b = x - 1.0 + mu;
-    x -= (x - (1.0 - mu) / (a * a) - mu / (b * b)) /
-         (1.0 + 2.0 * (1.0 - mu) / (a * a * a) + 2.0 * mu / (b * b * b));
+    x -= (x - (1.0 - mu) / (a * a) - mu / (b * b)) / (1.0 + 2.0 * (1.0 - mu) / (a * a * a) + 2.0 * mu / (b * b * b));
   }
   const double c = (1.0 - mu) / std::pow(x + mu, 3) + mu / std::pow(x - 1.0 + mu, 3);
   const double omega = std::sqrt(0.5 * (2.0 - c + std::sqrt(9.0 * c * c - 8.0 * c)));

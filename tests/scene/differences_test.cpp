@@ -155,7 +155,9 @@ TEST(Differences, GuardsAreLimitsOfTheirOwn) {
   const auto of = [](const std::string& guards) {
     return scene::parse("system: {name: pcr3bp}\nstarts: {}\n", "base.yaml", {"limits.guards=" + guards});
   };
-  const auto found = [&](const std::string& before, const std::string& now) { return differences(of(before), of(now)); };
+  const auto found = [&](const std::string& before, const std::string& now) {
+    return differences(of(before), of(now));
+  };
   EXPECT_THAT(found("{}", "{}"), IsEmpty());
   EXPECT_THAT(found("{r2: 0.0045}", "{r2: 4.5e-3}"), IsEmpty());
   const auto lower = found("{r1: 0.1, r2: 0.0045}", "{r1: 0.1, r2: 0.001}");

@@ -41,11 +41,9 @@ TEST(RestrictedProblem, ShortFamiliesEndOnThatOfL3) {
 
 /// The Lyapunov family of the Earth and Moon's L2, which runs into the Moon.
 scene::Scene second_family(const std::vector<std::string>& more) {
-  std::vector<std::string> overrides{"starts.fixed_points.grid=[[1.156], [0]]",
-                                     "starts.fixed_points.names={[1.1556821654, 0]: [L2]}",
-                                     "starts.fixed_points.letters={}",
-                                     "starts.sweep.period=[3, 3.6]",
-                                     "survey.depth=0"};
+  std::vector<std::string> overrides{
+      "starts.fixed_points.grid=[[1.156], [0]]", "starts.fixed_points.names={[1.1556821654, 0]: [L2]}",
+      "starts.fixed_points.letters={}", "starts.sweep.period=[3, 3.6]", "survey.depth=0"};
   overrides.insert(overrides.end(), more.begin(), more.end());
   return scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_earth_moon.yaml", overrides);
 }
@@ -77,7 +75,8 @@ TEST(RestrictedProblem, ALowerLimitOfAGuardGoesOnFromTheFamilysEnd) {
   const test::Atlas a(widened.atlas);
   const test::Atlas b(whole.atlas);
   EXPECT_EQ(a.end_of("L2"), "guard limit (r2 = 0.0045)");
-  for (const char* column : {"period", "energy", "arclength"}) EXPECT_EQ(a.column(column, "L2"), b.column(column, "L2"));
+  for (const char* column : {"period", "energy", "arclength"})
+    EXPECT_EQ(a.column(column, "L2"), b.column(column, "L2"));
 }
 
 TEST(RestrictedProblem, AFamilyThatCollidesSaysWithWhat) {

@@ -28,7 +28,7 @@ enum class EndReason {
 /// A branch's end in a form to print and to store.
 struct Ending {
   EndReason reason = EndReason::failure;
-  std::string detail;  ///< numbers that go with it; never empty
+  std::string detail;    ///< numbers that go with it; never empty
   std::string object{};  ///< what the reason is about ("with the smaller body"); empty where it says all
 
   [[nodiscard]] bool failed() const { return reason == EndReason::failure; }

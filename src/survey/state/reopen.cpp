@@ -19,8 +19,7 @@ int limits_of(const EndedTask& entry) {
     case TaskKind::branch: return outcome.empty() ? 0 : unpack_branch_outcome(outcome).limited_by;
     case TaskKind::locate: return outcome.empty() ? 0 : unpack_locate_outcome(outcome).limited_by;
     // One that failed may have been driven beyond a limit on the way.
-    case TaskKind::start:
-      return entry.had_children ? unpack_start_outcome(outcome).limited_by : orbit_limited;
+    case TaskKind::start: return entry.had_children ? unpack_start_outcome(outcome).limited_by : orbit_limited;
     case TaskKind::sweep: break;
   }
   return 0;

@@ -83,8 +83,7 @@ queue::TaskOutcome BranchTask::run() {
     if (!_stopped) finish();
   } catch (const std::exception& error) {  // here, not in the queue, so that the summary still counts the orbits kept
     ending = {continuation::EndReason::failure, error.what()};
-    if (_outcome.limited_by == 0)
-      _outcome.limited_by = orbit_limited;  // from its start: where it stands is not known
+    if (_outcome.limited_by == 0) _outcome.limited_by = orbit_limited;  // from its start: where it stands is not known
   }
   _outcome.end = ending;
   queue::TaskOutcome done;
