@@ -32,6 +32,26 @@ constexpr double near_guard = 0.1;
 constexpr double guard_loss = 0.05;
 /// And its harmonics must have grown so many times: it is they that a close approach takes.
 constexpr int grown_cutoff = 4;
+/// Such a family ends once rounding, which a passage magnifies, lets its orbits be known this many times worse than the
+/// tolerance asks: nearer ones take ever more harmonics to resolve noise (docs/performance.md).
+constexpr double worse_than_asked = 1e3;
+
+bool collides(const Frontier& frontier, const GuardTrace& guard) {
+  return guard.earlier.size() == earlier_guards && guard.least < near_guard * guard.fallen_from &&
+         guard.least < (1.0 - guard_loss) * guard.earlier.front() &&
+         frontier.orbit.loop.cutoff >= grown_cutoff * frontier.first.cutoff;
+}
+
+std::optional<Ending> collision_of(const Frontier& frontier, const systems::Structure& structure,
+                                   const std::string& detail) {
+  for (std::size_t k = 0; k < frontier.guards.size(); ++k)
+    if (collides(frontier, frontier.guards[k]))
+      return Ending{EndReason::collision,
+                    fmt::format("{} = {:.6g} at T = {:.6g}; {}", structure.guards[k].name, frontier.guards[k].least,
+                                frontier.orbit.loop.period, detail),
+                    "with " + structure.guards[k].body};
+  return std::nullopt;
+}
 
 }  // namespace
 
@@ -55,6 +75,9 @@ std::optional<Ending> end_at(const Frontier& frontier, const systems::Structure&
   if (orbit.step + 1 >= options.step_limit)
     return Ending{EndReason::step_limit, fmt::format("{} orbits", orbit.step + 1)};
   if (orbit.step <= first_orbits) return std::nullopt;
+  if (frontier.threshold > worse_than_asked * options.corrector.tolerance)
+    if (auto collision = collision_of(frontier, structure, fmt::format("rounding leaves {:.1e}", orbit.loss_rms)))
+      return collision;
   const double amplitude = frontier.problem.amplitude;
   if (amplitude < vanishing_amplitude * std::min(frontier.first_amplitude, options.start_amplitude))
     return Ending{EndReason::fixed_point, fmt::format("T = {:.9g}, amplitude {:.2e}", orbit.loop.period, amplitude)};
@@ -89,24 +112,12 @@ bool period_diverges(const Frontier& frontier) {
   return std::abs(orbit.energy - frontier.earlier_energy) < settled_energy * range;
 }
 
-bool collides(const Frontier& frontier, const GuardTrace& guard) {
-  return guard.earlier.size() == earlier_guards && guard.least < near_guard * guard.fallen_from &&
-         guard.least < (1.0 - guard_loss) * guard.earlier.front() &&
-         frontier.orbit.loop.cutoff >= grown_cutoff * frontier.first.cutoff;
-}
-
 }  // namespace
 
 Ending end_between(const Frontier& frontier, const systems::Structure& structure, EndReason reason,
                    std::string detail) {
   if (!period_diverges(frontier)) {
-    const double period = frontier.orbit.loop.period;
-    for (std::size_t k = 0; k < frontier.guards.size(); ++k)
-      if (collides(frontier, frontier.guards[k]))
-        return {EndReason::collision,
-                fmt::format("{} = {:.6g} at T = {:.6g}; {}", structure.guards[k].name, frontier.guards[k].least, period,
-                            detail),
-                "with " + structure.guards[k].body};
+    if (std::optional<Ending> collision = collision_of(frontier, structure, detail)) return *std::move(collision);
     return {reason, std::move(detail)};
   }
   return {EndReason::period_divergence,

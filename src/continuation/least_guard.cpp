@@ -32,17 +32,22 @@ std::vector<double> state_at_parameter(const loop::Loop& loop, double s) {
 
 }  // namespace
 
-double least_guard(const systems::System& system, int guard, const loop::Loop& loop) {
+std::vector<double> guard_at(const systems::System& system, int guard, const loop::Samples& samples) {
   core::require(guard >= 0 && guard < static_cast<int>(system.structure().guards.size()),
                 "the structure names no such guard");
-  const loop::Samples samples = loop::samples_of(loop);
   const auto nodes = static_cast<std::size_t>(samples.nodes);
   std::vector<double> values(nodes);
-  std::vector<double> z(static_cast<std::size_t>(loop.dimension));
+  std::vector<double> z(static_cast<std::size_t>(system.dimension()));
   for (std::size_t j = 0; j < nodes; ++j) {
     for (std::size_t i = 0; i < z.size(); ++i) z[i] = samples.states[i * nodes + j];
     values[j] = system.guard(guard, z);
   }
+  return values;
+}
+
+double least_guard(const systems::System& system, int guard, const loop::Loop& loop) {
+  const std::vector<double> values = guard_at(system, guard, loop::samples_of(loop));
+  const std::size_t nodes = values.size();
   double least = *std::min_element(values.begin(), values.end());
   const double lowest_node = least;
   const double spacing = 2.0 * std::numbers::pi / static_cast<double>(nodes);

@@ -221,6 +221,7 @@ Orbit Tracer::accept(const Trial& trial) {
   orbit.tail = loop::tail(orbit.loop);
   orbit.iterations = trial.iterations;
   const std::vector<double>& before = _stepper.last();
+  _frontier.threshold = trial.threshold;
   keep(orbit, begun() ? _problem->distance(trial.values, before) : 0.0, trial.amplitude);
   _frontier.tangent = {};
   // The length that the step has come out with: a parameter of its own would drift from extrapolation to extrapolation.

@@ -76,6 +76,7 @@ struct Frontier {
   bool on_energy_limit = false;    ///< `orbit` is the last one, at the scene's energy limit
   std::vector<GuardTrace> guards;  ///< one a guard of the structure
   int on_guard_limit = -1;         ///< the guard at whose limit `orbit` is the last one
+  double threshold = 0.0;          ///< under which sqrt(loss) of `orbit` was accepted
   std::vector<TracePoint> points;  ///< the last ones, oldest first; the start itself is the very first
   ProblemState problem;
 
@@ -83,7 +84,7 @@ struct Frontier {
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, orbit, tangent, next_length, last_increment, first, first_energy, first_amplitude,
-                            earlier_energy, earlier_period, farthest, on_energy_limit, guards, on_guard_limit, points,
+                            earlier_energy, earlier_period, farthest, on_energy_limit, guards, on_guard_limit, threshold, points,
                             problem);
   }
 };
