@@ -34,7 +34,7 @@ constexpr double guard_loss = 0.05;
 constexpr int grown_cutoff = 4;
 /// Such a family ends once rounding, which a passage magnifies, lets its orbits be known this many times worse than the
 /// tolerance asks: nearer ones take ever more harmonics to resolve noise (docs/performance.md).
-constexpr double worse_than_asked = 1e3;
+constexpr double worse_than_asked = 1e5;
 
 bool collides(const Frontier& frontier, const GuardTrace& guard) {
   return guard.earlier.size() == earlier_guards && guard.least < near_guard * guard.fallen_from &&

@@ -26,7 +26,7 @@ constexpr int last_order = 7;
 /// fast parts lie where the orbit is fast.
 constexpr double negligible_density = 1e-4;
 /// Nodes of a density that is fitted, at least: sharp ones have 20 to 80 harmonics.
-constexpr int least_fit_nodes = 1024;
+constexpr int least_fit_nodes = 512;
 
 // Candidates that would need more harmonics than the loop has are no gain: they count as that many.
 TimeMapFit under(const Loop& loop, const TimeMap& map, double tolerance) {
@@ -179,7 +179,7 @@ std::size_t harmonics_that_count(const TimeMap& map, double least) {
 TimeMapFit fit_to_rate(const Loop& loop, const Rate& rate, const Isotropy& isotropy, double tolerance) {
   const Loop shorter = without_tail(loop, tolerance);
   if (harmonics_above(shorter, tolerance) == 0) return {};
-  const Samples samples = samples_of(shorter, FourierGrid::nodes_at_least(2 * nodes_for(shorter)));
+  const Samples samples = samples_of(shorter);
   std::vector<double> own = rate(samples);  // d(new s)/d(own s), of mean 1
   double mean = 0.0;
   for (std::size_t j = 0; j < own.size(); ++j) mean += own[j] *= samples.weights[j];
