@@ -157,6 +157,14 @@ TEST(GuardLimits, TheFirstOfTwoLimitsIsHit) {
   EXPECT_GE(least_guard(*earth_moon(), r2, trace.last().loop), 0.05 - 1e-12);
 }
 
+// At r2 = 0.001 the passage lasts 1e-5 of the period. Maps that do not follow the guards take 3000 harmonics.
+TEST(GuardLimits, NearOnesTakeFewHarmonics) {
+  const test::Trace trace = second_family(options_with("r2", 1e-3));
+  ASSERT_EQ(trace.ending.reason, EndReason::guard_limit) << trace.ending.text();
+  EXPECT_LT(trace.last().loop.cutoff, 200);
+  EXPECT_LT(trace.orbits.size(), 60u);
+}
+
 TEST(GuardLimits, StartsBeyondThemGiveNoOrbit) {
   const test::Trace trace = second_family(options_with("r2", 0.5));
   EXPECT_TRUE(trace.orbits.empty());
@@ -165,16 +173,27 @@ TEST(GuardLimits, StartsBeyondThemGiveNoOrbit) {
 }
 
 TEST(Collisions, AreNamed) {
-  Options options{.cutoff_to = 160};
+  Options options{.cutoff_to = 100};
   options.start_amplitude = 0.01;
   const test::Trace trace = second_family(options);
   EXPECT_EQ(trace.ending.reason, EndReason::collision) << trace.ending.text();
   EXPECT_FALSE(trace.ending.failed());
-  EXPECT_THAT(trace.ending.text(), StartsWith("collision with the smaller body (r2 = 0.00"));
-  EXPECT_THAT(trace.ending.text(), HasSubstr("; the next orbit needs more than K = 160)"));
-  EXPECT_LT(least_guard(*earth_moon(), r2, trace.last().loop), 0.01);
+  EXPECT_THAT(trace.ending.text(), StartsWith("collision with the smaller body (r2 = 0.0"));
+  EXPECT_THAT(trace.ending.text(), HasSubstr("; the next orbit needs more than K = 100)"));
+  EXPECT_LT(least_guard(*earth_moon(), r2, trace.last().loop), 0.02);
   options.cutoff_to = 31;  // far from the body
   EXPECT_EQ(second_family(options).ending.reason, EndReason::cutoff_limit);
+}
+
+TEST(Collisions, EndFamiliesWhereRoundingDoes) {
+  Options options;
+  options.start_amplitude = 0.01;
+  const test::Trace trace = second_family(options);
+  EXPECT_EQ(trace.ending.reason, EndReason::collision) << trace.ending.text();
+  EXPECT_THAT(trace.ending.text(), HasSubstr("; rounding leaves "));
+  EXPECT_LT(least_guard(*earth_moon(), r2, trace.last().loop), 1e-4);
+  EXPECT_LT(trace.last().loop.cutoff, 300);
+  EXPECT_LT(trace.last().loss_rms, 1e-6);
 }
 
 /// A branch that came to a hundredth of a guard's first value.
