@@ -154,6 +154,16 @@ std::string energy_text(const scene::Limits& limits) {
   return fmt::format("from {} to {}", limits.energy_from, limits.energy_to);
 }
 
+std::string guards_text(const scene::Limits& limits, const systems::Structure& structure) {
+  std::string text;
+  for (const systems::Guard& guard : structure.guards) {
+    const auto least = limits.guards.find(guard.name);
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", guard.name,
+                        least == limits.guards.end() ? "any" : fmt::format("from {}", least->second));
+  }
+  return text.empty() ? "none in this system" : text;
+}
+
 std::string time_text(double seconds) {
   return std::isinf(seconds) ? "any" : fmt::format("the whole survey stops after {} s", seconds);
 }
@@ -162,10 +172,11 @@ std::string task_time_text(double seconds) {
   return std::isinf(seconds) ? "any" : fmt::format("tasks that take more than {} s are put aside", seconds);
 }
 
-void print_limits(const scene::Scene& scene) {
+void print_limits(const scene::Scene& scene, const systems::Structure& structure) {
   const scene::Limits& limits = scene.limits;
   print_group("Limits", {{"period", std::isinf(limits.period) ? "any" : fmt::format("up to {}", limits.period)},
                          {"energy", energy_text(limits)},
+                         {"guards", guards_text(limits, structure)},
                          {"families", fmt::format("at most {}", limits.families)},
                          {"steps", fmt::format("at most {} a family", limits.steps)},
                          {"time", time_text(limits.time)},
@@ -217,7 +228,7 @@ int check(const SceneOptions& options, const Invocation& invocation) {
   print_starts(scene, system);
   print_continuation(scene, system);
   print_survey(scene);
-  print_limits(scene);
+  print_limits(scene, system.structure());
   print_events(scene);
   print_outputs(scene, system);
   print_not_built(scene);

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "branch_end.hpp"
 #include "loop_problem.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
@@ -23,6 +24,7 @@ Branch::Branch(std::shared_ptr<const systems::System> system, const Start& start
   core::require(options.predictor_order >= 1, "a predictor needs a polynomial of degree 1 or more");
   core::require(loop::is_invariant(start.base.time_map, start.isotropy),
                 "the time map of a start must have the symmetries of its isotropy");
+  for (const auto& [name, limit] : options.guard_limits) (void)guard_number(system->structure(), name);
   _tracer = std::make_unique<Tracer>(std::move(system), start, std::move(options));
 }
 

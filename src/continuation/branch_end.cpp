@@ -6,6 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "orbweaver/continuation/least_guard.hpp"
+#include "orbweaver/core/error.hpp"
+
 namespace orbweaver::continuation {
 
 namespace {
@@ -22,18 +25,63 @@ constexpr double was_away = 0.25;
 /// where the period diverges. Not measured; both decide only how an end is called.
 constexpr double grown_period = 2.0;
 constexpr double settled_energy = 1e-3;
+/// A family collides if the smallest value of a guard, ever falling, has come below this share of where it began to
+/// fall, and lost this share of itself over the last `earlier_guards` steps: one that settles at a distance does not.
+/// The families of docs/pcr3bp.md end below 0.01 and 0.3. Not measured; both decide only how an end is called.
+constexpr double near_guard = 0.1;
+constexpr double guard_loss = 0.05;
+/// And its harmonics must have grown so many times: it is they that a close approach takes.
+constexpr int grown_cutoff = 4;
+/// Such a family ends once rounding, which a passage magnifies, lets its orbits be known this many times worse than the
+/// tolerance asks: nearer ones take ever more harmonics to resolve noise (docs/performance.md).
+constexpr double worse_than_asked = 1e5;
+
+bool collides(const Frontier& frontier, const GuardTrace& guard) {
+  return guard.earlier.size() == earlier_guards && guard.least < near_guard * guard.fallen_from &&
+         guard.least < (1.0 - guard_loss) * guard.earlier.front() &&
+         frontier.orbit.loop.cutoff >= grown_cutoff * frontier.first.cutoff;
+}
+
+std::optional<Ending> collision_of(const Frontier& frontier, const systems::System& system, const std::string& detail) {
+  const systems::Structure& structure = system.structure();
+  for (std::size_t k = 0; k < frontier.guards.size(); ++k)
+    if (collides(frontier, frontier.guards[k]))
+      return Ending{EndReason::collision,
+                    fmt::format("{} = {:.6g} at T = {:.6g}; {}", structure.guards[k].name, frontier.guards[k].least,
+                                frontier.orbit.loop.period * system.scales().time, detail),
+                    "with " + structure.guards[k].body};
+  return std::nullopt;
+}
 
 }  // namespace
 
-std::optional<Ending> end_at(const Frontier& frontier, const Options& options, const systems::Scales& units) {
+int guard_number(const systems::Structure& structure, const std::string& name) {
+  const std::vector<systems::Guard>& guards = structure.guards;
+  const auto found = std::find_if(guards.begin(), guards.end(), [&](const auto& guard) { return guard.name == name; });
+  core::require(found != guards.end(), "a limit needs a guard that the system names");
+  return static_cast<int>(found - guards.begin());
+}
+
+std::optional<Ending> end_at(const Frontier& frontier, const systems::System& system, const Options& options) {
+  const systems::Structure& structure = system.structure();
+  const systems::Scales& units = system.scales();
   const Orbit& orbit = frontier.orbit;
   const double period = orbit.loop.period * units.time;
-  if (frontier.on_energy_limit) return Ending{EndReason::energy_limit, fmt::format("E = {:.12g}", orbit.energy * units.energy())};
+  if (frontier.on_guard_limit >= 0) {
+    const auto guard = static_cast<std::size_t>(frontier.on_guard_limit);
+    return Ending{EndReason::guard_limit,
+                  fmt::format("{} = {:.12g}", structure.guards[guard].name, frontier.guards[guard].least)};
+  }
+  if (frontier.on_energy_limit)
+    return Ending{EndReason::energy_limit, fmt::format("E = {:.12g}", orbit.energy * units.energy())};
   if (orbit.loop.period >= options.period_limit)
     return Ending{EndReason::period_limit, fmt::format("T = {:.12g}", period)};
   if (orbit.step + 1 >= options.step_limit)
     return Ending{EndReason::step_limit, fmt::format("{} orbits", orbit.step + 1)};
   if (orbit.step <= first_orbits) return std::nullopt;
+  if (frontier.threshold > worse_than_asked * options.corrector.tolerance)
+    if (auto collision = collision_of(frontier, system, fmt::format("rounding leaves {:.1e}", orbit.loss_rms)))
+      return collision;
   const double amplitude = frontier.problem.amplitude;
   if (amplitude < vanishing_amplitude * std::min(frontier.first_amplitude, options.start_amplitude))
     return Ending{EndReason::fixed_point, fmt::format("T = {:.9g}, amplitude {:.2e}", period, amplitude)};
@@ -46,8 +94,10 @@ std::optional<Ending> end_at(const Frontier& frontier, const Options& options, c
   return std::nullopt;
 }
 
-std::optional<Ending> beyond_limits(double period, double energy, const Options& options,
-                                    const systems::Scales& units) {
+std::optional<Ending> beyond_limits(const systems::System& system, const loop::Loop& first, double period,
+                                    const Options& options) {
+  const systems::Scales& units = system.scales();
+  const double energy = energy_of(system, first);
   if (period > options.period_limit)
     return Ending{EndReason::period_limit, fmt::format("left out: begins at T = {:.9g}, beyond {:g}",
                                                        period * units.time, options.period_limit * units.time)};
@@ -55,6 +105,9 @@ std::optional<Ending> beyond_limits(double period, double energy, const Options&
     return Ending{EndReason::energy_limit,
                   fmt::format("left out: begins at E = {:.9g}, outside [{:g}, {:g}]", energy * units.energy(),
                               options.energy_from * units.energy(), options.energy_to * units.energy())};
+  for (const auto& [name, limit] : options.guard_limits)
+    if (const double least = least_guard(system, guard_number(system.structure(), name), first); least < limit)
+      return Ending{EndReason::guard_limit, fmt::format("left out: begins at {} = {:.9g}, below {:g}", name, least, limit)};
   return std::nullopt;
 }
 
@@ -69,8 +122,12 @@ bool period_diverges(const Frontier& frontier) {
 
 }  // namespace
 
-Ending end_between(const Frontier& frontier, EndReason reason, std::string detail, const systems::Scales& units) {
-  if (!period_diverges(frontier)) return {reason, std::move(detail)};
+Ending end_between(const Frontier& frontier, const systems::System& system, EndReason reason, std::string detail) {
+  const systems::Scales& units = system.scales();
+  if (!period_diverges(frontier)) {
+    if (std::optional<Ending> collision = collision_of(frontier, system, detail)) return *std::move(collision);
+    return {reason, std::move(detail)};
+  }
   return {EndReason::period_divergence,
           fmt::format("T = {:.6g}, E = {:.12g}; {}", frontier.orbit.loop.period * units.time,
                       frontier.orbit.energy * units.energy(), detail)};

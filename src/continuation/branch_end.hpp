@@ -13,16 +13,24 @@ namespace orbweaver::continuation {
 /// the distance from the connecting orbit by exp(-rate T/10). Not measured; it decides only how an end is called.
 inline constexpr double period_window = 1.1;
 
+/// Smallest values that a trace keeps of a guard, besides the last: over five steps a family that collides falls
+/// clearly (docs/mathematics.md, "Ends").
+inline constexpr std::size_t earlier_guards = 5;
+
 /// The end that the last orbit is; none if the branch goes on.
-[[nodiscard]] std::optional<Ending> end_at(const Frontier& frontier, const Options& options,
-                                           const systems::Scales& units = {});
+[[nodiscard]] std::optional<Ending> end_at(const Frontier& frontier, const systems::System& system,
+                                           const Options& options);
 
 /// The end where the first orbit lies beyond the scene's limits already; none if it does not.
-[[nodiscard]] std::optional<Ending> beyond_limits(double period, double energy, const Options& options,
-                                                  const systems::Scales& units = {});
+[[nodiscard]] std::optional<Ending> beyond_limits(const systems::System& system, const loop::Loop& first, double period,
+                                                  const Options& options);
 
-/// An end for want of harmonics, or by failure; of a settled family it is a divergence of the period.
-[[nodiscard]] Ending end_between(const Frontier& frontier, EndReason reason, std::string detail,
-                                 const systems::Scales& units = {});
+/// An end for want of harmonics, or by failure: a divergence of the period where the family has settled, a collision
+/// where it comes ever nearer to a zero of a guard.
+[[nodiscard]] Ending end_between(const Frontier& frontier, const systems::System& system, EndReason reason,
+                                 std::string detail);
+
+/// Number of the guard in the structure. Throws MisuseError unless it is there.
+[[nodiscard]] int guard_number(const systems::Structure& structure, const std::string& name);
 
 }  // namespace orbweaver::continuation

@@ -10,6 +10,7 @@
 #include "cell_counts.hpp"
 #include "collocation_metric.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/grid/time_map_fit.hpp"
 #include "orbweaver/loss/linearization.hpp"
 #include "regrid.hpp"
 
@@ -38,6 +39,10 @@ constexpr double mode_rounding = 4.0 * std::numeric_limits<double>::epsilon();
 /// What the harmonics that a new time map leaves out may add to the loss, in parts of its threshold: the rest is
 /// for the equations. Not measured.
 constexpr double left_to_truncation = 0.3;
+/// Where orbits may pass near the zero of a guard, general time maps are looked for from so many cells on, and may be so
+/// dense: a passage at the distance r takes r^(3/2) of time (docs/performance.md).
+constexpr int guarded_map_cells = 96;
+constexpr double guarded_density = 1e-6;
 /// Keeps quotients by the amplitude finite.
 constexpr double least_amplitude = 1e-300;
 
@@ -348,10 +353,12 @@ std::optional<Resolution> CollocationProblem::remapped(const Trial& of, const st
   const double period = settled[scalars_at()];
   const double allowed = left_to_truncation * of.threshold * period / (2.0 * std::numbers::pi * e.grid().cutoff());
   const double rounding = mode_rounding * of.size;
-  if (e.cells() < _options.general_map_cells) return std::nullopt;
+  const bool guarded = !_system.structure().guards.empty();
+  if (e.cells() < (guarded ? std::min(_options.general_map_cells, guarded_map_cells) : _options.general_map_cells))
+    return std::nullopt;
   return general_resolution(e, settled, _isotropy,
                             std::max(std::min(tail_limit(of.amplitude, of.size, _options), allowed), rounding),
-                            _options.cutoff_from);
+                            _options.cutoff_from, guarded ? guarded_density : loop::least_density);
 }
 
 }  // namespace orbweaver::continuation

@@ -8,9 +8,11 @@ std::string_view name_of(EndReason reason) {
   switch (reason) {
     case EndReason::period_limit: return "period limit";
     case EndReason::energy_limit: return "energy limit";
+    case EndReason::guard_limit: return "guard limit";
     case EndReason::step_limit: return "step limit";
     case EndReason::cutoff_limit: return "cutoff limit";
     case EndReason::period_divergence: return "period divergence";
+    case EndReason::collision: return "collision";
     case EndReason::fixed_point: return "arrived at a fixed point";
     case EndReason::closed_loop: return "closed loop";
     case EndReason::stopped: return "stopped";
@@ -20,7 +22,10 @@ std::string_view name_of(EndReason reason) {
 }
 
 std::string Ending::text() const {
-  return detail.empty() ? std::string(name_of(reason)) : fmt::format("{} ({})", name_of(reason), detail);
+  std::string text(name_of(reason));
+  if (!object.empty()) text += " " + object;
+  if (!detail.empty()) text += fmt::format(" ({})", detail);
+  return text;
 }
 
 }  // namespace orbweaver::continuation

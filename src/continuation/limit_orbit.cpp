@@ -16,9 +16,9 @@ namespace {
 
 /// Width of a bracket that is left, in parts of the position: rounding.
 constexpr double position_width = 1e-14;
-/// An orbit whose quantity is so near to a limit, in parts of 1 + |limit|, lies on it.
+/// An orbit whose quantity is so near to a limit, in parts of the size + |limit|, lies on it.
 constexpr double on_limit = 1e-13;
-/// The same where rounding lets none come nearer.
+/// The same where rounding lets none come nearer, in parts of 1 + |limit|.
 constexpr double near_limit = 1e-10;
 
 OnLimit failure(const Passed& passed, std::string_view why) {
@@ -93,7 +93,7 @@ OnLimit orbit_at_value(Stepper& stepper, const Passed& passed, double from,
       nearest = std::abs(value);
       found.trial = std::move(trial);
     }
-    return std::abs(value) <= on_limit * scale ? 0.0 : value;
+    return std::abs(value) <= on_limit * (passed.size + std::abs(passed.limit)) ? 0.0 : value;
   };
   (void)numerics::locate_root(excess, {0.0, from - passed.limit},
                               {passed.length, quantity(passed.beyond) - passed.limit}, position_width * passed.length);

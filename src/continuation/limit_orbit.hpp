@@ -22,6 +22,7 @@ struct Passed {
   double length = 0.0;
   const Trial& beyond;
   double unit = 1.0;  ///< of the limit, for messages
+  double size = 1.0;  ///< of what is limited, where the limit itself is smaller: how near to it an orbit lies on it
 };
 
 /// The orbit between the last point and the one beyond whose scalar of this number is the limit, exactly.

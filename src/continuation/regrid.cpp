@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cell_counts.hpp"
+#include "guard_rate.hpp"
 #include "orbweaver/loop/grid/time_map_fit.hpp"
 
 namespace orbweaver::continuation {
@@ -12,6 +13,8 @@ namespace {
 
 /// Harmonics of density to try; many serve loops that go several times around.
 constexpr int density_harmonics[] = {16, 32};
+/// Rates far from all guards to try, in parts of 2 pi/T. Larger ones spend harmonics where the orbit is slow.
+constexpr double base_rates[] = {0.03, 0.3, 1.0};
 /// A new general map is to need at most this share of the harmonics: less would not repay the regrid.
 constexpr double general_pays = 0.8;
 /// Harmonics to have above those needed: after a fit, or after harmonics were dropped, a number of cells more; after a
@@ -45,15 +48,22 @@ int harmonics_needed(const loop::Loop& loop, double limit) {
 }  // namespace
 
 std::optional<Resolution> general_resolution(const equations::Collocation& equations, const std::vector<double>& values,
-                                             const loop::Isotropy& isotropy, double tolerance, int least_cutoff) {
+                                             const loop::Isotropy& isotropy, double tolerance, int least_cutoff,
+                                             double least_density) {
   const loop::Loop loop = equations.to_loop(values.data());
   const int own = loop::harmonics_above(loop, tolerance);
   loop::TimeMapFit best{loop.time_map, own};
   for (const int most : density_harmonics) {
-    loop::TimeMapFit fit = loop::fit_general(loop, isotropy, tolerance, most);
+    loop::TimeMapFit fit = loop::fit_general(loop, isotropy, tolerance, most, least_density);
     if (fit.harmonics >= best.harmonics) break;
     best = std::move(fit);
   }
+  if (!equations.system().structure().guards.empty())
+    for (const double base : base_rates) {
+      loop::TimeMapFit fit =
+          loop::fit_to_rate(loop, guard_rate(equations.system(), loop.period, base), isotropy, tolerance);
+      if (fit.harmonics < best.harmonics) best = std::move(fit);
+    }
   if (best.map == loop.time_map || best.harmonics > general_pays * own || !loop::is_invariant(best.map, isotropy))
     return std::nullopt;
   const int cutoff = std::max(with_room(best.harmonics), least_cutoff);

@@ -20,7 +20,7 @@ namespace orbweaver::continuation {
 [[nodiscard]] std::optional<Resolution> general_resolution(const equations::Collocation& equations,
                                                            const std::vector<double>& values,
                                                            const loop::Isotropy& isotropy, double tolerance,
-                                                           int least_cutoff);
+                                                           int least_cutoff, double least_density);
 
 /// Cells for an orbit whose needed harmonics fill less than two thirds of its own; none otherwise.
 [[nodiscard]] std::optional<int> coarser_cells(const loop::Loop& loop, const loop::FundamentalDomain& domain,

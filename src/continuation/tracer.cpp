@@ -9,6 +9,7 @@
 
 #include "branch_end.hpp"
 #include "limit_orbit.hpp"
+#include "orbweaver/continuation/least_guard.hpp"
 #include "orbweaver/continuation/off_branch.hpp"
 #include "step_control.hpp"
 
@@ -58,12 +59,12 @@ void Tracer::go_on_from(Frontier frontier) {
 std::optional<Orbit> Tracer::advance() {
   if (_ending) return std::nullopt;
   if (!begun()) return first_orbit();
-  _ending = end_at(_frontier, _options, _system->scales());
+  _ending = end_at(_frontier, *_system, _options);
   return _ending ? std::nullopt : next_on_family();
 }
 
 std::optional<Orbit> Tracer::end(EndReason reason, std::string detail) {
-  _ending = end_between(_frontier, reason, std::move(detail), _system->scales());
+  _ending = end_between(_frontier, *_system, reason, std::move(detail));
   return std::nullopt;
 }
 
@@ -89,7 +90,7 @@ std::optional<Orbit> Tracer::first_orbit() {
     }
     if (trial.is_orbit) {
       _frontier.points = {{base, 0.0}};
-      _ending = beyond_limits(scalar(trial, 0), energy_of(*_system, trial.loop), _options, _system->scales());
+      _ending = beyond_limits(*_system, trial.loop, scalar(trial, 0), _options);
       if (_ending) return std::nullopt;
       _frontier.next_length =
           std::min(growth_after_first * _problem->distance(trial.values, base), _options.largest_step);
@@ -162,6 +163,8 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
       // The step may have gone over to another family, on which there is no such orbit.
       if (!refused.failed() || 0.5 * length < least) return end(refused.reason, std::move(refused.detail));
       trial.reason = std::move(refused.detail);
+      _frontier.on_energy_limit = false;
+      _frontier.on_guard_limit = -1;
     }
     _frontier.problem.factor_point.clear();
     length *= 0.5;
@@ -187,7 +190,7 @@ std::optional<Orbit> Tracer::accept_within_limits(const Trial& trial, double len
   const double value = energy_of(*_system, trial.loop);
   const bool is_late = scalar(trial, period) > _options.period_limit;
   const bool is_outside = is_beyond_energies(value);
-  if (!is_late && !is_outside) return accept(trial);
+  if (!is_late && !is_outside) return accept_within_guards(trial, length, refused);
   OnLimit on_limit;
   if (is_late) {
     on_limit = orbit_at_scalar(
@@ -203,9 +206,28 @@ std::optional<Orbit> Tracer::accept_within_limits(const Trial& trial, double len
                               [this](const Trial& other) { return energy_of(*_system, other.loop); });
     _frontier.on_energy_limit = on_limit.trial.has_value();
   }
-  if (on_limit.trial) return accept(*on_limit.trial);
+  if (on_limit.trial) return accept_within_guards(std::move(*on_limit.trial), length, refused);
   refused = std::move(on_limit.ending);
   return std::nullopt;
+}
+
+/// The same for the limits of guards, where the step of `length` led to `trial` or beyond it.
+std::optional<Orbit> Tracer::accept_within_guards(Trial trial, double length, Ending& refused) {
+  for (const auto& [name, limit] : _options.guard_limits) {
+    const int guard = guard_number(_system->structure(), name);
+    const auto least = [&](const Trial& other) { return least_guard(*_system, guard, other.loop); };
+    if (!(least(trial) < limit)) continue;
+    OnLimit on_limit = orbit_at_value(_stepper, {EndReason::guard_limit, name, limit, length, trial, 1.0, 0.0},
+                                      _frontier.guards[static_cast<std::size_t>(guard)].least, least);
+    if (!on_limit.trial) {
+      refused = std::move(on_limit.ending);
+      return std::nullopt;
+    }
+    trial = std::move(*on_limit.trial);
+    _frontier.on_energy_limit = false;
+    _frontier.on_guard_limit = guard;
+  }
+  return accept(trial);
 }
 
 Orbit Tracer::accept(const Trial& trial) {
@@ -218,6 +240,7 @@ Orbit Tracer::accept(const Trial& trial) {
   orbit.tail = loop::tail(orbit.loop);
   orbit.iterations = trial.iterations;
   const std::vector<double>& before = _stepper.last();
+  _frontier.threshold = trial.threshold;
   keep(orbit, begun() ? _problem->distance(trial.values, before) : 0.0, trial.amplitude);
   _frontier.tangent = {};
   // The length that the step has come out with: a parameter of its own would drift from extrapolation to extrapolation.
@@ -252,10 +275,25 @@ void Tracer::keep(Orbit& orbit, double increment, double amplitude) {
     frontier.first_energy = frontier.earlier_energy = orbit.energy;
     frontier.earlier_period = orbit.loop.period;
   }
+  keep_guards(orbit.loop);
   frontier.problem.amplitude = amplitude;
   frontier.farthest = std::max({frontier.farthest, std::abs(amplitude - frontier.first_amplitude),
                                 std::abs(orbit.loop.period / frontier.first.period - 1.0)});
   frontier.orbit = orbit;
+}
+
+void Tracer::keep_guards(const loop::Loop& loop) {
+  std::vector<GuardTrace>& guards = _frontier.guards;
+  const bool first = !begun();
+  guards.resize(_system->structure().guards.size());
+  for (std::size_t k = 0; k < guards.size(); ++k) {
+    GuardTrace& guard = guards[k];
+    const double least = least_guard(*_system, static_cast<int>(k), loop);
+    if (!first) guard.earlier.push_back(guard.least);
+    if (guard.earlier.size() > earlier_guards) guard.earlier.erase(guard.earlier.begin());
+    if (first || !(least < guard.least)) guard.fallen_from = least;
+    guard.least = least;
+  }
 }
 
 void Tracer::complete_frontier() {

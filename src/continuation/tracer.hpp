@@ -40,9 +40,11 @@ class Tracer {
   std::optional<Orbit> next_orbit(double at_most);
   [[nodiscard]] double length_to_try();
   std::optional<Orbit> accept_within_limits(const Trial& trial, double length, Ending& refused);
+  std::optional<Orbit> accept_within_guards(Trial trial, double length, Ending& refused);
   Orbit accept(const Trial& trial);
   /// Makes `orbit`, whose loop and numbers are set, the frontier's; `increment`: arclength from the one before.
   void keep(Orbit& orbit, double increment, double amplitude);
+  void keep_guards(const loop::Loop& loop);
   std::optional<Orbit> end(EndReason reason, std::string detail);
 
   std::shared_ptr<const systems::System> _system;

@@ -313,7 +313,7 @@ std::vector<double> Collocation::resampled(const Collocation& from, const std::v
     std::vector<double> turn_cos(at(count)), turn_sin(at(count)), c(at(count), 1.0), s(at(count), 0.0);
     std::vector<double> z(at(d * _grid.stride()), 0.0);
     for (int j = 0; j < count; ++j) {
-      const double there = from._map.inverse(_map.phase(j * _grid.spacing()));
+      const double there = from._map.parameter_at(_map, j * _grid.spacing());
       turn_cos[at(j)] = std::cos(there);
       turn_sin[at(j)] = std::sin(there);
     }
@@ -336,7 +336,7 @@ std::vector<double> Collocation::resampled(const Collocation& from, const std::v
       if (_winding[at(i)] != 0.0)
         for (int j = 0; j < count; ++j) {
           const double here = j * _grid.spacing();
-          z[at(i * _grid.stride() + j)] += _winding[at(i)] * (from._map.inverse(_map.phase(here)) - here);
+          z[at(i * _grid.stride() + j)] += _winding[at(i)] * (from._map.parameter_at(_map, here) - here);
         }
     _grid.from_nodal(z.data(), out.data());
   }

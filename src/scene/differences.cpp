@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <set>
 
@@ -97,6 +98,13 @@ class Values {
     _values.push_back({key, list_text(std::array{from, to}, text_of), limit, from, to});
   }
 
+  void add_guard(const std::string& name, const std::map<std::string, double>& guards) {
+    const auto given = guards.find(name);
+    const double least = given == guards.end() ? 0.0 : given->second;
+    _values.push_back({"limits.guards." + name, given == guards.end() ? "" : text_of(least), LimitKey::guards, least,
+                       std::numeric_limits<double>::infinity()});
+  }
+
   void add_system(const SystemChoice& choice) {
     add("system.name", choice.name);
     for (const systems::Parameter& parameter : known_parameters(systems::model_info(choice.name), choice)) {
@@ -150,6 +158,7 @@ class Values {
   void add_limits(const Limits& limits) {
     add_limit("limits.period", LimitKey::period, limits.period);
     add_limits("limits.energy", LimitKey::energy, limits.energy_from, limits.energy_to);
+    for (const std::string& name : _system->structure().guard_names()) add_guard(name, limits.guards);
     add_limit("limits.families", LimitKey::families, limits.families);
     add_limit("limits.steps", LimitKey::steps, limits.steps);
     add("limits.time", limits.time);

@@ -44,7 +44,7 @@ Scene read_scene(const Field& root) {
   read_starts(require_key(keys, root, "starts", "starts: {fixed_points: {grid: [[0, 180], [0, 180]]}}"), system, scene);
   if (const auto field = keys.find("continuation")) read_continuation(*field, system, scene.continuation);
   if (const auto field = keys.find("survey")) read_survey(*field, scene.survey);
-  if (const auto field = keys.find("limits")) read_limits(*field, scene.limits);
+  if (const auto field = keys.find("limits")) read_limits(*field, system, scene.limits);
   if (const auto field = keys.find("events")) read_events(*field, scene.events);
   if (const auto field = keys.find("section")) read_section(*field, system, scene.section);
   if (const auto field = keys.find("output")) read_output(*field, scene.output);

@@ -61,12 +61,28 @@ void read_survey(const Field& field, Survey& survey) {
     survey.team_size = team->integer({.lower = 1, .upper = 1000000, .example = "1"});
 }
 
-void read_limits(const Field& field, Limits& limits) {
-  const Keys keys(field, {"period", "energy", "families", "steps", "time", "task_time"}, "limits: {period: 30}");
+namespace {
+
+void read_guards(const Field& field, const systems::System& system, std::map<std::string, double>& guards) {
+  const std::vector<std::string> names = system.structure().guard_names();
+  if (names.empty())
+    field.fail(fmt::format("no such key, as {} names no guards", system.info().name), field.got(), "leave it out");
+  const Keys keys(field, names, fmt::format("guards: {{{}: 0.01}}", names.front()));
+  for (const std::string& name : names)
+    if (const auto least = keys.find(name))
+      guards[name] = least->number({.lower = 0, .lower_open = true, .example = "0.01"});
+}
+
+}  // namespace
+
+void read_limits(const Field& field, const systems::System& system, Limits& limits) {
+  const Keys keys(field, {"period", "energy", "guards", "families", "steps", "time", "task_time"},
+                  "limits: {period: 30}");
   if (const auto period = keys.find("period"))
     limits.period = period->number({.lower = 0, .lower_open = true, .infinite = true, .example = "30"});
   if (const auto energy = keys.find("energy"))
     std::tie(limits.energy_from, limits.energy_to) = energy->range({.infinite = true, .example = "[-.inf, .inf]"});
+  if (const auto guards = keys.find("guards")) read_guards(*guards, system, limits.guards);
   if (const auto families = keys.find("families")) limits.families = families->integer({.lower = 1, .example = "1000"});
   if (const auto steps = keys.find("steps")) limits.steps = steps->integer({.lower = 1, .example = "5000"});
   if (const auto time = keys.find("time"))

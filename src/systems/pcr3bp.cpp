@@ -83,10 +83,12 @@ Structure Pcr3bp::structure(const Bound& bound) {
   Structure structure;
   structure.dimension = dimension;
   structure.conserved = {"energy"};
-  structure.guards = {"r1", "r2"};
+  const bool equal = bound["mu"] == 0.5;
+  structure.guards = {{"r1", equal ? "the first body" : "the larger body"},
+                      {"r2", equal ? "the second body" : "the smaller body"}};
   structure.reversors = {{"R", reverse}};
   // Equal bodies change places in half a turn.
-  if (bound["mu"] == 0.5) {
+  if (equal) {
     structure.equivariances = {{"S", half_turn}};
     structure.reversors.push_back({"RS", -reverse});
   }

@@ -79,7 +79,7 @@ Structure SwingingSpring::structure(const Bound&) {
   Structure structure;
   structure.dimension = dimension;
   structure.conserved = {"energy"};
-  structure.guards = {"r"};
+  structure.guards = {{"r", "the point of suspension"}};
   structure.equivariances = {{"S", mirror}};
   structure.reversors = {{"R", reverse}, {"RS", reverse * mirror}};
   structure.symplectic = true;

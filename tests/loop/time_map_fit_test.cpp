@@ -1,12 +1,15 @@
 #include "orbweaver/loop/grid/time_map_fit.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
 #include "loop/samples.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/loop/grid/fourier.hpp"
 #include "support/best_pulse.hpp"
 #include "support/stated_system.hpp"
 
@@ -91,6 +94,35 @@ TEST(TimeMapFit, DensityStaysPositive) {
   EXPECT_THROW(static_cast<void>(with_least_density({2.0, {}}, 0.1)), core::MisuseError);
   EXPECT_TRUE(fit_general(constant_loop(std::vector<double>{1.0}, 1.0, 3), {}, tolerance).map.is_identity());
   EXPECT_THROW(static_cast<void>(fit_general(unmapped({}), {}, tolerance, 0)), core::MisuseError);
+}
+
+// z = 1/(e^2 + sin^2(t/2)) has its poles at t = +-2i asinh e: a rate like z^(1/2), one over the distance from them, takes
+// harmonics like log(1/e), even time like 1/e.
+TEST(TimeMapFit, FollowsARateOfWideRange) {
+  constexpr double e = 0.02;
+  constexpr int harmonics = 1000;
+  const FourierGrid& grid = FourierGrid::of_size(FourierGrid::nodes_at_least(4 * harmonics));
+  std::vector<double> nodal;
+  for (int j = 0; j < grid.nodes(); ++j)
+    nodal.push_back(1.0 / (e * e + std::pow(std::sin(std::numbers::pi * j / grid.nodes()), 2)));
+  Loop loop = constant_loop(std::vector<double>{0.0}, 3.0, harmonics);
+  grid.analyze(harmonics, 1, nodal.data(), loop.modes.data());
+  const auto rate = [](const Samples& samples) {
+    std::vector<double> out = samples.states;
+    for (double& v : out) v = std::sqrt(v);
+    return out;
+  };
+  constexpr double part = 1e-10 / (e * e);
+  const TimeMapFit fit = fit_to_rate(loop, rate, {}, part);
+  EXPECT_GT(harmonics_above(loop, part), 400);
+  EXPECT_LT(fit.harmonics, 60);
+  const std::vector<double> density = densities(fit.map, 4096);
+  EXPECT_GT(*std::min_element(density.begin(), density.end()), 0.0);
+  EXPECT_LT(*std::min_element(density.begin(), density.end()), 0.1);
+  const Loop mapped = with_time_map(loop, fit.map, fit.harmonics + 10);
+  EXPECT_LT(mean_distance(mapped, loop), 30.0 * part);
+  // From there it is found again.
+  EXPECT_LT(fit_to_rate(mapped, rate, {}, part).harmonics, 60);
 }
 
 }  // namespace

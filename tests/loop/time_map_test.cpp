@@ -136,5 +136,28 @@ TEST(TimeMapMisuse, BadNumbersAreRefused) {
   EXPECT_THROW(static_cast<void>(densities({1.0, {0.1, 0.1, 0.1, 0.1}}, 4)), core::MisuseError);
 }
 
+// Density (1 - cos s)(1 - cos 3s), whose coefficients are exact: small near s = 0.
+TEST(TimeMap, SmallDensitiesKeepTheirDigits) {
+  const TimeMap map{1.0, {-1.0, 0.0, 0.5, 0.0, -1.0, 0.0, 0.5, 0.0}};
+  const auto exact = [](double s) { return std::pow(2.0 * std::sin(0.5 * s) * std::sin(1.5 * s), 2); };
+  for (const double s : {0.01, 0.05, 0.3, 6.2}) EXPECT_NEAR(map.density(s), exact(s), 1e-11 * exact(s)) << s;
+  const std::vector<double> nodal = densities(map, 400);
+  for (std::size_t j = 1; j < nodal.size(); ++j) {
+    const double s = two_pi * static_cast<double>(j) / 400.0;
+    EXPECT_NEAR(nodal[j], exact(s), 1e-11 * exact(s)) << s;
+  }
+}
+
+TEST(TimeMap, ParametersAtTheSameTime) {
+  constexpr double least = 1.0 / 4096.0;
+  TimeMap sharp{1.0, {-1.0, 0.0, 0.5, 0.0, -1.0, 0.0, 0.5, 0.0}};
+  for (double& c : sharp.coefficients) c *= 1.0 - least;
+  // The phase near 2 pi is rounded to 1e-15, which the density 2.6e-4 there makes 4e-12 of s.
+  for (const double s : {0.05, 3.0, two_pi - 0.05}) EXPECT_NEAR(sharp.parameter_at(sharp, s), s, 1e-13);
+  for (const TimeMap& map : maps())
+    for (const TimeMap& other : maps())
+      for (const double s : {0.2, 1.9, 4.0}) EXPECT_NEAR(map.phase(map.parameter_at(other, s)), other.phase(s), 1e-14);
+}
+
 }  // namespace
 }  // namespace orbweaver::loop

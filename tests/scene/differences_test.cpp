@@ -61,6 +61,7 @@ const std::map<std::string, Case> cases{
     {"survey.team_size", {"1", "2", Change::free}},
     {"limits.period", {"30.0", "31", Change::widened}},
     {"limits.energy", {"[-.inf, .inf]", "[-10, .inf]", Change::narrowed}},
+    {"limits.guards", {"", ""}},  // none in a system without guards: tested below
     {"limits.families", {"1000", "999", Change::narrowed}},
     {"limits.steps", {"5000", "5001", Change::widened}},
     {"limits.time", {".inf", "60", Change::free}},
@@ -156,6 +157,26 @@ TEST(Differences, LimitsAreWiderOnlyIfNoEndMovesInward) {
   EXPECT_EQ(change("limits.energy=[-2, 2]", "limits.energy=[-1, 3]"), Change::narrowed);
   EXPECT_EQ(change("limits.energy=[-2, 2]", "limits.energy=[-3, 1]"), Change::narrowed);
   EXPECT_EQ(change("limits.time=20", "limits.time=10"), Change::free);
+}
+
+TEST(Differences, GuardsAreLimitsOfTheirOwn) {
+  const auto of = [](const std::string& guards) {
+    return scene::parse("system: {name: pcr3bp}\nstarts: {}\n", "base.yaml", {"limits.guards=" + guards});
+  };
+  const auto found = [&](const std::string& before, const std::string& now) {
+    return differences(of(before), of(now));
+  };
+  EXPECT_THAT(found("{}", "{}"), IsEmpty());
+  EXPECT_THAT(found("{r2: 0.0045}", "{r2: 4.5e-3}"), IsEmpty());
+  const auto lower = found("{r1: 0.1, r2: 0.0045}", "{r1: 0.1, r2: 0.001}");
+  ASSERT_EQ(lower.size(), 1U);
+  EXPECT_EQ(lower[0].key, "limits.guards.r2");
+  EXPECT_EQ(lower[0].limit, scene::LimitKey::guards);
+  EXPECT_EQ(lower[0].before + " " + lower[0].now, "0.0045 0.001");
+  EXPECT_EQ(lower[0].change, Change::widened);
+  EXPECT_EQ(found("{r2: 0.001}", "{r2: 0.0045}").at(0).change, Change::narrowed);
+  EXPECT_EQ(found("{r2: 0.001}", "{}").at(0).change, Change::widened);
+  EXPECT_EQ(found("{}", "{r2: 0.001}").at(0).change, Change::narrowed);
 }
 
 TEST(Differences, LimitsAreNamed) {

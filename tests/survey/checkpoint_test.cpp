@@ -275,6 +275,10 @@ TEST(WidenedLimits, AreKnownByTheirKeys) {
   EXPECT_EQ(limits({"limits.period=12", "limits.steps=10", "limits.energy=[-3,1]"}), period_limited);
   EXPECT_EQ(limits({"limits.period=10", "limits.steps=11", "limits.energy=[-3,2]"}), step_limited | energy_limited);
   EXPECT_EQ(limits({"limits.period=10", "limits.steps=10", "limits.energy=[-3,1]", "survey.depth=1"}), depth_limited);
+  const auto guarded = [](const std::string& guards) {
+    return scene::parse("system: {name: pcr3bp}\nstarts: {}\n", "guards.yaml", {"limits.guards=" + guards});
+  };
+  EXPECT_EQ(widened_limits(guarded("{r2: 0.01}"), guarded("{r2: 0.005}")), guard_limited);
 }
 
 }  // namespace

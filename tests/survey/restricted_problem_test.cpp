@@ -96,6 +96,52 @@ TEST(RestrictedProblem, FamiliesAreBornAtTriplingsWithoutReversor) {
   const std::string end = atlas.end_of("SfT3");
   EXPECT_NE(end.find("forwards: joined Short-4 at T = 19.1077714"), std::string::npos) << end;
   EXPECT_NE(end.find("backwards: joined Short-4 at T = 19.1077714"), std::string::npos) << end;
+/// The Lyapunov family of the Earth and Moon's L2, which runs into the Moon.
+scene::Scene second_family(const std::vector<std::string>& more) {
+  std::vector<std::string> overrides{
+      "starts.fixed_points.grid=[[1.156], [0]]", "starts.fixed_points.names={[1.1556821654, 0]: [L2]}",
+      "starts.fixed_points.letters={}", "starts.sweep.period=[3, 3.6]", "survey.depth=0"};
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  return scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_earth_moon.yaml", overrides);
+}
+
+TEST(RestrictedProblem, AFamilyEndsAtTheLimitOfAGuard) {
+  // Hit from other first steps too (tests/continuation/guards_test.cpp).
+  constexpr double energy = -1.450664;
+  const core::Communicator comm;
+  const survey::Summary summary = test::run(comm, second_family({"limits.guards={r2: 0.0045}"}), "guard");
+  EXPECT_EQ(summary.failures, 0U);
+  if (!comm.is_root()) return;
+  const test::Atlas atlas(summary.atlas);
+  EXPECT_EQ(atlas.end_of("L2"), "guard limit (r2 = 0.0045)");
+  EXPECT_NEAR(atlas.column("energy", "L2").back(), energy, 1e-6);
+}
+
+TEST(RestrictedProblem, ALowerLimitOfAGuardGoesOnFromTheFamilysEnd) {
+  const core::Communicator comm;
+  const scene::Scene low = second_family({"limits.guards={r2: 0.0045}"});
+  const scene::Scene high = second_family({"limits.guards={r2: 0.03}"});
+  const auto system = systems::make_system(low.system.name, low.system.parameters, low.system.effects);
+  const auto folder = test::fresh_folder("widened" + std::to_string(comm.size()), comm.get());
+  (void)survey::run_survey(comm, high, system, folder, {});
+  survey::RunOptions resumed;
+  resumed.resume = true;
+  const survey::Summary widened = survey::run_survey(comm, low, system, folder, resumed);
+  const survey::Summary whole = test::run(comm, low, "whole");
+  if (!comm.is_root()) return;
+  const test::Atlas a(widened.atlas);
+  const test::Atlas b(whole.atlas);
+  EXPECT_EQ(a.end_of("L2"), "guard limit (r2 = 0.0045)");
+  for (const char* column : {"period", "energy", "arclength"})
+    EXPECT_EQ(a.column(column, "L2"), b.column(column, "L2"));
+}
+
+TEST(RestrictedProblem, AFamilyThatCollidesSaysWithWhat) {
+  const core::Communicator comm;
+  const survey::Summary summary = test::run(comm, second_family({"continuation.cutoff=[8, 100]"}), "collision");
+  EXPECT_EQ(summary.failures, 0U);
+  if (!comm.is_root()) return;
+  EXPECT_EQ(test::Atlas(summary.atlas).end_of("L2").find("collision with the smaller body (r2 = 0.0"), 0U);
 }
 
 }  // namespace

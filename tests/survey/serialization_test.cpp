@@ -92,7 +92,7 @@ TEST(Travellers, LoopsThatAreNoneAreRefused) {
 }
 
 TEST(Travellers, LimitsAndEnumsThatAreNoneAreRefused) {
-  expect_refused(StartOutcome{16}, "limits 0x10");
+  expect_refused(StartOutcome{32}, "limits 0x20");
   BranchOutcome outcome;
   outcome.limited_by = 32;
   expect_refused(outcome, "limits 0x20");

@@ -42,7 +42,7 @@ class Springs {
     swap(0, 1) = swap(1, 0) = swap(2, 3) = swap(3, 2) = 1.0;
     Structure structure;
     structure.dimension = dimension;
-    structure.guards = {"distance to (1, 0)", "speed"};
+    structure.guards = {{"distance to (1, 0)", "the point (1, 0)"}, {"speed", "rest"}};
     structure.equivariances = {{"S", mirror}};
     const bool equal = bound["a"] == bound["b"];
     if (equal) structure.equivariances.push_back({"X", swap});
@@ -157,7 +157,7 @@ TEST(Structure, HoldsForTheField) {
 
 TEST(Structure, GuardsAreFunctionsOfTheState) {
   const auto system = springs({});
-  EXPECT_EQ(system->structure().guards, (Names{"distance to (1, 0)", "speed"}));
+  EXPECT_EQ(system->structure().guard_names(), (Names{"distance to (1, 0)", "speed"}));
   const std::vector<double> z{1.0, 0.5, 3.0, 4.0};
   EXPECT_EQ(system->guard(0, z), 0.5);
   EXPECT_EQ(system->guard(1, z), 5.0);

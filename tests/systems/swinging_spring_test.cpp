@@ -53,7 +53,7 @@ TEST(SwingingSpring, EnergyAndActionAreKnownValues) {
   const std::vector<double> z{1.5, -2.0, 3.0, -4.0};  // r = 2.5, stretched by 1
   EXPECT_DOUBLE_EQ(system->action_density(z), 50.0);
   EXPECT_DOUBLE_EQ(system->conserved(0, z), 25.0 + 4.0 - 40.0);
-  ASSERT_EQ(system->structure().guards, std::vector<std::string>{"r"});
+  ASSERT_EQ(system->structure().guard_names(), std::vector<std::string>{"r"});
   EXPECT_EQ(system->guard(0, z), 2.5);
 }
 

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -50,6 +51,8 @@ struct Options {
   double period_limit = std::numeric_limits<double>::infinity();
   double energy_from = -std::numeric_limits<double>::infinity();
   double energy_to = std::numeric_limits<double>::infinity();
+  /// Least values of the system's guards, by name: Branch throws MisuseError for one that it does not have.
+  std::map<std::string, double> guard_limits{};
   int step_limit = 5000;             ///< orbits of the branch
   bool off_branch_spectrum = false;  ///< the paper's minimum off-branch eigenvalue at every orbit
   /// Whether a step has gone over to another family, which nothing but the two orbits may decide. Then a shorter one is

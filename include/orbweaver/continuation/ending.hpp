@@ -11,9 +11,11 @@ namespace orbweaver::continuation {
 enum class EndReason {
   period_limit,  ///< the scene's limit; the last orbit has exactly that period
   energy_limit,  ///< the scene's limit; the last orbit has exactly that energy
+  guard_limit,   ///< the scene's limit; the smallest value of a guard over the last orbit is exactly that
   step_limit,
   cutoff_limit,       ///< the next orbit needs more harmonics than the scene allows
   period_divergence,  ///< T grows without bound at settled energy, and double precision or the cutoff ends it
+  collision,          ///< the smallest value of a guard fell to nothing, and double precision or the cutoff ends it
   fixed_point,        ///< the amplitude shrank to nothing
   closed_loop,        ///< back at the first orbit
   stopped,            ///< the observer asked for it
@@ -26,16 +28,17 @@ enum class EndReason {
 /// A branch's end in a form to print and to store.
 struct Ending {
   EndReason reason = EndReason::failure;
-  std::string detail;  ///< numbers that go with it; never empty
+  std::string detail;    ///< numbers that go with it; never empty
+  std::string object{};  ///< what the reason is about ("with the smaller body"); empty where it says all
 
   [[nodiscard]] bool failed() const { return reason == EndReason::failure; }
-  /// "period limit (T = 30)".
+  /// "period limit (T = 30)", "collision with the smaller body (r2 = 1e-05 at T = 9)".
   [[nodiscard]] std::string text() const;
 
-  static constexpr int wire_version = 1;
+  static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, reason, detail);
+    core::serialize_members(archive, reason, detail, object);
   }
 };
 

@@ -48,6 +48,19 @@ struct ProblemState {
   }
 };
 
+/// How near the orbits of a branch have come to the zeros of one guard.
+struct GuardTrace {
+  double least = 0.0;           ///< smallest value over the last orbit
+  double fallen_from = 0.0;     ///< that of the orbit at which it last rose; of the first one if it never did
+  std::vector<double> earlier;  ///< those of some orbits before the last one, oldest first
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, least, fallen_from, earlier);
+  }
+};
+
 /// Everything a step depends on: a step is a pure function of it and of the options.
 struct Frontier {
   Orbit orbit;               ///< the last one, as it was accepted
@@ -61,14 +74,18 @@ struct Frontier {
   double earlier_period = 0.0;
   double farthest = 0.0;           ///< largest change of amplitude or relative change of T from orbit 0 so far
   bool on_energy_limit = false;    ///< `orbit` is the last one, at the scene's energy limit
+  std::vector<GuardTrace> guards;  ///< one a guard of the structure
+  int on_guard_limit = -1;         ///< the guard at whose limit `orbit` is the last one
+  double threshold = 0.0;          ///< under which sqrt(loss) of `orbit` was accepted
   std::vector<TracePoint> points;  ///< the last ones, oldest first; the start itself is the very first
   ProblemState problem;
 
-  static constexpr int wire_version = 1;
+  static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, orbit, tangent, next_length, last_increment, first, first_energy, first_amplitude,
-                            earlier_energy, earlier_period, farthest, on_energy_limit, points, problem);
+                            earlier_energy, earlier_period, farthest, on_energy_limit, guards, on_guard_limit, threshold, points,
+                            problem);
   }
 };
 

@@ -69,6 +69,7 @@ struct Limits {
   double period = 30.0;
   double energy_from = -std::numeric_limits<double>::infinity();
   double energy_to = std::numeric_limits<double>::infinity();
+  std::map<std::string, double> guards;  ///< least values of the system's guards, by name; one left out has no limit
   int families = 1000;
   int steps = 5000;
   double time = std::numeric_limits<double>::infinity();       ///< of the whole survey, seconds of wall clock

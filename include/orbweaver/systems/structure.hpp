@@ -15,19 +15,30 @@ struct Symmetry {
   AffineMap map;
 };
 
+/// A positive function of the state whose zeros orbits must not meet: there the field is not finite.
+struct Guard {
+  std::string name;  ///< "r2"
+  std::string body;  ///< what is met where it is zero: "the smaller body"
+};
+
 /// What holds for a system with its parameter values and effects. Everything that other layers do depends on this and
 /// on the field alone.
 struct Structure {
   int dimension = 0;
   std::vector<int> angles;              ///< indices of the coordinates that live on a circle of 2 pi and may wind
   std::vector<std::string> conserved;   ///< names of the conserved quantities; values and gradients are System's
-  std::vector<std::string> guards;      ///< names of the positive functions whose zeros orbits must not meet
+  std::vector<Guard> guards;            ///< their values are System's
   std::vector<Symmetry> equivariances;  ///< S with f(S z) = S' f(z) (S': its matrix), identity excluded
   std::vector<Symmetry> reversors;  ///< R with f(R z) = -R' f(z), in the order in which they are preferred for s = 0
   bool symplectic = false;          ///< multipliers come in pairs mu, 1/mu
 
   [[nodiscard]] bool is_angle(std::size_t coordinate) const {
     return std::find(angles.begin(), angles.end(), static_cast<int>(coordinate)) != angles.end();
+  }
+  [[nodiscard]] std::vector<std::string> guard_names() const {
+    std::vector<std::string> names;
+    for (const Guard& guard : guards) names.push_back(guard.name);
+    return names;
   }
   [[nodiscard]] bool has_angles() const { return !angles.empty(); }
   [[nodiscard]] bool conservative() const { return !conserved.empty(); }

@@ -96,8 +96,10 @@ int nodes_for(const Loop& loop) {
   return of_map <= nodes ? nodes : FourierGrid::nodes_at_least(of_map);
 }
 
-Samples samples_of(const Loop& loop) {
-  Samples out{nodes_for(loop), {}, {}};
+Samples samples_of(const Loop& loop) { return samples_of(loop, nodes_for(loop)); }
+
+Samples samples_of(const Loop& loop, int nodes) {
+  Samples out{nodes, {}, {}};
   const auto n = static_cast<std::size_t>(out.nodes);
   out.weights = weights_of(loop.time_map, out.nodes);
   out.states.resize(static_cast<std::size_t>(loop.dimension) * n);

@@ -43,7 +43,7 @@ std::vector<double> periodic_part_at(const Loop& loop, std::span<const double> s
 std::vector<double> matching_parameters(const TimeMap& target, int nodes, const TimeMap& source) {
   std::vector<double> s(static_cast<std::size_t>(nodes));
   for (std::size_t j = 0; j < s.size(); ++j)
-    s[j] = source.inverse(target.phase(two_pi * static_cast<double>(j) / nodes));
+    s[j] = source.parameter_at(target, two_pi * static_cast<double>(j) / nodes);
   return s;
 }
 

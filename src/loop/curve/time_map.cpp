@@ -24,17 +24,19 @@ constexpr int newton_bits = 30;
 constexpr double whole = 1e-12;  // turns that differ from a whole number by less are rounding
 
 // cos ks and sin ks, from k to k + 1 by one turn.
+template <class Real>
 struct Wave {
-  double cosine;
-  double sine;
-  void turn(double c, double s) {
-    const double next = cosine * c - sine * s;
+  Real cosine;
+  Real sine;
+  void turn(Real c, Real s) {
+    const Real next = cosine * c - sine * s;
     sine = sine * c + cosine * s;
     cosine = next;
   }
 };
 
-double pulse_density(double kappa, double cosine, double sine) {
+template <class Real>
+Real pulse_density(double kappa, Real cosine, Real sine) {
   return kappa / (cosine * cosine + kappa * kappa * sine * sine);
 }
 
@@ -48,25 +50,34 @@ int pulse_harmonics(double kappa) {
 }
 
 // Both at once: they share the harmonics.
-std::pair<double, double> phase_and_density(const TimeMap& map, double s) {
-  const double sine = std::sin(s);
-  const double cosine = std::cos(s);
-  double phase = s;
-  double density = 1.0;
+template <class Real>
+std::pair<Real, Real> phase_and_density(const TimeMap& map, Real s) {
+  const Real sine = std::sin(s);
+  const Real cosine = std::cos(s);
+  Real phase = s;
+  Real density = 1;
   if (map.kappa != 1.0) {
-    phase += std::atan2((map.kappa - 1.0) * sine * cosine, cosine * cosine + map.kappa * sine * sine);
+    phase += std::atan2((Real(map.kappa) - 1) * sine * cosine, cosine * cosine + map.kappa * sine * sine);
     density = pulse_density(map.kappa, cosine, sine);
   }
-  Wave wave{cosine, sine};
+  Wave<Real> wave{cosine, sine};
   for (std::size_t n = 0; 2 * n + 1 < map.coefficients.size(); ++n) {
     const double c = map.coefficients[2 * n];
     const double d = map.coefficients[2 * n + 1];
-    phase += (c * wave.sine + d * (1.0 - wave.cosine)) / static_cast<double>(n + 1);
+    phase += (c * wave.sine + d * (1 - wave.cosine)) / static_cast<Real>(n + 1);
     density += c * wave.cosine + d * wave.sine;
     wave.turn(cosine, sine);
   }
   return {phase, density};
 }
+
+// A density that is a small difference of its coefficients, which are about 1, is summed in long double: to double the
+// rounding of its terms, over the density, would show as noise in the harmonics of what runs under the map.
+constexpr double small_density = 0.019;  // below the least that maps have where nothing is guarded (time_map_fit.hpp)
+bool needs_more_digits(const TimeMap& map, double density) {
+  return density < small_density && !map.coefficients.empty();
+}
+constexpr int polishing_steps = 2;  // of Newton's method from a parameter that is right but for rounding
 
 }  // namespace
 
@@ -76,7 +87,23 @@ bool TimeMap::is_identity() const {
 
 double TimeMap::phase(double s) const { return phase_and_density(*this, s).first; }
 
-double TimeMap::density(double s) const { return phase_and_density(*this, s).second; }
+double TimeMap::density(double s) const {
+  const double rounded = phase_and_density(*this, s).second;
+  return needs_more_digits(*this, rounded) ? static_cast<double>(phase_and_density<long double>(*this, s).second)
+                                           : rounded;
+}
+
+double TimeMap::parameter_at(const TimeMap& other, double s) const {
+  const double rounded = inverse(other.phase(s));
+  if (!needs_more_digits(*this, phase_and_density(*this, rounded).second)) return rounded;
+  const long double wanted = phase_and_density<long double>(other, s).first;
+  long double better = rounded;
+  for (int n = 0; n < polishing_steps; ++n) {
+    const auto [phase, slope] = phase_and_density<long double>(*this, better);
+    better += (wanted - phase) / slope;
+  }
+  return static_cast<double>(better);
+}
 
 double TimeMap::inverse(double phase_wanted) const {
   const double turns = std::floor(phase_wanted / two_pi);
@@ -146,6 +173,8 @@ std::vector<double> densities(const TimeMap& map, int nodes) {
       const double s = two_pi * static_cast<double>(j) / nodes;
       out[j] += pulse_density(map.kappa, std::cos(s), std::sin(s)) - 1.0;
     }
+  for (std::size_t j = 0; j < out.size(); ++j)
+    if (needs_more_digits(map, out[j])) out[j] = map.density(two_pi * static_cast<double>(j) / nodes);
   return out;
 }
 

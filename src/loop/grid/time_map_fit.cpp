@@ -13,8 +13,6 @@ namespace orbweaver::loop {
 namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
-/// A fiftieth of the even density at least: below it the slow parts of the orbit would be resolved too coarsely.
-constexpr double least_density = 0.02;
 /// Below the squares of all derivatives: keeps logarithms finite.
 constexpr double tiny_square = 1e-300;
 /// Coefficients of a density of mean 1 that differ by less are rounding.
@@ -23,6 +21,12 @@ constexpr double same_coefficient = 1e-14;
 /// noise.
 constexpr int first_order = 4;
 constexpr int last_order = 7;
+
+/// Of a map's least density: what the harmonics that it leaves out may add up to, so that it stays positive and its
+/// fast parts lie where the orbit is fast.
+constexpr double negligible_density = 1e-4;
+/// Nodes of a density that is fitted, at least: sharp ones have 20 to 80 harmonics.
+constexpr int least_fit_nodes = 512;
 
 // Candidates that would need more harmonics than the loop has are no gain: they count as that many.
 TimeMapFit under(const Loop& loop, const TimeMap& map, double tolerance) {
@@ -127,7 +131,7 @@ TimeMap with_least_density(TimeMap map, double least) {
   return map;
 }
 
-TimeMapFit fit_general(const Loop& loop, const Isotropy& isotropy, double tolerance, int most) {
+TimeMapFit fit_general(const Loop& loop, const Isotropy& isotropy, double tolerance, int most, double least) {
   core::require(most >= 1, "a general time map needs at least one harmonic");
   const Loop shorter = without_tail(loop, tolerance);
   if (harmonics_above(shorter, tolerance) == 0) return {};
@@ -148,7 +152,51 @@ TimeMapFit fit_general(const Loop& loop, const Isotropy& isotropy, double tolera
     map.coefficients.push_back(low_pass * c);
     map.coefficients.push_back(low_pass * d);
   }
-  return under(shorter, with_least_density(map, least_density), tolerance);
+  return under(shorter, with_least_density(map, least), tolerance);
+}
+
+namespace {
+
+// The map with this density, of mean 1 and given at nodes.
+TimeMap with_density(const std::vector<double>& density, int harmonics) {
+  std::vector<double> modes(2 * static_cast<std::size_t>(harmonics) + 1);
+  FourierGrid::of_size(static_cast<int>(density.size())).analyze(harmonics, 1, density.data(), modes.data());
+  return {1.0, {modes.begin() + 1, modes.end()}};
+}
+
+// The harmonics of a map after which the others together are below a part of its least density.
+std::size_t harmonics_that_count(const TimeMap& map, double least) {
+  std::size_t count = map.coefficients.size() / 2;
+  for (double rest = 0.0; count > 0; --count) {
+    rest += std::hypot(map.coefficients[2 * count - 2], map.coefficients[2 * count - 1]);
+    if (rest > negligible_density * least) break;
+  }
+  return count;
+}
+
+}  // namespace
+
+TimeMapFit fit_to_rate(const Loop& loop, const Rate& rate, const Isotropy& isotropy, double tolerance) {
+  const Loop shorter = without_tail(loop, tolerance);
+  if (harmonics_above(shorter, tolerance) == 0) return {};
+  const Samples samples = samples_of(shorter);
+  std::vector<double> own = rate(samples);  // d(new s)/d(own s), of mean 1
+  double mean = 0.0;
+  for (std::size_t j = 0; j < own.size(); ++j) mean += own[j] *= samples.weights[j];
+  for (double& v : own) v /= mean / samples.nodes;
+  const TimeMap to_new = with_density(own, (samples.nodes - 1) / 2);
+  const int fine = FourierGrid::nodes_at_least(std::max(least_fit_nodes, FourierGrid::nodes_for(shorter.cutoff)));
+  std::vector<double> density(static_cast<std::size_t>(fine));
+  for (int j = 0; j < fine; ++j) {
+    const double before = to_new.inverse(two_pi * j / fine);
+    density[static_cast<std::size_t>(j)] = shorter.time_map.density(before) / to_new.density(before);
+  }
+  TimeMap map = with_density(density, (fine - 1) / 2);
+  map.coefficients.resize(2 * harmonics_that_count(map, *std::min_element(density.begin(), density.end())));
+  for (std::size_t n = 0; 2 * n < map.coefficients.size(); ++n)
+    for (const SymmetryElement& g : isotropy)
+      make_invariant(g, static_cast<int>(n + 1), map.coefficients[2 * n], map.coefficients[2 * n + 1]);
+  return under(shorter, map, tolerance);
 }
 
 bool is_invariant(const TimeMap& map, const Isotropy& isotropy) {

@@ -19,8 +19,7 @@ int limits_of(const EndedTask& entry) {
     case TaskKind::branch: return outcome.empty() ? 0 : unpack_branch_outcome(outcome).limited_by;
     case TaskKind::locate: return outcome.empty() ? 0 : unpack_locate_outcome(outcome).limited_by;
     // One that failed may have been driven beyond a limit on the way.
-    case TaskKind::start:
-      return entry.had_children ? unpack_start_outcome(outcome).limited_by : period_limited | energy_limited;
+    case TaskKind::start: return entry.had_children ? unpack_start_outcome(outcome).limited_by : orbit_limited;
     case TaskKind::sweep: break;
   }
   return 0;
@@ -35,6 +34,7 @@ int widened_limits(const scene::Scene& before, const scene::Scene& now) {
     switch (*difference.limit) {
       case scene::LimitKey::period: limits |= period_limited; break;
       case scene::LimitKey::energy: limits |= energy_limited; break;
+      case scene::LimitKey::guards: limits |= guard_limited; break;
       case scene::LimitKey::steps: limits |= step_limited; break;
       case scene::LimitKey::depth: limits |= depth_limited; break;
       case scene::LimitKey::families: break;  // families left out wait in the checkpoint, and are asked again

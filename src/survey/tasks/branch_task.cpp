@@ -91,8 +91,7 @@ queue::TaskOutcome BranchTask::run() {
     if (!_stopped) finish();
   } catch (const std::exception& error) {  // here, not in the queue, so that the summary still counts the orbits kept
     ending = {continuation::EndReason::failure, error.what()};
-    if (_outcome.limited_by == 0)
-      _outcome.limited_by = period_limited | energy_limited;  // from its start: where it stands is not known
+    if (_outcome.limited_by == 0) _outcome.limited_by = orbit_limited;  // from its start: where it stands is not known
   }
   _outcome.end = ending;
   if (_outcome.tolerance_met > 0.0)
@@ -122,8 +121,10 @@ continuation::Ending BranchTask::follow() {
       return ending;
     }
     // The branch ends with an orbit on a limit, which it would not have under a wider one: no state may hold it.
-    const bool on_limit = orbit->loop.period >= _options.period_limit || _branch->restart_frontier().on_energy_limit;
-    if (on_limit) limited_by(period_limited | energy_limited, before);
+    const continuation::Frontier& there = _branch->restart_frontier();
+    const bool on_limit =
+        orbit->loop.period >= _options.period_limit || there.on_energy_limit || there.on_guard_limit >= 0;
+    if (on_limit) limited_by(orbit_limited, before);
     const double period = orbit->loop.period * units().time;
     if (!take(*orbit)) return met();
     if (on_limit) continue;
@@ -144,10 +145,12 @@ void BranchTask::note_limits(const continuation::Ending& ending, const continuat
     case EndReason::step_limit: return limited_by(step_limited, before);
     case EndReason::period_limit:
     case EndReason::energy_limit:
+    case EndReason::guard_limit:
     // On the way to an orbit on a limit, perhaps.
     case EndReason::cutoff_limit:
     case EndReason::period_divergence:
-    case EndReason::failure: return limited_by(period_limited | energy_limited, before);
+    case EndReason::collision:
+    case EndReason::failure: return limited_by(orbit_limited, before);
     default: return;
   }
 }

@@ -53,7 +53,7 @@ queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const 
     const std::optional<continuation::Orbit> orbit = branch.advance();
     if (!orbit) {
       const continuation::Ending ending = branch.ending().value();
-      if (!ending.failed()) outcome.limited_by = period_limited | energy_limited;
+      if (!ending.failed()) outcome.limited_by = orbit_limited;
       if (ending.failed() || why) {  // a limit reached from further out says nothing of this family
         if (!why) why = ending.text();
         continue;

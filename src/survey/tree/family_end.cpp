@@ -24,9 +24,11 @@ std::string_view name_of(EndKind kind) {
   switch (kind) {
     case EndKind::period_limit: return continuation::name_of(EndReason::period_limit);
     case EndKind::energy_limit: return continuation::name_of(EndReason::energy_limit);
+    case EndKind::guard_limit: return continuation::name_of(EndReason::guard_limit);
     case EndKind::step_limit: return continuation::name_of(EndReason::step_limit);
     case EndKind::cutoff_limit: return continuation::name_of(EndReason::cutoff_limit);
     case EndKind::period_divergence: return continuation::name_of(EndReason::period_divergence);
+    case EndKind::collision: return continuation::name_of(EndReason::collision);
     case EndKind::fixed_point: return continuation::name_of(EndReason::fixed_point);
     case EndKind::closed_loop: return continuation::name_of(EndReason::closed_loop);
     case EndKind::stopped: return continuation::name_of(EndReason::stopped);

@@ -17,6 +17,8 @@ struct Samples {
   std::vector<double> states;   ///< dimension x nodes, component-major, windings included
 };
 [[nodiscard]] Samples samples_of(const Loop& loop);
+/// The same at that many nodes, more than twice the cutoff.
+[[nodiscard]] Samples samples_of(const Loop& loop, int nodes);
 
 /// sqrt of the mean over a period of |z(t) - w(t)|^2, periods scaled to one; cutoffs and time maps may differ,
 /// dimensions and windings must agree. By Parseval's equation where both maps are the identity.

@@ -26,6 +26,10 @@ struct TimeMap {
   /// The s with phase(s) = `phase`, to rounding.
   [[nodiscard]] double inverse(double phase) const;
 
+  /// The s at which this map's time is that of `other` at `s`, to rounding: what inverse(other.phase(s)) is, but for
+  /// the rounding of the phase, which counts 1/density times.
+  [[nodiscard]] double parameter_at(const TimeMap& other, double s) const;
+
   /// True if phase(s + 2 pi turns) = phase(s) + 2 pi turns for all s: only every q-th coefficient for turns = p/q, and
   /// half turns where kappa is not 1.
   [[nodiscard]] bool is_invariant_under_shift(double turns) const;

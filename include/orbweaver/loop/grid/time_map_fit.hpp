@@ -1,6 +1,10 @@
 #pragma once
 
+#include <functional>
+#include <vector>
+
 #include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 
 namespace orbweaver::loop {
@@ -11,6 +15,9 @@ struct TimeMapFit {
   int harmonics = 0;
 };
 
+/// A fiftieth of the even density at least: below it the slow parts of the orbit would be resolved too coarsely.
+inline constexpr double least_density = 0.02;
+
 /// The highest k with sqrt(|a_k|^2 + |b_k|^2) > `tolerance`; 0 if there is none.
 [[nodiscard]] int harmonics_above(const Loop& loop, double tolerance);
 
@@ -20,8 +27,16 @@ struct TimeMapFit {
 
 /// Up to `most` harmonics of density, from the distance of the loop's singularities in complex time as its derivatives
 /// of order 4 to 7 show it: s advances in proportion to (|z^(q)| / q!)^(1/q). Invariant under `isotropy`, density >=
-/// 0.02.
-[[nodiscard]] TimeMapFit fit_general(const Loop& loop, const Isotropy& isotropy, double tolerance, int most = 16);
+/// `least`.
+[[nodiscard]] TimeMapFit fit_general(const Loop& loop, const Isotropy& isotropy, double tolerance, int most = 16,
+                                     double least = least_density);
+
+/// How fast s is to run, ds/dt > 0 in any unit, at the samples of a loop.
+using Rate = std::function<std::vector<double>(const Samples& samples)>;
+
+/// The map under which s runs at that rate, with as many harmonics of density as it takes; a smooth rate of any range
+/// will do. Invariant under `isotropy` as far as the rate is.
+[[nodiscard]] TimeMapFit fit_to_rate(const Loop& loop, const Rate& rate, const Isotropy& isotropy, double tolerance);
 
 /// True if the time map goes with the symmetries: they then act on the loop's harmonics as without a map.
 [[nodiscard]] bool is_invariant(const TimeMap& map, const Isotropy& isotropy);

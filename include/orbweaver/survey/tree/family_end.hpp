@@ -10,9 +10,11 @@ namespace orbweaver::survey {
 enum class EndKind {
   period_limit,
   energy_limit,
+  guard_limit,
   step_limit,
   cutoff_limit,
   period_divergence,
+  collision,
   fixed_point,
   closed_loop,
   stopped,
