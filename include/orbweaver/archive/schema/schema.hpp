@@ -12,6 +12,8 @@ namespace orbweaver::archive {
 inline constexpr const char* atlas_format = "orbweaver-atlas";
 inline constexpr const char* segment_format = "orbweaver-segment";
 inline constexpr int format_version = 1;
+/// Root attribute `format_minor`: it rises with every table, column or attribute that is added. 1: /findings.
+inline constexpr int format_minor = 1;
 
 enum class ColumnType { integer, real, text };
 
@@ -46,6 +48,7 @@ struct TableSpec {
 [[nodiscard]] TableSpec orbits_spec(const Header& header);
 [[nodiscard]] TableSpec crossings_spec(const Header& header);
 [[nodiscard]] TableSpec sections_spec(const Header& header);
+[[nodiscard]] TableSpec findings_spec();
 
 /// The tables of a segment: orbits and sections name their family by its key, since rows are not numbered yet.
 [[nodiscard]] TableSpec segment_orbits_spec(const Header& header);

@@ -1,15 +1,16 @@
-#include "compare/loop_check.hpp"
+#include "orbweaver/survey/atlas/loop_check.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "orbweaver/archive/read/loop_of.hpp"
 #include "orbweaver/bifurcation/identity.hpp"
+#include "orbweaver/continuation/family_curve.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
 #include "orbweaver/loop/symmetry/isotropy_text.hpp"
 
-namespace orbweaver::report {
+namespace orbweaver::survey {
 
 namespace {
 
@@ -47,6 +48,35 @@ LoopAnswer LoopCheck::ask(const OrbitBeside& x) const {
   return {found.same, found.distance, allowed, found.detail, found.decided};
 }
 
+LoopAnswer LoopCheck::ask_crossing(const AtlasTree& tree, std::size_t crossing, const TreeFamily& beside,
+                                   std::size_t segment) const {
+  const systems::Structure& system = _system->structure();
+  const TreeCrossing& place = tree.crossings[crossing];
+  const TreeFamily& family = tree.families[static_cast<std::size_t>(place.family)];
+  const double position = tree.atlas.crossings().reals("arclength")[crossing];
+  const auto after = std::upper_bound(family.arclengths.begin(), family.arclengths.end(), position);
+  LoopAnswer undecided;
+  undecided.decided = false;
+  if (after == family.arclengths.begin() || after == family.arclengths.end()) return undecided;
+  const auto next = static_cast<std::size_t>(after - family.arclengths.begin());
+  const continuation::Orbit from = orbit_of(tree, family, next - 1, system);
+  const continuation::Orbit to = orbit_of(tree, family, next, system);
+  continuation::FamilyCurve curve(_system, loop::isotropy_of(system, family.isotropy), {});
+  curve.add(family.arclengths[next - 1], from.loop);
+  curve.add(family.arclengths[next], loop::aligned(to.loop, loop::align(system, to.loop, from.loop)));
+  const std::optional<continuation::CurvePoint> there = curve.at(position);
+  if (!there) return undecided;
+  continuation::Orbit orbit;
+  orbit.loop = place.multiplicity == 1 ? there->loop : loop::repeated(there->loop, place.multiplicity);
+  orbit.energy = continuation::energy_of(*_system, orbit.loop);
+  orbit.action = continuation::action_of(*_system, orbit.loop);
+  const bifurcation::Comparison found = bifurcation::same_family(*_system, orbit_of(tree, beside, segment, system),
+                                                                 orbit_of(tree, beside, segment + 1, system),
+                                                                 loop::isotropy_of(system, beside.isotropy), orbit);
+  return {found.same, found.distance, bifurcation::IdentityOptions{}.tolerance * (1.0 + loop::rms_size(orbit.loop)),
+          found.detail, found.decided};
+}
+
 std::vector<LoopCheck::Sample> LoopCheck::sample(const AtlasTree& own, const TreeFamily& family, const AtlasTree& other,
                                                  const TreeFamily& beside, const std::vector<CurveFit>& fits,
                                                  int count) const {
@@ -70,4 +100,4 @@ bool LoopCheck::are_same(const AtlasTree& a, const TreeFamily& family_a, const A
   return samples.empty() || std::any_of(samples.begin(), samples.end(), [](const Sample& s) { return s.answer.same; });
 }
 
-}  // namespace orbweaver::report
+}  // namespace orbweaver::survey

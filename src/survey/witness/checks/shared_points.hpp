@@ -1,0 +1,118 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "orbweaver/archive/schema/crossing_kind.hpp"
+#include "witness/check.hpp"
+
+namespace orbweaver::survey {
+
+/// A family that passes through a crossing of another one is born there, ends there, or has a crossing there itself.
+class SharedPoints final : public Check {
+ public:
+  [[nodiscard]] std::vector<LoopQuestion> questions(const Evidence& evidence) const override {
+    std::vector<LoopQuestion> asked;
+    const std::map<int, std::vector<int>> known = places_known(evidence);
+    for (std::size_t row = 0; row < evidence.tree.crossings.size(); ++row) {
+      const TreeCrossing& crossing = evidence.tree.crossings[row];
+      if (!archive::has_sector(archive::crossing_kind_of(crossing.kind))) continue;
+      const Invariants x = born_at(evidence, crossing);
+      const double in_period = x.floor_of(Invariant::period);
+      const double in_energy = x.floor_of(Invariant::energy);
+      int last = -1;
+      for (const auto& [family, segment] :
+           evidence.index.near(x.value(Invariant::period), x.value(Invariant::energy), in_period, in_energy)) {
+        if (family == last || (family == crossing.family && crossing.multiplicity == 1)) continue;
+        if (is_known(evidence, known, family, x)) continue;
+        if (!evidence.family(family).curve.fit_near(x, segment, 0).fits()) continue;
+        last = family;
+        asked.push_back({crossing.family, 0, static_cast<int>(row), family, static_cast<int>(segment)});
+      }
+    }
+    return asked;
+  }
+
+  [[nodiscard]] std::vector<Finding> findings(const Evidence& evidence,
+                                              std::span<const Answered> answered) const override {
+    std::vector<Finding> found;
+    for (const auto& [question, reply] : answered) {
+      if (!reply.same && reply.decided) continue;
+      const TreeCrossing& crossing = evidence.crossing(question.crossing);
+      Finding finding;
+      finding.kind = FindingKind::shared_point;
+      finding.severity = reply.same ? Severity::contradiction : Severity::undecided;
+      finding.family = question.beside;
+      finding.other_family = question.family;
+      finding.crossing = question.crossing;
+      finding.period = crossing.multiplicity * crossing.period;
+      finding.energy = crossing.energy;
+      finding.deviation = reply.distance;
+      found.push_back(finding);
+    }
+    return found;
+  }
+
+ private:
+  /// Relative: what locations, and actions taken along dW/dE = T from the next stored orbit, may be off. A first look;
+  /// loops decide.
+  static constexpr double of_place = 1e-7;
+  static constexpr double of_action = 1e-3;
+
+  static bool is_near(const Invariants& x, double period, double energy) {
+    return std::abs(period - x.value(Invariant::period)) <= near_place * x.value(Invariant::period) &&
+           !(std::abs(energy - x.value(Invariant::energy)) > near_place * x.scale_of(Invariant::energy));
+  }
+  /// Crossings that lie closer, relative in period and energy, are one place.
+  static constexpr double near_place = 1e-5;
+
+  // The orbit at the crossing, gone around as what is born there.
+  static Invariants born_at(const Evidence& evidence, const TreeCrossing& crossing) {
+    const TreeFamily& family = evidence.family(crossing.family);
+    const double m = crossing.multiplicity;
+    double action = archive::not_computed;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Invariants& point : family.curve.points()) {
+      const double away = std::abs(point.value(Invariant::period) / crossing.period - 1.0) +
+                          std::abs(point.value(Invariant::energy) - crossing.energy) / crossing.energy_scale;
+      if (!(away < nearest)) continue;
+      nearest = away;
+      action = point.value(Invariant::action) + 0.5 * (point.value(Invariant::period) + crossing.period) *
+                                                    (crossing.energy - point.value(Invariant::energy));
+    }
+    Invariants x;
+    x.values = {m * crossing.period, crossing.energy, m * action, archive::not_computed, archive::not_computed};
+    x.scale = {m * crossing.period, crossing.energy_scale, std::abs(m * action), 1.0, 1.0};
+    for (std::size_t i = 0; i < x.floor.size(); ++i) x.floor[i] = of_place * x.scale[i];
+    x.floor[static_cast<std::size_t>(Invariant::action)] = of_action * x.scale_of(Invariant::action);
+    return x;
+  }
+
+  // Crossings where a family is born, ends, or that lie on it.
+  static std::map<int, std::vector<int>> places_known(const Evidence& evidence) {
+    std::map<int, std::vector<int>> known;
+    for (std::size_t row = 0; row < evidence.tree.families.size(); ++row) {
+      std::vector<int>& places = known[static_cast<int>(row)];
+      places = evidence.tree.families[row].crossings;
+      if (evidence.tree.families[row].crossing >= 0) places.push_back(evidence.tree.families[row].crossing);
+    }
+    for (const EndEvidence& end : evidence.known.tree.ends)
+      if (end.crossing >= 0) known[evidence.row_of(end.family)].push_back(end.crossing);
+    return known;
+  }
+
+  static bool is_known(const Evidence& evidence, const std::map<int, std::vector<int>>& known, int family,
+                       const Invariants& x) {
+    const std::vector<int>& places = known.at(family);
+    return std::any_of(places.begin(), places.end(), [&](int row) {
+      const TreeCrossing& place = evidence.crossing(row);
+      const double around = place.family == family ? 1.0 : place.multiplicity;
+      return is_near(x, around * place.period, place.energy);
+    });
+  }
+};
+
+}  // namespace orbweaver::survey
