@@ -151,7 +151,9 @@ TEST_F(BadFiles, AFileWithoutFindingsIsRead) {
 TEST_F(BadFiles, FindingsThatPointNowhereAreNamed) {
   const std::filesystem::path path = folder / "pointing.h5";
   const auto witness = [](const std::filesystem::path&) {
-    return std::optional(std::vector<FindingRecord>{{"cut", "limited-end", 99}});
+    std::vector<FindingRecord> findings(1);
+    findings[0].family = 99;
+    return std::optional(findings);
   };
   consolidate(MPI_COMM_SELF, {segment}, path, test::sample_header(),
               test::tables_of(test::sample_records(test::sample_header())), {}, witness);

@@ -61,6 +61,7 @@ TEST_F(Findings, ATableWithoutRowsIsThereWithoutAWitness) {
 
 TEST_F(Findings, AWitnessThatWasStoppedLeavesNoFile) {
   EXPECT_FALSE(write([](const std::filesystem::path&) { return std::nullopt; }));
+  if (!world.is_root()) return;  // who removes it
   EXPECT_FALSE(std::filesystem::exists(folder / "atlas.h5"));
   EXPECT_FALSE(std::filesystem::exists(folder / "atlas.h5.part"));
 }

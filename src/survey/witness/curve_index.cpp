@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace orbweaver::survey {
 
@@ -14,15 +15,25 @@ std::int64_t cell_of(double period) {
   return static_cast<std::int64_t>(std::floor(cells_per_factor * std::log(period)));
 }
 
+/// Of a step, beyond the orbits of a segment: as far as a parabola through three orbits goes beyond two of them.
+constexpr double beyond = 0.5;
+
+std::pair<double, double> range_of(const std::vector<Invariants>& points, std::size_t segment, Invariant i) {
+  double longest = 0.0;
+  for (std::size_t n = segment > 0 ? segment - 1 : 0; n + 1 < points.size() && n <= segment + 1; ++n)
+    longest = std::fmax(longest, std::abs(points[n + 1].value(i) - points[n].value(i)));
+  const auto [from, to] = std::minmax({points[segment].value(i), points[segment + 1].value(i)});
+  return {from - beyond * longest, to + beyond * longest};
+}
+
 }  // namespace
 
 CurveIndex::CurveIndex(const AtlasTree& tree) {
   for (std::size_t family = 0; family < tree.families.size(); ++family) {
     const std::vector<Invariants>& points = tree.families[family].curve.points();
     for (std::size_t n = 0; n + 1 < points.size(); ++n) {
-      const auto range = [&](Invariant i) { return std::minmax({points[n].value(i), points[n + 1].value(i)}); };
-      const auto [period_from, period_to] = range(Invariant::period);
-      const auto [energy_from, energy_to] = range(Invariant::energy);
+      const auto [period_from, period_to] = range_of(points, n, Invariant::period);
+      const auto [energy_from, energy_to] = range_of(points, n, Invariant::energy);
       if (!(period_from > 0.0) || !std::isfinite(period_to)) continue;
       for (std::int64_t cell = cell_of(period_from); cell <= cell_of(period_to); ++cell)
         _cells[cell].push_back(_entries.size());

@@ -20,7 +20,8 @@ class CurveIndex {
   explicit CurveIndex(const AtlasTree& tree);
 
   /// Those whose ranges of period and energy, widened by `in_period` and `in_energy` (absolute), hold the place; by
-  /// family, then segment. A NaN energy lies in all ranges.
+  /// family, then segment. A NaN energy lies in all ranges. A segment's range is that of its two orbits and of half a
+  /// step beyond, the longest of its own and those beside it: a family may turn between two orbits.
   [[nodiscard]] std::vector<Segment> near(double period, double energy, double in_period, double in_energy) const;
 
  private:

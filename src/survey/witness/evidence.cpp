@@ -28,6 +28,12 @@ Evidence::Evidence(const AtlasTree& tree_, std::shared_ptr<const systems::System
     to_row(end.crossing);
     for (int& nearby : end.nearby) to_row(nearby);
   }
+  for (const FailureEvidence& failure : known.tree.failures) failed.insert(row_of(failure.family));
+}
+
+Severity Evidence::severity_about(int row) const {
+  if (known.stopped_early) return Severity::cut;
+  return failed.contains(row) ? Severity::undecided : Severity::contradiction;
 }
 
 int Evidence::row_of(const std::string& key) const {

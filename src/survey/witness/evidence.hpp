@@ -1,12 +1,14 @@
 #pragma once
 
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "curve_index.hpp"
 #include "orbweaver/scene/scene.hpp"
 #include "orbweaver/survey/atlas/atlas_tree.hpp"
+#include "orbweaver/survey/witness/finding.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "tree/tree_evidence.hpp"
 
@@ -33,6 +35,7 @@ struct Evidence {
   const scene::Scene& scene;
   WitnessInput known;  ///< crossings are rows of the atlas
   CurveIndex index;
+  std::set<int> failed;  ///< rows of families that a failed task was about
 
   /// Row of the family with this key; -1: none.
   [[nodiscard]] int row_of(const std::string& key) const;
@@ -41,6 +44,8 @@ struct Evidence {
   [[nodiscard]] const std::string& key(int row) const { return known.family_keys[static_cast<std::size_t>(row)]; }
   /// The equilibrium at which the family, or what it descends from, begins; -1: unknown.
   [[nodiscard]] int equilibrium_of(int row) const;
+  /// Of what does not agree about a family: a failed task, or a stop, may be the reason.
+  [[nodiscard]] Severity severity_about(int row) const;
   /// Whether the map takes one equilibrium to the other, modulo whole turns.
   [[nodiscard]] bool is_image_by(const systems::AffineMap& map, int equilibrium, int other) const;
   /// Whether some symmetry of the system takes one equilibrium to another one.

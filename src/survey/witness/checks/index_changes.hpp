@@ -102,7 +102,7 @@ class IndexChanges final : public Check {
     const Invariants& x = evidence.family(row).curve.points()[orbit];
     Finding finding;
     finding.kind = FindingKind::index_change;
-    finding.severity = Severity::contradiction;
+    finding.severity = evidence.severity_about(row);
     finding.family = row;
     finding.period = x.value(Invariant::period);
     finding.energy = x.value(Invariant::energy);

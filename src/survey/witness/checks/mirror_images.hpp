@@ -53,7 +53,7 @@ class MirrorImages final : public Check {
     const TreeFamily& a = evidence.family(row);
     const TreeFamily& b = evidence.family(image);
     Finding finding;
-    finding.severity = Severity::contradiction;
+    finding.severity = std::max(evidence.severity_about(row), evidence.severity_about(image));
     finding.family = row;
     finding.other_family = image;
     compare_ends(evidence, finding, found);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -23,13 +24,17 @@ class SharedPoints final : public Check {
       const Invariants x = born_at(evidence, crossing);
       const double in_period = x.floor_of(Invariant::period);
       const double in_energy = x.floor_of(Invariant::energy);
-      int last = -1;
+      std::map<int, std::pair<double, std::size_t>> nearest;  // segment of each family
       for (const auto& [family, segment] :
            evidence.index.near(x.value(Invariant::period), x.value(Invariant::energy), in_period, in_energy)) {
-        if (family == last || (family == crossing.family && crossing.multiplicity == 1)) continue;
-        if (is_known(evidence, known, family, x)) continue;
-        if (!evidence.family(family).curve.fit_near(x, segment, 0).fits()) continue;
-        last = family;
+        if (family == crossing.family && crossing.multiplicity == 1) continue;
+        const double away = distance_from(evidence.family(family).curve.points(), segment, x);
+        const auto [known_one, is_new] = nearest.try_emplace(family, away, segment);
+        if (!is_new && away < known_one->second.first) known_one->second = {away, segment};
+      }
+      for (const auto& [family, place] : nearest) {
+        const auto& [away, segment] = place;
+        if (!std::isfinite(away) || is_known(evidence, known, family, x)) continue;
         asked.push_back({crossing.family, 0, static_cast<int>(row), family, static_cast<int>(segment)});
       }
     }
@@ -61,6 +66,27 @@ class SharedPoints final : public Check {
   /// loops decide.
   static constexpr double of_place = 1e-7;
   static constexpr double of_action = 1e-3;
+
+  // Sum of the distances from the segment's two orbits, in period, energy and action; infinite if the nearer one is
+  // further away than a step: a family may turn between the two. Loops decide.
+  static double distance_from(const std::vector<Invariants>& points, std::size_t segment, const Invariants& x) {
+    const auto step = [&](std::size_t n) { return std::sqrt(square_distance(points[n], points[n + 1], x)); };
+    double longest = step(segment);
+    if (segment > 0) longest = std::fmax(longest, step(segment - 1));
+    if (segment + 2 < points.size()) longest = std::fmax(longest, step(segment + 1));
+    const double from = std::sqrt(square_distance(points[segment], x, x));
+    const double to = std::sqrt(square_distance(points[segment + 1], x, x));
+    return std::fmin(from, to) <= longest + of_action ? from + to : std::numeric_limits<double>::infinity();
+  }
+
+  static double square_distance(const Invariants& a, const Invariants& b, const Invariants& x) {
+    double sum = 0.0;
+    for (const Invariant i : {Invariant::period, Invariant::energy, Invariant::action}) {
+      const double part = (a.value(i) - b.value(i)) / x.scale_of(i);
+      if (!std::isnan(part)) sum += part * part;
+    }
+    return sum;
+  }
 
   static bool is_near(const Invariants& x, double period, double energy) {
     return std::abs(period - x.value(Invariant::period)) <= near_place * x.value(Invariant::period) &&
