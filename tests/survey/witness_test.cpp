@@ -414,6 +414,25 @@ TEST_F(WitnessOf, EndsByLimits) {
   EXPECT_EQ(rows[0].family, row_named("StD"));
 }
 
+TEST_F(WitnessOf, EndsAtEquilibria) {
+  if (world->is_root()) {
+    input.equilibria = {{0.0, 0.0, 0.0, 0.0}};
+    // Straight's first orbit lies beside the equilibrium at the origin, its last one, around another place, does not.
+    for (const int side : {1, -1}) {
+      EndEvidence& end = add_end("Straight");
+      end.met = false;
+      end.side = side;
+      end.end->reason = continuation::EndReason::fixed_point;
+    }
+    for (archive::OrbitRecord& orbit : records.orbits)
+      if (orbit.family_key == key_named("Straight") && orbit.period > 8.4) orbit.modes[1] += 5.0;
+  }
+  const std::vector<Found> rows = found();
+  if (!world->is_root()) return;
+  ASSERT_THAT(rows, ElementsAre(finding("undecided", "unknown-equilibrium")));
+  EXPECT_NEAR(rows[0].period, 8.4172, 1e-3);
+}
+
 TEST_F(WitnessOf, MirrorImagesThatAgree) {
   if (world->is_root()) add_image_of_straight();
   const std::vector<Found> rows = found();

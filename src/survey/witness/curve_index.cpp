@@ -18,7 +18,9 @@ std::int64_t cell_of(double period) {
 /// Of a step, beyond the orbits of a segment: as far as a parabola through three orbits goes beyond two of them.
 constexpr double beyond = 0.5;
 
-std::pair<double, double> range_of(const std::vector<Invariants>& points, std::size_t segment, Invariant i) {
+}  // namespace
+
+std::pair<double, double> range_beyond(const std::vector<Invariants>& points, std::size_t segment, Invariant i) {
   double longest = 0.0;
   for (std::size_t n = segment > 0 ? segment - 1 : 0; n + 1 < points.size() && n <= segment + 1; ++n)
     longest = std::fmax(longest, std::abs(points[n + 1].value(i) - points[n].value(i)));
@@ -26,15 +28,15 @@ std::pair<double, double> range_of(const std::vector<Invariants>& points, std::s
   return {from - beyond * longest, to + beyond * longest};
 }
 
-}  // namespace
-
 CurveIndex::CurveIndex(const AtlasTree& tree) {
   for (std::size_t family = 0; family < tree.families.size(); ++family) {
     const std::vector<Invariants>& points = tree.families[family].curve.points();
     for (std::size_t n = 0; n + 1 < points.size(); ++n) {
-      const auto [period_from, period_to] = range_of(points, n, Invariant::period);
-      const auto [energy_from, energy_to] = range_of(points, n, Invariant::energy);
-      if (!(period_from > 0.0) || !std::isfinite(period_to)) continue;
+      auto [period_from, period_to] = range_beyond(points, n, Invariant::period);
+      const auto [energy_from, energy_to] = range_beyond(points, n, Invariant::energy);
+      const double shortest = std::fmin(points[n].value(Invariant::period), points[n + 1].value(Invariant::period));
+      if (!(shortest > 0.0) || !std::isfinite(period_to)) continue;
+      period_from = std::fmax(period_from, beyond * shortest);  // a step may be longer than the period
       for (std::int64_t cell = cell_of(period_from); cell <= cell_of(period_to); ++cell)
         _cells[cell].push_back(_entries.size());
       _entries.push_back({{static_cast<int>(family), n}, period_from, period_to, energy_from, energy_to});

@@ -47,17 +47,23 @@ int Evidence::equilibrium_of(int row) const {
   return equilibrium < static_cast<int>(known.equilibria.size()) ? equilibrium : -1;
 }
 
+double Evidence::distance_between(std::span<const double> point, std::span<const double> other) const {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < point.size(); ++i) {
+    double away = point[i] - other[i];
+    if (system->structure().is_angle(i)) away = std::remainder(away, 2.0 * std::numbers::pi);
+    largest = std::fmax(largest, std::abs(away));
+  }
+  return largest;
+}
+
 bool Evidence::is_image_by(const systems::AffineMap& map, int equilibrium, int other) const {
   const std::vector<double>& from = known.equilibria[static_cast<std::size_t>(equilibrium)];
   const std::vector<double>& to = known.equilibria[static_cast<std::size_t>(other)];
   const Eigen::VectorXd image =
       map(Eigen::Map<const Eigen::VectorXd>(from.data(), static_cast<Eigen::Index>(from.size())));
-  for (std::size_t i = 0; i < to.size(); ++i) {
-    double away = image[static_cast<Eigen::Index>(i)] - to[i];
-    if (system->structure().is_angle(i)) away = std::remainder(away, 2.0 * std::numbers::pi);
-    if (std::abs(away) > same_equilibrium * (1.0 + std::abs(to[i]))) return false;
-  }
-  return true;
+  const double size = Eigen::Map<const Eigen::VectorXd>(to.data(), static_cast<Eigen::Index>(to.size())).norm();
+  return distance_between({image.data(), to.size()}, to) <= same_equilibrium * (1.0 + size);
 }
 
 bool Evidence::are_images(int equilibrium, int other) const {

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,8 @@ struct Evidence {
   [[nodiscard]] int equilibrium_of(int row) const;
   /// Of what does not agree about a family: a failed task, or a stop, may be the reason.
   [[nodiscard]] Severity severity_about(int row) const;
+  /// The largest difference of a coordinate, angles modulo whole turns.
+  [[nodiscard]] double distance_between(std::span<const double> point, std::span<const double> other) const;
   /// Whether the map takes one equilibrium to the other, modulo whole turns.
   [[nodiscard]] bool is_image_by(const systems::AffineMap& map, int equilibrium, int other) const;
   /// Whether some symmetry of the system takes one equilibrium to another one.

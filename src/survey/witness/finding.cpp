@@ -40,6 +40,7 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
     case FindingKind::unlisted_crossing:
       return fmt::format("ends on {} gone around {} times, which has no crossing there", names.other_family, f.number);
     case FindingKind::unknown_family: return "ends on a family of more symmetry that this survey does not have";
+    case FindingKind::unknown_equilibrium: return "ends at an equilibrium that this survey does not have";
     case FindingKind::limited_end: return fmt::format("ends by the scene's limits: {}", f.detail);
     case FindingKind::mirror_crossings:
       return fmt::format("has {} crossings, its mirror image {} has {}", f.number, names.other_family, f.other_number);
@@ -88,6 +89,7 @@ std::string_view name_of(FindingKind kind) {
     case FindingKind::higher_order: return "higher-order";
     case FindingKind::unlisted_crossing: return "unlisted-crossing";
     case FindingKind::unknown_family: return "unknown-family";
+    case FindingKind::unknown_equilibrium: return "unknown-equilibrium";
     case FindingKind::limited_end: return "limited-end";
     case FindingKind::mirror_crossings: return "mirror-crossings";
     case FindingKind::mirror_place: return "mirror-place";

@@ -37,6 +37,7 @@ enum class FindingKind {
   higher_order,          ///< ends on the other family gone around number times, more than survey.subharmonics
   unlisted_crossing,     ///< ends on the other family gone around number times, which has no crossing there
   unknown_family,        ///< ends on a family of more symmetry that the survey does not have
+  unknown_equilibrium,   ///< ends at an equilibrium that the survey does not have
   limited_end,           ///< a limit of the scene
   mirror_crossings,      ///< its mirror image has other_number crossings, it number
   mirror_place,          ///< a crossing of its mirror image lies elsewhere

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "tasks/payload/task_kind.hpp"
 #include "witness/check.hpp"
@@ -57,10 +59,32 @@ class Ends final : public Check {
       }
       return end.nearby.empty() ? met_somewhere(evidence, family, end, finding) : met_crossing(evidence, end, finding);
     }
+    if (end.end->reason == continuation::EndReason::fixed_point) return at_equilibrium(evidence, family, end, finding);
     if (!is_limit(end.end->reason)) return std::nullopt;
     finding.kind = FindingKind::limited_end;
     finding.severity = Severity::cut;
     finding.detail = end.end->text();
+    return finding;
+  }
+
+  // A family of small oscillations there is the same curve, which the check for curves stored twice sees.
+  static std::optional<Finding> at_equilibrium(const Evidence& evidence, const TreeFamily& family,
+                                               const EndEvidence& end, Finding finding) {
+    if (family.orbits() == 0) return std::nullopt;
+    const std::size_t orbit = end.side > 0 ? family.orbits() - 1 : 0;
+    const std::size_t row = family.first_orbit + orbit;
+    const std::vector<double> modes = evidence.tree.atlas.modes(row);
+    const auto dimension = static_cast<std::size_t>(evidence.system->structure().dimension);
+    double size = 0.0;  // no point of the loop is further from the mean
+    for (std::size_t n = dimension; n < modes.size(); ++n) size += std::abs(modes[n]);
+    const std::span<const double> mean(modes.data(), dimension);
+    for (const std::vector<double>& point : evidence.known.equilibria)
+      if (evidence.distance_between(mean, point) <= size) return std::nullopt;
+    const Invariants& last = family.curve.points()[orbit];
+    finding.kind = FindingKind::unknown_equilibrium;
+    finding.severity = Severity::undecided;
+    finding.period = last.value(Invariant::period);
+    finding.energy = last.value(Invariant::energy);
     return finding;
   }
 

@@ -29,6 +29,7 @@ class SharedPoints final : public Check {
            evidence.index.near(x.value(Invariant::period), x.value(Invariant::energy), in_period, in_energy)) {
         if (family == crossing.family && crossing.multiplicity == 1) continue;
         const double away = distance_from(evidence.family(family).curve.points(), segment, x);
+        if (!may_have_index_two(evidence, evidence.family(family).curve.points(), segment)) continue;
         const auto [known_one, is_new] = nearest.try_emplace(family, away, segment);
         if (!is_new && away < known_one->second.first) known_one->second = {away, segment};
       }
@@ -77,6 +78,15 @@ class SharedPoints final : public Check {
     const double from = std::sqrt(square_distance(points[segment], x, x));
     const double to = std::sqrt(square_distance(points[segment + 1], x, x));
     return std::fmin(from, to) <= longest + of_action ? from + to : std::numeric_limits<double>::infinity();
+  }
+
+  // The index of an orbit that two families have in common is 2: a curve of orbits of its period leaves it in two
+  // directions. Half a step beyond the segment, as for the other invariants. With several pairs the sum does not tell.
+  static bool may_have_index_two(const Evidence& evidence, const std::vector<Invariants>& points, std::size_t segment) {
+    if (!evidence.system->structure().symplectic || evidence.system->structure().pairs() != 1) return true;
+    const auto [from, to] = range_beyond(points, segment, Invariant::trace);
+    const double two = std::asinh(1.0);
+    return !(two < from || two > to);
   }
 
   static double square_distance(const Invariants& a, const Invariants& b, const Invariants& x) {

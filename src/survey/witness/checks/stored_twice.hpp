@@ -44,7 +44,7 @@ class StoredTwice final : public Check {
   /// One common orbit is a crossing of two curves; more are a common curve.
   static constexpr std::size_t least_hits = 2;
   /// Loops that are compared for a pair of families.
-  static constexpr std::size_t compared = 3;
+  static constexpr std::size_t compared = 5;
   /// Of the floors of period and energy: as two computations of one orbit differ.
   static constexpr double floors = 3.0;
   /// Segments beside an orbit that are its own.
