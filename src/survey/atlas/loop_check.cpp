@@ -16,6 +16,11 @@ namespace {
 
 /// Orbits that are tried before two families count as different: Newton's method may fail beside one.
 constexpr int most_tries = 3;
+/// Orbits on either side of a crossing from which its own is found: as a location has (survey/tasks/branch_task.cpp).
+constexpr std::size_t orbits_beside = 3;
+/// From an orbit to the next by way of one between them, in parts of the chord: that of a family that turns by 90
+/// degrees is 1.4.
+constexpr double longest_way = 1.5;
 
 continuation::Orbit orbit_of(const AtlasTree& tree, const TreeFamily& family, std::size_t orbit,
                              const systems::Structure& system) {
@@ -97,15 +102,20 @@ LoopAnswer LoopCheck::ask_crossing(const AtlasTree& tree, std::size_t crossing, 
   undecided.decided = false;
   if (after == family.arclengths.begin() || after == family.arclengths.end()) return undecided;
   const auto next = static_cast<std::size_t>(after - family.arclengths.begin());
-  const continuation::Orbit from = orbit_of(tree, family, next - 1, system);
-  const continuation::Orbit to = orbit_of(tree, family, next, system);
   continuation::FamilyCurve curve(_system, loop::isotropy_of(system, family.isotropy), {});
-  curve.add(family.arclengths[next - 1], from.loop);
-  curve.add(family.arclengths[next], started_as(system, to.loop, from.loop));
+  const std::size_t first = next > orbits_beside ? next - orbits_beside : 0;
+  const std::size_t end = std::min(next + orbits_beside, family.orbits());
+  std::optional<loop::Loop> before;
+  for (std::size_t n = first; n < end; ++n) {
+    const continuation::Orbit known = orbit_of(tree, family, n, system);
+    before = before ? started_as(system, known.loop, *before) : known.loop;
+    curve.add(family.arclengths[n], *before, end - first);
+  }
   const std::optional<continuation::CurvePoint> there = curve.at(position);
   if (!there) return undecided;
   continuation::Orbit orbit;
-  orbit.loop = place.multiplicity == 1 ? there->loop : loop::repeated(there->loop, place.multiplicity);
+  orbit.loop =
+      place.multiplicity == 1 ? there->loop : loop::repeated(loop::evenly_in_time(there->loop), place.multiplicity);
   orbit.energy = continuation::energy_of(*_system, orbit.loop);
   orbit.action = continuation::action_of(*_system, orbit.loop);
   bifurcation::IdentityOptions options;
@@ -113,6 +123,11 @@ LoopAnswer LoopCheck::ask_crossing(const AtlasTree& tree, std::size_t crossing, 
   const loop::Isotropy isotropy = loop::isotropy_of(system, beside.isotropy);
   continuation::Orbit a = orbit_of(tree, beside, segment, system);
   continuation::Orbit b = orbit_of(tree, beside, segment + 1, system);
+  const double allowed = options.tolerance * (1.0 + loop::rms_size(orbit.loop));
+  const double to_a = loop::align(system, orbit.loop, a.loop).distance;
+  const double to_b = loop::align(system, orbit.loop, b.loop).distance;
+  if (to_a + to_b > longest_way * loop::mean_distance(a.loop, b.loop))
+    return {false, std::min(to_a, to_b), allowed, "not between the neighbours", true};
   bifurcation::Comparison found = bifurcation::same_family(*_system, a, b, isotropy, orbit, options);
   if (!found) {  // not before: on either side of the crossing may lie images of one another
     continuation::Orbit started = a;
@@ -125,8 +140,7 @@ LoopAnswer LoopCheck::ask_crossing(const AtlasTree& tree, std::size_t crossing, 
   }
   if (!found && closer_together(_system, isotropy, found, a, b))
     found = bifurcation::same_family(*_system, a, b, isotropy, orbit, options);
-  return {found.same, found.distance, options.tolerance * (1.0 + loop::rms_size(orbit.loop)), found.detail,
-          found.decided};
+  return {found.same, found.distance, allowed, found.detail, found.decided};
 }
 
 std::vector<LoopCheck::Sample> LoopCheck::sample(const AtlasTree& own, const TreeFamily& family, const AtlasTree& other,
