@@ -194,7 +194,7 @@ Comparison same_family(const systems::System& system, const Orbit& a, const Orbi
                        const Orbit& x, const IdentityOptions& options) {
   Orbit primitive = x;
   const double negligible = std::min(options.tolerance, repeated * loop::rms_amplitude(x.loop));
-  const int m = loop::repetitions(x.loop, negligible);
+  const int m = options.keeps_repetitions ? 1 : loop::repetitions(x.loop, negligible);
   if (m > 1) {
     primitive.loop = loop::without_repetition(x.loop, m);
     primitive.action /= m;

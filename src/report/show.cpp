@@ -5,6 +5,7 @@
 
 #include "show_crossings.hpp"
 #include "show_families.hpp"
+#include "show_findings.hpp"
 #include "show_values.hpp"
 
 namespace orbweaver::report {
@@ -13,8 +14,9 @@ const archive::Table& shown_table(const archive::Archive& atlas, const std::stri
   if (name == "families") return atlas.families();
   if (name == "orbits") return atlas.orbits();
   if (name == "crossings") return atlas.crossings();
+  if (name == "findings") return atlas.findings();
   throw core::InputError(
-      fmt::format("cannot show '{}': the tables of an atlas are families, orbits and crossings", name));
+      fmt::format("cannot show '{}': the tables of an atlas are families, orbits, crossings and findings", name));
 }
 
 void print_summary(std::ostream& out, const archive::Archive& atlas) {
@@ -30,6 +32,7 @@ void print_summary(std::ostream& out, const archive::Archive& atlas) {
   out << fmt::format("orbits       {}\n", atlas.orbits().rows());
   out << fmt::format("crossings    {}\n", atlas.crossings().rows());
   out << fmt::format("sections     {}\n", atlas.sections().rows());
+  out << fmt::format("findings     {}\n", atlas.findings().rows());
   out << fmt::format("modes        {} values ({:.1f} MB)\n", atlas.mode_values(), static_cast<double>(bytes) / 1e6);
   out << fmt::format("period       {}\n", whole_range("period"));
   out << fmt::format("energy       {}\n", whole_range("energy"));
@@ -48,6 +51,8 @@ void print_table(std::ostream& out, const archive::Archive& atlas, const std::st
     print_families(out, atlas);
   else if (name == "crossings")
     print_crossings(out, atlas);
+  else if (name == "findings")
+    print_findings(out, atlas);
   else
     print_readable(out, atlas.header(), table);
 }

@@ -1,6 +1,7 @@
 #include "orbweaver/report/summary_text.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,12 +12,32 @@ namespace {
 
 /// Families that a summary lists; `orbweaver show` lists all.
 constexpr std::size_t most_listed = 60;
+/// Findings of one severity that it lists.
+constexpr std::size_t most_findings = 20;
 
 std::string line_of(const survey::FamilySummary& f, std::size_t width) {
   const std::string name = std::string(2 * static_cast<std::size_t>(f.depth), ' ') + f.name;
   if (f.orbits == 0) return fmt::format("{:<{}}  {:>6}  {:>22}  {:>26}  {}\n", name, width, 0, "-", "-", f.end_reason);
   return fmt::format("{:<{}}  {:>6}  {:>9.6f} .. {:>9.6f}  {:>11.8f} .. {:>11.8f}  {}\n", name, width, f.orbits,
                      f.period_from, f.period_to, f.energy_from, f.energy_to, f.end_reason);
+}
+
+/// What does not add up, and how much the limits cut; failed tasks have lines of their own.
+std::string findings_text(const survey::Summary& summary) {
+  if (!summary.archived) return "";
+  std::string text;
+  std::map<survey::Severity, std::size_t> counts;
+  for (const survey::FindingSummary& finding : summary.findings) {
+    const std::size_t number = counts[finding.severity]++;
+    const bool is_listed =
+        finding.severity == survey::Severity::contradiction || finding.severity == survey::Severity::undecided;
+    if (is_listed && number < most_findings)
+      text += fmt::format("{}: {}\n", survey::name_of(finding.severity), finding.text);
+  }
+  return text +
+         fmt::format("findings: {} contradictions, {} undecided, {} cut by limits (orbweaver show {} findings)\n",
+                     counts[survey::Severity::contradiction], counts[survey::Severity::undecided],
+                     counts[survey::Severity::cut], summary.atlas.string());
 }
 
 }  // namespace
@@ -34,6 +55,7 @@ std::string to_text(const survey::Summary& summary) {
                         summary.atlas.string());
   for (const std::string& remark : summary.remarks) text += fmt::format("note: {}\n", remark);
   for (const std::string& failed : summary.failed_tasks) text += fmt::format("failed: {}\n", failed);
+  text += findings_text(summary);
   const auto left_out = std::count_if(summary.families.begin(), summary.families.end(),
                                       [](const survey::FamilySummary& f) { return f.orbits == 0 && !f.failed; });
   text += fmt::format("{} families{}, {} crossings, {} orbits, {} failed", summary.families.size(),

@@ -9,6 +9,7 @@
 #include "archive/sample.hpp"
 #include "file/h5_handle.hpp"
 #include "orbweaver/archive/read/reader.hpp"
+#include "orbweaver/archive/write/consolidate.hpp"
 #include "orbweaver/archive/write/segment.hpp"
 #include "orbweaver/core/error.hpp"
 
@@ -153,6 +154,28 @@ TEST_F(BadFiles, EveryDatasetIsMissed) {
   }
   EXPECT_THAT(altered([](hid_t file) { H5Ldelete(file, "crossings", H5P_DEFAULT); }),
               HasSubstr("lacks the dataset /crossings/family"));
+}
+
+// As files of format_minor 0.
+TEST_F(BadFiles, AFileWithoutFindingsIsRead) {
+  const std::filesystem::path old = alter(atlas, [](hid_t file) {
+    check_h5(H5Ldelete(file, "findings", H5P_DEFAULT), "findings");
+    check_h5(H5Adelete(file, "format_minor"), "format_minor");
+  });
+  EXPECT_EQ(Archive(old).findings().rows(), 0U);
+  EXPECT_EQ(Archive(old).orbits().rows(), Archive(atlas).orbits().rows());
+}
+
+TEST_F(BadFiles, FindingsThatPointNowhereAreNamed) {
+  const std::filesystem::path path = folder / "pointing.h5";
+  const auto witness = [](const std::filesystem::path&) {
+    std::vector<FindingRecord> findings(1);
+    findings[0].family = 99;
+    return std::optional(findings);
+  };
+  consolidate(MPI_COMM_SELF, {segment}, path, test::sample_header(),
+              test::tables_of(test::sample_records(test::sample_header())), {}, witness);
+  EXPECT_THAT(atlas_refusal(path), HasSubstr("/findings/family = 99"));
 }
 
 TEST_F(BadFiles, WrongLengthsShapesAndTypesAreNamed) {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "archive/sample.hpp"
+#include "orbweaver/archive/write/consolidate.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/report/show.hpp"
 
@@ -106,6 +107,26 @@ Out-Phase          -                                9          2 .. 3          -
   Ästhetik "B", 1  branch-point T 5.5, m 2          5  4.625 .. 5.125  -1.6875 .. -1.4375
       S@1/2 R@0; unstable; ended: the period reached the scene's limit -> ID1 at fold-energy T 4.5
 )");
+}
+
+TEST(Show, FindingsALineEach) {
+  const Header header = test::sample_header();
+  const auto folder = test::fresh_folder("findings");
+  test::write_sample_atlas(folder, header, test::sample_records(header));
+  const auto witness = [](const std::filesystem::path&) {
+    return std::optional(std::vector<FindingRecord>{
+        {"contradiction", "index-change", 0, -1, -1, 2.0, -1.0, 0.25, "In-Phase: a multiplier passes"},
+        {"cut", "limited-end", 1, -1, -1, not_computed, not_computed, not_computed, "ID1: ends"}});
+  };
+  archive::consolidate(MPI_COMM_SELF, {folder / "segment.h5"}, folder / "said.h5", header,
+                       test::tables_of(test::sample_records(header)), {}, witness);
+  const Archive atlas(folder / "said.h5");
+  EXPECT_EQ(shown(atlas, "findings", TextFormat::readable),
+            "contradiction  index-change           2.5e-01  In-Phase: a multiplier passes\n"
+            "cut            limited-end                  -  ID1: ends\n");
+  EXPECT_THAT(lines_of(shown(atlas, "findings", TextFormat::csv))[1],
+              "contradiction,index-change,0,-1,-1,2,-1,0.25,"
+              "In-Phase: a multiplier passes");
 }
 
 TEST(Show, CrossingsReadablyWithTheFamiliesBornThere) {

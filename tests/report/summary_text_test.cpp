@@ -39,6 +39,27 @@ TEST(SummaryText, SaysEverythingThatItKnows) {
             HasSubstr("archive: some/folder/atlas.h5\n")));
 }
 
+TEST(SummaryText, SaysWhatDoesNotAddUpAndCountsWhatLimitsCut) {
+  using survey::FindingKind;
+  using survey::Severity;
+  survey::Summary summary = sample_summary();
+  EXPECT_THAT(
+      report::to_text(summary),
+      HasSubstr("findings: 0 contradictions, 0 undecided, 0 cut by limits (orbweaver show some/folder/atlas.h5"));
+  summary.findings = {{Severity::contradiction, FindingKind::duplicate_curve, "A: the same orbits"},
+                      {Severity::failure, FindingKind::failed_task, "B: said above"},
+                      {Severity::undecided, FindingKind::unknown_family, "C: ends on a family"},
+                      {Severity::cut, FindingKind::limited_end, "D: ends by the scene's limits"},
+                      {Severity::cut, FindingKind::limited_end, "E: ends by the scene's limits"}};
+  const std::string text = report::to_text(summary);
+  EXPECT_THAT(text,
+              AllOf(HasSubstr("contradiction: A: the same orbits\n"), HasSubstr("undecided: C: ends on a family\n"),
+                    HasSubstr("findings: 1 contradictions, 1 undecided, 2 cut by limits")));
+  EXPECT_THAT(text, AllOf(Not(HasSubstr("B: said above")), Not(HasSubstr("D: ends"))));
+  summary.archived = false;
+  EXPECT_THAT(report::to_text(summary), Not(HasSubstr("findings:"))) << "the witness looks at archives";
+}
+
 TEST(SummaryText, ColumnsAlign) {
   const std::string text = report::to_text(sample_summary());
   const std::string head = text.substr(0, text.find('\n'));

@@ -8,6 +8,7 @@
 #include "support/serialized.hpp"
 #include "tasks/payload/payload.hpp"
 #include "tasks/payload/work.hpp"
+#include "witness/loop_question.hpp"
 
 namespace orbweaver::test {
 
@@ -41,7 +42,7 @@ using ::testing::HasSubstr;
 template <class T>
 class Travellers : public ::testing::Test {};
 using Payloads = ::testing::Types<SweepWork, SweepOutcome, BranchWork, BranchOutcome, LocateWork, LocateOutcome,
-                                  StartWork, StartOutcome, BranchState, Checkpoint>;
+                                  StartWork, StartOutcome, LoopQuestion, LoopReply, BranchState, Checkpoint>;
 TYPED_TEST_SUITE(Travellers, Payloads);
 
 TYPED_TEST(Travellers, ListEveryMember) { EXPECT_EQ(test::incomplete_types_in<TypeParam>(), ""); }

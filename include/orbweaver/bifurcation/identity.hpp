@@ -20,6 +20,7 @@ struct IdentityOptions {
   /// Of the ranges of period, energy and action between neighbours, relative to their values: a first look, which may
   /// only pass too many.
   double widening = 1e-2;
+  bool keeps_repetitions = false;  ///< an orbit that goes around several times is not taken for the one it goes around
 };
 
 /// What a comparison of an orbit with a family found.

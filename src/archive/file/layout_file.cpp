@@ -34,19 +34,24 @@ H5Handle dataspace(const std::vector<hsize_t>& extents) {
 
 class Layout {
  public:
-  explicit Layout(const std::filesystem::path& path) : _path(path.string()) {
+  enum class Begin { anew, with_what_is_there };
+
+  Layout(const std::filesystem::path& path, Begin begin) : _path(path.string()) {
     const H5Handle access = property_list(H5P_FILE_ACCESS);
     check_h5(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_V18), "H5Pset_libver_bounds");
     check_h5(H5Pset_file_locking(access.get(), false, true), "H5Pset_file_locking");
     const H5Handle creation = timeless_list(H5P_FILE_CREATE);
-    const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get());
-    _file = {check_h5(file, fmt::format("cannot create '{}'", _path)), H5Fclose};
+    const hid_t file = begin == Begin::anew ? H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get())
+                                            : H5Fopen(path.c_str(), H5F_ACC_RDWR, access.get());
+    _file = {check_h5(file, fmt::format("cannot {} '{}'", begin == Begin::anew ? "create" : "open", _path)), H5Fclose};
   }
 
   void write_attributes(const char* format, const Header& header) {
     const std::int64_t version = format_version;
     write_text("format", format);
     write_attribute("format_version", h5_memory_type({"", ColumnType::integer, {}}), scalar_space(), &version);
+    const std::int64_t minor = format_minor;
+    write_attribute("format_minor", h5_memory_type({"", ColumnType::integer, {}}), scalar_space(), &minor);
     write_text("orbweaver_version", header.orbweaver_version);
     write_text("scene", header.scene);
     write_texts("state_names", header.state_names);
@@ -124,10 +129,17 @@ std::uint64_t FileLayout::bytes() const {
 void create_layout_file(const std::filesystem::path& path, const FileLayout& layout) {
   const std::uint64_t bytes = layout.bytes();
   try_out_file(path, bytes + metadata_bytes);
-  Layout file(path);
+  Layout file(path, Layout::Begin::anew);
   file.write_attributes(layout.format, layout.header);
   for (const auto& [table, rows] : layout.tables) file.create_table(table, rows);
   for (const auto& [name, count] : layout.flats) file.create_dataset(name, {name, ColumnType::real, {}}, count);
+  file.close();
+  reserve_space(path, std::filesystem::file_size(path));
+}
+
+void add_table_to_file(const std::filesystem::path& path, const TableSpec& table, std::uint64_t rows) {
+  Layout file(path, Layout::Begin::with_what_is_there);
+  file.create_table(table, rows);
   file.close();
   reserve_space(path, std::filesystem::file_size(path));
 }

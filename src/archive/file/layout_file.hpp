@@ -25,4 +25,8 @@ struct FileLayout {
 /// space taken. One rank alone. Throws EnvironmentError; a full disk is met before HDF5 writes anything.
 void create_layout_file(const std::filesystem::path& path, const FileLayout& layout);
 
+/// Lays out one more table, small beside the others, in a file that nobody has open. One rank alone. Throws
+/// EnvironmentError.
+void add_table_to_file(const std::filesystem::path& path, const TableSpec& table, std::uint64_t rows);
+
 }  // namespace orbweaver::archive

@@ -87,11 +87,29 @@ void ParallelFile::write_rows(const std::string& name, hid_t memory_type, const 
   check_h5(H5Dwrite(dataset.get(), memory_type, memory.get(), place.get(), H5P_DEFAULT, data), doing);
 }
 
-void ParallelFile::publish() {
+void ParallelFile::close_together() {
   core::collectively(_comm, [&] {
     _datasets.clear();
-    _file.close(fmt::format("cannot close '{}'", _part.string()));
+    if (!_file.empty()) _file.close(fmt::format("cannot close '{}'", _part.string()));
   });
+}
+
+const std::filesystem::path& ParallelFile::pause() {
+  close_together();
+  return _part;
+}
+
+void ParallelFile::add_table(const Table& mine) {
+  close_together();
+  core::collectively(_comm, [&] {
+    if (core::rank_of(_comm) == 0) add_table_to_file(_part, mine.spec(), mine.rows());
+  });
+  open_together();
+  write_table(mine, 0);
+}
+
+void ParallelFile::publish() {
+  close_together();
   core::collectively(_comm, [&] { sync_file(_part); });
   core::collectively(_comm, [&] {
     if (core::rank_of(_comm) != 0) return;

@@ -33,10 +33,17 @@ class ParallelFile {
   /// Writes this rank's part of a flat dataset; parts may be empty.
   void write_flat(const std::string& name, std::span<const double> mine, std::uint64_t first);
 
+  /// Closes the file, so that every rank may open it for reading under the name that it has until it is published.
+  /// Returns that name.
+  const std::filesystem::path& pause();
+  /// Adds a table of which rank 0 has all rows and the others none (text widths agreed on), and writes it.
+  void add_table(const Table& mine);
+
   /// Closes, syncs, renames. Afterwards the object is only good for destruction.
   void publish();
 
  private:
+  void close_together();
   void open_together();
   void write_column(const std::string& name, const Column& mine, std::uint64_t rows, std::uint64_t first);
   void write_rows(const std::string& name, hid_t memory_type, const void* data, const std::vector<hsize_t>& extents,

@@ -197,6 +197,10 @@ void SerialFile::expect_type(const std::string& name, ColumnSpec& spec) {
   if (spec.type == ColumnType::text) spec.text_width = H5Tget_size(type.get());
 }
 
+bool SerialFile::has_table(const std::string& name) const {
+  return H5Lexists(_file.get(), name.c_str(), H5P_DEFAULT) > 0;
+}
+
 std::uint64_t SerialFile::expect_table(TableSpec& spec) {
   std::vector<hsize_t> first_shape;
   for (ColumnSpec& column : spec.columns) {

@@ -31,6 +31,8 @@ class SerialFile {
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return _path; }
   [[nodiscard]] const Header& header() const noexcept { return _header; }
 
+  /// Whether the file has this table: one that older versions did not write.
+  [[nodiscard]] bool has_table(const std::string& name) const;
   /// Checks that all columns exist with the right type and shape and equally many rows; fills in the text widths and
   /// returns the number of rows. Only columns that were checked can be read.
   std::uint64_t expect_table(TableSpec& spec);

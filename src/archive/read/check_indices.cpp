@@ -73,6 +73,9 @@ void check_indices(const SerialFile& file, const AtlasTables& tables) {
   expect_range(file, tables.crossings, "family", 0, families);
   expect_range(file, tables.orbits, "family", 0, families);
   expect_range(file, tables.sections, "orbit", 0, tables.orbits.rows());
+  expect_range(file, tables.findings, "family", -1, families);
+  expect_range(file, tables.findings, "other_family", -1, families);
+  expect_range(file, tables.findings, "crossing", -1, crossings);
   expect_ranges(file, tables.orbits, "modes", tables.mode_values);
   expect_ranges(file, tables.orbits, "time_map", tables.map_values);
   expect_mode_counts(file, tables.orbits);

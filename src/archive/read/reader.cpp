@@ -21,8 +21,10 @@ Archive::Archive(const std::filesystem::path& path) : _file(std::make_unique<Ser
   _crossings = read_table(*_file, crossings_spec(header));
   for (const std::string& name : _crossings.texts("kind")) _crossing_kinds.push_back(crossing_kind_of(name));
   _sections = read_table(*_file, sections_spec(header));
+  _findings = _file->has_table("findings") ? read_table(*_file, findings_spec()) : Table(findings_spec(), 0);
   _mode_values = _file->expect_flat("modes");
-  check_indices(*_file, {_families, _orbits, _crossings, _sections, _mode_values, _file->expect_flat("time_maps")});
+  check_indices(*_file,
+                {_families, _orbits, _crossings, _sections, _findings, _mode_values, _file->expect_flat("time_maps")});
 }
 
 Archive::Archive(Archive&&) noexcept = default;

@@ -82,6 +82,17 @@ const ColumnDefinitions<SectionRecord>& section_columns() {
   return columns;
 }
 
+const ColumnDefinitions<FindingRecord>& finding_columns() {
+  static const ColumnDefinitions<FindingRecord> columns{
+      {"severity", &FindingRecord::severity}, {"kind", &FindingRecord::kind},
+      {"family", &FindingRecord::family},     {"other_family", &FindingRecord::other_family},
+      {"crossing", &FindingRecord::crossing}, {"period", &FindingRecord::period},
+      {"energy", &FindingRecord::energy},     {"deviation", &FindingRecord::deviation},
+      {"text", &FindingRecord::text},
+  };
+  return columns;
+}
+
 const ColumnDefinitions<OrbitRecord>& segment_orbit_columns() {
   static const ColumnDefinitions<OrbitRecord> columns = [] {
     ColumnDefinitions<OrbitRecord> list = orbit_columns();

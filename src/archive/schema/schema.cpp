@@ -60,6 +60,8 @@ TableSpec crossings_spec(const Header& header) { return spec_of("crossings", cro
 
 TableSpec sections_spec(const Header& header) { return spec_of("sections", section_columns(), header); }
 
+TableSpec findings_spec() { return spec_of("findings", finding_columns(), {}); }
+
 TableSpec segment_orbits_spec(const Header& header) { return spec_of("orbits", segment_orbit_columns(), header); }
 
 TableSpec segment_sections_spec(const Header& header) { return spec_of("sections", segment_section_columns(), header); }

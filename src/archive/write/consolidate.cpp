@@ -205,8 +205,9 @@ void check_input(MPI_Comm comm, const Header& header, const Records& tables, std
 
 }  // namespace
 
-void consolidate(MPI_Comm comm, const std::vector<std::filesystem::path>& segments, const std::filesystem::path& output,
-                 const Header& header, const Records& tables, const ConsolidateOptions& options) {
+bool consolidate(MPI_Comm comm, const std::vector<std::filesystem::path>& segments, const std::filesystem::path& output,
+                 const Header& header, const Records& tables, const ConsolidateOptions& options,
+                 const Witness& witness) {
   const core::LogStage stage(core::Stage::archive);
   const bool is_root = core::rank_of(comm) == 0;
   check_input(comm, header, tables, segments.size());
@@ -240,7 +241,14 @@ void consolidate(MPI_Comm comm, const std::vector<std::filesystem::path>& segmen
   file.write_table(root.crossings, 0);
   write_orbits(comm, file, order, numbering);
   write_sections(comm, file, order, numbering);
+  std::optional<std::vector<FindingRecord>> findings(std::in_place);
+  if (witness) findings = witness(file.pause());
+  if (!findings) return false;
+  Table rows = make_findings(is_root ? *findings : std::vector<FindingRecord>{});
+  agree_on_text_widths(comm, rows);
+  file.add_table(rows);
   file.publish();
+  return true;
 }
 
 }  // namespace orbweaver::archive

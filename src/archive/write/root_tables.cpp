@@ -5,6 +5,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "orbweaver/archive/write/consolidate.hpp"
 #include "schema/columns.hpp"
 
 namespace orbweaver::archive {
@@ -59,6 +60,11 @@ std::vector<const FamilyRecord*> family_order(const std::vector<FamilyRecord>& f
 
 }  // namespace
 
+std::vector<int> rows_of_crossings(const Records& tables) {
+  const std::vector<std::int64_t> rows = inverse(crossing_order(tables.crossings));
+  return {rows.begin(), rows.end()};
+}
+
 Selection selection_of(const Records& tables) {
   std::map<std::string, StepRange> steps;
   for (const FamilyRecord& family : tables.families) steps[family.key] = {family.first_step, family.last_step};
@@ -95,6 +101,12 @@ RootTables make_root_tables(const Header& header, const Records& tables, const s
   for (std::size_t row = 0; row < families.size(); ++row)
     number_family(root.families, row, *families[row], keys, crossing_rows, numbering);
   return root;
+}
+
+Table make_findings(const std::vector<FindingRecord>& findings) {
+  Table table(findings_spec(), findings.size());
+  fill_columns(table, finding_columns(), [&](std::size_t row) -> const FindingRecord& { return findings[row]; });
+  return table;
 }
 
 }  // namespace orbweaver::archive

@@ -21,4 +21,7 @@ struct RootTables {
 [[nodiscard]] RootTables make_root_tables(const Header& header, const Records& tables,
                                           const std::vector<std::string>& keys, const Numbering& numbering);
 
+/// /findings, in the order given.
+[[nodiscard]] Table make_findings(const std::vector<FindingRecord>& findings);
+
 }  // namespace orbweaver::archive

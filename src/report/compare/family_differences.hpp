@@ -4,8 +4,8 @@
 #include <string>
 
 #include "compare/family_match.hpp"
-#include "compare/loop_check.hpp"
 #include "orbweaver/report/compare/comparison.hpp"
+#include "orbweaver/survey/atlas/loop_check.hpp"
 
 namespace orbweaver::report {
 

@@ -3,10 +3,22 @@
 #include <cstddef>
 #include <vector>
 
-#include "compare/atlas_tree.hpp"
-#include "compare/loop_check.hpp"
+#include "orbweaver/survey/atlas/atlas_tree.hpp"
+#include "orbweaver/survey/atlas/loop_check.hpp"
 
 namespace orbweaver::report {
+
+using survey::all_invariants;
+using survey::AtlasTree;
+using survey::CurveFit;
+using survey::FamilyEnd;
+using survey::Invariant;
+using survey::InvariantCurve;
+using survey::Invariants;
+using survey::LoopAnswer;
+using survey::LoopCheck;
+using survey::TreeCrossing;
+using survey::TreeFamily;
 
 /// What two atlases have in common. Rows of families and crossings; -1: nothing.
 struct TreeMatch {

@@ -1,5 +1,6 @@
 #include "archive_writer.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,6 +14,7 @@
 #include "state/branch_state.hpp"
 #include "state/resume.hpp"
 #include "version.hpp"
+#include "witness/witness.hpp"
 
 namespace orbweaver::survey {
 
@@ -61,28 +63,56 @@ archive::Header header_of(const scene::Scene& scene, const systems::System& syst
   return header;
 }
 
-void write_archive(const core::Communicator& comm, const scene::Scene& scene, const systems::System& system,
-                   const Checkpoint& checkpoint, FamilyTree& tree, const SweepsEnded& sweeps, Summary& summary) {
+void write_archive(const core::Communicator& comm, const scene::Scene& scene,
+                   const std::shared_ptr<const systems::System>& system, const Checkpoint& checkpoint, FamilyTree& tree,
+                   const SweepsEnded& sweeps, Summary& summary) {
   archive::Records tables;
+  WitnessInput known;
   std::vector<std::filesystem::path> segments;
   core::on_root(comm.get(), [&] {
-    add_unfinished(checkpoint.unfinished, system.scales().time, tree);
+    add_unfinished(checkpoint.unfinished, system->scales().time, tree);
     FamilyTree::Result found = tree.resolve();
     tables = std::move(found.tables);
     summary.families = std::move(found.families);
+    known.tree = std::move(found.evidence);
     for (std::string& failure : found.failures) summary.failed_tasks.push_back(std::move(failure));
     for (std::string& remark : found.remarks) summary.remarks.push_back(std::move(remark));
     for (const FamilySummary& family : summary.families) summary.orbits += family.orbits;
     summary.crossings = static_cast<long>(tables.crossings.size());
-    gather_failed_sweeps(system, sweeps, summary, tables);
-    require_families(system, sweeps, summary);
+    const std::size_t told = summary.failed_tasks.size();  // by the tree, from which the witness hears of them
+    gather_failed_sweeps(*system, sweeps, summary, tables);
+    require_families(*system, sweeps, summary);
+    known.failures.assign(summary.failed_tasks.begin() + static_cast<std::ptrdiff_t>(told), summary.failed_tasks.end());
+    known.stopped_early = summary.stopped_early;
+    for (const queue::Task& task : checkpoint.unfinished) known.interrupted.push_back(task.key);
+    for (const auto& [key, ended] : sweeps) {
+      std::vector<double>& point = known.equilibria.emplace_back(unpack_sweep_work(ended.first.payload).point);
+      for (std::size_t i = 0; i < point.size(); ++i) point[i] *= system->scales().coordinate(i);
+    }
+    for (const archive::FamilyRecord& family : tables.families) known.family_keys.push_back(family.key);
+    std::sort(known.family_keys.begin(), known.family_keys.end());
+    known.crossing_rows = archive::rows_of_crossings(tables);
     tables.voided = checkpoint.voided;
     tables.earlier_scenes = checkpoint.earlier_scenes;
     const std::filesystem::path folder = state_folder(summary.atlas.parent_path());
     for (const archive::WrittenSegment& segment : checkpoint.segments) segments.push_back(folder / segment.name);
   });
-  if (summary.archived) archive::consolidate(comm.get(), segments, summary.atlas, header_of(scene, system), tables);
-  summary.failures = core::agreed(comm.get(), static_cast<unsigned long>(summary.failed_tasks.size()));
+  if (!summary.archived) {
+    summary.failures = core::agreed(comm.get(), static_cast<unsigned long>(summary.failed_tasks.size()));
+    return;
+  }
+  const archive::Witness witness = [&](const std::filesystem::path& atlas) {
+    auto testimony = testify(comm, atlas, scene, system, std::move(known));
+    std::optional<std::vector<archive::FindingRecord>> records;
+    if (!testimony) return records;
+    summary.failures = testimony->wrong;
+    summary.findings = std::move(testimony->summaries);
+    records = std::move(testimony->records);
+    return records;
+  };
+  summary.archived =
+      archive::consolidate(comm.get(), segments, summary.atlas, header_of(scene, *system), tables, {}, witness);
+  summary.stopped_early |= !summary.archived;
 }
 
 Summary archive_survey(const core::Communicator& comm, const std::filesystem::path& directory) {
@@ -113,7 +143,7 @@ Summary archive_survey(const core::Communicator& comm, const std::filesystem::pa
   summary.atlas = directory / "atlas.h5";
   summary.stopped_early = core::agreed(comm.get(), found.checkpoint.stage != Stage::finished);
   summary.archived = true;
-  write_archive(comm, scene, *system, found.checkpoint, tree, sweeps, summary);
+  write_archive(comm, scene, system, found.checkpoint, tree, sweeps, summary);
   return summary;
 }
 

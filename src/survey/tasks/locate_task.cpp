@@ -219,7 +219,7 @@ class Location {
       if (side < 0 && !leaving.both_sides) continue;
       StartWork start;
       BranchWork& branch = start.branch;
-      branch.key = leaving.key + (leaving.both_sides ? (side > 0 ? "+" : "-") : "");
+      branch.key = branch_key(leaving, side);
       branch.name = fmt::format("{}>{}@{:.4g}{}", _work.name, _outcome.multiplicity, _outcome.period * _system->scales().time,
                                 leaving.key.substr(_work.key.size()));
       branch.lineage = {leaving.key, _work.key, _work.lineage.depth + 1, _outcome.multiplicity, side};

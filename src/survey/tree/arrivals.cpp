@@ -19,12 +19,6 @@ constexpr double farthest_from_direction = 0.4;
 
 double born_period(const LocateOutcome& crossing) { return crossing.multiplicity * crossing.period; }
 
-/// Where nothing is conserved the energies are NaN, and the period decides alone.
-bool within_window(const ArrivalRecord& arrival, const LocateOutcome& crossing) {
-  return std::abs(arrival.period / born_period(crossing) - 1.0) <= arrival_window &&
-         !(std::abs(arrival.energy - crossing.energy) > arrival_window * (1.0 + std::abs(crossing.energy)));
-}
-
 /// Calls `found` for what has a key near `period`: all that can be within the window, and a little more.
 template <typename Map, typename Found>
 void for_near(const Map& by_period, double period, const Found& found) {
@@ -33,6 +27,11 @@ void for_near(const Map& by_period, double period, const Found& found) {
 }
 
 }  // namespace
+
+bool within_window(const ArrivalRecord& arrival, const LocateOutcome& crossing) {
+  return std::abs(arrival.period / born_period(crossing) - 1.0) <= arrival_window &&
+         !(std::abs(arrival.energy - crossing.energy) > arrival_window * (1.0 + std::abs(crossing.energy)));
+}
 
 std::optional<Meeting> Arrivals::meeting(const ArrivalRecord& arrival, const LocateOutcome& crossing) const {
   if (!within_window(arrival, crossing)) return std::nullopt;

@@ -12,6 +12,10 @@
 
 namespace orbweaver::survey {
 
+/// Whether the period and energy where a branch arrived are those of what is born at the crossing, as far as
+/// extrapolation along the branch goes. Where nothing is conserved the energies are NaN, and the period decides alone.
+[[nodiscard]] bool within_window(const ArrivalRecord& arrival, const LocateOutcome& crossing);
+
 /// Finds the crossings where branches have arrived, and the directions along which they came: by period and energy
 /// first, then by loops. What is compared with what depends on neither order nor time; every pair that comes close is
 /// compared once, when the second of them is added, and found among the others by period.

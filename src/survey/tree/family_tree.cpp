@@ -56,6 +56,8 @@ void FamilyTree::add(const queue::Task& task, const queue::TaskOutcome& outcome)
     BranchWork work = unpack_start_work(task.payload).branch;
     add_branch(work.key, {std::move(work.lineage), std::move(work.name), std::move(work.isotropy), std::nullopt, true,
                           outcome.reason});
+  } else if (kind == TaskKind::start && !outcome.stopped && outcome.children.empty()) {
+    _not_begun.insert(place_of(task.key));
   } else if (kind == TaskKind::locate) {
     if (outcome.failed) _failures[place_of(task.key)] = outcome.reason;
     if (outcome.payload.empty()) return;
@@ -83,7 +85,7 @@ void FamilyTree::add_branch(const std::string& key, EndedBranch branch) {
 void FamilyTree::add_crossing(LocateOutcome crossing) {
   core::require(!_crossings.contains(crossing.key), "a crossing is located once, and one was located again");
   if (!crossing.leaving.empty()) count(_pruning.add_meetings(_arrivals.add_crossing(crossing)));
-  crossing.leaving.clear();
+  for (LeavingRecord& leaving : crossing.leaving) leaving = {leaving.key, leaving.isotropy, leaving.both_sides, {}, {}};
   std::string key = crossing.key;
   _crossings.emplace(std::move(key), std::move(crossing));
 }
@@ -134,6 +136,12 @@ std::vector<FamilySide> FamilyTree::kept_branches() const {
   return kept;
 }
 
+DirectionFate FamilyTree::fate_of(const std::string& branch, const Lineage& lineage) const {
+  if (_not_begun.contains(branch)) return DirectionFate::beyond_limits;
+  return _limit.has_room({lineage.depth, branch}, lineage.family) ? DirectionFate::unknown
+                                                                  : DirectionFate::beyond_families;
+}
+
 FamilyTree::Result FamilyTree::resolve() const {
   Result result;
   const std::vector<FamilySide> kept = kept_branches();
@@ -150,6 +158,9 @@ FamilyTree::Result FamilyTree::resolve() const {
   const std::map<std::string, int> rows = add_crossings(crossings, _units, result);
   add_families(
       families, _crossings, rows, _units, [this](const std::string& key) { return _pruning.arrival(key); }, result);
+  result.evidence =
+      evidence_of({_branches, _crossings, _failures, _pruning, kept, rows, _units,
+                   [this](const std::string& branch, const Lineage& lineage) { return fate_of(branch, lineage); }});
   std::unordered_set<std::string> kept_families;
   for (const Family& family : families) kept_families.insert(family.key);
   std::set<std::string> left_out;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -44,11 +45,15 @@ class FamilyTree {
   /// Branches that are not dropped, of as many families as the scene allows.
   [[nodiscard]] std::vector<FamilySide> kept_branches() const;
 
+  /// What became of a direction whose branch has not ended.
+  [[nodiscard]] DirectionFate fate_of(const std::string& branch, const Lineage& lineage) const;
+
   const scene::Scene& _scene;
   const systems::Structure& _system;
   systems::Scales _units;
   EndedBranches _branches;
   Crossings _crossings;                          // without loops
+  std::set<std::string> _not_begun;              // branches whose first orbit lies beyond the limits
   std::map<std::string, std::string> _failures;  // of locations: by the crossing's key
   Arrivals _arrivals;
   Pruning _pruning;

@@ -10,6 +10,7 @@
 #include "orbweaver/archive/schema/records.hpp"
 #include "orbweaver/survey/run/survey.hpp"
 #include "orbweaver/systems/structure.hpp"
+#include "tree_evidence.hpp"
 
 namespace orbweaver::survey {
 
@@ -19,6 +20,7 @@ struct TreeTables {
   std::vector<FamilySummary> families;  ///< parents before children
   std::vector<std::string> failures;    ///< key and reason
   std::vector<std::string> remarks;
+  TreeEvidence evidence;  ///< for the witness
 };
 
 /// Adds a row for every crossing (they lie on families that stay) but for the second of two at one fold. Returns the

@@ -33,6 +33,8 @@ class Archive {
   [[nodiscard]] const Table& orbits() const noexcept { return _orbits; }
   [[nodiscard]] const Table& crossings() const noexcept { return _crossings; }
   [[nodiscard]] const Table& sections() const noexcept { return _sections; }
+  /// Empty for an atlas of format_minor 0, which has no such table.
+  [[nodiscard]] const Table& findings() const noexcept { return _findings; }
   /// The column `kind` of crossings().
   [[nodiscard]] const std::vector<CrossingKind>& crossing_kinds() const noexcept { return _crossing_kinds; }
   /// Values in /modes.
@@ -54,6 +56,7 @@ class Archive {
   Table _orbits;
   Table _crossings;
   Table _sections;
+  Table _findings;
   std::vector<CrossingKind> _crossing_kinds;
   std::uint64_t _mode_values = 0;
 };

@@ -80,6 +80,20 @@ struct SectionRecord {
   std::vector<double> state;
 };
 
+/// One row of /findings: what does not add up in a survey, or what its limits cut. Rows are those of the other tables
+/// as they are written; -1: none.
+struct FindingRecord {
+  std::string severity;
+  std::string kind;
+  int family = -1;
+  int other_family = -1;
+  int crossing = -1;
+  double period = not_computed;
+  double energy = not_computed;
+  double deviation = not_computed;  ///< how far off, in what the kind is measured in
+  std::string text;
+};
+
 /// What stands on the root group and fixes the width of vector columns.
 struct Header {
   std::string orbweaver_version;

@@ -12,7 +12,8 @@ namespace orbweaver::archive {
 inline constexpr const char* atlas_format = "orbweaver-atlas";
 inline constexpr const char* segment_format = "orbweaver-segment";
 inline constexpr int format_version = 1;
-/// Rises with what is added; older files of the version are read.
+/// Root attribute `format_minor`: it rises with every table, column or attribute that is added; older files of the
+/// version are read. 1: /findings, system, effects, parameters, scales.
 inline constexpr int format_minor = 1;
 
 enum class ColumnType { integer, real, text };
@@ -48,6 +49,7 @@ struct TableSpec {
 [[nodiscard]] TableSpec orbits_spec(const Header& header);
 [[nodiscard]] TableSpec crossings_spec(const Header& header);
 [[nodiscard]] TableSpec sections_spec(const Header& header);
+[[nodiscard]] TableSpec findings_spec();
 
 /// The tables of a segment: orbits and sections name their family by its key, since rows are not numbered yet.
 [[nodiscard]] TableSpec segment_orbits_spec(const Header& header);

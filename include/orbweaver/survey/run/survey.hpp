@@ -8,6 +8,7 @@
 
 #include "orbweaver/core/mpi/communicator.hpp"
 #include "orbweaver/scene/scene.hpp"
+#include "orbweaver/survey/witness/finding.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::survey {
@@ -27,12 +28,20 @@ struct FamilySummary {
   int depth = 0;  ///< 0 for base families
 };
 
+/// One thing that does not add up, or that a limit cut (docs/file_format.md, /findings).
+struct FindingSummary {
+  Severity severity = Severity::failure;
+  FindingKind kind = FindingKind::failed_task;
+  std::string text;
+};
+
 /// What a survey came to; complete on rank 0, `failures` and `stopped_early` on all ranks.
 struct Summary {
   std::vector<FamilySummary> families;    ///< by depth, then key
   std::vector<std::string> remarks;       ///< equilibria without oscillations, rejected dips, limits that cut
   std::vector<std::string> failed_tasks;  ///< key and reason
-  std::size_t failures = 0;
+  std::vector<FindingSummary> findings;   ///< by severity; empty where no archive was made
+  std::size_t failures = 0;               ///< failed tasks and contradictions
   bool stopped_early = false;
   bool archived = false;  ///< whether `atlas` was written
   long orbits = 0;

@@ -45,6 +45,18 @@ int event_number(std::string_view key, std::string_view branch) {
   throw core::EnvironmentError(fmt::format("`{}` is no key of an event of `{}`", key, branch));
 }
 
+int equilibrium_index(std::string_view key) {
+  int index = -1;
+  std::from_chars(key.data(), key.data() + key.size(), index);
+  return index;
+}
+
+std::string mode_of(std::string_view base) {
+  const std::size_t point = base.find('.');
+  if (point == std::string_view::npos) return "";
+  return std::string(base.substr(point + 1, base.find_first_of("+-") - point - 1));
+}
+
 std::string locate_key(std::string_view crossing) { return fmt::format("{}{}", locating, crossing); }
 std::string start_key(std::string_view branch) { return fmt::format("{}{}", starting, branch); }
 

@@ -21,6 +21,11 @@ namespace orbweaver::survey {
 /// one.
 [[nodiscard]] int event_number(std::string_view key, std::string_view branch);
 
+/// The index of the equilibrium at which the family, or what it descends from, begins: 2 of "0002.0001/003.q4.j1/0".
+[[nodiscard]] int equilibrium_index(std::string_view key);
+/// The mode of a base family among those of its equilibrium: "0001" of "0002.0001+".
+[[nodiscard]] std::string mode_of(std::string_view base);
+
 /// "locate KEY" and "start KEY": tasks about a crossing or a family, whose branch has the task KEY.
 [[nodiscard]] std::string locate_key(std::string_view crossing);
 [[nodiscard]] std::string start_key(std::string_view branch);

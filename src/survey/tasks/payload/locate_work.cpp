@@ -15,4 +15,8 @@ std::string pack(const LocateOutcome& outcome) { return to_payload(outcome); }
 LocateWork unpack_locate_work(const std::string& bytes) { return from_payload<LocateWork>(bytes); }
 LocateOutcome unpack_locate_outcome(const std::string& bytes) { return from_payload<LocateOutcome>(bytes); }
 
+std::string branch_key(const LeavingRecord& leaving, int side) {
+  return leaving.key + (leaving.both_sides ? (side > 0 ? "+" : "-") : "");
+}
+
 }  // namespace orbweaver::survey

@@ -50,6 +50,9 @@ struct LeavingRecord {
   }
 };
 
+/// The key of the branch along one side of the direction.
+[[nodiscard]] std::string branch_key(const LeavingRecord& leaving, int side);
+
 struct LocateOutcome {
   static constexpr const char* payload_name = "locate outcome";
   std::string key;

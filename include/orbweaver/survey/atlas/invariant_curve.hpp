@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace orbweaver::report {
+namespace orbweaver::survey {
 
 /// Numbers of an orbit that neither a symmetry of the system nor a time shift changes.
 enum class Invariant : std::size_t { period, energy, action, parameter, trace };
@@ -67,4 +67,4 @@ class InvariantCurve {
 /// "energy".
 [[nodiscard]] const char* name_of(Invariant invariant);
 
-}  // namespace orbweaver::report
+}  // namespace orbweaver::survey

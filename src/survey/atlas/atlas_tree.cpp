@@ -1,4 +1,4 @@
-#include "compare/atlas_tree.hpp"
+#include "orbweaver/survey/atlas/atlas_tree.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "orbweaver/archive/schema/schema.hpp"
 
-namespace orbweaver::report {
+namespace orbweaver::survey {
 
 namespace {
 
@@ -50,7 +50,7 @@ Invariants invariants_of(const archive::Archive& atlas, std::size_t row, double 
 
 std::vector<FamilyEnd> ends_of(const std::string& reason, const std::vector<std::int64_t>& steps, std::size_t first,
                                std::size_t count) {
-  const std::vector<survey::EndKind> kinds = survey::ends_in(reason);
+  const std::vector<EndKind> kinds = ends_in(reason);
   const std::size_t last = count > 0 ? count - 1 : 0;
   if (kinds.size() == 2) return {{last, kinds[0]}, {0, kinds[1]}};
   const bool runs_backwards = count > 0 && steps[first] < 0 && steps[first + last] < 0;
@@ -114,4 +114,4 @@ std::string place_text(const TreeCrossing& crossing) {
   return fmt::format("{} T {:.6g}", crossing.kind, crossing.period);
 }
 
-}  // namespace orbweaver::report
+}  // namespace orbweaver::survey

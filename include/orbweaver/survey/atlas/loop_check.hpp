@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "compare/atlas_tree.hpp"
+#include "orbweaver/survey/atlas/atlas_tree.hpp"
 #include "orbweaver/systems/system.hpp"
 
-namespace orbweaver::report {
+namespace orbweaver::survey {
 
 /// What the loop of an orbit says of its place on a family.
 struct LoopAnswer {
@@ -41,6 +41,11 @@ class LoopCheck {
   /// Requires can_compare().
   [[nodiscard]] LoopAnswer ask(const OrbitBeside& x) const;
 
+  /// Whether the orbit at a crossing of the atlas, gone around as what is born there, lies on `beside` between its
+  /// orbits `segment` and the next. Not decided where it cannot be converged between its family's orbits.
+  [[nodiscard]] LoopAnswer ask_crossing(const AtlasTree& tree, std::size_t crossing, const TreeFamily& beside,
+                                        std::size_t segment) const;
+
   /// `count` orbits of `family`, evenly among those that have a place on `other` (`fits`: of all its orbits).
   struct Sample {
     std::size_t orbit = 0;
@@ -59,4 +64,4 @@ class LoopCheck {
   std::shared_ptr<const systems::System> _system;
 };
 
-}  // namespace orbweaver::report
+}  // namespace orbweaver::survey

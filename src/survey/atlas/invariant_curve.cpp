@@ -1,4 +1,4 @@
-#include "compare/invariant_curve.hpp"
+#include "orbweaver/survey/atlas/invariant_curve.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "orbweaver/numerics/lagrange.hpp"
 
-namespace orbweaver::report {
+namespace orbweaver::survey {
 
 namespace {
 
@@ -200,4 +200,4 @@ const char* name_of(Invariant invariant) {
   return "unknown";
 }
 
-}  // namespace orbweaver::report
+}  // namespace orbweaver::survey

@@ -4,16 +4,16 @@
 #include <string>
 #include <vector>
 
-#include "compare/invariant_curve.hpp"
 #include "orbweaver/archive/read/reader.hpp"
+#include "orbweaver/survey/atlas/invariant_curve.hpp"
 #include "orbweaver/survey/tree/family_end.hpp"
 
-namespace orbweaver::report {
+namespace orbweaver::survey {
 
 /// One end of a family: where it stopped and why.
 struct FamilyEnd {
   std::size_t orbit = 0;  ///< of the family's orbits, the last on this side
-  survey::EndKind kind = survey::EndKind::unknown;
+  EndKind kind = survey::EndKind::unknown;
 };
 
 struct TreeFamily {
@@ -60,4 +60,4 @@ struct AtlasTree {
 /// "period-doubling T 8.44293"
 [[nodiscard]] std::string place_text(const TreeCrossing& crossing);
 
-}  // namespace orbweaver::report
+}  // namespace orbweaver::survey

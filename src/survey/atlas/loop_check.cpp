@@ -1,0 +1,171 @@
+#include "orbweaver/survey/atlas/loop_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "orbweaver/archive/read/loop_of.hpp"
+#include "orbweaver/bifurcation/identity.hpp"
+#include "orbweaver/continuation/family_curve.hpp"
+#include "orbweaver/loop/curve/in_units.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/loop/symmetry/alignment.hpp"
+#include "orbweaver/loop/symmetry/isotropy_text.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+/// Orbits that are tried before two families count as different: Newton's method may fail beside one.
+constexpr int most_tries = 3;
+/// Orbits on either side of a crossing from which its own is found: as a location has (survey/tasks/branch_task.cpp).
+constexpr std::size_t orbits_beside = 3;
+/// From an orbit to the next by way of one between them, in parts of the chord: that of a family that turns by 90
+/// degrees is 1.4.
+constexpr double longest_way = 1.5;
+
+continuation::Orbit orbit_of(const AtlasTree& tree, const TreeFamily& family, std::size_t orbit,
+                             const systems::System& system) {
+  const std::size_t row = family.first_orbit + orbit;
+  const systems::Scales& scales = system.scales();
+  continuation::Orbit out;
+  out.loop = loop::in_scales(archive::loop_of(tree.atlas, row, system.structure().angles), scales);
+  out.energy = tree.atlas.orbits().reals("energy")[row] / scales.energy();
+  out.action = tree.atlas.orbits().reals("action")[row] / scales.action();
+  return out;
+}
+
+/// Stored orbits start in a standard phase, which may jump between two neighbours: the loop with the start, and as the
+/// image, that brings it nearest to its neighbour, if that is twice as near as it stands.
+loop::Loop started_as(const systems::Structure& system, const loop::Loop& loop, const loop::Loop& neighbour) {
+  constexpr double nearer = 0.5;
+  const loop::Alignment alignment = loop::align(system, loop, neighbour);
+  return alignment.distance < nearer * loop::mean_distance(loop, neighbour) ? loop::aligned(loop, alignment) : loop;
+}
+
+/// Moves two orbits of a family towards the place between them where it may pass through a crossing of another one;
+/// false where it passes too far away, or has no orbits there. The hyperplane across the chord at the crossing holds
+/// orbits of the other family too, and the one found there is off by the chord's bulge: a hundredth as much on a tenth
+/// of the chord.
+bool closer_together(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
+                     const bifurcation::Comparison& found, continuation::Orbit& a, continuation::Orbit& b) {
+  constexpr double part = 0.05;       // of the chord, to either side
+  constexpr double off_chord = 0.02;  // an orbit further from it, in parts of its length, is another family's
+  const double length = loop::mean_distance(a.loop, b.loop);
+  if (!(found.position > part && found.position < 1.0 - part && found.distance < part * length)) return false;
+  continuation::FamilyCurve curve(system, isotropy, {});
+  curve.add(0.0, a.loop);
+  curve.add(1.0, b.loop);
+  std::vector<continuation::Orbit> near;
+  for (const double position : {found.position - part, found.position + part}) {
+    const std::optional<continuation::CurvePoint> point = curve.at(position);
+    if (!point) return false;
+    const double to_a = loop::mean_distance(point->loop, a.loop) / length;
+    const double to_b = loop::mean_distance(point->loop, b.loop) / length;
+    if (std::abs(to_a - position) > off_chord || std::abs(to_b - (1.0 - position)) > off_chord) return false;
+    continuation::Orbit& orbit = near.emplace_back();
+    orbit.loop = point->loop;
+    orbit.energy = continuation::energy_of(*system, orbit.loop);
+    orbit.action = continuation::action_of(*system, orbit.loop);
+  }
+  a = near.front();
+  b = near.back();
+  return true;
+}
+
+}  // namespace
+
+LoopAnswer LoopCheck::ask(const OrbitBeside& x) const {
+  const systems::Structure& system = _system->structure();
+  const bifurcation::IdentityOptions options;
+  const continuation::Orbit orbit = orbit_of(x.own, x.family, x.orbit, *_system);
+  const continuation::Orbit a = orbit_of(x.other, x.beside, x.segment, *_system);
+  const continuation::Orbit b = orbit_of(x.other, x.beside, x.segment + 1, *_system);
+  const double allowed = options.tolerance * (1.0 + loop::rms_size(orbit.loop));
+  // Where both were followed with the same steps it is one of the two, and nothing need be corrected.
+  for (const continuation::Orbit* node : {&a, &b}) {
+    const double in_period = std::abs(orbit.loop.period / node->loop.period - 1.0);
+    if (in_period > allowed) continue;
+    const double distance = std::hypot(in_period, loop::align(system, orbit.loop, node->loop, allowed).distance);
+    if (distance <= allowed) return {true, distance, allowed, "the same orbit", true};
+  }
+  const bifurcation::Comparison found =
+      bifurcation::same_family(*_system, a, b, loop::isotropy_of(system, x.beside.isotropy), orbit, options);
+  return {found.same, found.distance, allowed, found.detail, found.decided};
+}
+
+LoopAnswer LoopCheck::ask_crossing(const AtlasTree& tree, std::size_t crossing, const TreeFamily& beside,
+                                   std::size_t segment) const {
+  const systems::Structure& system = _system->structure();
+  const TreeCrossing& place = tree.crossings[crossing];
+  const TreeFamily& family = tree.families[static_cast<std::size_t>(place.family)];
+  const double position = tree.atlas.crossings().reals("arclength")[crossing];
+  const auto after = std::upper_bound(family.arclengths.begin(), family.arclengths.end(), position);
+  LoopAnswer undecided;
+  undecided.decided = false;
+  if (after == family.arclengths.begin() || after == family.arclengths.end()) return undecided;
+  const auto next = static_cast<std::size_t>(after - family.arclengths.begin());
+  continuation::FamilyCurve curve(_system, loop::isotropy_of(system, family.isotropy), {});
+  const std::size_t first = next > orbits_beside ? next - orbits_beside : 0;
+  const std::size_t end = std::min(next + orbits_beside, family.orbits());
+  std::optional<loop::Loop> before;
+  for (std::size_t n = first; n < end; ++n) {
+    const continuation::Orbit known = orbit_of(tree, family, n, *_system);
+    before = before ? started_as(system, known.loop, *before) : known.loop;
+    curve.add(family.arclengths[n], *before, end - first);
+  }
+  const std::optional<continuation::CurvePoint> there = curve.at(position);
+  if (!there) return undecided;
+  continuation::Orbit orbit;
+  orbit.loop =
+      place.multiplicity == 1 ? there->loop : loop::repeated(loop::evenly_in_time(there->loop), place.multiplicity);
+  orbit.energy = continuation::energy_of(*_system, orbit.loop);
+  orbit.action = continuation::action_of(*_system, orbit.loop);
+  bifurcation::IdentityOptions options;
+  options.keeps_repetitions = true;
+  const loop::Isotropy isotropy = loop::isotropy_of(system, beside.isotropy);
+  continuation::Orbit a = orbit_of(tree, beside, segment, *_system);
+  continuation::Orbit b = orbit_of(tree, beside, segment + 1, *_system);
+  const double allowed = options.tolerance * (1.0 + loop::rms_size(orbit.loop));
+  const double to_a = loop::align(system, orbit.loop, a.loop).distance;
+  const double to_b = loop::align(system, orbit.loop, b.loop).distance;
+  if (to_a + to_b > longest_way * loop::mean_distance(a.loop, b.loop))
+    return {false, std::min(to_a, to_b), allowed, "not between the neighbours", true};
+  bifurcation::Comparison found = bifurcation::same_family(*_system, a, b, isotropy, orbit, options);
+  if (!found) {  // not before: on either side of the crossing may lie images of one another
+    continuation::Orbit started = a;
+    started.loop = started_as(system, a.loop, b.loop);
+    const bifurcation::Comparison again = bifurcation::same_family(*_system, started, b, isotropy, orbit, options);
+    if (again.distance < found.distance) {
+      found = again;
+      a = started;
+    }
+  }
+  if (!found && closer_together(_system, isotropy, found, a, b))
+    found = bifurcation::same_family(*_system, a, b, isotropy, orbit, options);
+  return {found.same, found.distance, allowed, found.detail, found.decided};
+}
+
+std::vector<LoopCheck::Sample> LoopCheck::sample(const AtlasTree& own, const TreeFamily& family, const AtlasTree& other,
+                                                 const TreeFamily& beside, const std::vector<CurveFit>& fits,
+                                                 int count) const {
+  std::vector<Sample> samples;
+  if (!can_compare() || beside.orbits() < 2) return samples;
+  std::vector<std::size_t> placed;
+  for (std::size_t n = 0; n < fits.size(); ++n)
+    if (fits[n].fits()) placed.push_back(n);
+  const std::size_t chosen = std::min(placed.size(), static_cast<std::size_t>(std::max(0, count)));
+  for (std::size_t c = 0; c < chosen; ++c) {
+    const std::size_t n = placed[(2 * c + 1) * placed.size() / (2 * chosen)];
+    samples.push_back({n, ask({own, family, n, other, beside, fits[n].segment})});
+  }
+  return samples;
+}
+
+bool LoopCheck::are_same(const AtlasTree& a, const TreeFamily& family_a, const AtlasTree& b,
+                         const TreeFamily& family_b) const {
+  const std::vector<CurveFit> fits = fit_all(family_b.curve, family_a.curve.points());
+  const std::vector<Sample> samples = sample(a, family_a, b, family_b, fits, most_tries);
+  return samples.empty() || std::any_of(samples.begin(), samples.end(), [](const Sample& s) { return s.answer.same; });
+}
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,28 @@
+#include "witness/checks.hpp"
+
+#include "witness/checks/branch_counts.hpp"
+#include "witness/checks/ends.hpp"
+#include "witness/checks/failed_tasks.hpp"
+#include "witness/checks/index_changes.hpp"
+#include "witness/checks/mirror_images.hpp"
+#include "witness/checks/shared_points.hpp"
+#include "witness/checks/stored_twice.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+template <class... Checks>
+std::vector<std::unique_ptr<Check>> list() {
+  std::vector<std::unique_ptr<Check>> checks;
+  (checks.push_back(std::make_unique<Checks>()), ...);
+  return checks;
+}
+
+}  // namespace
+
+std::vector<std::unique_ptr<Check>> all_checks() {
+  return list<FailedTasks, StoredTwice, SharedPoints, BranchCounts, Ends, MirrorImages, IndexChanges>();
+}
+
+}  // namespace orbweaver::survey

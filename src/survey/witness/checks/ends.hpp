@@ -1,0 +1,157 @@
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tasks/payload/task_kind.hpp"
+#include "witness/check.hpp"
+
+namespace orbweaver::survey {
+
+/// Every end is a limit of the scene, an end by itself, or a crossing of another family that is known.
+class Ends final : public Check {
+ public:
+  [[nodiscard]] std::vector<Finding> findings(const Evidence& evidence,
+                                              std::span<const Answered> /*answered*/) const override {
+    std::vector<Finding> found;
+    for (const EndEvidence& end : evidence.known.tree.ends)
+      if (std::optional<Finding> finding = judged(evidence, end)) found.push_back(*finding);
+    return found;
+  }
+
+ private:
+  /// Relative, in period, energy and action: what the extrapolation to a meeting may be off (tree/arrivals.cpp).
+  static constexpr double near_meeting = 1e-3;
+  /// Times around that are looked for: as loop::repetitions.
+  static constexpr int most_times = 12;
+
+  static bool is_limit(continuation::EndReason reason) {
+    using continuation::EndReason;
+    switch (reason) {
+      case EndReason::period_limit:
+      case EndReason::energy_limit:
+      case EndReason::step_limit:
+      case EndReason::cutoff_limit:
+      case EndReason::stopped: return true;
+      case EndReason::period_divergence:
+      case EndReason::fixed_point:
+      case EndReason::closed_loop:
+      case EndReason::failure: break;
+    }
+    return false;
+  }
+
+  static std::optional<Finding> judged(const Evidence& evidence, const EndEvidence& end) {
+    Finding finding;
+    finding.family = evidence.row_of(end.family);
+    const TreeFamily& family = evidence.family(finding.family);
+    if (end.failed || !end.end) return std::nullopt;  // said as a failure
+    if (end.met) {
+      finding.period = end.period;
+      finding.energy = end.energy;
+      if (end.joined && end.crossing >= 0) return std::nullopt;
+      if (end.joined) {
+        finding.kind = FindingKind::unlisted_target;
+        finding.severity = Severity::contradiction;
+        return finding;
+      }
+      return end.nearby.empty() ? met_somewhere(evidence, family, end, finding) : met_crossing(evidence, end, finding);
+    }
+    if (end.end->reason == continuation::EndReason::fixed_point) return at_equilibrium(evidence, family, end, finding);
+    if (!is_limit(end.end->reason)) return std::nullopt;
+    finding.kind = FindingKind::limited_end;
+    finding.severity = Severity::cut;
+    finding.detail = end.end->text();
+    return finding;
+  }
+
+  // A family of small oscillations there is the same curve, which the check for curves stored twice sees.
+  static std::optional<Finding> at_equilibrium(const Evidence& evidence, const TreeFamily& family,
+                                               const EndEvidence& end, Finding finding) {
+    if (family.orbits() == 0) return std::nullopt;
+    const std::size_t orbit = end.side > 0 ? family.orbits() - 1 : 0;
+    const std::size_t row = family.first_orbit + orbit;
+    const std::vector<double> modes = evidence.tree.atlas.modes(row);
+    const auto dimension = static_cast<std::size_t>(evidence.system->structure().dimension);
+    double size = 0.0;  // no point of the loop is further from the mean
+    for (std::size_t n = dimension; n < modes.size(); ++n) size += std::abs(modes[n]);
+    const std::span<const double> mean(modes.data(), dimension);
+    for (const std::vector<double>& point : evidence.known.equilibria)
+      if (evidence.distance_between(mean, point) <= size) return std::nullopt;
+    const Invariants& last = family.curve.points()[orbit];
+    finding.kind = FindingKind::unknown_equilibrium;
+    finding.severity = Severity::undecided;
+    finding.period = last.value(Invariant::period);
+    finding.energy = last.value(Invariant::energy);
+    return finding;
+  }
+
+  // Near crossings that were found: a limit kept their directions from being looked for, or theirs are others.
+  static Finding met_crossing(const Evidence& evidence, const EndEvidence& end, Finding finding) {
+    finding.crossing = end.nearby.front();
+    finding.kind = FindingKind::unknown_direction;
+    finding.severity = Severity::contradiction;
+    for (const int nearby : end.nearby)
+      for (const CrossingEvidence& crossing : evidence.known.tree.crossings) {
+        if (crossing.crossing != nearby) continue;
+        if ((crossing.limited_by & (depth_limited | period_limited)) != 0) {
+          finding.crossing = nearby;
+          finding.kind =
+              (crossing.limited_by & depth_limited) != 0 ? FindingKind::beyond_depth : FindingKind::beyond_period;
+          finding.severity = Severity::cut;
+        } else if (crossing.failed && finding.severity == Severity::contradiction) {
+          finding.crossing = nearby;
+          finding.severity = Severity::undecided;
+        }
+      }
+    finding.other_family = evidence.crossing(finding.crossing).family;
+    return finding;
+  }
+
+  // Where no crossing is known: a family that passes there, gone around some times.
+  static Finding met_somewhere(const Evidence& evidence, const TreeFamily& family, const EndEvidence& end,
+                               Finding finding) {
+    finding.kind = FindingKind::unknown_family;
+    finding.severity = Severity::undecided;
+    if (family.orbits() == 0) return finding;
+    const Invariants& last = end.side > 0 ? family.curve.points().back() : family.curve.points().front();
+    const double action = last.value(Invariant::action) + 0.5 * (last.value(Invariant::period) + end.period) *
+                                                              (end.energy - last.value(Invariant::energy));
+    for (int m = 1; m <= most_times; ++m) {
+      const double period = end.period / m;
+      for (const auto& [other, segment] : evidence.index.near(period, end.energy, near_meeting * period,
+                                                              near_meeting * last.scale_of(Invariant::energy))) {
+        if (m == 1 && evidence.family(other).isotropy == family.isotropy) continue;  // itself, or its mirror image
+        if (!passes(evidence.family(other), segment, period, end.energy, action / m)) continue;
+        finding.other_family = other;
+        finding.number = m;
+        const bool is_higher = m > evidence.scene.survey.subharmonics;
+        finding.kind = is_higher ? FindingKind::higher_order : FindingKind::unlisted_crossing;
+        finding.severity = is_higher ? Severity::cut : Severity::undecided;
+        return finding;
+      }
+    }
+    return finding;
+  }
+
+  static bool passes(const TreeFamily& family, std::size_t segment, double period, double energy, double action) {
+    const Invariants& a = family.curve.points()[segment];
+    const Invariants& b = family.curve.points()[segment + 1];
+    const auto change = [&](Invariant i) { return (b.value(i) - a.value(i)) / a.scale_of(i); };
+    const double in_period = change(Invariant::period);
+    const double in_energy = change(Invariant::energy);
+    const bool by_energy = std::abs(in_energy) > std::abs(in_period);
+    const double share = by_energy ? (energy - a.value(Invariant::energy)) / a.scale_of(Invariant::energy) / in_energy
+                                   : (period - a.value(Invariant::period)) / a.scale_of(Invariant::period) / in_period;
+    const auto is_near = [&](Invariant i, double value) {
+      const double between = a.value(i) + share * (b.value(i) - a.value(i));
+      return !(std::abs(value - between) > near_meeting * a.scale_of(i));
+    };
+    return is_near(Invariant::period, period) && is_near(Invariant::energy, energy) &&
+           is_near(Invariant::action, action);
+  }
+};
+
+}  // namespace orbweaver::survey

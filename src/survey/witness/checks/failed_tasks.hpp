@@ -1,0 +1,31 @@
+#pragma once
+
+#include "witness/check.hpp"
+
+namespace orbweaver::survey {
+
+/// Tasks that failed or were not done, and arrivals that contradict each other.
+class FailedTasks final : public Check {
+ public:
+  [[nodiscard]] std::vector<Finding> findings(const Evidence& evidence,
+                                              std::span<const Answered> /*answered*/) const override {
+    std::vector<Finding> found;
+    const auto add = [&](FindingKind kind, Severity severity, const std::string& family, const std::string& detail) {
+      Finding& finding = found.emplace_back();
+      finding.kind = kind;
+      finding.severity = severity;
+      finding.family = evidence.row_of(family);
+      finding.detail = detail;
+    };
+    for (const std::string& failure : evidence.known.failures)
+      add(FindingKind::failed_task, Severity::failure, "", failure);
+    for (const FailureEvidence& failure : evidence.known.tree.failures)
+      add(FindingKind::failed_task, Severity::failure, failure.family, failure.reason);
+    for (const std::string& family : evidence.known.tree.disputed)
+      add(FindingKind::disputed_arrival, Severity::contradiction, family, "");
+    for (const std::string& task : evidence.known.interrupted) add(FindingKind::interrupted, Severity::cut, "", task);
+    return found;
+  }
+};
+
+}  // namespace orbweaver::survey

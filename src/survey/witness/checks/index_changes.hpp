@@ -1,0 +1,121 @@
+#pragma once
+
+#include <algorithm>
+#include <optional>
+
+#include "orbweaver/archive/schema/crossing_kind.hpp"
+#include "orbweaver/archive/schema/schema.hpp"
+#include "orbweaver/bifurcation/test_functions.hpp"
+#include "orbweaver/loop/symmetry/isotropy_text.hpp"
+#include "orbweaver/loop/symmetry/symmetry_group.hpp"
+#include "witness/check.hpp"
+
+namespace orbweaver::survey {
+
+/// Between two orbits of a family a multiplier passes a root of unity that the scene asks for only where a crossing is
+/// listed.
+class IndexChanges final : public Check {
+ public:
+  [[nodiscard]] std::vector<Finding> findings(const Evidence& evidence,
+                                              std::span<const Answered> /*answered*/) const override {
+    std::vector<Finding> found;
+    if (archive::stability_width(evidence.tree.atlas.header()) == 0) return found;
+    for (std::size_t row = 0; row < evidence.tree.families.size(); ++row)
+      for (const auto& [first, count] : sides_of(evidence, evidence.tree.families[row]))
+        judge(evidence, static_cast<int>(row), first, count, found);
+    return found;
+  }
+
+ private:
+  struct Signed {
+    std::size_t orbit;
+    int sign;
+  };
+
+  // Ranges of a family's orbits: those before the crossing where it was born, and those behind it.
+  static std::vector<std::pair<std::size_t, std::size_t>> sides_of(const Evidence& evidence, const TreeFamily& family) {
+    const auto& steps = evidence.tree.atlas.orbits().integers("step");
+    std::size_t before = 0;
+    while (before < family.orbits() && steps[family.first_orbit + before] < 0) ++before;
+    return {{0, before}, {before, family.orbits() - before}};
+  }
+
+  static spectrum::Stability stability_at(const Evidence& evidence, std::size_t row, int order) {
+    const archive::Archive& atlas = evidence.tree.atlas;
+    const std::size_t width = archive::stability_width(atlas.header());
+    const std::size_t parts = archive::has_complex_stability(atlas.header()) ? 2 : 1;
+    const auto& values = atlas.orbits().reals("fundamental_stability");
+    spectrum::Stability stability;
+    stability.fundamental_order = order;
+    for (std::size_t i = 0; i < width; i += parts)
+      stability.fundamental.emplace_back(values[row * width + i], parts == 2 ? values[row * width + i + 1] : 0.0);
+    // Of the full period's, which is no smaller but where d(mu^p + mu^-p)/d(mu + 1/mu) is below 1.
+    stability.fundamental_error.assign(stability.fundamental.size(),
+                                       atlas.orbits().reals("stability_error")[row] * error_margin);
+    return stability;
+  }
+
+  static void judge(const Evidence& evidence, int row, std::size_t first, std::size_t count,
+                    std::vector<Finding>& found) {
+    const TreeFamily& family = evidence.family(row);
+    const systems::Structure& structure = evidence.system->structure();
+    const int order = loop::SymmetryGroup(structure, loop::isotropy_of(structure, family.isotropy)).order();
+    const auto functions = bifurcation::test_functions(structure, order, evidence.scene.survey.subharmonics);
+    std::vector<std::optional<Signed>> last(functions.size());
+    const auto& steps = evidence.tree.atlas.orbits().integers("step");
+    const bool runs_backwards = count > 0 && steps[family.first_orbit + first] < 0;
+    const std::size_t birth = runs_backwards ? first + count - 1 : first;
+    for (std::size_t n = first; n < first + count; ++n) {
+      const spectrum::Stability stability = stability_at(evidence, family.first_orbit + n, order);
+      for (std::size_t f = 0; f < functions.size(); ++f) {
+        if (!bifurcation::has_sector(functions[f].kind)) continue;
+        const int sign = bifurcation::evaluate(functions[f], structure, stability).sign();
+        if (sign == 0) continue;
+        const std::optional<Signed> before = std::exchange(last[f], Signed{n, sign});
+        if (!before || before->sign == sign) continue;
+        // The index leaves 2 at a birth like a power of the distance, first within its error.
+        const bool at_birth =
+            family.parent >= 0 && functions[f].sector.q == 1 && (before->orbit == birth || n == birth);
+        if (!at_birth && !is_listed(evidence, family, functions[f].sector, before->orbit, n))
+          found.push_back(finding_at(evidence, row, functions[f].sector, n, stability));
+      }
+    }
+  }
+
+  static bool is_listed(const Evidence& evidence, const TreeFamily& family, const bifurcation::Sector& sector,
+                        std::size_t from, std::size_t to) {
+    const auto& arclengths = evidence.tree.atlas.crossings().reals("arclength");
+    const double begin = family.arclengths[from];
+    const double end = family.arclengths[to];
+    const double margin = arclength_margin * (end - begin);
+    return std::any_of(family.crossings.begin(), family.crossings.end(), [&](int row) {
+      const TreeCrossing& crossing = evidence.crossing(row);
+      const double at = arclengths[static_cast<std::size_t>(row)];
+      const bool is_fold = archive::crossing_kind_of(crossing.kind) == archive::CrossingKind::fold_energy;
+      const bool fits = is_fold ? sector.q == 1 : crossing.sector_q == sector.q && crossing.sector_j == sector.j;
+      return fits && at >= begin - margin && at <= end + margin;
+    });
+  }
+
+  static Finding finding_at(const Evidence& evidence, int row, const bifurcation::Sector& sector, std::size_t orbit,
+                            const spectrum::Stability& stability) {
+    const Invariants& x = evidence.family(row).curve.points()[orbit];
+    Finding finding;
+    finding.kind = FindingKind::index_change;
+    finding.severity = evidence.severity_about(row);
+    finding.family = row;
+    finding.period = x.value(Invariant::period);
+    finding.energy = x.value(Invariant::energy);
+    finding.number = sector.j;
+    finding.other_number = sector.q;
+    finding.deviation = stability.fundamental.front().real() - sector.index();
+    return finding;
+  }
+
+  /// Of the stored bound, which is that of the full period's index.
+  static constexpr double error_margin = 10.0;
+  /// Of the interval: a crossing at an orbit is located to 1e-10.
+  static constexpr double arclength_margin = 1e-6;
+};
+
+}  // namespace orbweaver::survey

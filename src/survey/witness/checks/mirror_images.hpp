@@ -1,0 +1,114 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "tasks/payload/keys.hpp"
+#include "witness/check.hpp"
+
+namespace orbweaver::survey {
+
+/// Families at equilibria that a symmetry maps to one another are images: they have the same crossings, ends and
+/// extents, and so has what is born there.
+class MirrorImages final : public Check {
+ public:
+  [[nodiscard]] std::vector<Finding> findings(const Evidence& evidence,
+                                              std::span<const Answered> /*answered*/) const override {
+    std::vector<Finding> found;
+    std::map<std::string, std::vector<int>> base;  // rows by the mode of the equilibrium
+    for (std::size_t row = 0; row < evidence.tree.families.size(); ++row)
+      if (evidence.tree.families[row].parent < 0)
+        base[mode_of(evidence.key(static_cast<int>(row)))].push_back(static_cast<int>(row));
+    for (const auto& [mode, rows] : base)
+      for (const int row : rows)
+        if (const int image = image_of(evidence, row, rows); image >= 0) compare(evidence, row, image, found);
+    return found;
+  }
+
+ private:
+  /// Relative in period and energy: crossings are located to an index of 1e-9.
+  static constexpr double same_place = 1e-6;
+
+  // The last of the later ones whose equilibria are images that shares its first orbits' period most nearly: modes with
+  // two sides have two rows.
+  static int image_of(const Evidence& evidence, int row, const std::vector<int>& rows) {
+    int best = -1;
+    for (const int other : rows) {
+      if (other <= row || !evidence.are_images(evidence.equilibrium_of(row), evidence.equilibrium_of(other))) continue;
+      if (evidence.family(row).orbits() == 0 || evidence.family(other).orbits() == 0) continue;
+      if (best < 0 || extent_apart(evidence, row, other) < extent_apart(evidence, row, best)) best = other;
+    }
+    return best;
+  }
+
+  static double extent_apart(const Evidence& evidence, int row, int other) {
+    const Invariants& a = evidence.family(row).curve.points().back();
+    const Invariants& b = evidence.family(other).curve.points().back();
+    return std::abs(a.value(Invariant::period) / b.value(Invariant::period) - 1.0);
+  }
+
+  static void compare(const Evidence& evidence, int row, int image, std::vector<Finding>& found) {
+    const TreeFamily& a = evidence.family(row);
+    const TreeFamily& b = evidence.family(image);
+    Finding finding;
+    finding.severity = std::max(evidence.severity_about(row), evidence.severity_about(image));
+    finding.family = row;
+    finding.other_family = image;
+    compare_ends(evidence, finding, found);
+    if (a.crossings.size() != b.crossings.size()) {
+      finding.kind = FindingKind::mirror_crossings;
+      finding.number = static_cast<int>(a.crossings.size());
+      finding.other_number = static_cast<int>(b.crossings.size());
+      finding.deviation = std::abs(finding.number - finding.other_number);
+      found.push_back(finding);
+      return;
+    }
+    for (std::size_t n = 0; n < a.crossings.size(); ++n) {  // by arclength
+      const TreeCrossing& x = evidence.crossing(a.crossings[n]);
+      const TreeCrossing& y = evidence.crossing(b.crossings[n]);
+      const double in_energy = std::abs(x.energy - y.energy) / x.energy_scale;
+      const double away = std::fmax(std::abs(x.period / y.period - 1.0), std::isnan(in_energy) ? 0.0 : in_energy);
+      if (x.kind != y.kind || x.multiplicity != y.multiplicity || away > same_place) {
+        finding.kind = FindingKind::mirror_place;
+        finding.crossing = a.crossings[n];
+        finding.period = x.period;
+        finding.energy = x.energy;
+        finding.deviation = away;
+        found.push_back(finding);
+      } else if (x.children.size() == y.children.size()) {  // others: a branch between the images is stored once
+        for (std::size_t c = 0; c < x.children.size(); ++c) compare(evidence, x.children[c], y.children[c], found);
+      }
+    }
+  }
+
+  static void compare_ends(const Evidence& evidence, Finding finding, std::vector<Finding>& found) {
+    const TreeFamily& a = evidence.family(finding.family);
+    const TreeFamily& b = evidence.family(finding.other_family);
+    finding.kind = FindingKind::mirror_end;
+    if (a.ends.size() != b.ends.size()) return found.push_back(finding);
+    if (a.orbits() < 2 || b.orbits() < 2) return;
+    for (std::size_t n = 0; n < a.ends.size(); ++n) {
+      const Invariants& x = a.curve.points()[a.ends[n].orbit];
+      const Invariants& y = b.curve.points()[b.ends[n].orbit];
+      const double apart = std::abs(x.value(Invariant::period) - y.value(Invariant::period));
+      // Their steps need not be the same: one may stop a step before the other.
+      if (a.ends[n].kind == b.ends[n].kind && apart <= last_step(a, n) + last_step(b, n)) continue;
+      finding.period = x.value(Invariant::period);
+      finding.energy = x.value(Invariant::energy);
+      finding.deviation = apart / x.scale_of(Invariant::period);
+      found.push_back(finding);
+    }
+  }
+
+  // Change of the period over the last step before an end.
+  static double last_step(const TreeFamily& family, std::size_t end) {
+    const std::vector<Invariants>& points = family.curve.points();
+    const std::size_t last = family.ends[end].orbit;
+    const std::size_t before = last == 0 ? 1 : last - 1;
+    return std::abs(points[last].value(Invariant::period) - points[before].value(Invariant::period));
+  }
+};
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,154 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "orbweaver/archive/schema/crossing_kind.hpp"
+#include "witness/check.hpp"
+
+namespace orbweaver::survey {
+
+/// A family that passes through a crossing of another one is born there, ends there, or has a crossing there itself.
+class SharedPoints final : public Check {
+ public:
+  [[nodiscard]] std::vector<LoopQuestion> questions(const Evidence& evidence) const override {
+    std::vector<LoopQuestion> asked;
+    const std::map<int, std::vector<int>> known = places_known(evidence);
+    for (std::size_t row = 0; row < evidence.tree.crossings.size(); ++row) {
+      const TreeCrossing& crossing = evidence.tree.crossings[row];
+      if (!archive::has_sector(archive::crossing_kind_of(crossing.kind))) continue;
+      const Invariants x = born_at(evidence, crossing);
+      const double in_period = x.floor_of(Invariant::period);
+      const double in_energy = x.floor_of(Invariant::energy);
+      std::map<int, std::pair<double, std::size_t>> nearest;  // segment of each family
+      for (const auto& [family, segment] :
+           evidence.index.near(x.value(Invariant::period), x.value(Invariant::energy), in_period, in_energy)) {
+        if (family == crossing.family && crossing.multiplicity == 1) continue;
+        const double away = distance_from(evidence.family(family).curve.points(), segment, x);
+        if (!may_have_index_two(evidence, evidence.family(family).curve.points(), segment)) continue;
+        const auto [known_one, is_new] = nearest.try_emplace(family, away, segment);
+        if (!is_new && away < known_one->second.first) known_one->second = {away, segment};
+      }
+      for (const auto& [family, place] : nearest) {
+        const auto& [away, segment] = place;
+        if (!std::isfinite(away) || is_known(evidence, known, family, x)) continue;
+        asked.push_back({crossing.family, 0, static_cast<int>(row), family, static_cast<int>(segment)});
+      }
+    }
+    return asked;
+  }
+
+  [[nodiscard]] std::vector<Finding> findings(const Evidence& evidence,
+                                              std::span<const Answered> answered) const override {
+    std::vector<Finding> found;
+    for (const auto& [question, reply] : answered) {
+      if (!reply.same && reply.decided) continue;
+      const TreeCrossing& crossing = evidence.crossing(question.crossing);
+      Finding finding;
+      finding.kind = FindingKind::shared_point;
+      finding.severity = reply.same ? Severity::contradiction : Severity::undecided;
+      finding.family = question.beside;
+      finding.other_family = question.family;
+      finding.crossing = question.crossing;
+      finding.period = crossing.multiplicity * crossing.period;
+      finding.energy = crossing.energy;
+      finding.deviation = reply.distance;
+      found.push_back(finding);
+    }
+    return found;
+  }
+
+ private:
+  /// Relative: what locations, and actions taken along dW/dE = T from the next stored orbit, may be off. A first look;
+  /// loops decide.
+  static constexpr double of_place = 1e-7;
+  static constexpr double of_action = 1e-3;
+
+  // Sum of the distances from the segment's two orbits, in period, energy and action; infinite if the nearer one is
+  // further away than a step: a family may turn between the two. Loops decide.
+  static double distance_from(const std::vector<Invariants>& points, std::size_t segment, const Invariants& x) {
+    const auto step = [&](std::size_t n) { return std::sqrt(square_distance(points[n], points[n + 1], x)); };
+    double longest = step(segment);
+    if (segment > 0) longest = std::fmax(longest, step(segment - 1));
+    if (segment + 2 < points.size()) longest = std::fmax(longest, step(segment + 1));
+    const double from = std::sqrt(square_distance(points[segment], x, x));
+    const double to = std::sqrt(square_distance(points[segment + 1], x, x));
+    return std::fmin(from, to) <= longest + of_action ? from + to : std::numeric_limits<double>::infinity();
+  }
+
+  // The index of an orbit that two families have in common is 2: a curve of orbits of its period leaves it in two
+  // directions. Half a step beyond the segment, as for the other invariants. With several pairs the sum does not tell.
+  static bool may_have_index_two(const Evidence& evidence, const std::vector<Invariants>& points, std::size_t segment) {
+    if (!evidence.system->structure().symplectic || evidence.system->structure().pairs() != 1) return true;
+    const auto [from, to] = range_beyond(points, segment, Invariant::trace);
+    const double two = std::asinh(1.0);
+    return !(two < from || two > to);
+  }
+
+  static double square_distance(const Invariants& a, const Invariants& b, const Invariants& x) {
+    double sum = 0.0;
+    for (const Invariant i : {Invariant::period, Invariant::energy, Invariant::action}) {
+      const double part = (a.value(i) - b.value(i)) / x.scale_of(i);
+      if (!std::isnan(part)) sum += part * part;
+    }
+    return sum;
+  }
+
+  static bool is_near(const Invariants& x, double period, double energy) {
+    return std::abs(period - x.value(Invariant::period)) <= near_place * x.value(Invariant::period) &&
+           !(std::abs(energy - x.value(Invariant::energy)) > near_place * x.scale_of(Invariant::energy));
+  }
+  /// Crossings that lie closer, relative in period and energy, are one place.
+  static constexpr double near_place = 1e-5;
+
+  // The orbit at the crossing, gone around as what is born there.
+  static Invariants born_at(const Evidence& evidence, const TreeCrossing& crossing) {
+    const TreeFamily& family = evidence.family(crossing.family);
+    const double m = crossing.multiplicity;
+    double action = archive::not_computed;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Invariants& point : family.curve.points()) {
+      const double away = std::abs(point.value(Invariant::period) / crossing.period - 1.0) +
+                          std::abs(point.value(Invariant::energy) - crossing.energy) / crossing.energy_scale;
+      if (!(away < nearest)) continue;
+      nearest = away;
+      action = point.value(Invariant::action) + 0.5 * (point.value(Invariant::period) + crossing.period) *
+                                                    (crossing.energy - point.value(Invariant::energy));
+    }
+    Invariants x;
+    x.values = {m * crossing.period, crossing.energy, m * action, archive::not_computed, archive::not_computed};
+    x.scale = {m * crossing.period, crossing.energy_scale, std::abs(m * action), 1.0, 1.0};
+    for (std::size_t i = 0; i < x.floor.size(); ++i) x.floor[i] = of_place * x.scale[i];
+    x.floor[static_cast<std::size_t>(Invariant::action)] = of_action * x.scale_of(Invariant::action);
+    return x;
+  }
+
+  // Crossings where a family is born, ends, or that lie on it.
+  static std::map<int, std::vector<int>> places_known(const Evidence& evidence) {
+    std::map<int, std::vector<int>> known;
+    for (std::size_t row = 0; row < evidence.tree.families.size(); ++row) {
+      std::vector<int>& places = known[static_cast<int>(row)];
+      places = evidence.tree.families[row].crossings;
+      if (evidence.tree.families[row].crossing >= 0) places.push_back(evidence.tree.families[row].crossing);
+    }
+    for (const EndEvidence& end : evidence.known.tree.ends)
+      if (end.crossing >= 0) known[evidence.row_of(end.family)].push_back(end.crossing);
+    return known;
+  }
+
+  static bool is_known(const Evidence& evidence, const std::map<int, std::vector<int>>& known, int family,
+                       const Invariants& x) {
+    const std::vector<int>& places = known.at(family);
+    return std::any_of(places.begin(), places.end(), [&](int row) {
+      const TreeCrossing& place = evidence.crossing(row);
+      const double around = place.family == family ? 1.0 : place.multiplicity;
+      return is_near(x, around * place.period, place.energy);
+    });
+  }
+};
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,129 @@
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "orbweaver/loop/symmetry/isotropy_text.hpp"
+#include "orbweaver/loop/symmetry/symmetry_group.hpp"
+#include "orbweaver/survey/tree/family_end.hpp"
+#include "witness/check.hpp"
+
+namespace orbweaver::survey {
+
+/// No orbit is stored in two families, nor, with its images under the system's symmetries, twice in one. Families at
+/// equilibria that are images of one another are images too, and are stored both; what descends from them as well.
+class StoredTwice final : public Check {
+ public:
+  [[nodiscard]] std::vector<LoopQuestion> questions(const Evidence& evidence) const override {
+    std::vector<LoopQuestion> asked;
+    for (const auto& [pair, hits] : candidates(evidence)) {
+      if (hits.size() < least_hits) continue;
+      const std::size_t count = std::min(compared, hits.size());
+      for (std::size_t c = 0; c < count; ++c) asked.push_back(hits[(2 * c + 1) * hits.size() / (2 * count)]);
+    }
+    return asked;
+  }
+
+  [[nodiscard]] std::vector<Finding> findings(const Evidence& evidence,
+                                              std::span<const Answered> answered) const override {
+    std::vector<Finding> found;
+    for (std::size_t begin = 0; begin < answered.size();) {
+      const Pair pair = pair_of(answered[begin].question);
+      std::size_t end = begin;
+      while (end < answered.size() && pair_of(answered[end].question) == pair) ++end;
+      judge(evidence, pair, answered.subspan(begin, end - begin), found);
+      begin = end;
+    }
+    return found;
+  }
+
+ private:
+  using Pair = std::pair<int, int>;
+  /// One common orbit is a crossing of two curves; more are a common curve.
+  static constexpr std::size_t least_hits = 2;
+  /// Loops that are compared for a pair of families.
+  static constexpr std::size_t compared = 5;
+  /// Of the floors of period and energy: as two computations of one orbit differ.
+  static constexpr double floors = 3.0;
+  /// Segments beside an orbit that are its own.
+  static constexpr std::size_t own_segments = 2;
+
+  static Pair pair_of(const LoopQuestion& question) { return std::minmax(question.family, question.beside); }
+
+  // By pair of families, the orbits of one whose invariants lie on the other's curve.
+  static std::map<Pair, std::vector<LoopQuestion>> candidates(const Evidence& evidence) {
+    std::map<Pair, std::vector<LoopQuestion>> hits;
+    std::map<Pair, bool> images;
+    for (std::size_t row = 0; row < evidence.tree.families.size(); ++row) {
+      const std::vector<Invariants>& points = evidence.tree.families[row].curve.points();
+      for (std::size_t n = 0; n < points.size(); ++n) {
+        const Invariants& x = points[n];
+        int last = -1;  // one hit a family and orbit
+        for (const auto& [other, segment] :
+             evidence.index.near(x.value(Invariant::period), x.value(Invariant::energy),
+                                 floors * x.floor_of(Invariant::period), floors * x.floor_of(Invariant::energy))) {
+          const int own = static_cast<int>(row);
+          if (other == last || (other == own && is_own(evidence.tree.families[row], n, segment))) continue;
+          const Pair pair = std::minmax(own, other);
+          if (other != own) {
+            const auto [known, is_new] = images.try_emplace(pair, false);
+            if (is_new) known->second = are_images(evidence, own, other);
+            if (known->second) continue;
+          }
+          if (!evidence.family(other).curve.fit_near(x, segment, 0).fits()) continue;
+          last = other;
+          hits[pair].push_back({own, static_cast<int>(n), -1, other, static_cast<int>(segment)});
+        }
+      }
+    }
+    return hits;
+  }
+
+  static bool is_own(const TreeFamily& family, std::size_t orbit, std::size_t segment) {
+    const std::size_t apart = orbit > segment ? orbit - segment : segment - orbit;
+    if (apart <= own_segments) return true;
+    const bool closes = std::any_of(family.ends.begin(), family.ends.end(),
+                                    [](const FamilyEnd& end) { return end.kind == EndKind::closed_loop; });
+    return closes && apart + own_segments >= family.orbits();
+  }
+
+  // Whether they descend from equilibria that are images, and are not their own images.
+  static bool are_images(const Evidence& evidence, int row, int other) {
+    const int from = evidence.equilibrium_of(row);
+    const int to = evidence.equilibrium_of(other);
+    if (!evidence.are_images(from, to)) return false;
+    const systems::Structure& structure = evidence.system->structure();
+    const loop::SymmetryGroup group(structure, loop::isotropy_of(structure, evidence.family(row).isotropy));
+    return std::none_of(group.elements().begin(), group.elements().end(), [&](const loop::SymmetryElement& element) {
+      return evidence.is_image_by(element.map, from, to);
+    });
+  }
+
+  static void judge(const Evidence& evidence, const Pair& pair, std::span<const Answered> answered,
+                    std::vector<Finding>& found) {
+    const auto is_same = [](const Answered& a) { return a.reply.same; };
+    const auto same = std::count_if(answered.begin(), answered.end(), is_same);
+    const bool any_decided =
+        std::any_of(answered.begin(), answered.end(), [](const Answered& a) { return a.reply.decided; });
+    if (same == 0 && any_decided) return;
+    const auto first = std::find_if(answered.begin(), answered.end(), is_same);
+    const Answered& shown = first == answered.end() ? answered.front() : *first;
+    const Invariants& x =
+        evidence.family(shown.question.family).curve.points()[static_cast<std::size_t>(shown.question.orbit)];
+    Finding finding;
+    finding.kind = pair.first == pair.second ? FindingKind::retraced_curve : FindingKind::duplicate_curve;
+    finding.severity = same >= static_cast<std::ptrdiff_t>(least_hits) ? Severity::contradiction : Severity::undecided;
+    finding.family = pair.first;
+    finding.other_family = pair.first == pair.second ? -1 : pair.second;
+    finding.period = x.value(Invariant::period);
+    finding.energy = x.value(Invariant::energy);
+    finding.deviation = shown.reply.distance;
+    finding.number = static_cast<int>(same);
+    finding.other_number = static_cast<int>(answered.size());
+    found.push_back(finding);
+  }
+};
+
+}  // namespace orbweaver::survey

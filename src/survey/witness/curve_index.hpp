@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "orbweaver/survey/atlas/atlas_tree.hpp"
+
+namespace orbweaver::survey {
+
+/// The range of an invariant between two neighbouring orbits and half a step beyond, the longest of theirs and those
+/// beside it: a family may turn between two orbits.
+[[nodiscard]] std::pair<double, double> range_beyond(const std::vector<Invariants>& points, std::size_t segment,
+                                                     Invariant invariant);
+
+/// The segments between neighbouring orbits of all families of an atlas, found by period and energy.
+class CurveIndex {
+ public:
+  struct Segment {
+    int family = -1;
+    std::size_t segment = 0;  ///< between its orbits segment and segment + 1
+  };
+
+  explicit CurveIndex(const AtlasTree& tree);
+
+  /// Those whose ranges of period and energy, widened by `in_period` and `in_energy` (absolute), hold the place; by
+  /// family, then segment. A NaN energy lies in all ranges. Ranges are those of range_beyond.
+  [[nodiscard]] std::vector<Segment> near(double period, double energy, double in_period, double in_energy) const;
+
+ private:
+  struct Entry {
+    Segment at;
+    double period_from, period_to, energy_from, energy_to;
+  };
+  std::vector<Entry> _entries;                                        // by family, then segment
+  std::unordered_map<std::int64_t, std::vector<std::size_t>> _cells;  // of the logarithm of the period
+};
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "curve_index.hpp"
+#include "orbweaver/scene/scene.hpp"
+#include "orbweaver/survey/atlas/atlas_tree.hpp"
+#include "orbweaver/survey/witness/finding.hpp"
+#include "orbweaver/systems/system.hpp"
+#include "tree/tree_evidence.hpp"
+
+namespace orbweaver::survey {
+
+/// What the witness knows beside the atlas: of rank 0.
+struct WitnessInput {
+  TreeEvidence tree;
+  std::vector<std::string> family_keys;         ///< sorted: one a row of /families
+  std::vector<int> crossing_rows;               ///< of the tables' crossings, which `tree` counts
+  std::vector<std::vector<double>> equilibria;  ///< by the index that keys begin with
+  std::vector<std::string> failures;            ///< of sweeps: they have no branch
+  std::vector<std::string> interrupted;         ///< tasks put aside, or not begun before a stop
+  bool stopped_early = false;
+};
+
+/// All that checks look at.
+struct Evidence {
+  Evidence(const AtlasTree& tree_, std::shared_ptr<const systems::System> system_, const scene::Scene& scene_,
+           WitnessInput input);
+
+  const AtlasTree& tree;
+  std::shared_ptr<const systems::System> system;
+  const scene::Scene& scene;
+  WitnessInput known;  ///< crossings are rows of the atlas
+  CurveIndex index;
+  std::set<int> failed;  ///< rows of families that a failed task was about
+
+  /// Row of the family with this key; -1: none.
+  [[nodiscard]] int row_of(const std::string& key) const;
+  [[nodiscard]] const TreeFamily& family(int row) const { return tree.families[static_cast<std::size_t>(row)]; }
+  [[nodiscard]] const TreeCrossing& crossing(int row) const { return tree.crossings[static_cast<std::size_t>(row)]; }
+  [[nodiscard]] const std::string& key(int row) const { return known.family_keys[static_cast<std::size_t>(row)]; }
+  /// The equilibrium at which the family, or what it descends from, begins; -1: unknown.
+  [[nodiscard]] int equilibrium_of(int row) const;
+  /// Of what does not agree about a family: a failed task, or a stop, may be the reason.
+  [[nodiscard]] Severity severity_about(int row) const;
+  /// The largest difference of a coordinate, angles modulo whole turns.
+  [[nodiscard]] double distance_between(std::span<const double> point, std::span<const double> other) const;
+  /// Whether the map takes one equilibrium to the other, modulo whole turns.
+  [[nodiscard]] bool is_image_by(const systems::AffineMap& map, int equilibrium, int other) const;
+  /// Whether some symmetry of the system takes one equilibrium to another one.
+  [[nodiscard]] bool are_images(int equilibrium, int other) const;
+};
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,116 @@
+#include "orbweaver/survey/witness/finding.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace orbweaver::survey {
+
+namespace {
+
+std::string sentence_of(const Finding& f, const FindingNames& names) {
+  switch (f.kind) {
+    case FindingKind::duplicate_curve:
+      return fmt::format("the same orbits are stored in {} ({} of {} compared are the same)", names.other_family,
+                         f.number, f.other_number);
+    case FindingKind::retraced_curve:
+      return fmt::format("runs over its own orbits or their images again ({} of {} compared are the same)", f.number,
+                         f.other_number);
+    case FindingKind::shared_point:
+      return fmt::format("passes through the {} of {}, where neither says so", names.crossing, names.other_family);
+    case FindingKind::missing_directions:
+      return fmt::format("{}: the kernel has {} directions, {} were found", names.crossing, f.other_number, f.number);
+    case FindingKind::unfollowed_direction:
+      return fmt::format("{}: along direction {} nothing has left or arrived", names.crossing, f.number);
+    case FindingKind::beyond_depth:
+      return fmt::format("{}: what is born there was not followed (survey.depth)", names.crossing);
+    case FindingKind::beyond_period:
+      return fmt::format("{}: orbits born there lie beyond limits.period", names.crossing);
+    case FindingKind::beyond_limits:
+      return fmt::format("{}: along direction {} the first orbit lies beyond the limits", names.crossing, f.number);
+    case FindingKind::beyond_families:
+      return fmt::format("{}: direction {} was left out (limits.families)", names.crossing, f.number);
+    case FindingKind::unlisted_target: return "ends at a crossing that the archive does not have";
+    case FindingKind::unknown_direction:
+      return fmt::format("ends near the {} of {}, along none of the directions found there", names.crossing,
+                         names.other_family);
+    case FindingKind::higher_order:
+      return fmt::format("ends on {} gone around {} times, more than survey.subharmonics", names.other_family,
+                         f.number);
+    case FindingKind::unlisted_crossing:
+      return fmt::format("ends on {} gone around {} times, which has no crossing there", names.other_family, f.number);
+    case FindingKind::unknown_family: return "ends on a family of more symmetry that this survey does not have";
+    case FindingKind::unknown_equilibrium: return "ends at an equilibrium that this survey does not have";
+    case FindingKind::limited_end: return fmt::format("ends by the scene's limits: {}", f.detail);
+    case FindingKind::mirror_crossings:
+      return fmt::format("has {} crossings, its mirror image {} has {}", f.number, names.other_family, f.other_number);
+    case FindingKind::mirror_place:
+      return fmt::format("{}: lies elsewhere on the mirror image {}, or is another kind there", names.crossing,
+                         names.other_family);
+    case FindingKind::mirror_end:
+      return fmt::format("ends otherwise, or elsewhere, than its mirror image {}", names.other_family);
+    case FindingKind::index_change:
+      return fmt::format("a multiplier passes exp(2 pi i {}/{}), and no crossing is listed there", f.number,
+                         f.other_number);
+    case FindingKind::failed_task: return f.detail;
+    case FindingKind::disputed_arrival:
+      return "another branch arrives where this one starts, yet it is kept: arrivals contradict each other about which "
+             "branches are the same";
+    case FindingKind::interrupted: return fmt::format("not done: {}", f.detail);
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string_view name_of(Severity severity) {
+  switch (severity) {
+    case Severity::contradiction: return "contradiction";
+    case Severity::failure: return "failure";
+    case Severity::undecided: return "undecided";
+    case Severity::cut: return "cut";
+  }
+  return "unknown";
+}
+
+std::string_view name_of(FindingKind kind) {
+  switch (kind) {
+    case FindingKind::duplicate_curve: return "duplicate-curve";
+    case FindingKind::retraced_curve: return "retraced-curve";
+    case FindingKind::shared_point: return "shared-point";
+    case FindingKind::missing_directions: return "missing-directions";
+    case FindingKind::unfollowed_direction: return "unfollowed-direction";
+    case FindingKind::beyond_depth: return "beyond-depth";
+    case FindingKind::beyond_period: return "beyond-period";
+    case FindingKind::beyond_limits: return "beyond-limits";
+    case FindingKind::beyond_families: return "beyond-families";
+    case FindingKind::unlisted_target: return "unlisted-target";
+    case FindingKind::unknown_direction: return "unknown-direction";
+    case FindingKind::higher_order: return "higher-order";
+    case FindingKind::unlisted_crossing: return "unlisted-crossing";
+    case FindingKind::unknown_family: return "unknown-family";
+    case FindingKind::unknown_equilibrium: return "unknown-equilibrium";
+    case FindingKind::limited_end: return "limited-end";
+    case FindingKind::mirror_crossings: return "mirror-crossings";
+    case FindingKind::mirror_place: return "mirror-place";
+    case FindingKind::mirror_end: return "mirror-end";
+    case FindingKind::index_change: return "index-change";
+    case FindingKind::failed_task: return "failed-task";
+    case FindingKind::disputed_arrival: return "disputed-arrival";
+    case FindingKind::interrupted: return "interrupted";
+  }
+  return "unknown";
+}
+
+std::string text_of(const Finding& finding, const FindingNames& names) {
+  std::string text = names.family.empty() ? "" : names.family + ": ";
+  text += sentence_of(finding, names);
+  if (!std::isnan(finding.period)) {
+    text += fmt::format(" (T = {:.9g}", finding.period);
+    if (!std::isnan(finding.energy)) text += fmt::format(", E = {:.9g}", finding.energy);
+    text += ")";
+  }
+  return text;
+}
+
+}  // namespace orbweaver::survey

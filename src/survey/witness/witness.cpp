@@ -1,0 +1,109 @@
+#include "witness/witness.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/core/mpi/collective.hpp"
+#include "orbweaver/queue/run.hpp"
+#include "orbweaver/survey/tree/naming.hpp"
+#include "witness/checks.hpp"
+#include "witness/tolerance.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+class NothingToFlush final : public queue::Flusher {
+  void flush(int /*number*/) override {}
+};
+
+FindingNames names_of(const AtlasTree& tree, const Finding& finding) {
+  const auto name = [&](int row) { return row < 0 ? "" : tree.families[static_cast<std::size_t>(row)].name; };
+  return {name(finding.family), name(finding.other_family),
+          finding.crossing < 0 ? "" : place_text(tree.crossings[static_cast<std::size_t>(finding.crossing)])};
+}
+
+void add(const AtlasTree& tree, const Finding& finding, Testimony& testimony) {
+  const std::string text = limited(text_of(finding, names_of(tree, finding)));
+  testimony.records.push_back({std::string(name_of(finding.severity)), std::string(name_of(finding.kind)),
+                               finding.family, finding.other_family, finding.crossing, finding.period, finding.energy,
+                               finding.deviation, text});
+  testimony.summaries.push_back({finding.severity, finding.kind, text});
+  if (is_wrong(finding.severity)) ++testimony.wrong;
+}
+
+/// Rank 0's part.
+class Witness {
+ public:
+  Witness(const std::filesystem::path& atlas, const scene::Scene& scene,
+          const std::shared_ptr<const systems::System>& system, WitnessInput input)
+      : _atlas(atlas), _tree(_atlas, witness_tolerance), _evidence(_tree, system, scene, std::move(input)) {
+    if (!_evidence.known.stopped_early)
+      for (const auto& check : _checks) _questions.push_back(check->questions(_evidence));
+    _questions.resize(_checks.size());
+  }
+
+  [[nodiscard]] std::vector<queue::Task> tasks() const {
+    std::vector<queue::Task> tasks;
+    for (const std::vector<LoopQuestion>& asked : _questions)
+      for (const LoopQuestion& question : asked) tasks.push_back(task_of(question, tasks.size()));
+    return tasks;
+  }
+
+  /// `outcomes`: in the order of the tasks.
+  [[nodiscard]] Testimony testimony(const std::vector<queue::TaskOutcome>& outcomes) const {
+    std::vector<Finding> findings;
+    std::size_t next = 0;
+    for (std::size_t n = 0; n < _checks.size(); ++n) {
+      std::vector<Answered> answered;
+      for (const LoopQuestion& question : _questions[n]) answered.push_back({question, reply_in(outcomes[next++])});
+      const std::vector<Finding> found = _checks[n]->findings(_evidence, answered);
+      findings.insert(findings.end(), found.begin(), found.end());
+    }
+    std::stable_sort(findings.begin(), findings.end(),
+                     [](const Finding& a, const Finding& b) { return a.severity < b.severity; });
+    Testimony testimony;
+    for (const Finding& finding : findings) add(_tree, finding, testimony);
+    return testimony;
+  }
+
+ private:
+  archive::Archive _atlas;
+  AtlasTree _tree;
+  Evidence _evidence;
+  std::vector<std::unique_ptr<Check>> _checks = all_checks();
+  std::vector<std::vector<LoopQuestion>> _questions;  // by check
+};
+
+}  // namespace
+
+std::optional<Testimony> testify(const core::Communicator& comm, const std::filesystem::path& atlas,
+                                 const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
+                                 WitnessInput input) {
+  std::optional<Witness> witness;
+  std::vector<queue::Task> tasks;
+  core::on_root(comm.get(), [&] {
+    witness.emplace(atlas, scene, system, std::move(input));
+    tasks = witness->tasks();
+  });
+  std::vector<queue::TaskOutcome> outcomes;
+  if (core::agreed(comm.get(), !tasks.empty())) {
+    LoopExecutor executor(core::agreed(comm.get(), atlas.string()), system);
+    queue::Observer observer;
+    NothingToFlush flusher;
+    queue::Options options;
+    options.keep_outcomes = true;
+    options.flush_seconds = 0.0;
+    options.flush_rows = 0;
+    queue::RunSummary run = queue::run(comm, options, std::move(tasks), executor, observer, flusher);
+    if (run.stopped_early) return std::nullopt;
+    outcomes = std::move(run.outcomes);
+  }
+  Testimony testimony;
+  core::on_root(comm.get(), [&] { testimony = witness->testimony(outcomes); });
+  testimony.wrong = core::agreed(comm.get(), testimony.wrong);
+  return testimony;
+}
+
+}  // namespace orbweaver::survey
