@@ -154,6 +154,11 @@ TEST(TestFunctions, KreinChangesSignWhereTwoIndicesBecomeComplex) {
     EXPECT_EQ(evaluate(krein, three, stability_of({0.61, 0.60, other}, 1e-9)).sign(), 1);
     EXPECT_EQ(evaluate(krein, three, stability_of({Complex(0.6, 0.01), Complex(0.6, -0.01), other}, 1e-9)).sign(), -1);
   }
+  for (const double huge : {1e149, 1e200, 1e300}) {  // whose squares are beyond double precision
+    const Reading reading = evaluate(krein, test::structure_of(6, true, true), stability_of({0.6, huge}, 1e-9));
+    EXPECT_NEAR(reading.value, 0.5, 1e-15) << huge;
+    EXPECT_EQ(reading.sign(), 1);
+  }
   EXPECT_TRUE(is_event(krein, three, stability_of({0.6, 0.6, 3.0}, 1e-9), false));
   EXPECT_FALSE(is_event(krein, three, stability_of({0.6, 0.6, 3.0}, 1e-9), true));
   EXPECT_FALSE(is_event(krein, three, stability_of({0.6, 3.0, 3.0}, 1e-9), false));

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <complex>
+
 #include "test_functions/rule.hpp"
 
 namespace orbweaver::bifurcation {
@@ -14,7 +17,12 @@ class Krein final : public Rule {
   }
   [[nodiscard]] std::vector<Bounded> factors(const systems::Structure& /*system*/, const Sector& /*sector*/,
                                              const std::vector<Bounded>& indices) const override {
-    return over_pairs(indices, distance_squared);
+    return over_pairs(indices, [](const Bounded& a, const Bounded& b) {
+      const double larger = std::max(std::abs(a.value), std::abs(b.value));
+      if (larger < huge) return distance_squared(a, b, scale);
+      const auto part = [larger](const Bounded& x) { return Bounded{x.value / larger, x.error / larger}; };
+      return distance_squared(part(a), part(b), 0.0);
+    });
   }
   [[nodiscard]] bool is_event(const std::vector<Bounded>& indices, const std::vector<Bounded>& factors,
                               bool tangency) const override {
@@ -27,15 +35,18 @@ class Krein final : public Rule {
   static constexpr double scale = 8.0;
   static constexpr double largest_sum = 4.0;
 
-  static Bounded distance_squared(const Bounded& a, const Bounded& b) {
+  /// Squares of larger indices would overflow; beside theirs `scale` is nothing.
+  static constexpr double huge = 1e150;
+
+  static Bounded distance_squared(const Bounded& a, const Bounded& b, double least) {
     const std::complex<double> difference = a.value - b.value;
     const double error = a.error + b.error;
-    const double below = scale + 2.0 * std::norm(a.value) + 2.0 * std::norm(b.value);
+    const double below = least + 2.0 * std::norm(a.value) + 2.0 * std::norm(b.value);
     const double below_error =
         2.0 * a.error * (2.0 * std::abs(a.value) + a.error) + 2.0 * b.error * (2.0 * std::abs(b.value) + b.error);
     const std::complex<double> value = difference * difference / below;
     const double above_error = error * (2.0 * std::abs(difference) + error);
-    return {value, (above_error + std::abs(value) * below_error) / std::max(scale, below - below_error)};
+    return {value, (above_error + std::abs(value) * below_error) / std::max(least, below - below_error)};
   }
 };
 
