@@ -235,7 +235,7 @@ void require_identities(const System& system, const std::vector<std::vector<doub
     for (std::size_t k = 0; k < structure.guards.size(); ++k) {
       const double value = system.guard(static_cast<int>(k), point);
       if (!(value > 0.0))
-        refuse(system, fmt::format("expected the guard {} to be positive, got {:.6g}", structure.guards[k], value),
+        refuse(system, fmt::format("expected the guard {} to be positive, got {:.6g}", structure.guards[k].name, value),
                point);
     }
   const auto require_as_far_as = [&](double size) {
