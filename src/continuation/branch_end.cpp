@@ -28,7 +28,8 @@ constexpr double settled_energy = 1e-3;
 std::optional<Ending> end_at(const Frontier& frontier, const Options& options, const systems::Scales& units) {
   const Orbit& orbit = frontier.orbit;
   const double period = orbit.loop.period * units.time;
-  if (frontier.on_energy_limit) return Ending{EndReason::energy_limit, fmt::format("E = {:.12g}", orbit.energy * units.energy())};
+  if (frontier.on_energy_limit)
+    return Ending{EndReason::energy_limit, fmt::format("E = {:.12g}", orbit.energy * units.energy())};
   if (orbit.loop.period >= options.period_limit)
     return Ending{EndReason::period_limit, fmt::format("T = {:.12g}", period)};
   if (orbit.step + 1 >= options.step_limit)

@@ -101,8 +101,7 @@ class Location {
 
   void add_known(continuation::FamilyCurve& family) const {
     family.before_each([this] { report(); });
-    for (const continuation::FamilyCurve::Known& known : _work.known)
-      family.add(known, _work.known.size());
+    for (const continuation::FamilyCurve::Known& known : _work.known) family.add(known, _work.known.size());
   }
 
   queue::TaskOutcome located(const bifurcation::Crossing& crossing, continuation::FamilyCurve& family) {
@@ -213,8 +212,8 @@ class Location {
       StartWork start;
       BranchWork& branch = start.branch;
       branch.key = leaving.key + (leaving.both_sides ? (side > 0 ? "+" : "-") : "");
-      branch.name = fmt::format("{}>{}@{:.4g}{}", _work.name, _outcome.multiplicity, _outcome.period * _system->scales().time,
-                                leaving.key.substr(_work.key.size()));
+      branch.name = fmt::format("{}>{}@{:.4g}{}", _work.name, _outcome.multiplicity,
+                                _outcome.period * _system->scales().time, leaving.key.substr(_work.key.size()));
       branch.lineage = {leaving.key, _work.key, _work.lineage.depth + 1, _outcome.multiplicity, side};
       branch.base = direction.base;
       branch.direction = direction.tangent;

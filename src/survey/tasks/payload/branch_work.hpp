@@ -62,14 +62,13 @@ struct BranchOutcome {
   std::vector<std::string> remarks;
   double tolerance_met = 0.0;  ///< the largest of the orbits', where rounding keeps one above the tolerance; else 0
   int limited_by = 0;          ///< Limit: with wider ones the branch would have gone on
-  std::string before_limit;  ///< the state (queue::Task) from which it would, without children; empty: from its start
+  std::string before_limit;    ///< the state (queue::Task) from which it would, without children; empty: from its start
 
   static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, key, orbits, period_from, period_to, energy_from, energy_to, last_period,
-                            last_energy, last_cutoff, end, arrival, remarks, tolerance_met, limited_by,
-                            before_limit);
+                            last_energy, last_cutoff, end, arrival, remarks, tolerance_met, limited_by, before_limit);
     if constexpr (Archive::is_loading::value) check_limits(limited_by);
   }
 };
