@@ -59,8 +59,8 @@ std::string scales_text(const scene::Scene& scene, const systems::System& system
       if (!system.structure().is_angle(i))
         texts.push_back(fmt::format("{} {:.6g}", system.info().state_names[i], scales.coordinate(i)));
     for (std::size_t k = 0; k < system.structure().conserved.size(); ++k)
-      texts.push_back(
-          fmt::format("{} {:.6g}", system.structure().conserved[k], scales.conserved.empty() ? 1.0 : scales.conserved[k]));
+      texts.push_back(fmt::format("{} {:.6g}", system.structure().conserved[k],
+                                  scales.conserved.empty() ? 1.0 : scales.conserved[k]));
     return fmt::format("{}", fmt::join(texts, ", "));
   } catch (const core::NumericalError& error) {
     return fmt::format("not found: {}", error.what());

@@ -46,8 +46,7 @@ double closure_of(const systems::System& system, const loop::Loop& loop, const s
     } catch (const core::NumericalError& error) {
       const double period = loop.period * system.scales().time;
       throw core::NumericalError(fmt::format("segment {} of {} of a loop with period {} (from t = {}): {}", m + 1,
-                                             options.segments, period, period * m / options.segments,
-                                             error.what()));
+                                             options.segments, period, period * m / options.segments, error.what()));
     }
   }
   return largest;

@@ -5,8 +5,8 @@
 
 #include "orbweaver/continuation/branch.hpp"
 
-/// When a branch ends, from where it stands (docs/mathematics.md, "Ends"). `units` are those of its numbers, which texts
-/// tell in the units of the scene.
+/// When a branch ends, from where it stands (docs/mathematics.md, "Ends"). `units` are those of its numbers, which
+/// texts tell in the units of the scene.
 namespace orbweaver::continuation {
 
 /// Growth of T over which the energy is compared where the period may diverge: a tenth, which near a saddle multiplies

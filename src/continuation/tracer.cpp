@@ -169,10 +169,9 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
     _frontier.problem.factor_point.clear();
     length *= 0.5;
     if (!(length >= least))
-      return end(EndReason::failure,
-                 fmt::format("the corrector fails at T = {:.6g} even with step {:.1e}: {}",
-                             here().period * _system->scales().time, length,
-                             jumped ? "it leaves the family" : trial.reason));
+      return end(EndReason::failure, fmt::format("the corrector fails at T = {:.6g} even with step {:.1e}: {}",
+                                                 here().period * _system->scales().time, length,
+                                                 jumped ? "it leaves the family" : trial.reason));
   }
 }
 
@@ -194,16 +193,14 @@ std::optional<Orbit> Tracer::accept_within_limits(const Trial& trial, double len
   OnLimit on_limit;
   if (is_late) {
     on_limit = orbit_at_scalar(
-        _stepper,
-        {EndReason::period_limit, "T", _options.period_limit, length, trial, _system->scales().time}, period);
+        _stepper, {EndReason::period_limit, "T", _options.period_limit, length, trial, _system->scales().time}, period);
     if (on_limit.trial) on_limit.trial->loop.period = _options.period_limit;
   }
   if (is_outside && (!is_late || (on_limit.trial && is_beyond_energies(energy_of(*_system, on_limit.trial->loop))))) {
     const double limit = value > _options.energy_to ? _options.energy_to : _options.energy_from;
-    on_limit = orbit_at_value(_stepper,
-                              {EndReason::energy_limit, "E", limit, length, trial, _system->scales().energy()},
-                              _frontier.orbit.energy,
-                              [this](const Trial& other) { return energy_of(*_system, other.loop); });
+    on_limit =
+        orbit_at_value(_stepper, {EndReason::energy_limit, "E", limit, length, trial, _system->scales().energy()},
+                       _frontier.orbit.energy, [this](const Trial& other) { return energy_of(*_system, other.loop); });
     _frontier.on_energy_limit = on_limit.trial.has_value();
   }
   if (on_limit.trial) return accept_within_guards(std::move(*on_limit.trial), length, refused);

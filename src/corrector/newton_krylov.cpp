@@ -41,9 +41,8 @@ NewtonKrylovRun run_newton_krylov(const systems::System& system, const loop::Loo
     without_progress = equations.loss() < least_progress * last_loss ? 0 : without_progress + 1;
     last_loss = equations.loss();
     // Where rounding lets the loss fall no further the tolerance is met as far as it can be.
-    const bool at_rounding =
-        without_progress >= most_without_progress &&
-        std::sqrt(equations.loss()) < rounding_floor(run.loop, equations.linearization());
+    const bool at_rounding = without_progress >= most_without_progress &&
+                             std::sqrt(equations.loss()) < rounding_floor(run.loop, equations.linearization());
     const bool under_threshold = std::sqrt(equations.loss()) < threshold || at_rounding;
     if (!under_threshold && without_progress >= most_without_progress) run.stop = Stop::stagnation;
     if (!under_threshold && run.iterations >= most) run.stop = Stop::iterations;

@@ -87,9 +87,10 @@ std::vector<EquilibriumReport> sweep_report(const scene::Scene& scene) {
     };
     const bifurcation::SmallOscillations all = bifurcation::small_oscillations(*system, report.sweep, options.cutoff);
     for (const auto& [mode, place] : all.families)
-      report.modes.push_back(
-          {name(place), mode.period * time, mode.grid_period * time, deviation(*system, point, mode.direction, mode.period),
-           deviation(*system, point, mode.grid_direction, mode.grid_period), loop::to_text(mode.isotropy)});
+      report.modes.push_back({name(place), mode.period * time, mode.grid_period * time,
+                              deviation(*system, point, mode.direction, mode.period),
+                              deviation(*system, point, mode.grid_direction, mode.grid_period),
+                              loop::to_text(mode.isotropy)});
     for (const bifurcation::LeftOut& left_out : all.left_out)
       for (int n = 0; n < left_out.families && !left_out.undecided; ++n)
         report.left_out.push_back({name(left_out.place + n), left_out.period * time});

@@ -87,7 +87,8 @@ void read_scales(const Field& field, SystemChoice& choice) {
     const auto value = keys.find(name);
     if (!value || value->plain_scalar() == "auto") continue;
     const double scale = value->number({.lower = 0, .lower_open = true, .example = "1"});
-    const auto i = static_cast<std::size_t>(std::find(coordinates.begin(), coordinates.end(), name) - coordinates.begin());
+    const auto i =
+        static_cast<std::size_t>(std::find(coordinates.begin(), coordinates.end(), name) - coordinates.begin());
     if (i < coordinates.size() && structure.is_angle(i) && scale != 1.0)
       value->fail("1, the scale of every angle", value->got(), "remove it");
     choice.scales[name] = scale;

@@ -361,7 +361,8 @@ systems::Scales natural_scales(const systems::System& system, const std::vector<
   // Newton's method bounds its steps: what it finds must not depend on units either.
   const systems::Scales rough = scales_at(system, grid_points(d, grid));
   std::vector<VectorXd> equilibria;
-  for (const std::vector<double>& point : find_fixed_points(*systems::scaled(view, rough), grid_in_scales(grid, rough))) {
+  for (const std::vector<double>& point :
+       find_fixed_points(*systems::scaled(view, rough), grid_in_scales(grid, rough))) {
     VectorXd z(static_cast<Index>(d));
     for (std::size_t i = 0; i < d; ++i) z(static_cast<Index>(i)) = point[i] * rough.coordinate(i);
     equilibria.push_back(std::move(z));

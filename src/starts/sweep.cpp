@@ -163,9 +163,8 @@ class Sweep {
           if (period < before.period || period > after.period) continue;
           reaches_zero = true;
           if (k > 1 && is_inside(period) && told.emplace(k, oscillation.period).second)
-            _result.rejected.push_back(
-                {period, fmt::format("{} times around the oscillation with T = {:.12g}", k,
-                                      oscillation.period * _system.scales().time)});
+            _result.rejected.push_back({period, fmt::format("{} times around the oscillation with T = {:.12g}", k,
+                                                            oscillation.period * _system.scales().time)});
         }
       // Harmonic 0 is the mean of the loop: it does not depend on T, its minima are rounding.
       if (!reaches_zero && _samples[n].harmonic > 0) {

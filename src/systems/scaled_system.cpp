@@ -85,7 +85,8 @@ class ScaledSystem : public System {
 
   void conserved_gradients(int k, std::size_t nodes, const double* z, double* gradients) const override {
     _system->conserved_gradients(k, nodes, in_units(nodes, z), gradients);
-    for (std::size_t i = 0; i < size(); ++i) multiply(nodes, gradients + i * nodes, _scales.coordinate(i) / quantity(k));
+    for (std::size_t i = 0; i < size(); ++i)
+      multiply(nodes, gradients + i * nodes, _scales.coordinate(i) / quantity(k));
   }
 
   [[nodiscard]] double guard(int k, std::span<const double> z) const override {
@@ -165,7 +166,8 @@ void check(const System& system, const Scales& scales) {
   const std::vector<std::size_t> first = mixed_coordinates(system.structure());
   for (std::size_t i = 0; i < d; ++i) {
     core::require(!system.structure().is_angle(i) || scales.coordinate(i) == 1.0, "angles have the scale 1");
-    core::require(scales.coordinate(i) == scales.coordinate(first[i]), "coordinates that a symmetry mixes have one scale");
+    core::require(scales.coordinate(i) == scales.coordinate(first[i]),
+                  "coordinates that a symmetry mixes have one scale");
   }
 }
 

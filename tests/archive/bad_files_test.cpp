@@ -91,14 +91,15 @@ void delete_attributes(hid_t file, const std::vector<const char*>& names) {
 TEST_F(BadFiles, OlderFilesHaveNoScales) {
   {
     const Archive older(alter(atlas, [](hid_t file) {
-      delete_attributes(file, {"format_minor", "system", "effects", "parameter_names", "parameter_values",
-                               "scale_names", "scales"});
+      delete_attributes(
+          file, {"format_minor", "system", "effects", "parameter_names", "parameter_values", "scale_names", "scales"});
     }));
     EXPECT_TRUE(older.header().system.empty());
     EXPECT_TRUE(older.header().scales.empty());
     EXPECT_GT(older.orbits().rows(), 0U);
   }
-  EXPECT_THAT(altered([](hid_t file) { delete_attributes(file, {"scales"}); }), HasSubstr("lacks the attribute 'scales'"));
+  EXPECT_THAT(altered([](hid_t file) { delete_attributes(file, {"scales"}); }),
+              HasSubstr("lacks the attribute 'scales'"));
 }
 
 TEST_F(BadFiles, AbsentAndForeignFilesAreNamed) {

@@ -31,30 +31,28 @@ struct Units {
 };
 
 scene::Scene pendulum(const Units& units) {
-  return test::quick_scene({fmt::format("system.parameters.m1={}", units.mass),
-                            fmt::format("system.parameters.m2={}", units.mass),
-                            fmt::format("system.parameters.l1={}", units.length),
-                            fmt::format("system.parameters.l2={}", units.length),
-                            fmt::format("system.parameters.g={}", units.length / (units.time * units.time)),
-                            fmt::format("starts.sweep.period=[{}, {}]", 2.0 * units.time, 9.0 * units.time),
-                            fmt::format("starts.sweep.step={}", 0.05 * units.time),
-                            fmt::format("limits.period={}", 10.0 * units.time),
-                            fmt::format("events.periods=[{}]", 8.5 * units.time), "survey.depth=1",
-                            "survey.subharmonics=1"});
+  return test::quick_scene(
+      {fmt::format("system.parameters.m1={}", units.mass), fmt::format("system.parameters.m2={}", units.mass),
+       fmt::format("system.parameters.l1={}", units.length), fmt::format("system.parameters.l2={}", units.length),
+       fmt::format("system.parameters.g={}", units.length / (units.time * units.time)),
+       fmt::format("starts.sweep.period=[{}, {}]", 2.0 * units.time, 9.0 * units.time),
+       fmt::format("starts.sweep.step={}", 0.05 * units.time), fmt::format("limits.period={}", 10.0 * units.time),
+       fmt::format("events.periods=[{}]", 8.5 * units.time), "survey.depth=1", "survey.subharmonics=1"});
 }
 
 scene::Scene spring(const Units& units) {
   const double rest = -1.333 * units.length;
-  return scene::load(
-      ORBWEAVER_SOURCE_DIR "/drivers/scenes/swinging_spring.yaml",
-      {fmt::format("system.parameters.mass={}", units.mass),
-       fmt::format("system.parameters.stiffness={}", 3.0 * units.mass / (units.time * units.time)),
-       fmt::format("system.parameters.length={}", units.length),
-       fmt::format("system.parameters.gravity={}", units.length / (units.time * units.time)),
-       fmt::format("starts.fixed_points.grid=[[0], [{}]]", rest), "starts.fixed_points.names={}",
-       "starts.fixed_points.letters={}", fmt::format("starts.sweep.period=[{}, {}]", 3.0 * units.time, 8.0 * units.time),
-       fmt::format("continuation.start={}", 0.01 * units.length), "survey.depth=1", "survey.subharmonics=2",
-       fmt::format("limits.period={}", 30.0 * units.time), fmt::format("limits.energy=[-.inf, {}]", 0.5 * units.energy())});
+  return scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/swinging_spring.yaml",
+                     {fmt::format("system.parameters.mass={}", units.mass),
+                      fmt::format("system.parameters.stiffness={}", 3.0 * units.mass / (units.time * units.time)),
+                      fmt::format("system.parameters.length={}", units.length),
+                      fmt::format("system.parameters.gravity={}", units.length / (units.time * units.time)),
+                      fmt::format("starts.fixed_points.grid=[[0], [{}]]", rest), "starts.fixed_points.names={}",
+                      "starts.fixed_points.letters={}",
+                      fmt::format("starts.sweep.period=[{}, {}]", 3.0 * units.time, 8.0 * units.time),
+                      fmt::format("continuation.start={}", 0.01 * units.length), "survey.depth=1",
+                      "survey.subharmonics=2", fmt::format("limits.period={}", 30.0 * units.time),
+                      fmt::format("limits.energy=[-.inf, {}]", 0.5 * units.energy())});
 }
 
 test::Atlas survey_of(const scene::Scene& scene, const std::string& name) {
@@ -113,7 +111,8 @@ TEST(Scales, APendulumInUnitsOfPowersOfTwoHasTheSameBits) {
   EXPECT_THAT(plain.header().scale_names, testing::ElementsAre("time", "th1", "th2", "w1", "w2", "energy"));
   EXPECT_THAT(plain.header().scales, testing::Each(1.0));
   EXPECT_GE(plain.crossings().rows(), 2U);
-  for (const Units& units : {Units{1.0, 0.5, 1.0}, Units{1.0, 0.25, 1.0}, Units{1.0, 32.0, 1.0}, Units{16.0, 1.0, 0x1p-9}}) {
+  for (const Units& units :
+       {Units{1.0, 0.5, 1.0}, Units{1.0, 0.25, 1.0}, Units{1.0, 32.0, 1.0}, Units{16.0, 1.0, 0x1p-9}}) {
     SCOPED_TRACE(fmt::format("length {} time {} mass {}", units.length, units.time, units.mass));
     expect_same_bits(plain, survey_of(pendulum(units), "other"), units, 1.0);
   }
@@ -121,7 +120,8 @@ TEST(Scales, APendulumInUnitsOfPowersOfTwoHasTheSameBits) {
 
 TEST(Scales, APendulumInOtherUnitsHasTheSameTree) {
   const test::Atlas plain = survey_of(pendulum({}), "plain");
-  for (const Units& units : {Units{1.0, 0.1, 1.0}, Units{1.0, 0.01, 1.0}, Units{1e3, 1.0, 1e-3}, Units{1e-6, 1e3, 1e6}}) {
+  for (const Units& units :
+       {Units{1.0, 0.1, 1.0}, Units{1.0, 0.01, 1.0}, Units{1e3, 1.0, 1e-3}, Units{1e-6, 1e3, 1e6}}) {
     SCOPED_TRACE(fmt::format("length {} time {} mass {}", units.length, units.time, units.mass));
     const test::Atlas other = survey_of(pendulum(units), "other");
     expect_same_tree(plain, other, units);
@@ -146,9 +146,8 @@ TEST(Scales, ASpringInOtherUnitsHasTheSameTree) {
 }
 
 TEST(Scales, OfTheSceneAreTaken) {
-  const scene::Scene scene =
-      test::quick_scene({"system.scales={time: 3, w1: 0.3, energy: 7}", "limits.period=10", "survey.depth=1",
-                         "survey.subharmonics=1", "events.periods=[8.5]"});
+  const scene::Scene scene = test::quick_scene({"system.scales={time: 3, w1: 0.3, energy: 7}", "limits.period=10",
+                                                "survey.depth=1", "survey.subharmonics=1", "events.periods=[8.5]"});
   const test::Atlas atlas = survey_of(scene, "given");
   EXPECT_THAT(atlas.header().scales, testing::ElementsAre(3.0, 1.0, 1.0, 0.3, 1.0, 7.0));
   expect_same_tree(survey_of(pendulum({}), "plain"), atlas, {});

@@ -25,8 +25,8 @@ struct Orbit {
   static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, loop, step, arclength, energy, action, loss_rms, tail, tolerance_met,
-                            iterations, off_branch_eigenvalue);
+    core::serialize_members(archive, loop, step, arclength, energy, action, loss_rms, tail, tolerance_met, iterations,
+                            off_branch_eigenvalue);
   }
 };
 

@@ -50,11 +50,11 @@ struct Result {
   loop::Loop loop;                 ///< the best loop found,
   std::vector<double> parameters;  ///< and the values that the parameters among the unknowns have there
   int iterations = 0;
-  int inner_iterations = 0;                       ///< of GMRES, over all Newton steps (newton-krylov)
-  double loss_rms = 0.0;                          ///< sqrt(loss) of `loop`
-  double threshold = 0.0;                         ///< what loss_rms had to go under
+  int inner_iterations = 0;  ///< of GMRES, over all Newton steps (newton-krylov)
+  double loss_rms = 0.0;     ///< sqrt(loss) of `loop`
+  double threshold = 0.0;    ///< what loss_rms had to go under
   bool at_rounding = false;  ///< converged above the threshold, where rounding keeps the loss (`rounding_floor`)
-  double newton_step = 0.0;                       ///< length of the last Newton step (second-order: already applied)
+  double newton_step = 0.0;  ///< length of the last Newton step (second-order: already applied)
   std::optional<Eigen::VectorXd> flat_direction;  ///< of the Hessian through the slice's first condition, if asked for
 
   [[nodiscard]] bool converged() const { return outcome == Outcome::converged; }
@@ -73,8 +73,8 @@ inline constexpr double least_explained = 1e-2;
                                           double tolerance);
 
 /// What rounding may leave of sqrt(loss) of a loop with K harmonics, whatever the tolerance: that of the modes, of rms
-/// size `size`, reaches the residual multiplied by 2 pi K/T and by rms |df/dz| `field_jacobian`, that of the field by rms
-/// |dz/dt| `speed`.
+/// size `size`, reaches the residual multiplied by 2 pi K/T and by rms |df/dz| `field_jacobian`, that of the field by
+/// rms |dz/dt| `speed`.
 [[nodiscard]] double rounding_floor(int cutoff, double period, double size, double speed, double field_jacobian);
 /// The same at a loop, with the field's Jacobian where the linearization has it.
 [[nodiscard]] double rounding_floor(const loop::Loop& loop, const loss::Linearization& linearization);

@@ -25,8 +25,8 @@ struct LeftOutRow {
   double period = 0.0;
 };
 
-/// The sweep at one equilibrium. Periods are in the units of the scene, eigenvalues of the Hessian and deviations without
-/// angles in the survey's scales.
+/// The sweep at one equilibrium. Periods are in the units of the scene, eigenvalues of the Hessian and deviations
+/// without angles in the survey's scales.
 struct EquilibriumReport {
   std::vector<double> point;
   std::string text;     ///< "th1 = 0 deg, ..."

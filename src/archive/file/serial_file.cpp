@@ -125,11 +125,10 @@ H5Handle SerialFile::attribute(const char* name, H5T_class_t type) const {
   H5Handle found(check_h5<core::InputError>(id, fmt::format("'{}': attribute '{}'", _path.string(), name)), H5Aclose);
   const H5Handle actual(check_h5<core::InputError>(H5Aget_type(found.get()), "H5Aget_type"), H5Tclose);
   const bool is_fixed = H5Tget_class(actual.get()) != H5T_STRING || H5Tis_variable_str(actual.get()) == 0;
-  expect(H5Tget_class(actual.get()) == type && is_fixed,
-         fmt::format("has an attribute '{}' that is not {}", name,
-                     type == H5T_STRING  ? "a fixed-length string"
-                     : type == H5T_FLOAT ? "real"
-                                         : "an integer"));
+  expect(H5Tget_class(actual.get()) == type && is_fixed, fmt::format("has an attribute '{}' that is not {}", name,
+                                                                     type == H5T_STRING  ? "a fixed-length string"
+                                                                     : type == H5T_FLOAT ? "real"
+                                                                                         : "an integer"));
   return found;
 }
 
@@ -159,7 +158,8 @@ std::vector<std::string> SerialFile::text_attribute(const char* name) const {
 std::vector<double> SerialFile::real_attribute(const char* name) const {
   const H5Handle found = attribute(name, H5T_FLOAT);
   const H5Handle space(check_h5<core::InputError>(H5Aget_space(found.get()), "H5Aget_space"), H5Sclose);
-  std::vector<double> values(static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space.get()))));
+  std::vector<double> values(
+      static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space.get()))));
   if (!values.empty())
     check_h5<core::InputError>(H5Aread(found.get(), H5T_NATIVE_DOUBLE, values.data()),
                                fmt::format("'{}': attribute '{}'", _path.string(), name));

@@ -36,7 +36,8 @@ class SegmentScan {
                               found.winding_names == _header.winding_names && found.pairs == _header.pairs &&
                               found.scales == _header.scales &&
                               has_complex_stability(found) == has_complex_stability(_header);
-    segment.file().expect(same_columns, "was written for another system (state names, angles, stability or scales differ)");
+    segment.file().expect(same_columns,
+                          "was written for another system (state names, angles, stability or scales differ)");
     const auto& earlier = _selection.earlier_scenes;
     segment.file().expect(
         found.scene == _header.scene || std::find(earlier.begin(), earlier.end(), found.scene) != earlier.end(),

@@ -9,8 +9,8 @@
 #include "orbweaver/archive/write/consolidate.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
-#include "orbweaver/systems/registry.hpp"
 #include "orbweaver/survey/run/scaled_scene.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "state/branch_state.hpp"
 #include "state/resume.hpp"
 #include "version.hpp"
@@ -124,7 +124,8 @@ Summary archive_survey(const core::Communicator& comm, const std::filesystem::pa
   if (!found.found) throw core::InputError(fmt::format("{} holds no survey with a checkpoint", directory.string()));
   const std::string text = core::agreed(comm.get(), found.checkpoint.scene);
   const scene::Scene scene = scene::parse(text, "the checkpoint's scene");
-  const ScaledScene scaled(scene, systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects));
+  const ScaledScene scaled(scene,
+                           systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects));
   const auto& system = scaled.system();
   core::on_root(comm.get(), [&] { scaled.expect(found.checkpoint.scales); });
   FamilyTree tree(scaled.scene(), system->structure(), system->scales());

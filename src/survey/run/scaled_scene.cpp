@@ -21,10 +21,10 @@ void ScaledScene::expect(const systems::Scales& scales) const {
   const auto text = [](const systems::Scales& s) {
     return fmt::format("time {:g}, coordinates [{:g}]", s.time, fmt::join(s.coordinates, ", "));
   };
-  throw core::InputError(
-      fmt::format("the survey was begun with the scales {}, and they would be {} now: go on with the program that began "
-                  "it, or give another folder with -o",
-                  text(scales), text(here)));
+  throw core::InputError(fmt::format(
+      "the survey was begun with the scales {}, and they would be {} now: go on with the program that began "
+      "it, or give another folder with -o",
+      text(scales), text(here)));
 }
 
 }  // namespace orbweaver::survey

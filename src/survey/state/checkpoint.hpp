@@ -63,8 +63,8 @@ struct Checkpoint {
   static constexpr int wire_version = 1;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, orbweaver_version, scene, scales, earlier_scenes, stage, failures, segments, journals,
-                            voided, unfinished, left_out);
+    core::serialize_members(archive, orbweaver_version, scene, scales, earlier_scenes, stage, failures, segments,
+                            journals, voided, unfinished, left_out);
   }
 };
 

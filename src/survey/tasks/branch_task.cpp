@@ -128,8 +128,9 @@ continuation::Ending BranchTask::follow() {
     const double period = orbit->loop.period * units().time;
     if (!take(*orbit)) return met();
     if (on_limit) continue;
-    _stopped = !_context.report({_outcome.orbits, 1, {period, orbit->energy * units().energy(), orbit->loop.cutoff * 1.0}},
-                                [&] { return pack(state_at(_branch->restart_frontier())); });
+    _stopped =
+        !_context.report({_outcome.orbits, 1, {period, orbit->energy * units().energy(), orbit->loop.cutoff * 1.0}},
+                         [&] { return pack(state_at(_branch->restart_frontier())); });
     if (_stopped) return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", period)};
   }
 }
@@ -176,7 +177,8 @@ void BranchTask::finish() {
 /// False where the branch has arrived at another family.
 bool BranchTask::take(const continuation::Orbit& orbit) {
   if (!_last)
-    _before_first = _work.lineage.crossing.empty() ? 0.0 : continuation::arclength_in_units(*_system, _start.base, orbit.loop);
+    _before_first =
+        _work.lineage.crossing.empty() ? 0.0 : continuation::arclength_in_units(*_system, _start.base, orbit.loop);
   _curve.add(orbit.arclength, orbit.loop, kept_orbits);
   if (arrive(orbit)) return false;
   const std::optional<spectrum::Stability>& stability = stability_at(orbit);

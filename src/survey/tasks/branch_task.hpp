@@ -70,7 +70,7 @@ class BranchTask {
   std::optional<spectrum::Stability> _last_stability;                // of the last orbit
   std::vector<double> _asked;                     // modes of the orbit whose stability was asked for last,
   std::optional<spectrum::Stability> _stability;  // and its stability
-  double _before_first = 0.0;                     // arclength from the crossing to the first orbit, in the scene's units
+  double _before_first = 0.0;  // arclength from the crossing to the first orbit, in the scene's units
   int _events = 0;
   BranchOutcome _outcome;
   std::vector<queue::Task> _children;

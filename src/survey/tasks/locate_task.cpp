@@ -101,8 +101,7 @@ class Location {
 
   void add_known(continuation::FamilyCurve& family) const {
     family.before_each([this] { report(); });
-    for (const continuation::FamilyCurve::Known& known : _work.known)
-      family.add(known, _work.known.size());
+    for (const continuation::FamilyCurve::Known& known : _work.known) family.add(known, _work.known.size());
   }
 
   queue::TaskOutcome located(const bifurcation::Crossing& crossing, continuation::FamilyCurve& family) {

@@ -31,8 +31,8 @@ std::string left_out_text(const scene::Scene& scene, const systems::System& syst
     names.push_back(base_family_name(scene, system, found.point, found.index, mode.place + n));
   const double unit = system.scales().time;
   return fmt::format("left out at {}: {} with T = {:.9g}, outside starts.sweep.period [{:g}, {:g}]",
-                     point_text(system, found.point), fmt::join(names, ", "), mode.period * unit, found.period_from * unit,
-                     found.period_to * unit);
+                     point_text(system, found.point), fmt::join(names, ", "), mode.period * unit,
+                     found.period_from * unit, found.period_to * unit);
 }
 
 void remark_grid(const scene::Scene& scene, const systems::System& system, Summary& summary) {
@@ -93,10 +93,10 @@ std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const syst
     const SweepOutcome found = unpack_sweep_outcome(outcome.payload);
     check_names(scene, system, found);
     if (found.modes.empty() && found.rejected.empty()) {
-      const std::string range =
-          scene.sweep.period ? fmt::format(" for T in [{:g}, {:g}]", found.period_from * system.scales().time,
-                                              found.period_to * system.scales().time)
-                                : "";
+      const std::string range = scene.sweep.period
+                                    ? fmt::format(" for T in [{:g}, {:g}]", found.period_from * system.scales().time,
+                                                  found.period_to * system.scales().time)
+                                    : "";
       summary.remarks.push_back(
           fmt::format("no small oscillations around {}{}", point_text(system, found.point), range));
     }

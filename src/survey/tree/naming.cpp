@@ -54,8 +54,9 @@ std::string point_text(const systems::System& system, const std::vector<double>&
   for (std::size_t i = 0; i < point.size(); ++i) {
     const double told = point[i] * system.scales().coordinate(i);
     const double value = system.structure().is_angle(i) ? told * 180.0 / std::numbers::pi : told;
-    text += fmt::format("{}{} = {:.6g}{}", i == 0 ? "" : ", ", system.info().state_names[i],
-                        std::abs(point[i]) < printed_as_zero ? 0.0 : value, system.structure().is_angle(i) ? " deg" : "");
+    text +=
+        fmt::format("{}{} = {:.6g}{}", i == 0 ? "" : ", ", system.info().state_names[i],
+                    std::abs(point[i]) < printed_as_zero ? 0.0 : value, system.structure().is_angle(i) ? " deg" : "");
   }
   return text;
 }

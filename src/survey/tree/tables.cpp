@@ -25,7 +25,8 @@ class FoldsOnce {
     if (!is_fold(*crossing.kind)) return true;
     std::set<double>& places = _places[{crossing.lineage.family, *crossing.kind}];
     const auto is_same = [&](double place) {
-      return std::abs(place - crossing.arclength) < same_place * (crossing.arclength_unit + std::abs(crossing.arclength));
+      return std::abs(place - crossing.arclength) <
+             same_place * (crossing.arclength_unit + std::abs(crossing.arclength));
     };
     const auto above = places.lower_bound(crossing.arclength);
     if (above != places.end() && is_same(*above)) return false;

@@ -67,7 +67,7 @@ struct BranchOutcome {
   std::vector<std::string> remarks;
   double tolerance_met = 0.0;  ///< the largest of the orbits', where rounding keeps one above the tolerance; else 0
   int limited_by = 0;          ///< Limit: with wider ones the branch would have gone on
-  std::string before_limit;  ///< the state (queue::Task) from which it would, without children; empty: from its start
+  std::string before_limit;    ///< the state (queue::Task) from which it would, without children; empty: from its start
 
   static constexpr int wire_version = 2;
   template <class Archive>

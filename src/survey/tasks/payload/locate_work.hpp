@@ -23,7 +23,8 @@ struct LocateWork {
   Lineage lineage;   ///< of the family that it lies on
   loop::Isotropy isotropy;
   std::vector<continuation::FamilyCurve::Known> known;
-  double before_first = 0.0;  ///< arclength from the crossing where the family was born to its first orbit, in the units of the scene
+  double before_first =
+      0.0;  ///< arclength from the crossing where the family was born to its first orbit, in the units of the scene
   bifurcation::Event event{};
   double from = 0.0;
   double to = 0.0;
@@ -79,9 +80,9 @@ struct LocateOutcome {
   static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, key, lineage, arclength, arclength_unit, period, energy, kind, multiplicity, kernel_dimension,
-                            residual, kernel_singular_value, next_singular_value, test_value, state, q, j,
-                            fundamental_order, leaving, remark, limited_by);
+    core::serialize_members(archive, key, lineage, arclength, arclength_unit, period, energy, kind, multiplicity,
+                            kernel_dimension, residual, kernel_singular_value, next_singular_value, test_value, state,
+                            q, j, fundamental_order, leaving, remark, limited_by);
     if constexpr (Archive::is_loading::value) check_limits(limited_by);
   }
 };
