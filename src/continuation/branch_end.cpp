@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "orbweaver/continuation/least_guard.hpp"
+#include "least_guard.hpp"
 #include "orbweaver/core/error.hpp"
 
 namespace orbweaver::continuation {

@@ -39,8 +39,8 @@ constexpr double mode_rounding = 4.0 * std::numeric_limits<double>::epsilon();
 /// What the harmonics that a new time map leaves out may add to the loss, in parts of its threshold: the rest is
 /// for the equations. Not measured.
 constexpr double left_to_truncation = 0.3;
-/// Where orbits may pass near the zero of a guard, general time maps are looked for from so many cells on, and may be so
-/// dense: a passage at the distance r takes r^(3/2) of time (docs/performance.md).
+/// Where orbits may pass near the zero of a guard, general time maps are looked for from so many cells on, and may be
+/// so dense: a passage at the distance r takes r^(3/2) of time (docs/performance.md).
 constexpr int guarded_map_cells = 96;
 constexpr double guarded_density = 1e-6;
 /// Keeps quotients by the amplitude finite.

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "orbweaver/continuation/least_guard.hpp"
+#include "least_guard.hpp"
 
 namespace orbweaver::continuation {
 

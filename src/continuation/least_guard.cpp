@@ -1,4 +1,4 @@
-#include "orbweaver/continuation/least_guard.hpp"
+#include "least_guard.hpp"
 
 #include <algorithm>
 #include <cmath>

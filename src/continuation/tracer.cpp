@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "branch_end.hpp"
+#include "least_guard.hpp"
 #include "limit_orbit.hpp"
-#include "orbweaver/continuation/least_guard.hpp"
 #include "orbweaver/continuation/off_branch.hpp"
 #include "step_control.hpp"
 

@@ -1,5 +1,5 @@
 // Orbits that come near a zero of a guard: limits of guards, and families that end in a collision.
-#include "orbweaver/continuation/least_guard.hpp"
+#include "least_guard.hpp"
 
 #include <cmath>
 #include <limits>

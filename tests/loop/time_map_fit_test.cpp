@@ -96,8 +96,8 @@ TEST(TimeMapFit, DensityStaysPositive) {
   EXPECT_THROW(static_cast<void>(fit_general(unmapped({}), {}, tolerance, 0)), core::MisuseError);
 }
 
-// z = 1/(e^2 + sin^2(t/2)) has its poles at t = +-2i asinh e: a rate like z^(1/2), one over the distance from them, takes
-// harmonics like log(1/e), even time like 1/e.
+// z = 1/(e^2 + sin^2(t/2)) has its poles at t = +-2i asinh e: a rate like z^(1/2), one over the distance from them,
+// takes harmonics like log(1/e), even time like 1/e.
 TEST(TimeMapFit, FollowsARateOfWideRange) {
   constexpr double e = 0.02;
   constexpr int harmonics = 1000;

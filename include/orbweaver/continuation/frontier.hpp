@@ -84,8 +84,8 @@ struct Frontier {
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, orbit, tangent, next_length, last_increment, first, first_energy, first_amplitude,
-                            earlier_energy, earlier_period, farthest, on_energy_limit, guards, on_guard_limit, threshold, points,
-                            problem);
+                            earlier_energy, earlier_period, farthest, on_energy_limit, guards, on_guard_limit,
+                            threshold, points, problem);
   }
 };
 
