@@ -121,17 +121,20 @@ class Ends final : public Check {
                                                               (end.energy - last.value(Invariant::energy));
     for (int m = 1; m <= most_times; ++m) {
       const double period = end.period / m;
+      int met = -1;  // of several that are images, the one at the same equilibrium
       for (const auto& [other, segment] : evidence.index.near(period, end.energy, near_meeting * period,
                                                               near_meeting * last.scale_of(Invariant::energy))) {
         if (m == 1 && evidence.family(other).isotropy == family.isotropy) continue;  // itself, or its mirror image
         if (!passes(evidence.family(other), segment, period, end.energy, action / m)) continue;
-        finding.other_family = other;
-        finding.number = m;
-        const bool is_higher = m > evidence.scene.survey.subharmonics;
-        finding.kind = is_higher ? FindingKind::higher_order : FindingKind::unlisted_crossing;
-        finding.severity = is_higher ? Severity::cut : Severity::undecided;
-        return finding;
+        if (met < 0 || evidence.equilibrium_of(other) == evidence.equilibrium_of(finding.family)) met = other;
       }
+      if (met < 0) continue;
+      finding.other_family = met;
+      finding.number = m;
+      const bool is_higher = m > evidence.scene.survey.subharmonics;
+      finding.kind = is_higher ? FindingKind::higher_order : FindingKind::unlisted_crossing;
+      finding.severity = is_higher ? Severity::cut : Severity::undecided;
+      return finding;
     }
     return finding;
   }
