@@ -21,6 +21,7 @@ class PushedSystem final : public systems::System {
 
   [[nodiscard]] const systems::ModelInfo& info() const override { return _base.info(); }
   [[nodiscard]] const systems::Structure& structure() const override { return _base.structure(); }
+  [[nodiscard]] const systems::Scales& scales() const override { return _base.scales(); }
   [[nodiscard]] const std::map<std::string, double>& parameters() const override { return _parameters; }
 
   void field(std::size_t nodes, const double* z, double* f) const override;
