@@ -99,6 +99,7 @@ AndersonSolver::Options OrbitSolver::overridden(AndersonSolver::Options options)
   options.divergence = _own.divergence.value_or(options.divergence);
   options.stale_iterations = _own.stale_iterations.value_or(options.stale_iterations);
   options.fresh_iterations = _own.fresh_iterations.value_or(options.fresh_iterations);
+  options.slow_iterations = _own.fresh_iterations.value_or(options.slow_iterations);
   return options;
 }
 

@@ -206,7 +206,7 @@ TEST(SymmetryWatch, LeavesOutWhatTurnsRotationsRound) {
 
 TEST(SymmetryWatch, RespectsTheLargestOrder) {
   const Pitchfork p = threefold();
-  EXPECT_FALSE(test::first_passed(SymmetryWatch(p.system, p.own, 2), p.at(0.2), p.at(-0.1)).has_value());
+  EXPECT_FALSE(test::first_passed(SymmetryWatch(p.system, p.own, 2, 2), p.at(0.2), p.at(-0.1)).has_value());
   EXPECT_TRUE(test::first_passed(SymmetryWatch(p.system, p.own, 3), p.at(0.2), p.at(-0.1)).has_value());
   EXPECT_THROW(SymmetryWatch(p.system, p.own, 0), core::MisuseError);
 }

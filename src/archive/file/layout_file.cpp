@@ -56,8 +56,6 @@ class Layout {
     write_text("scene", header.scene);
     write_texts("state_names", header.state_names);
     write_texts("winding_names", header.winding_names);
-    const std::int64_t minor = format_minor;
-    write_attribute("format_minor", h5_memory_type({"", ColumnType::integer, {}}), scalar_space(), &minor);
     write_text("system", header.system);
     write_texts("effects", header.effects);
     write_texts("parameter_names", header.parameter_names);

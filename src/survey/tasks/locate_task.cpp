@@ -109,6 +109,7 @@ class Location {
     if (is_in_sector(_event)) try {
         leave(crossing, family);
       } catch (const bifurcation::UndecidedError& error) {
+        _outcome.undecided = true;
         _outcome.remark = error.what();
       } catch (const core::NumericalError& error) {  // the crossing itself is located, and stays
         _failure = error.what();
@@ -186,6 +187,7 @@ class Location {
       leaving.both_sides = direction.both_sides;
       leaving.base = sketch_of(direction.base);
       leaving.direction = loop::with_cutoff(direction.tangent, leaving.base.cutoff, leaving.base.dimension);
+      leaving.hidden = direction.is_hidden;
       if (direction.is_hidden)
         _outcome.remark = "families leave so nearly in all directions that rounding hides them close by";
       else

@@ -43,6 +43,7 @@ class Gatherer {
     const std::string key = branch_key(leaving, side);
     const auto branch = _tree.branches.find(key);
     if (_arrived.contains({leaving.key, side})) return DirectionFate::arrived;
+    if (leaving.hidden) return DirectionFate::hidden;
     if (branch == _tree.branches.end())
       return _tree.fate_of_unknown(
           key, {leaving.key, crossing.key, crossing.lineage.depth + 1, crossing.multiplicity, side});
@@ -56,6 +57,7 @@ class Gatherer {
                               crossing.kernel_dimension,
                               crossing.limited_by,
                               _tree.failed_locations.contains(crossing.key),
+                              crossing.undecided,
                               static_cast<int>(crossing.leaving.size()),
                               {}};
     for (const LeavingRecord& leaving : crossing.leaving)

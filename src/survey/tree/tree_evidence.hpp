@@ -19,6 +19,7 @@ enum class DirectionFate {
   failed,
   beyond_limits,    ///< its first orbit lies beyond the scene's limits
   beyond_families,  ///< limits.families
+  hidden,           ///< by rounding
   unknown,
 };
 
@@ -29,6 +30,7 @@ struct CrossingEvidence {
   int kernel_dimension = 0;
   int limited_by = 0;                ///< Limit
   bool failed = false;               ///< the task that looked for directions
+  bool undecided = false;            ///< rounding decides which these are
   int directions = 0;                ///< found there
   std::vector<DirectionFate> sides;  ///< one a direction, or two
 };

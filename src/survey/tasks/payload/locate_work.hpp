@@ -41,13 +41,14 @@ struct LeavingRecord {
   std::string key;  ///< of the family
   loop::Isotropy isotropy;
   bool both_sides = false;
+  bool hidden = false;  ///< by rounding: nothing is started along it
   loop::Loop base;
   loop::Tangent direction;
 
   static constexpr int wire_version = 1;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, key, isotropy, both_sides, base, direction);
+    core::serialize_members(archive, key, isotropy, both_sides, hidden, base, direction);
   }
 };
 
@@ -74,6 +75,7 @@ struct LocateOutcome {
   int j = 0;
   int fundamental_order = 1;
   std::vector<LeavingRecord> leaving;
+  bool undecided = false;  ///< rounding decides in which directions families leave
   std::string remark;
   int limited_by = 0;  ///< Limit: with wider ones more would have been looked for
 
@@ -82,7 +84,7 @@ struct LocateOutcome {
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, key, lineage, arclength, arclength_unit, period, energy, kind, multiplicity,
                             kernel_dimension, residual, kernel_singular_value, next_singular_value, test_value, state,
-                            q, j, fundamental_order, leaving, remark, limited_by);
+                            q, j, fundamental_order, leaving, undecided, remark, limited_by);
     if constexpr (Archive::is_loading::value) check_limits(limited_by);
   }
 };

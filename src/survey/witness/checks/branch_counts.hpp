@@ -62,7 +62,7 @@ class BranchCounts final : public Check {
     finding.other_number = expected;
     finding.deviation = expected - crossing.directions;
     if (expected > 0 && crossing.directions != expected)
-      add(FindingKind::missing_directions, Severity::contradiction);
+      add(FindingKind::missing_directions, crossing.undecided ? Severity::undecided : Severity::contradiction);
     else if (crossing.directions == 0)
       add(FindingKind::missing_directions, Severity::undecided);
     finding.deviation = archive::not_computed;
@@ -71,6 +71,7 @@ class BranchCounts final : public Check {
       switch (crossing.sides[n]) {
         case DirectionFate::beyond_limits: add(FindingKind::beyond_limits, Severity::cut); break;
         case DirectionFate::beyond_families: add(FindingKind::beyond_families, Severity::cut); break;
+        case DirectionFate::hidden: add(FindingKind::unfollowed_direction, Severity::undecided); break;
         case DirectionFate::unknown:
           add(FindingKind::unfollowed_direction,
               evidence.known.stopped_early ? Severity::cut : Severity::contradiction);

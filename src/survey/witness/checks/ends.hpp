@@ -34,7 +34,9 @@ class Ends final : public Check {
       case EndReason::energy_limit:
       case EndReason::step_limit:
       case EndReason::cutoff_limit:
+      case EndReason::guard_limit:
       case EndReason::stopped: return true;
+      case EndReason::collision:
       case EndReason::period_divergence:
       case EndReason::fixed_point:
       case EndReason::closed_loop:
@@ -101,7 +103,7 @@ class Ends final : public Check {
           finding.kind =
               (crossing.limited_by & depth_limited) != 0 ? FindingKind::beyond_depth : FindingKind::beyond_period;
           finding.severity = Severity::cut;
-        } else if (crossing.failed && finding.severity == Severity::contradiction) {
+        } else if ((crossing.failed || crossing.undecided) && finding.severity == Severity::contradiction) {
           finding.crossing = nearby;
           finding.severity = Severity::undecided;
         }
