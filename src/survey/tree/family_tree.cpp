@@ -85,7 +85,10 @@ void FamilyTree::add_branch(const std::string& key, EndedBranch branch) {
 void FamilyTree::add_crossing(LocateOutcome crossing) {
   core::require(!_crossings.contains(crossing.key), "a crossing is located once, and one was located again");
   if (!crossing.leaving.empty()) count(_pruning.add_meetings(_arrivals.add_crossing(crossing)));
-  for (LeavingRecord& leaving : crossing.leaving) leaving = {leaving.key, leaving.isotropy, leaving.both_sides, {}, {}};
+  for (LeavingRecord& leaving : crossing.leaving) {
+    leaving.base = {};
+    leaving.direction = {};
+  }
   std::string key = crossing.key;
   _crossings.emplace(std::move(key), std::move(crossing));
 }
