@@ -103,10 +103,14 @@ double not_repeated(const loop::Loop& loop, int times) {
   return std::sqrt(square);
 }
 
+/// What harmonics may leave out of a sketch: far below the distances that directions are told by.
+constexpr double of_sketches = 1e-8;
+
 }  // namespace
 
 loop::Loop sketch_of(const loop::Loop& loop, int cutoff) {
-  const loop::Loop even = loop.time_map.is_identity() ? loop : loop::with_time_map(loop, {}, loop.cutoff);
+  // With as many harmonics as the loop has under its map, a close passage would spoil the few that are kept.
+  const loop::Loop even = loop.time_map.is_identity() ? loop : loop::evenly_in_time(loop, of_sketches);
   return loop::with_cutoff(even, cutoff);
 }
 

@@ -23,7 +23,7 @@ constexpr double least_share = 0.5;
 /// What of the orbit's way from the crossing lies along the direction in which it was to leave: 1 where all does.
 double share_along(const continuation::Start& start, const loop::Loop& orbit) {
   const int cutoff = std::min(start.base.cutoff, orbit.cutoff);
-  const loop::Loop even = orbit.time_map.is_identity() ? orbit : loop::with_time_map(orbit, {}, orbit.cutoff);
+  const loop::Loop even = orbit.time_map.is_identity() ? orbit : loop::evenly_in_time(orbit);
   const loop::Loop there = loop::with_cutoff(even, cutoff);
   const loop::Loop base = loop::with_cutoff(start.base, cutoff);
   double along = 0.0;
