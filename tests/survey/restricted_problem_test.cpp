@@ -96,6 +96,8 @@ TEST(RestrictedProblem, FamiliesAreBornAtTriplingsWithoutReversor) {
   const std::string end = atlas.end_of("SfT3");
   EXPECT_NE(end.find("forwards: joined Short-4 at T = 19.1077714"), std::string::npos) << end;
   EXPECT_NE(end.find("backwards: joined Short-4 at T = 19.1077714"), std::string::npos) << end;
+}
+
 /// The Lyapunov family of the Earth and Moon's L2, which runs into the Moon.
 scene::Scene second_family(const std::vector<std::string>& more) {
   std::vector<std::string> overrides{
