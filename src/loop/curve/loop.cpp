@@ -101,7 +101,7 @@ Loop with_time_map(const Loop& loop, const TimeMap& map, int cutoff) {
 Loop evenly_in_time(const Loop& loop, double negligible) {
   const double allowed = std::max(negligible, 2.0 * tail(loop));
   Loop even = with_time_map(loop, {}, allowed_cutoff_at_least(loop.cutoff));
-  while (tail(even) > allowed && even.cutoff < 8 * loop.cutoff)
+  while (tail(even) > allowed && even.cutoff < most_in_time * loop.cutoff)
     even = with_time_map(loop, {}, next_cutoff(even.cutoff));
   return even;
 }

@@ -30,7 +30,7 @@ Loop resolved_in_time(const Loop& loop, double negligible) {
   const double allowed = std::max(negligible, 2.0 * tail(loop));
   for (int count = time_sample_count;; count *= 2) {
     Loop out = interpolant(time_samples(loop, count));
-    if (tail(out) <= allowed || out.cutoff >= 8 * loop.cutoff) return out;
+    if (tail(out) <= allowed || out.cutoff >= most_in_time * loop.cutoff) return out;
   }
 }
 

@@ -63,7 +63,11 @@ struct Loop {
 /// tolerance on the residual, in which harmonic k weighs 2 pi k/T times. A loop's own tail may be larger.
 inline constexpr double negligible_harmonic = 1e-12;
 
-/// The same loop with s even in time, with as many harmonics as that needs (up to eight times its own): the tail stays
+/// Harmonics in time, in parts of a loop's own: near a body orbits take ten times those that they have under a map that
+/// follows the distance.
+inline constexpr int most_in_time = 32;
+
+/// The same loop with s even in time, with as many harmonics as that needs (up to `most_in_time`): the tail stays
 /// below twice its own or `negligible`, whichever is larger.
 [[nodiscard]] Loop evenly_in_time(const Loop& loop, double negligible = negligible_harmonic);
 
