@@ -43,9 +43,9 @@ constexpr double still_vanishing = 0.05;
 /// The first resonance whose families leave so nearly in all directions that rounding may decide among them: terms of
 /// order q - 2 fix the angle beside one of order 2 (docs/mathematics.md, "Kernels and directions").
 constexpr int least_weak_resonance = 5;
-/// How far an orbit may be from the crossing beneath it, in parts of what of it does not repeat: within 30 degrees of
+/// How far an orbit may be from the crossing beneath it, in parts of what of it does not repeat: within 45 degrees of
 /// the directions in which orbits leave there. Not measured.
-constexpr double beside = 1.15;
+constexpr double beside = 1.41;
 /// A smaller broken part does not say in which direction the branch came.
 constexpr double telling = 1e-2;
 
