@@ -80,7 +80,7 @@ TEST(Pcr3bp, EnergyAndActionAreThoseOfTheMomenta) {
 
 TEST(Pcr3bp, GuardsAreTheDistancesToTheBodies) {
   const auto system = make_system("pcr3bp", {{"mu", 0.25}});
-  ASSERT_EQ(system->structure().guards, (std::vector<std::string>{"r1", "r2"}));
+  ASSERT_EQ(system->structure().guard_names(), (std::vector<std::string>{"r1", "r2"}));
   const std::vector<double> z{-0.25 + 0.375, 0.5, 7.0, -7.0};
   EXPECT_EQ(system->guard(0, z), 0.625);
   EXPECT_EQ(system->guard(1, {std::vector<double>{0.75 - 1.5, 2.0, 1.0, 1.0}}), 2.5);
