@@ -107,7 +107,8 @@ std::optional<Ending> beyond_limits(const systems::System& system, const loop::L
                               options.energy_from * units.energy(), options.energy_to * units.energy())};
   for (const auto& [name, limit] : options.guard_limits)
     if (const double least = least_guard(system, guard_number(system.structure(), name), first); least < limit)
-      return Ending{EndReason::guard_limit, fmt::format("left out: begins at {} = {:.9g}, below {:g}", name, least, limit)};
+      return Ending{EndReason::guard_limit,
+                    fmt::format("left out: begins at {} = {:.9g}, below {:g}", name, least, limit)};
   return std::nullopt;
 }
 

@@ -168,7 +168,7 @@ TEST(GuardLimits, NearOnesTakeFewHarmonics) {
 TEST(GuardLimits, StartsBeyondThemGiveNoOrbit) {
   const test::Trace trace = second_family(options_with("r2", 0.5));
   EXPECT_TRUE(trace.orbits.empty());
-  EXPECT_THAT(trace.ending.text(), StartsWith("guard limit (begins beyond it, at r2 = 0.16"));
+  EXPECT_THAT(trace.ending.text(), StartsWith("guard limit (left out: begins at r2 = 0.16"));
   EXPECT_FALSE(trace.ending.failed());
 }
 

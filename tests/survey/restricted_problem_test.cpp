@@ -52,10 +52,14 @@ TEST(RestrictedProblem, LongFamiliesEndAtTheirResonance) {
     std::string y;
   };
   const core::Communicator comm;
-  for (const Case& with :
-       {Case{"1e-8", "0.01", "0.866"}, Case{"1e-9", "0.01", "0.866"}, Case{"1e-10", "0.01", "0.866"},
-        Case{"1e-10", "0.003", "0.866"}, Case{"1e-10", "0.005", "0.866"}, Case{"1e-10", "0.0087", "0.866"},
-        Case{"1e-10", "0.02", "0.866"}, Case{"1e-10", "0.01", "-0.866"}}) {
+  std::vector<Case> cases{{"1e-10", "0.01", "-0.866"}};
+  if (comm.size() == 1)  // on more ranks one branch is the same work
+    cases.insert(cases.end(), {{"1e-8", "0.01", "0.866"},
+                               {"1e-10", "0.01", "0.866"},
+                               {"1e-11", "0.01", "0.866"},
+                               {"1e-10", "0.003", "0.866"},
+                               {"1e-10", "0.02", "0.866"}});
+  for (const Case& with : cases) {
     SCOPED_TRACE(with.tolerance + " " + with.first + " " + with.y);
     const scene::Scene scene =
         scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_mu_0.001.yaml",

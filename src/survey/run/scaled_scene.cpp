@@ -10,10 +10,29 @@
 
 namespace orbweaver::survey {
 
+namespace {
+
+/// Of each further quantity two multipliers would be 1 along all families, and look like events.
+void require_one_quantity(const systems::System& system) {
+  const std::vector<std::string>& conserved = system.structure().conserved;
+  if (conserved.size() > 1)
+    throw core::InputError(
+        fmt::format("expected a system that conserves one quantity, got {} with {}: surveys with several are not "
+                    "built yet, so choose parameters or effects that leave one",
+                    system.info().name, fmt::join(conserved, ", ")));
+}
+
+std::shared_ptr<const systems::System> in_own_scales(const scene::Scene& scene,
+                                                     const std::shared_ptr<const systems::System>& system) {
+  require_one_quantity(*system);
+  return systems::scaled(system,
+                         scene::scales_of(scene, *system, starts::natural_scales(*system, scene.fixed_points.grid)));
+}
+
+}  // namespace
+
 ScaledScene::ScaledScene(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system)
-    : _system(systems::scaled(
-          system, scene::scales_of(scene, *system, starts::natural_scales(*system, scene.fixed_points.grid)))),
-      _scene(scene::in_scales(scene, *_system, _system->scales())) {}
+    : _system(in_own_scales(scene, system)), _scene(scene::in_scales(scene, *_system, _system->scales())) {}
 
 void ScaledScene::expect(const systems::Scales& scales) const {
   const systems::Scales& here = _system->scales();

@@ -221,8 +221,8 @@ class Location {
       StartWork start;
       BranchWork& branch = start.branch;
       branch.key = branch_key(leaving, side);
-      branch.name = fmt::format("{}>{}@{:.4g}{}", _work.name, _outcome.multiplicity, _outcome.period * _system->scales().time,
-                                leaving.key.substr(_work.key.size()));
+      branch.name = fmt::format("{}>{}@{:.4g}{}", _work.name, _outcome.multiplicity,
+                                _outcome.period * _system->scales().time, leaving.key.substr(_work.key.size()));
       branch.lineage = {leaving.key, _work.key, _work.lineage.depth + 1, _outcome.multiplicity, side};
       branch.base = direction.base;
       branch.direction = direction.tangent;

@@ -53,21 +53,10 @@ std::string nothing_found_advice(const systems::System& system, bool left_out) {
   return "none of the equilibria has small oscillations: let starts.fixed_points.grid lead to others";
 }
 
-/// Of each further quantity two multipliers would be 1 along all families, and look like events.
-void require_one_quantity(const systems::System& system) {
-  const std::vector<std::string>& conserved = system.structure().conserved;
-  if (conserved.size() > 1)
-    throw core::InputError(
-        fmt::format("expected a system that conserves one quantity, got {} with {}: surveys with several are not "
-                    "built yet, so choose parameters or effects that leave one",
-                    system.info().name, fmt::join(conserved, ", ")));
-}
-
 }  // namespace
 
 std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::System& system) {
   std::vector<queue::Task> tasks;
-  require_one_quantity(system);
   const std::vector<std::vector<double>> points = starts::find_fixed_points(system, scene.fixed_points.grid);
   systems::require_identities(system, points);
   for (const std::vector<double>& point : points)

@@ -16,8 +16,8 @@ namespace orbweaver::survey {
 /// Sweeps that have ended, by the key of their task.
 using SweepsEnded = std::map<std::string, std::pair<queue::Task, queue::TaskOutcome>>;
 
-/// A sweep for every equilibrium. Throws InputError if there is none, where the system contradicts its structure
-/// (systems::require_identities), and for a system with more than one conserved quantity.
+/// A sweep for every equilibrium. Throws InputError if there is none, and where the system contradicts its structure
+/// (systems::require_identities).
 [[nodiscard]] std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::System& system);
 
 /// The families at equilibria in the order of their keys: equilibria sorted, longest period first; no more than the

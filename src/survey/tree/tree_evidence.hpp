@@ -69,7 +69,7 @@ struct TreeSources {
   const Pruning& pruning;
   const std::vector<FamilySide>& kept;
   const std::map<std::string, int>& crossing_rows;  ///< indices into the tables' crossings by key
-  const systems::Scales& units;  ///< of the tasks' outcomes
+  const systems::Scales& units;                     ///< of the tasks' outcomes
   std::function<DirectionFate(const std::string& branch, const Lineage& lineage)> fate_of_unknown;
 };
 [[nodiscard]] TreeEvidence evidence_of(const TreeSources& tree);

@@ -28,8 +28,8 @@ inline constexpr int time_sample_count = 240;
 [[nodiscard]] Loop interpolant(const TimeSamples& samples);
 
 /// The loop with s even in time: itself, or the interpolant of 240, 480, ... samples, as many as it takes for its tail
-/// to stay below twice that of the loop or `negligible`, and up to `most_in_time` times its harmonics. As `evenly_in_time`, but
-/// cheaper.
+/// to stay below twice that of the loop or `negligible`, and up to `most_in_time` times its harmonics. As
+/// `evenly_in_time`, but cheaper.
 [[nodiscard]] Loop resolved_in_time(const Loop& loop, double negligible = negligible_harmonic);
 
 }  // namespace orbweaver::loop

@@ -12,7 +12,8 @@ namespace orbweaver::survey {
 /// these are 1, as they were.
 class ScaledScene {
  public:
-  /// `system` is the scene's system (systems::make_system). Throws what starts::natural_scales does.
+  /// `system` is the scene's system (systems::make_system). Throws InputError for one with more than one conserved
+  /// quantity, and what starts::natural_scales does.
   ScaledScene(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system);
 
   [[nodiscard]] const scene::Scene& scene() const { return _scene; }

@@ -73,8 +73,8 @@ struct BranchOutcome {
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, key, orbits, period_from, period_to, energy_from, energy_to, last_period,
-                            last_energy, last_cutoff, end, arrival, equilibrium, doubtful, remarks, tolerance_met, limited_by,
-                            before_limit);
+                            last_energy, last_cutoff, end, arrival, equilibrium, doubtful, remarks, tolerance_met,
+                            limited_by, before_limit);
     if constexpr (Archive::is_loading::value) check_limits(limited_by);
   }
 };
