@@ -116,7 +116,8 @@ TEST(Crossings, WithoutMultipliersTheOrbitAndTheReasonAreSaid) {
 
 TEST(FamilyCurve, AKnownOrbitIsThereWithoutTheCorrector) {
   continuation::Options options;
-  options.cutoff_from = options.cutoff_to = 4;
+  options.corrector.method = corrector::Method::rprop;
+  options.corrector.max_iterations = 1;
   continuation::FamilyCurve curve(test::pendulum(), test::pendulum_isotropy(*test::pendulum()), options);
   const loop::Loop from = test::orbit_at(test::family_to_twelve(test::in_phase()), 8.3).loop;
   const loop::Loop to = test::orbit_at(test::family_to_twelve(test::in_phase()), 8.4).loop;
