@@ -17,6 +17,12 @@ constexpr double arrival_window = 1e-3;
 /// Other directions are further off.
 constexpr double farthest_from_direction = 0.4;
 
+/// Where crossings are mirror images of one another, a branch of one comes as near to the other: an image counts as so
+/// much further from a direction, relatively and at least, that the branch's own is met. Rounding is less, other
+/// directions are further.
+constexpr double image_further = 0.05;
+constexpr double least_further = 1e-6;
+
 double born_period(const LocateOutcome& crossing) { return crossing.multiplicity * crossing.period; }
 
 /// Calls `found` for what has a key near `period`: all that can be within the window, and a little more.
@@ -45,7 +51,9 @@ std::optional<Meeting> Arrivals::meeting(const ArrivalRecord& arrival, const Loc
     for (const int side : {1, -1}) {
       if (side < 0 && !leaving.both_sides) continue;
       const loop::Loop expected = loop::moved(base, leaving.direction, side * distance / unit);
-      const double away = loop::align(_system, near, expected).distance / distance;
+      const loop::Alignment alignment = loop::align(_system, near, expected);
+      double away = alignment.distance / distance;
+      if (alignment.reversing || alignment.name != "1") away = (1.0 + image_further) * away + least_further;
       if (away < nearest) {
         nearest = away;
         best = Meeting{crossing.key, {leaving.key, side}, away};
