@@ -25,7 +25,7 @@ class Ends final : public Check {
   /// Relative, in period, energy and action: what the extrapolation to a meeting may be off (tree/arrivals.cpp).
   static constexpr double near_meeting = 1e-3;
   /// Times around that are looked for: as loop::repetitions.
-  static constexpr int most_times = 12;
+  static constexpr int most_times = 100;
 
   static bool is_limit(continuation::EndReason reason) {
     using continuation::EndReason;
