@@ -47,6 +47,8 @@ constexpr double nudge_in_plane = 0.2;
 constexpr double nudge_in_space = 0.03;
 /// What a symmetry of an orbit found may be off, in parts of its amplitude: a broken one is off by all of it.
 constexpr double found_tolerance = 1e-2;
+/// Below it, terms of the order of the amplitude or its square fix the angle, and Newton's method finds it by itself.
+constexpr int least_weak_resonance = 5;
 
 // What decides which of several images of one direction is reported, and in which order directions are listed.
 struct Rank {
@@ -252,8 +254,8 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   const Eigen::VectorXd generic = Eigen::VectorXd::LinSpaced(group.dimension(), 1.0, std::sqrt(2.0)).array().sin();
   const loop::Isotropy kept =
       isotropy_along(system.structure(), group, base, group.vector_at(generic.normalized()), options);
-  if (plane && q >= 3 && lines.empty() && !group.constant() && system.structure().conservative())
-    return by_angles(system, group, base, kept, q, options);
+  const bool by_angle = plane && q >= 3 && lines.empty() && !group.constant() && system.structure().conservative();
+  if (by_angle && q >= least_weak_resonance) return by_angles(system, group, base, kept, q, options);
   const double nudge = plane ? nudge_in_plane * std::numbers::pi / q : nudge_in_space;
   const int expected = plane && q > 2 ? (q % 2 == 0 ? 2 : 1) : 0;
   SearchResult best;
@@ -269,6 +271,10 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
       amplitude = r;
     }
     if (expected == 0 || static_cast<int>(best.found.size()) == expected) break;
+  }
+  if (by_angle && static_cast<int>(best.found.size()) < expected) {
+    std::vector<Direction> out = by_angles(system, group, base, kept, q, options);
+    if (static_cast<int>(out.size()) == expected) return out;
   }
   const std::string seen = fmt::format(
       "a kernel of dimension {} (q = {}): {} directions found at amplitude {:.2g}, {} where orbits are not isolated",

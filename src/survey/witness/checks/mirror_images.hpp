@@ -56,7 +56,8 @@ class MirrorImages final : public Check {
     finding.severity = std::max(evidence.severity_about(row), evidence.severity_about(image));
     finding.family = row;
     finding.other_family = image;
-    compare_ends(evidence, finding, found);
+    const bool backwards = runs_backwards(evidence, a, b);
+    compare_ends(evidence, finding, backwards, found);
     if (a.crossings.size() != b.crossings.size()) {
       finding.kind = FindingKind::mirror_crossings;
       finding.number = static_cast<int>(a.crossings.size());
@@ -67,10 +68,9 @@ class MirrorImages final : public Check {
     }
     for (std::size_t n = 0; n < a.crossings.size(); ++n) {  // by arclength
       const TreeCrossing& x = evidence.crossing(a.crossings[n]);
-      const TreeCrossing& y = evidence.crossing(b.crossings[n]);
-      const double in_energy = std::abs(x.energy - y.energy) / x.energy_scale;
-      const double away = std::fmax(std::abs(x.period / y.period - 1.0), std::isnan(in_energy) ? 0.0 : in_energy);
-      if (x.kind != y.kind || x.multiplicity != y.multiplicity || away > same_place) {
+      const TreeCrossing& y = evidence.crossing(b.crossings[place_of(n, b.crossings.size(), backwards)]);
+      const double away = apart(x, y);
+      if (is_another(x, y)) {
         finding.kind = FindingKind::mirror_place;
         finding.crossing = a.crossings[n];
         finding.period = x.period;
@@ -83,18 +83,47 @@ class MirrorImages final : public Check {
     }
   }
 
-  static void compare_ends(const Evidence& evidence, Finding finding, std::vector<Finding>& found) {
+  static double apart(const TreeCrossing& x, const TreeCrossing& y) {
+    const double in_energy = std::abs(x.energy - y.energy) / x.energy_scale;
+    return std::fmax(std::abs(x.period / y.period - 1.0), std::isnan(in_energy) ? 0.0 : in_energy);
+  }
+
+  static bool is_another(const TreeCrossing& x, const TreeCrossing& y) {
+    return x.kind != y.kind || x.multiplicity != y.multiplicity || apart(x, y) > same_place;
+  }
+
+  static std::size_t place_of(std::size_t n, std::size_t count, bool backwards) {
+    return backwards ? count - 1 - n : n;
+  }
+
+  /// Which side of a crossing is the positive one is a matter of the kernel vector's sign: images that were followed to
+  /// both sides may run against one another.
+  static bool runs_backwards(const Evidence& evidence, const TreeFamily& a, const TreeFamily& b) {
+    if (a.ends.size() < 2 || b.ends.size() < 2 || a.crossings.size() != b.crossings.size()) return false;
+    const auto others = [&](bool backwards) {
+      int count = 0;
+      for (std::size_t n = 0; n < a.crossings.size(); ++n)
+        if (is_another(evidence.crossing(a.crossings[n]),
+                       evidence.crossing(b.crossings[place_of(n, b.crossings.size(), backwards)])))
+          ++count;
+      return count;
+    };
+    return others(true) < others(false);
+  }
+
+  static void compare_ends(const Evidence& evidence, Finding finding, bool backwards, std::vector<Finding>& found) {
     const TreeFamily& a = evidence.family(finding.family);
     const TreeFamily& b = evidence.family(finding.other_family);
     finding.kind = FindingKind::mirror_end;
     if (a.ends.size() != b.ends.size()) return found.push_back(finding);
     if (a.orbits() < 2 || b.orbits() < 2) return;
     for (std::size_t n = 0; n < a.ends.size(); ++n) {
+      const std::size_t m = place_of(n, b.ends.size(), backwards);
       const Invariants& x = a.curve.points()[a.ends[n].orbit];
-      const Invariants& y = b.curve.points()[b.ends[n].orbit];
+      const Invariants& y = b.curve.points()[b.ends[m].orbit];
       const double apart = std::abs(x.value(Invariant::period) - y.value(Invariant::period));
       // Their steps need not be the same: one may stop a step before the other.
-      if (a.ends[n].kind == b.ends[n].kind && apart <= last_step(a, n) + last_step(b, n)) continue;
+      if (a.ends[n].kind == b.ends[m].kind && apart <= last_step(a, n) + last_step(b, m)) continue;
       finding.period = x.value(Invariant::period);
       finding.energy = x.value(Invariant::energy);
       finding.deviation = apart / x.scale_of(Invariant::period);
