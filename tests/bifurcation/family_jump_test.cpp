@@ -202,4 +202,19 @@ TEST(Jumps, IsToldFromTheIndexOnlyWhereNothingCanBreak) {
   EXPECT_FALSE(bifurcation::passes_two_only_at_folds(damped, {}));
 }
 
+TEST(Jumps, ASenseOfRotationThatChangesUnseenIsOne) {
+  const auto elliptic = [](double index, double twist) {
+    spectrum::Stability out;
+    out.full = out.fundamental = {index};
+    out.full_error = out.fundamental_error = {1e-9};
+    out.twist = twist;
+    return out;
+  };
+  EXPECT_TRUE(bifurcation::passes_one_unseen(elliptic(1.5, 0.7), elliptic(1.9, -0.4)));
+  EXPECT_FALSE(bifurcation::passes_one_unseen(elliptic(1.5, 0.7), elliptic(1.9, 0.4)));
+  EXPECT_FALSE(bifurcation::passes_one_unseen(elliptic(-1.5, 0.7), elliptic(-1.9, -0.4))) << "nearer to -2";
+  EXPECT_FALSE(bifurcation::passes_one_unseen(elliptic(1.5, 0.7), elliptic(2.1, -0.4))) << "not elliptic";
+  EXPECT_FALSE(bifurcation::passes_one_unseen(elliptic(1.5, std::nan("")), elliptic(1.9, -0.4)));
+}
+
 }  // namespace

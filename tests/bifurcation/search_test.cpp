@@ -9,6 +9,7 @@
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/standard_phase.hpp"
 #include "orbweaver/systems/registry.hpp"
+#include "pushed_system.hpp"
 
 namespace orbweaver::bifurcation {
 namespace {
@@ -94,6 +95,31 @@ void expect_same_by_search(const test::Family& family, const Crossing& crossing,
     EXPECT_GT(*std::max_element(parts.begin(), parts.end()), std::cos(0.02) * std::sqrt(in_kernel));
     EXPECT_EQ(direction.both_sides, known.front().both_sides);
   }
+}
+
+TEST(PushedSystem, KeepsTheEnergyAndChangesTheField) {
+  const auto system = systems::make_system("henon_heiles", {}, {});
+  const std::vector<double> centre{0.1, 0.0, -0.2, 0.0};
+  const PushedSystem still(*system, centre);
+  const auto pushed = still.with_parameters({{PushedSystem::push, 0.3}});
+  const std::vector<double> z{0.3, -0.1, 0.2, 0.15};
+  std::vector<double> f(4), g(4), by_push(4), gradient(4);
+  system->field(1, z.data(), f.data());
+  pushed->field(1, z.data(), g.data());
+  still.parameter_derivatives(PushedSystem::push, 1, z.data(), by_push.data());
+  system->conserved_gradient(0, z, gradient);
+  double along = 0.0;
+  double change = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(g[i], f[i] + 0.3 * by_push[i], 1e-15);
+    along += gradient[i] * g[i];
+    change += std::abs(by_push[i]);
+  }
+  EXPECT_NEAR(along, 0.0, 1e-15);
+  EXPECT_GT(change, 0.1);
+  std::vector<double> unpushed(4);
+  still.field(1, z.data(), unpushed.data());
+  EXPECT_EQ(unpushed, f);
 }
 
 TEST(Search, FindsBothFamiliesOfADoublingPoint) {

@@ -204,6 +204,21 @@ TEST(SymmetryWatch, LeavesOutWhatTurnsRotationsRound) {
   EXPECT_FALSE(test::first_passed(SymmetryWatch(p.system, p.own), p.at(0.2), p.at(-0.1)).has_value());
 }
 
+TEST(SymmetryWatch, SaysWhatIsNearlyGained) {
+  const Pitchfork p = threefold();
+  const SymmetryWatch watch(p.system, p.own);
+  const auto nearly = [&](double from, double to) {
+    std::vector<std::string> texts;
+    for (const SymmetryGain& gain :
+         watch.nearly_gained(SymmetryWatch::sampled(p.at(from)), SymmetryWatch::sampled(p.at(to))))
+      texts.push_back(test::to_text(gain));
+    return texts;
+  };
+  EXPECT_EQ(nearly(0.02, 0.01), std::vector<std::string>{"1@1/3"});
+  EXPECT_TRUE(nearly(0.01, 0.02).empty()) << "on the way out";
+  EXPECT_TRUE(nearly(2.0, 1.0).empty()) << "far away";
+}
+
 TEST(SymmetryWatch, RespectsTheLargestOrder) {
   const Pitchfork p = threefold();
   EXPECT_FALSE(test::first_passed(SymmetryWatch(p.system, p.own, 2, 2), p.at(0.2), p.at(-0.1)).has_value());
