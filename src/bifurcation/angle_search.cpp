@@ -28,10 +28,10 @@ constexpr double first[] = {0.01, 0.003, 0.001, 0.0003};
 constexpr double growths[] = {1.4, 1.1};
 /// Orbits behind one another that a guess for the next is made from, besides the base.
 constexpr std::size_t remembered = 4;
+/// Orbits of a circle that a guess between two of them is made from.
+constexpr std::size_t neighbours = 4;
 constexpr double farthest_beside = 0.5;
 constexpr std::size_t most_circles = 40;
-/// Circles, from the largest on, whose other orbits are tried for.
-constexpr int most_completions = 3;
 /// A way from one angle to another is halved so often, at most.
 constexpr int halvings = 2;
 /// The push must exceed its noise so many times for its zeros to be where the family's are. Not measured.
@@ -94,9 +94,32 @@ class Plane {
     return loop::moved(orbit, loop::with_cutoff(_group.vector_at(change), orbit.cutoff, orbit.dimension), 1.0);
   }
 
+  [[nodiscard]] static loop::Loop mean_of(std::span<const Held> orbits, const std::vector<double>& weights) {
+    int cutoff = 0;
+    for (const Held& orbit : orbits) cutoff = std::max(cutoff, orbit.loop.cutoff);
+    loop::Loop out = loop::with_cutoff(orbits.front().loop, cutoff);
+    std::fill(out.modes.begin(), out.modes.end(), 0.0);
+    out.period = 0.0;
+    for (std::size_t n = 0; n < orbits.size(); ++n) {
+      const loop::Loop orbit = loop::with_cutoff(orbits[n].loop, cutoff);
+      for (std::size_t c = 0; c < out.modes.size(); ++c) out.modes[c] += weights[n] * orbit.modes[c];
+      out.period += weights[n] * orbit.period;
+    }
+    return out;
+  }
+
   [[nodiscard]] bool is_near(const loop::Loop& orbit) const {
     const Gap gap = gap_between(_base, orbit, _group, _options.family.modes);
     return gap.beside <= farthest_beside * (gap.inside.norm() + std::abs(gap.along));
+  }
+
+  /// The polynomial in the angle through the orbits of a circle about place `n`.
+  [[nodiscard]] loop::Loop between(const Circle& circle, std::size_t n, double angle) const {
+    const std::size_t used = std::min(circle.orbits.size(), neighbours);
+    const std::size_t from = std::min(n > 1 ? n - 1 : 0, circle.orbits.size() - used);
+    const auto angles = std::span(circle.angles).subspan(from, used);
+    const std::vector<double> weights = numerics::lagrange_weights({angles.begin(), angles.end()}, angle).value;
+    return mean_of(std::span(circle.orbits).subspan(from, used), weights);
   }
 
   /// The orbit of another amplitude: by the polynomial in it through the base and the last circles' orbits of this
@@ -138,9 +161,9 @@ std::optional<Circle> held_circle(const Plane& plane, double amplitude, std::vec
   return out;
 }
 
-/// Circles at a few angles, up to the amplitude where the push is plain, or as near to that as orbits are found.
-std::vector<Circle> grown(const Plane& plane, double turn, double scale) {
-  const std::vector<double> angles{0.0, 0.25 * turn, turn};
+/// Circles at these angles, up to the first that `is_far`, or as near to that as orbits are found.
+template <class IsFar>
+std::vector<Circle> grown(const Plane& plane, double scale, const std::vector<double>& angles, const IsFar& is_far) {
   std::vector<Circle> circles;
   for (const double part : first) {
     auto circle =
@@ -149,8 +172,7 @@ std::vector<Circle> grown(const Plane& plane, double turn, double scale) {
     circles.push_back(std::move(*circle));
     break;
   }
-  const auto is_seen = [](const Circle& circle) { return circle.is_clear() && circle.summary().is_plain(); };
-  while (!circles.empty() && circles.size() < most_circles && !is_seen(circles.back())) {
+  while (!circles.empty() && circles.size() < most_circles && !is_far(circles.back())) {
     std::optional<Circle> next;
     for (const double factor : growths) {
       const double amplitude = factor * circles.back().amplitude;
@@ -175,14 +197,20 @@ std::optional<Held> turned_to(const Plane& plane, const Held& orbit, double from
   return there ? turned_to(plane, *there, middle, to, amplitude, halved + 1) : std::nullopt;
 }
 
-/// The circle with all its samples.
-std::optional<Circle> completed(const Plane& plane, const Circle& circle, double turn) {
+/// The circle with all its samples: from one to the next, or, where that is too far, each from the base.
+std::optional<Circle> completed(const Plane& plane, const Circle& circle, double turn, double scale) {
   Circle out{circle.amplitude, {0.0}, {circle.orbits.front()}};
-  for (int n = 1; n <= samples; ++n) {
-    const double angle = n * turn / samples;
-    std::optional<Held> held = turned_to(plane, out.orbits.back(), out.angles.back(), angle, out.amplitude);
-    if (!held) return std::nullopt;
-    out.angles.push_back(angle);
+  std::vector<double> angles;
+  for (int n = 0; n <= samples; ++n) angles.push_back(n * turn / samples);
+  for (std::size_t n = 1; n < angles.size(); ++n) {
+    std::optional<Held> held = turned_to(plane, out.orbits.back(), out.angles.back(), angles[n], out.amplitude);
+    if (!held) {
+      std::vector<Circle> circles =
+          grown(plane, scale, angles, [&](const Circle& c) { return growths[1] * c.amplitude > circle.amplitude; });
+      if (circles.empty()) return std::nullopt;
+      return std::move(circles.back());
+    }
+    out.angles.push_back(angles[n]);
     out.orbits.push_back(std::move(*held));
   }
   return out;
@@ -195,14 +223,13 @@ AnglesFound search_angles(const systems::System& system, const loop::Loop& base,
   core::require(group.dimension() == 2 && q >= 3, "angles are searched in a plane, from q = 3 on");
   const Plane plane(system, base, group, isotropy, options);
   const double turn = 2.0 * std::numbers::pi / q;
-  std::vector<Circle> circles = grown(plane, turn, scale);
+  const std::vector<Circle> circles = grown(plane, scale, {0.0, 0.25 * turn, turn}, [](const Circle& circle) {
+    return circle.is_clear() && circle.summary().is_plain();
+  });
   if (circles.empty()) return {};
   AnglesFound out = circles.back().summary();
-  std::optional<Circle> all;
-  for (int tries = 0; !all && tries < most_completions && circles.back().is_clear(); ++tries, circles.pop_back()) {
-    all = completed(plane, circles.back(), turn);
-    if (circles.size() == 1) break;
-  }
+  if (!circles.back().is_clear()) return out;
+  const std::optional<Circle> all = completed(plane, circles.back(), turn, scale);
   if (!all || !all->is_clear() || all->sign_changes() != 2) return out;
   const Circle& circle = *all;
   out = circle.summary();
@@ -212,12 +239,10 @@ AnglesFound search_angles(const systems::System& system, const loop::Loop& base,
     const numerics::Place to{circle.angles[n + 1], circle.orbits[n + 1].push};
     if (!(from.value * to.value < 0.0)) continue;
     Held last = circle.orbits[n];
-    double last_angle = from.position;
     const auto push_at = [&](double angle) {
-      std::optional<Held> held = turned_to(plane, last, last_angle, angle, circle.amplitude);
+      std::optional<Held> held = plane.held(plane.turned(plane.between(circle, n, angle), angle, circle.amplitude));
       if (!held) return std::nan("");
       last = std::move(*held);
-      last_angle = angle;
       return last.push;
     };
     const auto located = numerics::locate_root(push_at, from, to, of_angle * turn);
