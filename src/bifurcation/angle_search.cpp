@@ -66,6 +66,21 @@ struct Circle {
   }
 };
 
+/// The sum of loops with weights that add up to 1, periods too.
+loop::Loop weighted(const std::vector<const loop::Loop*>& loops, const std::vector<double>& weights) {
+  int cutoff = 0;
+  for (const loop::Loop* l : loops) cutoff = std::max(cutoff, l->cutoff);
+  loop::Loop out = loop::with_cutoff(*loops.front(), cutoff);
+  std::fill(out.modes.begin(), out.modes.end(), 0.0);
+  out.period = 0.0;
+  for (std::size_t n = 0; n < loops.size(); ++n) {
+    const loop::Loop one = loop::with_cutoff(*loops[n], cutoff);
+    for (std::size_t c = 0; c < out.modes.size(); ++c) out.modes[c] += weights[n] * one.modes[c];
+    out.period += weights[n] * one.period;
+  }
+  return out;
+}
+
 class Plane {
  public:
   Plane(const systems::System& system, const loop::Loop& base, const KernelActions& group,
@@ -94,20 +109,6 @@ class Plane {
     return loop::moved(orbit, loop::with_cutoff(_group.vector_at(change), orbit.cutoff, orbit.dimension), 1.0);
   }
 
-  [[nodiscard]] static loop::Loop mean_of(std::span<const Held> orbits, const std::vector<double>& weights) {
-    int cutoff = 0;
-    for (const Held& orbit : orbits) cutoff = std::max(cutoff, orbit.loop.cutoff);
-    loop::Loop out = loop::with_cutoff(orbits.front().loop, cutoff);
-    std::fill(out.modes.begin(), out.modes.end(), 0.0);
-    out.period = 0.0;
-    for (std::size_t n = 0; n < orbits.size(); ++n) {
-      const loop::Loop orbit = loop::with_cutoff(orbits[n].loop, cutoff);
-      for (std::size_t c = 0; c < out.modes.size(); ++c) out.modes[c] += weights[n] * orbit.modes[c];
-      out.period += weights[n] * orbit.period;
-    }
-    return out;
-  }
-
   [[nodiscard]] bool is_near(const loop::Loop& orbit) const {
     const Gap gap = gap_between(_base, orbit, _group, _options.family.modes);
     return gap.beside <= farthest_beside * (gap.inside.norm() + std::abs(gap.along));
@@ -118,8 +119,9 @@ class Plane {
     const std::size_t used = std::min(circle.orbits.size(), neighbours);
     const std::size_t from = std::min(n > 1 ? n - 1 : 0, circle.orbits.size() - used);
     const auto angles = std::span(circle.angles).subspan(from, used);
-    const std::vector<double> weights = numerics::lagrange_weights({angles.begin(), angles.end()}, angle).value;
-    return mean_of(std::span(circle.orbits).subspan(from, used), weights);
+    std::vector<const loop::Loop*> loops;
+    for (const Held& orbit : std::span(circle.orbits).subspan(from, used)) loops.push_back(&orbit.loop);
+    return weighted(loops, numerics::lagrange_weights({angles.begin(), angles.end()}, angle).value);
   }
 
   /// The orbit of another amplitude: by the polynomial in it through the base and the last circles' orbits of this
@@ -128,17 +130,12 @@ class Plane {
     const std::size_t used = std::min(circles.size(), remembered);
     const auto last = std::span(circles).last(used);
     std::vector<double> amplitudes{0.0};
-    for (const Circle& circle : last) amplitudes.push_back(circle.amplitude);
-    const std::vector<double> weights = numerics::lagrange_weights(amplitudes, amplitude).value;
-    loop::Loop out = loop::with_cutoff(_base, last.back().orbits[place].loop.cutoff);
-    for (double& v : out.modes) v *= weights[0];
-    out.period *= weights[0];
-    for (std::size_t n = 0; n < used; ++n) {
-      const loop::Loop orbit = loop::with_cutoff(last[n].orbits[place].loop, out.cutoff);
-      for (std::size_t c = 0; c < out.modes.size(); ++c) out.modes[c] += weights[n + 1] * orbit.modes[c];
-      out.period += weights[n + 1] * orbit.period;
+    std::vector<const loop::Loop*> loops{&_base};
+    for (const Circle& circle : last) {
+      amplitudes.push_back(circle.amplitude);
+      loops.push_back(&circle.orbits[place].loop);
     }
-    return out;
+    return weighted(loops, numerics::lagrange_weights(amplitudes, amplitude).value);
   }
 
  private:

@@ -47,8 +47,6 @@ constexpr double nudge_in_plane = 0.2;
 constexpr double nudge_in_space = 0.03;
 /// What a symmetry of an orbit found may be off, in parts of its amplitude: a broken one is off by all of it.
 constexpr double found_tolerance = 1e-2;
-/// Below it, terms of the order of the amplitude or its square fix the angle, and Newton's method finds it by itself.
-constexpr int least_weak_resonance = 5;
 
 // What decides which of several images of one direction is reported, and in which order directions are listed.
 struct Rank {

@@ -13,6 +13,11 @@
 
 namespace orbweaver::bifurcation {
 
+/// From this order on families leave a crossing of orbits without reversors so nearly in all directions that rounding
+/// may decide among them: terms of order q - 2 alone fix the angle (docs/mathematics.md, "Angles"). Below it, terms of
+/// the order of the amplitude or its square do, and Newton's method finds it by itself.
+inline constexpr int least_weak_resonance = 5;
+
 /// One direction in which a family leaves a crossing.
 struct Direction {
   loop::Loop base;          ///< the crossing's orbit as the born family sees it: m times around, started where the born

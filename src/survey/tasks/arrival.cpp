@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "orbweaver/bifurcation/directions.hpp"
 #include "orbweaver/bifurcation/subharmonic_crossing.hpp"
 #include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
@@ -40,9 +41,6 @@ constexpr double on_the_way = 0.7;
 /// A part that turns instead of vanishing keeps a size of about 1.
 constexpr double proportional = 2.0;
 constexpr double still_vanishing = 0.05;
-/// The first resonance whose families leave so nearly in all directions that rounding may decide among them: terms of
-/// order q - 2 fix the angle beside one of order 2 (docs/mathematics.md, "Kernels and directions").
-constexpr int least_weak_resonance = 5;
 /// How far an orbit may be from the crossing beneath it, in parts of what of it does not repeat: within 45 degrees of
 /// the directions in which orbits leave there. Not measured.
 constexpr double beside = 1.41;
@@ -149,7 +147,8 @@ std::optional<ArrivalRecord> arrival_ahead(const std::shared_ptr<const systems::
     ArrivalRecord record;
     record.multiplicity = multiplicity_of(gain);
     record.near = sketch_of(last);
-    if (record.multiplicity >= least_weak_resonance && locate_beneath(system, family.options(), last, record))
+    if (record.multiplicity >= bifurcation::least_weak_resonance &&
+        locate_beneath(system, family.options(), last, record))
       return record;
   }
   return std::nullopt;

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "orbweaver/archive/schema/records.hpp"
+#include "survey/atlas.hpp"
+
+namespace orbweaver::test {
+
+inline std::vector<double> row_of(const Atlas& atlas, const char* column, std::size_t row, std::size_t width) {
+  const auto first = atlas.orbits().reals(column).begin() + static_cast<std::ptrdiff_t>(row * width);
+  return {first, first + static_cast<std::ptrdiff_t>(width)};
+}
+
+/// The key of a base family at the first equilibrium, or its twin's at the second one.
+inline std::string key_of(std::int64_t row, int equilibrium = 0) {
+  return row < 0 ? "" : fmt::format("{:04}.{:04}", equilibrium, row);
+}
+
+/// An atlas as it was handed over: families have the keys "0000.ROW".
+inline archive::Records records_of(const Atlas& atlas) {
+  archive::Records records;
+  const archive::Table& families = atlas.families();
+  for (std::size_t row = 0; row < families.rows(); ++row) {
+    archive::FamilyRecord family;
+    family.key = key_of(static_cast<std::int64_t>(row));
+    family.name = families.texts("name")[row];
+    family.parent_key = key_of(families.integers("parent")[row]);
+    family.crossing = static_cast<int>(families.integers("crossing")[row]);
+    family.multiplicity = static_cast<int>(families.integers("multiplicity")[row]);
+    family.isotropy = families.texts("isotropy")[row];
+    family.end_reason = families.texts("end_reason")[row];
+    records.families.push_back(family);
+  }
+  const archive::Table& crossings = atlas.crossings();
+  for (std::size_t row = 0; row < crossings.rows(); ++row) {
+    archive::CrossingRecord crossing;
+    crossing.family_key = key_of(crossings.integers("family")[row]);
+    crossing.arclength = crossings.reals("arclength")[row];
+    crossing.period = crossings.reals("period")[row];
+    crossing.energy = crossings.reals("energy")[row];
+    crossing.kind = atlas.crossing_kinds()[row];
+    crossing.multiplicity = static_cast<int>(crossings.integers("multiplicity")[row]);
+    crossing.kernel_dimension = static_cast<int>(crossings.integers("kernel_dimension")[row]);
+    crossing.sector_j = static_cast<int>(crossings.integers("sector_j")[row]);
+    crossing.sector_q = static_cast<int>(crossings.integers("sector_q")[row]);
+    crossing.fundamental_order = static_cast<int>(crossings.integers("fundamental_order")[row]);
+    crossing.state = std::vector<double>(atlas.header().state_names.size(), 0.0);
+    records.crossings.push_back(crossing);
+  }
+  const archive::Table& orbits = atlas.orbits();
+  for (std::size_t row = 0; row < orbits.rows(); ++row) {
+    archive::OrbitRecord orbit;
+    orbit.family_key = key_of(orbits.integers("family")[row]);
+    orbit.step = static_cast<int>(orbits.integers("step")[row]);
+    orbit.arclength = orbits.reals("arclength")[row];
+    orbit.period = orbits.reals("period")[row];
+    orbit.energy = orbits.reals("energy")[row];
+    orbit.action = orbits.reals("action")[row];
+    orbit.cutoff = static_cast<int>(orbits.integers("cutoff")[row]);
+    orbit.loss_rms = orbits.reals("loss_rms")[row];
+    orbit.stability = row_of(atlas, "stability", row, 1);
+    orbit.fundamental_stability = row_of(atlas, "fundamental_stability", row, 1);
+    orbit.stability_error = orbits.reals("stability_error")[row];
+    orbit.state = row_of(atlas, "state", row, atlas.header().state_names.size());
+    orbit.modes = atlas.modes(row);
+    orbit.time_map = atlas.time_map(row);
+    records.orbits.push_back(orbit);
+  }
+  return records;
+}
+
+}  // namespace orbweaver::test
