@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -213,6 +214,21 @@ std::optional<Circle> completed(const Plane& plane, const Circle& circle, double
   return out;
 }
 
+/// The orbit with the time shift that brings its part in the kernel opposite to that of `to`.
+loop::Loop shifted_opposite(const loop::Loop& base, const KernelActions& group, const FoundOrbit& to,
+                            const loop::Loop& orbit, int q) {
+  loop::Loop best = orbit;
+  double least = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < q; ++n) {
+    const loop::Loop there = loop::time_shifted(orbit, static_cast<double>(n) / q);
+    const double same = gap_between(base, there, group, {}).inside.dot(to.coordinates);
+    if (!(same < least)) continue;
+    least = same;
+    best = there;
+  }
+  return best;
+}
+
 }  // namespace
 
 AnglesFound search_angles(const systems::System& system, const loop::Loop& base, const KernelActions& group,
@@ -230,8 +246,7 @@ AnglesFound search_angles(const systems::System& system, const loop::Loop& base,
   if (!all || !all->is_clear() || all->sign_changes() != 2) return out;
   const Circle& circle = *all;
   out = circle.summary();
-  const int wanted = q % 2 == 0 ? 2 : 1;
-  for (std::size_t n = 0; n + 1 < circle.orbits.size() && static_cast<int>(out.found.size()) < wanted; ++n) {
+  for (std::size_t n = 0; n + 1 < circle.orbits.size(); ++n) {
     const numerics::Place from{circle.angles[n], circle.orbits[n].push};
     const numerics::Place to{circle.angles[n + 1], circle.orbits[n + 1].push};
     if (!(from.value * to.value < 0.0)) continue;
@@ -246,7 +261,11 @@ AnglesFound search_angles(const systems::System& system, const loop::Loop& base,
     if (!located || std::isnan(push_at(located->position))) continue;
     const Gap gap = gap_between(base, last.loop, group, options.family.modes);
     const double length = gap.inside.norm();
-    out.found.push_back({gap.inside / length, gap.along / length, last.loop});
+    out.found.push_back({gap.inside / length, gap.along / length, last.loop, {}});
+  }
+  if (q % 2 == 1 && out.found.size() == 2) {
+    out.found.front().opposite = shifted_opposite(base, group, out.found.front(), out.found.back().loop, q);
+    out.found.pop_back();
   }
   return out;
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -211,6 +212,20 @@ std::vector<double> search_amplitudes(int q, const loop::Loop& base, bool consta
   return out;
 }
 
+/// The way to an orbit, its modes of unit length, and how long it is.
+std::pair<loop::Tangent, double> whole_way(const loop::Loop& base, const loop::Loop& orbit) {
+  const loop::Loop there = loop::with_cutoff(orbit, base.cutoff);
+  loop::Tangent way{there.modes, {orbit.period - base.period}};
+  double square = 0.0;
+  for (std::size_t n = 0; n < way.modes.size(); ++n) {
+    way.modes[n] -= base.modes[n];
+    square += way.modes[n] * way.modes[n];
+  }
+  const double length = std::sqrt(square);
+  way *= 1.0 / length;
+  return {std::move(way), length};
+}
+
 /// Directions at which orbits were found, as the whole way from the base to each: the smaller the term that fixes the
 /// angle, the nearer a first orbit must be guessed.
 std::vector<Direction> by_angles(const systems::System& system, const KernelActions& group, const loop::Loop& base,
@@ -226,15 +241,10 @@ std::vector<Direction> by_angles(const systems::System& system, const KernelActi
   std::vector<Direction> out;
   for (const FoundOrbit& orbit : angles.found) {
     Direction direction;
-    direction.base = loop::with_cutoff(base, orbit.loop.cutoff);
-    direction.tangent.modes.resize(orbit.loop.modes.size());
-    for (std::size_t n = 0; n < orbit.loop.modes.size(); ++n)
-      direction.tangent.modes[n] = orbit.loop.modes[n] - direction.base.modes[n];
-    direction.tangent.scalars = {orbit.loop.period - base.period};
-    double square = 0.0;
-    for (const double v : direction.tangent.modes) square += v * v;
-    direction.amplitude = std::sqrt(square);
-    direction.tangent *= 1.0 / direction.amplitude;
+    const int cutoff = std::max(orbit.loop.cutoff, orbit.opposite ? orbit.opposite->cutoff : 0);
+    direction.base = loop::with_cutoff(base, cutoff);
+    std::tie(direction.tangent, direction.amplitude) = whole_way(direction.base, orbit.loop);
+    if (orbit.opposite) direction.opposite = whole_way(direction.base, *orbit.opposite).first;
     direction.isotropy =
         loop::find_isotropy(system.structure(), orbit.loop, found_tolerance * angles.amplitude, group.denominator());
     direction.both_sides = has_other_sides(group, orbit.coordinates);
@@ -290,6 +300,13 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
 }
 
 }  // namespace
+
+loop::Tangent way_to_side(const loop::Tangent& tangent, const loop::Tangent& opposite, int side) {
+  if (side > 0) return tangent;
+  loop::Tangent out = opposite.empty() ? tangent : opposite;
+  if (opposite.empty()) out *= -1.0;
+  return out;
+}
 
 std::vector<Direction> directions(const systems::System& system, const loop::Loop& base, const loop::Isotropy& isotropy,
                                   const std::vector<loop::Tangent>& kernel, const DirectionOptions& given) {

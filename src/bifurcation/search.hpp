@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Dense>
@@ -13,6 +14,7 @@ struct FoundOrbit {
   Eigen::VectorXd coordinates;
   double along = 0.0;  ///< how far it lies along the base's own family, in parts of its length in the kernel
   loop::Loop loop;
+  std::optional<loop::Loop> opposite{};  ///< one that lies to the other side, where that was looked for
 };
 
 /// Where an orbit near `base` lies from it.

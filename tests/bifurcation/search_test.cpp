@@ -262,6 +262,38 @@ TEST_P(WithoutReversors, TwoFamiliesOfEvenOrderLeaveHalfAnAngleApart) {
 
 INSTANTIATE_TEST_SUITE_P(Search, WithoutReversors, testing::Values(6, 8));
 
+// The orbits to the two sides lie opposite to each other in the kernel, and both beside it in the same direction.
+TEST(Search, KnowsTheWaysToBothSidesWhereTheOrderIsOdd) {
+  const Crossing crossing = crossing_of(without_reversors(), 2.0 * std::cos(2.0 * std::numbers::pi / 5.0), 5);
+  const std::vector<Direction> found =
+      directions(*test::pendulum(), crossing.base, without_reversors().isotropy, crossing.kernel);
+  ASSERT_EQ(found.size(), 1u);
+  const Direction& direction = found[0];
+  EXPECT_TRUE(direction.both_sides);
+  ASSERT_FALSE(direction.opposite.empty());
+  Eigen::MatrixXd inside(2, 2);
+  Eigen::Vector2d of_period;
+  std::vector<loop::Loop> orbits;
+  for (const int side : {1, -1}) {
+    const loop::Tangent way = direction.way(side);
+    for (std::size_t n = 0; n < 2; ++n) {
+      const loop::Tangent v = loop::with_cutoff(crossing.kernel[n], direction.base.cutoff, direction.base.dimension);
+      inside(static_cast<Eigen::Index>(n), side > 0 ? 0 : 1) =
+          std::inner_product(v.modes.begin(), v.modes.end(), way.modes.begin(), 0.0);
+    }
+    of_period(side > 0 ? 0 : 1) = way.period();
+    const corrector::Result born =
+        born_orbit(*test::pendulum(), direction.base, way, direction.isotropy, direction.amplitude);
+    ASSERT_TRUE(born.converged()) << born.detail;
+    EXPECT_LT(loop::mean_distance(born.loop, loop::moved(direction.base, way, direction.amplitude)),
+              1e-6 * direction.amplitude);
+    orbits.push_back(born.loop);
+  }
+  EXPECT_NEAR(inside.col(0).normalized().dot(inside.col(1).normalized()), -1.0, 1e-6);
+  EXPECT_GT(of_period(0) * of_period(1), 0.0);
+  EXPECT_FALSE(loop::find_map(test::pendulum()->structure(), orbits[0], orbits[1], 1e-3, 10).has_value());
+}
+
 // On OB, from the out-phase family at T = 6.1475, the terms that fix the angle are weak: solves stall nearby.
 TEST(Search, GoesFurtherOutWhereTheAngleIsHardlyFixed) {
   const test::Family family = family_of(test::pendulum(), 1, 6.3);

@@ -18,6 +18,9 @@ namespace orbweaver::bifurcation {
 /// the order of the amplitude or its square do, and Newton's method finds it by itself.
 inline constexpr int least_weak_resonance = 5;
 
+/// To one side (+1) along `tangent`, to the other (-1) along `opposite`, or -tangent where that is empty.
+[[nodiscard]] loop::Tangent way_to_side(const loop::Tangent& tangent, const loop::Tangent& opposite, int side);
+
 /// One direction in which a family leaves a crossing.
 struct Direction {
   loop::Loop base;          ///< the crossing's orbit as the born family sees it: m times around, started where the born
@@ -32,6 +35,10 @@ struct Direction {
   bool is_hidden = false;  ///< what tells it from neighbouring directions is so small, as far from the crossing as
                            ///< orbits were found, that the family cannot be followed: it is known for what arrives
                            ///< along it
+  loop::Tangent opposite{};  ///< the way to the other side's orbits, where one was found; empty: -tangent
+
+  /// side: +1 or, where there are both, -1.
+  [[nodiscard]] loop::Tangent way(int side) const { return way_to_side(tangent, opposite, side); }
 };
 
 struct DirectionOptions {

@@ -187,6 +187,8 @@ class Location {
       leaving.both_sides = direction.both_sides;
       leaving.base = sketch_of(direction.base);
       leaving.direction = loop::with_cutoff(direction.tangent, leaving.base.cutoff, leaving.base.dimension);
+      if (!direction.opposite.empty())
+        leaving.opposite = loop::with_cutoff(direction.opposite, leaving.base.cutoff, leaving.base.dimension);
       leaving.hidden = direction.is_hidden;
       if (direction.is_hidden)
         _outcome.remark = "families leave so nearly in all directions that rounding hides them close by";
@@ -225,10 +227,10 @@ class Location {
                                 _outcome.period * _system->scales().time, leaving.key.substr(_work.key.size()));
       branch.lineage = {leaving.key, _work.key, _work.lineage.depth + 1, _outcome.multiplicity, side};
       branch.base = direction.base;
-      branch.direction = direction.tangent;
+      branch.direction = direction.way(side);
       branch.isotropy = leaving.isotropy;
       branch.amplitude = direction.amplitude > 0.0
-                             ? direction.amplitude * loop::change_at_start(direction.base, direction.tangent)
+                             ? direction.amplitude * loop::change_at_start(direction.base, branch.direction)
                              : 0.0;
       _starts.push_back(task_of(start));
     }

@@ -47,10 +47,11 @@ std::optional<Meeting> Arrivals::meeting(const ArrivalRecord& arrival, const Loc
   for (const LeavingRecord& leaving : crossing.leaving) {
     const loop::Loop& base = leaving.base;
     const double distance = loop::align(_system, near, base).distance;
-    const double unit = loop::mean_distance(base, loop::moved(base, leaving.direction, 1.0));
     for (const int side : {1, -1}) {
       if (side < 0 && !leaving.both_sides) continue;
-      const loop::Loop expected = loop::moved(base, leaving.direction, side * distance / unit);
+      const loop::Tangent way = leaving.way(side);
+      const double unit = loop::mean_distance(base, loop::moved(base, way, 1.0));
+      const loop::Loop expected = loop::moved(base, way, distance / unit);
       const loop::Alignment alignment = loop::align(_system, near, expected);
       double away = alignment.distance / distance;
       if (alignment.reversing || alignment.name != "1") away = (1.0 + image_further) * away + least_further;

@@ -88,6 +88,7 @@ void FamilyTree::add_crossing(LocateOutcome crossing) {
   for (LeavingRecord& leaving : crossing.leaving) {
     leaving.base = {};
     leaving.direction = {};
+    leaving.opposite = {};
   }
   std::string key = crossing.key;
   _crossings.emplace(std::move(key), std::move(crossing));

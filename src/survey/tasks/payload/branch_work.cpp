@@ -17,7 +17,6 @@ continuation::Start start_of(const BranchWork& work, const systems::Structure& s
   continuation::Start start;
   start.base = work.base;
   start.direction = work.direction;
-  start.direction *= work.lineage.side;
   start.isotropy = loop::with_declared_matrices(work.isotropy, system);
   return start;
 }

@@ -22,7 +22,7 @@ struct BranchWork {
   std::string name;  ///< for progress; final names are given at the end
   Lineage lineage;
   loop::Loop base;          ///< the equilibrium, or the crossing's orbit as many times around as it takes
-  loop::Tangent direction;  ///< in its modes
+  loop::Tangent direction;  ///< in its modes, to this branch's side
   loop::Isotropy isotropy;
   double amplitude = 0.0;  ///< |dz(s = 0)| of the first orbit; 0: the scene's
 

@@ -7,6 +7,7 @@
 #include "lineage.hpp"
 #include "orbweaver/archive/schema/crossing_kind.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
+#include "orbweaver/bifurcation/directions.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
 #include "orbweaver/core/serialization.hpp"
 #include "orbweaver/loop/curve/tangent.hpp"
@@ -44,11 +45,14 @@ struct LeavingRecord {
   bool hidden = false;  ///< by rounding: nothing is started along it
   loop::Loop base;
   loop::Tangent direction;
+  loop::Tangent opposite;  ///< of the other side; empty: -direction
 
-  static constexpr int wire_version = 1;
+  [[nodiscard]] loop::Tangent way(int side) const { return bifurcation::way_to_side(direction, opposite, side); }
+
+  static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, key, isotropy, both_sides, hidden, base, direction);
+    core::serialize_members(archive, key, isotropy, both_sides, hidden, base, direction, opposite);
   }
 };
 
