@@ -60,8 +60,9 @@ std::optional<Sector> nearest_sector(double index, int q) {
 
 }  // namespace
 
-std::optional<Crossing> crossing_beneath(const std::shared_ptr<const systems::System>& system, const loop::Loop& near,
-                                         int multiplicity, const continuation::Options& options) {
+std::optional<CrossingFound> crossing_beneath(const std::shared_ptr<const systems::System>& system,
+                                              const loop::Loop& near, int multiplicity,
+                                              const continuation::Options& options) {
   if (!system->structure().symplectic || system->structure().pairs() != 1) return std::nullopt;
   const std::optional<loop::Loop> middle =
       orbit_of_amplitude(*system, loop::without_repetition(near, multiplicity), options);
@@ -77,7 +78,7 @@ std::optional<Crossing> crossing_beneath(const std::shared_ptr<const systems::Sy
     curve.add(0.0, *before);
     curve.add(1.0, *after);
     NotLocated why;
-    if (auto crossing = locate(*system, curve, event, 0.0, 1.0, why)) return crossing;
+    if (auto crossing = locate(*system, curve, event, 0.0, 1.0, why)) return CrossingFound{event, std::move(*crossing)};
     if (why.reason == NotLocated::Reason::no_orbit) return std::nullopt;
   }
   return std::nullopt;

@@ -1,6 +1,8 @@
 // The planar circular restricted three-body problem: what a tree says may not hang on the first step, on the tolerance
 // or on which of two mirror images is looked at.
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -84,6 +86,39 @@ TEST(RestrictedProblem, LongFamiliesEndAtTheirResonance) {
     EXPECT_NEAR(once, short_period, 1e-9);
     EXPECT_NEAR(found, energy, 1e-9);
     EXPECT_NEAR(summary.families.front().period_to, 82.0097, 1e-4);
+  }
+}
+
+// The short-period families are not looked at for 13 turns: the crossings are those of the branches that end there.
+TEST(RestrictedProblem, CrossingsOfHigherOrderLieOnTheirFamilies) {
+  const core::Communicator comm;
+  const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_mu_0.001.yaml",
+                                         {"starts.fixed_points.grid=[[0.499], [-0.866, 0.866]]",
+                                          "starts.sweep.period=[6.2, 80]", "starts.sweep.step=0.1", "survey.depth=0"});
+  const survey::Summary summary = test::run(comm, scene, "higher");
+  EXPECT_EQ(summary.failures, 0U);
+  if (!comm.is_root()) return;
+  const test::Atlas atlas(summary.atlas);
+  const archive::Table& crossings = atlas.crossings();
+  for (const std::string place : {"4", "5"}) {
+    const auto row = atlas.crossing("Short-" + place, "subharmonic", 6.289847916);
+    ASSERT_TRUE(row.has_value());
+    EXPECT_EQ(crossings.integers("multiplicity")[*row], 13);
+    EXPECT_EQ(crossings.integers("sector_q")[*row], 13);
+    EXPECT_NEAR(crossings.reals("period")[*row], 6.289847916, 1e-9);
+    EXPECT_NEAR(crossings.reals("energy")[*row], -1.234482545, 1e-9);
+    // Between the family's orbits that the energy puts it between.
+    const std::vector<double> arclengths = atlas.column("arclength", "Short-" + place);
+    const std::vector<double> energies = atlas.column("energy", "Short-" + place);
+    const auto at = std::upper_bound(arclengths.begin(), arclengths.end(), crossings.reals("arclength")[*row]);
+    const auto after = static_cast<std::size_t>(at - arclengths.begin());
+    ASSERT_GT(after, 0U);
+    ASSERT_LT(after, arclengths.size());
+    EXPECT_LT((energies[after] + 1.234482545) * (energies[after - 1] + 1.234482545), 0.0);
+    EXPECT_NE(atlas.end_of("Long-" + place).find("joined Short-" + place + " at T = 81.76802"), std::string::npos)
+        << atlas.end_of("Long-" + place);
+    EXPECT_EQ(atlas.families().integers("end_crossing")[atlas.row_of("Long-" + place)],
+              static_cast<std::int64_t>(*row));
   }
 }
 

@@ -48,6 +48,17 @@ Invariants invariants_of(const archive::Archive& atlas, std::size_t row, double 
   return x;
 }
 
+// Action/period passes 0 where the action does: energies then count in what they change from orbit to orbit.
+void widen_energy_scales(std::vector<Invariants>& points, double tolerance) {
+  constexpr auto energy = static_cast<std::size_t>(Invariant::energy);
+  for (std::size_t n = 0; n < points.size(); ++n)
+    for (const std::size_t beside : {n > 0 ? n - 1 : n, n + 1 < points.size() ? n + 1 : n}) {
+      const double change = std::abs(points[n].values[energy] - points[beside].values[energy]);
+      points[n].scale[energy] = std::fmax(points[n].scale[energy], change);
+      points[n].floor[energy] = std::fmax(points[n].floor[energy], tolerance * change);
+    }
+}
+
 std::vector<FamilyEnd> ends_of(const std::string& reason, const std::vector<std::int64_t>& steps, std::size_t first,
                                std::size_t count) {
   const std::vector<EndKind> kinds = ends_in(reason);
@@ -79,6 +90,7 @@ AtlasTree::AtlasTree(const archive::Archive& archive, double tolerance) : atlas(
       points.push_back(invariants_of(atlas, i, tolerance));
       family.arclengths.push_back(atlas.orbits().reals("arclength")[i]);
     }
+    widen_energy_scales(points, tolerance);
     family.curve = InvariantCurve(std::move(points));
     family.ends = ends_of(table.texts("end_reason")[row], atlas.orbits().integers("step"), family.first_orbit, count);
     if (family.parent < 0) roots.push_back(static_cast<int>(row));

@@ -22,6 +22,8 @@ constexpr std::size_t orbits_beside = 3;
 /// From an orbit to the next by way of one between them, in parts of the chord: that of a family that turns by 90
 /// degrees is 1.4.
 constexpr double longest_way = 1.5;
+/// To either side of a place on a chord, in parts of it: where nearer orbits are looked for.
+constexpr double beside_place = 0.05;
 
 continuation::Orbit orbit_of(const AtlasTree& tree, const TreeFamily& family, std::size_t orbit,
                              const systems::System& system) {
@@ -48,15 +50,15 @@ loop::Loop started_as(const systems::Structure& system, const loop::Loop& loop, 
 /// of the chord.
 bool closer_together(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
                      const bifurcation::Comparison& found, continuation::Orbit& a, continuation::Orbit& b) {
-  constexpr double part = 0.05;       // of the chord, to either side
   constexpr double off_chord = 0.02;  // an orbit further from it, in parts of its length, is another family's
   const double length = loop::mean_distance(a.loop, b.loop);
-  if (!(found.position > part && found.position < 1.0 - part && found.distance < part * length)) return false;
+  if (!(found.position > beside_place && found.position < 1.0 - beside_place && found.distance < beside_place * length))
+    return false;
   continuation::FamilyCurve curve(system, isotropy, {});
   curve.add(0.0, a.loop);
   curve.add(1.0, b.loop);
   std::vector<continuation::Orbit> near;
-  for (const double position : {found.position - part, found.position + part}) {
+  for (const double position : {found.position - beside_place, found.position + beside_place}) {
     const std::optional<continuation::CurvePoint> point = curve.at(position);
     if (!point) return false;
     const double to_a = loop::mean_distance(point->loop, a.loop) / length;
@@ -120,6 +122,24 @@ LoopAnswer LoopCheck::ask_crossing(const AtlasTree& tree, std::size_t crossing, 
       place.multiplicity == 1 ? there->loop : loop::repeated(loop::evenly_in_time(there->loop), place.multiplicity);
   orbit.energy = continuation::energy_of(*_system, orbit.loop);
   orbit.action = continuation::action_of(*_system, orbit.loop);
+  return between_orbits(orbit, tree, beside, segment).answer;
+}
+
+std::optional<double> LoopCheck::arclength_of(const loop::Loop& loop, const AtlasTree& tree, const TreeFamily& beside,
+                                              std::size_t segment) const {
+  continuation::Orbit orbit;
+  orbit.loop = loop;
+  orbit.energy = continuation::energy_of(*_system, loop);
+  orbit.action = continuation::action_of(*_system, loop);
+  const Between found = between_orbits(orbit, tree, beside, segment);
+  if (!found.answer.same || !(found.position >= 0.0 && found.position <= 1.0)) return std::nullopt;
+  const double from = beside.arclengths[segment];
+  return from + found.position * (beside.arclengths[segment + 1] - from);
+}
+
+LoopCheck::Between LoopCheck::between_orbits(const continuation::Orbit& orbit, const AtlasTree& tree,
+                                             const TreeFamily& beside, std::size_t segment) const {
+  const systems::Structure& system = _system->structure();
   bifurcation::IdentityOptions options;
   options.keeps_repetitions = true;
   const loop::Isotropy isotropy = loop::isotropy_of(system, beside.isotropy);
@@ -129,20 +149,25 @@ LoopAnswer LoopCheck::ask_crossing(const AtlasTree& tree, std::size_t crossing, 
   const double to_a = loop::align(system, orbit.loop, a.loop).distance;
   const double to_b = loop::align(system, orbit.loop, b.loop).distance;
   if (to_a + to_b > longest_way * loop::mean_distance(a.loop, b.loop))
-    return {false, std::min(to_a, to_b), allowed, "not between the neighbours", true};
+    return {{false, std::min(to_a, to_b), allowed, "not between the neighbours", true}};
   bifurcation::Comparison found = bifurcation::same_family(*_system, a, b, isotropy, orbit, options);
   if (!found) {  // not before: on either side of the crossing may lie images of one another
     continuation::Orbit started = a;
-    started.loop = started_as(system, a.loop, b.loop);
+    started.loop = loop::aligned(a.loop, loop::align(system, a.loop, b.loop));
     const bifurcation::Comparison again = bifurcation::same_family(*_system, started, b, isotropy, orbit, options);
     if (again.distance < found.distance) {
       found = again;
       a = started;
     }
   }
-  if (!found && closer_together(_system, isotropy, found, a, b))
+  double from = 0.0;
+  double to = 1.0;
+  if (!found && closer_together(_system, isotropy, found, a, b)) {
+    from = found.position - beside_place;
+    to = found.position + beside_place;
     found = bifurcation::same_family(*_system, a, b, isotropy, orbit, options);
-  return {found.same, found.distance, allowed, found.detail, found.decided};
+  }
+  return {{found.same, found.distance, allowed, found.detail, found.decided}, from + found.position * (to - from)};
 }
 
 std::vector<LoopCheck::Sample> LoopCheck::sample(const AtlasTree& own, const TreeFamily& family, const AtlasTree& other,

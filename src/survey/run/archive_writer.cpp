@@ -14,6 +14,7 @@
 #include "state/branch_state.hpp"
 #include "state/resume.hpp"
 #include "version.hpp"
+#include "witness/placement.hpp"
 #include "witness/witness.hpp"
 
 namespace orbweaver::survey {
@@ -63,6 +64,43 @@ archive::Header header_of(const scene::Scene& scene, const systems::System& syst
   return header;
 }
 
+namespace {
+
+/// The tables that segments are consolidated with, of rank 0.
+void add_rows_left_out(const Checkpoint& checkpoint, archive::Records& tables) {
+  tables.voided = checkpoint.voided;
+  tables.earlier_scenes = checkpoint.earlier_scenes;
+}
+
+/// Crossings that branches have located beneath their ends are given their families, which an atlas that is not
+/// published is looked through for. Only where there are any; collective.
+void place_crossings(const core::Communicator& comm, const std::vector<std::filesystem::path>& segments,
+                     const archive::Header& header, const std::shared_ptr<const systems::System>& system,
+                     const Checkpoint& checkpoint, FamilyTree& tree, const std::filesystem::path& output) {
+  archive::Records tables;
+  std::vector<FamilyTree::Unplaced> unplaced;
+  core::on_root(comm.get(), [&] {
+    unplaced = tree.unplaced();
+    if (unplaced.empty()) return;
+    tables = tree.resolve().tables;
+    add_rows_left_out(checkpoint, tables);
+  });
+  if (core::agreed(comm.get(), unplaced.empty())) return;
+  const archive::Witness place = [&](const std::filesystem::path& atlas) {
+    core::on_root(comm.get(), [&] {
+      std::vector<std::string> keys;
+      for (const archive::FamilyRecord& family : tables.families) keys.push_back(family.key);
+      std::sort(keys.begin(), keys.end());
+      for (const Placement& found : placements(atlas, keys, unplaced, system))
+        tree.place(found.branch, found.family, found.arclength);
+    });
+    return std::optional<std::vector<archive::FindingRecord>>();
+  };
+  (void)archive::consolidate(comm.get(), segments, output, header, tables, {}, place);
+}
+
+}  // namespace
+
 void write_archive(const core::Communicator& comm, const scene::Scene& scene,
                    const std::shared_ptr<const systems::System>& system, const Checkpoint& checkpoint, FamilyTree& tree,
                    const SweepsEnded& sweeps, Summary& summary) {
@@ -71,6 +109,12 @@ void write_archive(const core::Communicator& comm, const scene::Scene& scene,
   std::vector<std::filesystem::path> segments;
   core::on_root(comm.get(), [&] {
     add_unfinished(checkpoint.unfinished, system->scales().time, tree);
+    const std::filesystem::path folder = state_folder(summary.atlas.parent_path());
+    for (const archive::WrittenSegment& segment : checkpoint.segments) segments.push_back(folder / segment.name);
+  });
+  const archive::Header header = header_of(scene, *system);
+  if (summary.archived) place_crossings(comm, segments, header, system, checkpoint, tree, summary.atlas);
+  core::on_root(comm.get(), [&] {
     FamilyTree::Result found = tree.resolve();
     tables = std::move(found.tables);
     summary.families = std::move(found.families);
@@ -92,10 +136,7 @@ void write_archive(const core::Communicator& comm, const scene::Scene& scene,
     for (const archive::FamilyRecord& family : tables.families) known.family_keys.push_back(family.key);
     std::sort(known.family_keys.begin(), known.family_keys.end());
     known.crossing_rows = archive::rows_of_crossings(tables);
-    tables.voided = checkpoint.voided;
-    tables.earlier_scenes = checkpoint.earlier_scenes;
-    const std::filesystem::path folder = state_folder(summary.atlas.parent_path());
-    for (const archive::WrittenSegment& segment : checkpoint.segments) segments.push_back(folder / segment.name);
+    add_rows_left_out(checkpoint, tables);
   });
   if (!summary.archived) {
     summary.failures = core::agreed(comm.get(), static_cast<unsigned long>(summary.failed_tasks.size()));
@@ -110,8 +151,7 @@ void write_archive(const core::Communicator& comm, const scene::Scene& scene,
     records = std::move(testimony->records);
     return records;
   };
-  summary.archived =
-      archive::consolidate(comm.get(), segments, summary.atlas, header_of(scene, *system), tables, {}, witness);
+  summary.archived = archive::consolidate(comm.get(), segments, summary.atlas, header, tables, {}, witness);
   summary.stopped_early |= !summary.archived;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "crossing_outcome.hpp"
 #include "orbweaver/bifurcation/directions.hpp"
 #include "orbweaver/bifurcation/subharmonic_crossing.hpp"
 #include "orbweaver/loop/curve/time_samples.hpp"
@@ -126,14 +127,18 @@ bool locate_beneath(const std::shared_ptr<const systems::System>& system, const 
                     const loop::Loop& last, ArrivalRecord& arrival) {
   if (arrival.multiplicity == 1) return false;
   const loop::Loop even = loop::evenly_in_time(last);
-  const auto crossing = bifurcation::crossing_beneath(system, even, arrival.multiplicity, options);
-  if (!crossing) return false;
-  const loop::Loop met = loop::repeated(loop::evenly_in_time(crossing->point.loop), arrival.multiplicity);
+  const auto found = bifurcation::crossing_beneath(system, even, arrival.multiplicity, options);
+  if (!found) return false;
+  const loop::Loop& orbit = found->crossing.point.loop;
+  const loop::Loop met = loop::repeated(loop::evenly_in_time(orbit), arrival.multiplicity);
   const double distance = loop::align(system->structure(), even, met).distance;
   if (distance > beside * not_repeated(even, arrival.multiplicity)) return false;
   arrival.period = met.period;
   arrival.energy = continuation::energy_of(*system, met);
-  arrival.located = true;
+  CrossingBeneath& beneath = arrival.beneath.emplace_back();
+  describe(*system, found->event, found->crossing, beneath.crossing);
+  beneath.crossing.limited_by = order_limited;
+  beneath.orbit = orbit;
   return true;
 }
 

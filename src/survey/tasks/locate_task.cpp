@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "arrival.hpp"
+#include "crossing_outcome.hpp"
 #include "executor.hpp"
 #include "orbweaver/archive/schema/records.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
@@ -20,24 +21,6 @@ namespace {
 
 using archive::CrossingKind;
 using bifurcation::Event;
-
-CrossingKind kind_of(const Event& event, int multiplicity) {
-  if (event.kind == Event::Kind::fold_period) return CrossingKind::fold_period;
-  if (event.kind == Event::Kind::fold_energy) return CrossingKind::fold_energy;
-  if (!bifurcation::has_sector(event.function.kind)) {
-    const std::string_view name = bifurcation::name_of(event.function.kind);
-    const CrossingKind kind = archive::crossing_kind_of(name);
-    if (kind == CrossingKind::unknown)
-      throw core::MisuseError(fmt::format("the archive has no kind of crossings called {}", name));
-    return kind;
-  }
-  if (multiplicity == 1) return CrossingKind::branch_point;
-  return multiplicity == 2 ? CrossingKind::period_doubling : CrossingKind::subharmonic;
-}
-
-bool is_in_sector(const Event& event) {
-  return event.kind == Event::Kind::test_function && bifurcation::has_sector(event.function.kind);
-}
 
 /// Pairs of multipliers count as in the sector within this or so many of their error bounds. A location leaves 1e-9
 /// (docs/mathematics.md, "Location"); one pair is counted in any case, so this matters to multiple crossings only.
@@ -66,8 +49,6 @@ class Location {
       : _scene(scene), _system(system), _work(work), _context(context), _team(team), _event(work.event) {
     _outcome.key = work.key;
     _outcome.lineage = work.lineage;
-    _outcome.q = _event.function.sector.q;
-    _outcome.j = _event.function.sector.j;
   }
 
   queue::TaskOutcome run() {
@@ -135,26 +116,10 @@ class Location {
   }
 
   void describe(const bifurcation::Crossing& crossing, const continuation::FamilyCurve& family) {
-    const loop::Loop& loop = crossing.point.loop;
+    survey::describe(*_system, _event, crossing, _outcome);
     const double position = crossing.point.position;
     _outcome.arclength = signed_arclength(_work.lineage, _work.before_first, family.arclength_at(position));
     _outcome.arclength_unit = family.arclength_unit_at(position);
-    _outcome.period = loop.period;
-    _outcome.energy = continuation::energy_of(*_system, loop);
-    _outcome.fundamental_order = crossing.stability.fundamental_order;
-    const bool by_sector = is_in_sector(_event);
-    _outcome.multiplicity = by_sector ? _event.function.sector.multiplicity(_outcome.fundamental_order) : 1;
-    _outcome.kind = kind_of(_event, _outcome.multiplicity);
-    _outcome.residual = crossing.reading.value;
-    _outcome.test_value = archive::not_computed;
-    if (by_sector) {  // the index itself, and how far it is from the sector's
-      _outcome.residual = bifurcation::index_deviation(crossing.stability, _event.function.sector).value;
-      _outcome.test_value = _event.function.sector.index() + _outcome.residual;
-    }
-    _outcome.kernel_singular_value = archive::not_computed;
-    _outcome.next_singular_value = archive::not_computed;
-    _outcome.kernel_dimension = by_sector ? -1 : 0;  // not computed yet
-    _outcome.state = loop::state_at(loop, 0.0);
   }
 
   void leave(const bifurcation::Crossing& crossing, continuation::FamilyCurve& family) {

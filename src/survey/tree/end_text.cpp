@@ -13,7 +13,7 @@ std::string end_text(const BranchOutcome& outcome, const systems::Scales& units)
   const double period = arrival.period * units.time;
   const double energy = arrival.energy * units.energy();
   std::string where = fmt::format("T = {:.9g}, E = {:.9g}", period, energy);
-  if (arrival.located)
+  if (!arrival.beneath.empty())
     where = fmt::format("T = {:.12g}, E = {:.12g}, {} times around T = {:.12g}", period, energy, arrival.multiplicity,
                         period / arrival.multiplicity);
   return fmt::format("{} ({})", name_of(EndKind::met), where);

@@ -1,6 +1,7 @@
 #include "family_tree.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -17,6 +18,12 @@
 namespace orbweaver::survey {
 
 namespace {
+
+/// Numbers of crossings that were placed at the end, beyond those of the events of any branch.
+constexpr int first_placed = 1'000'000;
+/// Relative difference in period of two crossings of one order on one family that are the same: far above what
+/// locations are off, far below what others are away.
+constexpr double same_period = 1e-7;
 
 /// The families of branches, parents before children.
 std::vector<Family> families_of(const std::vector<FamilySide>& branches) {
@@ -138,6 +145,46 @@ std::vector<FamilySide> FamilyTree::kept_branches() const {
   }
   std::sort(kept.begin(), kept.end(), [](FamilySide a, FamilySide b) { return a->first < b->first; });
   return kept;
+}
+
+std::vector<FamilyTree::Unplaced> FamilyTree::unplaced() const {
+  std::vector<Unplaced> found;
+  for (const FamilySide branch : kept_branches()) {
+    if (!branch->second.outcome || _pruning.arrival(branch->first) != nullptr) continue;
+    for (const ArrivalRecord& arrival : branch->second.outcome->arrival)
+      if (!arrival.beneath.empty()) found.push_back({branch->first, &arrival});
+  }
+  return found;
+}
+
+void FamilyTree::place(const std::string& branch, const std::string& family, double arclength) {
+  const int side = arclength < 0.0 ? -1 : 1;
+  const auto host = std::find_if(_branches.begin(), _branches.end(), [&](const auto& entry) {
+    const Lineage& lineage = entry.second.lineage;
+    return lineage.family == family && lineage.side == side && !_pruning.is_dropped(entry.first);
+  });
+  core::require(host != _branches.end(), "a crossing lies on a family that stays");
+  const EndedBranch& own = _branches.at(branch);
+  LocateOutcome crossing = own.outcome->arrival.front().beneath.front().crossing;
+  crossing.lineage = host->second.lineage;
+  crossing.arclength = arclength;
+  // Branches that come along other directions meet the same one.
+  const auto same = std::find_if(_crossings.begin(), _crossings.end(), [&](const auto& entry) {
+    const LocateOutcome& known = entry.second;
+    return (known.limited_by & order_limited) != 0 && known.lineage.family == family && known.q == crossing.q &&
+           std::abs(known.period / crossing.period - 1.0) < same_period;
+  });
+  if (same == _crossings.end()) {
+    const int number = first_placed + static_cast<int>(_crossings.size());
+    crossing.key = event_key(host->first, number, fmt::format("q{}.j{}", crossing.q, crossing.j));
+  } else {
+    crossing.key = same->first;
+  }
+  LocateOutcome& placed = _crossings.try_emplace(crossing.key, crossing).first->second;
+  LeavingRecord& leaving = placed.leaving.emplace_back();
+  leaving.key = fmt::format("{}/{}", crossing.key, placed.leaving.size() - 1);
+  leaving.isotropy = own.isotropy;
+  count(_pruning.add_meetings({{branch, Meeting{crossing.key, {leaving.key, 1}, 0.0}}}));
 }
 
 DirectionFate FamilyTree::fate_of(const std::string& branch, const Lineage& lineage) const {

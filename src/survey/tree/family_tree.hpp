@@ -34,6 +34,16 @@ class FamilyTree {
   /// False for a task whose branch is known to be another one's, or one family too many.
   [[nodiscard]] bool wanted(const queue::Task& task) const;
 
+  /// A crossing that a branch which stays has located beneath its end, and that no other task has: its family is known
+  /// once the orbits of all can be looked at.
+  struct Unplaced {
+    std::string branch;
+    const ArrivalRecord* arrival = nullptr;
+  };
+  [[nodiscard]] std::vector<Unplaced> unplaced() const;
+  /// The branch ends at `crossing` of `family`, at this arclength in the scene's units.
+  void place(const std::string& branch, const std::string& family, double arclength);
+
   using Result = TreeTables;
   [[nodiscard]] Result resolve() const;
 

@@ -26,6 +26,8 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
       return fmt::format("{}: what is born there was not followed (survey.depth)", names.crossing);
     case FindingKind::beyond_period:
       return fmt::format("{}: orbits born there lie beyond limits.period", names.crossing);
+    case FindingKind::beyond_order:
+      return fmt::format("{}: what else is born there was not looked for (survey.subharmonics)", names.crossing);
     case FindingKind::beyond_limits:
       return fmt::format("{}: along direction {} the first orbit lies beyond the limits", names.crossing, f.number);
     case FindingKind::beyond_families:
@@ -82,6 +84,7 @@ std::string_view name_of(FindingKind kind) {
     case FindingKind::unfollowed_direction: return "unfollowed-direction";
     case FindingKind::beyond_depth: return "beyond-depth";
     case FindingKind::beyond_period: return "beyond-period";
+    case FindingKind::beyond_order: return "beyond-order";
     case FindingKind::beyond_limits: return "beyond-limits";
     case FindingKind::beyond_families: return "beyond-families";
     case FindingKind::unlisted_target: return "unlisted-target";

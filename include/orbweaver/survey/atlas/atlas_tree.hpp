@@ -43,7 +43,7 @@ struct TreeCrossing {
   int fundamental_order = 1;
   double period = 0.0;
   double energy = 0.0;
-  double energy_scale = 0.0;  ///< action/period of the family's orbit nearest to it; NaN: no energy
+  double energy_scale = 0.0;  ///< of the family's orbit nearest to it; NaN: no energy
   std::vector<int> children;  ///< rows of the families born there
 };
 

@@ -2,9 +2,12 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "orbweaver/continuation/orbit.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/survey/atlas/atlas_tree.hpp"
 #include "orbweaver/systems/system.hpp"
 
@@ -46,6 +49,11 @@ class LoopCheck {
   [[nodiscard]] LoopAnswer ask_crossing(const AtlasTree& tree, std::size_t crossing, const TreeFamily& beside,
                                         std::size_t segment) const;
 
+  /// Where an orbit, in the system's scales, lies on `beside` between its orbits `segment` and the next: its arclength
+  /// there. None where it does not.
+  [[nodiscard]] std::optional<double> arclength_of(const loop::Loop& loop, const AtlasTree& tree,
+                                                   const TreeFamily& beside, std::size_t segment) const;
+
   /// `count` orbits of `family`, evenly among those that have a place on `other` (`fits`: of all its orbits).
   struct Sample {
     std::size_t orbit = 0;
@@ -61,6 +69,14 @@ class LoopCheck {
                               const TreeFamily& family_b) const;
 
  private:
+  struct Between {
+    LoopAnswer answer;
+    double position = 0.0;  ///< on the chord: 0 at the first orbit, 1 at the second
+  };
+  /// Whether `orbit`, once around, lies on `beside` between its orbits `segment` and the next.
+  [[nodiscard]] Between between_orbits(const continuation::Orbit& orbit, const AtlasTree& tree,
+                                       const TreeFamily& beside, std::size_t segment) const;
+
   std::shared_ptr<const systems::System> _system;
 };
 

@@ -30,6 +30,7 @@ enum class FindingKind {
   unfollowed_direction,  ///< a direction that nobody left or arrived along; number: which
   beyond_depth,          ///< nothing was looked for: survey.depth
   beyond_period,         ///< nothing was looked for: limits.period
+  beyond_order,          ///< nothing was looked for: survey.subharmonics
   beyond_limits,         ///< a direction along which the first orbit lies beyond limits
   beyond_families,       ///< a direction that limits.families left out
   unlisted_target,       ///< ends at a crossing that the archive does not have

@@ -5,6 +5,7 @@
 
 #include "doubtful_orbits.hpp"
 #include "lineage.hpp"
+#include "locate_work.hpp"
 #include "orbweaver/continuation/branch.hpp"
 #include "orbweaver/continuation/ending.hpp"
 #include "orbweaver/core/serialization.hpp"
@@ -33,18 +34,31 @@ struct BranchWork {
   }
 };
 
-/// A branch has come to an orbit with more symmetry than its own: a crossing of another family, or of its own.
-struct ArrivalRecord {
-  double period = 0.0;  ///< where it meets, by interpolation, or as the crossing there was located
-  double energy = 0.0;
-  loop::Loop near;       ///< an orbit of the branch shortly before
-  int multiplicity = 1;  ///< times that it goes around the orbit it meets, where that is all it gains
-  bool located = false;  ///< the crossing on the family that is met, of an order beyond the scene's subharmonics
+/// The crossing beneath the end of a branch that goes around its orbit more often than the scene's subharmonics have
+/// other families looked at.
+struct CrossingBeneath {
+  LocateOutcome crossing;  ///< but its key, its lineage and its arclength: the family that it lies on is not known
+  loop::Loop orbit;        ///< there, once around
 
   static constexpr int wire_version = 1;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, period, energy, near, multiplicity, located);
+    core::serialize_members(archive, crossing, orbit);
+  }
+};
+
+/// A branch has come to an orbit with more symmetry than its own: a crossing of another family, or of its own.
+struct ArrivalRecord {
+  double period = 0.0;  ///< where it meets, by interpolation, or as the crossing there was located
+  double energy = 0.0;
+  loop::Loop near;                       ///< an orbit of the branch shortly before
+  int multiplicity = 1;                  ///< times that it goes around the orbit it meets, where that is all it gains
+  std::vector<CrossingBeneath> beneath;  ///< one, where the crossing that is met was located
+
+  static constexpr int wire_version = 2;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, period, energy, near, multiplicity, beneath);
   }
 };
 

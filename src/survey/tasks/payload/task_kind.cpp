@@ -34,7 +34,7 @@ int priority_of(TaskKind kind, int depth) {
 }
 
 void check_limits(int limits) {
-  constexpr int all = orbit_limited | step_limited | depth_limited;
+  constexpr int all = orbit_limited | step_limited | depth_limited | order_limited;
   if ((limits & ~all) != 0)
     throw core::EnvironmentError(
         fmt::format("an outcome names the limits {:#x}, of which {:#x} are known", limits, all));

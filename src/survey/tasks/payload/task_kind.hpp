@@ -12,7 +12,14 @@ enum class TaskKind { sweep, branch, locate, start };
 [[nodiscard]] TaskKind kind_of(const queue::Task& task);
 
 /// Limits of the scene that an outcome may rest on, as bits: with a wider one the task is done again.
-enum Limit : int { period_limited = 1, energy_limited = 2, step_limited = 4, depth_limited = 8, guard_limited = 16 };
+enum Limit : int {
+  period_limited = 1,
+  energy_limited = 2,
+  step_limited = 4,
+  depth_limited = 8,
+  guard_limited = 16,
+  order_limited = 32
+};
 /// Those beyond which single orbits may lie: a step that passes one may have passed the others as well.
 inline constexpr int orbit_limited = period_limited | energy_limited | guard_limited;
 /// Throws EnvironmentError for other bits.

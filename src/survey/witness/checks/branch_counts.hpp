@@ -55,6 +55,7 @@ class BranchCounts final : public Check {
     };
     if (crossing.failed) return;  // said already
     if ((crossing.limited_by & period_limited) != 0) return add(FindingKind::beyond_period, Severity::cut);
+    if ((crossing.limited_by & order_limited) != 0) return add(FindingKind::beyond_order, Severity::cut);
     if (crossing.kernel_dimension <= 0) return;
     if ((crossing.limited_by & depth_limited) != 0) return add(FindingKind::beyond_depth, Severity::cut);
     const int expected = expected_directions(evidence, crossing);

@@ -7,6 +7,7 @@
 
 #include "tasks/payload/task_kind.hpp"
 #include "witness/check.hpp"
+#include "witness/passing.hpp"
 
 namespace orbweaver::survey {
 
@@ -22,8 +23,6 @@ class Ends final : public Check {
   }
 
  private:
-  /// Relative, in period, energy and action: what the extrapolation to a meeting may be off (tree/arrivals.cpp).
-  static constexpr double near_meeting = 1e-3;
   /// Times around that are looked for: as loop::repetitions.
   static constexpr int most_times = 100;
 
@@ -124,10 +123,9 @@ class Ends final : public Check {
     for (int m = 1; m <= most_times; ++m) {
       const double period = end.period / m;
       int met = -1;  // of several that are images, the one at the same equilibrium
-      for (const auto& [other, segment] : evidence.index.near(period, end.energy, near_meeting * period,
-                                                              near_meeting * last.scale_of(Invariant::energy))) {
+      for (const auto& [other, segment] :
+           passing(evidence.tree, evidence.index, {period, end.energy, action / m, last.scale_of(Invariant::energy)})) {
         if (m == 1 && evidence.family(other).isotropy == family.isotropy) continue;  // itself, or its mirror image
-        if (!passes(evidence.family(other), segment, period, end.energy, action / m)) continue;
         if (met < 0 || evidence.equilibrium_of(other) == evidence.equilibrium_of(finding.family)) met = other;
       }
       if (met < 0) continue;
@@ -139,23 +137,6 @@ class Ends final : public Check {
       return finding;
     }
     return finding;
-  }
-
-  static bool passes(const TreeFamily& family, std::size_t segment, double period, double energy, double action) {
-    const Invariants& a = family.curve.points()[segment];
-    const Invariants& b = family.curve.points()[segment + 1];
-    const auto change = [&](Invariant i) { return (b.value(i) - a.value(i)) / a.scale_of(i); };
-    const double in_period = change(Invariant::period);
-    const double in_energy = change(Invariant::energy);
-    const bool by_energy = std::abs(in_energy) > std::abs(in_period);
-    const double share = by_energy ? (energy - a.value(Invariant::energy)) / a.scale_of(Invariant::energy) / in_energy
-                                   : (period - a.value(Invariant::period)) / a.scale_of(Invariant::period) / in_period;
-    const auto is_near = [&](Invariant i, double value) {
-      const double between = a.value(i) + share * (b.value(i) - a.value(i));
-      return !(std::abs(value - between) > near_meeting * a.scale_of(i));
-    };
-    return is_near(Invariant::period, period) && is_near(Invariant::energy, energy) &&
-           is_near(Invariant::action, action);
   }
 };
 

@@ -119,6 +119,8 @@ class MirrorImages final : public Check {
     if (a.orbits() < 2 || b.orbits() < 2) return;
     for (std::size_t n = 0; n < a.ends.size(); ++n) {
       const std::size_t m = place_of(n, b.ends.size(), backwards);
+      if (a.ends[n].kind == b.ends[m].kind && meet_at_images(evidence, finding, a.ends[n].orbit, b.ends[m].orbit))
+        continue;
       const Invariants& x = a.curve.points()[a.ends[n].orbit];
       const Invariants& y = b.curve.points()[b.ends[m].orbit];
       const double apart = std::abs(x.value(Invariant::period) - y.value(Invariant::period));
@@ -129,6 +131,27 @@ class MirrorImages final : public Check {
       finding.deviation = apart / x.scale_of(Invariant::period);
       found.push_back(finding);
     }
+  }
+
+  // Where both have met another family their last orbits may stand anywhere before: the meeting points are compared.
+  static bool meet_at_images(const Evidence& evidence, const Finding& finding, std::size_t orbit,
+                             std::size_t other_orbit) {
+    const EndEvidence* end = meeting_of(evidence, finding.family, orbit);
+    const EndEvidence* other = meeting_of(evidence, finding.other_family, other_orbit);
+    if (end == nullptr || other == nullptr) return false;
+    const double scale = evidence.family(finding.family).curve.points()[orbit].scale_of(Invariant::energy);
+    return std::abs(end->period / other->period - 1.0) <= same_meeting &&
+           !(std::abs(end->energy - other->energy) > same_meeting * scale);
+  }
+  /// Relative in period and energy: what the extrapolation to a meeting may be off (tree/arrivals.cpp).
+  static constexpr double same_meeting = 1e-3;
+
+  // How the side of the family that ends with this orbit ended, if it met another family; null otherwise.
+  static const EndEvidence* meeting_of(const Evidence& evidence, int row, std::size_t orbit) {
+    const bool forwards = orbit + 1 == evidence.family(row).orbits();
+    for (const EndEvidence& end : evidence.known.tree.ends)
+      if (end.met && (end.side > 0) == forwards && end.family == evidence.key(row)) return &end;
+    return nullptr;
   }
 
   // Change of the period over the last step before an end.

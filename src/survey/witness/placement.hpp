@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "orbweaver/systems/system.hpp"
+#include "tree/family_tree.hpp"
+
+namespace orbweaver::survey {
+
+/// Where a crossing lies that a branch has located beneath its end.
+struct Placement {
+  std::string branch;
+  std::string family;      ///< key
+  double arclength = 0.0;  ///< in the scene's units
+};
+
+/// Looks for the families on which the crossings lie among those of the atlas, whose rows of /families have these keys
+/// (sorted). Of several that are images of one another, the one at the branch's own equilibrium. Crossings that lie on
+/// none are left out.
+[[nodiscard]] std::vector<Placement> placements(const std::filesystem::path& atlas,
+                                                const std::vector<std::string>& family_keys,
+                                                const std::vector<FamilyTree::Unplaced>& unplaced,
+                                                const std::shared_ptr<const systems::System>& system);
+
+}  // namespace orbweaver::survey
