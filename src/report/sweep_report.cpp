@@ -14,6 +14,7 @@
 #include "orbweaver/survey/run/scaled_scene.hpp"
 #include "orbweaver/survey/tasks/sweep_options.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
+#include "orbweaver/systems/identities.hpp"
 #include "orbweaver/systems/registry.hpp"
 
 namespace orbweaver::report {
@@ -74,7 +75,9 @@ std::vector<EquilibriumReport> sweep_report(const scene::Scene& scene) {
   const std::shared_ptr<const systems::System>& system = scaled.system();
   const double time = system->scales().time;
   std::vector<EquilibriumReport> reports;
-  for (const std::vector<double>& point : starts::find_fixed_points(*system, scaled.scene().fixed_points.grid)) {
+  const std::vector<std::vector<double>> points = starts::find_fixed_points(*system, scaled.scene().fixed_points.grid);
+  systems::require_identities(*system, points);
+  for (const std::vector<double>& point : points) {
     const starts::SweepOptions options = survey::sweep_options(scaled.scene().sweep, *system, point);
     EquilibriumReport report{point,
                              survey::point_text(*system, point),

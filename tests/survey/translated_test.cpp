@@ -3,10 +3,13 @@
 #include <map>
 #include <memory>
 #include <numbers>
+#include <utility>
 
 #include <gtest/gtest.h>
 
+#include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/registry.hpp"
+#include "support/delegating_system.hpp"
 #include "support/translated_system.hpp"
 #include "survey/atlas.hpp"
 
@@ -88,6 +91,34 @@ TEST(Translated, DoublePendulum) {
   const Pair pair = surveys(comm, "turned", test::quick_scene(both), test::quick_scene(moved),
                             Eigen::Vector4d(30.0 * degree, 135.0 * degree, 0.0, 0.0));
   if (comm.is_root()) expect_same(pair);
+}
+
+// A model that no longer is what its structure says, since the survey was begun.
+class Changed final : public test::DelegatingSystem {
+ public:
+  explicit Changed(std::shared_ptr<const systems::System> system)
+      : DelegatingSystem(std::move(system)), _structure(whole().structure()) {
+    std::swap(_structure.reversors, _structure.equivariances);
+  }
+  [[nodiscard]] const systems::Structure& structure() const override { return _structure; }
+
+ private:
+  systems::Structure _structure;
+};
+
+TEST(Resumed, AWrongModelIsRefused) {
+  const core::Communicator comm;
+  const scene::Scene scene = test::quick_scene({"limits.period=12"});
+  const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  const auto folder = test::fresh_folder("changed" + std::to_string(comm.size()), comm.get());
+  survey::RunOptions options;
+  options.walltime = 0.0;
+  ASSERT_TRUE(survey::run_survey(comm, scene, system, folder, options).stopped_early);
+  options = {};
+  options.resume = true;
+  EXPECT_THROW((void)survey::run_survey(comm, scene, std::make_shared<const Changed>(system), folder, options),
+               core::InputError);
+  EXPECT_EQ(survey::run_survey(comm, scene, system, folder, options).failures, 0U);
 }
 
 }  // namespace

@@ -99,9 +99,8 @@ class Run {
  private:
   /// Finds where the survey stands; every survey that has begun has a checkpoint.
   void begin(bool resume) {
-    // On every rank, so that a field that is not finite on the grid is the same error everywhere.
-    std::vector<queue::Task> sweeps;
-    if (!resume) sweeps = sweep_tasks(_scaled.scene(), *_system);
+    // On every rank, so that a wrong model is the same error everywhere; a resumed one may have changed since.
+    std::vector<queue::Task> sweeps = sweep_tasks(_scaled.scene(), *_system);
     core::on_root(_comm.get(), [&] {
       make_folder(_folder);
       _lock = archive::FolderLock(_folder);
@@ -109,7 +108,6 @@ class Run {
     Found found;
     if (resume) found = find_checkpoint(_comm, _folder);
     if (!found.found) core::on_root(_comm.get(), [&] { expect_nothing(resume); });
-    if (resume && !found.found) sweeps = sweep_tasks(_scaled.scene(), *_system);
     core::on_root(_comm.get(), [&] {
       if (found.found) {
         _start = std::move(found.checkpoint);
