@@ -14,6 +14,8 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/loop/symmetry/shift_search.hpp"
+#include "orbweaver/loop/symmetry/standard_phase.hpp"
 #include "orbweaver/loss/unknowns.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
 #include "search.hpp"
@@ -23,6 +25,10 @@ namespace orbweaver::bifurcation {
 namespace {
 
 constexpr double same_line = 3e-3;  // radians; distinct lines of a finite group are much further apart
+/// Radians between an oscillation and its images, as far apart as those that a search tells apart; and what is seen of
+/// a harmonic in a direction of unit length, known to the amplitude of a search.
+constexpr double same_image = 0.02;
+constexpr double visible_harmonic = 1e-3;
 constexpr int largest_kernel = 8;
 /// Entries of unit directions and coordinates of orbits that are less apart do not decide signs and phases: kernel
 /// vectors are good to that. Either choice starts the same family.
@@ -47,6 +53,8 @@ constexpr double nudge_in_plane = 0.2;
 constexpr double nudge_in_space = 0.03;
 /// What a symmetry of an orbit found may be off, in parts of its amplitude: a broken one is off by all of it.
 constexpr double found_tolerance = 1e-2;
+/// Relative to the equilibrium's: periods of orbits of amplitude 0.01 differ by that or its square, or not at all.
+constexpr double same_period = 1e-7;
 
 // What decides which of several images of one direction is reported, and in which order directions are listed.
 struct Rank {
@@ -93,8 +101,16 @@ loop::Isotropy isotropy_along(const systems::Structure& system, const KernelActi
 }
 
 bool has_other_sides(const KernelActions& group, const Eigen::VectorXd& v) {
-  return !group.constant() &&
-         std::none_of(group.actions().begin(), group.actions().end(), [&](const Action& a) { return a.maps(v, -v); });
+  if (group.constant()) return group.image(v, -v, same_line) == 0;
+  return std::none_of(group.actions().begin(), group.actions().end(), [&](const Action& a) { return a.maps(v, -v); });
+}
+
+// What an equilibrium's direction has besides.
+Direction counted(const KernelActions& group, const Eigen::VectorXd& v, Direction direction) {
+  if (!group.constant()) return direction;
+  direction.images = group.images(v, same_image);
+  direction.repetitions = group.times_around(v, visible_harmonic);
+  return direction;
 }
 
 // The direction of a fixed line: made exactly symmetric, started where the reversor has phase 0.
@@ -124,7 +140,7 @@ Direction direction_along(const systems::Structure& system, const KernelActions&
   out.tangent *= scale;
   out.isotropy = isotropy_along(system, group, out.base, out.tangent, options);
   out.both_sides = has_other_sides(group, v);
-  return out;
+  return counted(group, v, std::move(out));
 }
 
 // A direction less its part along the time shift, which orbits that are found have none of.
@@ -169,7 +185,7 @@ std::vector<Eigen::VectorXd> fixed_lines(const KernelActions& group) {
     return (space.transpose() * v).norm() > 1.0 - outside;
   };
   for (const Eigen::MatrixXd& space : spaces)
-    if (space.cols() == 2 && contains(space, group.quarter() * space.col(0)) &&
+    if (space.cols() == 2 && contains(space, (group.turn() * space.col(0)).normalized()) &&
         std::none_of(lines.begin(), lines.end(), [&](const Eigen::VectorXd& v) { return contains(space, v); }))
       lines.emplace_back(space.col(0));
   return lines;
@@ -201,13 +217,65 @@ int rotations(const KernelActions& group) {
 }
 
 // The amplitudes to search at.
-std::vector<double> search_amplitudes(int q, const loop::Loop& base, bool constant) {
-  const double scale = constant ? 1.0 : std::min(1.0, loop::rms_amplitude(base));
+std::vector<double> search_amplitudes(int q, const loop::Loop& base) {
+  const double scale = std::min(1.0, loop::rms_amplitude(base));
   const double least =
       std::clamp(q > 4 ? std::pow(fixing_term, 1.0 / (q - 2)) : 0.0, least_amplitude, largest_first_amplitude);
   std::vector<double> out{scale * least};
   if (q > 2)
     for (double r = 2.0 * least; r < largest_amplitude; r *= 2.0) out.push_back(scale * r);
+  return out;
+}
+
+/// From the base to an orbit found, T with it.
+Direction whole_way(const loop::Loop& base, const loop::Loop& orbit) {
+  Direction direction;
+  direction.base = loop::with_cutoff(base, orbit.cutoff);
+  direction.tangent.modes.resize(orbit.modes.size());
+  for (std::size_t n = 0; n < orbit.modes.size(); ++n)
+    direction.tangent.modes[n] = orbit.modes[n] - direction.base.modes[n];
+  direction.tangent.scalars = {orbit.period - base.period};
+  double square = 0.0;
+  for (const double v : direction.tangent.modes) square += v * v;
+  direction.amplitude = std::sqrt(square);
+  direction.tangent *= 1.0 / direction.amplitude;
+  return direction;
+}
+
+/// An orbit about an equilibrium started where the first reversor that it has, at any phase, has phase 0.
+loop::Loop from_reversor(const systems::Structure& system, const loop::Loop& orbit, double tolerance) {
+  for (const systems::Symmetry& reversor : system.reversors) {
+    const loop::Loop image = loop::transformed(orbit, reversor.map, true, 0.0);
+    const std::vector<loop::ShiftMinimum> minima = loop::shift_minima(image, orbit, system.angles);
+    if (!minima.empty() && minima.front().square < tolerance * tolerance)
+      return loop::time_shifted(orbit, -0.5 * minima.front().shift);
+  }
+  return orbit;
+}
+
+/// Those found about an equilibrium: by period, the longest first; of equal periods that which starts further along the
+/// first coordinate that differs.
+std::vector<Direction> about_equilibrium(const systems::Structure& system, const KernelActions& group,
+                                         const loop::Loop& base, const SearchResult& result, double amplitude) {
+  const double tolerance = found_tolerance * amplitude;
+  std::vector<std::pair<loop::Loop, Direction>> found;
+  for (const FoundOrbit& orbit : result.found) {
+    loop::Loop loop = from_reversor(system, orbit.loop, tolerance);
+    loop = loop::in_standard_phase(system, loop, loop::find_isotropy(system, loop, tolerance, group.denominator()));
+    Direction direction = whole_way(base, loop);
+    direction.isotropy = loop::find_isotropy(system, loop, tolerance, group.denominator());
+    found.emplace_back(std::move(loop), counted(group, orbit.coordinates, std::move(direction)));
+  }
+  std::stable_sort(found.begin(), found.end(), [&](const auto& a, const auto& b) {
+    if (std::abs(a.first.period - b.first.period) > same_period * base.period) return a.first.period > b.first.period;
+    const std::vector<double> here = loop::state_at(a.first, 0.0);
+    const std::vector<double> there = loop::state_at(b.first, 0.0);
+    for (std::size_t i = 0; i < here.size(); ++i)
+      if (std::abs(here[i] - there[i]) > tolerance) return here[i] > there[i];
+    return false;
+  });
+  std::vector<Direction> out;
+  for (auto& [loop, direction] : found) out.push_back(std::move(direction));
   return out;
 }
 
@@ -225,16 +293,7 @@ std::vector<Direction> by_angles(const systems::System& system, const KernelActi
                     q, angles.amplitude, angles.force, angles.noise));
   std::vector<Direction> out;
   for (const FoundOrbit& orbit : angles.found) {
-    Direction direction;
-    direction.base = loop::with_cutoff(base, orbit.loop.cutoff);
-    direction.tangent.modes.resize(orbit.loop.modes.size());
-    for (std::size_t n = 0; n < orbit.loop.modes.size(); ++n)
-      direction.tangent.modes[n] = orbit.loop.modes[n] - direction.base.modes[n];
-    direction.tangent.scalars = {orbit.loop.period - base.period};
-    double square = 0.0;
-    for (const double v : direction.tangent.modes) square += v * v;
-    direction.amplitude = std::sqrt(square);
-    direction.tangent *= 1.0 / direction.amplitude;
+    Direction direction = whole_way(base, orbit.loop);
     direction.isotropy =
         loop::find_isotropy(system.structure(), orbit.loop, found_tolerance * angles.amplitude, group.denominator());
     direction.both_sides = has_other_sides(group, orbit.coordinates);
@@ -258,7 +317,10 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   const int expected = plane && q > 2 ? (q % 2 == 0 ? 2 : 1) : 0;
   SearchResult best;
   double amplitude = 0.0;
-  for (const double r : search_amplitudes(q, base, group.constant())) {
+  const std::vector<double> amplitudes = group.constant()
+                                             ? std::vector<double>{options.amplitude}
+                                             : search_amplitudes(q, base);
+  for (const double r : amplitudes) {
     SearchResult result =
         search_directions(system, base, group, kept, start_directions(group.dimension(), q, options.seeds),
                           expected == 2 ? std::numbers::pi / q : 0.0, r, nudge, lines, options);
@@ -280,6 +342,7 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   if (lines.empty() && best.found.empty())
     throw core::NumericalError(seen + "; they form a continuum, or the loss does not tell them apart");
   if (best.not_isolated > 0 || static_cast<int>(best.found.size()) < expected) core::log_warning(seen);
+  if (group.constant()) return about_equilibrium(system.structure(), group, base, best, amplitude);
   std::vector<Direction> out;
   for (const FoundOrbit& orbit : best.found)
     out.push_back(
@@ -319,18 +382,23 @@ std::vector<Direction> directions(const systems::System& system, const loop::Loo
 }
 
 std::vector<Direction> equilibrium_directions(const systems::System& system, std::span<const double> point,
-                                              double period, const Eigen::MatrixXcd& kernel, int cutoff,
+                                              const starts::SharedPeriod& shared, int cutoff,
                                               const DirectionOptions& options) {
-  const loop::Loop base = loop::constant_loop(point, period, cutoff);
-  core::require(kernel.rows() == base.dimension, "oscillations need the dimension of the equilibrium");
+  const loop::Loop base = loop::constant_loop(point, shared.period, cutoff);
+  core::require(shared.kernel.rows() == base.dimension, "oscillations need the dimension of the equilibrium");
+  core::require(shared.harmonics.size() == static_cast<std::size_t>(shared.kernel.cols()) &&
+                    std::all_of(shared.harmonics.begin(), shared.harmonics.end(),
+                                [&](int k) { return k >= 1 && k <= cutoff; }),
+                "oscillations need a harmonic each, of the loops' cutoff at most");
   std::vector<loop::Tangent> vectors;
-  for (Eigen::Index c = 0; c < kernel.cols(); ++c)
+  for (Eigen::Index c = 0; c < shared.kernel.cols(); ++c)
     for (const std::complex<double> phase : {std::complex<double>(1.0, 0.0), std::complex<double>(0.0, 1.0)}) {
+      const int harmonic = shared.harmonics[static_cast<std::size_t>(c)];
       loop::Loop v = base;
       std::fill(v.modes.begin(), v.modes.end(), 0.0);
       for (int i = 0; i < v.dimension; ++i) {
-        v.cosine(1, i) = (phase * kernel(i, c)).real();
-        v.sine(1, i) = -(phase * kernel(i, c)).imag();
+        v.cosine(harmonic, i) = (phase * shared.kernel(i, c)).real();
+        v.sine(harmonic, i) = -(phase * shared.kernel(i, c)).imag();
       }
       vectors.push_back({v.modes, {}});
     }

@@ -76,7 +76,7 @@ struct Search {
     Eigen::MatrixXd along = v;
     if (group.constant()) {
       along.conservativeResize(Eigen::NoChange, 2);
-      along.col(1) = group.quarter() * v;
+      along.col(1) = group.turn() * v;
     }
     const Eigen::Index others = v.size() - along.cols();
     const Eigen::MatrixXd axes = along.householderQr().householderQ();

@@ -9,6 +9,7 @@
 #include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/starts/linear_modes.hpp"
+#include "orbweaver/starts/shared_periods.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::starts {
@@ -23,6 +24,7 @@ struct SweepOptions {
   double period_to = 12.0;
   double step = 0.01;
   int cutoff = 10;  ///< harmonics of the loop space whose Hessian is taken
+  double amplitude = 0.0;  ///< of the families' first orbits: searches for directions take no smaller one
 };
 
 /// The range that covers the periods of all oscillations, decided or not, with a margin, in a thousand steps. Where
@@ -45,13 +47,10 @@ struct NormalMode {
   loop::Isotropy isotropy;       ///< of the small oscillations
 };
 
-/// Several oscillations Re(v e^{2 pi i t/T}) of one period: which of their combinations families start along, the
-/// linear problem does not say (bifurcation::equilibrium_directions).
-struct DegenerateMode {
-  double period = 0.0;
+/// Several oscillations that share a period: which of their combinations families start along, the linear problem does
+/// not say (bifurcation::equilibrium_directions).
+struct DegenerateMode : SharedPeriod {
   double grid_period = 0.0;
-  double residual = 0.0;    ///< the largest |(2 pi i/T) v - A v|
-  Eigen::MatrixXcd kernel;  ///< orthonormal v, one a column
 };
 
 /// A dip of the eigenvalue, or a doubt about the modes, that starts no family, and why.
@@ -67,7 +66,7 @@ struct SweepResult {
   std::vector<SweepPoint> table;
   std::vector<NormalMode> modes;  ///< in the range, longest period first
   std::vector<DegenerateMode> degenerate;
-  std::vector<Oscillation> left_out;  ///< oscillations with periods outside the range, longest first
+  std::vector<SharedPeriod> left_out;  ///< outside the range, longest first
   std::vector<RejectedDip> rejected;  ///< period multiples, near misses, resonances, undecided eigenvalues
 };
 
