@@ -47,6 +47,9 @@ constexpr double fixing_term = 1e-6;
 constexpr double least_amplitude = 0.01;
 constexpr double largest_first_amplitude = 0.1;
 constexpr double largest_amplitude = 0.3;
+/// About an equilibrium a search goes so many times further out than the amplitude at which families must be there: one
+/// that was born just below has left the family that it was born on.
+constexpr double beyond_births = 2.0;
 /// How far beside a direction its neighbours are sought: in a plane a tenth of the way to the next image (in parts of
 /// half that way), elsewhere so many radians. Not measured.
 constexpr double nudge_in_plane = 0.2;
@@ -216,14 +219,20 @@ int rotations(const KernelActions& group) {
   return static_cast<int>(distinct.size());
 }
 
-// The amplitudes to search at.
+// An amplitude and its doubles.
+std::vector<double> amplitudes_from(double first) {
+  std::vector<double> out{first};
+  for (double r = 2.0 * first; r < largest_amplitude; r *= 2.0) out.push_back(r);
+  return out;
+}
+
+// The amplitudes to search at about an orbit.
 std::vector<double> search_amplitudes(int q, const loop::Loop& base) {
   const double scale = std::min(1.0, loop::rms_amplitude(base));
   const double least =
       std::clamp(q > 4 ? std::pow(fixing_term, 1.0 / (q - 2)) : 0.0, least_amplitude, largest_first_amplitude);
-  std::vector<double> out{scale * least};
-  if (q > 2)
-    for (double r = 2.0 * least; r < largest_amplitude; r *= 2.0) out.push_back(scale * r);
+  std::vector<double> out = q > 2 ? amplitudes_from(least) : std::vector{least};
+  for (double& r : out) r *= scale;
   return out;
 }
 
@@ -303,8 +312,10 @@ std::vector<Direction> by_angles(const systems::System& system, const KernelActi
   return out;
 }
 
+// `not_isolated`, if given, takes how many of the search's orbits are not.
 std::vector<Direction> searched(const systems::System& system, const KernelActions& group, const loop::Loop& base,
-                                const std::vector<Eigen::VectorXd>& lines, const DirectionOptions& options) {
+                                const std::vector<Eigen::VectorXd>& lines, const DirectionOptions& options,
+                                int* not_isolated) {
   const bool plane = group.dimension() == 2;
   const int q = plane ? rotations(group) : 1;
   // What every vector of the kernel keeps: that of one without symmetry.
@@ -317,21 +328,24 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   const int expected = plane && q > 2 ? (q % 2 == 0 ? 2 : 1) : 0;
   SearchResult best;
   double amplitude = 0.0;
-  const std::vector<double> amplitudes = group.constant()
-                                             ? std::vector<double>{options.amplitude}
-                                             : search_amplitudes(q, base);
-  for (const double r : amplitudes) {
+  const bool constant = group.constant();
+  for (const double r : constant ? amplitudes_from(beyond_births * options.amplitude) : search_amplitudes(q, base)) {
     SearchResult result =
         search_directions(system, base, group, kept, start_directions(group.dimension(), q, options.seeds),
                           expected == 2 ? std::numbers::pi / q : 0.0, r, nudge, lines, options);
     const auto count = static_cast<int>(result.found.size());
     const bool possible = expected == 0 || count <= expected;
-    if (amplitude == 0.0 || (possible && result.found.size() > best.found.size())) {
+    if (amplitude == 0.0 || (possible && result.found.size() > best.found.size()) ||
+        (constant && result.found.size() == best.found.size() && result.not_isolated < best.not_isolated)) {
       best = possible ? std::move(result) : SearchResult{{}, result.not_isolated + count};
       amplitude = r;
     }
-    if (expected == 0 || static_cast<int>(best.found.size()) == expected) break;
+    if (constant ? best.not_isolated == 0 : expected == 0 || static_cast<int>(best.found.size()) == expected) break;
   }
+  if (constant)
+    std::erase_if(best.found, [&](const FoundOrbit& orbit) {
+      return is_born_beyond(system, base, group, kept, orbit.loop, options.amplitude, lines, options);
+    });
   if (by_angle && static_cast<int>(best.found.size()) < expected) {
     std::vector<Direction> out = by_angles(system, group, base, kept, q, options);
     if (static_cast<int>(out.size()) == expected) return out;
@@ -339,9 +353,11 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   const std::string seen = fmt::format(
       "a kernel of dimension {} (q = {}): {} directions found at amplitude {:.2g}, {} where orbits are not isolated",
       group.dimension(), q, best.found.size(), amplitude, best.not_isolated);
+  if (not_isolated != nullptr) *not_isolated = best.not_isolated;
   if (lines.empty() && best.found.empty())
     throw core::NumericalError(seen + "; they form a continuum, or the loss does not tell them apart");
-  if (best.not_isolated > 0 || static_cast<int>(best.found.size()) < expected) core::log_warning(seen);
+  if ((best.not_isolated > 0 && not_isolated == nullptr) || static_cast<int>(best.found.size()) < expected)
+    core::log_warning(seen);
   if (group.constant()) return about_equilibrium(system.structure(), group, base, best, amplitude);
   std::vector<Direction> out;
   for (const FoundOrbit& orbit : best.found)
@@ -352,10 +368,9 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   return out;
 }
 
-}  // namespace
-
-std::vector<Direction> directions(const systems::System& system, const loop::Loop& base, const loop::Isotropy& isotropy,
-                                  const std::vector<loop::Tangent>& kernel, const DirectionOptions& given) {
+std::vector<Direction> all_directions(const systems::System& system, const loop::Loop& base,
+                                      const loop::Isotropy& isotropy, const std::vector<loop::Tangent>& kernel,
+                                      const DirectionOptions& given, int* not_isolated) {
   loop::validate(base);
   core::require(base.time_map.is_identity(), "directions need a base loop that runs evenly in time");
   core::require(!kernel.empty() && kernel.size() <= largest_kernel, "directions need a kernel of dimension 1 to 8");
@@ -377,13 +392,20 @@ std::vector<Direction> directions(const systems::System& system, const loop::Loo
   const bool complete = kernel.size() == 1 || (kernel.size() == 2 && group.constant()) ||
                         (kernel.size() == 2 && !lines.empty() && rotations(group) > 2);
   if (!complete)
-    for (Direction& d : searched(system, group, base, lines, options)) out.push_back(std::move(d));
+    for (Direction& d : searched(system, group, base, lines, options, not_isolated)) out.push_back(std::move(d));
   return out;
 }
 
-std::vector<Direction> equilibrium_directions(const systems::System& system, std::span<const double> point,
-                                              const starts::SharedPeriod& shared, int cutoff,
-                                              const DirectionOptions& options) {
+}  // namespace
+
+std::vector<Direction> directions(const systems::System& system, const loop::Loop& base, const loop::Isotropy& isotropy,
+                                  const std::vector<loop::Tangent>& kernel, const DirectionOptions& options) {
+  return all_directions(system, base, isotropy, kernel, options, nullptr);
+}
+
+EquilibriumDirections equilibrium_directions(const systems::System& system, std::span<const double> point,
+                                             const starts::SharedPeriod& shared, int cutoff,
+                                             const DirectionOptions& options) {
   const loop::Loop base = loop::constant_loop(point, shared.period, cutoff);
   core::require(shared.kernel.rows() == base.dimension, "oscillations need the dimension of the equilibrium");
   core::require(shared.harmonics.size() == static_cast<std::size_t>(shared.kernel.cols()) &&
@@ -402,7 +424,9 @@ std::vector<Direction> equilibrium_directions(const systems::System& system, std
       }
       vectors.push_back({v.modes, {}});
     }
-  return directions(system, base, {}, vectors, options);
+  EquilibriumDirections out;
+  out.found = all_directions(system, base, {}, vectors, options, &out.not_isolated);
+  return out;
 }
 
 }  // namespace orbweaver::bifurcation

@@ -35,7 +35,7 @@ class Gatherer {
  public:
   Gatherer(const systems::System& system, const starts::SweepResult& sweep, int cutoff)
       : _system(system), _sweep(sweep), _cutoff(cutoff) {
-    _options.amplitude = std::max(sweep.range.amplitude, least_search_amplitude);
+    _options.amplitude = std::max(sweep.range.amplitude, starts::least_search_amplitude);
   }
 
   SmallOscillations run() {
@@ -49,9 +49,11 @@ class Gatherer {
     std::stable_sort(_entries.begin(), _entries.end(),
                      [](const Entry& a, const Entry& b) { return a.period > b.period; });
     place();
-    for (const starts::DegenerateMode& mode : _sweep.degenerate) {
+    for (std::size_t n = 0; n < _sweep.degenerate.size(); ++n) {
+      const starts::DegenerateMode& mode = _sweep.degenerate[n];
       if (mode.members.size() > 1) set_amplitudes(mode);
       _all.kernels.push_back(kernel_of(mode));
+      _all.kernels.back().not_isolated = _not_isolated[n];
     }
     for (Entry& entry : _entries)
       if (entry.family)
@@ -62,10 +64,10 @@ class Gatherer {
   }
 
  private:
-  [[nodiscard]] std::vector<Direction> directions_of(const starts::SharedPeriod& shared) const {
-    std::vector<Direction> found = equilibrium_directions(_system, _sweep.fixed_point, shared, _cutoff, _options);
-    std::erase_if(found, [](const Direction& direction) { return direction.repetitions > 1; });
-    return found;
+  [[nodiscard]] EquilibriumDirections directions_of(const starts::SharedPeriod& shared) const {
+    EquilibriumDirections all = equilibrium_directions(_system, _sweep.fixed_point, shared, _cutoff, _options);
+    std::erase_if(all.found, [](const Direction& direction) { return direction.repetitions > 1; });
+    return all;
   }
 
   [[nodiscard]] std::size_t first_with(double period) const {
@@ -77,7 +79,7 @@ class Gatherer {
   void add_left_out(const starts::SharedPeriod& shared) {
     int families = 1;
     if (!shared.is_simple()) try {
-        families = static_cast<int>(directions_of(shared).size());
+        families = static_cast<int>(directions_of(shared).found.size());
       } catch (const core::NumericalError&) {  // a place each, of families that are not asked for
         families = static_cast<int>(std::count(shared.harmonics.begin(), shared.harmonics.end(), 1));
       }
@@ -85,7 +87,9 @@ class Gatherer {
   }
 
   void add(const starts::DegenerateMode& mode) {
-    for (const Direction& direction : directions_of(mode)) {
+    const EquilibriumDirections directions = directions_of(mode);
+    _not_isolated.push_back(directions.not_isolated);
+    for (const Direction& direction : directions.found) {
       const loop::Tangent tangent = at_unit_start(direction.base, direction.tangent);
       SmallOscillation family{{mode.period, mode.grid_period, mode.residual, tangent, tangent, direction.isotropy}};
       family.both_sides = direction.both_sides;
@@ -126,7 +130,7 @@ class Gatherer {
   }
 
   [[nodiscard]] OscillationKernel kernel_of(const starts::SharedPeriod& shared) const {
-    OscillationKernel kernel{shared.period, static_cast<int>(shared.kernel.cols()), shared.is_definite, {}};
+    OscillationKernel kernel{shared.period, static_cast<int>(shared.kernel.cols()), shared.is_definite, 0, {}};
     for (const Entry& entry : _entries) {
       const int repetitions = repetitions_in(entry, shared);
       if (repetitions == 0) continue;
@@ -145,6 +149,7 @@ class Gatherer {
   int _cutoff;
   DirectionOptions _options;
   std::vector<Entry> _entries;
+  std::vector<int> _not_isolated;  // one a kernel
   SmallOscillations _all;
 };
 

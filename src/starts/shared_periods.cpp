@@ -11,23 +11,22 @@ namespace orbweaver::starts {
 
 namespace {
 
-/// Detunings, in parts of the period, that orbits of amplitude 0.01 (in scales), where searches look, do not tell from
-/// none: the terms that couple two oscillations move frequencies by the amplitude (k = 2) or its square (k = 1, 3),
-/// five times these being a margin for their coefficients. At a larger detuning what is born further out is a crossing
-/// on a family that starts at the equilibrium.
-constexpr double of_third_order = 0.05;
-constexpr double of_fourth_order = 5e-4;
+/// Detunings, in parts of the period, that orbits of amplitude r (in scales) do not tell from none: the terms that
+/// couple two oscillations move frequencies by r (k = 2) or its square (k = 1, 3), times coefficients of order 1, for
+/// which this is a margin. At a larger detuning, or amplitude, what is born is a crossing on a family that starts at the
+/// equilibrium. No detuning above the second is near.
+constexpr double margin = 5.0;
+constexpr double largest_detuning = 0.05;
 /// Oscillations of nearly one period whose vectors nearly agree are not taken together: their combinations would be
 /// too few radians apart for a search. Least singular value of the vectors side by side; 1: orthogonal.
 constexpr double least_angle = 0.3;
 /// Of energies of vectors of unit length, relative to the largest: differences are good to 1e-6.
 constexpr double no_energy = 1e-4;
 
-double largest_detuning(int harmonic) { return harmonic == 2 ? of_third_order : of_fourth_order; }
-
-bool share(const Oscillation& slow, const Oscillation& fast, int harmonic) {
+bool share(const Oscillation& slow, const Oscillation& fast, int harmonic, double amplitude) {
   const double gap = std::abs(slow.period - harmonic * fast.period);
-  return gap <= std::max(largest_detuning(harmonic) * slow.period, slow.period_error + harmonic * fast.period_error);
+  const double near = std::min(largest_detuning, margin * (harmonic == 2 ? amplitude : amplitude * amplitude));
+  return gap <= std::max(near * slow.period, slow.period_error + harmonic * fast.period_error);
 }
 
 Eigen::MatrixXcd side_by_side(const Eigen::MatrixXcd& a, const Eigen::MatrixXcd& b) {
@@ -71,12 +70,12 @@ bool have_one_sign(const systems::System& system, std::span<const double> point,
 }  // namespace
 
 std::vector<SharedPeriod> shared_periods(const systems::System& system, std::span<const double> point,
-                                         const LinearModes& modes) {
+                                         const LinearModes& modes, double amplitude) {
   core::require(static_cast<int>(point.size()) == system.dimension(), "a fixed point of another dimension");
   std::vector<SharedPeriod> out;
   const std::vector<Oscillation>& all = modes.oscillations;
   for (std::size_t n = 0; n < all.size(); ++n) {
-    if (!out.empty() && share(all[n - 1], all[n], 1)) {
+    if (!out.empty() && share(all[n - 1], all[n], 1, amplitude)) {
       SharedPeriod& last = out.back();
       if (Eigen::MatrixXcd both = joined(last.kernel, all[n].kernel); both.size() > 0) {
         last.kernel = std::move(both);
@@ -92,7 +91,7 @@ std::vector<SharedPeriod> shared_periods(const systems::System& system, std::spa
     const Oscillation& slow = all[shared.members.front().oscillation];
     for (int harmonic = 2; harmonic <= strongest_harmonic; ++harmonic)
       for (std::size_t n = 0; n < all.size(); ++n) {
-        if (!share(slow, all[n], harmonic)) continue;
+        if (!share(slow, all[n], harmonic, amplitude)) continue;
         const bool first = shared.members.back().harmonic != harmonic;
         Eigen::MatrixXcd others(shared.kernel.rows(), 0);
         if (!first)

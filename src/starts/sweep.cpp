@@ -76,7 +76,8 @@ class Sweep {
 
   SweepResult run() {
     take_samples();
-    for (SharedPeriod& shared : shared_periods(_system, _result.fixed_point, _result.linear))
+    const double amplitude = std::max(_result.range.amplitude, least_search_amplitude);
+    for (SharedPeriod& shared : shared_periods(_system, _result.fixed_point, _result.linear, amplitude))
       if (is_inside(shared.period))
         add(std::move(shared));
       else

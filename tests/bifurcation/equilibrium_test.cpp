@@ -20,7 +20,7 @@ std::vector<Direction> directions_at_origin(const systems::System& system) {
   const starts::SweepResult swept = starts::sweep(system, origin, {.period_from = 6.0, .period_to = 6.5, .step = 0.05});
   EXPECT_EQ(swept.degenerate.size(), 1u);
   const starts::DegenerateMode& mode = swept.degenerate.at(0);
-  return equilibrium_directions(system, origin, mode.period, mode.kernel, 10);
+  return equilibrium_directions(system, origin, mode, 10).found;
 }
 
 std::vector<std::string> isotropies(const std::vector<Direction>& directions) {

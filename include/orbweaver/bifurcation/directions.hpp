@@ -19,9 +19,6 @@ namespace orbweaver::bifurcation {
 /// the order of the amplitude or its square do, and Newton's method finds it by itself.
 inline constexpr int least_weak_resonance = 5;
 
-/// Of searches at an equilibrium, in scales: smaller orbits satisfy the loss along any direction.
-inline constexpr double least_search_amplitude = 0.01;
-
 /// One direction in which a family leaves a crossing.
 struct Direction {
   loop::Loop base;          ///< the crossing's orbit as the born family sees it: m times around, started where the born
@@ -49,8 +46,9 @@ struct DirectionOptions {
   /// The direction of the base's own family, in the modes of the base: orbits that are born may lie along it. Empty at
   /// an equilibrium.
   loop::Tangent family{};
-  /// Length in the kernel at which directions at an equilibrium are searched for.
-  double amplitude = least_search_amplitude;
+  /// Length in the kernel at which the families that leave an equilibrium are there. Their directions are searched for
+  /// at twice that, doubled below 0.3 while there are some that are not isolated.
+  double amplitude = 0.01;
   int seeds = 12;                  ///< of a search in a plane; 2^(n-1) times as many in n > 2 dimensions
   corrector::Options corrector{};  ///< of a search
 };
@@ -75,12 +73,17 @@ class UndecidedError : public core::NumericalError {
                                                 const std::vector<loop::Tangent>& kernel,
                                                 const DirectionOptions& options = {});
 
+struct EquilibriumDirections {
+  std::vector<Direction> found;
+  int not_isolated = 0;  ///< orbits found of which neighbours along the kernel satisfy the loss too: not among `found`
+};
+
 /// The same at an equilibrium where several oscillations Re(v e^{iks}) share one period, exactly or nearly: those that
 /// symmetries single out, which are exact, then those found by a search, by their periods, the longest first. In nearly
 /// shared periods they are those of orbits of the amplitude searched at.
-[[nodiscard]] std::vector<Direction> equilibrium_directions(const systems::System& system,
-                                                            std::span<const double> point,
-                                                            const starts::SharedPeriod& shared, int cutoff,
-                                                            const DirectionOptions& options = {});
+[[nodiscard]] EquilibriumDirections equilibrium_directions(const systems::System& system,
+                                                           std::span<const double> point,
+                                                           const starts::SharedPeriod& shared, int cutoff,
+                                                           const DirectionOptions& options = {});
 
 }  // namespace orbweaver::bifurcation

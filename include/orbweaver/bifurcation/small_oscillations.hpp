@@ -37,6 +37,7 @@ struct OscillationKernel {
   double period = 0.0;
   int dimension = 0;  ///< complex: oscillations
   bool is_definite = false;
+  int not_isolated = 0;  ///< as EquilibriumDirections
   std::vector<KernelFamily> families;
 };
 

@@ -39,9 +39,9 @@ struct SharedPeriod {
 inline constexpr int strongest_harmonic = 3;
 
 /// Each oscillation is of harmonic 1 in exactly one of them, longest period first. Those that share their period nearly
-/// do so to 0.05 of it (k = 2) or 5e-4 (k = 1, 3): orbits of amplitude 0.01 tell no less. Throws MisuseError for a point
-/// of another dimension.
+/// do so to what orbits of this amplitude r (in scales) do not tell from it: in parts of it 5 r (k = 2) or 5 r^2 (k = 1,
+/// 3), and 0.05 at most. Throws MisuseError for a point of another dimension.
 [[nodiscard]] std::vector<SharedPeriod> shared_periods(const systems::System& system, std::span<const double> point,
-                                                       const LinearModes& modes);
+                                                       const LinearModes& modes, double amplitude);
 
 }  // namespace orbweaver::starts

@@ -18,13 +18,17 @@ namespace orbweaver::starts {
 /// |dz(s = 0)| = 1: the state there is rounding.
 inline constexpr double still_at_start = 1e-9;
 
+/// First orbits are searched for at no smaller amplitude r: terms of the fourth order, which tell some directions from
+/// their neighbours, are r^2 of the residual's, ten thousand times the loss's tolerance.
+inline constexpr double least_search_amplitude = 1e-3;
+
 /// The range of periods swept at a fixed point.
 struct SweepOptions {
   double period_from = 1.0;
   double period_to = 12.0;
   double step = 0.01;
   int cutoff = 10;  ///< harmonics of the loop space whose Hessian is taken
-  double amplitude = 0.0;  ///< of the families' first orbits: searches for directions take no smaller one
+  double amplitude = 8.7e-3;  ///< of the families' first orbits, in scales: decides what is a near resonance
 };
 
 /// The range that covers the periods of all oscillations, decided or not, with a margin, in a thousand steps. Where

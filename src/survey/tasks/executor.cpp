@@ -77,7 +77,7 @@ queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
     outcome.modes.push_back(std::move(found));
   }
   for (const bifurcation::OscillationKernel& kernel : all.kernels) {
-    KernelRecord record{kernel.period, kernel.dimension, kernel.is_definite, {}, {}, {}};
+    KernelRecord record{kernel.period, kernel.dimension, kernel.is_definite, kernel.not_isolated, {}, {}, {}};
     for (const bifurcation::KernelFamily& family : kernel.families) {
       record.places.push_back(family.place);
       record.images.push_back(family.images);

@@ -38,6 +38,10 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
                  : fmt::format("of some families that leave the equilibrium, {} oscillations of one period, the index "
                                "is not known",
                                f.other_number);
+    case FindingKind::continuum:
+      return fmt::format("oscillations that share a period: {} orbits were found near the equilibrium whose neighbours "
+                         "are orbits too, to rounding: which families leave there is not known",
+                         f.number);
     case FindingKind::unlisted_target: return "ends at a crossing that the archive does not have";
     case FindingKind::unknown_direction:
       return fmt::format("ends near the {} of {}, along none of the directions found there", names.crossing,
@@ -93,6 +97,7 @@ std::string_view name_of(FindingKind kind) {
     case FindingKind::beyond_limits: return "beyond-limits";
     case FindingKind::beyond_families: return "beyond-families";
     case FindingKind::equilibrium_families: return "equilibrium-families";
+    case FindingKind::continuum: return "continuum";
     case FindingKind::unlisted_target: return "unlisted-target";
     case FindingKind::unknown_direction: return "unknown-direction";
     case FindingKind::higher_order: return "higher-order";

@@ -45,6 +45,7 @@ struct KernelRecord {
   double period = 0.0;
   int dimension = 0;
   bool is_definite = false;
+  int not_isolated = 0;
   std::vector<int> places;
   std::vector<int> images;
   std::vector<int> repetitions;
@@ -52,7 +53,7 @@ struct KernelRecord {
   static constexpr int wire_version = 1;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, period, dimension, is_definite, places, images, repetitions);
+    core::serialize_members(archive, period, dimension, is_definite, not_isolated, places, images, repetitions);
   }
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -22,6 +23,9 @@ class EquilibriumFamilies final : public Check {
   [[nodiscard]] std::vector<Finding> findings(const Evidence& evidence,
                                               std::span<const Answered> /*answered*/) const override {
     std::vector<Finding> found;
+    for (std::size_t n = 0; n < evidence.known.kernels.size(); ++n)
+      for (const KernelRecord& kernel : evidence.known.kernels[n])
+        if (kernel.not_isolated > 0) found.push_back(continuum_at(evidence, n, kernel));
     const archive::Header& header = evidence.tree.atlas.header();
     if (archive::stability_width(header) == 0 || archive::has_complex_stability(header)) return found;
     for (std::size_t n = 0; n < evidence.known.kernels.size(); ++n)
@@ -32,6 +36,18 @@ class EquilibriumFamilies final : public Check {
   }
 
  private:
+  static Finding continuum_at(const Evidence& evidence, std::size_t equilibrium, const KernelRecord& kernel) {
+    Finding finding;
+    finding.kind = FindingKind::continuum;
+    finding.severity = Severity::undecided;
+    finding.period = kernel.period * evidence.known.time_unit;
+    finding.number = kernel.not_isolated;
+    for (const int place : kernel.places)
+      for (const int row : rows_of(evidence, equilibrium, place))
+        if (finding.family < 0) finding.family = row;
+    return finding;
+  }
+
   /// Rows of the family, or of its two sides.
   static std::vector<int> rows_of(const Evidence& evidence, std::size_t equilibrium, int place) {
     const std::string key = fmt::format("{:04}.{:04}", equilibrium, place);
@@ -41,22 +57,33 @@ class EquilibriumFamilies final : public Check {
     return rows;
   }
 
-  /// The index of the family's first orbit among all orbits of its energy modulo time shifts: of a vector field on the
-  /// quotient by the group of the `repetitions`, with as many signs as elements.
+  /// Of the family's first orbits, up to its first crossing: that which rounding tells first.
   static std::optional<int> index_of(const Evidence& evidence, int row, int repetitions) {
     const TreeFamily& family = evidence.family(row);
-    if (family.orbits() == 0) return std::nullopt;
+    const auto& steps = evidence.tree.atlas.orbits().integers("step");
+    double until = std::numeric_limits<double>::infinity();
+    for (const int crossing : family.crossings)
+      until = std::min(until,
+                       evidence.tree.atlas.crossings().reals("arclength")[static_cast<std::size_t>(crossing)]);
+    for (std::size_t n = 0; n < family.orbits(); ++n) {
+      if (steps[family.first_orbit + n] < 0) continue;
+      if (family.arclengths[n] >= until) break;
+      if (const auto index = index_of_orbit(evidence, family.first_orbit + n, repetitions)) return index;
+    }
+    return std::nullopt;
+  }
+
+  /// The index of an orbit among all orbits of its energy modulo time shifts: of a vector field on the quotient by the
+  /// group of the `repetitions`, with as many signs as elements.
+  static std::optional<int> index_of_orbit(const Evidence& evidence, std::size_t orbit, int repetitions) {
     const archive::Archive& atlas = evidence.tree.atlas;
     const std::size_t pairs = archive::stability_width(atlas.header());
-    const auto& steps = atlas.orbits().integers("step");
-    std::size_t first = family.first_orbit;
-    while (steps[first] < 0) ++first;
-    const double error = error_margin * atlas.orbits().reals("stability_error")[first];
+    const double error = error_margin * atlas.orbits().reals("stability_error")[orbit];
     int sum = 0;
     for (int shift = 0; shift < repetitions; ++shift) {
       int sign = 1;
       for (std::size_t i = 0; i < pairs; ++i) {
-        const double index = atlas.orbits().reals("stability")[first * pairs + i];
+        const double index = atlas.orbits().reals("stability")[orbit * pairs + i];
         const double angle = std::acos(std::clamp(0.5 * index, -1.0, 1.0));
         const int turns = static_cast<int>(std::lround(angle * repetitions / (2.0 * std::numbers::pi)));
         if (shift * turns % repetitions != 0) continue;      // the shift leaves nothing of this pair alone
