@@ -4,7 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 #include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "orbweaver/bifurcation/directions.hpp"
 #include "orbweaver/core/error.hpp"
@@ -89,6 +93,7 @@ class Gatherer {
   void add(const starts::DegenerateMode& mode) {
     const EquilibriumDirections directions = directions_of(mode);
     _not_isolated.push_back(directions.not_isolated);
+    if (directions.found.empty()) add_without_family(mode);
     for (const Direction& direction : directions.found) {
       const loop::Tangent tangent = at_unit_start(direction.base, direction.tangent);
       SmallOscillation family{{mode.period, mode.grid_period, mode.residual, tangent, tangent, direction.isotropy}};
@@ -97,6 +102,17 @@ class Gatherer {
         family.amplitude = direction.amplitude * loop::change_at_start(direction.base, direction.tangent);
       _entries.push_back({mode.period, mode.members.front().oscillation, std::move(family), {}, direction.images});
     }
+  }
+
+  void add_without_family(const starts::SharedPeriod& shared) {
+    _entries.push_back({shared.period, shared.members.front().oscillation, {}, {shared.period, 0, 1, true}});
+    std::vector<std::string> others;
+    for (const starts::SharedPeriod::Member& member : shared.members)
+      if (member.harmonic > 1)
+        others.push_back(fmt::format("{} times T = {:.12g}", member.harmonic,
+                                     _sweep.linear.oscillations[member.oscillation].period * _system.scales().time));
+    _all.without_family.push_back(
+        {shared.period, fmt::format("a resonance ({}): no family leaves along this oscillation", fmt::join(others, ", "))});
   }
 
   void place() {
@@ -134,6 +150,7 @@ class Gatherer {
     for (const Entry& entry : _entries) {
       const int repetitions = repetitions_in(entry, shared);
       if (repetitions == 0) continue;
+      if (!entry.family && entry.left_out.is_told) continue;
       if (entry.family)
         kernel.families.push_back(
             {entry.family->place, entry.images * (entry.family->both_sides ? 2 : 1), repetitions});

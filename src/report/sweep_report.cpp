@@ -96,8 +96,9 @@ std::vector<EquilibriumReport> sweep_report(const scene::Scene& scene) {
                               loop::to_text(mode.isotropy)});
     }
     for (const bifurcation::LeftOut& left_out : all.left_out)
-      for (int n = 0; n < left_out.families && !left_out.undecided; ++n)
+      for (int n = 0; n < left_out.families && !left_out.is_told; ++n)
         report.left_out.push_back({name(left_out.place + n), left_out.period * time});
+    for (const starts::RejectedDip& dip : all.without_family) report.sweep.rejected.push_back(dip);
     tell_in_units(report, system->scales());
     reports.push_back(std::move(report));
   }

@@ -16,13 +16,12 @@ struct SmallOscillation {
                             ///< 0: any
 };
 
-/// Families with one period that keep their places: outside the range, or perhaps families, as rounding does not tell
-/// what their eigenvalues are.
+/// Families with one period that keep their places: outside the range, or not found, for which there is a sentence.
 struct LeftOut {
   double period = 0.0;
   int place = 0;  ///< of the first
   int families = 1;
-  bool undecided = false;
+  bool is_told = false;  ///< what their eigenvalues are, or where families leave, is not known, or none leaves
 };
 
 /// A family in a kernel of several oscillations.
@@ -45,13 +44,14 @@ struct SmallOscillations {
   std::vector<SmallOscillation> families;  ///< in the range, longest period first
   std::vector<LeftOut> left_out;           ///< longest period first
   std::vector<OscillationKernel> kernels;  ///< in the range
+  std::vector<starts::RejectedDip> without_family;  ///< kernels in the range along which none was found
   int count = 0;                           ///< of all places
 };
 
 /// The families of small oscillations at an equilibrium, by a sweep with loops of `cutoff` harmonics: its simple modes,
 /// and the directions in the kernels that several oscillations share, less those that go around a shorter period, which
-/// has a kernel of its own. A kernel outside the range of which no direction is found counts as many families as it has
-/// dimensions of harmonic 1. Throws as equilibrium_directions does.
+/// has a kernel of its own. A kernel without one keeps a place, or outside the range, where its directions cannot be
+/// found, as many as it has dimensions of harmonic 1. Throws as equilibrium_directions does.
 [[nodiscard]] SmallOscillations small_oscillations(const systems::System& system, const starts::SweepResult& sweep,
                                                    int cutoff);
 

@@ -63,7 +63,7 @@ queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
   const bifurcation::SmallOscillations all = bifurcation::small_oscillations(*_system, result, options.cutoff);
   outcome.families = all.count;
   for (const bifurcation::LeftOut& left_out : all.left_out)
-    if (!left_out.undecided)  // those are among the rejected
+    if (!left_out.is_told)  // those are among the rejected
       outcome.left_out.push_back({left_out.period, left_out.place, left_out.families});
   for (const bifurcation::SmallOscillation& family : all.families) {
     FoundMode found;
@@ -85,7 +85,8 @@ queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
     }
     outcome.kernels.push_back(std::move(record));
   }
-  for (const starts::RejectedDip& dip : result.rejected)
+  for (const auto* dips : {&result.rejected, &all.without_family})
+    for (const starts::RejectedDip& dip : *dips)
     outcome.rejected.push_back(fmt::format("T = {:.9g}: {}", dip.period * _system->scales().time, dip.reason));
   queue::TaskOutcome done;
   done.payload = pack(outcome);
