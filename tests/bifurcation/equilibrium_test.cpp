@@ -190,10 +190,11 @@ TEST(Equilibrium, AContinuumOfDirectionsIsLeftOut) {
 TEST(Equilibrium, ASingleOscillation) {
   const auto system = systems::make_system("harmonic_oscillator");
   const Eigen::VectorXcd v = Eigen::Vector2cd(std::complex<double>(0, 1), -1.0).normalized();
-  const std::vector<Direction> found = equilibrium_directions(*system, std::vector<double>(2, 0.0), two_pi, v, 4);
+  const starts::SharedPeriod mode{two_pi, 0.0, {{}}, v, {1}};
+  const std::vector<Direction> found = equilibrium_directions(*system, std::vector<double>(2, 0.0), mode, 4).found;
   EXPECT_EQ(isotropies(found), (std::vector<std::string>{"S@1/2 R@0"}));
   const test::Declaring bare(system, {}, {});
-  EXPECT_EQ(isotropies(equilibrium_directions(bare, std::vector<double>(2, 0.0), two_pi, v, 4)),
+  EXPECT_EQ(isotropies(equilibrium_directions(bare, std::vector<double>(2, 0.0), mode, 4).found),
             (std::vector<std::string>{""}));
 }
 
