@@ -145,6 +145,13 @@ class WitnessOf : public ::testing::Test {
     return end;
   }
 
+  /// The kernel at the centre, with as many images of each family as the triangle makes. Families have the keys of rows.
+  static KernelRecord kernel_of_centre() {
+    if (!atlas) return {};
+    return {2.0 * std::numbers::pi, 2, true, 0, {row_named("Straight"), row_named("Curved"), row_named("Loop")},
+            {3, 3, 2},              {1, 1, 1}};
+  }
+
   static inline std::unique_ptr<core::Communicator> world;
   static inline scene::Scene scene;
   static inline Summary summary;
@@ -164,9 +171,6 @@ TEST_F(WitnessOf, ATreeThatAddsUpSaysWhatTheLimitsCut) {
   EXPECT_EQ(atlas->findings().texts("text").front(), summary.findings.front().text);
 }
 
-/// The kernel at the centre, with as many images of each family as the triangle makes.
-KernelRecord kernel_of_centre() { return {2.0 * std::numbers::pi, 2, true, 0, {0, 1, 2}, {3, 3, 2}, {1, 1, 1}}; }
-
 TEST_F(WitnessOf, IndicesOfAnEquilibriumsFamiliesAddUp) {
   input.kernels = {{kernel_of_centre()}};
   const std::vector<Found> rows = found();
@@ -179,7 +183,7 @@ TEST_F(WitnessOf, AFamilyMissingAtAnEquilibrium) {
   for (std::size_t missing = 0; missing < 3; ++missing) {
     KernelRecord kernel = kernel_of_centre();
     for (std::vector<int>* numbers : {&kernel.places, &kernel.images, &kernel.repetitions})
-      numbers->erase(numbers->begin() + static_cast<std::ptrdiff_t>(missing));
+      if (atlas) numbers->erase(numbers->begin() + static_cast<std::ptrdiff_t>(missing));
     input = {};
     input.kernels = {{kernel}};
     const Testimony said = testimony();
