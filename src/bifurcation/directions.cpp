@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -262,26 +263,42 @@ loop::Loop from_reversor(const systems::Structure& system, const loop::Loop& orb
   return orbit;
 }
 
-/// Those found about an equilibrium: by period, the longest first; of equal periods that which starts further along the
-/// first coordinate that differs.
+/// Where an orbit is at s = 0: that with the larger first coordinate that differs comes first.
+bool starts_before(const loop::Loop& a, const loop::Loop& b, double tolerance) {
+  const std::vector<double> here = loop::state_at(a, 0.0);
+  const std::vector<double> there = loop::state_at(b, 0.0);
+  for (std::size_t i = 0; i < here.size(); ++i)
+    if (std::abs(here[i] - there[i]) > tolerance) return here[i] > there[i];
+  return false;
+}
+
+/// The one of an orbit's images, in their standard phases, that comes first: a search finds any of them.
+loop::Loop first_image(const systems::Structure& system, const KernelActions& group, const loop::Loop& orbit,
+                       double tolerance) {
+  std::optional<loop::Loop> first;
+  for (const Action& action : group.actions()) {
+    if (action.element.shift_numerator != 0) continue;
+    loop::Loop image = from_reversor(system, loop::transformed(orbit, action.element), tolerance);
+    image = loop::in_standard_phase(system, image, loop::find_isotropy(system, image, tolerance, group.denominator()));
+    if (!first || starts_before(image, *first, tolerance)) first = std::move(image);
+  }
+  return first.value();
+}
+
+/// Those found about an equilibrium: by period, the longest first.
 std::vector<Direction> about_equilibrium(const systems::Structure& system, const KernelActions& group,
                                          const loop::Loop& base, const SearchResult& result, double amplitude) {
   const double tolerance = found_tolerance * amplitude;
   std::vector<std::pair<loop::Loop, Direction>> found;
   for (const FoundOrbit& orbit : result.found) {
-    loop::Loop loop = from_reversor(system, orbit.loop, tolerance);
-    loop = loop::in_standard_phase(system, loop, loop::find_isotropy(system, loop, tolerance, group.denominator()));
+    loop::Loop loop = first_image(system, group, orbit.loop, tolerance);
     Direction direction = whole_way(base, loop);
     direction.isotropy = loop::find_isotropy(system, loop, tolerance, group.denominator());
     found.emplace_back(std::move(loop), counted(group, orbit.coordinates, std::move(direction)));
   }
   std::stable_sort(found.begin(), found.end(), [&](const auto& a, const auto& b) {
     if (std::abs(a.first.period - b.first.period) > same_period * base.period) return a.first.period > b.first.period;
-    const std::vector<double> here = loop::state_at(a.first, 0.0);
-    const std::vector<double> there = loop::state_at(b.first, 0.0);
-    for (std::size_t i = 0; i < here.size(); ++i)
-      if (std::abs(here[i] - there[i]) > tolerance) return here[i] > there[i];
-    return false;
+    return starts_before(a.first, b.first, tolerance);
   });
   std::vector<Direction> out;
   for (auto& [loop, direction] : found) out.push_back(std::move(direction));
