@@ -425,10 +425,10 @@ EquilibriumDirections equilibrium_directions(const systems::System& system, std:
                                              const DirectionOptions& options) {
   const loop::Loop base = loop::constant_loop(point, shared.period, cutoff);
   core::require(shared.kernel.rows() == base.dimension, "oscillations need the dimension of the equilibrium");
-  core::require(shared.harmonics.size() == static_cast<std::size_t>(shared.kernel.cols()) &&
-                    std::all_of(shared.harmonics.begin(), shared.harmonics.end(),
-                                [&](int k) { return k >= 1 && k <= cutoff; }),
-                "oscillations need a harmonic each, of the loops' cutoff at most");
+  core::require(
+      shared.harmonics.size() == static_cast<std::size_t>(shared.kernel.cols()) &&
+          std::all_of(shared.harmonics.begin(), shared.harmonics.end(), [&](int k) { return k >= 1 && k <= cutoff; }),
+      "oscillations need a harmonic each, of the loops' cutoff at most");
   std::vector<loop::Tangent> vectors;
   for (Eigen::Index c = 0; c < shared.kernel.cols(); ++c)
     for (const std::complex<double> phase : {std::complex<double>(1.0, 0.0), std::complex<double>(0.0, 1.0)}) {

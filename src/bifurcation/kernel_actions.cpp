@@ -180,8 +180,7 @@ double KernelActions::largest_overlap(const Eigen::VectorXd& from, const Eigen::
     a[k] += to(at) * from(at);
     b[k] += to(at) * turned(at) / _harmonics[c];
   }
-  if (std::count(_harmonics.begin(), _harmonics.end(), highest) == dimension())
-    return std::hypot(a.back(), b.back());
+  if (std::count(_harmonics.begin(), _harmonics.end(), highest) == dimension()) return std::hypot(a.back(), b.back());
   const auto at = [&](double phi, int order) {  // a derivative
     double sum = 0.0;
     for (std::size_t k = 1; k < a.size(); ++k) {

@@ -23,8 +23,8 @@ constexpr int most_pins = 8;             // each a Newton solve; not measured
 constexpr double returned = 0.2;         // of the nudge: what remains of it at an isolated direction, which is settled
 /// A family that comes so near to another direction (in radians) is born there, at an amplitude smaller by its square.
 constexpr double touching = 0.05;
-constexpr int most_halvings = 10;  // of the distance: from 1 to 0.001 radians
-constexpr double least_length = 0.1;     // of a normal vector: shorter ones are rounded to few directions
+constexpr int most_halvings = 10;     // of the distance: from 1 to 0.001 radians
+constexpr double least_length = 0.1;  // of a normal vector: shorter ones are rounded to few directions
 
 // The radical inverse of n in a base: a number in (0, 1).
 double halton(int n, int base) {
@@ -153,8 +153,8 @@ bool is_born_beyond(const systems::System& system, const loop::Loop& base, const
       }
     if (aside.norm() < touching * inside.norm()) return true;
     const loop::Tangent off = loop::with_cutoff(group.vector_at(aside.normalized()), orbit.cutoff, orbit.dimension);
-    const corrector::Result nearer = held_orbit(system, loop::moved(orbit, off, -0.5 * aside.norm()), {off}, {},
-                                                isotropy, options.corrector);
+    const corrector::Result nearer =
+        held_orbit(system, loop::moved(orbit, off, -0.5 * aside.norm()), {off}, {}, isotropy, options.corrector);
     if (!nearer.converged()) return false;
     orbit = nearer.loop;
   }

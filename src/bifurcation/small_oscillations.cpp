@@ -80,14 +80,18 @@ class Gatherer {
     return static_cast<std::size_t>(found - all.begin());
   }
 
+  [[nodiscard]] int families_of(const starts::SharedPeriod& shared) const {
+    if (shared.is_simple()) return 1;
+    try {
+      return std::max(1, static_cast<int>(directions_of(shared).found.size()));
+    } catch (const core::NumericalError&) {  // a place each, of families that are not asked for
+      return static_cast<int>(std::count(shared.harmonics.begin(), shared.harmonics.end(), 1));
+    }
+  }
+
   void add_left_out(const starts::SharedPeriod& shared) {
-    int families = 1;
-    if (!shared.is_simple()) try {
-        families = static_cast<int>(directions_of(shared).found.size());
-      } catch (const core::NumericalError&) {  // a place each, of families that are not asked for
-        families = static_cast<int>(std::count(shared.harmonics.begin(), shared.harmonics.end(), 1));
-      }
-    _entries.push_back({shared.period, shared.members.front().oscillation, {}, {shared.period, 0, families}});
+    _entries.push_back(
+        {shared.period, shared.members.front().oscillation, {}, {shared.period, 0, families_of(shared)}});
   }
 
   void add(const starts::DegenerateMode& mode) {
@@ -112,7 +116,8 @@ class Gatherer {
         others.push_back(fmt::format("{} times T = {:.12g}", member.harmonic,
                                      _sweep.linear.oscillations[member.oscillation].period * _system.scales().time));
     _all.without_family.push_back(
-        {shared.period, fmt::format("a resonance ({}): no family leaves along this oscillation", fmt::join(others, ", "))});
+        {shared.period,
+         fmt::format("a resonance ({}): no family leaves along this oscillation", fmt::join(others, ", "))});
   }
 
   void place() {

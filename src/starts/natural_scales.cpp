@@ -260,8 +260,8 @@ double nearest_power(double log) { return std::exp2(std::round(log)); }
 /// scales of the coordinates; NaN where they vanish.
 double log_quantity(const systems::System& system, int k, const VectorXd& point, const systems::Scales& scales) {
   const VectorXd in_scales = Eigen::Map<const VectorXd>(scales.coordinates.data(), point.size());
-  const MatrixXd second = in_scales.asDiagonal() *
-                          second_derivatives(system, k, point, difference_step * in_scales) * in_scales.asDiagonal();
+  const MatrixXd second = in_scales.asDiagonal() * second_derivatives(system, k, point, difference_step * in_scales) *
+                          in_scales.asDiagonal();
   if (!second.allFinite()) return std::numeric_limits<double>::quiet_NaN();
   const VectorXd moduli = Eigen::JacobiSVD<MatrixXd>(second).singularValues();
   double sum = 0.0;

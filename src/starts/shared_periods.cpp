@@ -13,8 +13,8 @@ namespace {
 
 /// Detunings, in parts of the period, that orbits of amplitude r (in scales) do not tell from none: the terms that
 /// couple two oscillations move frequencies by r (k = 2) or its square (k = 1, 3), times coefficients of order 1, for
-/// which this is a margin. At a larger detuning, or amplitude, what is born is a crossing on a family that starts at the
-/// equilibrium. No detuning above the second is near.
+/// which this is a margin. At a larger detuning, or amplitude, what is born is a crossing on a family that starts at
+/// the equilibrium. No detuning above the second is near.
 constexpr double margin = 5.0;
 constexpr double largest_detuning = 0.05;
 /// Oscillations of nearly one period whose vectors nearly agree are not taken together: their combinations would be
@@ -46,8 +46,7 @@ Eigen::MatrixXcd joined(const Eigen::MatrixXcd& a, const Eigen::MatrixXcd& b) {
 bool have_one_sign(const systems::System& system, std::span<const double> point, const SharedPeriod& shared) {
   if (system.structure().conserved.empty()) return false;
   const Eigen::VectorXd z = Eigen::Map<const Eigen::VectorXd>(point.data(), static_cast<Eigen::Index>(point.size()));
-  const Eigen::MatrixXd second =
-      second_derivatives(system, 0, z, Eigen::VectorXd::Constant(z.size(), difference_step));
+  const Eigen::MatrixXd second = second_derivatives(system, 0, z, Eigen::VectorXd::Constant(z.size(), difference_step));
   const Eigen::MatrixXcd form =
       shared.kernel.adjoint() * (0.5 * (second + second.transpose())).cast<std::complex<double>>() * shared.kernel;
   std::vector<double> energies;  // oscillations of different frequencies do not share any
@@ -96,7 +95,8 @@ std::vector<SharedPeriod> shared_periods(const systems::System& system, std::spa
         Eigen::MatrixXcd others(shared.kernel.rows(), 0);
         if (!first)
           for (std::size_t c = 0; c < shared.harmonics.size(); ++c)
-            if (shared.harmonics[c] == harmonic) others = side_by_side(others, shared.kernel.col(static_cast<Eigen::Index>(c)));
+            if (shared.harmonics[c] == harmonic)
+              others = side_by_side(others, shared.kernel.col(static_cast<Eigen::Index>(c)));
         const Eigen::MatrixXcd block = first ? all[n].kernel : joined(others, all[n].kernel);
         if (block.size() == 0) continue;
         shared.kernel = side_by_side(shared.kernel.leftCols(shared.kernel.cols() - others.cols()), block);

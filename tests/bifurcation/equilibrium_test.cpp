@@ -87,8 +87,9 @@ TEST(Equilibrium, ThreeFamiliesUpToSymmetryLeaveHenonHeiles) {
   EXPECT_GT(std::abs(loop::state_at(ends[1].loop, 0.0)[0]), 0.1);
 }
 
-/// Two oscillators, equal but for the detuning (part of the second's stiffness), H = (p^2 + q^2) / 2 + quartic (q1^4 + q2^4) / 4 + coupling q1^2 q2^2 / 2; state q1, q2, p1,
-/// p2. Families from the origin: along an axis (2), along a diagonal (2), and loops (2, one up to reversal).
+/// Two oscillators, equal but for the detuning (of the second's stiffness), H = (p^2 + q^2) / 2 + quartic (q1^4 +
+/// q2^4) / 4 + coupling q1^2 q2^2 / 2; state q1, q2, p1, p2. Families from the origin: along an axis (2), along a
+/// diagonal (2), and loops (2, one up to reversal).
 class CoupledOscillators final : public test::PointSystem {
  public:
   CoupledOscillators(systems::Structure structure, double coupling, double quartic = 1.0, double detuning = 0.0)

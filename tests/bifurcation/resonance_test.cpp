@@ -16,10 +16,10 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// H = (q1^2 + p1^2)/2 + sign (1 + detuning) (q2^2 + p2^2) + q1^2 q2, state q1, q2, p1, p2. With q1 = a cos t and q2 = b
-/// cos 2t the mean of the cubic term is a^2 b/4. At sign 1, without detuning, its extrema at fixed a^2/2 + b^2 lie at b =
-/// +-a/2, where the frequency is 1 + b/2; at sign -1 there are none but a = 0. On the fast family a grows from 0 where
-/// b/2 = detuning.
+/// H = (q1^2 + p1^2)/2 + sign (1 + detuning) (q2^2 + p2^2) + q1^2 q2, state q1, q2, p1, p2. With q1 = a cos t and
+/// q2 = b cos 2t the mean of the cubic term is a^2 b/4. At sign 1, without detuning, its extrema at fixed a^2/2 + b^2
+/// lie at b = +-a/2, where the frequency is 1 + b/2; at sign -1 there are none but a = 0. On the fast family a grows
+/// from 0 where b/2 = detuning.
 class TwoToOne final : public test::PointSystem {
  public:
   explicit TwoToOne(double sign, double detuning = 0.0)
@@ -119,15 +119,16 @@ TEST(Resonance, NoneLeavesWhereTheEnergiesHaveOppositeSigns) {
   EXPECT_FALSE(all.kernels.at(0).is_definite);
 }
 
-// Of the fast family (length of its direction in the kernel: b sqrt 2) the other is born at b = 2 |detuning|. Once that is
-// further out than the first orbits it is left to the crossing there.
+// Of the fast family (length of its direction in the kernel: b sqrt 2) the other is born at b = 2 |detuning|. Once that
+// is further out than the first orbits it is left to the crossing there.
 TEST(Resonance, NearlyIsAsExactlyUpToTheAmplitudeOfFirstOrbits) {
   const double amplitude = 0.01;
   const double born_there = amplitude / (2.0 * std::numbers::sqrt2);
   const std::vector<double> origin(4, 0.0);
   const SmallOscillations exact = oscillations_of(TwoToOne(1.0), origin, amplitude);
   for (const double detuning : {1e-9, -1e-9, 1e-6, -1e-6}) {
-    const std::vector<SmallOscillation> slow = slow_families(oscillations_of(TwoToOne(1.0, detuning), origin, amplitude));
+    const std::vector<SmallOscillation> slow =
+        slow_families(oscillations_of(TwoToOne(1.0, detuning), origin, amplitude));
     ASSERT_EQ(slow.size(), 2U) << detuning;
     for (std::size_t n = 0; n < 2; ++n)
       for (const auto& [harmonic, coordinate] : {std::pair{1, 0}, std::pair{2, 1}})

@@ -51,7 +51,9 @@ TEST(SharedPeriods, EachOscillationBeginsOne) {
 }
 
 TEST(SharedPeriods, NearlyToWhatTheAmplitudeTells) {
-  const auto ratio = [](double n, double detuning) { return std::vector<double>{1.0, std::pow(n / (1.0 + detuning), 2)}; };
+  const auto ratio = [](double n, double detuning) {
+    return std::vector<double>{1.0, std::pow(n / (1.0 + detuning), 2)};
+  };
   for (const double sign : {1.0, -1.0}) {
     EXPECT_EQ(harmonics_of(ratio(2, sign * 0.04)), (Harmonics{1, 2}));
     EXPECT_EQ(harmonics_of(ratio(2, sign * 0.06)), (Harmonics{1}));
@@ -88,7 +90,8 @@ TEST(SharedPeriods, SignsOfTheEnergy) {
 
 TEST(SharedPeriods, Misuse) {
   const auto system = systems::make_system("henon_heiles");
-  EXPECT_THROW(static_cast<void>(shared_periods(*system, std::vector<double>(3, 0.0), {}, amplitude)), core::MisuseError);
+  EXPECT_THROW(static_cast<void>(shared_periods(*system, std::vector<double>(3, 0.0), {}, amplitude)),
+               core::MisuseError);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ using testing::Field;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// The spring with its frequencies in the ratio n (1 + detuning): sqrt(1 + stiffness), mass, length and gravity being 1.
+/// The spring with its frequencies in the ratio n (1 + detuning): sqrt(1 + stiffness), all else being 1.
 scene::Scene spring(double n, double detuning, std::vector<std::string> overrides = {}) {
   const double stiffness = std::pow(n * (1.0 + detuning), 2) - 1.0;
   for (const std::string& given :
@@ -38,7 +38,8 @@ double period_at(const test::Atlas& atlas, const std::string& family, double x) 
   const std::vector<double> periods = atlas.column("period", family);
   const auto first = static_cast<std::size_t>(atlas.families().integers("first_orbit")[atlas.row_of(family)]);
   std::vector<std::pair<double, double>> points;
-  for (std::size_t n = 0; n < periods.size(); ++n) points.emplace_back(atlas.orbits().reals("state")[4 * (first + n)], periods[n]);
+  for (std::size_t n = 0; n < periods.size(); ++n)
+    points.emplace_back(atlas.orbits().reals("state")[4 * (first + n)], periods[n]);
   std::sort(points.begin(), points.end(),
             [&](const auto& a, const auto& b) { return std::abs(a.first - x) < std::abs(b.first - x); });
   std::vector<double> at;
@@ -56,7 +57,8 @@ TEST(Resonance, TheSpringSwingsInTwoWays) {
                                          {"survey.depth=0", "continuation.step=0.01", "limits.energy=[-.inf, -1.155]"});
   const survey::Summary summary = test::run(comm, scene, "spring");
   EXPECT_EQ(summary.failures, 0U);
-  for (const survey::FindingSummary& line : summary.findings) EXPECT_EQ(line.severity, survey::Severity::cut) << line.text;
+  for (const survey::FindingSummary& line : summary.findings)
+    EXPECT_EQ(line.severity, survey::Severity::cut) << line.text;
   const test::Atlas atlas(summary.atlas);
   EXPECT_THAT(atlas.families().texts("name"), ElementsAre("Cup", "Cap", "Bounce"));
   EXPECT_THAT(atlas.families().texts("isotropy"), ElementsAre("S@1/2 R@0", "S@1/2 R@0", "S@0 R@0"));
@@ -83,7 +85,8 @@ TEST(Resonance, DetunedSpringsHaveTheSameThreeFamilies) {
     std::sort(last.begin(), last.end());
     ASSERT_EQ(last.size(), 3U) << detuning;
     if (detuning == 0.0) resonant = last;
-    for (std::size_t n = 0; n < 3; ++n) EXPECT_NEAR(last[n], resonant[n], 1e-10 + 10.0 * std::abs(detuning)) << detuning;
+    for (std::size_t n = 0; n < 3; ++n)
+      EXPECT_NEAR(last[n], resonant[n], 1e-10 + 10.0 * std::abs(detuning)) << detuning;
     const bool born_later = std::abs(detuning) > 1.1e-3;
     EXPECT_EQ(atlas.families().texts("name")[2], born_later ? "Equilibrium 1, mode 2 D" : "Equilibrium 1, mode 3");
   }
@@ -97,19 +100,20 @@ TEST(Resonance, WhatRoundingDoesNotTellIsUndecided) {
   EXPECT_EQ(summary.failures, 0U);
   const test::Atlas atlas(summary.atlas);
   EXPECT_EQ(atlas.families().rows(), 2U);
-  EXPECT_THAT(summary.findings, testing::Contains(AllOf(
-                                    Field(&survey::FindingSummary::kind, survey::FindingKind::continuum),
-                                    Field(&survey::FindingSummary::severity, survey::Severity::undecided))));
+  EXPECT_THAT(summary.findings,
+              testing::Contains(AllOf(Field(&survey::FindingSummary::kind, survey::FindingKind::continuum),
+                                      Field(&survey::FindingSummary::severity, survey::Severity::undecided))));
 }
 
 TEST(Resonance, AlongASlowOscillationOfTheOtherSignNoneIsFollowed) {
   const core::Communicator comm;
   const double mu = 0.024293897142052323;  // frequencies at L4 in the ratio 2
-  const scene::Scene scene = scene::load(
-      ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_mu_0.001.yaml",
-      {fmt::format("system.parameters.mu={:.17g}", mu), fmt::format("starts.fixed_points.grid=[[{:.6g}], [0.866]]", 0.5 - mu),
-       fmt::format("starts.fixed_points.names={{[{:.10f}, 0.8660254038]: [Long, Short]}}", 0.5 - mu),
-       "starts.fixed_points.letters={}", "starts.sweep.period=auto", "survey.depth=0", "limits.steps=4"});
+  const scene::Scene scene =
+      scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_mu_0.001.yaml",
+                  {fmt::format("system.parameters.mu={:.17g}", mu),
+                   fmt::format("starts.fixed_points.grid=[[{:.6g}], [0.866]]", 0.5 - mu),
+                   fmt::format("starts.fixed_points.names={{[{:.10f}, 0.8660254038]: [Long, Short]}}", 0.5 - mu),
+                   "starts.fixed_points.letters={}", "starts.sweep.period=auto", "survey.depth=0", "limits.steps=4"});
   const survey::Summary summary = test::run(comm, scene, "l4");
   EXPECT_EQ(summary.failures, 0U);
   EXPECT_THAT(summary.remarks, testing::Contains(HasSubstr("no family leaves along this oscillation")));

@@ -145,11 +145,16 @@ class WitnessOf : public ::testing::Test {
     return end;
   }
 
-  /// The kernel at the centre, with as many images of each family as the triangle makes. Families have the keys of rows.
+  /// The kernel at the centre, with as many images of each family as the triangle makes. Keys of families are rows.
   static KernelRecord kernel_of_centre() {
     if (!atlas) return {};
-    return {2.0 * std::numbers::pi, 2, true, 0, {row_named("Straight"), row_named("Curved"), row_named("Loop")},
-            {3, 3, 2},              {1, 1, 1}};
+    return {2.0 * std::numbers::pi,
+            2,
+            true,
+            0,
+            {row_named("Straight"), row_named("Curved"), row_named("Loop")},
+            {3, 3, 2},
+            {1, 1, 1}};
   }
 
   static inline std::unique_ptr<core::Communicator> world;

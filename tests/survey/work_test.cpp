@@ -36,10 +36,14 @@ FoundMode sample_mode() {
 }
 
 SweepOutcome sample_sweep_outcome() {
-  return {2,   {1.5},
-          {sample_mode(), {}}, {"T = 6.8: twice around", ""},
-          {{0.5, 2, 3}},       {{6.25, 2, true, 1, {0, 1}, {3, 2}, {1, 2}}},
-          5,   1.0,
+  return {2,
+          {1.5},
+          {sample_mode(), {}},
+          {"T = 6.8: twice around", ""},
+          {{0.5, 2, 3}},
+          {{6.25, 2, true, 1, {0, 1}, {3, 2}, {1, 2}}},
+          5,
+          1.0,
           12.0};
 }
 BranchWork sample_branch_work() {

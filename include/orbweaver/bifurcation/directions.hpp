@@ -81,8 +81,7 @@ struct EquilibriumDirections {
 /// The same at an equilibrium where several oscillations Re(v e^{iks}) share one period, exactly or nearly: those that
 /// symmetries single out, which are exact, then those found by a search, by their periods, the longest first. In nearly
 /// shared periods they are those of orbits of the amplitude searched at.
-[[nodiscard]] EquilibriumDirections equilibrium_directions(const systems::System& system,
-                                                           std::span<const double> point,
+[[nodiscard]] EquilibriumDirections equilibrium_directions(const systems::System& system, std::span<const double> point,
                                                            const starts::SharedPeriod& shared, int cutoff,
                                                            const DirectionOptions& options = {});
 

@@ -41,11 +41,11 @@ struct OscillationKernel {
 };
 
 struct SmallOscillations {
-  std::vector<SmallOscillation> families;  ///< in the range, longest period first
-  std::vector<LeftOut> left_out;           ///< longest period first
-  std::vector<OscillationKernel> kernels;  ///< in the range
+  std::vector<SmallOscillation> families;           ///< in the range, longest period first
+  std::vector<LeftOut> left_out;                    ///< longest period first
+  std::vector<OscillationKernel> kernels;           ///< in the range
   std::vector<starts::RejectedDip> without_family;  ///< kernels in the range along which none was found
-  int count = 0;                           ///< of all places
+  int count = 0;                                    ///< of all places
 };
 
 /// The families of small oscillations at an equilibrium, by a sweep with loops of `cutoff` harmonics: its simple modes,

@@ -11,9 +11,9 @@
 
 namespace orbweaver::starts {
 
-/// A period and all oscillations of which it is a whole number of periods, 1 to `strongest_harmonic`, exactly or nearly:
-/// the kernel of the constant loop with that period. Families of small amplitude start along combinations of its
-/// vectors Re(v e^{iks}).
+/// A period and all oscillations of which it is a whole number of periods, 1 to `strongest_harmonic`, exactly or
+/// nearly: the kernel of the constant loop with that period. Families of small amplitude start along combinations of
+/// its vectors Re(v e^{iks}).
 struct SharedPeriod {
   struct Member {
     std::size_t oscillation = 0;  ///< index into LinearModes::oscillations
@@ -39,8 +39,8 @@ struct SharedPeriod {
 inline constexpr int strongest_harmonic = 3;
 
 /// Each oscillation is of harmonic 1 in exactly one of them, longest period first. Those that share their period nearly
-/// do so to what orbits of this amplitude r (in scales) do not tell from it: in parts of it 5 r (k = 2) or 5 r^2 (k = 1,
-/// 3), and 0.05 at most. Throws MisuseError for a point of another dimension.
+/// do so to what orbits of this amplitude r (in scales) do not tell from it: in parts of it 5 r (k = 2) or 5 r^2
+/// (k = 1, 3), and 0.05 at most. Throws MisuseError for a point of another dimension.
 [[nodiscard]] std::vector<SharedPeriod> shared_periods(const systems::System& system, std::span<const double> point,
                                                        const LinearModes& modes, double amplitude);
 

@@ -27,7 +27,7 @@ struct SweepOptions {
   double period_from = 1.0;
   double period_to = 12.0;
   double step = 0.01;
-  int cutoff = 10;  ///< harmonics of the loop space whose Hessian is taken
+  int cutoff = 10;            ///< harmonics of the loop space whose Hessian is taken
   double amplitude = 8.7e-3;  ///< of the families' first orbits, in scales: decides what is a near resonance
 };
 
@@ -71,7 +71,7 @@ struct SweepResult {
   std::vector<NormalMode> modes;  ///< in the range, longest period first
   std::vector<DegenerateMode> degenerate;
   std::vector<SharedPeriod> left_out;  ///< outside the range, longest first
-  std::vector<RejectedDip> rejected;  ///< period multiples, near misses, resonances, undecided eigenvalues
+  std::vector<RejectedDip> rejected;   ///< period multiples, near misses, resonances, undecided eigenvalues
 };
 
 /// The small oscillations at a fixed point whose periods lie in a range, from the Jacobian, and the picture of the

@@ -15,9 +15,7 @@
 
 namespace orbweaver::survey {
 
-namespace {
-
-}  // namespace
+namespace {}  // namespace
 
 continuation::Options branch_options(const scene::Scene& scene, core::Team* team) {
   continuation::Options options;
@@ -87,7 +85,7 @@ queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
   }
   for (const auto* dips : {&result.rejected, &all.without_family})
     for (const starts::RejectedDip& dip : *dips)
-    outcome.rejected.push_back(fmt::format("T = {:.9g}: {}", dip.period * _system->scales().time, dip.reason));
+      outcome.rejected.push_back(fmt::format("T = {:.9g}: {}", dip.period * _system->scales().time, dip.reason));
   queue::TaskOutcome done;
   done.payload = pack(outcome);
   return done;

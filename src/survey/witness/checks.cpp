@@ -23,7 +23,8 @@ std::vector<std::unique_ptr<Check>> list() {
 }  // namespace
 
 std::vector<std::unique_ptr<Check>> all_checks() {
-  return list<FailedTasks, StoredTwice, SharedPoints, BranchCounts, EquilibriumFamilies, Ends, MirrorImages, IndexChanges>();
+  return list<FailedTasks, StoredTwice, SharedPoints, BranchCounts, EquilibriumFamilies, Ends, MirrorImages,
+              IndexChanges>();
 }
 
 }  // namespace orbweaver::survey

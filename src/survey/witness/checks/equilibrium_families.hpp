@@ -63,8 +63,7 @@ class EquilibriumFamilies final : public Check {
     const auto& steps = evidence.tree.atlas.orbits().integers("step");
     double until = std::numeric_limits<double>::infinity();
     for (const int crossing : family.crossings)
-      until = std::min(until,
-                       evidence.tree.atlas.crossings().reals("arclength")[static_cast<std::size_t>(crossing)]);
+      until = std::min(until, evidence.tree.atlas.crossings().reals("arclength")[static_cast<std::size_t>(crossing)]);
     for (std::size_t n = 0; n < family.orbits(); ++n) {
       if (steps[family.first_orbit + n] < 0) continue;
       if (family.arclengths[n] >= until) break;
@@ -86,7 +85,7 @@ class EquilibriumFamilies final : public Check {
         const double index = atlas.orbits().reals("stability")[orbit * pairs + i];
         const double angle = std::acos(std::clamp(0.5 * index, -1.0, 1.0));
         const int turns = static_cast<int>(std::lround(angle * repetitions / (2.0 * std::numbers::pi)));
-        if (shift * turns % repetitions != 0) continue;      // the shift leaves nothing of this pair alone
+        if (shift * turns % repetitions != 0) continue;        // the shift leaves nothing of this pair alone
         if (turns != 0 && 2 * turns != repetitions) continue;  // a pair off the real axis
         const double gap = turns == 0 ? 2.0 - index : 2.0 + index;
         if (!(std::abs(gap) > error)) return std::nullopt;
