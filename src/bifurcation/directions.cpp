@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -15,6 +16,8 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/loop/symmetry/shift_search.hpp"
+#include "orbweaver/loop/symmetry/standard_phase.hpp"
 #include "orbweaver/loss/unknowns.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
 #include "search.hpp"
@@ -24,6 +27,10 @@ namespace orbweaver::bifurcation {
 namespace {
 
 constexpr double same_line = 3e-3;  // radians; distinct lines of a finite group are much further apart
+/// Radians between an oscillation and its images, as far apart as those that a search tells apart; and what is seen of
+/// a harmonic in a direction of unit length, known to the amplitude of a search.
+constexpr double same_image = 0.02;
+constexpr double visible_harmonic = 1e-3;
 constexpr int largest_kernel = 8;
 /// Entries of unit directions and coordinates of orbits that are less apart do not decide signs and phases: kernel
 /// vectors are good to that. Either choice starts the same family.
@@ -42,12 +49,17 @@ constexpr double fixing_term = 1e-6;
 constexpr double least_amplitude = 0.01;
 constexpr double largest_first_amplitude = 0.1;
 constexpr double largest_amplitude = 0.3;
+/// About an equilibrium a search goes so many times further out than the amplitude at which families must be there: one
+/// that was born just below has left the family that it was born on.
+constexpr double beyond_births = 2.0;
 /// How far beside a direction its neighbours are sought: in a plane a tenth of the way to the next image (in parts of
 /// half that way), elsewhere so many radians. Not measured.
 constexpr double nudge_in_plane = 0.2;
 constexpr double nudge_in_space = 0.03;
 /// What a symmetry of an orbit found may be off, in parts of its amplitude: a broken one is off by all of it.
 constexpr double found_tolerance = 1e-2;
+/// Relative to the equilibrium's: periods of orbits of amplitude 0.01 differ by that or its square, or not at all.
+constexpr double same_period = 1e-7;
 
 // What decides which of several images of one direction is reported, and in which order directions are listed.
 struct Rank {
@@ -94,8 +106,16 @@ loop::Isotropy isotropy_along(const systems::Structure& system, const KernelActi
 }
 
 bool has_other_sides(const KernelActions& group, const Eigen::VectorXd& v) {
-  return !group.constant() &&
-         std::none_of(group.actions().begin(), group.actions().end(), [&](const Action& a) { return a.maps(v, -v); });
+  if (group.constant()) return group.image(v, -v, same_line) == 0;
+  return std::none_of(group.actions().begin(), group.actions().end(), [&](const Action& a) { return a.maps(v, -v); });
+}
+
+// What an equilibrium's direction has besides.
+Direction counted(const KernelActions& group, const Eigen::VectorXd& v, Direction direction) {
+  if (!group.constant()) return direction;
+  direction.images = group.images(v, same_image);
+  direction.repetitions = group.times_around(v, visible_harmonic);
+  return direction;
 }
 
 // The direction of a fixed line: made exactly symmetric, started where the reversor has phase 0.
@@ -125,7 +145,7 @@ Direction direction_along(const systems::Structure& system, const KernelActions&
   out.tangent *= scale;
   out.isotropy = isotropy_along(system, group, out.base, out.tangent, options);
   out.both_sides = has_other_sides(group, v);
-  return out;
+  return counted(group, v, std::move(out));
 }
 
 // A direction less its part along the time shift, which orbits that are found have none of.
@@ -170,7 +190,7 @@ std::vector<Eigen::VectorXd> fixed_lines(const KernelActions& group) {
     return (space.transpose() * v).norm() > 1.0 - outside;
   };
   for (const Eigen::MatrixXd& space : spaces)
-    if (space.cols() == 2 && contains(space, group.quarter() * space.col(0)) &&
+    if (space.cols() == 2 && contains(space, (group.turn() * space.col(0)).normalized()) &&
         std::none_of(lines.begin(), lines.end(), [&](const Eigen::VectorXd& v) { return contains(space, v); }))
       lines.emplace_back(space.col(0));
   return lines;
@@ -201,19 +221,25 @@ int rotations(const KernelActions& group) {
   return static_cast<int>(distinct.size());
 }
 
-// The amplitudes to search at.
-std::vector<double> search_amplitudes(int q, const loop::Loop& base, bool constant) {
-  const double scale = constant ? 1.0 : std::min(1.0, loop::rms_amplitude(base));
+// An amplitude and its doubles.
+std::vector<double> amplitudes_from(double first) {
+  std::vector<double> out{first};
+  for (double r = 2.0 * first; r < largest_amplitude; r *= 2.0) out.push_back(r);
+  return out;
+}
+
+// The amplitudes to search at about an orbit.
+std::vector<double> search_amplitudes(int q, const loop::Loop& base) {
+  const double scale = std::min(1.0, loop::rms_amplitude(base));
   const double least =
       std::clamp(q > 4 ? std::pow(fixing_term, 1.0 / (q - 2)) : 0.0, least_amplitude, largest_first_amplitude);
-  std::vector<double> out{scale * least};
-  if (q > 2)
-    for (double r = 2.0 * least; r < largest_amplitude; r *= 2.0) out.push_back(scale * r);
+  std::vector<double> out = q > 2 ? amplitudes_from(least) : std::vector{least};
+  for (double& r : out) r *= scale;
   return out;
 }
 
 /// The way to an orbit, its modes of unit length, and how long it is.
-std::pair<loop::Tangent, double> whole_way(const loop::Loop& base, const loop::Loop& orbit) {
+std::pair<loop::Tangent, double> way_to(const loop::Loop& base, const loop::Loop& orbit) {
   const loop::Loop there = loop::with_cutoff(orbit, base.cutoff);
   loop::Tangent way{there.modes, {orbit.period - base.period}};
   double square = 0.0;
@@ -224,6 +250,68 @@ std::pair<loop::Tangent, double> whole_way(const loop::Loop& base, const loop::L
   const double length = std::sqrt(square);
   way *= 1.0 / length;
   return {std::move(way), length};
+}
+
+/// From the base to an orbit found, T with it, and to the one on the other side where that was found.
+Direction whole_way(const loop::Loop& base, const loop::Loop& orbit, const std::optional<loop::Loop>& opposite = {}) {
+  Direction direction;
+  direction.base = loop::with_cutoff(base, std::max(orbit.cutoff, opposite ? opposite->cutoff : 0));
+  std::tie(direction.tangent, direction.amplitude) = way_to(direction.base, orbit);
+  if (opposite) direction.opposite = way_to(direction.base, *opposite).first;
+  return direction;
+}
+
+/// An orbit about an equilibrium started where the first reversor that it has, at any phase, has phase 0.
+loop::Loop from_reversor(const systems::Structure& system, const loop::Loop& orbit, double tolerance) {
+  for (const systems::Symmetry& reversor : system.reversors) {
+    const loop::Loop image = loop::transformed(orbit, reversor.map, true, 0.0);
+    const std::vector<loop::ShiftMinimum> minima = loop::shift_minima(image, orbit, system.angles);
+    if (!minima.empty() && minima.front().square < tolerance * tolerance)
+      return loop::time_shifted(orbit, -0.5 * minima.front().shift);
+  }
+  return orbit;
+}
+
+/// Where an orbit is at s = 0: that with the larger first coordinate that differs comes first.
+bool starts_before(const loop::Loop& a, const loop::Loop& b, double tolerance) {
+  const std::vector<double> here = loop::state_at(a, 0.0);
+  const std::vector<double> there = loop::state_at(b, 0.0);
+  for (std::size_t i = 0; i < here.size(); ++i)
+    if (std::abs(here[i] - there[i]) > tolerance) return here[i] > there[i];
+  return false;
+}
+
+/// The one of an orbit's images, in their standard phases, that comes first: a search finds any of them.
+loop::Loop first_image(const systems::Structure& system, const KernelActions& group, const loop::Loop& orbit,
+                       double tolerance) {
+  std::optional<loop::Loop> first;
+  for (const Action& action : group.actions()) {
+    if (action.element.shift_numerator != 0) continue;
+    loop::Loop image = from_reversor(system, loop::transformed(orbit, action.element), tolerance);
+    image = loop::in_standard_phase(system, image, loop::find_isotropy(system, image, tolerance, group.denominator()));
+    if (!first || starts_before(image, *first, tolerance)) first = std::move(image);
+  }
+  return first.value();
+}
+
+/// Those found about an equilibrium: by period, the longest first.
+std::vector<Direction> about_equilibrium(const systems::Structure& system, const KernelActions& group,
+                                         const loop::Loop& base, const SearchResult& result, double amplitude) {
+  const double tolerance = found_tolerance * amplitude;
+  std::vector<std::pair<loop::Loop, Direction>> found;
+  for (const FoundOrbit& orbit : result.found) {
+    loop::Loop loop = first_image(system, group, orbit.loop, tolerance);
+    Direction direction = whole_way(base, loop);
+    direction.isotropy = loop::find_isotropy(system, loop, tolerance, group.denominator());
+    found.emplace_back(std::move(loop), counted(group, orbit.coordinates, std::move(direction)));
+  }
+  std::stable_sort(found.begin(), found.end(), [&](const auto& a, const auto& b) {
+    if (std::abs(a.first.period - b.first.period) > same_period * base.period) return a.first.period > b.first.period;
+    return starts_before(a.first, b.first, tolerance);
+  });
+  std::vector<Direction> out;
+  for (auto& [loop, direction] : found) out.push_back(std::move(direction));
+  return out;
 }
 
 /// Directions at which orbits were found, as the whole way from the base to each: the smaller the term that fixes the
@@ -240,11 +328,7 @@ std::vector<Direction> by_angles(const systems::System& system, const KernelActi
                     q, angles.amplitude, angles.force, angles.noise));
   std::vector<Direction> out;
   for (const FoundOrbit& orbit : angles.found) {
-    Direction direction;
-    const int cutoff = std::max(orbit.loop.cutoff, orbit.opposite ? orbit.opposite->cutoff : 0);
-    direction.base = loop::with_cutoff(base, cutoff);
-    std::tie(direction.tangent, direction.amplitude) = whole_way(direction.base, orbit.loop);
-    if (orbit.opposite) direction.opposite = whole_way(direction.base, *orbit.opposite).first;
+    Direction direction = whole_way(base, orbit.loop, orbit.opposite);
     direction.isotropy =
         loop::find_isotropy(system.structure(), orbit.loop, found_tolerance * angles.amplitude, group.denominator());
     direction.both_sides = has_other_sides(group, orbit.coordinates);
@@ -254,8 +338,10 @@ std::vector<Direction> by_angles(const systems::System& system, const KernelActi
   return out;
 }
 
+// `not_isolated`, if given, takes how many of the search's orbits are not.
 std::vector<Direction> searched(const systems::System& system, const KernelActions& group, const loop::Loop& base,
-                                const std::vector<Eigen::VectorXd>& lines, const DirectionOptions& options) {
+                                const std::vector<Eigen::VectorXd>& lines, const DirectionOptions& options,
+                                int* not_isolated) {
   const bool plane = group.dimension() == 2;
   const int q = plane ? rotations(group) : 1;
   // What every vector of the kernel keeps: that of one without symmetry.
@@ -268,18 +354,24 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   const int expected = plane && q > 2 ? (q % 2 == 0 ? 2 : 1) : 0;
   SearchResult best;
   double amplitude = 0.0;
-  for (const double r : search_amplitudes(q, base, group.constant())) {
+  const bool constant = group.constant();
+  for (const double r : constant ? amplitudes_from(beyond_births * options.amplitude) : search_amplitudes(q, base)) {
     SearchResult result =
         search_directions(system, base, group, kept, start_directions(group.dimension(), q, options.seeds),
                           expected == 2 ? std::numbers::pi / q : 0.0, r, nudge, lines, options);
     const auto count = static_cast<int>(result.found.size());
     const bool possible = expected == 0 || count <= expected;
-    if (amplitude == 0.0 || (possible && result.found.size() > best.found.size())) {
+    if (amplitude == 0.0 || (possible && result.found.size() > best.found.size()) ||
+        (constant && result.found.size() == best.found.size() && result.not_isolated < best.not_isolated)) {
       best = possible ? std::move(result) : SearchResult{{}, result.not_isolated + count};
       amplitude = r;
     }
-    if (expected == 0 || static_cast<int>(best.found.size()) == expected) break;
+    if (constant ? best.not_isolated == 0 : expected == 0 || static_cast<int>(best.found.size()) == expected) break;
   }
+  if (constant)
+    std::erase_if(best.found, [&](const FoundOrbit& orbit) {
+      return is_born_beyond(system, base, group, kept, orbit.loop, options.amplitude, lines, options);
+    });
   if (by_angle && static_cast<int>(best.found.size()) < expected) {
     std::vector<Direction> out = by_angles(system, group, base, kept, q, options);
     if (static_cast<int>(out.size()) == expected) return out;
@@ -287,9 +379,12 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   const std::string seen = fmt::format(
       "a kernel of dimension {} (q = {}): {} directions found at amplitude {:.2g}, {} where orbits are not isolated",
       group.dimension(), q, best.found.size(), amplitude, best.not_isolated);
+  if (not_isolated != nullptr) *not_isolated = best.not_isolated;
   if (lines.empty() && best.found.empty())
     throw core::NumericalError(seen + "; they form a continuum, or the loss does not tell them apart");
-  if (best.not_isolated > 0 || static_cast<int>(best.found.size()) < expected) core::log_warning(seen);
+  if ((best.not_isolated > 0 && not_isolated == nullptr) || static_cast<int>(best.found.size()) < expected)
+    core::log_warning(seen);
+  if (group.constant()) return about_equilibrium(system.structure(), group, base, best, amplitude);
   std::vector<Direction> out;
   for (const FoundOrbit& orbit : best.found)
     out.push_back(
@@ -299,17 +394,9 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   return out;
 }
 
-}  // namespace
-
-loop::Tangent way_to_side(const loop::Tangent& tangent, const loop::Tangent& opposite, int side) {
-  if (side > 0) return tangent;
-  loop::Tangent out = opposite.empty() ? tangent : opposite;
-  if (opposite.empty()) out *= -1.0;
-  return out;
-}
-
-std::vector<Direction> directions(const systems::System& system, const loop::Loop& base, const loop::Isotropy& isotropy,
-                                  const std::vector<loop::Tangent>& kernel, const DirectionOptions& given) {
+std::vector<Direction> all_directions(const systems::System& system, const loop::Loop& base,
+                                      const loop::Isotropy& isotropy, const std::vector<loop::Tangent>& kernel,
+                                      const DirectionOptions& given, int* not_isolated) {
   loop::validate(base);
   core::require(base.time_map.is_identity(), "directions need a base loop that runs evenly in time");
   core::require(!kernel.empty() && kernel.size() <= largest_kernel, "directions need a kernel of dimension 1 to 8");
@@ -331,27 +418,48 @@ std::vector<Direction> directions(const systems::System& system, const loop::Loo
   const bool complete = kernel.size() == 1 || (kernel.size() == 2 && group.constant()) ||
                         (kernel.size() == 2 && !lines.empty() && rotations(group) > 2);
   if (!complete)
-    for (Direction& d : searched(system, group, base, lines, options)) out.push_back(std::move(d));
+    for (Direction& d : searched(system, group, base, lines, options, not_isolated)) out.push_back(std::move(d));
   return out;
 }
 
-std::vector<Direction> equilibrium_directions(const systems::System& system, std::span<const double> point,
-                                              double period, const Eigen::MatrixXcd& kernel, int cutoff,
-                                              const DirectionOptions& options) {
-  const loop::Loop base = loop::constant_loop(point, period, cutoff);
-  core::require(kernel.rows() == base.dimension, "oscillations need the dimension of the equilibrium");
+}  // namespace
+
+loop::Tangent way_to_side(const loop::Tangent& tangent, const loop::Tangent& opposite, int side) {
+  if (side > 0) return tangent;
+  loop::Tangent out = opposite.empty() ? tangent : opposite;
+  if (opposite.empty()) out *= -1.0;
+  return out;
+}
+
+std::vector<Direction> directions(const systems::System& system, const loop::Loop& base, const loop::Isotropy& isotropy,
+                                  const std::vector<loop::Tangent>& kernel, const DirectionOptions& options) {
+  return all_directions(system, base, isotropy, kernel, options, nullptr);
+}
+
+EquilibriumDirections equilibrium_directions(const systems::System& system, std::span<const double> point,
+                                             const starts::SharedPeriod& shared, int cutoff,
+                                             const DirectionOptions& options) {
+  const loop::Loop base = loop::constant_loop(point, shared.period, cutoff);
+  core::require(shared.kernel.rows() == base.dimension, "oscillations need the dimension of the equilibrium");
+  core::require(
+      shared.harmonics.size() == static_cast<std::size_t>(shared.kernel.cols()) &&
+          std::all_of(shared.harmonics.begin(), shared.harmonics.end(), [&](int k) { return k >= 1 && k <= cutoff; }),
+      "oscillations need a harmonic each, of the loops' cutoff at most");
   std::vector<loop::Tangent> vectors;
-  for (Eigen::Index c = 0; c < kernel.cols(); ++c)
+  for (Eigen::Index c = 0; c < shared.kernel.cols(); ++c)
     for (const std::complex<double> phase : {std::complex<double>(1.0, 0.0), std::complex<double>(0.0, 1.0)}) {
+      const int harmonic = shared.harmonics[static_cast<std::size_t>(c)];
       loop::Loop v = base;
       std::fill(v.modes.begin(), v.modes.end(), 0.0);
       for (int i = 0; i < v.dimension; ++i) {
-        v.cosine(1, i) = (phase * kernel(i, c)).real();
-        v.sine(1, i) = -(phase * kernel(i, c)).imag();
+        v.cosine(harmonic, i) = (phase * shared.kernel(i, c)).real();
+        v.sine(harmonic, i) = -(phase * shared.kernel(i, c)).imag();
       }
       vectors.push_back({v.modes, {}});
     }
-  return directions(system, base, {}, vectors, options);
+  EquilibriumDirections out;
+  out.found = all_directions(system, base, {}, vectors, options, &out.not_isolated);
+  return out;
 }
 
 }  // namespace orbweaver::bifurcation

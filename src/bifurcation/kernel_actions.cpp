@@ -14,12 +14,17 @@ namespace orbweaver::bifurcation {
 
 namespace {
 
-/// Kernel vectors are orthonormal and an oscillation about an equilibrium is of harmonic 1 to this, or the caller is
+/// Kernel vectors are orthonormal and oscillations about an equilibrium of one harmonic to this, or the caller is
 /// wrong.
 constexpr double orthonormal = 1e-6;
 constexpr double pure_oscillation = 1e-9;
 
 constexpr double same_vector = 1e-3;  // kernel vectors are good to kernel_tolerance
+
+/// Time shifts at which an overlap of vectors is looked at first, per harmonic: between them its maximum is found by
+/// Newton's method in as many steps.
+constexpr int shifts_a_harmonic = 12;
+constexpr int newton_steps = 5;
 
 // The element's place among the system's equivariances or reversors; -1: the identity; their number: a product of some.
 int declared_place(const systems::Structure& structure, const loop::SymmetryElement& element) {
@@ -62,6 +67,39 @@ int repetitions(const loop::Loop& loop, double tolerance) {
   return divisor;
 }
 
+/// The harmonic of a kernel vector of an equilibrium.
+int harmonic_of(const loop::Loop& vector) {
+  int harmonic = 0;
+  double largest = 0.0;
+  double all = 0.0;
+  for (int k = 0; k <= vector.cutoff; ++k) {
+    double square = 0.0;
+    for (int i = 0; i < vector.dimension; ++i)
+      square += vector.cosine(k, i) * vector.cosine(k, i) + (k > 0 ? vector.sine(k, i) * vector.sine(k, i) : 0.0);
+    all += square;
+    if (square > largest) {
+      largest = square;
+      harmonic = k;
+    }
+  }
+  core::require(harmonic > 0 && std::sqrt(all - largest) < pure_oscillation * std::sqrt(all),
+                "kernel vectors of an equilibrium must be of one harmonic");
+  return harmonic;
+}
+
+/// d/ds.
+loop::Loop derivative(loop::Loop loop) {
+  for (int i = 0; i < loop.dimension; ++i) {
+    loop.cosine(0, i) = 0.0;
+    for (int k = 1; k <= loop.cutoff; ++k) {
+      const double cosine = loop.cosine(k, i);
+      loop.cosine(k, i) = k * loop.sine(k, i);
+      loop.sine(k, i) = -k * cosine;
+    }
+  }
+  return loop;
+}
+
 }  // namespace
 
 bool Action::maps(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const {
@@ -83,14 +121,20 @@ KernelActions::KernelActions(const systems::Structure& system, const loop::Loop&
                 "kernel vectors must be orthonormal");
   const int times = repetitions(base, options.symmetry_tolerance);
   _constant = times == 0;
-  if (_constant)
-    for (const loop::Loop& v : vectors)
-      core::require(repetitions(v, pure_oscillation) == 1 &&
-                        loop::rms_amplitude(loop::with_cutoff(v, 1)) > (1.0 - pure_oscillation) / std::sqrt(2.0),
-                    "kernel vectors of an equilibrium must be of harmonic 1");
-
   const loop::Isotropy spatial = loop::SymmetryGroup::of_space(system).elements();
   _denominator = shared_order(spatial, system.angles) * std::max(times, 1);
+  if (_constant) {
+    Eigen::MatrixXd turned(_kernel.rows(), n);
+    int shared_harmonics = 1;
+    for (Eigen::Index c = 0; c < n; ++c) {
+      const loop::Loop& v = vectors[static_cast<std::size_t>(c)];
+      _harmonics.push_back(harmonic_of(v));
+      shared_harmonics = std::lcm(shared_harmonics, _harmonics.back());
+      turned.col(c) = Eigen::Map<const Eigen::VectorXd>(derivative(v).modes.data(), _kernel.rows());
+    }
+    _turn = _kernel.transpose() * turned;
+    _denominator *= shared_harmonics;
+  }
   for (const loop::SymmetryElement& s : spatial)
     for (int shift = 0; shift < _denominator; ++shift) {
       const int divisor = std::gcd(shift, _denominator);
@@ -111,7 +155,6 @@ KernelActions::KernelActions(const systems::Structure& system, const loop::Loop&
                         "isometric to {:.2g}; the kernel is incomplete, inaccurate or not transverse to the time shift",
                         loop::to_text({element}), n, gap, skew));
       _actions.push_back({element, declared, action});
-      if (_constant && declared < 0 && 4 * shift == _denominator) _quarter = action;
     }
 }
 
@@ -125,18 +168,69 @@ Eigen::VectorXd KernelActions::coordinates_of(std::span<const double> modes) con
   return _kernel.transpose() * Eigen::Map<const Eigen::VectorXd>(modes.data(), _kernel.rows());
 }
 
+/// A constant loop may be shifted by any time phi: the part of harmonic k of the overlap is a cos k phi + b sin k phi.
+double KernelActions::largest_overlap(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const {
+  const int highest = *std::max_element(_harmonics.begin(), _harmonics.end());
+  std::vector<double> a(static_cast<std::size_t>(highest) + 1, 0.0);
+  std::vector<double> b(a);
+  const Eigen::VectorXd turned = _turn * from;
+  for (std::size_t c = 0; c < _harmonics.size(); ++c) {
+    const auto at = static_cast<Eigen::Index>(c);
+    const auto k = static_cast<std::size_t>(_harmonics[c]);
+    a[k] += to(at) * from(at);
+    b[k] += to(at) * turned(at) / _harmonics[c];
+  }
+  if (std::count(_harmonics.begin(), _harmonics.end(), highest) == dimension()) return std::hypot(a.back(), b.back());
+  const auto at = [&](double phi, int order) {  // a derivative
+    double sum = 0.0;
+    for (std::size_t k = 1; k < a.size(); ++k) {
+      const double angle = static_cast<double>(k) * phi + 0.5 * std::numbers::pi * order;
+      sum += std::pow(k, order) * (a[k] * std::cos(angle) + b[k] * std::sin(angle));
+    }
+    return sum;
+  };
+  double largest = -1.0;
+  double phi = 0.0;
+  for (int n = 0; n < shifts_a_harmonic * highest; ++n) {
+    const double here = 2.0 * std::numbers::pi * n / (shifts_a_harmonic * highest);
+    if (const double overlap = at(here, 0); overlap > largest) {
+      largest = overlap;
+      phi = here;
+    }
+  }
+  for (int n = 0; n < newton_steps && at(phi, 2) < 0.0; ++n) phi -= at(phi, 1) / at(phi, 2);
+  return std::max(largest, at(phi, 0));
+}
+
 int KernelActions::image(const Eigen::VectorXd& from, const Eigen::VectorXd& to, double tolerance) const {
   const double least = 1.0 - 0.5 * tolerance * tolerance;
   bool opposite = false;
   for (const Action& action : _actions) {
     const Eigen::VectorXd moved = action.matrix * from;
-    const double along = to.dot(moved);
-    // A constant loop may be shifted by any time: compared are the complex amplitudes.
-    const double overlap = _constant ? std::hypot(along, to.dot(_quarter * moved)) : along;
+    const double overlap = _constant ? largest_overlap(moved, to) : to.dot(moved);
     if (overlap > least) return 1;
-    if (overlap < -least) opposite = true;
+    if (!_constant && overlap < -least) opposite = true;
   }
   return opposite ? -1 : 0;
+}
+
+int KernelActions::images(const Eigen::VectorXd& of, double tolerance) const {
+  const double least = 1.0 - 0.5 * tolerance * tolerance;
+  std::vector<Eigen::VectorXd> distinct;
+  for (const Action& action : _actions) {
+    const Eigen::VectorXd moved = action.matrix * of;
+    if (std::none_of(distinct.begin(), distinct.end(),
+                     [&](const Eigen::VectorXd& known) { return largest_overlap(moved, known) > least; }))
+      distinct.push_back(moved);
+  }
+  return static_cast<int>(distinct.size());
+}
+
+int KernelActions::times_around(const Eigen::VectorXd& of, double tolerance) const {
+  int divisor = 0;
+  for (std::size_t c = 0; c < _harmonics.size(); ++c)
+    if (std::abs(of(static_cast<Eigen::Index>(c))) > tolerance) divisor = std::gcd(divisor, _harmonics[c]);
+  return std::max(divisor, 1);
 }
 
 }  // namespace orbweaver::bifurcation

@@ -30,19 +30,26 @@ class KernelActions {
   [[nodiscard]] int dimension() const { return static_cast<int>(_kernel.cols()); }
   /// The denominator that all shifts share.
   [[nodiscard]] int denominator() const { return _denominator; }
-  /// The shift by a quarter of the period, for constant loops.
-  [[nodiscard]] const Eigen::MatrixXd& quarter() const { return _quarter; }
+  /// How the coordinates change with a time shift, per radian of s, for constant loops: skew.
+  [[nodiscard]] const Eigen::MatrixXd& turn() const { return _turn; }
   /// The kernel vector with these coordinates, and back.
   [[nodiscard]] loop::Tangent vector_at(const Eigen::VectorXd& coordinates) const;
   [[nodiscard]] Eigen::VectorXd coordinates_of(std::span<const double> modes) const;
   /// +1 if a symmetry maps `from` to `to`, -1 if only to -`to`, 0 if neither; unit vectors, as far apart as
-  /// `tolerance`.
+  /// `tolerance`. For constant loops, whose two sides are different directions, not -1.
   [[nodiscard]] int image(const Eigen::VectorXd& from, const Eigen::VectorXd& to, double tolerance) const;
+  /// For constant loops: how many images of a unit vector time shifts do not map to one another, as far apart as
+  /// `tolerance`; and how many times it goes around its own period.
+  [[nodiscard]] int images(const Eigen::VectorXd& of, double tolerance) const;
+  [[nodiscard]] int times_around(const Eigen::VectorXd& of, double tolerance) const;
 
  private:
+  [[nodiscard]] double largest_overlap(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const;
+
   Eigen::MatrixXd _kernel;  // modes x dimension
   std::vector<Action> _actions;
-  Eigen::MatrixXd _quarter;
+  std::vector<int> _harmonics;  // of the kernel's vectors, for constant loops
+  Eigen::MatrixXd _turn;
   bool _constant = false;
   int _denominator = 1;
 };

@@ -21,7 +21,10 @@ constexpr double largest_tilt = 1.0;     // radians; an orbit that leaves the ba
 constexpr double farthest_along = 10.0;  // of the part in the kernel: further along the family it is another place
 constexpr int most_pins = 8;             // each a Newton solve; not measured
 constexpr double returned = 0.2;         // of the nudge: what remains of it at an isolated direction, which is settled
-constexpr double least_length = 0.1;     // of a normal vector: shorter ones are rounded to few directions
+/// A family that comes so near to another direction (in radians) is born there, at an amplitude smaller by its square.
+constexpr double touching = 0.05;
+constexpr int most_halvings = 10;     // of the distance: from 1 to 0.001 radians
+constexpr double least_length = 0.1;  // of a normal vector: shorter ones are rounded to few directions
 
 // The radical inverse of n in a base: a number in (0, 1).
 double halton(int n, int base) {
@@ -76,7 +79,7 @@ struct Search {
     Eigen::MatrixXd along = v;
     if (group.constant()) {
       along.conservativeResize(Eigen::NoChange, 2);
-      along.col(1) = group.quarter() * v;
+      along.col(1) = group.turn() * v;
     }
     const Eigen::Index others = v.size() - along.cols();
     const Eigen::MatrixXd axes = along.householderQr().householderQ();
@@ -128,11 +131,34 @@ SearchResult search_directions(const systems::System& system, const loop::Loop& 
       continue;
     }
     taken.push_back(orbit->coordinates);
-    if (partner > 0.0)
-      starts.emplace_back(Eigen::Rotation2Dd(partner) * Eigen::Vector2d(orbit->coordinates(0), orbit->coordinates(1)));
+    if (partner > 0.0) starts.push_back(Eigen::Rotation2Dd(partner).toRotationMatrix() * orbit->coordinates);
     out.found.push_back(std::move(*orbit));
   }
   return out;
+}
+
+bool is_born_beyond(const systems::System& system, const loop::Loop& base, const KernelActions& group,
+                    const loop::Isotropy& isotropy, loop::Loop orbit, double amplitude,
+                    const std::vector<Eigen::VectorXd>& known, const DirectionOptions& options) {
+  for (int n = 0; n < most_halvings; ++n) {
+    const Eigen::VectorXd inside = gap_between(base, orbit, group, {}).inside;
+    if (inside.norm() <= amplitude) return false;
+    Eigen::VectorXd aside = inside;
+    for (const Eigen::VectorXd& v : known)
+      for (const Action& action : group.actions()) {
+        const Eigen::VectorXd image = action.matrix * v;
+        const Eigen::VectorXd later = (group.turn() * image).normalized();
+        const Eigen::VectorXd rest = inside - image.dot(inside) * image - later.dot(inside) * later;
+        if (rest.norm() < aside.norm()) aside = rest;
+      }
+    if (aside.norm() < touching * inside.norm()) return true;
+    const loop::Tangent off = loop::with_cutoff(group.vector_at(aside.normalized()), orbit.cutoff, orbit.dimension);
+    const corrector::Result nearer =
+        held_orbit(system, loop::moved(orbit, off, -0.5 * aside.norm()), {off}, {}, isotropy, options.corrector);
+    if (!nearer.converged()) return false;
+    orbit = nearer.loop;
+  }
+  return false;
 }
 
 std::vector<Eigen::VectorXd> start_directions(int dimension, int order, int count) {

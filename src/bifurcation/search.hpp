@@ -42,6 +42,13 @@ struct SearchResult {
                                              double nudge, const std::vector<Eigen::VectorXd>& known,
                                              const DirectionOptions& options);
 
+/// Whether an orbit found about an equilibrium is of a family that is born on one of the directions `known` further out
+/// than the given amplitude: followed towards them, its part in the kernel keeps a greater length. Also false where it
+/// cannot be followed.
+[[nodiscard]] bool is_born_beyond(const systems::System& system, const loop::Loop& base, const KernelActions& group,
+                                  const loop::Isotropy& isotropy, loop::Loop orbit, double amplitude,
+                                  const std::vector<Eigen::VectorXd>& known, const DirectionOptions& options);
+
 /// Unit vectors: evenly over the angles [0, 2 pi / order) of a plane, or from a Halton sequence on a sphere of more
 /// dimensions (four times as many in three, doubling with each).
 [[nodiscard]] std::vector<Eigen::VectorXd> start_directions(int dimension, int order, int count);

@@ -2,6 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "orbweaver/bifurcation/directions.hpp"
 #include "orbweaver/core/error.hpp"
@@ -10,56 +17,168 @@ namespace orbweaver::bifurcation {
 
 namespace {
 
-// Modes of an oscillation at harmonic 1, scaled to |dz(s = 0)| = 1.
-loop::Tangent at_unit_start(loop::Tangent tangent, std::size_t dimension) {
-  std::vector<double>& modes = tangent.modes;
-  double square = 0.0;
-  for (std::size_t i = 0; i < dimension; ++i) square += modes[dimension + i] * modes[dimension + i];
-  if (std::sqrt(square) > starts::still_at_start)
-    for (double& v : modes) v /= std::sqrt(square);
+constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
+/// Families that take places of their own: one, or some that are left out.
+struct Entry {
+  double period = 0.0;
+  std::size_t oscillation = none;  // the first of its period
+  std::optional<SmallOscillation> family;
+  LeftOut left_out;
+  int images = 1;
+};
+
+// Scaled to |dz(s = 0)| = 1.
+loop::Tangent at_unit_start(const loop::Loop& base, loop::Tangent tangent) {
+  const double length = loop::change_at_start(base, tangent);
+  if (length > starts::still_at_start) tangent *= 1.0 / length;
   return tangent;
 }
 
-int families_of(const systems::System& system, const starts::SweepResult& sweep, const starts::Oscillation& oscillation,
-                int cutoff) {
-  if (oscillation.multiplicity() == 1) return 1;
-  try {
-    return static_cast<int>(
-        equilibrium_directions(system, sweep.fixed_point, oscillation.period, oscillation.kernel, cutoff).size());
-  } catch (const core::NumericalError&) {
-    return oscillation.multiplicity();  // a place each, of families that are not asked for
+class Gatherer {
+ public:
+  Gatherer(const systems::System& system, const starts::SweepResult& sweep, int cutoff)
+      : _system(system), _sweep(sweep), _cutoff(cutoff) {
+    _options.amplitude = std::max(sweep.range.amplitude, starts::least_search_amplitude);
   }
-}
+
+  SmallOscillations run() {
+    for (const starts::SharedPeriod& shared : _sweep.left_out) add_left_out(shared);
+    for (const starts::UndecidedEigenvalues& eigenvalues : _sweep.linear.undecided)
+      if (std::isfinite(eigenvalues.period()))
+        _entries.push_back({eigenvalues.period(), none, {}, {eigenvalues.period(), 0, eigenvalues.count, true}});
+    for (const starts::NormalMode& mode : _sweep.modes)
+      _entries.push_back({mode.period, first_with(mode.period), SmallOscillation{mode}, {}});
+    for (const starts::DegenerateMode& mode : _sweep.degenerate) add(mode);
+    std::stable_sort(_entries.begin(), _entries.end(),
+                     [](const Entry& a, const Entry& b) { return a.period > b.period; });
+    place();
+    for (std::size_t n = 0; n < _sweep.degenerate.size(); ++n) {
+      const starts::DegenerateMode& mode = _sweep.degenerate[n];
+      if (mode.members.size() > 1) set_amplitudes(mode);
+      _all.kernels.push_back(kernel_of(mode));
+      _all.kernels.back().not_isolated = _not_isolated[n];
+    }
+    for (Entry& entry : _entries)
+      if (entry.family)
+        _all.families.push_back(std::move(*entry.family));
+      else
+        _all.left_out.push_back(entry.left_out);
+    return std::move(_all);
+  }
+
+ private:
+  [[nodiscard]] EquilibriumDirections directions_of(const starts::SharedPeriod& shared) const {
+    EquilibriumDirections all = equilibrium_directions(_system, _sweep.fixed_point, shared, _cutoff, _options);
+    std::erase_if(all.found, [](const Direction& direction) { return direction.repetitions > 1; });
+    return all;
+  }
+
+  [[nodiscard]] std::size_t first_with(double period) const {
+    const auto& all = _sweep.linear.oscillations;
+    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& o) { return o.period == period; });
+    return static_cast<std::size_t>(found - all.begin());
+  }
+
+  [[nodiscard]] int families_of(const starts::SharedPeriod& shared) const {
+    if (shared.is_simple()) return 1;
+    try {
+      return std::max(1, static_cast<int>(directions_of(shared).found.size()));
+    } catch (const core::NumericalError&) {  // a place each, of families that are not asked for
+      return static_cast<int>(std::count(shared.harmonics.begin(), shared.harmonics.end(), 1));
+    }
+  }
+
+  void add_left_out(const starts::SharedPeriod& shared) {
+    _entries.push_back(
+        {shared.period, shared.members.front().oscillation, {}, {shared.period, 0, families_of(shared)}});
+  }
+
+  void add(const starts::DegenerateMode& mode) {
+    const EquilibriumDirections directions = directions_of(mode);
+    _not_isolated.push_back(directions.not_isolated);
+    if (directions.found.empty()) add_without_family(mode);
+    for (const Direction& direction : directions.found) {
+      const loop::Tangent tangent = at_unit_start(direction.base, direction.tangent);
+      SmallOscillation family{{mode.period, mode.grid_period, mode.residual, tangent, tangent, direction.isotropy}};
+      family.both_sides = direction.both_sides;
+      if (direction.amplitude > 0.0)
+        family.amplitude = direction.amplitude * loop::change_at_start(direction.base, direction.tangent);
+      _entries.push_back({mode.period, mode.members.front().oscillation, std::move(family), {}, direction.images});
+    }
+  }
+
+  void add_without_family(const starts::SharedPeriod& shared) {
+    _entries.push_back({shared.period, shared.members.front().oscillation, {}, {shared.period, 0, 1, true}});
+    std::vector<std::string> others;
+    for (const starts::SharedPeriod::Member& member : shared.members)
+      if (member.harmonic > 1)
+        others.push_back(fmt::format("{} times T = {:.12g}", member.harmonic,
+                                     _sweep.linear.oscillations[member.oscillation].period * _system.scales().time));
+    _all.without_family.push_back(
+        {shared.period,
+         fmt::format("a resonance ({}): no family leaves along this oscillation", fmt::join(others, ", "))});
+  }
+
+  void place() {
+    for (Entry& entry : _entries) {
+      (entry.family ? entry.family->place : entry.left_out.place) = _all.count;
+      _all.count += entry.family ? 1 : entry.left_out.families;
+    }
+  }
+
+  // Whether the entry's own period is that of a member of the kernel, and how many times it goes around.
+  [[nodiscard]] int repetitions_in(const Entry& entry, const starts::SharedPeriod& shared) const {
+    for (const starts::SharedPeriod::Member& member : shared.members)
+      if (member.oscillation == entry.oscillation) return member.harmonic;
+    return 0;
+  }
+
+  // All families of a kernel start at one length in it: what is born further out is a crossing on one of them, what was
+  // born further in is among those found.
+  void set_amplitudes(const starts::SharedPeriod& shared) {
+    for (Entry& entry : _entries) {
+      if (!entry.family || repetitions_in(entry, shared) == 0 || entry.family->amplitude > 0.0) continue;
+      const loop::Tangent& direction = entry.family->mode.direction;
+      const loop::Loop base = loop::constant_loop(_sweep.fixed_point, entry.period, cutoff_of(direction));
+      entry.family->amplitude =
+          _options.amplitude * loop::change_at_start(base, direction) / loop::Tangent{direction.modes, {}}.norm();
+    }
+  }
+
+  [[nodiscard]] int cutoff_of(const loop::Tangent& direction) const {
+    return (static_cast<int>(direction.modes.size() / _sweep.fixed_point.size()) - 1) / 2;
+  }
+
+  [[nodiscard]] OscillationKernel kernel_of(const starts::SharedPeriod& shared) const {
+    OscillationKernel kernel{shared.period, static_cast<int>(shared.kernel.cols()), shared.is_definite, 0, {}};
+    for (const Entry& entry : _entries) {
+      const int repetitions = repetitions_in(entry, shared);
+      if (repetitions == 0) continue;
+      if (!entry.family && entry.left_out.is_told) continue;
+      if (entry.family)
+        kernel.families.push_back(
+            {entry.family->place, entry.images * (entry.family->both_sides ? 2 : 1), repetitions});
+      else
+        for (int n = 0; n < entry.left_out.families; ++n)
+          kernel.families.push_back({entry.left_out.place + n, 1, repetitions});
+    }
+    return kernel;
+  }
+
+  const systems::System& _system;
+  const starts::SweepResult& _sweep;
+  int _cutoff;
+  DirectionOptions _options;
+  std::vector<Entry> _entries;
+  std::vector<int> _not_isolated;  // one a kernel
+  SmallOscillations _all;
+};
 
 }  // namespace
 
 SmallOscillations small_oscillations(const systems::System& system, const starts::SweepResult& sweep, int cutoff) {
-  SmallOscillations all;
-  for (const starts::NormalMode& mode : sweep.modes) all.families.push_back({mode, 0});
-  for (const starts::DegenerateMode& mode : sweep.degenerate)
-    for (const Direction& direction :
-         equilibrium_directions(system, sweep.fixed_point, mode.period, mode.kernel, cutoff)) {
-      const loop::Tangent tangent = at_unit_start(direction.tangent, sweep.fixed_point.size());
-      all.families.push_back({{mode.period, mode.grid_period, mode.residual, tangent, tangent, direction.isotropy}, 0});
-    }
-  std::stable_sort(all.families.begin(), all.families.end(),
-                   [](const auto& a, const auto& b) { return a.mode.period > b.mode.period; });
-  for (const starts::Oscillation& oscillation : sweep.left_out)
-    all.left_out.push_back({oscillation.period, 0, families_of(system, sweep, oscillation, cutoff)});
-  for (const starts::UndecidedEigenvalues& eigenvalues : sweep.linear.undecided)
-    if (std::isfinite(eigenvalues.period())) all.left_out.push_back({eigenvalues.period(), 0, eigenvalues.count, true});
-  std::stable_sort(all.left_out.begin(), all.left_out.end(),
-                   [](const LeftOut& a, const LeftOut& b) { return a.period > b.period; });
-  auto family = all.families.begin();
-  auto left_out = all.left_out.begin();
-  while (family != all.families.end() || left_out != all.left_out.end())
-    if (left_out == all.left_out.end() || (family != all.families.end() && family->mode.period > left_out->period)) {
-      (family++)->place = all.count++;
-    } else {
-      left_out->place = all.count;
-      all.count += (left_out++)->families;
-    }
-  return all;
+  return Gatherer(system, sweep, cutoff).run();
 }
 
 }  // namespace orbweaver::bifurcation

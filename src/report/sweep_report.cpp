@@ -32,8 +32,10 @@ double deviation(const systems::System& system, const std::vector<double>& point
   const double step = angles ? table_step : plain_step;
   std::vector<double> start = point;
   const std::size_t d = point.size();
-  for (std::size_t i = 0; i < d; ++i)
-    start[i] += step * direction.modes[d + i];  // a_1: the only cosine of a normal mode
+  const auto cutoff = static_cast<int>(direction.modes.size() / d - 1) / 2;
+  const loop::Loop change = loop::perturbation(loop::constant_loop(point, period, cutoff), direction);
+  const std::vector<double> at_start = loop::state_at(change, 0.0);
+  for (std::size_t i = 0; i < d; ++i) start[i] += step * at_start[i];
   const std::vector<double> end = certificate::integrate(system, start, period, certificate::Options{}.tolerance);
   double sum = 0.0;
   for (std::size_t i = 0; i < d; ++i) sum += (end[i] - start[i]) * (end[i] - start[i]);
@@ -78,7 +80,7 @@ std::vector<EquilibriumReport> sweep_report(const scene::Scene& scene) {
   const std::vector<std::vector<double>> points = starts::find_fixed_points(*system, scaled.scene().fixed_points.grid);
   systems::require_identities(*system, points);
   for (const std::vector<double>& point : points) {
-    const starts::SweepOptions options = survey::sweep_options(scaled.scene().sweep, *system, point);
+    const starts::SweepOptions options = survey::sweep_options(scaled.scene(), *system, point);
     EquilibriumReport report{point,
                              survey::point_text(*system, point),
                              system->structure().has_angles(),
@@ -89,14 +91,17 @@ std::vector<EquilibriumReport> sweep_report(const scene::Scene& scene) {
       return survey::base_family_name(scaled.scene(), *system, point, static_cast<int>(reports.size()), place);
     };
     const bifurcation::SmallOscillations all = bifurcation::small_oscillations(*system, report.sweep, options.cutoff);
-    for (const auto& [mode, place] : all.families)
-      report.modes.push_back({name(place), mode.period * time, mode.grid_period * time,
+    for (const auto& family : all.families) {
+      const starts::NormalMode& mode = family.mode;
+      report.modes.push_back({name(family.place), mode.period * time, mode.grid_period * time,
                               deviation(*system, point, mode.direction, mode.period),
                               deviation(*system, point, mode.grid_direction, mode.grid_period),
                               loop::to_text(mode.isotropy)});
+    }
     for (const bifurcation::LeftOut& left_out : all.left_out)
-      for (int n = 0; n < left_out.families && !left_out.undecided; ++n)
+      for (int n = 0; n < left_out.families && !left_out.is_told; ++n)
         report.left_out.push_back({name(left_out.place + n), left_out.period * time});
+    for (const starts::RejectedDip& dip : all.without_family) report.sweep.rejected.push_back(dip);
     tell_in_units(report, system->scales());
     reports.push_back(std::move(report));
   }

@@ -12,6 +12,7 @@
 #include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/systems/scaled_system.hpp"
+#include "second_derivatives.hpp"
 
 namespace orbweaver::starts {
 
@@ -35,8 +36,6 @@ constexpr double least_amplitude = -60.0;
 constexpr double largest_amplitude = 60.0;
 constexpr double amplitude_step = 1.0;
 constexpr int bisections = 20;
-/// Step of the differences that give the second derivatives of a conserved quantity, in parts of the scales.
-constexpr double difference_step = 0x1p-10;
 /// Grid points at which scales for the search of equilibria are taken, spread over the grid.
 constexpr std::size_t most_grid_points = 64;
 
@@ -260,21 +259,9 @@ double nearest_power(double log) { return std::exp2(std::round(log)); }
 /// log2 of the scale of conserved quantity k: the geometric mean of the eigenvalues of its second derivatives in the
 /// scales of the coordinates; NaN where they vanish.
 double log_quantity(const systems::System& system, int k, const VectorXd& point, const systems::Scales& scales) {
-  const Index d = point.size();
-  MatrixXd second(d, d);
-  VectorXd z = point;
-  VectorXd above(d);
-  VectorXd below(d);
-  for (Index i = 0; i < d; ++i) {
-    const double step = difference_step * scales.coordinate(static_cast<std::size_t>(i));
-    z(i) = point(i) + step;
-    system.conserved_gradients(k, 1, z.data(), above.data());
-    z(i) = point(i) - step;
-    system.conserved_gradients(k, 1, z.data(), below.data());
-    z(i) = point(i);
-    for (Index l = 0; l < d; ++l)
-      second(l, i) = (above(l) - below(l)) / (2.0 * difference_step) * scales.coordinate(static_cast<std::size_t>(l));
-  }
+  const VectorXd in_scales = Eigen::Map<const VectorXd>(scales.coordinates.data(), point.size());
+  const MatrixXd second = in_scales.asDiagonal() * second_derivatives(system, k, point, difference_step * in_scales) *
+                          in_scales.asDiagonal();
   if (!second.allFinite()) return std::numeric_limits<double>::quiet_NaN();
   const VectorXd moduli = Eigen::JacobiSVD<MatrixXd>(second).singularValues();
   double sum = 0.0;

@@ -76,11 +76,12 @@ class Sweep {
 
   SweepResult run() {
     take_samples();
-    for (const Oscillation& oscillation : _result.linear.oscillations)
-      if (is_inside(oscillation.period))
-        add(oscillation);
+    const double amplitude = std::max(_result.range.amplitude, least_search_amplitude);
+    for (SharedPeriod& shared : shared_periods(_system, _result.fixed_point, _result.linear, amplitude))
+      if (is_inside(shared.period))
+        add(std::move(shared));
       else
-        _result.left_out.push_back(oscillation);
+        _result.left_out.push_back(std::move(shared));
     explain_dips();
     add_doubts();
     return std::move(_result);
@@ -130,19 +131,19 @@ class Sweep {
     return above->point.eigenvalue <= below.eigenvalue ? above->point.period : below.period;
   }
 
-  void add(const Oscillation& oscillation) {
+  void add(SharedPeriod shared) {
     const systems::Structure& structure = _system.structure();
     const int cutoff = _result.range.cutoff;
-    const double seen = grid_period(oscillation.period);
-    if (oscillation.multiplicity() > 1) {
-      _result.degenerate.push_back({oscillation.period, seen, oscillation.residual, oscillation.kernel});
+    const double seen = grid_period(shared.period);
+    if (!shared.is_simple()) {
+      _result.degenerate.push_back({std::move(shared), seen});
       return;
     }
     NormalMode mode;
-    mode.period = oscillation.period;
+    mode.period = shared.period;
     mode.grid_period = seen;
-    mode.residual = oscillation.residual;
-    mode.direction = direction_of(with_standard_phase(structure, oscillation.kernel.col(0)), cutoff);
+    mode.residual = shared.residual;
+    mode.direction = direction_of(with_standard_phase(structure, shared.kernel.col(0)), cutoff);
     mode.grid_direction = direction_of(with_standard_phase(structure, _hessian.first_harmonic(seen)), cutoff);
     mode.isotropy = isotropy_of(structure, _result.fixed_point, mode.period, mode.direction, cutoff);
     _result.modes.push_back(std::move(mode));
@@ -179,7 +180,7 @@ class Sweep {
     const LinearModes& linear = _result.linear;
     for (const Resonance& resonance : linear.resonances) {
       const double period = linear.oscillations[resonance.slow].period;
-      if (is_inside(period))
+      if (resonance.ratio > strongest_harmonic && is_inside(period))
         _result.rejected.push_back(
             {period, fmt::format("a resonance: {} times the period of the oscillation with T = {:.12g}; families that "
                                  "start along combinations of the two are not looked for",

@@ -20,7 +20,7 @@ std::vector<Direction> directions_at_origin(const systems::System& system) {
   const starts::SweepResult swept = starts::sweep(system, origin, {.period_from = 6.0, .period_to = 6.5, .step = 0.05});
   EXPECT_EQ(swept.degenerate.size(), 1u);
   const starts::DegenerateMode& mode = swept.degenerate.at(0);
-  return equilibrium_directions(system, origin, mode.period, mode.kernel, 10);
+  return equilibrium_directions(system, origin, mode, 10).found;
 }
 
 std::vector<std::string> isotropies(const std::vector<Direction>& directions) {
@@ -87,12 +87,13 @@ TEST(Equilibrium, ThreeFamiliesUpToSymmetryLeaveHenonHeiles) {
   EXPECT_GT(std::abs(loop::state_at(ends[1].loop, 0.0)[0]), 0.1);
 }
 
-/// Two equal oscillators, H = (p^2 + q^2) / 2 + quartic (q1^4 + q2^4) / 4 + coupling q1^2 q2^2 / 2; state q1, q2, p1,
-/// p2. Families from the origin: along an axis (2), along a diagonal (2), and loops (2, one up to reversal).
+/// Two oscillators, equal but for the detuning (of the second's stiffness), H = (p^2 + q^2) / 2 + quartic (q1^4 +
+/// q2^4) / 4 + coupling q1^2 q2^2 / 2; state q1, q2, p1, p2. Families from the origin: along an axis (2), along a
+/// diagonal (2), and loops (2, one up to reversal).
 class CoupledOscillators final : public test::PointSystem {
  public:
-  CoupledOscillators(systems::Structure structure, double coupling, double quartic = 1.0)
-      : PointSystem(std::move(structure)), _coupling(coupling), _quartic(quartic) {}
+  CoupledOscillators(systems::Structure structure, double coupling, double quartic = 1.0, double detuning = 0.0)
+      : PointSystem(std::move(structure)), _coupling(coupling), _quartic(quartic), _second(1.0 + detuning) {}
 
   [[nodiscard]] Eigen::VectorXd field_at(const Eigen::VectorXd& z) const override {
     const Eigen::Vector4d g = gradient_at(z);
@@ -103,15 +104,15 @@ class CoupledOscillators final : public test::PointSystem {
     a.topRightCorner<2, 2>().setIdentity();
     const double cross = -2 * _coupling * z(0) * z(1);
     a.bottomLeftCorner<2, 2>() << -1 - 3 * _quartic * z(0) * z(0) - _coupling * z(1) * z(1), cross, cross,
-        -1 - 3 * _quartic * z(1) * z(1) - _coupling * z(0) * z(0);
+        -_second - 3 * _quartic * z(1) * z(1) - _coupling * z(0) * z(0);
     return a;
   }
   [[nodiscard]] Eigen::VectorXd gradient_at(const Eigen::VectorXd& z) const override {
     return Eigen::Vector4d(z(0) + _quartic * std::pow(z(0), 3) + _coupling * z(0) * z(1) * z(1),
-                           z(1) + _quartic * std::pow(z(1), 3) + _coupling * z(1) * z(0) * z(0), z(2), z(3));
+                           _second * z(1) + _quartic * std::pow(z(1), 3) + _coupling * z(1) * z(0) * z(0), z(2), z(3));
   }
   [[nodiscard]] double conserved(int, std::span<const double> z) const override {
-    return (z[0] * z[0] + z[1] * z[1] + z[2] * z[2] + z[3] * z[3]) / 2 +
+    return (z[0] * z[0] + _second * z[1] * z[1] + z[2] * z[2] + z[3] * z[3]) / 2 +
            _quartic * (std::pow(z[0], 4) + std::pow(z[1], 4)) / 4 + _coupling * z[0] * z[0] * z[1] * z[1] / 2;
   }
 
@@ -132,6 +133,7 @@ class CoupledOscillators final : public test::PointSystem {
  private:
   double _coupling;
   double _quartic;
+  double _second;
 };
 
 /// Ratios of the oscillations' complex amplitudes, q2 / q1: 0 or infinity on an axis, +-1 on a diagonal, +-i loops.
@@ -169,11 +171,24 @@ TEST(Equilibrium, OscillatorsWithTheirSymmetriesDeclared) {
 TEST(Equilibrium, OscillatorsWithoutDeclaredSymmetriesAreFoundByASearch) {
   const CoupledOscillators reversible(CoupledOscillators::described(CoupledOscillators::Says::reversor), 0.3);
   EXPECT_EQ(kinds(directions_at_origin(reversible)),
-            (std::vector<std::string>{"diagonal", "first axis", "loop", "other diagonal", "second axis"}));
+            (std::vector<std::string>{"diagonal", "first axis", "other diagonal", "other loop", "second axis"}));
   const CoupledOscillators bare(CoupledOscillators::described(CoupledOscillators::Says::nothing), 0.3);
   EXPECT_EQ(
       kinds(directions_at_origin(bare)),
       (std::vector<std::string>{"diagonal", "first axis", "loop", "other diagonal", "other loop", "second axis"}));
+}
+
+// Of amplitude 0.01 orbits do not tell a detuning below its square from none; above, each oscillation is by itself.
+TEST(Equilibrium, OscillatorsOfNearlyOnePeriod) {
+  for (const double detuning : {1e-9, -1e-6, 1e-6})
+    EXPECT_EQ(kinds(directions_at_origin(CoupledOscillators(
+                  CoupledOscillators::described(CoupledOscillators::Says::reversor), 0.3, 1.0, detuning))),
+              (std::vector<std::string>{"diagonal", "first axis", "other diagonal", "other loop", "second axis"}))
+        << detuning;
+  const CoupledOscillators apart(CoupledOscillators::described(CoupledOscillators::Says::reversor), 0.3, 1.0, 2e-3);
+  const starts::SweepResult swept =
+      starts::sweep(apart, std::vector<double>(4, 0.0), {.period_from = 6.0, .period_to = 6.5, .step = 0.05});
+  EXPECT_EQ(swept.modes.size(), 2u);
 }
 
 // With a coupling of 1 the potential is that of a central force: every direction has its own straight orbit,
@@ -190,10 +205,11 @@ TEST(Equilibrium, AContinuumOfDirectionsIsLeftOut) {
 TEST(Equilibrium, ASingleOscillation) {
   const auto system = systems::make_system("harmonic_oscillator");
   const Eigen::VectorXcd v = Eigen::Vector2cd(std::complex<double>(0, 1), -1.0).normalized();
-  const std::vector<Direction> found = equilibrium_directions(*system, std::vector<double>(2, 0.0), two_pi, v, 4);
+  const starts::SharedPeriod mode{two_pi, 0.0, {{}}, v, {1}};
+  const std::vector<Direction> found = equilibrium_directions(*system, std::vector<double>(2, 0.0), mode, 4).found;
   EXPECT_EQ(isotropies(found), (std::vector<std::string>{"S@1/2 R@0"}));
   const test::Declaring bare(system, {}, {});
-  EXPECT_EQ(isotropies(equilibrium_directions(bare, std::vector<double>(2, 0.0), two_pi, v, 4)),
+  EXPECT_EQ(isotropies(equilibrium_directions(bare, std::vector<double>(2, 0.0), mode, 4).found),
             (std::vector<std::string>{""}));
 }
 

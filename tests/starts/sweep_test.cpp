@@ -277,15 +277,27 @@ TEST(Sweep, HarmonicOscillatorWithItsMultiples) {
 }
 
 TEST(Sweep, AWholeRatioOfPeriodsIsSaid) {
-  const test::Oscillators system({1.0, 4.0});
+  const test::Oscillators system({1.0, 16.0});
   const std::vector<double> origin(4, 0.0);
   const SweepResult result = sweep(system, origin, {.period_from = 5.0, .period_to = 7.0});
   ASSERT_EQ(result.modes.size(), 1u);
   EXPECT_NEAR(result.modes[0].period, 2 * pi, 1e-14);
-  expect_rejected(result, {{2 * pi, "2 times around the oscillation with T = 3.1415926"},
-                           {2 * pi, "a resonance: 2 times the period of the oscillation with T = 3.1415926"}});
-  EXPECT_EQ(sweep(test::Oscillators({1.0, 4.0 + 1e-9}), origin, {.period_from = 5.0, .period_to = 7.0}).rejected.size(),
-            1u);
+  expect_rejected(result, {{2 * pi, "4 times around the oscillation with T = 1.57079632"},
+                           {2 * pi, "a resonance: 4 times the period of the oscillation with T = 1.57079632"}});
+  EXPECT_EQ(
+      sweep(test::Oscillators({1.0, 16.0 + 1e-9}), origin, {.period_from = 5.0, .period_to = 7.0}).rejected.size(), 1u);
+}
+
+TEST(Sweep, AStrongResonanceIsHandedOutWithItsKernel) {
+  const test::Oscillators system({1.0, 4.0});
+  const SweepResult result = sweep(system, std::vector<double>(4, 0.0), {.period_from = 5.0, .period_to = 7.0});
+  EXPECT_TRUE(result.modes.empty());
+  expect_rejected(result, {{2 * pi, "2 times around the oscillation with T = 3.1415926"}});
+  ASSERT_EQ(result.degenerate.size(), 1u);
+  EXPECT_NEAR(result.degenerate[0].period, 2 * pi, 1e-14);
+  EXPECT_EQ(result.degenerate[0].harmonics, (std::vector<int>{1, 2}));
+  ASSERT_EQ(result.left_out.size(), 1u);
+  EXPECT_NEAR(result.left_out[0].period, pi, 1e-14);
 }
 
 TEST(Sweep, ResonanceOfHenonHeilesIsHandedOutWithItsKernel) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <set>
 
 #include <fmt/format.h>
@@ -31,6 +32,7 @@ using test::Atlas;
 using test::key_of;
 using test::records_of;
 using ::testing::AllOf;
+using ::testing::AnyOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::Field;
@@ -143,6 +145,18 @@ class WitnessOf : public ::testing::Test {
     return end;
   }
 
+  /// The kernel at the centre, with as many images of each family as the triangle makes. Keys of families are rows.
+  static KernelRecord kernel_of_centre() {
+    if (!atlas) return {};
+    return {2.0 * std::numbers::pi,
+            2,
+            true,
+            0,
+            {row_named("Straight"), row_named("Curved"), row_named("Loop")},
+            {3, 3, 2},
+            {1, 1, 1}};
+  }
+
   static inline std::unique_ptr<core::Communicator> world;
   static inline scene::Scene scene;
   static inline Summary summary;
@@ -160,6 +174,52 @@ TEST_F(WitnessOf, ATreeThatAddsUpSaysWhatTheLimitsCut) {
   for (const FindingSummary& line : summary.findings) EXPECT_EQ(line.severity, Severity::cut) << line.text;
   ASSERT_EQ(atlas->findings().rows(), summary.findings.size());
   EXPECT_EQ(atlas->findings().texts("text").front(), summary.findings.front().text);
+}
+
+TEST_F(WitnessOf, IndicesOfAnEquilibriumsFamiliesAddUp) {
+  input.kernels = {{kernel_of_centre()}};
+  const std::vector<Found> rows = found();
+  if (!world->is_root()) return;
+  EXPECT_THAT(rows, IsEmpty());
+}
+
+TEST_F(WitnessOf, AFamilyMissingAtAnEquilibrium) {
+  std::vector<double> deviations;
+  for (std::size_t missing = 0; missing < 3; ++missing) {
+    KernelRecord kernel = kernel_of_centre();
+    for (std::vector<int>* numbers : {&kernel.places, &kernel.images, &kernel.repetitions})
+      if (atlas) numbers->erase(numbers->begin() + static_cast<std::ptrdiff_t>(missing));
+    input = {};
+    input.kernels = {{kernel}};
+    const Testimony said = testimony();
+    EXPECT_EQ(said.wrong, 1U);
+    if (!world->is_root()) continue;
+    ASSERT_THAT(said.records, ElementsAre(finding("contradiction", "equilibrium-families")));
+    deviations.push_back(said.records[0].deviation);
+  }
+  // One of the kinds that come by threes is stable, the other not; the circles are.
+  if (!world->is_root()) return;
+  EXPECT_THAT(deviations, AnyOf(ElementsAre(3.0, -3.0, 2.0), ElementsAre(-3.0, 3.0, 2.0)));
+}
+
+TEST_F(WitnessOf, NothingIsSaidOfAnEquilibriumWithoutOneSign) {
+  KernelRecord kernel = kernel_of_centre();
+  kernel.images = {3, 3, 1};
+  kernel.is_definite = false;
+  input.kernels = {{kernel}};
+  const std::vector<Found> rows = found();
+  if (!world->is_root()) return;
+  EXPECT_THAT(rows, IsEmpty());
+}
+
+TEST_F(WitnessOf, AnEquilibriumsFamilyWithoutOrbitsLeavesItsIndexOpen) {
+  if (world->is_root()) remove_orbits(key_named("Loop"));
+  KernelRecord kernel = kernel_of_centre();
+  kernel.not_isolated = 4;
+  input.kernels = {{kernel}};
+  const std::vector<Found> rows = found();
+  if (!world->is_root()) return;
+  EXPECT_THAT(rows, IsSupersetOf({finding("undecided", "equilibrium-families"), finding("undecided", "continuum")}));
 }
 
 TEST_F(WitnessOf, ACurveStoredTwice) {

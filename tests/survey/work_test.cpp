@@ -31,11 +31,20 @@ FoundMode sample_mode() {
   mode.cutoff = 13;
   mode.isotropy = sample_isotropy();
   mode.one_direction = false;
+  mode.amplitude = 0.0625;
   return mode;
 }
 
 SweepOutcome sample_sweep_outcome() {
-  return {2, {1.5}, {sample_mode(), {}}, {"T = 6.8: twice around", ""}, {{0.5, 2, 3}}, 5, 1.0, 12.0};
+  return {2,
+          {1.5},
+          {sample_mode(), {}},
+          {"T = 6.8: twice around", ""},
+          {{0.5, 2, 3}},
+          {{6.25, 2, true, 1, {0, 1}, {3, 2}, {1, 2}}},
+          5,
+          1.0,
+          12.0};
 }
 BranchWork sample_branch_work() {
   return {"0001.0002/003.q4.j1/0-", "Naïve", sample_lineage(), sample_loop(), {{0.25, -0.5}, {1e-300}},
@@ -82,7 +91,7 @@ TEST(Payload, EqualWorkHasEqualBytes) { EXPECT_EQ(pack(sample_branch_work()), pa
 TEST(Payload, AnotherKindIsRefusedByName) {
   const std::string text = environment_error_of([] { (void)unpack_branch_work(pack(sample_sweep_outcome())); });
   EXPECT_THAT(text, AllOf(HasSubstr("expected a branch work of version 1"),
-                          HasSubstr("got a sweep outcome of version 2"), HasSubstr("same build")));
+                          HasSubstr("got a sweep outcome of version 3"), HasSubstr("same build")));
 }
 
 TEST(Payload, AnotherVersionIsRefused) {

@@ -9,6 +9,7 @@
 #include "orbweaver/corrector/correct.hpp"
 #include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
+#include "orbweaver/starts/shared_periods.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::bifurcation {
@@ -35,6 +36,9 @@ struct Direction {
   bool is_hidden = false;  ///< what tells it from neighbouring directions is so small, as far from the crossing as
                            ///< orbits were found, that the family cannot be followed: it is known for what arrives
                            ///< along it
+  int images = 1;          ///< at an equilibrium: oscillations that the system's symmetries make of this one, time
+                           ///< shifts aside, itself among them
+  int repetitions = 1;     ///< at an equilibrium: how many times the direction goes around its own period
   loop::Tangent opposite{};  ///< the way to the other side's orbits, where one was found; empty: -tangent
 
   /// side: +1 or, where there are both, -1.
@@ -49,6 +53,9 @@ struct DirectionOptions {
   /// The direction of the base's own family, in the modes of the base: orbits that are born may lie along it. Empty at
   /// an equilibrium.
   loop::Tangent family{};
+  /// Length in the kernel at which the families that leave an equilibrium are there. Their directions are searched for
+  /// at twice that, doubled below 0.3 while there are some that are not isolated.
+  double amplitude = 0.01;
   int seeds = 12;                  ///< of a search in a plane; 2^(n-1) times as many in n > 2 dimensions
   corrector::Options corrector{};  ///< of a search
 };
@@ -64,7 +71,7 @@ class UndecidedError : public core::NumericalError {
 ///
 /// base: the crossing's orbit gone around m times (identity time map), or the constant loop at an equilibrium.
 /// isotropy: generators of the crossing's orbit; base must have each of them, whatever its shift.
-/// kernel: null vectors with orthonormal modes; at an equilibrium of harmonic 1 alone, both phases of each
+/// kernel: null vectors with orthonormal modes; at an equilibrium each of one harmonic, both phases of each
 /// oscillation. Throws MisuseError for sizes that disagree or vectors that are not orthonormal, NumericalError where
 /// the symmetries do not map the kernel to itself isometrically, or where directions are not isolated (a continuum),
 /// UndecidedError where they are, but not to double precision.
@@ -73,10 +80,16 @@ class UndecidedError : public core::NumericalError {
                                                 const std::vector<loop::Tangent>& kernel,
                                                 const DirectionOptions& options = {});
 
-/// The same at an equilibrium where several oscillations Re(v e^{is}) share one period; `kernel` holds a v a column.
-[[nodiscard]] std::vector<Direction> equilibrium_directions(const systems::System& system,
-                                                            std::span<const double> point, double period,
-                                                            const Eigen::MatrixXcd& kernel, int cutoff,
-                                                            const DirectionOptions& options = {});
+struct EquilibriumDirections {
+  std::vector<Direction> found;
+  int not_isolated = 0;  ///< orbits found of which neighbours along the kernel satisfy the loss too: not among `found`
+};
+
+/// The same at an equilibrium where several oscillations Re(v e^{iks}) share one period, exactly or nearly: those that
+/// symmetries single out, which are exact, then those found by a search, by their periods, the longest first. In nearly
+/// shared periods they are those of orbits of the amplitude searched at.
+[[nodiscard]] EquilibriumDirections equilibrium_directions(const systems::System& system, std::span<const double> point,
+                                                           const starts::SharedPeriod& shared, int cutoff,
+                                                           const DirectionOptions& options = {});
 
 }  // namespace orbweaver::bifurcation

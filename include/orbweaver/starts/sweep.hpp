@@ -9,6 +9,7 @@
 #include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/starts/linear_modes.hpp"
+#include "orbweaver/starts/shared_periods.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::starts {
@@ -17,12 +18,17 @@ namespace orbweaver::starts {
 /// |dz(s = 0)| = 1: the state there is rounding.
 inline constexpr double still_at_start = 1e-9;
 
+/// First orbits are searched for at no smaller amplitude r: terms of the fourth order, which tell some directions from
+/// their neighbours, are r^2 of the residual's, ten thousand times the loss's tolerance.
+inline constexpr double least_search_amplitude = 1e-3;
+
 /// The range of periods swept at a fixed point.
 struct SweepOptions {
   double period_from = 1.0;
   double period_to = 12.0;
   double step = 0.01;
-  int cutoff = 10;  ///< harmonics of the loop space whose Hessian is taken
+  int cutoff = 10;            ///< harmonics of the loop space whose Hessian is taken
+  double amplitude = 8.7e-3;  ///< of the families' first orbits, in scales: decides what is a near resonance
 };
 
 /// The range that covers the periods of all oscillations, decided or not, with a margin, in a thousand steps. Where
@@ -45,13 +51,10 @@ struct NormalMode {
   loop::Isotropy isotropy;       ///< of the small oscillations
 };
 
-/// Several oscillations Re(v e^{2 pi i t/T}) of one period: which of their combinations families start along, the
-/// linear problem does not say (bifurcation::equilibrium_directions).
-struct DegenerateMode {
-  double period = 0.0;
+/// Several oscillations that share a period: which of their combinations families start along, the linear problem does
+/// not say (bifurcation::equilibrium_directions).
+struct DegenerateMode : SharedPeriod {
   double grid_period = 0.0;
-  double residual = 0.0;    ///< the largest |(2 pi i/T) v - A v|
-  Eigen::MatrixXcd kernel;  ///< orthonormal v, one a column
 };
 
 /// A dip of the eigenvalue, or a doubt about the modes, that starts no family, and why.
@@ -67,8 +70,8 @@ struct SweepResult {
   std::vector<SweepPoint> table;
   std::vector<NormalMode> modes;  ///< in the range, longest period first
   std::vector<DegenerateMode> degenerate;
-  std::vector<Oscillation> left_out;  ///< oscillations with periods outside the range, longest first
-  std::vector<RejectedDip> rejected;  ///< period multiples, near misses, resonances, undecided eigenvalues
+  std::vector<SharedPeriod> left_out;  ///< outside the range, longest first
+  std::vector<RejectedDip> rejected;   ///< period multiples, near misses, resonances, undecided eigenvalues
 };
 
 /// The small oscillations at a fixed point whose periods lie in a range, from the Jacobian, and the picture of the

@@ -128,10 +128,13 @@ void write_archive(const core::Communicator& comm, const scene::Scene& scene,
     require_families(*system, sweeps, summary);
     known.failures.assign(summary.failed_tasks.begin() + static_cast<std::ptrdiff_t>(told), summary.failed_tasks.end());
     known.stopped_early = summary.stopped_early;
+    known.time_unit = system->scales().time;
     for (const queue::Task& task : checkpoint.unfinished) known.interrupted.push_back(task.key);
     for (const auto& [key, ended] : sweeps) {
       std::vector<double>& point = known.equilibria.emplace_back(unpack_sweep_work(ended.first.payload).point);
       for (std::size_t i = 0; i < point.size(); ++i) point[i] *= system->scales().coordinate(i);
+      std::vector<KernelRecord>& kernels = known.kernels.emplace_back();
+      if (!ended.second.failed) kernels = unpack_sweep_outcome(ended.second.payload).kernels;
     }
     for (const archive::FamilyRecord& family : tables.families) known.family_keys.push_back(family.key);
     std::sort(known.family_keys.begin(), known.family_keys.end());

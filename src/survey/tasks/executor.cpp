@@ -15,22 +15,7 @@
 
 namespace orbweaver::survey {
 
-namespace {
-
-/// How far images of oscillations of unit amplitude may be apart: linear, they agree to rounding, or by some 1 not.
-constexpr double same_oscillation = 1e-8;
-
-// Both directions of a start are one family where a symmetry or a time shift maps loops on one side to those on the
-// other.
-bool directions_are_images(const systems::Structure& system, std::span<const double> point,
-                           const starts::NormalMode& mode, int cutoff) {
-  const loop::Loop base = loop::constant_loop(point, mode.period, cutoff);
-  return loop::find_map(system, loop::moved(base, mode.direction, 1.0), loop::moved(base, mode.direction, -1.0),
-                        same_oscillation)
-      .has_value();
-}
-
-}  // namespace
+namespace {}  // namespace
 
 continuation::Options branch_options(const scene::Scene& scene, core::Team* team) {
   continuation::Options options;
@@ -66,7 +51,7 @@ queue::TaskOutcome Executor::execute(const queue::Task& task, queue::TaskContext
 }
 
 queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
-  const starts::SweepOptions options = sweep_options(_scene.sweep, *_system, work.point);
+  const starts::SweepOptions options = sweep_options(_scene, *_system, work.point);
   const starts::SweepResult result = starts::sweep(*_system, work.point, options);
   SweepOutcome outcome;
   outcome.index = work.index;
@@ -76,20 +61,31 @@ queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
   const bifurcation::SmallOscillations all = bifurcation::small_oscillations(*_system, result, options.cutoff);
   outcome.families = all.count;
   for (const bifurcation::LeftOut& left_out : all.left_out)
-    if (!left_out.undecided)  // those are among the rejected
+    if (!left_out.is_told)  // those are among the rejected
       outcome.left_out.push_back({left_out.period, left_out.place, left_out.families});
-  for (const auto& [mode, place] : all.families) {
+  for (const bifurcation::SmallOscillation& family : all.families) {
     FoundMode found;
-    found.place = place;
-    found.period = mode.period;
-    found.direction = mode.direction;
-    found.cutoff = options.cutoff;
-    found.one_direction = directions_are_images(_system->structure(), work.point, mode, options.cutoff);
-    found.isotropy = mode.isotropy;
+    found.place = family.place;
+    found.period = family.mode.period;
+    found.direction = family.mode.direction;
+    found.cutoff = (static_cast<int>(found.direction.modes.size() / work.point.size()) - 1) / 2;
+    found.one_direction = !family.both_sides;
+    found.isotropy = family.mode.isotropy;
+    found.amplitude = family.amplitude;
     outcome.modes.push_back(std::move(found));
   }
-  for (const starts::RejectedDip& dip : result.rejected)
-    outcome.rejected.push_back(fmt::format("T = {:.9g}: {}", dip.period * _system->scales().time, dip.reason));
+  for (const bifurcation::OscillationKernel& kernel : all.kernels) {
+    KernelRecord record{kernel.period, kernel.dimension, kernel.is_definite, kernel.not_isolated, {}, {}, {}};
+    for (const bifurcation::KernelFamily& family : kernel.families) {
+      record.places.push_back(family.place);
+      record.images.push_back(family.images);
+      record.repetitions.push_back(family.repetitions);
+    }
+    outcome.kernels.push_back(std::move(record));
+  }
+  for (const auto* dips : {&result.rejected, &all.without_family})
+    for (const starts::RejectedDip& dip : *dips)
+      outcome.rejected.push_back(fmt::format("T = {:.9g}: {}", dip.period * _system->scales().time, dip.reason));
   queue::TaskOutcome done;
   done.payload = pack(outcome);
   return done;

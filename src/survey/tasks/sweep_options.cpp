@@ -4,8 +4,9 @@
 
 namespace orbweaver::survey {
 
-starts::SweepOptions sweep_options(const scene::Sweep& sweep, const systems::System& system,
+starts::SweepOptions sweep_options(const scene::Scene& scene, const systems::System& system,
                                    std::span<const double> point) {
+  const scene::Sweep& sweep = scene.sweep;
   starts::SweepOptions options;
   if (sweep.period) {
     options.period_from = sweep.period->from;
@@ -17,6 +18,7 @@ starts::SweepOptions sweep_options(const scene::Sweep& sweep, const systems::Sys
   // What the scene's reader sees to where it knows the range.
   if (sweep.step)
     options.step = std::max(*sweep.step, (options.period_to - options.period_from) / scene::Sweep::most_steps);
+  options.amplitude = scene.continuation.start_amplitude;
   return options;
 }
 

@@ -100,6 +100,7 @@ std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const syst
       work.name = name;
       work.direction = mode.direction;
       work.isotropy = mode.isotropy;
+      work.amplitude = mode.amplitude;
       work.base = loop::constant_loop(found.point, mode.period, mode.cutoff);
       if (mode.one_direction) {
         tasks.push_back(task_of(work));

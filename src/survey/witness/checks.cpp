@@ -2,6 +2,7 @@
 
 #include "witness/checks/branch_counts.hpp"
 #include "witness/checks/ends.hpp"
+#include "witness/checks/equilibrium_families.hpp"
 #include "witness/checks/failed_tasks.hpp"
 #include "witness/checks/index_changes.hpp"
 #include "witness/checks/mirror_images.hpp"
@@ -22,7 +23,8 @@ std::vector<std::unique_ptr<Check>> list() {
 }  // namespace
 
 std::vector<std::unique_ptr<Check>> all_checks() {
-  return list<FailedTasks, StoredTwice, SharedPoints, BranchCounts, Ends, MirrorImages, IndexChanges>();
+  return list<FailedTasks, StoredTwice, SharedPoints, BranchCounts, EquilibriumFamilies, Ends, MirrorImages,
+              IndexChanges>();
 }
 
 }  // namespace orbweaver::survey

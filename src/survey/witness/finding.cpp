@@ -32,6 +32,21 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
       return fmt::format("{}: along direction {} the first orbit lies beyond the limits", names.crossing, f.number);
     case FindingKind::beyond_families:
       return fmt::format("{}: direction {} was left out (limits.families)", names.crossing, f.number);
+    case FindingKind::equilibrium_families:
+      return f.severity == Severity::contradiction
+                 ? fmt::format(
+                       "the indices of the families that leave the equilibrium, {} oscillations of one period, "
+                       "add up to {}: some are missing",
+                       f.other_number, f.number)
+                 : fmt::format(
+                       "of some families that leave the equilibrium, {} oscillations of one period, the index "
+                       "is not known",
+                       f.other_number);
+    case FindingKind::continuum:
+      return fmt::format(
+          "oscillations that share a period: {} orbits were found near the equilibrium whose neighbours "
+          "are orbits too, to rounding: which families leave there is not known",
+          f.number);
     case FindingKind::unlisted_target: return "ends at a crossing that the archive does not have";
     case FindingKind::unknown_direction:
       return fmt::format("ends near the {} of {}, along none of the directions found there", names.crossing,
@@ -87,6 +102,8 @@ std::string_view name_of(FindingKind kind) {
     case FindingKind::beyond_order: return "beyond-order";
     case FindingKind::beyond_limits: return "beyond-limits";
     case FindingKind::beyond_families: return "beyond-families";
+    case FindingKind::equilibrium_families: return "equilibrium-families";
+    case FindingKind::continuum: return "continuum";
     case FindingKind::unlisted_target: return "unlisted-target";
     case FindingKind::unknown_direction: return "unknown-direction";
     case FindingKind::higher_order: return "higher-order";

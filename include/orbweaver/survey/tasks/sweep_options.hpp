@@ -10,7 +10,7 @@ namespace orbweaver::survey {
 
 /// What the scene asks of the sweep at an equilibrium; `auto` becomes the range of its own oscillations. Throws as
 /// starts::linear_modes does.
-[[nodiscard]] starts::SweepOptions sweep_options(const scene::Sweep& sweep, const systems::System& system,
+[[nodiscard]] starts::SweepOptions sweep_options(const scene::Scene& scene, const systems::System& system,
                                                  std::span<const double> point);
 
 }  // namespace orbweaver::survey

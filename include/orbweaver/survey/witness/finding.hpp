@@ -33,6 +33,8 @@ enum class FindingKind {
   beyond_order,          ///< nothing was looked for: survey.subharmonics
   beyond_limits,         ///< a direction along which the first orbit lies beyond limits
   beyond_families,       ///< a direction that limits.families left out
+  equilibrium_families,  ///< indices of what leaves an equilibrium add up to number, not other_number
+  continuum,             ///< number orbits found at an equilibrium are not isolated
   unlisted_target,       ///< ends at a crossing that the archive does not have
   unknown_direction,     ///< ends near the crossing, along none of its directions
   higher_order,          ///< ends on the other family gone around number times, more than survey.subharmonics

@@ -31,11 +31,29 @@ struct FoundMode {
   int cutoff = 0;
   loop::Isotropy isotropy;
   bool one_direction = true;  ///< a symmetry maps one direction of the start onto the other
+  double amplitude = 0.0;     ///< |dz(s = 0)| of the first orbit; 0: the scene's
 
-  static constexpr int wire_version = 2;
+  static constexpr int wire_version = 3;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, period, place, direction, cutoff, isotropy, one_direction);
+    core::serialize_members(archive, period, place, direction, cutoff, isotropy, one_direction, amplitude);
+  }
+};
+
+/// A period that several oscillations share (bifurcation::OscillationKernel): an entry a family.
+struct KernelRecord {
+  double period = 0.0;
+  int dimension = 0;
+  bool is_definite = false;
+  int not_isolated = 0;
+  std::vector<int> places;
+  std::vector<int> images;
+  std::vector<int> repetitions;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, period, dimension, is_definite, not_isolated, places, images, repetitions);
   }
 };
 
@@ -59,14 +77,16 @@ struct SweepOutcome {
   std::vector<FoundMode> modes;       ///< longest period first
   std::vector<std::string> rejected;  ///< a sentence a dip
   std::vector<LeftOutMode> left_out;  ///< longest period first
+  std::vector<KernelRecord> kernels;  ///< in the range
   int families = 0;                   ///< of the equilibrium, those left out and undecided included
   double period_from = 0.0;           ///< the range swept
   double period_to = 0.0;
 
-  static constexpr int wire_version = 2;
+  static constexpr int wire_version = 3;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, index, point, modes, rejected, left_out, families, period_from, period_to);
+    core::serialize_members(archive, index, point, modes, rejected, left_out, kernels, families, period_from,
+                            period_to);
   }
 };
 

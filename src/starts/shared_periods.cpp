@@ -1,0 +1,112 @@
+#include "orbweaver/starts/shared_periods.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
+#include "second_derivatives.hpp"
+
+namespace orbweaver::starts {
+
+namespace {
+
+/// Detunings, in parts of the period, that orbits of amplitude r (in scales) do not tell from none: the terms that
+/// couple two oscillations move frequencies by r (k = 2) or its square (k = 1, 3), times coefficients of order 1, for
+/// which this is a margin. At a larger detuning, or amplitude, what is born is a crossing on a family that starts at
+/// the equilibrium. No detuning above the second is near.
+constexpr double margin = 5.0;
+constexpr double largest_detuning = 0.05;
+/// Oscillations of nearly one period whose vectors nearly agree are not taken together: their combinations would be
+/// too few radians apart for a search. Least singular value of the vectors side by side; 1: orthogonal.
+constexpr double least_angle = 0.3;
+/// Of energies of vectors of unit length, relative to the largest: differences are good to 1e-6.
+constexpr double no_energy = 1e-4;
+
+bool share(const Oscillation& slow, const Oscillation& fast, int harmonic, double amplitude) {
+  const double gap = std::abs(slow.period - harmonic * fast.period);
+  const double near = std::min(largest_detuning, margin * (harmonic == 2 ? amplitude : amplitude * amplitude));
+  return gap <= std::max(near * slow.period, slow.period_error + harmonic * fast.period_error);
+}
+
+Eigen::MatrixXcd side_by_side(const Eigen::MatrixXcd& a, const Eigen::MatrixXcd& b) {
+  Eigen::MatrixXcd both(a.rows(), a.cols() + b.cols());
+  both << a, b;
+  return both;
+}
+
+/// Nothing if some vectors nearly depend on the others.
+Eigen::MatrixXcd joined(const Eigen::MatrixXcd& a, const Eigen::MatrixXcd& b) {
+  const Eigen::MatrixXcd both = side_by_side(a, b);
+  const Eigen::JacobiSVD<Eigen::MatrixXcd> svd(both, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  if (svd.singularValues()(both.cols() - 1) < least_angle) return {};
+  return svd.matrixU();
+}
+
+bool have_one_sign(const systems::System& system, std::span<const double> point, const SharedPeriod& shared) {
+  if (system.structure().conserved.empty()) return false;
+  const Eigen::VectorXd z = Eigen::Map<const Eigen::VectorXd>(point.data(), static_cast<Eigen::Index>(point.size()));
+  const Eigen::MatrixXd second = second_derivatives(system, 0, z, Eigen::VectorXd::Constant(z.size(), difference_step));
+  const Eigen::MatrixXcd form =
+      shared.kernel.adjoint() * (0.5 * (second + second.transpose())).cast<std::complex<double>>() * shared.kernel;
+  std::vector<double> energies;  // oscillations of different frequencies do not share any
+  for (int harmonic = 1; harmonic <= strongest_harmonic; ++harmonic) {
+    std::vector<Eigen::Index> columns;
+    for (std::size_t c = 0; c < shared.harmonics.size(); ++c)
+      if (shared.harmonics[c] == harmonic) columns.push_back(static_cast<Eigen::Index>(c));
+    if (columns.empty()) continue;
+    const Eigen::MatrixXcd block = form(columns, columns);
+    const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd>(block).eigenvalues();
+    energies.insert(energies.end(), values.begin(), values.end());
+  }
+  double largest = 0.0;
+  for (const double e : energies) largest = std::max(largest, std::abs(e));
+  const auto rises = [&](double e) { return e > no_energy * largest; };
+  const auto falls = [&](double e) { return e < -no_energy * largest; };
+  return std::all_of(energies.begin(), energies.end(), rises) || std::all_of(energies.begin(), energies.end(), falls);
+}
+
+}  // namespace
+
+std::vector<SharedPeriod> shared_periods(const systems::System& system, std::span<const double> point,
+                                         const LinearModes& modes, double amplitude) {
+  core::require(static_cast<int>(point.size()) == system.dimension(), "a fixed point of another dimension");
+  std::vector<SharedPeriod> out;
+  const std::vector<Oscillation>& all = modes.oscillations;
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    if (!out.empty() && share(all[n - 1], all[n], 1, amplitude)) {
+      SharedPeriod& last = out.back();
+      if (Eigen::MatrixXcd both = joined(last.kernel, all[n].kernel); both.size() > 0) {
+        last.kernel = std::move(both);
+        last.residual = std::max(last.residual, all[n].residual);
+        last.members.push_back({n, 1});
+        continue;
+      }
+    }
+    out.push_back({all[n].period, all[n].residual, {{n, 1}}, all[n].kernel, {}, false});
+  }
+  for (SharedPeriod& shared : out) {
+    shared.harmonics.assign(static_cast<std::size_t>(shared.kernel.cols()), 1);
+    const Oscillation& slow = all[shared.members.front().oscillation];
+    for (int harmonic = 2; harmonic <= strongest_harmonic; ++harmonic)
+      for (std::size_t n = 0; n < all.size(); ++n) {
+        if (!share(slow, all[n], harmonic, amplitude)) continue;
+        const bool first = shared.members.back().harmonic != harmonic;
+        Eigen::MatrixXcd others(shared.kernel.rows(), 0);
+        if (!first)
+          for (std::size_t c = 0; c < shared.harmonics.size(); ++c)
+            if (shared.harmonics[c] == harmonic)
+              others = side_by_side(others, shared.kernel.col(static_cast<Eigen::Index>(c)));
+        const Eigen::MatrixXcd block = first ? all[n].kernel : joined(others, all[n].kernel);
+        if (block.size() == 0) continue;
+        shared.kernel = side_by_side(shared.kernel.leftCols(shared.kernel.cols() - others.cols()), block);
+        shared.harmonics.resize(static_cast<std::size_t>(shared.kernel.cols()), harmonic);
+        shared.residual = std::max(shared.residual, all[n].residual);
+        shared.members.push_back({n, harmonic});
+      }
+    shared.is_definite = have_one_sign(system, point, shared);
+  }
+  return out;
+}
+
+}  // namespace orbweaver::starts
