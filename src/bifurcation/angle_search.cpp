@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -14,6 +15,7 @@
 #include "orbweaver/numerics/lagrange.hpp"
 #include "orbweaver/numerics/locate.hpp"
 #include "pushed_system.hpp"
+#include "twin_order.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -230,8 +232,11 @@ AnglesFound search_angles(const systems::System& system, const loop::Loop& base,
   if (!all || !all->is_clear() || all->sign_changes() != 2) return out;
   const Circle& circle = *all;
   out = circle.summary();
-  const int wanted = q % 2 == 0 ? 2 : 1;
-  for (std::size_t n = 0; n + 1 < circle.orbits.size() && static_cast<int>(out.found.size()) < wanted; ++n) {
+  // Zeros through which the push rises with time, and those through which it falls.
+  std::vector<FoundOrbit> rising;
+  std::vector<FoundOrbit> falling;
+  const int sense = sense_of_time(group);
+  for (std::size_t n = 0; n + 1 < circle.orbits.size(); ++n) {
     const numerics::Place from{circle.angles[n], circle.orbits[n].push};
     const numerics::Place to{circle.angles[n + 1], circle.orbits[n + 1].push};
     if (!(from.value * to.value < 0.0)) continue;
@@ -246,8 +251,12 @@ AnglesFound search_angles(const systems::System& system, const loop::Loop& base,
     if (!located || std::isnan(push_at(located->position))) continue;
     const Gap gap = gap_between(base, last.loop, group, options.family.modes);
     const double length = gap.inside.norm();
-    out.found.push_back({gap.inside / length, gap.along / length, last.loop});
+    (sense * to.value > 0.0 ? rising : falling).push_back({gap.inside / length, gap.along / length, last.loop});
   }
+  out.found = std::move(rising);
+  out.found.insert(out.found.end(), std::make_move_iterator(falling.begin()), std::make_move_iterator(falling.end()));
+  if (q < least_weak_resonance) put_in_order(system, out.found);
+  if (q % 2 == 1 && !out.found.empty()) out.found.erase(out.found.begin() + 1, out.found.end());
   return out;
 }
 
