@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "angle_search.hpp"
+#include "born_orbit.hpp"
 #include "fixed_spaces.hpp"
 #include "kernel_actions.hpp"
 #include "orbweaver/core/error.hpp"
@@ -277,6 +278,18 @@ std::vector<Direction> by_angles(const systems::System& system, const KernelActi
   return out;
 }
 
+/// Whether the orbit as far along the opposite direction stands before the one found. Without it, the base does.
+bool leads_to_second(const systems::System& system, const KernelActions& group, const loop::Loop& base,
+                     const loop::Isotropy& kept, const FoundOrbit& orbit, double amplitude,
+                     const DirectionOptions& options) {
+  const Eigen::VectorXd opposite = -orbit.coordinates;
+  const corrector::Result result =
+      born_orbit(system, base, group.vector_at(opposite), kept, amplitude, options.corrector);
+  std::vector<FoundOrbit> sides{orbit, {opposite, 0.0, result.converged() ? result.loop : base}};
+  put_in_order(system, sides);
+  return sides.front().coordinates == opposite;
+}
+
 std::vector<Direction> searched(const systems::System& system, const KernelActions& group, const loop::Loop& base,
                                 const std::vector<Eigen::VectorXd>& lines, const DirectionOptions& options) {
   const bool plane = group.dimension() == 2;
@@ -320,8 +333,8 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
         {base, leaving_along(group.vector_at(orbit.coordinates), orbit.along, options.family),
          loop::find_isotropy(system.structure(), orbit.loop, found_tolerance * amplitude, group.denominator()),
          has_other_sides(group, orbit.coordinates), amplitude});
-    // The period changes along the direction, and grows on its + side.
-    if (out.back().both_sides && orbit.loop.period < base.period) out.back().tangent *= -1.0;
+    if (out.back().both_sides && leads_to_second(system, group, base, kept, orbit, amplitude, options))
+      out.back().tangent *= -1.0;
   }
   return out;
 }
