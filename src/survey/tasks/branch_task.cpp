@@ -28,6 +28,10 @@ constexpr std::size_t kept_orbits = 5;
 /// First orbits from which, with the one where the family is born, those in between are predicted: a cubic.
 constexpr std::size_t orbits_from_birth = 3;
 
+/// Test functions of a family's birth that are smaller vanish there, the family's own for one. Their error bounds say
+/// nothing: they take a Newton step, and the orbits of two families lie side by side. The crossing is located to 1e-9.
+constexpr double zero_at_birth = 1e-6;
+
 /// Of an index from 2, where a branch may be on the way to a crossing that rounding hides. Only then is it looked for.
 /// Not measured.
 constexpr double nearly_two = 1e-4;
@@ -278,9 +282,9 @@ void BranchTask::detect_from_birth() {
        first.arclength - _before_first}};
   known.insert(known.end(), _curve.known().begin(), _curve.known().end());
   for (std::size_t f = 0; f < _functions.size(); ++f) {
-    const int before = at_birth.readings[f].sign();
+    const double before = at_birth.readings[f].value;
     const int after = at_first.readings[f].sign();
-    if (before != 0 && after != 0 && before != after)
+    if (std::abs(before) > zero_at_birth && before * after < 0.0)
       add_event({bifurcation::Event::Kind::test_function, _functions[f], false}, known[0].position, known[1].position,
                 known);
   }
