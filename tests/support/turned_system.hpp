@@ -31,29 +31,29 @@ namespace orbweaver::test {
   return matrix;
 }
 
-/// The same system in other coordinates y = Q z, Q orthogonal: dy/dt = Q f(Q' y), with its symmetries Q A Q'. Angles
-/// only change places.
+/// The same system told in other coordinates y = Q z, Q invertible, and other units of time and energy (how many of them
+/// make an old one): dy/dt = Q f(Q^-1 y)/time, with its symmetries Q A Q^-1. Angles only change places.
 class TurnedSystem final : public DelegatingSystem {
  public:
-  TurnedSystem(std::shared_ptr<const systems::System> system, Eigen::MatrixXd turn)
+  TurnedSystem(std::shared_ptr<const systems::System> system, const Eigen::MatrixXd& turn, double time = 1.0,
+               double energy = 1.0)
       : DelegatingSystem(std::move(system)),
-        _turn(std::move(turn)),
+        _turn(turn),
+        _back(turn.inverse()),
+        _time(time),
+        _energy(energy),
         _structure(whole().structure()),
         _info(whole().info()) {
     const systems::AffineMap there{_turn, Eigen::VectorXd::Zero(_turn.rows())};
     for (auto* symmetries : {&_structure.equivariances, &_structure.reversors})
       for (systems::Symmetry& s : *symmetries) s.map = there * s.map * there.inverse();
-    for (int& angle : _structure.angles) {
-      Eigen::Index place = 0;
-      _turn.col(angle).cwiseAbs().maxCoeff(&place);
-      angle = static_cast<int>(place);
-    }
+    for (int& angle : _structure.angles) angle = static_cast<int>(place_of(angle));
     std::sort(_structure.angles.begin(), _structure.angles.end());
+    if (_structure.angles.empty()) return;
     for (Eigen::Index i = 0; i < _turn.cols(); ++i) {
-      Eigen::Index place = 0;
-      if (_turn.col(i).cwiseAbs().maxCoeff(&place) < 1.0) continue;  // a mixture keeps the name of its place
-      _info.state_names[static_cast<std::size_t>(place)] = whole().info().state_names[static_cast<std::size_t>(i)];
-      _info.winding_names[static_cast<std::size_t>(place)] = whole().info().winding_names[static_cast<std::size_t>(i)];
+      const auto place = static_cast<std::size_t>(place_of(i));
+      _info.state_names[place] = whole().info().state_names[static_cast<std::size_t>(i)];
+      _info.winding_names[place] = whole().info().winding_names[static_cast<std::size_t>(i)];
     }
   }
 
@@ -61,66 +61,64 @@ class TurnedSystem final : public DelegatingSystem {
   [[nodiscard]] const systems::ModelInfo& info() const override { return _info; }
 
   void field(std::size_t nodes, const double* y, double* f) const override {
-    whole().field(nodes, back(nodes, y).data(), f);
-    const std::vector<double> before(f, f + nodes * size());
-    turn(nodes, before.data(), f);
+    whole().field(nodes, times(_back, nodes, y).data(), f);
+    std::ranges::copy(times(_turn / _time, nodes, f), f);
   }
   void field_jacobian(std::size_t nodes, const double* y, double* f, double* jacobian) const override {
-    whole().field_jacobian(nodes, back(nodes, y).data(), f, jacobian);
-    const std::vector<double> before(f, f + nodes * size());
-    turn(nodes, before.data(), f);
-    conjugate(nodes, jacobian);
+    whole().field_jacobian(nodes, times(_back, nodes, y).data(), f, jacobian);
+    std::ranges::copy(times(_turn / _time, nodes, f), f);
+    between(_turn / _time, _back, nodes, jacobian);
   }
   void second_derivatives(std::size_t nodes, const double* y, const double* weights, double* out) const override {
-    whole().second_derivatives(nodes, back(nodes, y).data(), back(nodes, weights).data(), out);
-    conjugate(nodes, out);
+    const std::vector<double> turned = times(_turn.transpose() / _time, nodes, weights);
+    whole().second_derivatives(nodes, times(_back, nodes, y).data(), turned.data(), out);
+    between(_back.transpose(), _back, nodes, out);
   }
   [[nodiscard]] double conserved(int k, std::span<const double> y) const override {
-    return whole().conserved(k, back(1, y.data()));
+    return _energy * whole().conserved(k, times(_back, 1, y.data()));
   }
   void conserved_gradient(int k, std::span<const double> y, std::span<double> gradient) const override {
-    std::vector<double> before(size());
-    whole().conserved_gradient(k, back(1, y.data()), before);
-    turn(1, before.data(), gradient.data());
+    whole().conserved_gradient(k, times(_back, 1, y.data()), gradient);
+    std::ranges::copy(times(_energy * _back.transpose(), 1, gradient.data()), gradient.begin());
   }
   [[nodiscard]] double action_density(std::span<const double> y) const override {
-    return whole().action_density(back(1, y.data()));
+    return _energy * whole().action_density(times(_back, 1, y.data()));
   }
   [[nodiscard]] double guard(int k, std::span<const double> y) const override {
-    return whole().guard(k, back(1, y.data()));
+    return whole().guard(k, times(_back, 1, y.data()));
   }
 
  private:
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(_turn.rows()); }
-  [[nodiscard]] std::vector<double> back(std::size_t nodes, const double* y) const {
-    std::vector<double> z(nodes * size());
-    const auto n = static_cast<Eigen::Index>(nodes);
-    Eigen::Map<Rows>(z.data(), _turn.rows(), n) = _turn.transpose() * Eigen::Map<const Rows>(y, _turn.rows(), n);
-    return z;
+  [[nodiscard]] Eigen::Index place_of(Eigen::Index coordinate) const {
+    Eigen::Index place = 0;
+    _turn.col(coordinate).cwiseAbs().maxCoeff(&place);
+    return place;
   }
-  void turn(std::size_t nodes, const double* z, double* y) const {
+  static std::vector<double> times(const Eigen::MatrixXd& matrix, std::size_t nodes, const double* z) {
     const auto n = static_cast<Eigen::Index>(nodes);
-    Eigen::Map<Rows>(y, _turn.rows(), n) = _turn * Eigen::Map<const Rows>(z, _turn.rows(), n);
+    std::vector<double> out(nodes * static_cast<std::size_t>(matrix.rows()));
+    Eigen::Map<Rows>(out.data(), matrix.rows(), n) = matrix * Eigen::Map<const Rows>(z, matrix.rows(), n);
+    return out;
   }
-  /// Q M Q' of the matrix at each node.
-  void conjugate(std::size_t nodes, double* matrices) const {
-    const std::size_t d = size();
+  /// L M R of the matrix M at each node.
+  static void between(const Eigen::MatrixXd& left, const Eigen::MatrixXd& right, std::size_t nodes, double* matrices) {
+    const Eigen::Index d = left.rows();
     for (std::size_t node = 0; node < nodes; ++node) {
-      Eigen::MatrixXd m(d, d);
-      const auto entry = [&](Eigen::Index i, Eigen::Index l) -> double& {
-        return matrices[(static_cast<std::size_t>(i) * d + static_cast<std::size_t>(l)) * nodes + node];
-      };
-      for (Eigen::Index i = 0; i < m.rows(); ++i)
-        for (Eigen::Index l = 0; l < m.cols(); ++l) m(i, l) = entry(i, l);
-      m = _turn * m * _turn.transpose();
-      for (Eigen::Index i = 0; i < m.rows(); ++i)
-        for (Eigen::Index l = 0; l < m.cols(); ++l) entry(i, l) = m(i, l);
+      const Eigen::Map<Rows, 0, Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>> m(
+          matrices + node, d, d, {d * static_cast<Eigen::Index>(nodes), static_cast<Eigen::Index>(nodes)});
+      const Eigen::MatrixXd product = left * m * right;
+      for (Eigen::Index i = 0; i < d; ++i)
+        for (Eigen::Index l = 0; l < d; ++l)
+          matrices[static_cast<std::size_t>(i * d + l) * nodes + node] = product(i, l);
     }
   }
 
   Eigen::MatrixXd _turn;
+  Eigen::MatrixXd _back;
+  double _time;
+  double _energy;
   systems::Structure _structure;
   systems::ModelInfo _info;
 };
