@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -25,7 +26,8 @@ struct Case {
   std::string half;
   std::string twice;
   std::vector<std::string> first;  ///< steps
-  /// What the scene says in units so many of which make the plain ones.
+  /// What the scene says in units so many of which make the plain ones. Lengths of steps are told in the coordinates
+  /// with the largest numbers.
   std::function<std::vector<std::string>(double length, double time, double energy)> in_units;
 };
 
@@ -57,6 +59,7 @@ inline const std::vector<Case>& cases() {
        {"0.002", "0.005", "0.01", "0.02", "0.03"},
        [](double, double time, double energy) {
          return std::vector{fmt::format("starts.sweep.period=[{}, {}]", 6 * time, 6.6 * time),
+                            fmt::format("starts.sweep.step={}", 0.01 * time),
                             fmt::format("limits.period={}", 30 * time),
                             fmt::format("limits.energy=[-.inf, {}]", 0.15 * energy)};
        }},
@@ -74,7 +77,7 @@ inline const std::vector<Case>& cases() {
          return std::vector{fmt::format("starts.fixed_points.grid=[[{}], [{}]]", 0.488 * length, 0.866 * length),
                             fmt::format("starts.sweep.period=[{}, {}]", 6 * time, 7 * time),
                             fmt::format("starts.sweep.step={}", 0.02 * time),
-                            fmt::format("continuation.start={}", 0.01 * length),
+                            fmt::format("continuation.start={}", 0.01 * std::max(length, length / time)),
                             fmt::format("limits.period={}", 30 * time)};
        }},
       {"small_mass",
@@ -100,7 +103,7 @@ inline const std::vector<Case>& cases() {
              fmt::format("starts.fixed_points.names={{[{}, 0]: [L3], [{}, {}]: [Long-4, L4], [{}, {}]: [Long-5, L5]}}",
                          -1.0004166666 * length, x, y, x, -y),
              fmt::format("starts.sweep.period=[{}, {}]", 6.2 * time, 6.5 * time),
-             fmt::format("starts.sweep.step={}", 0.01 * time), fmt::format("continuation.start={}", 0.01 * length),
+             fmt::format("starts.sweep.step={}", 0.01 * time), fmt::format("continuation.start={}", 0.01 * std::max(length, length / time)),
              fmt::format("limits.period={}", 120 * time), fmt::format("limits.energy=[-.inf, {}]", -0.88 * energy)};
        }},
       {"spring",
@@ -118,7 +121,7 @@ inline const std::vector<Case>& cases() {
                             fmt::format("starts.fixed_points.names={{[0, {}]: [Swing, Bounce]}}", y),
                             fmt::format("starts.sweep.period=[{}, {}]", 3 * time, 8 * time),
                             fmt::format("starts.sweep.step={}", 0.01 * time),
-                            fmt::format("continuation.start={}", 0.01 * length),
+                            fmt::format("continuation.start={}", 0.01 * std::max(length, length / time)),
                             fmt::format("limits.period={}", 30 * time),
                             fmt::format("limits.energy=[-.inf, {}]", 0.5 * energy)};
        }}};
