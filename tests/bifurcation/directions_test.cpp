@@ -156,12 +156,13 @@ TEST(Directions, RefuseWhatIsNoKernel) {
   EXPECT_THROW(static_cast<void>(call(crooked, d.kernel)), core::NumericalError);
 }
 
-// On the straight orbits of Henon and Heiles' system both families of order 4 have the reversor R and no other: one is at
-// rest where the crossing's orbit turns inside the triangle's side, the other where it turns towards a corner.
+// On the straight orbits of Henon and Heiles' system both families of order 4 have the reversor R and no other: one is
+// at rest where the crossing's orbit turns at the triangle's side, the other where it turns towards a corner.
 TEST(Directions, TwinsOfOneReversorDoNotHangOnTheStart) {
   const auto system = systems::make_system("henon_heiles");
   const std::vector<double> origin(4, 0.0);
-  const starts::NormalMode mode = small_oscillations(*system, starts::sweep(*system, origin, {}), 10).families.at(0).mode;
+  const starts::NormalMode mode =
+      small_oscillations(*system, starts::sweep(*system, origin, {}), 10).families.at(0).mode;
   const test::Family family =
       test::family_from(system, {loop::constant_loop(origin, mode.period, 10), mode.direction, mode.isotropy}, 7.5);
   const test::Crossing crossing = test::crossing_at(*system, family.with_index(0.0), family.isotropy, 4, 2);

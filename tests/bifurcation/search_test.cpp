@@ -144,8 +144,8 @@ TEST_P(SeenOtherwise, TwinsAndSidesAreTheSame) {
   const auto fewer = declaring(system, true);
   std::vector<int> first;
   for (const auto& [angle, reflected, start] :
-       {std::tuple(0.0, false, 0.0), std::tuple(0.7, false, 0.0), std::tuple(1.6, true, 0.0), std::tuple(2.9, true, 0.3),
-        std::tuple(4.4, false, 0.8)}) {
+       {std::tuple(0.0, false, 0.0), std::tuple(0.7, false, 0.0), std::tuple(1.6, true, 0.0),
+        std::tuple(2.9, true, 0.3), std::tuple(4.4, false, 0.8)}) {
     SCOPED_TRACE(angle);
     const Crossing seen = seen_otherwise(crossing, angle, reflected, start);
     const std::vector<Direction> found = directions(*fewer, seen.base, {}, seen.kernel);

@@ -31,8 +31,8 @@ namespace orbweaver::test {
   return matrix;
 }
 
-/// The same system told in other coordinates y = Q z, Q invertible, and other units of time and energy (how many of them
-/// make an old one): dy/dt = Q f(Q^-1 y)/time, with its symmetries Q A Q^-1. Angles only change places.
+/// The same system told in other coordinates y = Q z, Q invertible, and other units of time and energy (how many of
+/// them make an old one): dy/dt = Q f(Q^-1 y)/time, with its symmetries Q A Q^-1. Angles only change places.
 class TurnedSystem final : public DelegatingSystem {
  public:
   TurnedSystem(std::shared_ptr<const systems::System> system, const Eigen::MatrixXd& turn, double time = 1.0,

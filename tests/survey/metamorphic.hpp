@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "survey/same_tree.hpp"
 #include "support/turned_system.hpp"
+#include "survey/same_tree.hpp"
 
 namespace orbweaver::test {
 
@@ -103,8 +103,10 @@ inline const std::vector<Case>& cases() {
              fmt::format("starts.fixed_points.names={{[{}, 0]: [L3], [{}, {}]: [Long-4, L4], [{}, {}]: [Long-5, L5]}}",
                          -1.0004166666 * length, x, y, x, -y),
              fmt::format("starts.sweep.period=[{}, {}]", 6.2 * time, 6.5 * time),
-             fmt::format("starts.sweep.step={}", 0.01 * time), fmt::format("continuation.start={}", 0.01 * std::max(length, length / time)),
-             fmt::format("limits.period={}", 120 * time), fmt::format("limits.energy=[-.inf, {}]", -0.88 * energy)};
+             fmt::format("starts.sweep.step={}", 0.01 * time),
+             fmt::format("continuation.start={}", 0.01 * std::max(length, length / time)),
+             fmt::format("limits.period={}", 120 * time),
+             fmt::format("limits.energy=[-.inf, {}]", -0.88 * energy)};
        }},
       {"spring",
        "swinging_spring",

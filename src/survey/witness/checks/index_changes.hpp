@@ -16,8 +16,8 @@
 
 namespace orbweaver::survey {
 
-/// Between two orbits of a family, its birth and the first of them, or the last and the family that it joins, a multiplier
-/// passes a root of unity that the scene asks for only where a crossing is listed.
+/// Between two orbits of a family, its birth and the first of them, or the last and the family that it joins, a
+/// multiplier passes a root of unity that the scene asks for only where a crossing is listed.
 class IndexChanges final : public Check {
  public:
   [[nodiscard]] std::vector<Finding> findings(const Evidence& evidence,
@@ -81,8 +81,7 @@ class IndexChanges final : public Check {
             family.parent >= 0 && functions[f].sector.q == 1 && (before->orbit == side.nearest || n == side.nearest);
         if (!at_birth &&
             !is_listed(evidence, family, functions[f].sector, family.arclengths[before->orbit], family.arclengths[n]))
-          found.push_back(
-              finding_at(evidence, row, functions[f].sector, n, stability, evidence.severity_about(row)));
+          found.push_back(finding_at(evidence, row, functions[f].sector, n, stability, evidence.severity_about(row)));
       }
     }
     if (!structure.symplectic || evidence.tree.atlas.header().pairs != 1) return;
@@ -111,9 +110,9 @@ class IndexChanges final : public Check {
     return {first, last, birth, family.arclengths[first]};
   }
 
-  /// Where a family is born, and where it joins another, its index is 2: the orbits next to these places have it on the
-  /// same side of all other values, or there are crossings in between. Those before a joining lie where orbits cannot be
-  /// told from the other family's.
+  /// Where a family is born, and where it joins another, its index is 2: the orbits next to these places have it on
+  /// the same side of all other values, or there are crossings in between. Those before a joining lie where orbits
+  /// cannot be told from the other family's.
   static void judge_ends(const Evidence& evidence, int row, const Side& side,
                          const std::vector<bifurcation::TestFunction>& functions, int order,
                          std::vector<Finding>& found) {
