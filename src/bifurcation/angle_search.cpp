@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "orbweaver/numerics/lagrange.hpp"
 #include "orbweaver/numerics/locate.hpp"
 #include "pushed_system.hpp"
+#include "twin_order.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -246,6 +248,10 @@ AnglesFound search_angles(const systems::System& system, const loop::Loop& base,
   if (!all || !all->is_clear() || all->sign_changes() != 2) return out;
   const Circle& circle = *all;
   out = circle.summary();
+  // Zeros through which the push rises with time, and those through which it falls.
+  std::vector<FoundOrbit> rising;
+  std::vector<FoundOrbit> falling;
+  const int sense = sense_of_time(group);
   for (std::size_t n = 0; n + 1 < circle.orbits.size(); ++n) {
     const numerics::Place from{circle.angles[n], circle.orbits[n].push};
     const numerics::Place to{circle.angles[n + 1], circle.orbits[n + 1].push};
@@ -261,8 +267,11 @@ AnglesFound search_angles(const systems::System& system, const loop::Loop& base,
     if (!located || std::isnan(push_at(located->position))) continue;
     const Gap gap = gap_between(base, last.loop, group, options.family.modes);
     const double length = gap.inside.norm();
-    out.found.push_back({gap.inside / length, gap.along / length, last.loop, {}});
+    (sense * to.value > 0.0 ? rising : falling).push_back({gap.inside / length, gap.along / length, last.loop, {}});
   }
+  out.found = std::move(rising);
+  out.found.insert(out.found.end(), std::make_move_iterator(falling.begin()), std::make_move_iterator(falling.end()));
+  if (q < least_weak_resonance) put_in_order(system, out.found);
   if (q % 2 == 1 && out.found.size() == 2) {
     out.found.front().opposite = shifted_opposite(base, group, out.found.front(), out.found.back().loop, q);
     out.found.pop_back();

@@ -24,7 +24,8 @@ struct AnglesFound {
 /// is an odd function of the reduced action's derivative by the angle, r^(q - 2) sin(q (angle - a)) to lowest order,
 /// and vanishes where orbits of the system itself lie. Its sign changes over a turn by 2 pi/q are located, which is
 /// possible as long as the push exceeds its noise, far below the loss's tolerance. Amplitudes grow from a hundredth of
-/// `scale` until the push is plain. One of each pair of opposite directions where q is odd.
+/// `scale` until the push is plain. First comes the zero through which the push rises in the sense of time, and with
+/// odd q that one alone: the other is its opposite. Below `least_weak_resonance`, the one of the longer period.
 [[nodiscard]] AnglesFound search_angles(const systems::System& system, const loop::Loop& base,
                                         const KernelActions& group, const loop::Isotropy& isotropy, int q, double scale,
                                         const DirectionOptions& options);

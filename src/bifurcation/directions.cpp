@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -11,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "angle_search.hpp"
+#include "born_orbit.hpp"
 #include "fixed_spaces.hpp"
 #include "kernel_actions.hpp"
 #include "orbweaver/core/error.hpp"
@@ -21,6 +23,7 @@
 #include "orbweaver/loss/unknowns.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
 #include "search.hpp"
+#include "twin_order.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -196,18 +199,49 @@ std::vector<Eigen::VectorXd> fixed_lines(const KernelActions& group) {
   return lines;
 }
 
+struct Line {
+  Rank rank;
+  Eigen::VectorXd vector;
+};
+
 // One of each set of images, the one of lowest rank.
-std::vector<Eigen::VectorXd> representatives(const KernelActions& group, const systems::Structure& system,
-                                             const std::vector<Eigen::VectorXd>& lines) {
-  std::vector<std::pair<Rank, Eigen::VectorXd>> ranked;
-  for (const Eigen::VectorXd& v : lines) ranked.emplace_back(rank_of(group, system, v), v);
+std::vector<Line> representatives(const KernelActions& group, const systems::Structure& system,
+                                  const std::vector<Eigen::VectorXd>& lines) {
+  std::vector<Line> ranked;
+  for (const Eigen::VectorXd& v : lines) ranked.push_back({rank_of(group, system, v), v});
   std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const auto& a, const auto& b) { return a.first.tie() < b.first.tie(); });
-  std::vector<Eigen::VectorXd> out;
-  for (const auto& [rank, v] : ranked)
-    if (std::none_of(out.begin(), out.end(), [&](const auto& other) { return group.image(v, other, same_line) != 0; }))
-      out.push_back(v);
+                   [](const Line& a, const Line& b) { return a.rank.tie() < b.rank.tie(); });
+  std::vector<Line> out;
+  for (const Line& line : ranked)
+    if (std::none_of(out.begin(), out.end(),
+                     [&](const Line& other) { return group.image(line.vector, other.vector, same_line) != 0; }))
+      out.push_back(line);
   return out;
+}
+
+// The directions of lines, twins in the order of what the crossing's orbit does where they are symmetric: the phases of
+// their reversor hang on the start of the base.
+std::vector<Direction> along_lines(const systems::System& system, const KernelActions& group, const loop::Loop& base,
+                                   const std::vector<Line>& lines, const DirectionOptions& options) {
+  std::vector<Direction> out;
+  std::vector<std::vector<double>> numbers;
+  for (const Line& line : lines) {
+    out.push_back(direction_along(system.structure(), group, base, line.vector, options));
+    numbers.push_back(at_symmetric_instants(system, out.back().base));
+  }
+  if (group.constant()) return out;
+  const auto are_twins = [&](std::size_t a, std::size_t b) {
+    return lines[a].rank.reversor == lines[b].rank.reversor && lines[a].rank.kept == lines[b].rank.kept;
+  };
+  std::vector<std::size_t> order(lines.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (std::size_t l = 0; l < order.size(); ++l)  // twins change places with each other only
+    for (std::size_t m = l + 1; m < order.size(); ++m)
+      if (are_twins(order[l], order[m]) && stands_before(numbers[order[m]], numbers[order[l]], of_crossings))
+        std::swap(order[l], order[m]);
+  std::vector<Direction> sorted;
+  for (const std::size_t n : order) sorted.push_back(std::move(out[n]));
+  return sorted;
 }
 
 // How many of a plane's symmetries are rotations: q of the sector e^{2 pi i j / q}.
@@ -338,6 +372,18 @@ std::vector<Direction> by_angles(const systems::System& system, const KernelActi
   return out;
 }
 
+/// Whether the orbit as far along the opposite direction stands before the one found. Without it, the base does.
+bool leads_to_second(const systems::System& system, const KernelActions& group, const loop::Loop& base,
+                     const loop::Isotropy& kept, const FoundOrbit& orbit, double amplitude,
+                     const DirectionOptions& options) {
+  const Eigen::VectorXd opposite = -orbit.coordinates;
+  const corrector::Result result =
+      born_orbit(system, base, group.vector_at(opposite), kept, amplitude, options.corrector);
+  std::vector<FoundOrbit> sides{orbit, {opposite, 0.0, result.converged() ? result.loop : base}};
+  put_in_order(system, sides);
+  return sides.front().coordinates == opposite;
+}
+
 // `not_isolated`, if given, takes how many of the search's orbits are not.
 std::vector<Direction> searched(const systems::System& system, const KernelActions& group, const loop::Loop& base,
                                 const std::vector<Eigen::VectorXd>& lines, const DirectionOptions& options,
@@ -385,12 +431,16 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   if ((best.not_isolated > 0 && not_isolated == nullptr) || static_cast<int>(best.found.size()) < expected)
     core::log_warning(seen);
   if (group.constant()) return about_equilibrium(system.structure(), group, base, best, amplitude);
+  put_in_order(system, best.found);
   std::vector<Direction> out;
-  for (const FoundOrbit& orbit : best.found)
+  for (const FoundOrbit& orbit : best.found) {
     out.push_back(
         {base, leaving_along(group.vector_at(orbit.coordinates), orbit.along, options.family),
          loop::find_isotropy(system.structure(), orbit.loop, found_tolerance * amplitude, group.denominator()),
          has_other_sides(group, orbit.coordinates), amplitude});
+    if (out.back().both_sides && leads_to_second(system, group, base, kept, orbit, amplitude, options))
+      out.back().tangent *= -1.0;
+  }
   return out;
 }
 
@@ -411,14 +461,15 @@ std::vector<Direction> all_directions(const systems::System& system, const loop:
           fmt::format("the base loop of a kernel does not have the symmetry {} of its orbit to "
                       "{:.2g}, with any phase that its other symmetries allow",
                       g.name, options.symmetry_tolerance));
-  const std::vector<Eigen::VectorXd> lines = representatives(group, structure, fixed_lines(group));
-  std::vector<Direction> out;
-  for (const Eigen::VectorXd& v : lines) out.push_back(direction_along(structure, group, base, v, options));
+  const std::vector<Line> lines = representatives(group, structure, fixed_lines(group));
+  std::vector<Direction> out = along_lines(system, group, base, lines, options);
   // A single oscillation, a single vector, and a plane with rotations and reflections have no others.
   const bool complete = kernel.size() == 1 || (kernel.size() == 2 && group.constant()) ||
                         (kernel.size() == 2 && !lines.empty() && rotations(group) > 2);
-  if (!complete)
-    for (Direction& d : searched(system, group, base, lines, options, not_isolated)) out.push_back(std::move(d));
+  if (complete) return out;
+  std::vector<Eigen::VectorXd> known;
+  for (const Line& line : lines) known.push_back(line.vector);
+  for (Direction& d : searched(system, group, base, known, options, not_isolated)) out.push_back(std::move(d));
   return out;
 }
 

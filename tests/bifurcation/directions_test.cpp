@@ -5,7 +5,9 @@
 
 #include "bifurcation/crossings.hpp"
 #include "born_orbit.hpp"
+#include "orbweaver/bifurcation/small_oscillations.hpp"
 #include "orbweaver/certificate/certificate.hpp"
+#include "orbweaver/systems/registry.hpp"
 
 namespace orbweaver::bifurcation {
 namespace {
@@ -152,6 +154,40 @@ TEST(Directions, RefuseWhatIsNoKernel) {
   crooked.cosine(3, 0) += 1e-3;
   crooked.sine(3, 1) += 1e-3;
   EXPECT_THROW(static_cast<void>(call(crooked, d.kernel)), core::NumericalError);
+}
+
+// On the straight orbits of Henon and Heiles' system both families of order 4 have the reversor R and no other: one is
+// at rest where the crossing's orbit turns at the triangle's side, the other where it turns towards a corner.
+TEST(Directions, TwinsOfOneReversorDoNotHangOnTheStart) {
+  const auto system = systems::make_system("henon_heiles");
+  const std::vector<double> origin(4, 0.0);
+  const starts::NormalMode mode =
+      small_oscillations(*system, starts::sweep(*system, origin, {}), 10).families.at(0).mode;
+  const test::Family family =
+      test::family_from(system, {loop::constant_loop(origin, mode.period, 10), mode.direction, mode.isotropy}, 7.5);
+  const test::Crossing crossing = test::crossing_at(*system, family.with_index(0.0), family.isotropy, 4, 2);
+  std::vector<double> first;
+  for (const int eighths : {0, 1, 4, 5}) {
+    SCOPED_TRACE(eighths);
+    const double start = eighths / 8.0;
+    test::Crossing later{loop::time_shifted(crossing.base, start), {}};
+    for (const loop::Tangent& v : crossing.kernel) {
+      loop::Loop vector = crossing.base;
+      vector.modes = v.modes;
+      later.kernel.push_back({loop::time_shifted(vector, start).modes, {}});
+    }
+    const std::vector<Direction> found = directions(*system, later.base, family.isotropy, later.kernel);
+    ASSERT_EQ(found.size(), 2u);
+    EXPECT_EQ(loop::to_text(found[0].isotropy), loop::to_text(found[1].isotropy));
+    std::vector<double> sizes;
+    for (const Direction& direction : found) {
+      const std::vector<double> z = loop::state_at(direction.base, 0.0);
+      sizes.push_back(std::hypot(z[0], z[1]));
+    }
+    EXPECT_GT(std::abs(sizes[0] - sizes[1]), 1e-3);
+    first.push_back(sizes[0]);
+  }
+  for (const double size : first) EXPECT_NEAR(size, first.front(), 1e-7);
 }
 
 }  // namespace

@@ -1,5 +1,8 @@
 // Directions at crossings without reversors, or with those undeclared: found by a search.
 #include <algorithm>
+#include <tuple>
+
+#include <gmock/gmock.h>
 
 #include "bifurcation/crossings.hpp"
 #include "born_orbit.hpp"
@@ -96,6 +99,79 @@ void expect_same_by_search(const test::Family& family, const Crossing& crossing,
     EXPECT_EQ(direction.both_sides, known.front().both_sides);
   }
 }
+
+/// Another basis of the kernel's plane, and another start of the crossing's orbit.
+Crossing seen_otherwise(const Crossing& crossing, double angle, bool reflected, double start) {
+  Crossing out{loop::time_shifted(crossing.base, start), {}};
+  const double sign = reflected ? -1.0 : 1.0;
+  for (const auto& [first, second] :
+       {std::pair(std::cos(angle), std::sin(angle)), std::pair(-sign * std::sin(angle), sign * std::cos(angle))}) {
+    loop::Loop vector = crossing.base;
+    for (std::size_t n = 0; n < vector.modes.size(); ++n)
+      vector.modes[n] = first * crossing.kernel[0].modes[n] + second * crossing.kernel[1].modes[n];
+    out.kernel.push_back({loop::time_shifted(vector, start).modes, {}});
+  }
+  return out;
+}
+
+/// The part of the direction along the image of a known one that it is nearest to, either way.
+double part_along(const loop::Tangent& tangent, const std::vector<std::vector<double>>& lines) {
+  double farthest = 0.0;
+  for (const std::vector<double>& line : lines) {
+    double sum = 0.0;
+    for (std::size_t n = 0; n < std::min(line.size(), tangent.modes.size()); ++n) sum += tangent.modes[n] * line[n];
+    if (std::abs(sum) > std::abs(farthest)) farthest = sum;
+  }
+  return farthest;
+}
+
+struct Order {
+  double m2;
+  double index;
+  int times;
+};
+
+class SeenOtherwise : public testing::TestWithParam<Order> {};
+
+// Kernel vectors are any basis of their plane, and rounding decides which. Which of twins is the first, and which side
+// of a single curve is +, does not hang on it, nor on where the crossing's orbit starts.
+TEST_P(SeenOtherwise, TwinsAndSidesAreTheSame) {
+  const auto& [m2, index, times] = GetParam();
+  const auto system = systems::make_system("double_pendulum", {{"m2", m2}});
+  const test::Family family = family_of(system, 0, 10.3);
+  const Crossing crossing = crossing_of(family, index, times);
+  const std::vector<Direction> known = directions(*system, crossing.base, family.isotropy, crossing.kernel);
+  const auto fewer = declaring(system, true);
+  std::vector<int> first;
+  for (const auto& [angle, reflected, start] :
+       {std::tuple(0.0, false, 0.0), std::tuple(0.7, false, 0.0), std::tuple(1.6, true, 0.0),
+        std::tuple(2.9, true, 0.3), std::tuple(4.4, false, 0.8)}) {
+    SCOPED_TRACE(angle);
+    const Crossing seen = seen_otherwise(crossing, angle, reflected, start);
+    const std::vector<Direction> found = directions(*fewer, seen.base, {}, seen.kernel);
+    ASSERT_EQ(found.size(), known.size());
+    loop::Loop back = found.front().base;
+    back.modes = found.front().tangent.modes;
+    const loop::Tangent tangent{loop::time_shifted(back, -start).modes, {}};
+    if (known.size() == 1) {
+      // The mirror that belongs to an odd number of half turns changes all signs.
+      std::vector<std::vector<double>> lines = images(crossing, known, times);
+      for (std::size_t turn = 1; turn < lines.size(); turn += 2)
+        for (double& v : lines[turn]) v = -v;
+      first.push_back(part_along(tangent, lines) > 0.0 ? 1 : -1);
+    } else {
+      const double to_first = std::abs(part_along(tangent, images(crossing, {known[0]}, times)));
+      const double to_second = std::abs(part_along(tangent, images(crossing, {known[1]}, times)));
+      EXPECT_GT(std::abs(to_first - to_second), 0.01);
+      first.push_back(to_first > to_second ? 0 : 1);
+    }
+  }
+  EXPECT_THAT(first, testing::Each(first.front()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Search, SeenOtherwise,
+                         testing::Values(Order{1.0, 0.0, 2}, Order{1.0, 1.0, 3}, Order{0.87, -1.0, 3},
+                                         Order{1.0, 2.0 * std::cos(2.0 * std::numbers::pi / 5.0), 5}));
 
 TEST(PushedSystem, KeepsTheEnergyAndChangesTheField) {
   const auto system = systems::make_system("henon_heiles", {}, {});

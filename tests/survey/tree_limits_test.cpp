@@ -59,6 +59,32 @@ TEST(TreeLimits, DepthCountsGenerations) {
   }
 }
 
+// The family that is born on ID2a at T = 20.4531 passes an index of -2 at T = 20.5049: behind its first orbit with a
+// first step of 0.1 degrees, before it with one of half a degree.
+TEST(TreeLimits, CrossingsBeforeTheFirstOrbitAreFound) {
+  const core::Communicator comm;
+  for (const std::string first : {"0.1deg", "0.5deg", "1deg"}) {
+    SCOPED_TRACE(first);
+    const survey::Summary summary = run(comm,
+                                        quick_scene({"survey.depth=2", "survey.subharmonics=2", "limits.period=21",
+                                                     "limits.energy=[-.inf, 1.1]", "starts.fixed_points.grid=[[0],[0]]",
+                                                     "starts.sweep.period=[8, 9]", "continuation.start=" + first}),
+                                        "before_first");
+    if (!comm.is_root()) continue;
+    const Atlas atlas(summary.atlas);
+    const auto& names = atlas.families().texts("name");
+    const auto born =
+        std::find_if(names.begin(), names.end(), [](const std::string& name) { return name.ends_with("aB"); });
+    ASSERT_NE(born, names.end());
+    const auto crossing = atlas.crossing(*born, "period-doubling", 20.50491);
+    ASSERT_TRUE(crossing.has_value());
+    EXPECT_NEAR(atlas.crossings().reals("period")[*crossing], 20.504913670296, 1e-9);
+    const bool is_before = atlas.column("period", *born).front() > 20.504914;
+    EXPECT_EQ(is_before, first != "0.1deg");
+    EXPECT_EQ(atlas.crossings().reals("arclength")[*crossing] < 0.0, is_before);
+  }
+}
+
 // Eight orbits leave the origin, which are three up to the symmetries of the triangle and time reversal.
 TEST(HenonHeiles, HasThreeFamiliesAtTheOrigin) {
   const core::Communicator comm;

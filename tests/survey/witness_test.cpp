@@ -295,6 +295,34 @@ TEST_F(WitnessOf, AnIndexThatPassesWithoutACrossing) {
   EXPECT_THAT(rows[0].text, HasSubstr("2 pi i 1/2"));
 }
 
+// All orbits of a family lie behind the values that an index of 2 passes.
+TEST_F(WitnessOf, AnIndexThatIsNotTheBirths) {
+  const std::string key = world->is_root() ? key_named("StD") : "";
+  for (archive::OrbitRecord& orbit : records.orbits)
+    if (orbit.family_key == key) orbit.stability = orbit.fundamental_stability = {-3.0};
+  const std::vector<Found> rows = found();
+  if (!world->is_root()) return;
+  const auto passed = AllOf(finding("contradiction", "index-change"), Field(&Found::family, row_named("StD")));
+  EXPECT_THAT(rows, ElementsAre(passed, passed, passed, passed));  // 1/2, 1/3, 1/4 and 1/6 of its half map
+}
+
+TEST_F(WitnessOf, AnIndexThatIsNotTheOneAtTheEnd) {
+  if (world->is_root()) {
+    archive::FamilyRecord& family = records.families[static_cast<std::size_t>(row_named("LoD"))];
+    family.end_reason = "joined Loop at T = 12.0895";
+    family.end_family_key = key_named("Loop");
+    family.end_crossing = family.crossing;
+    for (archive::OrbitRecord& orbit : records.orbits)
+      if (orbit.family_key == family.key) orbit.stability = orbit.fundamental_stability = {2.5};
+    auto last = std::find_if(records.orbits.rbegin(), records.orbits.rend(),
+                             [&](const archive::OrbitRecord& orbit) { return orbit.family_key == family.key; });
+    last->stability = last->fundamental_stability = {-1.5};
+  }
+  const std::vector<Found> rows = found();
+  if (!world->is_root()) return;
+  EXPECT_THAT(rows, IsSupersetOf({finding("contradiction", "index-change"), finding("undecided", "index-change")}));
+}
+
 // Whose events were lost with a failed task.
 TEST_F(WitnessOf, AnIndexThatPassesWhereATaskFailed) {
   if (world->is_root()) {

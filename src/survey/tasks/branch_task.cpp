@@ -25,6 +25,13 @@ namespace {
 /// Known orbits that a location gets along: the two around the event and their neighbours.
 constexpr std::size_t kept_orbits = 5;
 
+/// First orbits from which, with the one where the family is born, those in between are predicted: a cubic.
+constexpr std::size_t orbits_from_birth = 3;
+
+/// Test functions of a family's birth that are smaller vanish there, the family's own for one. Their error bounds say
+/// nothing: they take a Newton step, and the orbits of two families lie side by side. The crossing is located to 1e-9.
+constexpr double zero_at_birth = 1e-6;
+
 /// Of an index from 2, where a branch may be on the way to a crossing that rounding hides. Only then is it looked for.
 /// Not measured.
 constexpr double nearly_two = 1e-4;
@@ -168,10 +175,12 @@ void BranchTask::limited_by(int limits, const continuation::Frontier& before) {
 
 /// What only the family's end shows, from the stored orbits alone, whatever was probed before.
 void BranchTask::finish() {
+  if (_curve.known().size() < orbits_from_birth) detect_from_birth();
   _curve.forget_found();
   const auto probing = [this](double position) { return probe(position); };
   for (const bifurcation::Bracket& b : _detector.finish(probing))
-    add_event({bifurcation::Event::Kind::test_function, _functions[b.function], b.tangency}, b.from, b.to);
+    add_event({bifurcation::Event::Kind::test_function, _functions[b.function], b.tangency}, b.from, b.to,
+              _curve.known());
 }
 
 /// False where the branch has arrived at another family.
@@ -180,6 +189,7 @@ bool BranchTask::take(const continuation::Orbit& orbit) {
     _before_first =
         _work.lineage.crossing.empty() ? 0.0 : continuation::arclength_in_units(*_system, _start.base, orbit.loop);
   _curve.add(orbit.arclength, orbit.loop, kept_orbits);
+  if (_outcome.orbits > 0 && _curve.known().size() == orbits_from_birth) detect_from_birth();
   if (arrive(orbit)) return false;
   const std::optional<spectrum::Stability>& stability = stability_at(orbit);
   detect(orbit, stability);
@@ -254,13 +264,34 @@ void BranchTask::detect(const continuation::Orbit& orbit, const std::optional<sp
   using Kind = bifurcation::Event::Kind;
   const auto probing = [this](double position) { return probe(position); };
   for (const bifurcation::Bracket& b : _detector.advance(test_point(orbit.arclength, stability), probing))
-    add_event({Kind::test_function, _functions[b.function], b.tangency}, b.from, b.to);
+    add_event({Kind::test_function, _functions[b.function], b.tangency}, b.from, b.to, _curve.known());
   for (const bifurcation::Fold& fold : _folds.advance(orbit.arclength, orbit.loop.period, orbit.energy))
     add_event({fold.quantity == bifurcation::Fold::Quantity::period ? Kind::fold_period : Kind::fold_energy, {}, false},
-              fold.from, fold.to);
+              fold.from, fold.to, _curve.known());
 }
 
-void BranchTask::add_event(const bifurcation::Event& event, double from, double to) {
+/// The first orbit may lie so far out that an index has passed the values of other sectors on the way from the crossing
+/// where the family is born.
+void BranchTask::detect_from_birth() {
+  if (_work.lineage.crossing.empty() || _curve.known().empty()) return;
+  const continuation::FamilyCurve::Known& first = _curve.known().front();
+  const auto at_birth = test_point(0.0, stability_of(*_system, _start.base, _start.isotropy, _team));
+  const auto at_first = test_point(0.0, stability_of(*_system, first.loop, _start.isotropy, _team));
+  std::vector<continuation::FamilyCurve::Known> known{
+      {first.position - continuation::arclength_between(_start.base, first.loop), _start.base,
+       first.arclength - _before_first}};
+  known.insert(known.end(), _curve.known().begin(), _curve.known().end());
+  for (std::size_t f = 0; f < _functions.size(); ++f) {
+    const double before = at_birth.readings[f].value;
+    const int after = at_first.readings[f].sign();
+    if (std::abs(before) > zero_at_birth && before * after < 0.0)
+      add_event({bifurcation::Event::Kind::test_function, _functions[f], false}, known[0].position, known[1].position,
+                known);
+  }
+}
+
+void BranchTask::add_event(const bifurcation::Event& event, double from, double to,
+                           std::vector<continuation::FamilyCurve::Known> known) {
   // A family's own birth is no event: its index leaves 2 there like a power of the distance, first within its error.
   const bool at_birth = _work.lineage.depth > 0 && from <= 0.0;
   const bool is_fold = event.kind != bifurcation::Event::Kind::test_function;
@@ -276,8 +307,8 @@ void BranchTask::add_event(const bifurcation::Event& event, double from, double 
   work.lineage = _work.lineage;
   work.isotropy = _work.isotropy;
   work.before_first = _before_first;
-  work.known = _curve.known();
-  work.from = std::max(from, _curve.known().front().position);  // a long way without a sign may begin before
+  work.from = std::max(from, known.front().position);  // a long way without a sign may begin before
+  work.known = std::move(known);
   work.to = to;
   _children.push_back(task_of(work));
 }

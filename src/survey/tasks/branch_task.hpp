@@ -42,7 +42,9 @@ class BranchTask {
   bool arrives_ahead();
   [[nodiscard]] continuation::Ending met() const;
   void detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability);
-  void add_event(const bifurcation::Event& event, double from, double to);
+  void detect_from_birth();
+  void add_event(const bifurcation::Event& event, double from, double to,
+                 std::vector<continuation::FamilyCurve::Known> known);
   void solve_requested(const continuation::Orbit& orbit);
   void store(continuation::Orbit orbit, const std::optional<spectrum::Stability>& stability);
   [[nodiscard]] bifurcation::TestPoint test_point(double position,

@@ -47,7 +47,9 @@ queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const 
   const double first = work.branch.amplitude > 0.0 ? work.branch.amplitude : options.start_amplitude;
   std::optional<std::string> why;
   StartOutcome outcome;
+  bool is_beyond_limits = false;  // the first of these amplitudes that leads to an orbit
   for (const double factor : amplitude_factors) {
+    if (is_beyond_limits && factor > 1.0) continue;
     options.start_amplitude = factor * first;
     continuation::Branch branch(system, begin, options);
     const std::optional<continuation::Orbit> orbit = branch.advance();
@@ -56,11 +58,10 @@ queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const 
       if (!ending.failed()) outcome.limited_by = orbit_limited;
       if (ending.failed() || why) {  // a limit reached from further out says nothing of this family
         if (!why) why = ending.text();
-        continue;
+      } else {
+        is_beyond_limits = true;  // unless a nearer orbit lies within them
       }
-      queue::TaskOutcome done;  // beyond the scene's limits: no family begins
-      done.payload = pack(outcome);
-      return done;
+      continue;
     }
     const double share = share_along(begin, orbit->loop);
     if (share < least_share) {
@@ -72,6 +73,11 @@ queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const 
     found.amplitude = options.start_amplitude;
     queue::TaskOutcome done;
     done.children.push_back(task_of(found));
+    done.payload = pack(outcome);
+    return done;
+  }
+  if (is_beyond_limits) {  // no family begins
+    queue::TaskOutcome done;
     done.payload = pack(outcome);
     return done;
   }

@@ -1,7 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "orbweaver/archive/schema/crossing_kind.hpp"
 #include "orbweaver/archive/schema/schema.hpp"
@@ -12,8 +16,8 @@
 
 namespace orbweaver::survey {
 
-/// Between two orbits of a family a multiplier passes a root of unity that the scene asks for only where a crossing is
-/// listed.
+/// Between two orbits of a family, its birth and the first of them, or the last and the family that it joins, a
+/// multiplier passes a root of unity that the scene asks for only where a crossing is listed.
 class IndexChanges final : public Check {
  public:
   [[nodiscard]] std::vector<Finding> findings(const Evidence& evidence,
@@ -57,14 +61,13 @@ class IndexChanges final : public Check {
 
   static void judge(const Evidence& evidence, int row, std::size_t first, std::size_t count,
                     std::vector<Finding>& found) {
+    if (count == 0) return;
     const TreeFamily& family = evidence.family(row);
     const systems::Structure& structure = evidence.system->structure();
     const int order = loop::SymmetryGroup(structure, loop::isotropy_of(structure, family.isotropy)).order();
     const auto functions = bifurcation::test_functions(structure, order, evidence.scene.survey.subharmonics);
     std::vector<std::optional<Signed>> last(functions.size());
-    const auto& steps = evidence.tree.atlas.orbits().integers("step");
-    const bool runs_backwards = count > 0 && steps[family.first_orbit + first] < 0;
-    const std::size_t birth = runs_backwards ? first + count - 1 : first;
+    const Side side = side_of(evidence, family, first, count);
     for (std::size_t n = first; n < first + count; ++n) {
       const spectrum::Stability stability = stability_at(evidence, family.first_orbit + n, order);
       for (std::size_t f = 0; f < functions.size(); ++f) {
@@ -75,19 +78,67 @@ class IndexChanges final : public Check {
         if (!before || before->sign == sign) continue;
         // The index leaves 2 at a birth like a power of the distance, first within its error.
         const bool at_birth =
-            family.parent >= 0 && functions[f].sector.q == 1 && (before->orbit == birth || n == birth);
-        if (!at_birth && !is_listed(evidence, family, functions[f].sector, before->orbit, n))
-          found.push_back(finding_at(evidence, row, functions[f].sector, n, stability));
+            family.parent >= 0 && functions[f].sector.q == 1 && (before->orbit == side.nearest || n == side.nearest);
+        if (!at_birth &&
+            !is_listed(evidence, family, functions[f].sector, family.arclengths[before->orbit], family.arclengths[n]))
+          found.push_back(finding_at(evidence, row, functions[f].sector, n, stability, evidence.severity_about(row)));
+      }
+    }
+    if (!structure.symplectic || evidence.tree.atlas.header().pairs != 1) return;
+    judge_ends(evidence, row, side, functions, order, found);
+  }
+
+  /// The orbits of a side next to its birth and next to its end, and the arclengths between which there is nothing but
+  /// the way from the birth.
+  struct Side {
+    std::size_t nearest;
+    std::size_t farthest;
+    double from;
+    double to;
+  };
+
+  static Side side_of(const Evidence& evidence, const TreeFamily& family, std::size_t first, std::size_t count) {
+    constexpr double far = std::numeric_limits<double>::infinity();
+    const auto& steps = evidence.tree.atlas.orbits().integers("step");
+    const std::size_t last = first + count - 1;
+    if (steps[family.first_orbit + first] < 0) {
+      const bool is_only = last + 1 == family.orbits();
+      const double birth = is_only ? far : 0.5 * (family.arclengths[last] + family.arclengths[last + 1]);
+      return {last, first, family.arclengths[last], birth};
+    }
+    const double birth = first == 0 ? -far : 0.5 * (family.arclengths[first - 1] + family.arclengths[first]);
+    return {first, last, birth, family.arclengths[first]};
+  }
+
+  /// Where a family is born, and where it joins another, its index is 2: the orbits next to these places have it on
+  /// the same side of all other values, or there are crossings in between. Those before a joining lie where orbits
+  /// cannot be told from the other family's.
+  static void judge_ends(const Evidence& evidence, int row, const Side& side,
+                         const std::vector<bifurcation::TestFunction>& functions, int order,
+                         std::vector<Finding>& found) {
+    const TreeFamily& family = evidence.family(row);
+    const systems::Structure& structure = evidence.system->structure();
+    const bool has_joined = std::any_of(family.ends.begin(), family.ends.end(), [&](const FamilyEnd& end) {
+      return end.kind == EndKind::joined && end.orbit == side.farthest;
+    });
+    for (const bool is_birth : {true, false}) {
+      if (is_birth ? family.parent < 0 : !has_joined) continue;
+      const std::size_t orbit = is_birth ? side.nearest : side.farthest;
+      const spectrum::Stability stability = stability_at(evidence, family.first_orbit + orbit, order);
+      for (const bifurcation::TestFunction& function : functions) {
+        if (!bifurcation::has_sector(function.kind) || function.sector.q == 1) continue;
+        if (bifurcation::evaluate(function, structure, stability).sign() >= 0) continue;
+        if (is_birth && is_listed(evidence, family, function.sector, side.from, side.to)) continue;
+        found.push_back(finding_at(evidence, row, function.sector, orbit, stability,
+                                   is_birth ? evidence.severity_about(row) : Severity::undecided));
       }
     }
   }
 
   static bool is_listed(const Evidence& evidence, const TreeFamily& family, const bifurcation::Sector& sector,
-                        std::size_t from, std::size_t to) {
+                        double begin, double end) {
     const auto& arclengths = evidence.tree.atlas.crossings().reals("arclength");
-    const double begin = family.arclengths[from];
-    const double end = family.arclengths[to];
-    const double margin = arclength_margin * (end - begin);
+    const double margin = std::isfinite(end - begin) ? arclength_margin * (end - begin) : 0.0;
     return std::any_of(family.crossings.begin(), family.crossings.end(), [&](int row) {
       const TreeCrossing& crossing = evidence.crossing(row);
       const double at = arclengths[static_cast<std::size_t>(row)];
@@ -98,11 +149,11 @@ class IndexChanges final : public Check {
   }
 
   static Finding finding_at(const Evidence& evidence, int row, const bifurcation::Sector& sector, std::size_t orbit,
-                            const spectrum::Stability& stability) {
+                            const spectrum::Stability& stability, Severity severity) {
     const Invariants& x = evidence.family(row).curve.points()[orbit];
     Finding finding;
     finding.kind = FindingKind::index_change;
-    finding.severity = evidence.severity_about(row);
+    finding.severity = severity;
     finding.family = row;
     finding.period = x.value(Invariant::period);
     finding.energy = x.value(Invariant::energy);
