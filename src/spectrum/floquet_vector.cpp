@@ -24,6 +24,8 @@ using Complex = std::complex<double>;
 
 /// Of the harmonics that a chain's segments can hold, those that are believed: the last ones carry what is beyond.
 constexpr double believed = 0.8;
+/// Angles of sectors are 0 or 2 pi/q and more, up to roundings.
+constexpr double same_angle = 1e-9;
 
 /// Vectors y_0 .. y_(n-1) in the transverse bases, one a column, with y_(m+1) = F_m y_m and y_n = `multiplier` y_0: as
 /// nearly as any, `count` of them, nearest first.
@@ -67,6 +69,36 @@ std::vector<Eigen::MatrixXcd> closing_vectors(const TransverseFlow& flow, Comple
   return all;
 }
 
+/// The solution v(t_m) of the whole linearised flow, times e^{-i angle m/n}: its parts in the transverse bases are
+/// known, and its part along f is what makes it close. Without an angle only a change of the period closes it, which
+/// takes out what is in proportion to time.
+Eigen::MatrixXcd periodic_part(const systems::System& system, const Chain& chain, const Eigen::MatrixXcd& y,
+                               double angle) {
+  const Eigen::Index segments = chain.segments();
+  const Eigen::Index d = chain.dimension();
+  Eigen::MatrixXcd across(d, segments);
+  Eigen::VectorXcd along = Eigen::VectorXcd::Zero(segments + 1);  // parts of f, from 0 at t_0
+  for (Eigen::Index m = 0; m < segments; ++m) {
+    across.col(m) = transverse_basis(system, chain, m).cast<Complex>() * y.col(m);
+    const Eigen::VectorXcd image = matrix_in<Eigen::Dynamic>(chain.transitions, m, d).cast<Complex>() * across.col(m);
+    const Eigen::VectorXd next = chain.fields.col(m + 1);
+    along[m + 1] = along[m] + next.cast<Complex>().dot(image) / next.squaredNorm();
+  }
+  const Complex total = along[segments];
+  const Complex turned = std::polar(1.0, angle) - 1.0;
+  const bool closes = std::abs(turned) > same_angle;
+  const double period = chain.steps.sum();
+  double time = 0.0;
+  Eigen::MatrixXcd out(d, segments);
+  for (Eigen::Index m = 0; m < segments; ++m) {
+    const Complex part = along[m] + (closes ? total / turned : -total * time / period);
+    out.col(m) = std::polar(1.0, -angle * static_cast<double>(m) / static_cast<double>(segments)) *
+                 (across.col(m) + part * chain.fields.col(m).cast<Complex>());
+    time += chain.steps[m];
+  }
+  return out;
+}
+
 /// The highest harmonic of a periodic function that is above `share` of the largest.
 int highest_harmonic(const Eigen::MatrixXcd& periodic, double share) {
   const auto nodes = static_cast<int>(periodic.cols());
@@ -105,9 +137,7 @@ int floquet_vector_cutoff(const systems::System& system, const loop::Loop& loop,
     int highest = 0;
     for (const Eigen::MatrixXcd& y : closing_vectors(flow, std::polar(1.0, angle), options.count)) {
       Eigen::MatrixXcd periodic(chain.dimension(), segments * group.order);
-      for (Eigen::Index m = 0; m < segments; ++m)
-        periodic.col(m) = std::polar(1.0, -angle * static_cast<double>(m) / static_cast<double>(segments)) *
-                          (transverse_basis(system, chain, m).cast<Complex>() * y.col(m));
+      periodic.leftCols(segments) = periodic_part(system, chain, y, angle);
       for (Eigen::Index m = segments; m < periodic.cols(); ++m)
         periodic.col(m) = group.generator.cast<Complex>() * periodic.col(m - segments);
       highest = std::max(highest, highest_harmonic(periodic, options.share));
