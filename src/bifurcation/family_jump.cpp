@@ -7,6 +7,8 @@
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/bifurcation/test_functions.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/numerics/locate.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -31,6 +33,39 @@ double along_chord(const continuation::CurvePoint& at, const loop::Loop& from, c
   return (product + slope * change) / std::sqrt((chord + change * change) * (tangent + slope * slope));
 }
 
+/// Of the index's distances from 2 at the ends of a step: what is left where it passes 2, and not where it jumps.
+constexpr double at_two = 1e-3;
+/// Where it is sought: to this part of the step, by so many orbits at most. A smooth index takes five.
+constexpr double narrowest = 1e-6;
+constexpr int most_orbits = 20;
+
+/// Whether the curve between the orbits is there, and the index comes to 2 on it.
+bool has_index_two_between(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
+                           const continuation::Options& options, const KnownStability& from,
+                           const KnownStability& to) {
+  continuation::FamilyCurve step(system, isotropy, options);
+  step.add(0.0, from.orbit.loop);
+  step.add(1.0, to.orbit.loop);
+  const auto value_of = [&](const spectrum::Stability& s) {
+    return evaluate({TestFunction::Kind::sector, {1, 0}}, system->structure(), s).value;
+  };
+  const numerics::Place before{0.0, value_of(from.stability)};
+  const numerics::Place after{1.0, value_of(to.stability)};
+  const double enough = at_two * std::min(std::abs(before.value), std::abs(after.value));
+  const auto along = [&](double position) {
+    const std::optional<continuation::CurvePoint> point = step.at(position);
+    if (!point) return std::nan("");
+    try {
+      const double value = value_of(spectrum::floquet(*system, point->loop, isotropy));
+      return std::abs(value) <= enough ? 0.0 : value;
+    } catch (const core::NumericalError&) {
+      return std::nan("");
+    }
+  };
+  const auto root = numerics::locate_root(along, before, after, narrowest, most_orbits);
+  return root && root->value == 0.0;
+}
+
 }  // namespace
 
 bool passes_two_only_at_folds(const systems::Structure& system, const loop::Isotropy& isotropy) {
@@ -49,11 +84,12 @@ bool passes_one_unseen(const spectrum::Stability& from, const spectrum::Stabilit
 bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
                 const continuation::Options& options, const KnownStability& from, const KnownStability& to) {
   if (passes_one_unseen(from.stability, to.stability)) return true;
-  if (!passes_two_only_at_folds(system->structure(), isotropy)) return false;
   const TestFunction two{TestFunction::Kind::sector, {1, 0}};
   const int before = evaluate(two, system->structure(), from.stability).sign();
   const int after = evaluate(two, system->structure(), to.stability).sign();
   if (before * after >= 0) return false;
+  if (!passes_two_only_at_folds(system->structure(), isotropy))
+    return !has_index_two_between(system, isotropy, options, from, to);
   continuation::FamilyCurve step(system, isotropy, options);
   step.add(0.0, from.orbit.loop);
   step.add(1.0, to.orbit.loop);

@@ -4,9 +4,14 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
+#include <fmt/format.h>
+
+#include "orbweaver/bifurcation/directions.hpp"
 #include "orbweaver/continuation/off_branch.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
+#include "orbweaver/spectrum/floquet_vector.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -53,6 +58,23 @@ constexpr double of_solves = 1e-7;
 /// Below it singular values of a loop's Jacobian are rounding.
 constexpr double rounding = 1e-11;
 
+/// The orbit with the harmonics that the kernel's vectors need, which are solutions of the flow linearised about it.
+loop::Loop holding_kernel(const systems::System& system, loop::Loop orbit, const loop::Isotropy& isotropy,
+                          const Sector& sector, int order, int expected, const KernelOptions& options) {
+  spectrum::FloquetVectorOptions vectors;
+  vectors.order = order;
+  vectors.angle = 2.0 * std::numbers::pi * sector.j / sector.q;
+  vectors.count = sector.q <= 2 ? expected : expected / 2;
+  vectors.most = options.most_harmonics;
+  vectors.team = options.team;
+  const int needed = spectrum::floquet_vector_cutoff(system, orbit, isotropy, vectors);
+  if (needed > options.most_harmonics)
+    throw UndecidedError(fmt::format("what leaves there needs {} harmonics a period, more than {}", needed,
+                                     options.most_harmonics));
+  if (needed <= orbit.cutoff) return orbit;
+  return loop::with_cutoff(orbit, loop::allowed_cutoff_at_least(needed));
+}
+
 /// The place of the largest ratio between neighbours among the first `most` + 1 values.
 int dimension_of(const std::vector<double>& values, int most, double largest) {
   int dimension = 0;
@@ -82,24 +104,27 @@ double Kernel::next() const {
 }
 
 Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& point, const loop::Isotropy& isotropy,
-                 const Sector& sector, int expected, bool even_in_time, core::Team* team, double largest) {
+                 const Sector& sector, int expected, const KernelOptions& settings) {
   const loop::SymmetryGroup group(system.structure(), isotropy);
   const int multiplicity = sector.multiplicity(group.order());
   Kernel kernel;
-  kernel.family = point.tangent;
-  if (even_in_time || multiplicity > 1) {
-    const loop::Loop even = loop::evenly_in_time(point.loop);
+  const auto holding = [&](loop::Loop orbit) {
+    return holding_kernel(system, std::move(orbit), isotropy, sector, group.order(), expected, settings);
+  };
+  if (settings.even_in_time || multiplicity > 1) {
+    const loop::Loop even = holding(loop::evenly_in_time(point.loop));
     kernel.base = loop::repeated(even, multiplicity);
     kernel.family = loop::repeated(even, loop::with_time_map(point.loop, point.tangent, {}, even.cutoff), multiplicity);
   } else {
-    kernel.base = point.loop;
+    kernel.base = holding(point.loop);
+    kernel.family = loop::with_cutoff(point.tangent, kernel.base.cutoff, kernel.base.dimension);
   }
   const Split split = split_of(group, sector, multiplicity);
   spectrum::TripletOptions options;
   options.count = split.signs.size() > 1 && expected > 1 ? expected / 2 + 1 : expected + 1;
   options.tolerance = of_vectors;
   options.inner_tolerance = of_solves;
-  options.team = team;
+  options.team = settings.team;
   options.multiple = split.signs.size() == 1 && expected > 1;
   std::vector<OffBranchTriplet> all;
   for (const std::vector<int>& signs : split.signs)
@@ -110,7 +135,7 @@ Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& 
     return a.singular_value < b.singular_value;
   });
   for (const OffBranchTriplet& t : all) kernel.singular_values.push_back(t.singular_value);
-  const int dimension = dimension_of(kernel.singular_values, expected, largest);
+  const int dimension = dimension_of(kernel.singular_values, expected, settings.largest);
   for (int n = 0; n < dimension; ++n) {
     loop::Tangent v{std::move(all[static_cast<std::size_t>(n)].direction.modes), {}};
     v.normalize();

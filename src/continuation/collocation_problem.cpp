@@ -43,6 +43,9 @@ constexpr double left_to_truncation = 0.3;
 /// so dense: a passage at the distance r takes r^(3/2) of time (docs/performance.md).
 constexpr int guarded_map_cells = 96;
 constexpr double guarded_density = 1e-6;
+/// The residual between the places where the equations ask, in parts of that at them, from which on it is truncation's,
+/// and not the solver's or rounding's, which are alike at both. Truncation was seen at 900.
+constexpr double shows_truncation = 10.0;
 /// Keeps quotients by the amplitude finite.
 constexpr double least_amplitude = 1e-300;
 
@@ -263,7 +266,7 @@ void CollocationProblem::sharpen(Trial& trial, double last_change, const std::ve
     state().factor_point.clear();
     return;
   }
-  other.is_orbit = other.at_rounding = false;
+  other.is_orbit = other.at_rounding = other.truncated = false;
   judge(other);
   if (other.converged && other.loss_rms < trial.loss_rms) trial = std::move(other);
 }
@@ -287,13 +290,21 @@ void CollocationProblem::judge(Trial& trial) {
     trial.reason = not_finite_at(trial.values, trial.values);
   } else if (trial.loss_rms < trial.threshold) {
     trial.is_orbit = true;
-  } else if (trial.loss_rms < corrector::rounding_floor(e.grid().cutoff(),
-                                                        trial.values[static_cast<std::size_t>(e.period_at())],
-                                                        quality.size, quality.speed_rms, e.field_jacobian_rms())) {
+  } else if (trial.loss_rms < rounding_floor(trial, quality)) {
     trial.is_orbit = trial.at_rounding = true;  // unless truncation explains the loss: `resolved`
   } else {
+    trial.truncated = quality.unasked > shows_truncation * quality.asked;
     trial.reason = fmt::format("sqrt(loss) = {:.3g} falls no further, wanted {:.3g}", trial.loss_rms, trial.threshold);
   }
+}
+
+/// As for a loop, but for what the elimination leaves in the nodal values, which the field's Jacobian multiplies: beside
+/// a motion a thousand times as fast that is most of it (m2 = 1e6).
+double CollocationProblem::rounding_floor(const Trial& trial, const Collocation::Quality& quality) {
+  const Collocation& e = equations();
+  return std::max(corrector::rounding_floor(e.grid().cutoff(), trial.values[scalars_at()], quality.size,
+                                            quality.speed_rms, e.field_jacobian_rms()),
+                  nodal_rounding * quality.size * e.field_jacobian_rms());
 }
 
 /// The sentence that the loss has for a field that is not finite.
@@ -317,11 +328,12 @@ std::string CollocationProblem::not_finite_at(const std::vector<double>& values,
 double CollocationProblem::period_unit(double period) { return period / std::min(1.0, state().amplitude); }
 
 /// The residual that truncation leaves is about 2 pi / T K tail: only where that explains a loss above its threshold
-/// do more harmonics help.
+/// do more harmonics help. The tail sees nothing where the harmonics come in bands about the multiples of a fast
+/// oscillation's, and K lies between two: there the residual between the cells' middles shows it.
 bool CollocationProblem::resolved(Trial& trial) {
   trial.loop = equations().to_loop(trial.values.data());
   const double last = loop::tail(trial.loop);
-  if (last > tail_limit(trial.amplitude, trial.size, _options)) return false;
+  if (last > tail_limit(trial.amplitude, trial.size, _options) || trial.truncated) return false;
   // A tail of the size of the modes' own rounding says nothing of the resolution.
   if (last <= mode_rounding * trial.size) return true;
   const double truncation = 2.0 * std::numbers::pi / trial.loop.period * trial.loop.cutoff * last;

@@ -55,6 +55,7 @@ class CollocationProblem final : public PointProblem {
   [[nodiscard]] double rounding_of_nodes();
   void sharpen(Trial& trial, double last_change, const std::vector<double>& conditions);
   void judge(Trial& trial);
+  [[nodiscard]] double rounding_floor(const Trial& trial, const equations::Collocation::Quality& quality);
   [[nodiscard]] std::string not_finite_at(const std::vector<double>& values, const std::vector<double>& predicted);
   [[nodiscard]] double period_unit(double period);
   [[nodiscard]] std::optional<Resolution> remapped(const Trial& of, const std::vector<double>& settled);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "box_scheme.hpp"
+#include "fitted_cells.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/equations/anderson.hpp"
@@ -183,12 +184,13 @@ void Collocation::factor(const double* u) {
         _columns[at((p * d + i) * stride + j)] = -c * _gradient[at(i * m + j)];
       }
   }
+  const std::vector<double> fitted = fitted_cells(_blocks.data(), d, m, 1.0);
   BoxScheme::Matrices matrices;
   matrices.cells = m;
   matrices.count = m;
   matrices.column_stride = stride;
   matrices.stride = stride;
-  matrices.blocks = _blocks.data();
+  matrices.blocks = fitted.empty() ? _blocks.data() : fitted.data();
   matrices.columns = _columns.data();
   matrices.borders = borders();
   matrices.left = _ends.left;
@@ -285,7 +287,7 @@ Collocation::Quality Collocation::quality(const double* u) const {
     }
     between += _node_density[at(j)] * _node_weights[at(j)] * square;
   }
-  return {std::sqrt(0.5 * (loss + between)), std::sqrt(speed), std::sqrt(amplitude), std::sqrt(size)};
+  return {std::sqrt(0.5 * (loss + between)), std::sqrt(loss), std::sqrt(between), std::sqrt(speed), std::sqrt(amplitude), std::sqrt(size)};
 }
 
 double Collocation::distance(const double* a, const double* b) const {

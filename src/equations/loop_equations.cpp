@@ -6,6 +6,7 @@
 #include <span>
 
 #include "box_scheme.hpp"
+#include "fitted_cells.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/loss/dense.hpp"
@@ -297,7 +298,8 @@ void LoopEquations::factor(const systems::System& system, const loop::Loop& loop
   m.count = mine.end - mine.begin;
   m.borders = static_cast<int>(borders);
   m.difference = rate / h;
-  m.blocks = blocks.data();
+  const std::vector<double> fitted = fitted_cells(blocks.data(), loop.dimension, m.count, m.difference);
+  m.blocks = fitted.empty() ? blocks.data() : fitted.data();
   m.columns = columns.data();
   m.column_stride = m.count;
   m.rows = rows.data();

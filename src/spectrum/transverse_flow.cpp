@@ -177,4 +177,9 @@ TransverseFlow transverse_flow(const systems::System& system, const Chain& chain
   return reduced<Eigen::Dynamic, 2>(chain, group, team);
 }
 
+Eigen::MatrixXd transverse_basis(const systems::System& system, const Chain& chain, Eigen::Index m) {
+  if (!system.structure().conservative()) return basis_at<Eigen::Dynamic, 1>(chain, m);
+  return basis_at<Eigen::Dynamic, 2>(chain, m);
+}
+
 }  // namespace orbweaver::spectrum

@@ -26,4 +26,7 @@ struct TransverseFlow {
 [[nodiscard]] TransverseFlow transverse_flow(const systems::System& system, const Chain& chain,
                                              const FundamentalGroup& group, core::Team* team = nullptr);
 
+/// The orthonormal basis at t_m in which the factors are written, one vector a column.
+[[nodiscard]] Eigen::MatrixXd transverse_basis(const systems::System& system, const Chain& chain, Eigen::Index m);
+
 }  // namespace orbweaver::spectrum

@@ -28,7 +28,8 @@ struct KnownStability {
 /// True if a step along a family that passes 2 only at folds has gone over to another one: an index has passed 2, and
 /// the energy does not turn on the way. Also where that cannot be told, which a shorter step may change: the directions
 /// of the family at the two orbits cannot be had, or one turns too far from the chord
-/// (`least_cosine` of the options).
+/// (`least_cosine` of the options). On other families of a symplectic system: an index has passed 2, and no orbit
+/// between the two has it.
 [[nodiscard]] bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
                               const continuation::Options& options, const KnownStability& from,
                               const KnownStability& to);

@@ -23,14 +23,22 @@ struct Kernel {
   [[nodiscard]] double next() const;
 };
 
+struct KernelOptions {
+  /// `base` is to have the identity as time map, as starts need it; orbits gone around once are cheaper under their own.
+  bool even_in_time = true;
+  /// Vectors whose singular values exceed this do not count (those of the deep survey's kernels are below 9e-9:
+  /// docs/performance.md).
+  double largest = 1e-5;
+  int most_harmonics = 4096;   ///< a period of the crossing's orbit
+  core::Team* team = nullptr;  ///< divides the work
+};
+
 /// The kernel at an orbit in one sector of its fundamental map (order p, design: m = q/gcd(q, p) times around). Its
 /// dimension, at most `expected` (1 for q <= 2 and 2 beyond, times the pairs of multipliers that are there), is where
-/// the singular values have their largest gap; vectors whose values exceed `largest` do not count (those of the
-/// deep survey's kernels are below 9e-9: docs/performance.md). `even_in_time`:
-/// `base` is to have the identity as time map, as starts need it; orbits gone around once are cheaper under their own.
-/// `team` divides the work; may be null.
+/// the singular values have their largest gap. `base` has the harmonics that the orbit or the kernel needs, whichever
+/// are more (spectrum::floquet_vector_cutoff). Throws UndecidedError where those are too many.
 [[nodiscard]] Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& point,
                                const loop::Isotropy& isotropy, const Sector& sector, int expected,
-                               bool even_in_time = true, core::Team* team = nullptr, double largest = 1e-5);
+                               const KernelOptions& settings = {});
 
 }  // namespace orbweaver::bifurcation

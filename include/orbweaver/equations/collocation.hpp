@@ -64,6 +64,8 @@ class Collocation final : public PreconditionedEquations {
   /// Means over time, each as a square root.
   struct Quality {
     double loss_rms = 0.0;   ///< of |dz/dt - f|^2, on twice the nodes of the loop
+    double asked = 0.0;      ///< the same in the middles of the cells, where the equations ask for 0,
+    double unasked = 0.0;    ///< and at the nodes between them, where truncation shows
     double speed_rms = 0.0;  ///< of |f|^2
     double amplitude = 0.0;  ///< of |z - mean z|^2, winding left out
     double size = 0.0;       ///< of |z|^2, winding left out

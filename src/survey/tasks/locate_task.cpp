@@ -133,8 +133,12 @@ class Location {
     const bool starts = _work.lineage.depth < _scene.survey.depth;
     if (!starts) _outcome.limited_by = depth_limited;
     report();
+    bifurcation::KernelOptions settings;
+    settings.even_in_time = starts;
+    settings.most_harmonics = _scene.continuation.cutoff_to;
+    settings.team = _team;
     const bifurcation::Kernel kernel = bifurcation::kernel_of(*_system, crossing.point, isotropy, sector,
-                                                              expected_dimension(crossing, sector), starts, _team);
+                                                              expected_dimension(crossing, sector), settings);
     _outcome.kernel_dimension = kernel.dimension();
     _outcome.kernel_singular_value = kernel.largest();
     _outcome.next_singular_value = kernel.next();
