@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -18,12 +17,12 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
-#include "orbweaver/loop/symmetry/shift_search.hpp"
-#include "orbweaver/loop/symmetry/standard_phase.hpp"
 #include "orbweaver/loss/unknowns.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
 #include "search.hpp"
+#include "standard_image.hpp"
 #include "twin_order.hpp"
+#include "whole_way.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -272,76 +271,20 @@ std::vector<double> search_amplitudes(int q, const loop::Loop& base) {
   return out;
 }
 
-/// The way to an orbit, its modes of unit length, and how long it is.
-std::pair<loop::Tangent, double> way_to(const loop::Loop& base, const loop::Loop& orbit) {
-  const loop::Loop there = loop::with_cutoff(orbit, base.cutoff);
-  loop::Tangent way{there.modes, {orbit.period - base.period}};
-  double square = 0.0;
-  for (std::size_t n = 0; n < way.modes.size(); ++n) {
-    way.modes[n] -= base.modes[n];
-    square += way.modes[n] * way.modes[n];
-  }
-  const double length = std::sqrt(square);
-  way *= 1.0 / length;
-  return {std::move(way), length};
-}
-
-/// From the base to an orbit found, T with it, and to the one on the other side where that was found.
-Direction whole_way(const loop::Loop& base, const loop::Loop& orbit, const std::optional<loop::Loop>& opposite = {}) {
-  Direction direction;
-  direction.base = loop::with_cutoff(base, std::max(orbit.cutoff, opposite ? opposite->cutoff : 0));
-  std::tie(direction.tangent, direction.amplitude) = way_to(direction.base, orbit);
-  if (opposite) direction.opposite = way_to(direction.base, *opposite).first;
-  return direction;
-}
-
-/// An orbit about an equilibrium started where the first reversor that it has, at any phase, has phase 0.
-loop::Loop from_reversor(const systems::Structure& system, const loop::Loop& orbit, double tolerance) {
-  for (const systems::Symmetry& reversor : system.reversors) {
-    const loop::Loop image = loop::transformed(orbit, reversor.map, true, 0.0);
-    const std::vector<loop::ShiftMinimum> minima = loop::shift_minima(image, orbit, system.angles);
-    if (!minima.empty() && minima.front().square < tolerance * tolerance)
-      return loop::time_shifted(orbit, -0.5 * minima.front().shift);
-  }
-  return orbit;
-}
-
-/// Where an orbit is at s = 0: that with the larger first coordinate that differs comes first.
-bool starts_before(const loop::Loop& a, const loop::Loop& b, double tolerance) {
-  const std::vector<double> here = loop::state_at(a, 0.0);
-  const std::vector<double> there = loop::state_at(b, 0.0);
-  for (std::size_t i = 0; i < here.size(); ++i)
-    if (std::abs(here[i] - there[i]) > tolerance) return here[i] > there[i];
-  return false;
-}
-
-/// The one of an orbit's images, in their standard phases, that comes first: a search finds any of them.
-loop::Loop first_image(const systems::Structure& system, const KernelActions& group, const loop::Loop& orbit,
-                       double tolerance) {
-  std::optional<loop::Loop> first;
-  for (const Action& action : group.actions()) {
-    if (action.element.shift_numerator != 0) continue;
-    loop::Loop image = from_reversor(system, loop::transformed(orbit, action.element), tolerance);
-    image = loop::in_standard_phase(system, image, loop::find_isotropy(system, image, tolerance, group.denominator()));
-    if (!first || starts_before(image, *first, tolerance)) first = std::move(image);
-  }
-  return first.value();
-}
-
 /// Those found about an equilibrium: by period, the longest first.
 std::vector<Direction> about_equilibrium(const systems::Structure& system, const KernelActions& group,
                                          const loop::Loop& base, const SearchResult& result, double amplitude) {
   const double tolerance = found_tolerance * amplitude;
   std::vector<std::pair<loop::Loop, Direction>> found;
   for (const FoundOrbit& orbit : result.found) {
-    loop::Loop loop = first_image(system, group, orbit.loop, tolerance);
+    loop::Loop loop = standard_image(system, group, orbit.loop, tolerance);
     Direction direction = whole_way(base, loop);
     direction.isotropy = loop::find_isotropy(system, loop, tolerance, group.denominator());
     found.emplace_back(std::move(loop), counted(group, orbit.coordinates, std::move(direction)));
   }
   std::stable_sort(found.begin(), found.end(), [&](const auto& a, const auto& b) {
     if (std::abs(a.first.period - b.first.period) > same_period * base.period) return a.first.period > b.first.period;
-    return starts_before(a.first, b.first, tolerance);
+    return starts_further(a.first, b.first, tolerance);
   });
   std::vector<Direction> out;
   for (auto& [loop, direction] : found) out.push_back(std::move(direction));
