@@ -13,7 +13,7 @@
 namespace orbweaver::survey {
 
 /// Between two orbits of a family a multiplier passes a root of unity that the scene asks for only where a crossing is
-/// listed.
+/// listed. A family that has an index which double precision does not tell says so once instead.
 class IndexChanges final : public Check {
  public:
   [[nodiscard]] std::vector<Finding> findings(const Evidence& evidence,
@@ -65,6 +65,10 @@ class IndexChanges final : public Check {
     const auto& steps = evidence.tree.atlas.orbits().integers("step");
     const bool runs_backwards = count > 0 && steps[family.first_orbit + first] < 0;
     const std::size_t birth = runs_backwards ? first + count - 1 : first;
+    if (const std::optional<Finding> undecided = undecided_at(evidence, row, first, count, order)) {
+      found.push_back(*undecided);
+      return;
+    }
     for (std::size_t n = first; n < first + count; ++n) {
       const spectrum::Stability stability = stability_at(evidence, family.first_orbit + n, order);
       for (std::size_t f = 0; f < functions.size(); ++f) {
@@ -80,6 +84,23 @@ class IndexChanges final : public Check {
           found.push_back(finding_at(evidence, row, functions[f].sector, n, stability));
       }
     }
+  }
+
+  // Where rounding hides what an index passes, the branch has looked for nothing: at the orbit where it is known worst.
+  static std::optional<Finding> undecided_at(const Evidence& evidence, int row, std::size_t first, std::size_t count,
+                                             int order) {
+    std::optional<Finding> worst;
+    for (std::size_t n = first; n < first + count; ++n) {
+      spectrum::Stability stability = stability_at(evidence, evidence.family(row).first_orbit + n, order);
+      double& error = stability.fundamental_error.front();
+      error /= error_margin;
+      if (bifurcation::are_decided(stability) || (worst && worst->deviation >= error)) continue;
+      worst = finding_at(evidence, row, {}, n, stability);
+      worst->kind = FindingKind::undecided_indices;
+      worst->severity = Severity::undecided;
+      worst->deviation = error;
+    }
+    return worst;
   }
 
   static bool is_listed(const Evidence& evidence, const TreeFamily& family, const bifurcation::Sector& sector,
