@@ -13,7 +13,7 @@
 namespace orbweaver::survey {
 
 /// Between two orbits of a family a multiplier passes a root of unity that the scene asks for only where a crossing is
-/// listed. A family that has an index which double precision does not tell says so once instead.
+/// listed. Of a family with an index that double precision does not tell this is said, once.
 class IndexChanges final : public Check {
  public:
   [[nodiscard]] std::vector<Finding> findings(const Evidence& evidence,
@@ -65,12 +65,14 @@ class IndexChanges final : public Check {
     const auto& steps = evidence.tree.atlas.orbits().integers("step");
     const bool runs_backwards = count > 0 && steps[family.first_orbit + first] < 0;
     const std::size_t birth = runs_backwards ? first + count - 1 : first;
-    if (const std::optional<Finding> undecided = undecided_at(evidence, row, first, count, order)) {
+    if (const std::optional<Finding> undecided = undecided_at(evidence, row, first, count, order))
       found.push_back(*undecided);
-      return;
-    }
     for (std::size_t n = first; n < first + count; ++n) {
       const spectrum::Stability stability = stability_at(evidence, family.first_orbit + n, order);
+      if (!bifurcation::are_decided(stability)) {  // what is passed here is not known
+        std::fill(last.begin(), last.end(), std::nullopt);
+        continue;
+      }
       for (std::size_t f = 0; f < functions.size(); ++f) {
         if (!bifurcation::has_sector(functions[f].kind)) continue;
         const int sign = bifurcation::evaluate(functions[f], structure, stability).sign();
@@ -86,7 +88,7 @@ class IndexChanges final : public Check {
     }
   }
 
-  // Where rounding hides what an index passes, the branch has looked for nothing: at the orbit where it is known worst.
+  // Where rounding hides what an index passes, the branch has looked for nothing. Where it is known worst.
   static std::optional<Finding> undecided_at(const Evidence& evidence, int row, std::size_t first, std::size_t count,
                                              int order) {
     std::optional<Finding> worst;
