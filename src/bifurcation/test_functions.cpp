@@ -38,7 +38,18 @@ const Rule& checked_rule(const TestFunction& function, const systems::Structure&
   return rule;
 }
 
+/// Of a stability index of modulus up to `near_circle`: a hundred times what the worst family of a survey with slow and
+/// fast motions 6 times apart has (m2 = 1e-6), a tenth of the best with 2000 times (m2 = 1e6).
+constexpr double told_to = 1e-4;
+constexpr double near_circle = 3.0;
+
 }  // namespace
+
+bool are_decided(const spectrum::Stability& stability) {
+  for (std::size_t i = 0; i < stability.fundamental.size(); ++i)
+    if (std::abs(stability.fundamental[i]) <= near_circle && stability.fundamental_error[i] > told_to) return false;
+  return true;
+}
 
 int Reading::sign() const {
   if (!(std::abs(value) > error)) return 0;

@@ -194,4 +194,12 @@ TEST(TestFunctions, MisuseIsRefused) {
   EXPECT_THROW((void)evaluate({Kind::sector, {3, 1}}, dissipative, stability_of({0.5, 0.6}, 0.1)), core::MisuseError);
 }
 
+TEST(Decided, IsAnIndexWhoseErrorIsSmallWhereItMayPassSomething) {
+  EXPECT_TRUE(are_decided(stability_of({{1.2, 0.0}}, 1e-5)));
+  EXPECT_FALSE(are_decided(stability_of({{1.2, 0.0}}, 1e-3)));
+  EXPECT_FALSE(are_decided(stability_of({{-2.5, 0.0}}, 1e-3)));
+  EXPECT_TRUE(are_decided(stability_of({{1e8, 0.0}}, 1e-3)));
+  EXPECT_FALSE(are_decided(stability_of({{1e8, 0.0}, {0.1, 0.0}}, 1e-3)));
+}
+
 }  // namespace

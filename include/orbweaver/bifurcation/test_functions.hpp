@@ -66,6 +66,11 @@ struct TestFunction {
 [[nodiscard]] Reading evaluate(const TestFunction& function, const systems::Structure& system,
                                const spectrum::Stability& stability);
 
+/// Whether double precision tells at the orbit what its indices pass: false where one of a pair that is on the unit
+/// circle, or near it (|k| <= 3), is known to worse than 1e-4. Beside a motion a thousand times as fast the phase that
+/// it gains in a period is known no better, and no crossing could be located by it.
+[[nodiscard]] bool are_decided(const spectrum::Stability& stability);
+
 /// Whether a zero of the function, located at an orbit with this stability, is what the function is for. No continuous
 /// function can tell: krein vanishes as well where two pairs meet off the unit circle (k_i = k_j outside [-2, 2]) and,
 /// touching zero (`tangency`), where two pairs pass one another; torus where mu_i mu_j = 1 with both real.

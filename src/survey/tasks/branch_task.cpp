@@ -225,7 +225,7 @@ const std::optional<spectrum::Stability>& BranchTask::stability_at(const continu
 bool BranchTask::jumped(const continuation::Orbit& from, const continuation::Orbit& to) {
   if (!_last_stability) _last_stability = stability_of(*_system, _last->loop, _start.isotropy, _team);
   const std::optional<spectrum::Stability>& after = stability_at(to);
-  return _last_stability && after &&
+  return _last_stability && after && bifurcation::are_decided(*_last_stability) && bifurcation::are_decided(*after) &&
          bifurcation::has_jumped(_system, _start.isotropy, branch_options(_scene, _team), {from, *_last_stability},
                                  {to, *after});
 }
@@ -248,7 +248,7 @@ bifurcation::TestPoint BranchTask::test_point(double position,
                                               const std::optional<spectrum::Stability>& stability) const {
   bifurcation::TestPoint out{position, {}};
   for (const bifurcation::TestFunction& function : _functions)
-    out.readings.push_back(stability ? bifurcation::evaluate(function, _system->structure(), *stability)
+    out.readings.push_back(stability && bifurcation::are_decided(*stability) ? bifurcation::evaluate(function, _system->structure(), *stability)
                                      : bifurcation::Reading{archive::not_computed, archive::not_computed});
   return out;
 }

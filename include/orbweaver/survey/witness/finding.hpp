@@ -46,6 +46,7 @@ enum class FindingKind {
   mirror_place,          ///< a crossing of its mirror image lies elsewhere
   mirror_end,            ///< its mirror image ends otherwise, or elsewhere
   index_change,          ///< the index passes exp(2 pi i number/other_number), where no crossing is listed
+  undecided_indices,     ///< an index is known to `deviation` only, too badly to tell what it passes
   failed_task,           ///< in `detail`
   disputed_arrival,      ///< arrivals contradict each other
   interrupted,           ///< put aside, or not begun before limits.time

@@ -24,7 +24,8 @@ class BranchCounts final : public Check {
   /// 0: one pair of multipliers does not tell, and any number but none will do.
   static int expected_directions(const Evidence& evidence, const CrossingEvidence& crossing) {
     const int of_one_pair = crossing.q <= 2 ? 1 : 2;
-    if (crossing.kernel_dimension != of_one_pair) return 0;
+    const bool is_unknown = crossing.kernel_dimension < 0;  // too many harmonics
+    if (crossing.kernel_dimension != of_one_pair && !is_unknown) return 0;
     if (crossing.q <= 2) return 1;
     const int mirrors = pointwise_symmetries(evidence, evidence.crossing(crossing.crossing).family);
     if (mirrors > 0 && (mirrors > 1 || evidence.system->structure().pairs() > 1)) return 0;
@@ -56,7 +57,7 @@ class BranchCounts final : public Check {
     if (crossing.failed) return;  // said already
     if ((crossing.limited_by & period_limited) != 0) return add(FindingKind::beyond_period, Severity::cut);
     if ((crossing.limited_by & order_limited) != 0) return add(FindingKind::beyond_order, Severity::cut);
-    if (crossing.kernel_dimension <= 0) return;
+    if (crossing.kernel_dimension <= 0 && !crossing.undecided) return;
     if ((crossing.limited_by & depth_limited) != 0) return add(FindingKind::beyond_depth, Severity::cut);
     const int expected = expected_directions(evidence, crossing);
     finding.number = crossing.directions;

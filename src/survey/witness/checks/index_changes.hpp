@@ -17,7 +17,8 @@
 namespace orbweaver::survey {
 
 /// Between two orbits of a family, its birth and the first of them, or the last and the family that it joins, a
-/// multiplier passes a root of unity that the scene asks for only where a crossing is listed.
+/// multiplier passes a root of unity that the scene asks for only where a crossing is listed. Of a family with an index that
+/// double precision does not tell this is said, once.
 class IndexChanges final : public Check {
  public:
   [[nodiscard]] std::vector<Finding> findings(const Evidence& evidence,
@@ -68,8 +69,14 @@ class IndexChanges final : public Check {
     const auto functions = bifurcation::test_functions(structure, order, evidence.scene.survey.subharmonics);
     std::vector<std::optional<Signed>> last(functions.size());
     const Side side = side_of(evidence, family, first, count);
+    if (const std::optional<Finding> undecided = undecided_at(evidence, row, first, count, order))
+      found.push_back(*undecided);
     for (std::size_t n = first; n < first + count; ++n) {
       const spectrum::Stability stability = stability_at(evidence, family.first_orbit + n, order);
+      if (!bifurcation::are_decided(stability)) {  // what is passed here is not known
+        std::fill(last.begin(), last.end(), std::nullopt);
+        continue;
+      }
       for (std::size_t f = 0; f < functions.size(); ++f) {
         if (!bifurcation::has_sector(functions[f].kind)) continue;
         const int sign = bifurcation::evaluate(functions[f], structure, stability).sign();
@@ -125,6 +132,7 @@ class IndexChanges final : public Check {
       if (is_birth ? family.parent < 0 : !has_joined) continue;
       const std::size_t orbit = is_birth ? side.nearest : side.farthest;
       const spectrum::Stability stability = stability_at(evidence, family.first_orbit + orbit, order);
+      if (!bifurcation::are_decided(stability)) continue;
       for (const bifurcation::TestFunction& function : functions) {
         if (!bifurcation::has_sector(function.kind) || function.sector.q == 1) continue;
         if (bifurcation::evaluate(function, structure, stability).sign() >= 0) continue;
@@ -133,6 +141,22 @@ class IndexChanges final : public Check {
                                    is_birth ? evidence.severity_about(row) : Severity::undecided));
       }
     }
+  }
+
+  // Where rounding hides what an index passes, the branch has looked for nothing. Where it is known worst.
+  static std::optional<Finding> undecided_at(const Evidence& evidence, int row, std::size_t first, std::size_t count,
+                                             int order) {
+    std::optional<Finding> worst;
+    for (std::size_t n = first; n < first + count; ++n) {
+      spectrum::Stability stability = stability_at(evidence, evidence.family(row).first_orbit + n, order);
+      double& error = stability.fundamental_error.front();
+      error /= error_margin;
+      if (bifurcation::are_decided(stability) || (worst && worst->deviation >= error)) continue;
+      worst = finding_at(evidence, row, {}, n, stability, Severity::undecided);
+      worst->kind = FindingKind::undecided_indices;
+      worst->deviation = error;
+    }
+    return worst;
   }
 
   static bool is_listed(const Evidence& evidence, const TreeFamily& family, const bifurcation::Sector& sector,

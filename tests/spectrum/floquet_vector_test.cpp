@@ -1,0 +1,52 @@
+#include "orbweaver/spectrum/floquet_vector.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/systems/registry.hpp"
+#include "pendulum_loops.hpp"
+
+namespace {
+
+using namespace orbweaver;
+
+/// Closed form for lengths and gravity 1, masses 1 and m: w^2 = (1 + m)(1 +- sqrt(m/(1 + m))), th2/th1 = -+ sqrt(1 + 1/m).
+struct Modes {
+  double slow;
+  double fast;
+  double ratio;  ///< th2/th1 of the slow one
+};
+
+Modes modes_of(double m) {
+  const double root = std::sqrt(m / (1.0 + m));
+  return {std::sqrt(1.0 / (1.0 + root)), std::sqrt((1.0 + m) * (1.0 + root)), std::sqrt(1.0 + 1.0 / m)};
+}
+
+int needed(double m, double share, int most = 4096) {
+  const auto system = systems::make_system("double_pendulum", {{"m2", m}});
+  const Modes modes = modes_of(m);
+  const test::PendulumMode slow{"slow", {0, 0, 0, 0}, modes.slow, modes.ratio};
+  const loop::Loop loop = test::linear_loop(slow, 1e-4, 3);
+  spectrum::FloquetVectorOptions options;
+  options.angle = std::remainder(modes.fast * slow.period(), 2.0 * std::numbers::pi);
+  options.share = share;
+  options.most = most;
+  return spectrum::floquet_vector_cutoff(*system, loop, {}, options);
+}
+
+TEST(FloquetVector, NeedsTheRatioOfTheFrequencies) {
+  for (const double m : {30.0, 1000.0, 30000.0}) {
+    SCOPED_TRACE(m);
+    const Modes modes = modes_of(m);
+    // cos(fast t) has one harmonic; the angle is known modulo a turn, and v has one more than the series.
+    const double ratio = modes.fast / modes.slow;
+    EXPECT_NEAR(needed(m, 1e-3), ratio, 2.5);
+  }
+}
+
+TEST(FloquetVector, SaysWhereTooManyAreNeeded) { EXPECT_GT(needed(1000.0, 1e-3, 50), 50); }
+
+}  // namespace

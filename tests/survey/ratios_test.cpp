@@ -1,0 +1,66 @@
+// Double pendulums whose two motions are far apart in time, or whose masses are.
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "survey/atlas.hpp"
+
+namespace {
+
+using namespace orbweaver;
+
+scene::Scene scene_with(std::vector<std::string> settings) {
+  settings.insert(settings.begin(), {"starts.sweep={}", "survey.depth=0", "survey.subharmonics=4",
+                                     "starts.fixed_points.grid=[[0], [0]]",
+                                     "starts.fixed_points.names={[0, 0]: [In-Phase, Out-Phase]}"});
+  return scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/double_pendulum.yaml", settings);
+}
+
+std::size_t count_of(const survey::Summary& summary, survey::Severity severity) {
+  std::size_t count = 0;
+  for (const survey::FindingSummary& finding : summary.findings) count += finding.severity == severity ? 1 : 0;
+  return count;
+}
+
+// Kernels hold the fast motion, 63 times as fast as the orbit, of which the orbit itself has nothing; what is born has
+// harmonics in bands about its multiples.
+TEST(Ratios, FamiliesAreBornInAMotionThatTheOrbitLacks) {
+  const core::Communicator comm;
+  const survey::Summary summary =
+      test::run(comm, scene_with({"system.parameters.m2=1000", "survey.depth=1", "limits.period=8.98",
+                                  "limits.energy=[-.inf, -1800]"}),
+                "fast");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  EXPECT_EQ(count_of(summary, survey::Severity::contradiction), 0U);
+  const test::Atlas atlas(summary.atlas);
+  for (const double period : {8.9200124, 8.9703876})
+    EXPECT_TRUE(atlas.crossing("In-Phase", "branch-point", period).has_value()) << period;
+  EXPECT_GE(summary.families.size(), 4U);
+}
+
+// The light outer bob drives the inner one in resonance at T = 3 T_inner: the family turns there, within 1e-3.
+TEST(Ratios, AFamilyTurnsAtAResonanceItMeets) {
+  const core::Communicator comm;
+  const survey::Summary summary =
+      test::run(comm, scene_with({"system.parameters.m2=1e-6", "limits.period=20", "limits.families=1"}), "light");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  EXPECT_EQ(count_of(summary, survey::Severity::contradiction), 0U);
+  ASSERT_EQ(summary.families.size(), 1U);
+  EXPECT_GT(summary.families.front().energy_to, -0.9) << "it has gone straight on";
+}
+
+// Two thousand times as fast: an index is not known well enough to tell what it passes.
+TEST(Ratios, WhatRoundingHidesIsUndecided) {
+  const core::Communicator comm;
+  const survey::Summary summary = test::run(
+      comm, scene_with({"system.parameters.m2=1e6", "limits.period=8.92", "limits.families=1"}), "heavy");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  EXPECT_EQ(count_of(summary, survey::Severity::contradiction), 0U);
+  EXPECT_EQ(count_of(summary, survey::Severity::undecided), 1U);
+}
+
+}  // namespace
