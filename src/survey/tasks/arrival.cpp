@@ -19,6 +19,12 @@ struct Sample {
   double energy = 0.0;
 };
 
+/// A place of the branch, and the signed part there.
+struct Place {
+  double position = 0.0;
+  double part = 0.0;
+};
+
 /// The value at part = 0 of the polynomial through the samples.
 double at_zero(const std::vector<Sample>& samples, double Sample::*value) {
   std::vector<double> parts;
@@ -38,6 +44,10 @@ constexpr double apart = 1.2;
 /// Where on the way to the meeting point, by linear interpolation of the part, one more orbit is sought. Nearer to it
 /// the corrector slips onto the more symmetric family. Not measured.
 constexpr double on_the_way = 0.7;
+/// With one more orbit the meeting's period and energy change by so much, relatively, or another is sought on what is
+/// left of the way, a few times: a tenth of the window in which crossings are compared.
+constexpr double settled = 1e-4;
+constexpr int most_on_the_way = 4;
 /// The part is proportional to its signed part where it vanishes: its size may be so many times that, and so much more.
 /// A part that turns instead of vanishing keeps a size of about 1.
 constexpr double proportional = 2.0;
@@ -75,15 +85,30 @@ std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuat
     }
   }
   add(to.loop);
-  const double part = watch.signed_part(gain, from.loop, to.loop);
-  const double there = from.arclength + on_the_way / (1.0 - std::min(part, 0.0)) * (to.arclength - from.arclength);
   loop::Loop near = from.loop;
-  if (const auto point = family.at(there)) {
+  Place before{from.arclength, 1.0};
+  Place beyond{to.arclength, std::min(watch.signed_part(gain, from.loop, to.loop), 0.0)};
+  for (int n = 0; n < most_on_the_way; ++n) {
+    const double there =
+        before.position + on_the_way * before.part / (before.part - beyond.part) * (beyond.position - before.position);
+    const auto point = family.at(there);
+    if (!point) break;
+    const double part = watch.signed_part(gain, from.loop, point->loop);
     const double size = watch.relative_size(gain, from.loop, point->loop);
-    if (size > proportional * std::abs(watch.signed_part(gain, from.loop, point->loop)) + still_vanishing)
-      return std::nullopt;  // it turns instead of vanishing: no arrival
+    if (size > proportional * std::abs(part) + still_vanishing) {
+      if (n == 0) return std::nullopt;  // it turns instead of vanishing: no arrival
+      break;
+    }
+    const std::size_t known_before = samples.size();
+    const double period = at_zero(samples, &Sample::period);
+    const double energy = at_zero(samples, &Sample::energy);
     add(point->loop);
     if (size > telling) near = point->loop;
+    if (samples.size() == known_before || size < telling ||
+        (std::abs(at_zero(samples, &Sample::period) - period) <= settled * period &&
+         !(std::abs(at_zero(samples, &Sample::energy) - energy) > settled * (1.0 + std::abs(energy)))))
+      break;
+    (part > 0.0 ? before : beyond) = {there, part};
   }
   ArrivalRecord record;
   record.period = at_zero(samples, &Sample::period);
