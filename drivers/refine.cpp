@@ -97,7 +97,9 @@ Outcome refine_crossing(const archive::Archive& atlas, const RefineOptions& opti
                                            period, crossing.period));
   std::string exact;
   if (archive::has_sector(condition.kind))
-    exact = fmt::format("the fundamental map (over T/{}) has the multiplier exp(2 pi i {}/{})", outcome.orbit.order,
+    exact = fmt::format("{} the multiplier exp(2 pi i {}/{})",
+                        outcome.orbit.order == 1 ? "the orbit has"
+                                                 : fmt::format("the fundamental map, over T/{}, has", outcome.orbit.order),
                         condition.sector_j, condition.sector_q);
   else
     exact = condition.kind == archive::CrossingKind::fold_period ? "dT/ds = 0" : "dE/ds = 0";

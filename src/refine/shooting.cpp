@@ -80,7 +80,10 @@ ShootingSetup::ShootingSetup(const systems::Formulas& system_formulas, const sys
   order = group.order();
   mirrored = at_start != nullptr;
   generator = ExactMatrix(group.generator().matrix);
-  if (mirrored) reversor = ExactMatrix(at_start->map.matrix);
+  if (mirrored) {
+    reversor = ExactMatrix(at_start->map.matrix);
+    reversor_name = at_start->name;
+  }
   const int count =
       std::clamp(loop.cutoff / (harmonics_a_segment * copies()), least_segments, most_segments);
   const double end = 2.0 * std::numbers::pi / copies();
@@ -92,7 +95,8 @@ ShootingSetup::ShootingSetup(const systems::Formulas& system_formulas, const sys
   guess.period = loop.period;
   const auto add = [&](Map::Between between, const systems::AffineMap& map, const std::vector<double>& from,
                        const std::vector<double>& to) {
-    core::require(map.is_linear(), "symmetries with a shift of the state are not known to more digits");
+    if (!map.is_linear())
+      throw core::InputError("orbits with a symmetry that shifts the state cannot be refined yet");
     maps.push_back({between, ExactMatrix(map.matrix), turns_between(map, from, to, structure)});
   };
   const std::vector<double>& first = guess.nodes.front();

@@ -46,6 +46,7 @@ struct ShootingSetup {
   systems::Scales scales;
   int order = 1;                       ///< p
   bool mirrored = false;               ///< a reversor halves the domain
+  std::string reversor_name;
   ExactMatrix generator;               ///< g
   ExactMatrix reversor;                ///< R of phase 0; the identity where there is none
   std::vector<Map> maps;

@@ -51,7 +51,8 @@ struct RefinedOrbit {
   int order = 1;                             ///< p of the fundamental map
   std::optional<Number> index;               ///< mu + 1/mu of the full period; none in the plane
   std::optional<Number> fundamental_index;   ///< the same of the fundamental map
-  std::optional<std::size_t> largest;        ///< the coordinate that is largest at t = 0; none: a reversor fixes t = 0
+  std::string reversor;                      ///< on whose fixed set t = 0 lies; empty: none
+  std::optional<std::size_t> largest;        ///< then the coordinate that is largest at t = 0
   /// Of the full period, where the index is not +-2: mu > 1/mu in modulus, real; or the real and imaginary part of the
   /// one above the real axis.
   std::vector<Number> multipliers;
