@@ -126,8 +126,9 @@ void ConditionedOrbit::require_near(const Points<double>& points, const Points<d
       distance = std::max(distance, std::abs(points.nodes[m][i] - guess.nodes[m][i]) / scale);
     }
   if (distance > farthest * extent)
-    throw core::NumericalError(fmt::format(
-        "Newton's method came to an orbit that is {:.2g} away from the guess, whose extent is {:.2g}", distance, extent));
+    throw core::NumericalError(
+        fmt::format("Newton's method came to an orbit that is {:.2g} away from the guess, whose extent is {:.2g}",
+                    distance, extent));
 }
 
 Points<double> ConditionedOrbit::converge(const Points<double>& guess, const Held& held) {
@@ -140,8 +141,7 @@ Points<double> ConditionedOrbit::converge(const Points<double>& guess, const Hel
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     const Passage<double> passage = _shooting.pass(points, true);
     const Eigen::VectorXd right = rows(_shooting, points, passage, held);
-    Eigen::VectorXd step =
-        -Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(jacobian(points, passage, held)).solve(right);
+    Eigen::VectorXd step = -Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(jacobian(points, passage, held)).solve(right);
     const double length = step.lpNorm<Eigen::Infinity>();
     if (!std::isfinite(length)) break;
     if (length > longest_step) step *= longest_step / length;
@@ -156,8 +156,8 @@ Points<double> ConditionedOrbit::converge(const Points<double>& guess, const Hel
     }
     last = length;
   }
-  throw core::NumericalError(fmt::format(
-      "Newton's method found no orbit in double precision: its last step was {:.1e} of the scales", last));
+  throw core::NumericalError(
+      fmt::format("Newton's method found no orbit in double precision: its last step was {:.1e} of the scales", last));
 }
 
 Eigen::VectorXd ConditionedOrbit::direction(const Points<double>& points) {
@@ -172,8 +172,8 @@ void ConditionedOrbit::factor(const Points<double>& points, const Held& held) {
   const Eigen::VectorXd diagonal = _factor.matrixR().diagonal().cwiseAbs();
   if (!(diagonal.minCoeff() > singular * diagonal.maxCoeff()))
     throw core::NumericalError(fmt::format(
-        "the orbit is not isolated: the Jacobian's least pivot is {:.1e} of the largest. At an extremum of the period hold "
-        "the energy, at one of the energy the period",
+        "the orbit is not isolated: the Jacobian's least pivot is {:.1e} of the largest. At an extremum of the period "
+        "hold the energy, at one of the energy the period",
         diagonal.minCoeff() / diagonal.maxCoeff()));
 }
 

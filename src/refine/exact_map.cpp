@@ -69,7 +69,8 @@ template <class Real>
 Matrix<Real> ExactMatrix::value() const {
   Matrix<Real> result(_size, _size);
   for (Eigen::Index i = 0; i < _size; ++i)
-    for (Eigen::Index l = 0; l < _size; ++l) result(i, l) = value_of<Real>(_entries[static_cast<std::size_t>(i * _size + l)]);
+    for (Eigen::Index l = 0; l < _size; ++l)
+      result(i, l) = value_of<Real>(_entries[static_cast<std::size_t>(i * _size + l)]);
   return result;
 }
 

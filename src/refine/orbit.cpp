@@ -33,7 +33,7 @@ constexpr double double_accuracy = 11.0;
 /// In double, the place of a crossing along the family, in the scales: what is left the secant method removes. Rounding
 /// moves it by less.
 constexpr double place_in_double = 1e-6;
-constexpr double probe = 1e-4;  // for the slope of its condition, to some digits whatever the rounding
+constexpr double probe = 1e-4;         // for the slope of its condition, to some digits whatever the rounding
 constexpr double probed_digits = 3.0;  // of that slope
 constexpr int most_probes = 12;
 constexpr int first_working = 20;  // digits of the first step of the secant method
@@ -56,8 +56,8 @@ systems::Formulas formulas_of(const systems::System& system) {
   if (with_formulas == nullptr)
     throw core::InputError(fmt::format("{} cannot be refined: it does not give its formulas", system.info().title));
   if (structure.conserved.size() != 1 || !structure.symplectic)
-    throw core::InputError(
-        fmt::format("{} cannot be refined: only Hamiltonian systems that conserve one quantity can", system.info().title));
+    throw core::InputError(fmt::format("{} cannot be refined: only Hamiltonian systems that conserve one quantity can",
+                                       system.info().title));
   if (structure.pairs() > 1)
     throw core::InputError(fmt::format("{} cannot be refined: its orbits have {} pairs of multipliers, more than one",
                                        system.info().title, structure.pairs()));
@@ -119,8 +119,7 @@ class Refinement {
 
   /// An orbit of a given period or energy.
   void hold(const HeldValue& value) {
-    _held.kind =
-        value.quantity == HeldValue::Quantity::period ? Held::Kind::period : Held::Kind::energy;
+    _held.kind = value.quantity == HeldValue::Quantity::period ? Held::Kind::period : Held::Kind::energy;
     _held.decimal = value.decimal;
     const Points<double> found = _orbit.converge(_setup.guess, _held);
     _orbit.factor(found, _held);
@@ -250,10 +249,10 @@ class Refinement {
     _orbit.count_steps(shooting.flow().steps());
     _order_of_series = shooting.flow().order();
     Values values;
-    values.state = start_on_fixed_set(shooting);
+    values.state = start_on_fixed_set();
     values.period = _held.kind == Held::Kind::period ? numerics::extended_of(_held.decimal) : _points.period;
-    values.energy = _held.kind == Held::Kind::energy ? numerics::extended_of(_held.decimal)
-                                                     : shooting.energy(values.state);
+    values.energy =
+        _held.kind == Held::Kind::energy ? numerics::extended_of(_held.decimal) : shooting.energy(values.state);
     if (_setup.structure.pairs() == 1) {
       const Matrix<Extended> map = shooting.fundamental_map(passage);
       values.indices = {index_of(shooting.monodromy(map)), index_of(map)};
@@ -263,11 +262,10 @@ class Refinement {
   }
 
   /// The start, with what involutions say of it fulfilled to the last digit.
-  std::vector<Extended> start_on_fixed_set(const Shooting<Extended>& shooting) const {
+  [[nodiscard]] std::vector<Extended> start_on_fixed_set() const {
     std::vector<Extended> state = _points.nodes.front();
     const Index d = static_cast<Index>(state.size());
     const Extended two_pi = 2 * pi<Extended>();
-    static_cast<void>(shooting);
     for (const ShootingSetup::Map& map : _setup.maps) {
       if (map.between != ShootingSetup::Map::Between::start_and_start) continue;
       const Matrix<Extended> matrix = map.matrix.value<Extended>();
@@ -301,10 +299,13 @@ class Refinement {
     RefinedOrbit out;
     for (std::size_t i = 0; i < first.state.size(); ++i) {
       const bool is_fixed = second.state[i] == 0 || first.state[i] == 0;
-      out.state.push_back(number(first.state[i], second.state[i], smallest_part * _setup.scales.coordinate(i), is_fixed));
+      out.state.push_back(
+          number(first.state[i], second.state[i], smallest_part * _setup.scales.coordinate(i), is_fixed));
     }
-    out.period = number(first.period, second.period, smallest_part * _setup.scales.time, _held.kind == Held::Kind::period);
-    out.energy = number(first.energy, second.energy, smallest_part * _setup.scales.energy(), _held.kind == Held::Kind::energy);
+    out.period =
+        number(first.period, second.period, smallest_part * _setup.scales.time, _held.kind == Held::Kind::period);
+    out.energy =
+        number(first.energy, second.energy, smallest_part * _setup.scales.energy(), _held.kind == Held::Kind::energy);
     if (!first.indices.empty()) {
       out.index = number(first.indices[0], second.indices[0], 1.0, false);
       out.fundamental_index = number(first.indices[1], second.indices[1], 1.0, false);
@@ -317,7 +318,8 @@ class Refinement {
         out.unit_circle = distance < 0;
         const std::vector<Extended> a = multipliers_of(first.indices[0], out.unit_circle);
         const std::vector<Extended> b = multipliers_of(k, out.unit_circle);
-        for (std::size_t i = 0; i < a.size(); ++i) out.multipliers.push_back(number(a[i], b[i], out.unit_circle ? 1.0 : smallest_multiplier, false));
+        for (std::size_t i = 0; i < a.size(); ++i)
+          out.multipliers.push_back(number(a[i], b[i], out.unit_circle ? 1.0 : smallest_multiplier, false));
       }
     }
     if (!first.test.empty()) out.test_value = Number{second.test.front(), Extended(0)};

@@ -53,8 +53,8 @@ void expect_bounds_hold(const RefinedOrbit& few, const RefinedOrbit& many, const
   const std::vector<Number> b = numbers_of(many);
   for (std::size_t n = 0; n < a.size(); ++n) {
     EXPECT_LE(abs(Extended(a[n].value - b[n].value)), a[n].error + b[n].error) << what << ' ' << n;
-    EXPECT_LE(numerics::log10_abs(a[n].error),
-              std::max(0.0, numerics::log10_abs(b[n].value)) - few.digits) << what << ' ' << n;
+    EXPECT_LE(numerics::log10_abs(a[n].error), std::max(0.0, numerics::log10_abs(b[n].value)) - few.digits)
+        << what << ' ' << n;
   }
 }
 
@@ -62,8 +62,7 @@ void expect_bounds_hold(const RefinedOrbit& few, const RefinedOrbit& many, const
 void expect_closed(const systems::System& system, const RefinedOrbit& orbit, const std::string& what) {
   std::vector<double> start;
   for (const Number& x : orbit.state) start.push_back(static_cast<double>(x.value));
-  const std::vector<double> end =
-      certificate::integrate(system, start, static_cast<double>(orbit.period.value), 1e-14);
+  const std::vector<double> end = certificate::integrate(system, start, static_cast<double>(orbit.period.value), 1e-14);
   const double growth = std::max(1.0, std::abs(static_cast<double>(orbit.index->value)));
   for (std::size_t i = 0; i < start.size(); ++i) EXPECT_NEAR(end[i], start[i], 1e-11 * growth) << what;
 }
@@ -87,8 +86,7 @@ TEST_F(RefineAtlas, GivesOrbitsByPeriodEnergyAndStep) {
   const StoredFamily::Place stored = branch.at_step(3);
   const HeldValue held{Quantity::period, branch.stored(Quantity::period, 3)};
   const RefinedOrbit fine = refine::refine_orbit(stored.guess, held, 20);
-  for (std::size_t i = 0; i < 4; ++i)
-    EXPECT_NEAR(static_cast<double>(fine.state[i].value), states[4 * row + i], 1e-9);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(static_cast<double>(fine.state[i].value), states[4 * row + i], 1e-9);
   ASSERT_TRUE(fine.largest.has_value());
   expect_closed(*stored.guess.system, fine, "IB");
 }
@@ -97,8 +95,11 @@ TEST_F(RefineAtlas, SaysWhatItDoesNotHave) {
   EXPECT_THAT([] { static_cast<void>(StoredFamily::named(pendulum(), "Inn-Phase")); },
               ThrowsMessage<core::InputError>(HasSubstr("no family `Inn-Phase`")));
   const StoredFamily family = StoredFamily::named(pendulum(), "In-Phase");
-  EXPECT_THAT([&] { static_cast<void>(family.with({Quantity::period, "90"}, std::nullopt)); },
-              ThrowsMessage<core::InputError>(HasSubstr("no orbit with T = 90: it reaches from 8.2")));
+  EXPECT_THAT(
+      [&] {
+        static_cast<void>(family.with({Quantity::period, "90"}, std::nullopt));
+      },
+      ThrowsMessage<core::InputError>(HasSubstr("no orbit with T = 90: it reaches from 8.2")));
   EXPECT_THAT([&] { static_cast<void>(family.at_step(1000)); },
               ThrowsMessage<core::InputError>(HasSubstr("no step 1000")));
   EXPECT_THAT([] { static_cast<void>(refine::stored_crossing(pendulum(), 1000)); },

@@ -45,8 +45,8 @@ void expect_value(const Number& number, const Extended& exact, int digits, const
 TEST(RefineOrbit, FindsThePeriodOfTheHarmonicOscillator) {
   const auto system = systems::make_system("harmonic_oscillator", {{"omega", 0.1}});
   for (const std::string isotropy : {"S@1/2 R@0", "R@0", "S@1/2", ""}) {
-    const RefinedOrbit orbit = refine_orbit(
-        guess_of(system, 62.0, {0.0, 0.0}, {1.1, 0.0}, {0.0, -0.11}, isotropy), {Quantity::energy, "0.005"}, 60);
+    const RefinedOrbit orbit = refine_orbit(guess_of(system, 62.0, {0.0, 0.0}, {1.1, 0.0}, {0.0, -0.11}, isotropy),
+                                            {Quantity::energy, "0.005"}, 60);
     const WorkingDigits working(checked_digits);
     expect_value(orbit.period, 20 * pi(), 60, "period");  // omega is the decimal 0.1, not the double next to it
     expect_value(orbit.state[0], Extended(1), 60, "q");
@@ -60,13 +60,18 @@ TEST(RefineOrbit, FindsThePeriodOfTheHarmonicOscillator) {
 // All of its orbits have one period: that does not pick one.
 TEST(RefineOrbit, SaysWhereAPeriodDoesNotPickAnOrbit) {
   const auto system = systems::make_system("harmonic_oscillator");
-  const Guess guess =
-      guess_of(system, 2.0 * std::numbers::pi, {0.0, 0.0}, {1.1, 0.0}, {0.0, -1.1}, "S@1/2 R@0");
+  const Guess guess = guess_of(system, 2.0 * std::numbers::pi, {0.0, 0.0}, {1.1, 0.0}, {0.0, -1.1}, "S@1/2 R@0");
   // With another period there is the equilibrium alone.
-  EXPECT_THAT([&] { static_cast<void>(refine_orbit(guess, {Quantity::period, "6.28"}, 20)); },
-              ThrowsMessage<core::NumericalError>(HasSubstr("away from the guess")));
-  EXPECT_THAT([&] { static_cast<void>(refine_orbit(guess, {Quantity::period, "6.283185307179586"}, 20)); },
-              ThrowsMessage<core::NumericalError>(HasSubstr("not isolated")));
+  EXPECT_THAT(
+      [&] {
+        static_cast<void>(refine_orbit(guess, {Quantity::period, "6.28"}, 20));
+      },
+      ThrowsMessage<core::NumericalError>(HasSubstr("away from the guess")));
+  EXPECT_THAT(
+      [&] {
+        static_cast<void>(refine_orbit(guess, {Quantity::period, "6.283185307179586"}, 20));
+      },
+      ThrowsMessage<core::NumericalError>(HasSubstr("not isolated")));
   EXPECT_EQ(better_held(guess), Quantity::energy);
 }
 
@@ -108,17 +113,20 @@ TEST(RefineOrbit, FindsTheStraightOrbitsOfHenonAndHeiles) {
   const Extended e2 = root_near(0.6);
   const Extended e3 = Extended(3) / 2 - e1 - e2;
   const Extended complement = sqrt(Extended((e3 - e2) / (e3 - e1)));
-  const Extended period = 4 * sqrt(Extended(3) / 2) * (pi() / 2 / agm(Extended(1), complement)) / sqrt(Extended(e3 - e1));
+  const Extended period =
+      4 * sqrt(Extended(3) / 2) * (pi() / 2 / agm(Extended(1), complement)) / sqrt(Extended(e3 - e1));
   // A rough guess: mean, amplitude and period off by some per cent.
   for (const std::string isotropy : {"S@0 R@0", "R@0"}) {
-    const Guess guess = guess_of(system, 6.8, {0.0, 0.08, 0.0, 0.0}, {0.0, 0.48, 0.0, 0.0}, {0.0, 0.0, 0.0, -0.44}, isotropy);
+    const Guess guess =
+        guess_of(system, 6.8, {0.0, 0.08, 0.0, 0.0}, {0.0, 0.48, 0.0, 0.0}, {0.0, 0.0, 0.0, -0.44}, isotropy);
     const RefinedOrbit orbit = refine_orbit(guess, {Quantity::energy, "0.1"}, 70);
     expect_value(orbit.period, period, 70, "period");
     expect_value(orbit.state[1], e2, 70, "y");
     ASSERT_TRUE(orbit.index.has_value());
   }
   // The same orbit by its period.
-  const Guess guess = guess_of(system, 6.8, {0.0, 0.08, 0.0, 0.0}, {0.0, 0.48, 0.0, 0.0}, {0.0, 0.0, 0.0, -0.44}, "S@0 R@0");
+  const Guess guess =
+      guess_of(system, 6.8, {0.0, 0.08, 0.0, 0.0}, {0.0, 0.48, 0.0, 0.0}, {0.0, 0.0, 0.0, -0.44}, "S@0 R@0");
   const RefinedOrbit orbit = refine_orbit(guess, {Quantity::period, numerics::decimal_text(period, 75)}, 60);
   expect_value(orbit.energy, Extended(1) / 10, 60, "energy");
 }
@@ -149,8 +157,11 @@ TEST(RefineOrbit, RefusesWhatItCannotDo) {
   EXPECT_THAT([&] { refined(1001); }, ThrowsMessage<core::InputError>(HasSubstr("got 1001")));
   EXPECT_THAT([&] { static_cast<void>(refine_crossing(guess, {archive::CrossingKind::torus}, 20)); },
               ThrowsMessage<core::InputError>(HasSubstr("torus cannot be refined")));
-  EXPECT_THAT([&] { static_cast<void>(refine_orbit(guess, {Quantity::energy, "half"}, 20)); },
-              ThrowsMessage<core::InputError>(HasSubstr("expected a decimal number such as 9 or -1.25e-3, got `half`")));
+  EXPECT_THAT(
+      [&] {
+        static_cast<void>(refine_orbit(guess, {Quantity::energy, "half"}, 20));
+      },
+      ThrowsMessage<core::InputError>(HasSubstr("expected a decimal number such as 9 or -1.25e-3, got `half`")));
 }
 
 }  // namespace

@@ -42,7 +42,8 @@ TEST(ExactMatrix, KnowsTheGroupsOfTheRegisteredSystems) {
     const auto group = loop::SymmetryGroup::of_space(system->structure());
     for (const loop::SymmetryElement& element : group.elements()) {
       const Matrix<Extended> matrix = ExactMatrix(element.map.matrix).value<Extended>();
-      const Matrix<Extended> off = matrix * matrix.transpose() - Matrix<Extended>::Identity(matrix.rows(), matrix.rows());
+      const Matrix<Extended> off =
+          matrix * matrix.transpose() - Matrix<Extended>::Identity(matrix.rows(), matrix.rows());
       for (Eigen::Index i = 0; i < off.size(); ++i)
         EXPECT_LT(numerics::log10_abs(off(i)), -58.0) << name << ' ' << element.name;
     }
