@@ -58,10 +58,12 @@ TEST(Tape, WritesEqualOperationsOnceAndTrivialOnesNever) {
   const std::size_t size = recording.tape().nodes.size();
   EXPECT_EQ((y * x).node(), product.node());
   EXPECT_EQ((product * 1.0).node(), product.node());
+  EXPECT_EQ((1.0 * product).node(), product.node());
+  EXPECT_NE((2.0 * product).node(), product.node());
   EXPECT_EQ((0.0 + product).node(), product.node());
   EXPECT_EQ((product - 0.0).node(), product.node());
   EXPECT_EQ((product * 0.0).node(), Recorded(0.0).node());
-  EXPECT_LE(recording.tape().nodes.size(), size + 2);  // the constants 0 and 1
+  EXPECT_LE(recording.tape().nodes.size(), size + 4);  // the constants 0, 1 and 2, and one product
   EXPECT_EQ(cos(x).node(), sin(x).node() + 1);
 }
 
