@@ -32,7 +32,7 @@ class HenonHeiles {
     S conserved(const S* z) const {
       const S square_x = z[0] * z[0];
       const S square_y = z[1] * z[1];
-      return (action_density(z) + square_x + square_y) * 0.5 + square_x * z[1] - square_y * z[1] * (1.0 / 3.0);
+      return (action_density(z) + square_x + square_y) * 0.5 + square_x * z[1] - square_y * z[1] * (S(1.0) / 3.0);
     }
 
     template <class S>

@@ -13,6 +13,7 @@
 #include "complex_system.hpp"
 #include "orbweaver/ad/derivatives.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/systems/quad_system.hpp"
 #include "registered.hpp"
 
@@ -24,16 +25,18 @@ namespace orbweaver::systems {
 ///   static ModelInfo info();
 ///   static Structure structure(const Bound& bound);           // what holds with these parameters and effects
 ///   template <class P> class With;                            // the model with parameters of type P
-/// and With<P>, P being double or (to differentiate by a parameter, and in quadruple precision) the scalar S of the
-/// field, has
+/// and With<P>, P being double or (to differentiate by a parameter, in quadruple precision, and in formulas) the scalar
+/// S of the field, has
 ///   explicit With(const BoundTo<P>& bound);
 ///   template <class S> void field(const S* z, S* f) const;
 ///   template <int K, class S> S conserved(const S* z) const;  // quantity K of the structure, K < quantities
 ///   template <class S> S action_density(const S* z) const;    // NaN where there is none
 /// and, if its structure may name guards,
 ///   double guard(int k, const double* z) const;
+/// Constants are doubles; what none is exactly (1/3) is written as S(1.0) / 3.0, so that more digits than those of a
+/// double can be had.
 template <class Model>
-class ModelSystem final : public ComplexSystem, public QuadSystem {
+class ModelSystem final : public ComplexSystem, public QuadSystem, public FormulaSystem {
  public:
   explicit ModelSystem(const Bound& bound) : _model(bound), _structure(Model::structure(bound)), _bound(bound) {
     check(_structure, Registered<Model>::info(), Model::dimension, Model::quantities);
@@ -85,6 +88,45 @@ class ModelSystem final : public ComplexSystem, public QuadSystem {
       for (std::size_t l = 0; l < size; ++l)
         jacobian(row, static_cast<Eigen::Index>(l)) = result.jacobian[i * size + l];
     }
+  }
+
+  [[nodiscard]] Formulas formulas() const override {
+    using S = ad::Recorded;
+    using First = ad::First<Model::dimension, S>;
+    ad::Recording recording;
+    Formulas formulas;
+    formulas.dimension = Model::dimension;
+    BoundTo<First> bound{{}, _bound.effects};
+    for (const auto& [name, value] : _bound.parameters) {
+      First parameter(0.0);
+      parameter.value = recording.parameter(static_cast<int>(formulas.parameters.size()));
+      bound.parameters.emplace(name, parameter);
+      formulas.parameters.push_back(name);
+      formulas.values.push_back(value);
+    }
+    std::array<S, size> z;
+    for (std::size_t i = 0; i < size; ++i) z[i] = recording.input(static_cast<int>(i));
+    const typename Model::template With<First> model(bound);
+    const auto whole = [&model](const First* state, First* value) { model.field(state, value); };
+    const auto linear = ad::field_jacobian<Model::dimension>(whole, z.data());
+    for (std::size_t i = 0; i < size; ++i) formulas.field.push_back(linear.value[i].node());
+    for (std::size_t i = 0; i < size; ++i)
+      for (std::size_t c = 0; c < size; ++c) {
+        S sum(0.0);
+        for (std::size_t l = 0; l < size; ++l)
+          sum += linear.jacobian[i * size + l] * recording.input(static_cast<int>(size + l * size + c));
+        formulas.variations.push_back(sum.node());
+      }
+    for (int k = 0; k < static_cast<int>(_structure.conserved.size()); ++k)
+      with_quantity(k, [&]<int K>(std::integral_constant<int, K>) {
+        const auto quantity = [&model](const First* state) { return model.template conserved<K, First>(state); };
+        const auto result = ad::value_gradient<Model::dimension>(quantity, z.data());
+        formulas.conserved.push_back(result.value.node());
+        std::vector<int>& gradient = formulas.conserved_gradients.emplace_back();
+        for (const S& derivative : result.gradient) gradient.push_back(derivative.node());
+      });
+    formulas.tape = recording.tape();
+    return formulas;
   }
 
   void parameter_derivatives(const std::string& name, std::size_t nodes, const double* z,

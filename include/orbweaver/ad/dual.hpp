@@ -72,7 +72,10 @@ struct Dual {
     return a.with(a.value * b, [&](std::size_t l) { return a.derivatives[l] * b; });
   }
   friend Dual operator*(double a, const Dual& b) { return b * a; }
-  friend Dual operator/(const Dual& a, double b) { return a * (1.0 / b); }
+  friend Dual operator/(const Dual& a, double b) {
+    const S inverse = S(1.0) / b;
+    return a.with(a.value * inverse, [&](std::size_t l) { return a.derivatives[l] * inverse; });
+  }
   friend Dual operator/(double a, const Dual& b) {
     const S ratio = a / b.value;
     return b.chain(ratio, -ratio / b.value);

@@ -10,7 +10,7 @@
 #include "compare/family_differences.hpp"
 #include "orbweaver/scene/differences.hpp"
 #include "orbweaver/scene/scene.hpp"
-#include "orbweaver/systems/registry.hpp"
+#include "orbweaver/survey/atlas/stored_orbits.hpp"
 #include "orbweaver/systems/scaled_system.hpp"
 
 namespace orbweaver::report {
@@ -27,21 +27,6 @@ std::optional<scene::Scene> scene_of(const archive::Archive& atlas) {
   } catch (const core::InputError&) {
     return std::nullopt;
   }
-}
-
-std::shared_ptr<const systems::System> system_of(const scene::SystemChoice& choice) {
-  return systems::make_system(choice.name, choice.parameters, choice.effects);
-}
-
-// Those of the survey; all 1 in an archive from before there were any, or with others than the system can have.
-systems::Scales scales_of(const archive::Header& header, const systems::System& system) {
-  systems::Scales scales;
-  const auto coordinates = static_cast<std::ptrdiff_t>(system.dimension());
-  if (header.scales.size() != 1 + system.info().state_names.size() + system.structure().conserved.size()) return scales;
-  scales.time = header.scales.front();
-  scales.coordinates.assign(header.scales.begin() + 1, header.scales.begin() + 1 + coordinates);
-  scales.conserved.assign(header.scales.begin() + 1 + coordinates, header.scales.end());
-  return scales;
 }
 
 std::string text_of(const systems::System& system, const std::vector<std::string>& effects) {
@@ -96,9 +81,9 @@ Comparison compare(const archive::Archive& a, const archive::Archive& b, const C
   std::string name_a;
   std::string name_b;
   if (scene_a && scene_b) {
-    system = system_of(scene_a->system);
+    system = survey::system_of(*scene_a);
     name_a = text_of(*system, scene_a->system.effects);
-    name_b = text_of(*system_of(scene_b->system), scene_b->system.effects);
+    name_b = text_of(*survey::system_of(*scene_b), scene_b->system.effects);
     for (const scene::Difference& difference : scene::differences(*scene_a, *scene_b))
       result.notes.push_back(
           fmt::format("scenes differ: {} is {} in A, {} in B", difference.key, difference.before, difference.now));
@@ -115,7 +100,7 @@ Comparison compare(const archive::Archive& a, const archive::Archive& b, const C
   }
   const AtlasTree tree_a(a, options.tolerance);
   const AtlasTree tree_b(b, options.tolerance);
-  const LoopCheck loops(system ? systems::scaled(system, scales_of(a.header(), *system)) : system);
+  const LoopCheck loops(system ? systems::scaled(system, survey::scales_of(a.header(), *system)) : system);
   const TreeMatch match = match_trees(tree_a, tree_b, loops);
   FamilyDifferences(tree_a, tree_b, match, loops, options, result).run();
   return result;

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "orbweaver/archive/read/loop_of.hpp"
 #include "orbweaver/bifurcation/identity.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
-#include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
 #include "orbweaver/loop/symmetry/isotropy_text.hpp"
+#include "orbweaver/survey/atlas/stored_orbits.hpp"
 
 namespace orbweaver::survey {
 
@@ -30,18 +29,10 @@ continuation::Orbit orbit_of(const AtlasTree& tree, const TreeFamily& family, st
   const std::size_t row = family.first_orbit + orbit;
   const systems::Scales& scales = system.scales();
   continuation::Orbit out;
-  out.loop = loop::in_scales(archive::loop_of(tree.atlas, row, system.structure().angles), scales);
+  out.loop = stored_loop(tree.atlas, row, system);
   out.energy = tree.atlas.orbits().reals("energy")[row] / scales.energy();
   out.action = tree.atlas.orbits().reals("action")[row] / scales.action();
   return out;
-}
-
-/// Stored orbits start in a standard phase, which may jump between two neighbours: the loop with the start, and as the
-/// image, that brings it nearest to its neighbour, if that is twice as near as it stands.
-loop::Loop started_as(const systems::Structure& system, const loop::Loop& loop, const loop::Loop& neighbour) {
-  constexpr double nearer = 0.5;
-  const loop::Alignment alignment = loop::align(system, loop, neighbour);
-  return alignment.distance < nearer * loop::mean_distance(loop, neighbour) ? loop::aligned(loop, alignment) : loop;
 }
 
 /// Moves two orbits of a family towards the place between them where it may pass through a crossing of another one;

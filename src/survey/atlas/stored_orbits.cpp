@@ -1,0 +1,41 @@
+#include "orbweaver/survey/atlas/stored_orbits.hpp"
+
+#include "orbweaver/archive/read/loop_of.hpp"
+#include "orbweaver/loop/curve/in_units.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/loop/symmetry/alignment.hpp"
+#include "orbweaver/systems/registry.hpp"
+#include "orbweaver/systems/scaled_system.hpp"
+
+namespace orbweaver::survey {
+
+std::shared_ptr<const systems::System> system_of(const scene::Scene& scene) {
+  return systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+}
+
+systems::Scales scales_of(const archive::Header& header, const systems::System& system) {
+  systems::Scales scales;
+  const auto coordinates = static_cast<std::ptrdiff_t>(system.dimension());
+  if (header.scales.size() != 1 + system.info().state_names.size() + system.structure().conserved.size()) return scales;
+  scales.time = header.scales.front();
+  scales.coordinates.assign(header.scales.begin() + 1, header.scales.begin() + 1 + coordinates);
+  scales.conserved.assign(header.scales.begin() + 1 + coordinates, header.scales.end());
+  return scales;
+}
+
+std::shared_ptr<const systems::System> scaled_system_of(const archive::Archive& atlas) {
+  const auto system = system_of(scene::parse(atlas.header().scene, atlas.path().string()));
+  return systems::scaled(system, scales_of(atlas.header(), *system));
+}
+
+loop::Loop stored_loop(const archive::Archive& atlas, std::size_t orbit, const systems::System& system) {
+  return loop::in_scales(archive::loop_of(atlas, orbit, system.structure().angles), system.scales());
+}
+
+loop::Loop started_as(const systems::Structure& system, const loop::Loop& loop, const loop::Loop& neighbour) {
+  constexpr double nearer = 0.5;
+  const loop::Alignment alignment = loop::align(system, loop, neighbour);
+  return alignment.distance < nearer * loop::mean_distance(loop, neighbour) ? loop::aligned(loop, alignment) : loop;
+}
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cmath>
+
+#include "orbweaver/numerics/extended.hpp"
+
+namespace orbweaver::taylor {
+
+/// What the recurrences of Taylor series do with a number, without temporaries.
+template <class Real>
+struct Arithmetic;
+
+template <>
+struct Arithmetic<double> {
+  static void set(double& x, double value) { x = value; }
+  static void add(double& out, double a, double b) { out = a + b; }
+  static void subtract(double& out, double a, double b) { out = a - b; }
+  static void multiply(double& out, double a, double b) { out = a * b; }
+  static void divide(double& out, double a, double b) { out = a / b; }
+  static void negate(double& out, double a) { out = -a; }
+  static void multiply(double& out, double a, long k) { out = a * static_cast<double>(k); }
+  static void divide(double& out, double a, long k) { out = a / static_cast<double>(k); }
+  static bool is_zero(double x) { return x == 0.0; }
+  static bool is_finite(double x) { return std::isfinite(x); }
+  static double to_double(double x) { return x; }
+
+  /// Sums of products.
+  class Sum {
+   public:
+    void clear() { _sum = 0.0; }
+    void add_product(double a, double b) { _sum += a * b; }
+    void subtract_product(double a, double b) { _sum -= a * b; }
+    void add(double a) { _sum += a; }
+    void twice() { _sum *= 2.0; }
+    [[nodiscard]] double value() const { return _sum; }
+
+   private:
+    double _sum = 0.0;
+  };
+};
+
+template <>
+struct Arithmetic<numerics::Extended> {
+  using Real = numerics::Extended;
+  static mpfr_ptr raw(Real& x) { return x.backend().data(); }
+  static mpfr_srcptr raw(const Real& x) { return x.backend().data(); }
+
+  static void set(Real& x, const Real& value) { mpfr_set(raw(x), raw(value), MPFR_RNDN); }
+  static void set(Real& x, double value) { mpfr_set_d(raw(x), value, MPFR_RNDN); }
+  static void add(Real& out, const Real& a, const Real& b) { mpfr_add(raw(out), raw(a), raw(b), MPFR_RNDN); }
+  static void subtract(Real& out, const Real& a, const Real& b) { mpfr_sub(raw(out), raw(a), raw(b), MPFR_RNDN); }
+  static void multiply(Real& out, const Real& a, const Real& b) { mpfr_mul(raw(out), raw(a), raw(b), MPFR_RNDN); }
+  static void divide(Real& out, const Real& a, const Real& b) { mpfr_div(raw(out), raw(a), raw(b), MPFR_RNDN); }
+  static void negate(Real& out, const Real& a) { mpfr_neg(raw(out), raw(a), MPFR_RNDN); }
+  static void multiply(Real& out, const Real& a, long k) { mpfr_mul_si(raw(out), raw(a), k, MPFR_RNDN); }
+  static void divide(Real& out, const Real& a, long k) { mpfr_div_si(raw(out), raw(a), k, MPFR_RNDN); }
+  static bool is_zero(const Real& x) { return mpfr_zero_p(raw(x)) != 0; }
+  static bool is_finite(const Real& x) { return mpfr_number_p(raw(x)) != 0; }
+  static double to_double(const Real& x) { return mpfr_get_d(raw(x), MPFR_RNDN); }
+
+  class Sum {
+   public:
+    void clear() { mpfr_set_zero(raw(_sum), 1); }
+    void add_product(const Real& a, const Real& b) {
+      mpfr_mul(raw(_product), raw(a), raw(b), MPFR_RNDN);
+      mpfr_add(raw(_sum), raw(_sum), raw(_product), MPFR_RNDN);
+    }
+    void subtract_product(const Real& a, const Real& b) {
+      mpfr_mul(raw(_product), raw(a), raw(b), MPFR_RNDN);
+      mpfr_sub(raw(_sum), raw(_sum), raw(_product), MPFR_RNDN);
+    }
+    void add(const Real& a) { mpfr_add(raw(_sum), raw(_sum), raw(a), MPFR_RNDN); }
+    void twice() { mpfr_mul_2ui(raw(_sum), raw(_sum), 1, MPFR_RNDN); }
+    [[nodiscard]] const Real& value() const { return _sum; }
+
+   private:
+    Real _sum;
+    Real _product;
+  };
+};
+
+}  // namespace orbweaver::taylor
