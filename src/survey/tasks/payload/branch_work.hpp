@@ -53,7 +53,7 @@ struct ArrivalRecord {
   double energy = 0.0;
   loop::Loop near;                       ///< an orbit of the branch shortly before
   int multiplicity = 1;                  ///< times that it goes around the orbit it meets, where that is all it gains
-  std::vector<CrossingBeneath> beneath;  ///< one, where the crossing that is met was located
+  std::vector<CrossingBeneath> beneath{};  ///< one, where the crossing that is met was located
 
   static constexpr int wire_version = 2;
   template <class Archive>
