@@ -41,8 +41,7 @@ constexpr int most_orbits = 20;
 
 /// Whether the curve between the orbits is there, and the index comes to 2 on it.
 bool has_index_two_between(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
-                           const continuation::Options& options, const KnownStability& from,
-                           const KnownStability& to) {
+                           const continuation::Options& options, const KnownStability& from, const KnownStability& to) {
   continuation::FamilyCurve step(system, isotropy, options);
   step.add(0.0, from.orbit.loop);
   step.add(1.0, to.orbit.loop);

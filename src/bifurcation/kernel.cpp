@@ -69,8 +69,8 @@ loop::Loop holding_kernel(const systems::System& system, loop::Loop orbit, const
   vectors.team = options.team;
   const int needed = spectrum::floquet_vector_cutoff(system, orbit, isotropy, vectors);
   if (needed > options.most_harmonics)
-    throw UndecidedError(fmt::format("what leaves there needs {} harmonics a period, more than {}", needed,
-                                     options.most_harmonics));
+    throw UndecidedError(
+        fmt::format("what leaves there needs {} harmonics a period, more than {}", needed, options.most_harmonics));
   if (needed <= orbit.cutoff) return orbit;
   return loop::with_cutoff(orbit, loop::allowed_cutoff_at_least(needed));
 }

@@ -298,8 +298,8 @@ void CollocationProblem::judge(Trial& trial) {
   }
 }
 
-/// As for a loop, but for what the elimination leaves in the nodal values, which the field's Jacobian multiplies: beside
-/// a motion a thousand times as fast that is most of it (m2 = 1e6).
+/// As for a loop, but for what the elimination leaves in the nodal values, which the field's Jacobian multiplies:
+/// beside a motion a thousand times as fast that is most of it (m2 = 1e6).
 double CollocationProblem::rounding_floor(const Trial& trial, const Collocation::Quality& quality) {
   const Collocation& e = equations();
   return std::max(corrector::rounding_floor(e.grid().cutoff(), trial.values[scalars_at()], quality.size,

@@ -287,7 +287,12 @@ Collocation::Quality Collocation::quality(const double* u) const {
     }
     between += _node_density[at(j)] * _node_weights[at(j)] * square;
   }
-  return {std::sqrt(0.5 * (loss + between)), std::sqrt(loss), std::sqrt(between), std::sqrt(speed), std::sqrt(amplitude), std::sqrt(size)};
+  return {std::sqrt(0.5 * (loss + between)),
+          std::sqrt(loss),
+          std::sqrt(between),
+          std::sqrt(speed),
+          std::sqrt(amplitude),
+          std::sqrt(size)};
 }
 
 double Collocation::distance(const double* a, const double* b) const {

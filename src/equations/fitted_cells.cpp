@@ -24,14 +24,16 @@ bool fit(double* blocks, Eigen::Index dimension, Eigen::Index count, double diff
   bool any = false;
   for (Eigen::Index j = 0; j < count; ++j) {
     for (Eigen::Index i = 0; i < dimension; ++i)
-      for (Eigen::Index l = 0; l < dimension; ++l) x(i, l) = blocks[(i * dimension + l) * count + j] / (2.0 * difference);
+      for (Eigen::Index l = 0; l < dimension; ++l)
+        x(i, l) = blocks[(i * dimension + l) * count + j] / (2.0 * difference);
     const Matrix square = x * x;
     const double size = std::pow((square * square).squaredNorm(), 0.125);  // |X^4|^(1/4): no matter of units
     if (!(size > plain && size < resolved)) continue;
     // tanh, to 1 % up to x = 1.4i.
     const Matrix fitted = (15.0 * unit + 6.0 * square).partialPivLu().solve(x * (15.0 * unit + square));
     for (Eigen::Index i = 0; i < dimension; ++i)
-      for (Eigen::Index l = 0; l < dimension; ++l) blocks[(i * dimension + l) * count + j] = 2.0 * difference * fitted(i, l);
+      for (Eigen::Index l = 0; l < dimension; ++l)
+        blocks[(i * dimension + l) * count + j] = 2.0 * difference * fitted(i, l);
     any = true;
   }
   return any;

@@ -55,8 +55,8 @@ void expect_crossing(const test::PendulumMode& mode, const Expected& expected) {
   EXPECT_GT(kernel.next(), 1e3 * kernel.largest());
   EXPECT_NEAR(kernel.base.period, expected.multiplicity * expected.period, 1e-8);
   if (expected.multiplicity > 1) return;
-  const bifurcation::Kernel mapped = bifurcation::kernel_of(*test::pendulum(), found->point, curve.isotropy(),
-                                                            expected.sector, expected.dimension, {.even_in_time = false});
+  const bifurcation::Kernel mapped = bifurcation::kernel_of(
+      *test::pendulum(), found->point, curve.isotropy(), expected.sector, expected.dimension, {.even_in_time = false});
   EXPECT_EQ(mapped.dimension(), expected.dimension) << "under the orbit's own time map";
   EXPECT_LT(mapped.largest(), 1e-8);
   EXPECT_LE(mapped.base.cutoff, kernel.base.cutoff);

@@ -13,7 +13,8 @@ namespace {
 
 using namespace orbweaver;
 
-/// Closed form for lengths and gravity 1, masses 1 and m: w^2 = (1 + m)(1 +- sqrt(m/(1 + m))), th2/th1 = -+ sqrt(1 + 1/m).
+/// Closed form for lengths and gravity 1, masses 1 and m: w^2 = (1 + m)(1 +- sqrt(m/(1 + m))),
+/// th2/th1 = -+ sqrt(1 + 1/m).
 struct Modes {
   double slow;
   double fast;

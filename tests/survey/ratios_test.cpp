@@ -11,9 +11,9 @@ namespace {
 using namespace orbweaver;
 
 scene::Scene scene_with(std::vector<std::string> settings) {
-  settings.insert(settings.begin(), {"starts.sweep={}", "survey.depth=0", "survey.subharmonics=4",
-                                     "starts.fixed_points.grid=[[0], [0]]",
-                                     "starts.fixed_points.names={[0, 0]: [In-Phase, Out-Phase]}"});
+  settings.insert(settings.begin(),
+                  {"starts.sweep={}", "survey.depth=0", "survey.subharmonics=4", "starts.fixed_points.grid=[[0], [0]]",
+                   "starts.fixed_points.names={[0, 0]: [In-Phase, Out-Phase]}"});
   return scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/double_pendulum.yaml", settings);
 }
 
@@ -27,10 +27,10 @@ std::size_t count_of(const survey::Summary& summary, survey::Severity severity) 
 // harmonics in bands about its multiples.
 TEST(Ratios, FamiliesAreBornInAMotionThatTheOrbitLacks) {
   const core::Communicator comm;
-  const survey::Summary summary =
-      test::run(comm, scene_with({"system.parameters.m2=1000", "survey.depth=1", "limits.period=8.98",
-                                  "limits.energy=[-.inf, -1800]"}),
-                "fast");
+  const survey::Summary summary = test::run(
+      comm,
+      scene_with({"system.parameters.m2=1000", "survey.depth=1", "limits.period=8.98", "limits.energy=[-.inf, -1800]"}),
+      "fast");
   if (!comm.is_root()) return;
   EXPECT_EQ(summary.failures, 0U);
   EXPECT_EQ(count_of(summary, survey::Severity::contradiction), 0U);
@@ -55,8 +55,8 @@ TEST(Ratios, AFamilyTurnsAtAResonanceItMeets) {
 // Two thousand times as fast: an index is not known well enough to tell what it passes.
 TEST(Ratios, WhatRoundingHidesIsUndecided) {
   const core::Communicator comm;
-  const survey::Summary summary = test::run(
-      comm, scene_with({"system.parameters.m2=1e6", "limits.period=8.92", "limits.families=1"}), "heavy");
+  const survey::Summary summary =
+      test::run(comm, scene_with({"system.parameters.m2=1e6", "limits.period=8.92", "limits.families=1"}), "heavy");
   if (!comm.is_root()) return;
   EXPECT_EQ(summary.failures, 0U);
   EXPECT_EQ(count_of(summary, survey::Severity::contradiction), 0U);

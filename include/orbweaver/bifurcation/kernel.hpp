@@ -24,7 +24,8 @@ struct Kernel {
 };
 
 struct KernelOptions {
-  /// `base` is to have the identity as time map, as starts need it; orbits gone around once are cheaper under their own.
+  /// `base` is to have the identity as time map, as starts need it; orbits gone around once are cheaper under their
+  /// own.
   bool even_in_time = true;
   /// Vectors whose singular values exceed this do not count (those of the deep survey's kernels are below 9e-9:
   /// docs/performance.md).

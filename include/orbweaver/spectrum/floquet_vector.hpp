@@ -9,11 +9,11 @@ namespace orbweaver::spectrum {
 
 /// Which solutions of the linearised flow: v(t + T/p) = e^{i angle} g v(t), g@1/p being the fundamental map.
 struct FloquetVectorOptions {
-  int order = 1;            ///< p
-  double angle = 0.0;       ///< radians
-  int count = 1;            ///< independent solutions, at least 1: those that come nearest to closing so
-  double share = 1e-9;      ///< of the largest harmonic: smaller ones are not needed
-  int most = 4096;          ///< the search ends here
+  int order = 1;        ///< p
+  double angle = 0.0;   ///< radians
+  int count = 1;        ///< independent solutions, at least 1: those that come nearest to closing so
+  double share = 1e-9;  ///< of the largest harmonic: smaller ones are not needed
+  int most = 4096;      ///< the search ends here
   core::Team* team = nullptr;
 };
 

@@ -248,8 +248,9 @@ bifurcation::TestPoint BranchTask::test_point(double position,
                                               const std::optional<spectrum::Stability>& stability) const {
   bifurcation::TestPoint out{position, {}};
   for (const bifurcation::TestFunction& function : _functions)
-    out.readings.push_back(stability && bifurcation::are_decided(*stability) ? bifurcation::evaluate(function, _system->structure(), *stability)
-                                     : bifurcation::Reading{archive::not_computed, archive::not_computed});
+    out.readings.push_back(stability && bifurcation::are_decided(*stability)
+                               ? bifurcation::evaluate(function, _system->structure(), *stability)
+                               : bifurcation::Reading{archive::not_computed, archive::not_computed});
   return out;
 }
 
