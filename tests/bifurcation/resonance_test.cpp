@@ -107,6 +107,47 @@ TEST(Resonance, TwoFamiliesOfOneToTwoLeaveAsTheNormalFormSays) {
   }
 }
 
+/// The same, or another point system, with its first two coordinates turned by 45 degrees, and so their momenta.
+class Turned final : public test::PointSystem {
+ public:
+  explicit Turned(const test::PointSystem& system) : PointSystem(system.structure()), _system(system) {
+    const Eigen::Matrix2d turn = Eigen::Rotation2Dd(0.25 * pi).toRotationMatrix();
+    _turn.topLeftCorner<2, 2>() = _turn.bottomRightCorner<2, 2>() = turn;
+  }
+
+  [[nodiscard]] Eigen::VectorXd field_at(const Eigen::VectorXd& z) const override {
+    return _turn.transpose() * _system.field_at(_turn * z);
+  }
+  [[nodiscard]] Eigen::MatrixXd jacobian_at(const Eigen::VectorXd& z) const override {
+    return _turn.transpose() * _system.jacobian_at(_turn * z) * _turn;
+  }
+  [[nodiscard]] Eigen::VectorXd gradient_at(const Eigen::VectorXd& z) const override {
+    return _turn.transpose() * _system.gradient_at(_turn * z);
+  }
+  [[nodiscard]] double conserved(int k, std::span<const double> z) const override {
+    const Eigen::Vector4d turned = _turn * Eigen::Map<const Eigen::Vector4d>(z.data());
+    return _system.conserved(k, {turned.data(), 4});
+  }
+
+ private:
+  const test::PointSystem& _system;
+  Eigen::Matrix4d _turn = Eigen::Matrix4d::Zero();
+};
+
+// The first coordinate, (a cos s + b cos 2s)/sqrt 2, is largest off the reversor's fixed set on one of the families.
+TEST(Resonance, FamiliesStartOnTheFixedSetOfTheirReversor) {
+  const TwoToOne plain(1.0);
+  const std::vector<SmallOscillation> slow = slow_families(oscillations_of(Turned(plain)));
+  ASSERT_EQ(slow.size(), 2U);
+  for (const SmallOscillation& family : slow) {
+    EXPECT_EQ(loop::to_text(family.mode.isotropy), "R@0");
+    const loop::Loop base = loop::constant_loop(std::vector<double>(4, 0.0), family.mode.period, 10);
+    const std::vector<double> start =
+        loop::state_at(loop::perturbation(base, loop::with_cutoff(family.mode.direction, 10, 4)), 0.0);
+    EXPECT_LT(std::hypot(start[2], start[3]), 1e-6);
+  }
+}
+
 TEST(Resonance, NoneLeavesWhereTheEnergiesHaveOppositeSigns) {
   const SmallOscillations all = oscillations_of(TwoToOne(-1.0));
   ASSERT_EQ(all.families.size(), 1U);
