@@ -2,9 +2,11 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/survey/atlas/atlas_tree.hpp"
 #include "orbweaver/systems/system.hpp"
 
@@ -61,6 +63,9 @@ class LoopCheck {
                               const TreeFamily& family_b) const;
 
  private:
+  /// The orbit at a crossing, from those beside it, the one where the family is born among them.
+  [[nodiscard]] std::optional<loop::Loop> orbit_at(const AtlasTree& tree, std::size_t crossing) const;
+
   std::shared_ptr<const systems::System> _system;
 };
 
