@@ -7,6 +7,7 @@
 
 #include "orbweaver/continuation/family_curve.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
 #include "orbweaver/loss/slice.hpp"
 #include "orbweaver/loss/unknowns.hpp"
@@ -27,6 +28,8 @@ constexpr double of_a_turn = 0.4;
 /// they do not, no orbit is found.
 std::optional<loop::Loop> orbit_of_amplitude(const systems::System& system, loop::Loop guess,
                                              const continuation::Options& options) {
+  // Of a loop with few harmonics nothing repeats many times: no oscillation is left that could be held.
+  if (!(loop::rms_amplitude(guess) > loop::negligible_harmonic)) return std::nullopt;
   while (true) {
     const loss::Unknowns unknowns{loop::Subspace(guess.dimension, guess.cutoff, {}), {loss::Scalar::period()}};
     std::vector<double> oscillation = guess.modes;

@@ -31,6 +31,9 @@ struct Case {
   std::function<std::vector<std::string>(double length, double time, double energy)> in_units;
 };
 
+/// Of the cases, the first ones are quick.
+constexpr std::size_t quick_cases = 5;
+
 inline const std::vector<Case>& cases() {
   static const std::vector<Case> all{
       {"pendulum",
@@ -126,6 +129,24 @@ inline const std::vector<Case>& cases() {
                             fmt::format("continuation.start={}", 0.01 * std::max(length, length / time)),
                             fmt::format("limits.period={}", 30 * time),
                             fmt::format("limits.energy=[-.inf, {}]", 0.5 * energy)};
+       }},
+      // With twins that no symmetry tells apart (IBT3-1, IBD), and branches that come back to where another is born.
+      {"equal_masses",
+       "double_pendulum_deep",
+       {"survey.depth=2", "survey.subharmonics=3", "limits.period=33", "limits.energy=[-.inf, 1.35]",
+        "starts.sweep.period=[8, 9]", "starts.fixed_points.grid=[[0], [0]]",
+        "starts.fixed_points.names={[0, 0]: [In-Phase, Out-Phase]}"},
+       exchange({1, 0, 3, 2}),
+       {},
+       "4deg",
+       "2deg",
+       "8deg",
+       {"0.1deg", "0.25deg", "0.75deg", "1deg", "2deg"},
+       [](double, double time, double energy) {
+         return std::vector{fmt::format("starts.sweep.period=[{}, {}]", 8 * time, 9 * time),
+                            fmt::format("starts.sweep.step={}", 0.01 * time),
+                            fmt::format("limits.period={}", 33 * time),
+                            fmt::format("limits.energy=[-.inf, {}]", 1.35 * energy)};
        }}};
   return all;
 }

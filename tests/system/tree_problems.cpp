@@ -189,9 +189,24 @@ class Tree {
     const auto& arclengths = _orbits.reals("arclength");
     const double where = _crossings.reals("arclength")[crossing];
     const double least = arclengths[rows.begin] - 0.5 * (arclengths[rows.begin + 1] - arclengths[rows.begin]);
+    if (where < arclengths[rows.begin] && at(_families, "crossing", family) >= 0)
+      return check_before_first(crossing, rows);
     const double most = arclengths[rows.end - 1] + 0.5 * (arclengths[rows.end - 1] - arclengths[rows.end - 2]);
     expect(where >= least && where <= most, "{} lies at arclength {:.9g}, outside {} ({:.9g} .. {:.9g})",
            crossing_name(crossing), where, name(family), arclengths[rows.begin], arclengths[rows.end - 1]);
+  }
+
+  // Between a family's birth and its first orbit: so its period must lie, give or take half of that way.
+  void check_before_first(std::size_t crossing, const Rows& rows) {
+    const auto family = static_cast<std::size_t>(at(_crossings, "family", crossing));
+    const auto birth = static_cast<std::size_t>(at(_families, "crossing", family));
+    const double born = static_cast<double>(at(_families, "multiplicity", family)) * _crossings.reals("period")[birth];
+    const double first = _orbits.reals("period")[rows.begin];
+    const double period = _crossings.reals("period")[crossing];
+    const double margin = 0.5 * std::abs(first - born);
+    expect(period >= std::min(born, first) - margin && period <= std::max(born, first) + margin,
+           "{} lies before the first orbit of {}, but not between its birth (T = {:.9g}) and that (T = {:.9g})",
+           crossing_name(crossing), name(family), born, first);
   }
 
   // Index of the fundamental map that is nearest to `value`.

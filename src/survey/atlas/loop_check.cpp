@@ -35,6 +35,12 @@ continuation::Orbit orbit_of(const AtlasTree& tree, const TreeFamily& family, st
   return out;
 }
 
+/// The orbit at a crossing, gone around as what is born there.
+loop::Loop born_loop(const AtlasTree& tree, std::size_t crossing, const loop::Loop& orbit) {
+  const int times = tree.crossings[crossing].multiplicity;
+  return times == 1 ? orbit : loop::repeated(loop::evenly_in_time(orbit), times);
+}
+
 /// Moves two orbits of a family towards the place between them where it may pass through a crossing of another one;
 /// false where it passes too far away, or has no orbits there. The hyperplane across the chord at the crossing holds
 /// orbits of the other family too, and the one found there is off by the chord's bulge: a hundredth as much on a tenth
@@ -86,31 +92,47 @@ LoopAnswer LoopCheck::ask(const OrbitBeside& x) const {
   return {found.same, found.distance, allowed, found.detail, found.decided};
 }
 
-LoopAnswer LoopCheck::ask_crossing(const AtlasTree& tree, std::size_t crossing, const TreeFamily& beside,
-                                   std::size_t segment) const {
+std::optional<loop::Loop> LoopCheck::orbit_at(const AtlasTree& tree, std::size_t crossing) const {
   const systems::Structure& system = _system->structure();
-  const TreeCrossing& place = tree.crossings[crossing];
-  const TreeFamily& family = tree.families[static_cast<std::size_t>(place.family)];
+  const TreeFamily& family = tree.families[static_cast<std::size_t>(tree.crossings[crossing].family)];
   const double position = tree.atlas.crossings().reals("arclength")[crossing];
   const auto after = std::upper_bound(family.arclengths.begin(), family.arclengths.end(), position);
-  LoopAnswer undecided;
-  undecided.decided = false;
-  if (after == family.arclengths.begin() || after == family.arclengths.end()) return undecided;
+  if (after == family.arclengths.end()) return std::nullopt;
   const auto next = static_cast<std::size_t>(after - family.arclengths.begin());
   continuation::FamilyCurve curve(_system, loop::isotropy_of(system, family.isotropy), {});
   const std::size_t first = next > orbits_beside ? next - orbits_beside : 0;
   const std::size_t end = std::min(next + orbits_beside, family.orbits());
   std::optional<loop::Loop> before;
+  if (next == 0) {  // before the first orbit there is the family's birth
+    if (family.crossing < 0) return std::nullopt;
+    const auto birth = static_cast<std::size_t>(family.crossing);
+    const std::optional<loop::Loop> parent = orbit_at(tree, birth);
+    if (!parent) return std::nullopt;
+    const loop::Loop nearest = orbit_of(tree, family, 0, *_system).loop;
+    const loop::Loop born = born_loop(tree, birth, *parent);
+    before = loop::aligned(born, loop::align(system, born, nearest));
+    const double start = family.arclengths[0] - continuation::arclength_in_units(*_system, *before, nearest);
+    if (position < start) return std::nullopt;
+    curve.add(start, *before, end + 1);
+  }
   for (std::size_t n = first; n < end; ++n) {
     const continuation::Orbit known = orbit_of(tree, family, n, *_system);
     before = before ? started_as(system, known.loop, *before) : known.loop;
-    curve.add(family.arclengths[n], *before, end - first);
+    curve.add(family.arclengths[n], *before, end - first + 1);
   }
   const std::optional<continuation::CurvePoint> there = curve.at(position);
+  return there ? std::optional(there->loop) : std::nullopt;
+}
+
+LoopAnswer LoopCheck::ask_crossing(const AtlasTree& tree, std::size_t crossing, const TreeFamily& beside,
+                                   std::size_t segment) const {
+  const systems::Structure& system = _system->structure();
+  LoopAnswer undecided;
+  undecided.decided = false;
+  const std::optional<loop::Loop> there = orbit_at(tree, crossing);
   if (!there) return undecided;
   continuation::Orbit orbit;
-  orbit.loop =
-      place.multiplicity == 1 ? there->loop : loop::repeated(loop::evenly_in_time(there->loop), place.multiplicity);
+  orbit.loop = born_loop(tree, crossing, *there);
   orbit.energy = continuation::energy_of(*_system, orbit.loop);
   orbit.action = continuation::action_of(*_system, orbit.loop);
   return between_orbits(orbit, tree, beside, segment).answer;
