@@ -11,6 +11,8 @@
 #include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/systems/formulas.hpp"
+#include "orbweaver/taylor/flow.hpp"
 
 namespace orbweaver::certificate {
 
@@ -35,21 +37,52 @@ std::vector<State> states_at_segment_ends(const loop::Loop& loop, int segments) 
   return states;
 }
 
-double closure_of(const systems::System& system, const loop::Loop& loop, const std::vector<State>& states,
-                  const Options& options) {
-  double largest = 0.0;
+/// Where `advance(state, time)` takes the states at the segments' beginnings.
+template <class Advance>
+std::vector<State> ends_of(const systems::System& system, const loop::Loop& loop, const std::vector<State>& states,
+                           const Options& options, const Advance& advance) {
+  std::vector<State> ends;
   for (int m = 0; m < options.segments; ++m) {
-    const auto here = static_cast<std::size_t>(m);
     try {
-      const State end = integrate(system, states[here], loop.period / options.segments, options.tolerance);
-      largest = std::max(largest, distance(end, states[here + 1]));
+      ends.push_back(advance(states[static_cast<std::size_t>(m)], loop.period / options.segments));
     } catch (const core::NumericalError& error) {
       const double period = loop.period * system.scales().time;
       throw core::NumericalError(fmt::format("segment {} of {} of a loop with period {} (from t = {}): {}", m + 1,
                                              options.segments, period, period * m / options.segments, error.what()));
     }
   }
+  return ends;
+}
+
+std::vector<State> runge_kutta_ends(const systems::System& system, const loop::Loop& loop,
+                                    const std::vector<State>& states, const Options& options) {
+  return ends_of(system, loop, states, options,
+                 [&](const State& state, double time) { return integrate(system, state, time, options.tolerance); });
+}
+
+std::vector<State> taylor_ends(const systems::System& system, const loop::Loop& loop, const std::vector<State>& states,
+                               const Options& options) {
+  const auto* with_formulas = dynamic_cast<const systems::FormulaSystem*>(&system);
+  core::require(with_formulas != nullptr, "Taylor series are of systems that give their formulas");
+  const systems::Formulas formulas = with_formulas->formulas();
+  taylor::Flow<double> flow(formulas, formulas.values, {});
+  return ends_of(system, loop, states, options, [&](State state, double time) {
+    flow.advance(state, time);
+    return state;
+  });
+}
+
+/// The largest distance between the segments' ends and `states`, from the state number `first` on.
+double largest_gap(const std::vector<State>& ends, const std::vector<State>& states, std::size_t first) {
+  double largest = 0.0;
+  for (std::size_t m = 0; m < ends.size(); ++m) largest = std::max(largest, distance(ends[m], states[m + first]));
   return largest;
+}
+
+void require_certifiable(const systems::System& system, const loop::Loop& loop, const Options& options) {
+  loop::validate(loop);
+  core::require(loop.dimension == system.dimension(), "the loop and the system must have the same dimension");
+  core::require(options.segments >= 1, "a certificate needs at least one segment");
 }
 
 double energy_drift_of(const systems::System& system, const std::vector<State>& states) {
@@ -97,17 +130,25 @@ double single_shot_of(const systems::System& system, const std::vector<State>& s
 
 Certificate certify(const systems::System& system, const loop::Loop& loop, const Options& options) {
   const core::LogStage stage(core::Stage::certificate);
-  loop::validate(loop);
-  core::require(loop.dimension == system.dimension(), "the loop and the system must have the same dimension");
-  core::require(options.segments >= 1, "a certificate needs at least one segment");
+  require_certifiable(system, loop, options);
   const std::vector<State> states = states_at_segment_ends(loop, options.segments);
   Certificate certificate;
-  certificate.closure = closure_of(system, loop, states, options);
+  certificate.closure = largest_gap(runge_kutta_ends(system, loop, states, options), states, 1);
   certificate.single_shot = single_shot_of(system, states, loop.period, options.tolerance);
   certificate.energy_drift = energy_drift_of(system, states);
   certificate.reach = reach_of(states);
   certificate.steepness = steepness_of(system, states);
   return certificate;
+}
+
+Closures closures(const systems::System& system, const loop::Loop& loop, const Options& options) {
+  const core::LogStage stage(core::Stage::certificate);
+  require_certifiable(system, loop, options);
+  const std::vector<State> states = states_at_segment_ends(loop, options.segments);
+  const std::vector<State> by_runge_kutta = runge_kutta_ends(system, loop, states, options);
+  const std::vector<State> by_taylor = taylor_ends(system, loop, states, options);
+  return {largest_gap(by_runge_kutta, states, 1), largest_gap(by_taylor, states, 1),
+          largest_gap(by_runge_kutta, by_taylor, 0)};
 }
 
 }  // namespace orbweaver::certificate

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/systems/quad_system.hpp"
 
 namespace orbweaver::systems {
@@ -134,7 +135,7 @@ class ScaledSystem : public System {
   std::vector<double> _rate;  // time / s_i
 };
 
-class ScaledQuadSystem final : public ScaledSystem, public QuadSystem {
+class ScaledQuadSystem : public ScaledSystem, public QuadSystem {
  public:
   using ScaledSystem::ScaledSystem;
 
@@ -150,6 +151,43 @@ class ScaledQuadSystem final : public ScaledSystem, public QuadSystem {
       for (std::size_t l = 0; l < size(); ++l)
         jacobian(row, static_cast<Eigen::Index>(l)) *= rate(i) * scales().coordinate(l);
     }
+  }
+};
+
+class ScaledFormulaSystem final : public ScaledQuadSystem, public FormulaSystem {
+ public:
+  using ScaledQuadSystem::ScaledQuadSystem;
+
+  // Scales stand as factors and divisors of their own, so that nothing is rounded where digits are many.
+  [[nodiscard]] Formulas formulas() const override {
+    using ad::Recorded;
+    Formulas formulas = dynamic_cast<const FormulaSystem&>(system()).formulas();
+    const ad::Tape plain = formulas.tape;
+    ad::Recording recording;
+    std::vector<Recorded> inputs;
+    for (std::size_t n = 0; n < size() * (1 + size()); ++n)
+      inputs.push_back(recording.input(static_cast<int>(n)) *
+                       scales().coordinate(n < size() ? n : (n - size()) / size()));
+    std::vector<Recorded> parameters;
+    for (std::size_t n = 0; n < formulas.parameters.size(); ++n)
+      parameters.push_back(recording.parameter(static_cast<int>(n)));
+    const auto told = [&](std::vector<int>& nodes, const auto& scale) {
+      std::vector<Recorded> values = ad::evaluate<Recorded>(plain, nodes, inputs, parameters);
+      for (std::size_t n = 0; n < values.size(); ++n) nodes[n] = scale(n, values[n]).node();
+    };
+    told(formulas.field, [&](std::size_t n, Recorded f) { return f * scales().time / scales().coordinate(n); });
+    told(formulas.variations,
+         [&](std::size_t n, Recorded f) { return f * scales().time / scales().coordinate(n / size()); });
+    for (std::size_t k = 0; k < formulas.conserved.size(); ++k) {
+      const double unit = scales().conserved.empty() ? 1.0 : scales().conserved[k];
+      std::vector<int> quantity{formulas.conserved[k]};
+      told(quantity, [&](std::size_t, Recorded value) { return value / unit; });
+      formulas.conserved[k] = quantity.front();
+      told(formulas.conserved_gradients[k],
+           [&](std::size_t n, Recorded slope) { return slope * scales().coordinate(n) / unit; });
+    }
+    formulas.tape = recording.tape();
+    return formulas;
   }
 };
 
@@ -190,8 +228,10 @@ std::vector<std::size_t> mixed_coordinates(const Structure& structure) {
 std::shared_ptr<const System> scaled(std::shared_ptr<const System> system, const Scales& scales) {
   check(*system, scales);
   if (scales.are_one()) return system;
-  if (dynamic_cast<const QuadSystem*>(system.get()) != nullptr)
-    return std::make_shared<const ScaledQuadSystem>(std::move(system), scales);
+  const bool is_quad = dynamic_cast<const QuadSystem*>(system.get()) != nullptr;
+  if (is_quad && dynamic_cast<const FormulaSystem*>(system.get()) != nullptr)
+    return std::make_shared<const ScaledFormulaSystem>(std::move(system), scales);
+  if (is_quad) return std::make_shared<const ScaledQuadSystem>(std::move(system), scales);
   return std::make_shared<const ScaledSystem>(std::move(system), scales);
 }
 

@@ -9,6 +9,7 @@
 #include "certificate/decay.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/registry.hpp"
+#include "orbweaver/systems/scaled_system.hpp"
 
 namespace orbweaver::certificate {
 namespace {
@@ -55,6 +56,50 @@ TEST(Certificate, IsThatOfTheOrbitUnderAnyTimeMap) {
     EXPECT_NEAR(certify(*oscillator(), loop::with_time_map(oscillation(3.0), map, 120)).closure, off, 1e-12);
     ASSERT_GT(off, 0.01);
   }
+}
+
+TEST(Closures, AgreeWhetherTheLoopIsAnOrbitOrNot) {
+  for (const double period : {2.0 * pi / omega, 3.0}) {
+    const Closures both = closures(*oscillator(), oscillation(period));
+    EXPECT_NEAR(both.runge_kutta, certify(*oscillator(), oscillation(period)).closure, 1e-16);
+    EXPECT_NEAR(both.taylor, both.runge_kutta, 1e-13);
+    EXPECT_LT(both.apart, 1e-13);
+  }
+}
+
+// A tolerance of 1e-6 for the one leaves it that far from the other, which has none.
+TEST(Closures, SayHowFarTheIntegratorsAreApart) {
+  const auto system = systems::make_system("double_pendulum");
+  const std::vector<double> hanging{0.3, -0.2, 0.1, 0.0};
+  loop::Loop loop = loop::constant_loop(hanging, 6.0, 3);
+  loop.cosine(1, 0) = 1.0;
+  loop.sine(1, 2) = -1.0;
+  Options options;
+  options.segments = 4;
+  const Closures fine = closures(*system, loop, options);
+  EXPECT_LT(fine.apart, 1e-11);
+  EXPECT_GT(fine.taylor, 0.1);
+  options.tolerance = 1e-6;
+  const Closures coarse = closures(*system, loop, options);
+  EXPECT_EQ(coarse.taylor, fine.taylor);
+  EXPECT_GT(coarse.apart, 1e-9);
+  EXPECT_GE(coarse.apart, std::abs(coarse.taylor - coarse.runge_kutta));
+}
+
+TEST(Closures, AreThoseOfTheSystemInItsScales) {
+  const auto plain = systems::make_system("double_pendulum");
+  systems::Scales scales{2.0, {1.0, 1.0, 0.25, 0.25}, {8.0}};
+  const std::vector<double> hanging{0.3, -0.2, 0.1, 0.0};
+  const loop::Loop loop = loop::constant_loop(hanging, 3.0, 3);
+  const Closures told = closures(*systems::scaled(plain, scales), loop);
+  EXPECT_GT(told.taylor, 0.01);
+  EXPECT_LT(told.apart, 1e-12);
+}
+
+TEST(Closures, NeedFormulas) {
+  const loop::Loop still = loop::constant_loop(std::vector<double>{1.0}, 1.0, 3);
+  EXPECT_THAT([&] { static_cast<void>(closures(Decay(1.0), still)); },
+              ThrowsMessage<core::MisuseError>(HasSubstr("formulas")));
 }
 
 TEST(Certificate, MeasuresHowFarALoopIsFromAnOrbit) {

@@ -74,6 +74,13 @@ TEST_F(RefineAtlas, GivesOrbitsByPeriodEnergyAndStep) {
   const RefinedOrbit orbit = refine::refine_orbit(place.guess, by_period, 20);
   expect_closed(*place.guess.system, orbit, "T = 9");
   expect_bounds_hold(orbit, refine::refine_orbit(place.guess, by_period, 45), "T = 9");
+  // z(t + T/2) = -z(t): M(T) is the square of the fundamental map.
+  ASSERT_EQ(orbit.order, 2);
+  const numerics::WorkingDigits working(25);
+  const Extended square = orbit.fundamental_index->value * orbit.fundamental_index->value;
+  EXPECT_LT(numerics::log10_abs(orbit.index->value - (square - 2)), -18.0);
+  EXPECT_LT(numerics::log10_abs(2 * orbit.multipliers[0].value - orbit.index->value), -18.0);
+  EXPECT_TRUE(orbit.unit_circle);
   // From its energy the same orbit, to the digits that the energy has.
   const HeldValue by_energy{Quantity::energy, numerics::decimal_text(orbit.energy.value, 25)};
   const RefinedOrbit same = refine::refine_orbit(family.with(by_energy, std::nullopt).guess, by_energy, 18);
@@ -87,6 +94,7 @@ TEST_F(RefineAtlas, GivesOrbitsByPeriodEnergyAndStep) {
   const HeldValue held{Quantity::period, branch.stored(Quantity::period, 3)};
   const RefinedOrbit fine = refine::refine_orbit(stored.guess, held, 20);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(static_cast<double>(fine.state[i].value), states[4 * row + i], 1e-9);
+  EXPECT_NEAR(static_cast<double>(fine.index->value), pendulum().orbits().reals("stability")[row], 1e-6);
   ASSERT_TRUE(fine.largest.has_value());
   expect_closed(*stored.guess.system, fine, "IB");
 }

@@ -141,7 +141,7 @@ template <class S>
       case Operation::asin: values[n] = asin(operand(node.first)); break;
       case Operation::acos: values[n] = acos(operand(node.first)); break;
       case Operation::atan: values[n] = atan(operand(node.first)); break;
-      case Operation::power: values[n] = pow(operand(node.first), S(node.value)); break;
+      case Operation::power: values[n] = pow(operand(node.first), node.value); break;
     }
   }
   std::vector<S> results;

@@ -26,4 +26,15 @@ struct Certificate {
 /// is out of range; core::NumericalError if an integration fails, saying in which segment and at what time.
 [[nodiscard]] Certificate certify(const systems::System& system, const loop::Loop& loop, const Options& options = {});
 
+/// The largest gap |z(t_m+1) - Phi(z(t_m))| over the segments by each of two integrators that have nothing in common but
+/// the field: Runge and Kutta's of `integrate.hpp`, and Taylor series (taylor/flow.hpp).
+struct Closures {
+  double runge_kutta = 0.0;
+  double taylor = 0.0;
+  double apart = 0.0;  ///< the largest distance of their ends: what either may be wrong by
+};
+
+/// Throws what certify does, and core::MisuseError for a system that does not give its formulas.
+[[nodiscard]] Closures closures(const systems::System& system, const loop::Loop& loop, const Options& options = {});
+
 }  // namespace orbweaver::certificate

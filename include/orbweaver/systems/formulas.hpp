@@ -21,7 +21,7 @@ struct Formulas {
   std::vector<double> values;                         ///< theirs
 };
 
-/// A system that gives its formulas, in the units of its parameters. All registered systems do.
+/// A system that gives its formulas, in the units in which it is told. All registered systems do, scaled or not.
 class FormulaSystem {
  public:
   virtual ~FormulaSystem() = default;
