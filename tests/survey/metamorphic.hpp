@@ -115,7 +115,7 @@ inline const std::vector<Case>& cases() {
        "swinging_spring",
        {"survey.subharmonics=2", "limits.energy=[-.inf, 0.5]"},
        exchange({1, 0, 3, 2}),
-       {"starts.fixed_points.grid=[[-1.333], [0]]", "starts.fixed_points.names={[-1.3333333333, 0]: [Swing, Bounce]}"},
+       {"starts.fixed_points.grid=[[-1.333], [0]]", "starts.fixed_points.names={[-1.3333333333, 0]: [Cup, Cap, Bounce]}"},
        "0.04",
        "0.02",
        "0.08",
@@ -123,7 +123,7 @@ inline const std::vector<Case>& cases() {
        [](double length, double time, double energy) {
          const double y = -4.0 / 3.0 * length;
          return std::vector{fmt::format("starts.fixed_points.grid=[[0], [{}]]", y),
-                            fmt::format("starts.fixed_points.names={{[0, {}]: [Swing, Bounce]}}", y),
+                            fmt::format("starts.fixed_points.names={{[0, {}]: [Cup, Cap, Bounce]}}", y),
                             fmt::format("starts.sweep.period=[{}, {}]", 3 * time, 8 * time),
                             fmt::format("starts.sweep.step={}", 0.01 * time),
                             fmt::format("continuation.start={}", 0.01 * std::max(length, length / time)),

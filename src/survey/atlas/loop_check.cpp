@@ -126,7 +126,6 @@ std::optional<loop::Loop> LoopCheck::orbit_at(const AtlasTree& tree, std::size_t
 
 LoopAnswer LoopCheck::ask_crossing(const AtlasTree& tree, std::size_t crossing, const TreeFamily& beside,
                                    std::size_t segment) const {
-  const systems::Structure& system = _system->structure();
   LoopAnswer undecided;
   undecided.decided = false;
   const std::optional<loop::Loop> there = orbit_at(tree, crossing);
