@@ -93,10 +93,10 @@ TEST(Travellers, LoopsThatAreNoneAreRefused) {
 }
 
 TEST(Travellers, LimitsAndEnumsThatAreNoneAreRefused) {
-  expect_refused(StartOutcome{32}, "limits 0x20");
+  expect_refused(StartOutcome{64}, "limits 0x40");
   BranchOutcome outcome;
-  outcome.limited_by = 32;
-  expect_refused(outcome, "limits 0x20");
+  outcome.limited_by = 64;
+  expect_refused(outcome, "limits 0x40");
   LocateOutcome located;
   located.limited_by = -1;
   expect_refused(located, "limits -0x1");

@@ -156,7 +156,7 @@ TEST(WorkIsotropy, AnUnknownSymmetryIsRefused) {
               HasSubstr("shift 1/0"));
 }
 
-TEST(WorkStart, PointsAlongOrAgainstTheFoundDirection) {
+TEST(WorkStart, PointsAlongTheBranchsOwnWay) {
   BranchWork work;
   const std::vector<double> point{0.0, 3.0, 0.0, 0.0};
   work.base = loop::constant_loop(point, 5.0, 1);
@@ -166,7 +166,17 @@ TEST(WorkStart, PointsAlongOrAgainstTheFoundDirection) {
   EXPECT_EQ(start.base.period, 5.0);
   EXPECT_EQ(start.base.cosine(0, 1), 3.0);
   ASSERT_EQ(start.direction.modes.size(), 12U);
-  for (int n = 0; n < 12; ++n) EXPECT_EQ(start.direction.modes[static_cast<std::size_t>(n)], -n);
+  for (int n = 0; n < 12; ++n) EXPECT_EQ(start.direction.modes[static_cast<std::size_t>(n)], n);
+}
+
+TEST(WorkStart, TheOtherSideHasAWayOfItsOwnWhereOneIsKnown) {
+  LeavingRecord leaving;
+  leaving.direction.modes = {1.0, 2.0};
+  EXPECT_EQ(leaving.way(1).modes, (std::vector<double>{1.0, 2.0}));
+  EXPECT_EQ(leaving.way(-1).modes, (std::vector<double>{-1.0, -2.0}));
+  leaving.opposite.modes = {-1.0, 2.5};
+  EXPECT_EQ(leaving.way(1).modes, (std::vector<double>{1.0, 2.0}));
+  EXPECT_EQ(leaving.way(-1).modes, (std::vector<double>{-1.0, 2.5}));
 }
 
 TEST(WorkTasks, SweepsComeFirstAndKeysSortByNumber) {

@@ -26,8 +26,8 @@ struct Certificate {
 /// is out of range; core::NumericalError if an integration fails, saying in which segment and at what time.
 [[nodiscard]] Certificate certify(const systems::System& system, const loop::Loop& loop, const Options& options = {});
 
-/// The largest gap |z(t_m+1) - Phi(z(t_m))| over the segments by each of two integrators that have nothing in common but
-/// the field: Runge and Kutta's of `integrate.hpp`, and Taylor series (taylor/flow.hpp).
+/// The largest gap |z(t_m+1) - Phi(z(t_m))| over the segments by each of two integrators that have nothing in common
+/// but the field: Runge and Kutta's of `integrate.hpp`, and Taylor series (taylor/flow.hpp).
 struct Closures {
   double runge_kutta = 0.0;
   double taylor = 0.0;

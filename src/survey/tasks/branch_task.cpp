@@ -276,7 +276,10 @@ void BranchTask::detect(const continuation::Orbit& orbit, const std::optional<sp
 void BranchTask::detect_from_birth() {
   if (_work.lineage.crossing.empty() || _curve.known().empty()) return;
   const continuation::FamilyCurve::Known& first = _curve.known().front();
-  const auto at_birth = test_point(0.0, stability_of(*_system, _start.base, _start.isotropy, _team));
+  std::optional<spectrum::Stability> birth = stability_of(*_system, _start.base, _start.isotropy, _team);
+  // Its value tells: its error bound is that of a place where orbits are not isolated.
+  if (birth) std::fill(birth->fundamental_error.begin(), birth->fundamental_error.end(), 0.0);
+  const auto at_birth = test_point(0.0, birth);
   const auto at_first = test_point(0.0, stability_of(*_system, first.loop, _start.isotropy, _team));
   std::vector<continuation::FamilyCurve::Known> known{
       {first.position - continuation::arclength_between(_start.base, first.loop), _start.base,

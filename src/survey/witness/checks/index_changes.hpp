@@ -17,8 +17,8 @@
 namespace orbweaver::survey {
 
 /// Between two orbits of a family, its birth and the first of them, or the last and the family that it joins, a
-/// multiplier passes a root of unity that the scene asks for only where a crossing is listed. Of a family with an index that
-/// double precision does not tell this is said, once.
+/// multiplier passes a root of unity that the scene asks for only where a crossing is listed. Of a family with an index
+/// that double precision does not tell this is said, once.
 class IndexChanges final : public Check {
  public:
   [[nodiscard]] std::vector<Finding> findings(const Evidence& evidence,
