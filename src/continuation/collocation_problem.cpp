@@ -80,8 +80,10 @@ std::optional<Resolution> CollocationProblem::next_resolution(int largest) const
   return Resolution{cells, resolution().time_map};
 }
 
-std::shared_ptr<Collocation> CollocationProblem::equations_on(const Resolution& resolution) const {
-  return std::make_shared<Collocation>(_system, _domain, _centre, _winding, resolution.size, resolution.time_map);
+std::shared_ptr<Collocation> CollocationProblem::equations_on(const Resolution& resolution) {
+  auto e = std::make_shared<Collocation>(_system, _domain, _centre, _winding, resolution.size, resolution.time_map);
+  e->fit_cells(state().fits_cells);
+  return e;
 }
 
 PointProblem::Transfer CollocationProblem::resolve(const Resolution& to) {
@@ -211,6 +213,7 @@ equations::AndersonSolver::Options CollocationProblem::solver_options() {
 
 Trial CollocationProblem::correct(Prediction prediction, const std::vector<double>& conditions) {
   Collocation& e = equations();
+  e.fit_cells(state().fits_cells);
   e.set_conditions(conditions, prediction.values);
   Trial trial;
   trial.order = prediction.order;

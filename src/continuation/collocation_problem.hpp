@@ -47,7 +47,7 @@ class CollocationProblem final : public PointProblem {
  private:
   /// The equations of the state, with the factor that it names.
   equations::Collocation& equations();
-  [[nodiscard]] std::shared_ptr<equations::Collocation> equations_on(const Resolution& resolution) const;
+  [[nodiscard]] std::shared_ptr<equations::Collocation> equations_on(const Resolution& resolution);
   /// The highest harmonic on a grid of `cells`.
   [[nodiscard]] int cutoff_of(int cells) const { return (cells * _domain.copies() - 1) / 2; }
   [[nodiscard]] equations::AndersonSolver::Options solver_options();

@@ -97,6 +97,8 @@ std::optional<Orbit> Tracer::first_orbit() {
       return accept(trial);
     }
     _frontier.problem.factor_point.clear();
+    _frontier.problem.fits_cells = !_frontier.problem.fits_cells;  // both ways at each amplitude
+    if (_frontier.problem.fits_cells) continue;
     amplitude *= 0.5;
     if (amplitude < least_start * _options.start_amplitude)
       return end(EndReason::failure, fmt::format("no orbit near the start: {}", trial.reason));

@@ -184,7 +184,7 @@ void Collocation::factor(const double* u) {
         _columns[at((p * d + i) * stride + j)] = -c * _gradient[at(i * m + j)];
       }
   }
-  const std::vector<double> fitted = fitted_cells(_blocks.data(), d, m, 1.0);
+  const std::vector<double> fitted = _fits_cells ? fitted_cells(_blocks.data(), d, m, 1.0) : std::vector<double>{};
   BoxScheme::Matrices matrices;
   matrices.cells = m;
   matrices.count = m;

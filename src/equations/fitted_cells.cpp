@@ -16,18 +16,12 @@ namespace {
 constexpr double plain = 0.3;
 constexpr double resolved = 1.4;
 
-/// The cells beyond the first that there must be, in parts of all: a fast motion turns all along the orbit. Where a few
-/// cells do, at a close passage, they stay as they are: beside a narrow gap between families (mu = 0.001, 13 turns) a
-/// fit of these alone kept branches from going on.
-constexpr double all_along = 0.5;
-
 template <int D>
 bool fit(double* blocks, Eigen::Index dimension, Eigen::Index count, double difference) {
   using Matrix = Eigen::Matrix<double, D, D>;
   const Matrix unit = Matrix::Identity(dimension, dimension);
-  std::vector<Matrix> fitted(static_cast<std::size_t>(count), Matrix::Zero(dimension, dimension));
   Matrix x(dimension, dimension);
-  Eigen::Index beyond = 0;
+  bool any = false;
   for (Eigen::Index j = 0; j < count; ++j) {
     for (Eigen::Index i = 0; i < dimension; ++i)
       for (Eigen::Index l = 0; l < dimension; ++l)
@@ -35,19 +29,14 @@ bool fit(double* blocks, Eigen::Index dimension, Eigen::Index count, double diff
     const Matrix square = x * x;
     const double size = std::pow((square * square).squaredNorm(), 0.125);  // |X^4|^(1/4): no matter of units
     if (!(size > plain && size < resolved)) continue;
-    ++beyond;
     // tanh, to 1 % up to x = 1.4i.
-    fitted[static_cast<std::size_t>(j)] = (15.0 * unit + 6.0 * square).partialPivLu().solve(x * (15.0 * unit + square));
-  }
-  if (static_cast<double>(beyond) < all_along * static_cast<double>(count)) return false;
-  for (Eigen::Index j = 0; j < count; ++j) {
-    const Matrix& here = fitted[static_cast<std::size_t>(j)];
-    if (here.isZero(0.0)) continue;
+    const Matrix fitted = (15.0 * unit + 6.0 * square).partialPivLu().solve(x * (15.0 * unit + square));
     for (Eigen::Index i = 0; i < dimension; ++i)
       for (Eigen::Index l = 0; l < dimension; ++l)
-        blocks[(i * dimension + l) * count + j] = 2.0 * difference * here(i, l);
+        blocks[(i * dimension + l) * count + j] = 2.0 * difference * fitted(i, l);
+    any = true;
   }
-  return true;
+  return any;
 }
 
 }  // namespace

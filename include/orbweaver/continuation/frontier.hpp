@@ -40,11 +40,13 @@ struct ProblemState {
   double amplitude = 0.0;  ///< rms distance of the last orbit from its mean: small loops are solved in proportion
   std::vector<double> factor_point;       ///< where the preconditioner was built; empty = to be built anew
   std::vector<double> factor_conditions;  ///< and under which conditions
+  bool fits_cells = false;  ///< the preconditioner follows turns of the linearised flow over a cell: where no first
+                            ///< orbit is found without, beside a fast motion
 
-  static constexpr int wire_version = 1;
+  static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, resolution, amplitude, factor_point, factor_conditions);
+    core::serialize_members(archive, resolution, amplitude, factor_point, factor_conditions, fits_cells);
   }
 };
 
