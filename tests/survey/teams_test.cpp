@@ -53,7 +53,8 @@ std::shared_ptr<const systems::System> chain() { return std::make_shared<const t
 /// A chain whose field is spoilt where a particle is far out (unless a single state is asked for).
 class SpoiltChain final : public test::OscillatorChain {
  public:
-  explicit SpoiltChain(std::function<void(double& f)> spoil) : OscillatorChain(4), _spoil(std::move(spoil)) {}
+  explicit SpoiltChain(std::function<void(double& f)> spoil, double coupling = 0.1)
+      : OscillatorChain(4, coupling), _spoil(std::move(spoil)) {}
 
   void field(std::size_t nodes, const double* z, double* f) const override {
     OscillatorChain::field(nodes, z, f);
@@ -229,9 +230,11 @@ void expect_most_failed(const core::Communicator& comm, const survey::Summary& s
   EXPECT_THAT(summary.failed_tasks, Each(HasSubstr(reason)));
 }
 
-/// Its first orbits are too small for the sweep to look for combinations of oscillations, far out.
-scene::Scene far_out_scene(const core::Communicator& comm) {
-  return chain_scene(team_size(comm), {"continuation.start=0.05", "limits.steps=60"});
+/// Coupled so strongly that no two oscillations have nearly one period: the sweep looks for no combinations of them,
+/// far out.
+constexpr double strong = 0.5;
+scene::Scene strong_scene(const core::Communicator& comm) {
+  return chain_scene(team_size(comm), {"starts.sweep.period=[3.5, 6.3]"});
 }
 
 TEST(Teams, AFollowerThatThrowsFailsTheTaskForAll) {
@@ -240,7 +243,7 @@ TEST(Teams, AFollowerThatThrowsFailsTheTaskForAll) {
   const auto spoil = [&](double&) {
     if (is_last(comm) && ++calls % 997 == 0) throw std::runtime_error("no memory on this rank");
   };
-  const auto summary = run(comm, far_out_scene(comm), "follower_throws", std::make_shared<SpoiltChain>(spoil));
+  const auto summary = run(comm, strong_scene(comm), "follower_throws", std::make_shared<SpoiltChain>(spoil, strong));
   const std::string who = fmt::format("member {} of a team of {} failed", team_size(comm) - 1, team_size(comm));
   expect_most_failed(comm, summary, who);
   expect_most_failed(comm, summary, "no memory on this rank");
@@ -252,7 +255,7 @@ TEST(Teams, ALeaderThatThrowsFailsTheTaskForAll) {
   const auto spoil = [&](double&) {
     if (is_leader(comm) && ++calls % 1499 == 0) throw std::runtime_error("no memory on this rank");
   };
-  const auto summary = run(comm, far_out_scene(comm), "leader_throws", std::make_shared<SpoiltChain>(spoil));
+  const auto summary = run(comm, strong_scene(comm), "leader_throws", std::make_shared<SpoiltChain>(spoil, strong));
   expect_most_failed(comm, summary, "no memory on this rank");
 }
 
