@@ -6,6 +6,7 @@
 
 #include "h5_types.hpp"
 #include "posix_file.hpp"
+#include "schema/row_checksum.hpp"
 
 namespace orbweaver::archive {
 
@@ -62,6 +63,8 @@ class Layout {
     write_numbers("parameter_values", header.parameter_values);
     write_texts("scale_names", header.scale_names);
     write_numbers("scales", header.scales);
+    const std::int64_t sum = header_checksum(format, format_minor, header);
+    write_attribute("checksum", h5_memory_type({"", ColumnType::integer, {}}), scalar_space(), &sum);
   }
 
   void create_table(const TableSpec& table, std::uint64_t rows) {
