@@ -29,5 +29,6 @@ Command make_consolidate_command(CLI::App& program);
 Command make_show_command(CLI::App& program);
 Command make_survey_command(CLI::App& program);
 Command make_sweep_command(CLI::App& program);
+Command make_verify_command(CLI::App& program);
 
 }  // namespace orbweaver::drivers

@@ -36,14 +36,6 @@ continuation::Orbit orbit_of(const AtlasTree& tree, const TreeFamily& family, st
   return out;
 }
 
-/// Stored orbits start in a standard phase, which may jump between two neighbours: the loop with the start, and as the
-/// image, that brings it nearest to its neighbour, if that is twice as near as it stands.
-loop::Loop started_as(const systems::Structure& system, const loop::Loop& loop, const loop::Loop& neighbour) {
-  constexpr double nearer = 0.5;
-  const loop::Alignment alignment = loop::align(system, loop, neighbour);
-  return alignment.distance < nearer * loop::mean_distance(loop, neighbour) ? loop::aligned(loop, alignment) : loop;
-}
-
 /// Moves two orbits of a family towards the place between them where it may pass through a crossing of another one;
 /// false where it passes too far away, or has no orbits there. The hyperplane across the chord at the crossing holds
 /// orbits of the other family too, and the one found there is off by the chord's bulge: a hundredth as much on a tenth
@@ -75,6 +67,12 @@ bool closer_together(const std::shared_ptr<const systems::System>& system, const
 }
 
 }  // namespace
+
+loop::Loop started_as(const systems::Structure& system, const loop::Loop& loop, const loop::Loop& neighbour) {
+  constexpr double nearer = 0.5;
+  const loop::Alignment alignment = loop::align(system, loop, neighbour);
+  return alignment.distance < nearer * loop::mean_distance(loop, neighbour) ? loop::aligned(loop, alignment) : loop;
+}
 
 LoopAnswer LoopCheck::ask(const OrbitBeside& x) const {
   const systems::Structure& system = _system->structure();
