@@ -22,7 +22,7 @@
 #include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
-#include "orbweaver/survey/atlas/loop_check.hpp"
+#include "orbweaver/numerics/locate.hpp"
 #include "tasks/executor.hpp"
 #include "tasks/locate_task.hpp"
 #include "tasks/orbit_row.hpp"
@@ -33,16 +33,22 @@ namespace {
 
 using archive::CrossingKind;
 
-/// Orbits on either side from which a crossing's is found, as a location has (survey/tasks/branch_task.cpp).
-constexpr std::size_t orbits_beside = 3;
-/// Relative, of period and energy, and of the state relative to the orbit's size: what is promised.
-constexpr double same_place = 1e-9;
+/// From which a crossing's is found: as a location has them (survey/tasks/branch_task.cpp).
+constexpr std::size_t orbits_given = 5;
+/// Relative, of period and energy, and of the state relative to the orbit's size; of 1 + the arclength. At most a
+/// hundredth of it was seen.
+constexpr double same_place = 1e-10;
 /// Crossings beneath the end of a branch get their arclength by comparison of orbits (witness/placement).
 constexpr double same_placement = 1e-6;
-/// Of an index at a crossing besides its error bound: positions are located to 1e-10 of the length along the family, and
-/// the index changes by this much, or as its neighbours say, over a length of 1.
-constexpr double index_at_crossing = 1e-9;
-constexpr double located = 1e-10;
+/// Of an arclength, in parts of the way between the orbits beside: chords are measured in a loop's parameter, which the
+/// standard phase has turned where no reversor fixes the phase.
+constexpr double same_chord = 1e-2;
+/// Relative to 1 + the position: rounding.
+constexpr double position_width = 1e-14;
+/// Of an index at a crossing besides its error bound: rounding; and of how much it changes over a length of 1, since
+/// crossings are located to 1e-10 of the length along the family.
+constexpr double index_rounding = 1e-10;
+constexpr double located = 1e-9;
 /// Between two computations of the largest singular value of a kernel, and what of it is rounding.
 constexpr double kernel_factor = 100.0;
 constexpr double kernel_rounding = 1e-8;
@@ -79,91 +85,127 @@ class CrossingCheck {
     if (arclength < _family.arclengths.front() || arclength > _family.arclengths.back())
       return _claims.object("arclength", fmt::format("is {:.12g}; its family runs from {:.12g} to {:.12g}", arclength,
                                                      _family.arclengths.front(), _family.arclengths.back()));
-    // A location that failed by collocation went by Newton's method on whole loops, whose places between two orbits are a
-    // little different ones.
-    Findings first;
-    continuation::Options options = branch_options(_atlas.scene(), nullptr);
-    options.corrector.tolerance = least_tolerance();
-    if (compare(options, first)) return merge(_findings, std::move(first));
-    Findings second;
-    options.corrector.method = corrector::Method::newton_krylov;
-    merge(_findings, std::move(compare(options, second) ? second : first));
+    // As many orbits as a location had been given, of which the last one or two lie behind the crossing; after those
+    // one that went by Newton's method on whole loops, since collocation had failed.
+    Findings best;
+    bool any = false;
+    for (const corrector::Method method : {options().corrector.method, corrector::Method::newton_krylov})
+      for (const std::size_t behind : {1, 2}) {
+        Findings findings;
+        compare(method, behind, findings);
+        if (findings.objections.empty()) return merge(_findings, std::move(findings));
+        if (!any || findings.objections.size() < best.objections.size()) best = std::move(findings);
+        any = true;
+      }
+    merge(_findings, std::move(best));
   }
 
  private:
   [[nodiscard]] double real(const char* column) const { return _table.reals(column)[_row]; }
-  [[nodiscard]] double least_tolerance() const { return _atlas.scene().continuation.tolerance; }
+  [[nodiscard]] continuation::Options options() const { return branch_options(_atlas.scene(), nullptr); }
 
-  /// False where anything is objected to.
-  bool compare(const continuation::Options& options, Findings& findings) {
+  void compare(corrector::Method method, std::size_t behind, Findings& findings) {
     Claims claims(findings, "crossings", static_cast<std::int64_t>(_row));
     std::optional<Place> place;
-    std::string why = "no orbit converges there";
     try {
-      place = find(options);
+      place = find(method, behind, claims);
       if (place) hold(*place, claims);
     } catch (const core::NumericalError& error) {
-      place.reset();
-      why = error.what();
+      claims.object("", error.what());
     }
-    if (!place) claims.object("arclength", fmt::format("is {:.12g}: {}", real("arclength"), why));
     if (place && findings.objections.empty()) families(*place, findings);
-    return findings.objections.empty();
   }
 
-  [[nodiscard]] std::optional<Place> find(const continuation::Options& options) {
+  /// The family's orbit whose period, or energy where that changes more, is the row's.
+  [[nodiscard]] std::optional<Place> find(corrector::Method method, std::size_t behind, Claims& claims) {
     const double arclength = real("arclength");
+    const auto& number = _atlas.archive().orbits().integers("step");
     std::vector<std::size_t> steps;  // without the orbits between them that the scene asked for
     for (std::size_t n = 0; n < _family.orbits(); ++n)
       if (!_atlas.is_requested(_family.first_orbit + n)) steps.push_back(n);
-    const auto after = std::upper_bound(steps.begin(), steps.end(), arclength,
-                                        [&](double s, std::size_t n) { return s < _family.arclengths[n]; });
-    const auto next = std::clamp<std::ptrdiff_t>(after - steps.begin(), 1, static_cast<std::ptrdiff_t>(steps.size()) - 1);
-    const std::ptrdiff_t first = std::max<std::ptrdiff_t>(next - static_cast<std::ptrdiff_t>(orbits_beside), 0);
-    const std::ptrdiff_t end = std::min(next + static_cast<std::ptrdiff_t>(orbits_beside),
-                                        static_cast<std::ptrdiff_t>(steps.size()));
+    if (steps.size() < 2) return std::nullopt;
+    const auto after = std::lower_bound(steps.begin(), steps.end(), arclength,
+                                        [&](std::size_t n, double s) { return _family.arclengths[n] < s; });
+    std::size_t next = std::clamp<std::size_t>(static_cast<std::size_t>(after - steps.begin()), 1, steps.size() - 1);
     // A branch that runs backwards has its orbits the other way round.
-    const bool backwards =
-        _atlas.archive().orbits().integers("step")[_family.first_orbit + steps[static_cast<std::size_t>(next)]] < 0;
-    continuation::FamilyCurve curve(_atlas.system(), _isotropy, options);
-    std::vector<std::size_t> order(steps.begin() + first, steps.begin() + end);
-    if (backwards) std::reverse(order.begin(), order.end());
-    std::optional<loop::Loop> last;
-    double position = 0.0;
-    double wanted = 0.0;
-    Place place;
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      loop::Loop loop = _atlas.loop(_family.first_orbit + order[i]);
-      if (last) {
-        loop = started_as(_system.structure(), loop, *last);
-        const double length = continuation::arclength_between(*last, loop);
-        const double from = _family.arclengths[order[i - 1]];
-        const double to = _family.arclengths[order[i]];
-        if ((from <= arclength && arclength <= to) || (to <= arclength && arclength <= from)) {
-          const double share = (arclength - from) / (to - from);
-          wanted = position + share * length;
-          place.before = share * length;
-          place.after = (1.0 - share) * length;
-          _beside = {curve.known().size() - 1, curve.known().size()};
-        }
-        position += length;
-      }
-      curve.add({position, loop, _family.arclengths[order[i]]}, order.size());
-      last = std::move(loop);
+    if (number[_family.first_orbit + steps[next]] < 0) {
+      std::reverse(steps.begin(), steps.end());
+      next = steps.size() - next;
     }
-    wanted = std::clamp(wanted, 0.0, position);
-    std::optional<continuation::CurvePoint> point = curve.at(wanted, true);
-    if (!point) return std::nullopt;
-    place.point = std::move(*point);
-    if (archive::is_fold(_kind)) slopes(curve);
-    return place;
+    const std::size_t end = std::min(next + behind, steps.size());
+    const std::size_t first = end > orbits_given ? end - orbits_given : 0;
+    continuation::Options how = options();
+    how.corrector.method = method;
+    continuation::FamilyCurve curve(_atlas.system(), _isotropy, how);
+    double position = 0.0;
+    for (std::size_t i = first; i < end; ++i) {
+      loop::Loop loop = _atlas.loop(_family.first_orbit + steps[i]);
+      if (i > first) {
+        const loop::Loop& last = curve.known().back().loop;
+        loop = _atlas.begun_as(static_cast<std::size_t>(_crossing.family), loop, last);
+        position += continuation::arclength_between(last, loop);
+      }
+      curve.add({position, loop, _family.arclengths[steps[i]]}, orbits_given);
+    }
+    const continuation::FamilyCurve::Known& a = curve.known()[next - 1 - first];
+    const continuation::FamilyCurve::Known& b = curve.known()[next - first];
+    const double length = b.position - a.position;
+    const double share = std::clamp((arclength - a.arclength) / (b.arclength - a.arclength), 0.0, 1.0);
+    const double told = a.position + share * length;
+    const std::optional<double> found = position_of(curve, a, b, told);
+    if (!found) {
+      claims.object("period", fmt::format("{:.17g} with energy {:.17g}: no orbit between those beside it has it",
+                                          real("period"), real("energy")));
+      return std::nullopt;
+    }
+    const double way = _atlas.has_reversor(static_cast<std::size_t>(_crossing.family)) && !is_placed()
+                           ? same_place * (1.0 + std::abs(arclength))
+                           : same_chord * std::abs(b.arclength - a.arclength);
+    claims.agree("arclength", arclength, a.arclength + (*found - a.position) / length * (b.arclength - a.arclength), way);
+    std::optional<continuation::CurvePoint> point = curve.at(*found, true);
+    if (!point) {
+      claims.object("arclength", fmt::format("is {:.12g}: no orbit converges there", arclength));
+      return std::nullopt;
+    }
+    if (archive::is_fold(_kind)) slopes(curve, a.position, b.position);
+    return Place{std::move(*point), *found - a.position, b.position - *found};
   }
 
+  [[nodiscard]] std::optional<double> position_of(continuation::FamilyCurve& curve,
+                                                  const continuation::FamilyCurve::Known& a,
+                                                  const continuation::FamilyCurve::Known& b, double told) const {
+    const systems::Scales& units = _system.scales();
+    const double energy_a = continuation::energy_of(_system, a.loop);
+    const double energy_b = continuation::energy_of(_system, b.loop);
+    const double in_period = std::abs(b.loop.period / a.loop.period - 1.0);
+    const double in_energy = std::abs(energy_b - energy_a) / std::max(std::abs(energy_a), std::abs(energy_b));
+    // Not by the one that turns; false where there is no energy.
+    const bool by_energy =
+        _kind == CrossingKind::fold_period || (_kind != CrossingKind::fold_energy && in_energy > in_period);
+    const double wanted = by_energy ? real("energy") / units.energy() : real("period") / units.time;
+    const auto off = [&](double position) {
+      const auto point = curve.at(position);
+      if (!point) return std::numeric_limits<double>::quiet_NaN();
+      return (by_energy ? continuation::energy_of(_system, point->loop) : point->loop.period) - wanted;
+    };
+    // The quantity may turn between the two: near the place it does not, unless the crossing is a fold.
+    const double length = b.position - a.position;
+    for (const double reach : {1e-6, 1e-3, 1e-2, 1.0}) {
+      const double from = std::max(a.position, told - reach * length);
+      const double to = std::min(b.position, told + reach * length);
+      const auto place = numerics::locate_root(off, from, to, position_width * (1.0 + std::abs(to)));
+      if (place) return place->position;
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] bool is_placed() const { return _crossing.multiplicity > _atlas.scene().survey.subharmonics; }
+
   /// The slopes at the orbits beside a fold.
-  void slopes(continuation::FamilyCurve& curve) {
+  void slopes(continuation::FamilyCurve& curve, double from, double to) {
     _slopes.clear();
-    for (const std::size_t n : {_beside.first, _beside.second})
-      if (const auto point = curve.at(curve.known()[n].position, true)) _slopes.push_back(slope(*point));
+    for (const double position : {from, to})
+      if (const auto point = curve.at(position, true)) _slopes.push_back(slope(*point));
   }
 
   [[nodiscard]] double slope(const continuation::CurvePoint& point) const {
@@ -174,7 +216,7 @@ class CrossingCheck {
   void hold(const Place& place, Claims& claims) {
     const loop::Loop& loop = place.point.loop;
     const systems::Scales& units = _system.scales();
-    const bool placed = _crossing.multiplicity > _atlas.scene().survey.subharmonics;
+    const bool placed = is_placed();
     const double allowed = placed ? same_placement : same_place;
     claims.agree("period", real("period"), loop.period * units.time, allowed * real("period"));
     const double energy = continuation::energy_of(_system, loop) * units.energy();
@@ -260,10 +302,11 @@ class CrossingCheck {
     const bifurcation::Sector sector{_crossing.sector_q, _crossing.sector_j};
     if (!stability) return claims.object("test_value", "the multipliers there cannot be computed");
     const bifurcation::Reading found = bifurcation::index_deviation(*stability, sector);
-    const double allowed = 2.0 * found.error + (placed ? same_placement : index_at_crossing) + located * rate(sector, place);
+    const double allowed = 2.0 * found.error + (placed ? same_placement : index_rounding);
     claims.agree("test_value", real("test_value"), sector.index() + found.value, allowed);
     claims.agree("residual", real("residual"), found.value, allowed);
-    claims.below("sector_q", std::abs(found.value), allowed, "the index there, from its sector's,");
+    claims.below("sector_q", std::abs(found.value), allowed + located * rate(sector, place),
+                 "the index there, from its sector's,");
     if (_crossing.kernel_dimension < 0 || placed) return;
     kernel(place, *stability, sector, claims);
   }
@@ -312,7 +355,7 @@ class CrossingCheck {
     function.kind = _kind == CrossingKind::krein ? bifurcation::TestFunction::Kind::krein
                                                  : bifurcation::TestFunction::Kind::torus;
     const bifurcation::Reading found = bifurcation::evaluate(function, _system.structure(), *stability);
-    const double allowed = 2.0 * found.error + index_at_crossing;
+    const double allowed = 2.0 * found.error + index_rounding;
     claims.agree("residual", real("residual"), found.value, allowed);
     claims.below("kind", std::abs(found.value), allowed, "the test function there");
   }
@@ -375,7 +418,6 @@ class CrossingCheck {
   CrossingKind _kind;
   Findings& _findings;
   Claims _claims;
-  std::pair<std::size_t, std::size_t> _beside{0, 1};
   std::vector<double> _slopes;
 };
 

@@ -8,7 +8,9 @@
 #include "orbweaver/archive/read/loop_of.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/in_units.hpp"
+#include "orbweaver/loop/symmetry/alignment.hpp"
 #include "orbweaver/loop/symmetry/isotropy_text.hpp"
+#include "orbweaver/survey/atlas/loop_check.hpp"
 #include "orbweaver/survey/run/scaled_scene.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/scaled_system.hpp"
@@ -66,6 +68,17 @@ VerifiedAtlas::VerifiedAtlas(archive::Archive&& open)
 
 loop::Loop VerifiedAtlas::loop(std::size_t orbit) const {
   return loop::in_scales(archive::loop_of(*_archive, orbit, _system->structure().angles), _system->scales());
+}
+
+bool VerifiedAtlas::has_reversor(std::size_t family) const {
+  return std::any_of(_isotropies[family].begin(), _isotropies[family].end(),
+                     [](const loop::SymmetryElement& element) { return element.reversing; });
+}
+
+loop::Loop VerifiedAtlas::begun_as(std::size_t family, const loop::Loop& loop, const loop::Loop& neighbour) const {
+  const systems::Structure& system = _system->structure();
+  if (has_reversor(family)) return started_as(system, loop, neighbour);
+  return loop::aligned(loop, loop::align(system, loop, neighbour));
 }
 
 bool VerifiedAtlas::is_requested(std::size_t orbit) const {

@@ -28,6 +28,10 @@ class VerifiedAtlas {
 
   /// Row `orbit` of /orbits, in the survey's scales. Throws InputError where the row holds no loop.
   [[nodiscard]] loop::Loop loop(std::size_t orbit) const;
+  /// A loop of the family, begun as its neighbour is. Reversors fix where a family's loops begin, to half a period;
+  /// others were begun where they are nearest to their neighbour, and are stored in a standard phase.
+  [[nodiscard]] loop::Loop begun_as(std::size_t family, const loop::Loop& loop, const loop::Loop& neighbour) const;
+  [[nodiscard]] bool has_reversor(std::size_t family) const;
   /// Whether the scene asked for this orbit: it lies between two others of its branch, apart from the steps.
   [[nodiscard]] bool is_requested(std::size_t orbit) const;
 
