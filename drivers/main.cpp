@@ -24,8 +24,8 @@ constexpr int wrong_input = static_cast<int>(orbweaver::core::ExitStatus::wrong_
 std::vector<Command> add_commands(CLI::App& program) {
   using namespace orbweaver::drivers;
   return {
-      make_check_command(program), make_compare_command(program), make_consolidate_command(program),
-      make_show_command(program),  make_survey_command(program),  make_sweep_command(program),
+      make_check_command(program),  make_compare_command(program), make_consolidate_command(program),
+      make_show_command(program),   make_survey_command(program),  make_sweep_command(program),
       make_verify_command(program),
   };
 }

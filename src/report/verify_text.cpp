@@ -25,20 +25,19 @@ std::string to_text(const survey::Verification& verification, const std::filesys
     for (const survey::Margin& margin : verification.margins)
       text += fmt::format("{:<32} {:>10} {:>12.3g} {:>8}\n", margin.column, margin.compared, margin.worst, margin.row);
   }
-  if (!verification.has_checksums)
-    text += "the archive carries no checksums: it was written before format_minor 2\n";
+  if (!verification.has_checksums) text += "the archive carries no checksums: it was written before format_minor 2\n";
   if (!verification.is_computed)
     text += "nothing was computed again, since checksums do not hold: the rows above were changed\n";
   else if (verification.uninformative > 0)
-    text += fmt::format("{} orbits are so unstable that integrating them says nothing; their residual, closure by segment "
-                        "and multipliers were compared\n",
-                        verification.uninformative);
-  text += fmt::format("{}: {} families, {} orbits, {} crossings, {} section points: {}; {:.2f} s on {} rank{}\n",
-                      atlas.string(), verification.families, verification.orbits, verification.crossings,
-                      verification.sections,
-                      verification.holds() ? "all hold"
-                                           : fmt::format("{} claims do not hold", verification.objections.size()),
-                      verification.seconds, verification.ranks, verification.ranks == 1 ? "" : "s");
+    text += fmt::format(
+        "{} orbits are so unstable that integrating them says nothing; their residual, closure by segment "
+        "and multipliers were compared\n",
+        verification.uninformative);
+  text += fmt::format(
+      "{}: {} families, {} orbits, {} crossings, {} section points: {}; {:.2f} s on {} rank{}\n", atlas.string(),
+      verification.families, verification.orbits, verification.crossings, verification.sections,
+      verification.holds() ? "all hold" : fmt::format("{} claims do not hold", verification.objections.size()),
+      verification.seconds, verification.ranks, verification.ranks == 1 ? "" : "s");
   return text;
 }
 

@@ -26,8 +26,8 @@ struct Checksum {};
 /// lists below are the only place where a column is defined; the schema, the segments and the atlas follow from them.
 template <class Record>
 struct ColumnDefinition {
-  using Member = std::variant<RowNumber, Checksum, int Record::*, double Record::*, std::string Record::*, CrossingKind Record::*,
-                              std::vector<double> Record::*>;
+  using Member = std::variant<RowNumber, Checksum, int Record::*, double Record::*, std::string Record::*,
+                              CrossingKind Record::*, std::vector<double> Record::*>;
   const char* name;
   Member member = RowNumber{};
   RowShape shape = RowShape::one;

@@ -123,8 +123,8 @@ class Location {
     const bool starts = _work.lineage.depth < _scene.survey.depth;
     if (!starts) _outcome.limited_by = depth_limited;
     report();
-    const bifurcation::Kernel kernel = bifurcation::kernel_of(*_system, crossing.point, isotropy, sector,
-                                                              expected_dimension(crossing.stability, sector), starts, _team);
+    const bifurcation::Kernel kernel = bifurcation::kernel_of(
+        *_system, crossing.point, isotropy, sector, expected_dimension(crossing.stability, sector), starts, _team);
     _outcome.kernel_dimension = kernel.dimension();
     _outcome.kernel_singular_value = kernel.largest();
     _outcome.next_singular_value = kernel.next();

@@ -59,6 +59,10 @@ constexpr double vanishing_slope = 1e-5;
 constexpr double steps_away = 3.0;
 constexpr double amplitudes_away = 0.1;
 
+/// Stretches of the orbit where a stored state may be, and halvings of them: to rounding.
+constexpr std::size_t nearest_nodes = 6;
+constexpr int golden_sections = 80;
+
 struct Place {
   continuation::CurvePoint point;
   double before = 0.0;  ///< lengths in scales to the orbits beside it
@@ -161,7 +165,8 @@ class CrossingCheck {
     const double way = _atlas.has_reversor(static_cast<std::size_t>(_crossing.family)) && !is_placed()
                            ? same_place * (1.0 + std::abs(arclength))
                            : same_chord * std::abs(b.arclength - a.arclength);
-    claims.agree("arclength", arclength, a.arclength + (*found - a.position) / length * (b.arclength - a.arclength), way);
+    claims.agree("arclength", arclength, a.arclength + (*found - a.position) / length * (b.arclength - a.arclength),
+                 way);
     std::optional<continuation::CurvePoint> point = curve.at(*found, true);
     if (!point) {
       claims.object("arclength", fmt::format("is {:.12g}: no orbit converges there", arclength));
@@ -225,9 +230,9 @@ class CrossingCheck {
     state(loop, allowed, claims);
     const std::optional<spectrum::Stability> stability = stability_of(_system, loop, _isotropy);
     if (stability)
-      claims.expect(stability->fundamental_order == _table.integers("fundamental_order")[_row], "fundamental_order",
-                    fmt::format("is {}, found {}", _table.integers("fundamental_order")[_row],
-                                stability->fundamental_order));
+      claims.expect(
+          stability->fundamental_order == _table.integers("fundamental_order")[_row], "fundamental_order",
+          fmt::format("is {}, found {}", _table.integers("fundamental_order")[_row], stability->fundamental_order));
     rules(claims);
     if (archive::has_sector(_kind))
       sector(place, stability, placed, claims);
@@ -260,25 +265,36 @@ class CrossingCheck {
       }
       return std::sqrt(sum);
     };
-    // The nearest node, then golden sections of the gap's square beside it.
+    // Golden sections beside the nodes, even in s, that are nearer than their neighbours: the nearest ones.
     const int nodes = 4 * loop.cutoff + 8;
-    double best = 0.0;
-    double least = std::numeric_limits<double>::infinity();
-    for (int j = 0; j < nodes; ++j) {
-      const double time = loop.period * j / nodes;
-      if (const double here = gap(time); here < least) {
-        least = here;
-        best = time;
-      }
+    std::vector<double> times;
+    std::vector<double> gaps;
+    for (int j = 0; j <= nodes; ++j) {
+      times.push_back(loop.period * loop.time_map.phase(2.0 * std::numbers::pi * j / nodes) / (2.0 * std::numbers::pi));
+      gaps.push_back(gap(times.back()));
     }
-    double from = best - loop.period / nodes;
-    double to = best + loop.period / nodes;
+    std::vector<std::size_t> minima;
+    for (std::size_t j = 0; j < gaps.size(); ++j)
+      if ((j == 0 || gaps[j] <= gaps[j - 1]) && (j + 1 == gaps.size() || gaps[j] <= gaps[j + 1])) minima.push_back(j);
+    std::sort(minima.begin(), minima.end(), [&](std::size_t a, std::size_t b) { return gaps[a] < gaps[b]; });
+    minima.resize(std::min(minima.size(), nearest_nodes));
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::size_t j : minima)
+      least = std::min(least, least_between(gap, times[j > 0 ? j - 1 : 0], times[std::min(j + 1, times.size() - 1)]));
+    return least;
+  }
+
+  template <class Gap>
+  static double least_between(const Gap& gap, double from, double to) {
     const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
-    for (int n = 0; n < 120; ++n) {
+    double least = std::min(gap(from), gap(to));
+    for (int n = 0; n < golden_sections; ++n) {
       const double a = to - golden * (to - from);
       const double b = from + golden * (to - from);
-      (gap(a) < gap(b) ? to : from) = gap(a) < gap(b) ? b : a;
-      least = std::min({least, gap(a), gap(b)});
+      const double at_a = gap(a);
+      const double at_b = gap(b);
+      least = std::min({least, at_a, at_b});
+      (at_a < at_b ? to : from) = at_a < at_b ? b : a;
     }
     return least;
   }
@@ -294,8 +310,9 @@ class CrossingCheck {
     const CrossingKind kind = multiplicity == 1   ? CrossingKind::branch_point
                               : multiplicity == 2 ? CrossingKind::period_doubling
                                                   : CrossingKind::subharmonic;
-    claims.expect(_kind == kind, "kind", fmt::format("is {}; a multiplicity of {} is called {}", _crossing.kind,
-                                                     multiplicity, archive::name_of(kind)));
+    claims.expect(
+        _kind == kind, "kind",
+        fmt::format("is {}; a multiplicity of {} is called {}", _crossing.kind, multiplicity, archive::name_of(kind)));
   }
 
   void sector(const Place& place, const std::optional<spectrum::Stability>& stability, bool placed, Claims& claims) {
@@ -331,8 +348,8 @@ class CrossingCheck {
 
   void kernel(const Place& place, const spectrum::Stability& stability, const bifurcation::Sector& sector,
               Claims& claims) {
-    const bifurcation::Kernel kernel = bifurcation::kernel_of(_system, place.point, _isotropy, sector,
-                                                              expected_dimension(stability, sector), false);
+    const bifurcation::Kernel kernel =
+        bifurcation::kernel_of(_system, place.point, _isotropy, sector, expected_dimension(stability, sector), false);
     claims.expect(kernel.dimension() == _crossing.kernel_dimension, "kernel_dimension",
                   fmt::format("is {}, found {}", _crossing.kernel_dimension, kernel.dimension()));
     if (kernel.dimension() > 0)
@@ -352,8 +369,8 @@ class CrossingCheck {
   void function(const std::optional<spectrum::Stability>& stability, Claims& claims) {
     if (!stability) return claims.object("residual", "the multipliers there cannot be computed");
     bifurcation::TestFunction function;
-    function.kind = _kind == CrossingKind::krein ? bifurcation::TestFunction::Kind::krein
-                                                 : bifurcation::TestFunction::Kind::torus;
+    function.kind =
+        _kind == CrossingKind::krein ? bifurcation::TestFunction::Kind::krein : bifurcation::TestFunction::Kind::torus;
     const bifurcation::Reading found = bifurcation::evaluate(function, _system.structure(), *stability);
     const double allowed = 2.0 * found.error + index_rounding;
     claims.agree("residual", real("residual"), found.value, allowed);
@@ -366,7 +383,9 @@ class CrossingCheck {
     const loop::Loop& loop = place.point.loop;
     std::optional<loop::Loop> around;
     const auto orbit = [&]() -> const loop::Loop& {
-      if (!around) around = _crossing.multiplicity == 1 ? loop : loop::repeated(loop::evenly_in_time(loop), _crossing.multiplicity);
+      if (!around)
+        around =
+            _crossing.multiplicity == 1 ? loop : loop::repeated(loop::evenly_in_time(loop), _crossing.multiplicity);
       return *around;
     };
     for (std::size_t n = 0; n < all.size(); ++n) {

@@ -35,7 +35,7 @@ constexpr double sum_rounding = 256.0;
 /// Of a stability value besides the two bounds.
 constexpr double index_rounding = 1e-13;
 /// Between two bounds or integrations of one orbit whose loops differ by rounding.
-constexpr double bounds_factor = 16.0;
+constexpr double bounds_factor = 64.0;
 constexpr double certificate_factor = 16.0;
 /// Of the way between two orbits; and where no reversor fixes the phase: a branch measures it between loops that were
 /// begun nearly, not quite, where they are nearest to each other.
@@ -58,11 +58,12 @@ class OrbitCheck {
   void run() {
     _size = loop::rms_size(_loop);
     equation();
-    constants();
+    const certificate::Certificate found = certificate::certify(_system, _loop);
+    constants(found.steepness);
     shape();
     const std::optional<spectrum::Stability> stability = stability_of(_system, _loop, _atlas.isotropy(_family));
     multipliers(stability);
-    certificate(stability);
+    certificate(found, stability);
   }
 
  private:
@@ -90,23 +91,17 @@ class OrbitCheck {
     return std::sqrt(sum / there.nodes());
   }
 
-  void constants() {
+  /// `steepness`: the largest |dH/dz| along the loop.
+  void constants(double steepness) {
     const systems::Scales& units = _system.scales();
     const double error = _loop.period * (_residual + _rounding);
-    std::vector<double> state = loop::state_at(_loop, 0.0);
-    double steepness = 0.0;
-    if (_system.structure().conservative()) {
-      std::vector<double> gradient(state.size());
-      _system.conserved_gradient(0, state, gradient);
-      for (const double g : gradient) steepness += g * g;
-    }
     const double energy = continuation::energy_of(_system, _loop);
-    const double energy_rounding =
-        sum_rounding * epsilon * (std::abs(energy) + std::sqrt(steepness) * _size) + std::sqrt(steepness) * error;
+    const double energy_rounding = sum_rounding * epsilon * (std::abs(energy) + steepness * _size) + steepness * error;
     _claims.agree("energy", real("energy"), energy * units.energy(), energy_rounding * units.energy());
     const double action = continuation::action_of(_system, _loop);
-    const double momentum = std::abs(action) + _loop.period * std::sqrt(steepness) * _size;
-    _claims.agree("action", real("action"), action * units.action(), sum_rounding * epsilon * momentum * units.action());
+    const double momentum = std::abs(action) + _loop.period * steepness * _size;
+    _claims.agree("action", real("action"), action * units.action(),
+                  sum_rounding * epsilon * momentum * units.action());
     _claims.agree("parameter", real("parameter"), archive::not_computed, 0.0);
   }
 
@@ -147,13 +142,12 @@ class OrbitCheck {
                          index_rounding);
   }
 
-  void certificate(const std::optional<spectrum::Stability>& stability) {
+  void certificate(const certificate::Certificate& found, const std::optional<spectrum::Stability>& stability) {
     double growth = archive::not_computed;
     if (stability) {
       growth = 0.0;
       for (const std::complex<double>& value : stability->full) growth = std::max(growth, std::abs(value));
     }
-    const certificate::Certificate found = certificate::certify(_system, _loop);
     const double integration = certificate_rounding * found.reach;
     const double unstable = std::isnan(growth) ? 1.0 : std::max(1.0, growth);
     _claims.agree_within(certificate_factor, "closure", real("closure"), found.closure, integration);
@@ -167,8 +161,9 @@ class OrbitCheck {
     if (judged.verdict == certificate::Verdict::says_nothing) ++_findings.uninformative;
     _claims.expect(judged.verdict != certificate::Verdict::closure_contradicts &&
                        judged.verdict != certificate::Verdict::drift_contradicts,
-                   "", fmt::format("its certificate contradicts it: {:.3g} off where {:.3g} is explained", judged.found,
-                                   judged.allowed));
+                   "",
+                   fmt::format("its certificate contradicts it: {:.3g} off where {:.3g} is explained", judged.found,
+                               judged.allowed));
   }
 
   [[nodiscard]] double energy_rounding_of(const certificate::Certificate& found) const {
@@ -199,7 +194,8 @@ void check_way(const VerifiedAtlas& atlas, std::size_t from, const loop::Loop& a
   const auto family = static_cast<std::size_t>(orbits.integers("family")[to]);
   const bool backwards = orbits.integers("step")[to] < 0;  // it was followed the other way
   const auto end = [&](const loop::Loop& near) {
-    return arclengths[from] + continuation::arclength_in_units(*atlas.system(), backwards ? near : a, backwards ? a : near);
+    return arclengths[from] +
+           continuation::arclength_in_units(*atlas.system(), backwards ? near : a, backwards ? a : near);
   };
   const double rounding = sum_rounding * epsilon * (std::abs(arclengths[from]) + std::abs(arclengths[to]));
   const double step = std::abs(arclengths[to] - arclengths[from]);

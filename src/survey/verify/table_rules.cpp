@@ -84,9 +84,9 @@ class TableRules {
                     fmt::format("is {}, with end_crossing {}", index("end_family"), end));
       if (end >= 0)
         claims.expect(crossings.integers("family")[static_cast<std::size_t>(end)] == index("end_family"),
-                      "end_crossing", fmt::format("is {}, which lies on family {} and not on {}", end,
-                                                  crossings.integers("family")[static_cast<std::size_t>(end)],
-                                                  index("end_family")));
+                      "end_crossing",
+                      fmt::format("is {}, which lies on family {} and not on {}", end,
+                                  crossings.integers("family")[static_cast<std::size_t>(end)], index("end_family")));
       claims.expect(!table.texts("end_reason")[row].empty(), "end_reason", "is empty");
     }
   }
@@ -106,9 +106,9 @@ class TableRules {
       if (row == 0 || table.integers("family")[row] != table.integers("family")[row - 1]) continue;
       claims.expect(table.integers("step")[row] == table.integers("step")[row - 1] + 1, "step",
                     fmt::format("is {} after {}", table.integers("step")[row], table.integers("step")[row - 1]));
-      claims.expect(table.reals("arclength")[row] > table.reals("arclength")[row - 1], "arclength",
-                    fmt::format("is {:.12g} after {:.12g}", table.reals("arclength")[row],
-                                table.reals("arclength")[row - 1]));
+      claims.expect(
+          table.reals("arclength")[row] > table.reals("arclength")[row - 1], "arclength",
+          fmt::format("is {:.12g} after {:.12g}", table.reals("arclength")[row], table.reals("arclength")[row - 1]));
     }
     Claims whole(_findings, "orbits", -1);
     whole.expect(static_cast<std::uint64_t>(modes) == _archive.mode_values(), "modes_count",
@@ -123,8 +123,9 @@ class TableRules {
     for (std::size_t row = 1; row < table.rows(); ++row)
       of("crossings", row).expect(place(row - 1) <= place(row), "arclength", "is not in order");
     for (std::size_t row = 0; row < table.rows(); ++row)
-      of("crossings", row).expect(_archive.crossing_kinds()[row] != archive::CrossingKind::unknown, "kind",
-                                  fmt::format("is '{}', which is not known here", table.texts("kind")[row]));
+      of("crossings", row)
+          .expect(_archive.crossing_kinds()[row] != archive::CrossingKind::unknown, "kind",
+                  fmt::format("is '{}', which is not known here", table.texts("kind")[row]));
   }
 
   void sections() {
@@ -173,10 +174,12 @@ class TableRules {
           slope = std::max(slope, std::abs((orbits.reals("energy")[rows[m + 1]] - orbits.reals("energy")[rows[m]]) /
                                            (x[rows[m + 1]] - x[rows[m]])));
         const double best = std::abs(gap(neighbours));
-        const double error = std::abs(gap(neighbours - 1) - gap(neighbours)) + std::abs(gap(neighbours - 2) - gap(neighbours - 1));
+        const double error =
+            std::abs(gap(neighbours - 1) - gap(neighbours)) + std::abs(gap(neighbours - 2) - gap(neighbours - 1));
         least = std::min(least, best / (times_estimate * error + derivative_rounding * slope));
       }
-      if (std::isfinite(least)) of("orbits", row).below("dW/dE", least, 1.0, "dW/dE - T, in parts of what the steps leave,");
+      if (std::isfinite(least))
+        of("orbits", row).below("dW/dE", least, 1.0, "dW/dE - T, in parts of what the steps leave,");
     }
   }
 

@@ -40,10 +40,10 @@ systems::Scales scales_of(const archive::Header& header, const systems::System& 
 
 std::shared_ptr<const systems::System> system_of(const archive::Header& header, const scene::Scene& scene) {
   auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
-  const bool fits = header.state_names == system->info().state_names &&
-                    header.winding_names == system->winding_names() && header.pairs == system->structure().pairs() &&
-                    archive::has_complex_stability(header) ==
-                        (!system->structure().symplectic || system->structure().pairs() > 1);
+  const bool fits =
+      header.state_names == system->info().state_names && header.winding_names == system->winding_names() &&
+      header.pairs == system->structure().pairs() &&
+      archive::has_complex_stability(header) == (!system->structure().symplectic || system->structure().pairs() > 1);
   if (!fits)
     throw core::InputError(fmt::format(
         "the archive's columns are not those of the system {} that its scene names: it was written by another version, "
@@ -86,8 +86,7 @@ bool VerifiedAtlas::is_requested(std::size_t orbit) const {
     return [value](double wanted) { return std::abs(value - wanted) <= at_request * std::abs(wanted); };
   };
   const auto& events = _scene.events;
-  return std::any_of(events.periods.begin(), events.periods.end(),
-                     near(_archive->orbits().reals("period")[orbit])) ||
+  return std::any_of(events.periods.begin(), events.periods.end(), near(_archive->orbits().reals("period")[orbit])) ||
          std::any_of(events.energies.begin(), events.energies.end(), near(_archive->orbits().reals("energy")[orbit]));
 }
 

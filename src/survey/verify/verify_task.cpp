@@ -29,7 +29,8 @@ Findings findings_in(const queue::Task& task, const queue::TaskOutcome& outcome)
   Findings findings;
   const char* table = work.what == VerifyWork::What::crossings ? "crossings" : "orbits";
   findings.objections.push_back(
-      {table, work.first, "", fmt::format("could not be verified (rows {} to {}): {}", work.first, work.end - 1, outcome.reason)});
+      {table, work.first, "",
+       fmt::format("could not be verified (rows {} to {}): {}", work.first, work.end - 1, outcome.reason)});
   return findings;
 }
 
@@ -79,7 +80,8 @@ void VerifyExecutor::check_sections(const VerifyWork& work, Findings& findings) 
     const std::vector<double> state = loop::state_at(loop, table.reals("time")[row] / atlas().system()->scales().time);
     for (std::size_t i = 0; i < d; ++i) {
       const double unit = atlas().system()->scales().coordinate(i);
-      claims.agree("state", table.reals("state")[row * d + i], state[i] * unit, same_point * (unit + std::abs(state[i] * unit)));
+      claims.agree("state", table.reals("state")[row * d + i], state[i] * unit,
+                   same_point * (unit + std::abs(state[i] * unit)));
     }
   }
 }

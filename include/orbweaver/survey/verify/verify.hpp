@@ -47,9 +47,9 @@ struct Verification {
   std::int64_t orbits = 0;
   std::int64_t crossings = 0;
   std::int64_t sections = 0;
-  std::int64_t uninformative = 0;  ///< orbits of which the certificate says nothing: too unstable to be integrated
-  std::vector<Objection> objections;      ///< by table, then row
-  std::vector<Margin> margins;            ///< one a column, by name
+  std::int64_t uninformative = 0;     ///< orbits of which the certificate says nothing: too unstable to be integrated
+  std::vector<Objection> objections;  ///< by table, then row
+  std::vector<Margin> margins;        ///< one a column, by name
   double seconds = 0.0;
   int ranks = 1;
 
