@@ -319,7 +319,7 @@ class CrossingCheck {
     const bifurcation::Sector sector{_crossing.sector_q, _crossing.sector_j};
     if (!stability) return claims.object("test_value", "the multipliers there cannot be computed");
     const bifurcation::Reading found = bifurcation::index_deviation(*stability, sector);
-    const double allowed = 2.0 * found.error + (placed ? same_placement : index_rounding);
+    const double allowed = found.error + (placed ? same_placement : index_rounding);
     claims.agree("test_value", real("test_value"), sector.index() + found.value, allowed);
     claims.agree("residual", real("residual"), found.value, allowed);
     claims.below("sector_q", std::abs(found.value), allowed + located * rate(sector, place),
