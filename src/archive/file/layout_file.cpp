@@ -26,7 +26,7 @@ H5Handle timeless_list(hid_t list_class) {
   return list;
 }
 
-// Attributes and links stay in their object's header, which has HDF5's own checksum: heaps have parts that nobody reads.
+// Attributes and links stay in their object's header, which has HDF5's checksum: heaps have parts that nobody reads.
 void keep_in_header(const H5Handle& creation) {
   constexpr unsigned most = 1024;
   check_h5(H5Pset_attr_phase_change(creation.get(), most, 0), "H5Pset_attr_phase_change");

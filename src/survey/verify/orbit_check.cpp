@@ -42,7 +42,7 @@ constexpr double certificate_factor = 16.0;
 /// Of the way between two orbits; and where no reversor fixes the phase: a branch measures it between loops that were
 /// begun nearly, not quite, where they are nearest to each other.
 constexpr double same_way = 1e-9;
-constexpr double same_way_without_phase = 1e-3;
+constexpr double same_way_without_phase = 1e-2;
 
 /// Stored and computed values of one orbit.
 class OrbitCheck {
