@@ -19,6 +19,7 @@ namespace {
 /// branches by collocation have them.
 constexpr double of_loss_tolerance = 1e-2;
 constexpr double nodal_rounding = 50.0 * std::numeric_limits<double>::epsilon();
+constexpr double flattest = 1e-4;
 /// Cells are counted in fours, from eight on, as those of branches.
 constexpr int cells_in = 4;
 constexpr int least_cells = 8;
@@ -89,6 +90,8 @@ corrector::Result Correction::by(corrector::Method method, double tolerance, int
   corrector::Options options;
   options.method = method;
   options.tolerance = tolerance;
+  // A step under the threshold may be so long by the same rule, of a direction flatter than 1e-4 (corrector::Options).
+  options.step_tolerance = std::max(options.step_tolerance, tolerance / flattest);
   options.max_iterations = iterations;
   options.team = team;
   return corrector::correct(*_setting.system(), _guess.loop, _unknowns, _slice, options);
@@ -108,7 +111,8 @@ int cells_for(const Setting& setting, int cutoff) {
   return std::max(least_cells, (cells + cells_in - 1) / cells_in * cells_in);
 }
 
-CollocationResult by_collocation(const Setting& setting, const Directed& guess, int cells, double tolerance) {
+CollocationResult by_collocation(const Setting& setting, const Directed& guess, const loop::Loop& through, int cells,
+                                 double tolerance) {
   const loop::FundamentalDomain domain = loop::fundamental_domain(setting.system()->structure(), setting.isotropy());
   const loop::Loop& base = setting.start().base;
   const std::vector<double> centre(base.modes.begin(), base.modes.begin() + base.dimension);
@@ -117,6 +121,8 @@ CollocationResult by_collocation(const Setting& setting, const Directed& guess, 
   out.unknowns = equations.size();
   std::vector<double> u(static_cast<std::size_t>(equations.size()), 0.0);
   equations.from_loop(guess.loop, u.data());
+  std::vector<double> reference = u;
+  equations.from_loop(through, reference.data());
   std::vector<double> weights = nodes_of(equations, guess.loop, guess.tangent);
   if (equations.borders() > 1) {
     const loss::Unknowns all{loop::Subspace::unrestricted(guess.loop.dimension, guess.loop.cutoff),
@@ -125,7 +131,7 @@ CollocationResult by_collocation(const Setting& setting, const Directed& guess, 
         nodes_of(equations, guess.loop, all.tangent_of(all.time_shift_direction(guess.loop)));
     weights.insert(weights.end(), shift.begin(), shift.end());
   }
-  equations.set_conditions(weights, u);
+  equations.set_conditions(weights, reference);
   const double amplitude = std::min(1.0, loop::rms_amplitude(guess.loop));
   double size = amplitude;
   for (const double c : centre) size = std::max(size, std::abs(c));

@@ -49,7 +49,9 @@ struct CollocationResult {
   int unknowns = 0;
   std::string reason;  ///< why not
 };
-[[nodiscard]] CollocationResult by_collocation(const Setting& setting, const Directed& guess, int cells, double tolerance);
+/// The orbit in the plane through `through` across the family (its own lengths are other ones than those of modes).
+[[nodiscard]] CollocationResult by_collocation(const Setting& setting, const Directed& guess, const loop::Loop& through,
+                                               int cells, double tolerance);
 /// Why it does not apply; empty where it does.
 [[nodiscard]] std::string obstacle_to_collocation(const Setting& setting);
 /// The least number of cells that resolve as many harmonics.

@@ -59,7 +59,7 @@ TEST_F(Bounce, APushIsAsLargeAsAPredictionsErrorAndCorrectionsTakeItBack) {
   const cost::Correction correction(setting, pushed, setting.isotropy());
   EXPECT_LT(truth.error_of(correction.by(corrector::Method::newton_krylov, 1e-13).loop), 1e-12);
   const auto collocated =
-      cost::by_collocation(setting, pushed, cost::cells_for(setting, pushed.loop.cutoff), 1e-13);
+      cost::by_collocation(setting, pushed, probe().orbit.loop, cost::cells_for(setting, pushed.loop.cutoff), 1e-13);
   EXPECT_TRUE(collocated.converged) << collocated.reason;
   EXPECT_LT(truth.error_of(collocated.loop), 1e-12);
 }

@@ -18,7 +18,8 @@ namespace {
 
 constexpr int first_exponent = 4;  // of the tolerances 1e-4 to 1e-13
 constexpr int last_exponent = 13;
-constexpr int stride = 3;
+constexpr int quick_stride = 3;
+
 const std::vector<int> rungs{15, 30, 50};
 const std::vector<int> quick_rungs{15};
 /// Of the crossing that others are held against.
@@ -43,13 +44,13 @@ void measure(const Setting& setting, const Take& take) {
     table.remarks.emplace_back("no multiplier passes a root of unity on this family: nothing to locate");
     return take(table);
   }
-  const auto located = [&](const continuation::Options& options) {
+  const auto located = [&](const FoundEvent& event, const continuation::Options& options) {
     bifurcation::NotLocated why;
     continuation::FamilyCurve curve(setting.system(), setting.isotropy(), options);
-    for (const auto& known : best->known) curve.add(known, best->known.size());
-    return bifurcation::locate(*setting.system(), curve, best->event, best->from, best->to, why);
+    for (const auto& known : event.known) curve.add(known, event.known.size());
+    return bifurcation::locate(*setting.system(), curve, event.event, event.from, event.to, why);
   };
-  const auto crossing = located(setting.branch_options());
+  const auto crossing = located(*best, setting.branch_options());
   if (!crossing) throw core::NumericalError("the first crossing was not located");
   const refine::Guess guess =
       refine::guess_of(setting.plain(), *setting.system(), crossing->point.loop, setting.isotropy());
@@ -58,12 +59,14 @@ void measure(const Setting& setting, const Take& take) {
   const auto add = [&](const char* by, double value, double seconds, double found, double error) {
     table.rows.push_back({by, value, seconds, found, error, error > 0.0 ? Cell(-std::log10(error)) : Cell()});
   };
-  for (int exponent = first_exponent; exponent <= last_exponent; exponent += stride) {
+  for (int exponent = first_exponent; exponent <= last_exponent; exponent += setting.quick() ? quick_stride : 1) {
     continuation::Options options = setting.branch_options();
     options.corrector.tolerance = std::pow(10.0, -exponent);
     options.tail_tolerance = of_tail * options.corrector.tolerance;
+    const auto event = setting.first_event(options);  // with the harmonics of that tolerance
     std::optional<bifurcation::Crossing> found;
-    const Timing timing = timing_of([&] { found = located(options); }, setting.budget());
+    Timing timing;
+    if (event) timing = timing_of([&] { found = located(*event, options); }, setting.budget());
     if (!found) {
       table.rows.push_back({"location", options.corrector.tolerance, timing.seconds, {}, {}, "not located"});
       continue;

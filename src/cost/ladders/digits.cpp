@@ -26,7 +26,7 @@ void measure(const Setting& setting, const Take& take) {
               {{"orbit"}, {"T"}, {"digits asked for"}, {"time", "s"}, {"digits known"}, {"arithmetic"}, {"Taylor order"}, {"steps"}},
               {},
               {},
-              Plot{3, 2, {0}, {}}};
+              Plot{3, 4, {0}, {}}};
   const double unit = setting.system()->scales().time;
   for (const Probe& probe : setting.probes()) {
     const TrueOrbit& truth = setting.truth_of(probe);

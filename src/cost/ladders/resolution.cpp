@@ -1,6 +1,9 @@
 #include "resolution.hpp"
 
 #include <cmath>
+#include <map>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -9,6 +12,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/loop/grid/time_map_fit.hpp"
+#include "reach.hpp"
 #include "timing.hpp"
 
 namespace orbweaver::cost {
@@ -61,18 +65,29 @@ void measure(const Setting& setting, const Take& take) {
               {{"orbit"}, {"T"}, {"space"}, {"time map"}, {"K"}, {"unknowns"}, {"time", "s"}, {"error"}},
               {},
               {},
-              Plot{6, 7, {2, 3}, 0}};
+              Plot{6, 7, {2, 3}, 0},
+              false};
+  Table reach{"resolution_reach",
+              fmt::format("{}: seconds in which a way to solve reaches a true error, at the K that is enough", setting.family()),
+              {{"orbit"}, {"T"}, {"space"}, {"time map"}},
+              {},
+              {}};
+  for (Column& column : Reach::columns()) reach.columns.push_back(std::move(column));
   const double unit = setting.system()->scales().time;
   const std::string obstacle = obstacle_to_collocation(setting);
-  if (!obstacle.empty()) table.remarks.emplace_back(fmt::format("no collocation: {}", obstacle));
+  if (!obstacle.empty()) reach.remarks.emplace_back(fmt::format("no collocation: {}", obstacle));
   for (const Probe& probe : setting.probes()) {
     const TrueOrbit& truth = setting.truth_of(probe);
-    for (const Grid& grid : grids_for(setting, probe))
+    for (const Grid& grid : grids_for(setting, probe)) {
+      std::map<std::string, Reach> reached;
+      int last_cells = 0;
       for (const int cutoff : cutoffs_to(grid.last, setting.quick() ? quick_rung : rung)) {
         const Directed guess = expanded(probe, grid.map, cutoff);
         const auto add = [&](const char* space, int unknowns, double seconds, const loop::Loop& found) {
-          table.rows.push_back({probe.name, probe.orbit.loop.period * unit, space, grid.name, cutoff, unknowns, seconds,
-                                truth.error_of(found)});
+          const double error = truth.error_of(found);
+          table.rows.push_back({probe.name, probe.orbit.loop.period * unit, space, grid.name, found.cutoff, unknowns,
+                                seconds, error});
+          reached[space].add(seconds, error);
         };
         for (const auto& [space, isotropy] :
              {std::pair("subspace", setting.isotropy()), std::pair("whole loop", loop::Isotropy{})}) {
@@ -82,17 +97,25 @@ void measure(const Setting& setting, const Take& take) {
               [&] { result = correction.by(corrector::Method::newton_krylov, beyond_reach); }, setting.budget());
           add(space, correction.unknowns(), timing.seconds, result.loop);
         }
-        if (!obstacle.empty()) continue;
-        CollocationResult result;
         const int cells = cells_for(setting, cutoff);
+        if (!obstacle.empty() || cells == last_cells) continue;
+        last_cells = cells;
+        CollocationResult result;
         const Timing timing =
-            timing_of([&] { result = by_collocation(setting, guess, cells, beyond_reach); }, setting.budget());
+            timing_of([&] { result = by_collocation(setting, guess, guess.loop, cells, beyond_reach); }, setting.budget());
         add("collocation", result.unknowns, timing.seconds, result.loop);
       }
+      for (const auto& [space, times] : reached) {
+        std::vector<Cell> row{probe.name, probe.orbit.loop.period * unit, space, grid.name};
+        for (Cell& cell : times.cells()) row.push_back(std::move(cell));
+        reach.rows.push_back(std::move(row));
+      }
+    }
   }
-  table.remarks.emplace_back(
+  reach.remarks.emplace_back(
       "subspace and whole loop by newton-krylov, collocation on the fundamental domain; from the true orbit cut off at K");
   take(table);
+  take(reach);
 }
 
 }  // namespace

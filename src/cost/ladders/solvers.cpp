@@ -14,6 +14,7 @@
 #include "orbweaver/corrector/method.hpp"
 #include "orbweaver/refine/guess.hpp"
 #include "orbweaver/refine/shoot.hpp"
+#include "reach.hpp"
 #include "timing.hpp"
 
 namespace orbweaver::cost {
@@ -24,8 +25,6 @@ using corrector::Method;
 
 const std::vector<double> tolerances{1e-4, 1e-7, 1e-10, 1e-13};
 const std::vector<double> quick_tolerances{1e-4, 1e-10};
-/// The true errors at which solvers are compared.
-const std::vector<double> targets{1e-3, 1e-6, 1e-9, 1e-12};
 /// Iterations that show how long one of a first-order method takes, and seconds after which one is given up.
 constexpr int trial_iterations = 50;
 constexpr double patience = 4.0;
@@ -42,14 +41,13 @@ struct Attempt {
   int unknowns = 0;
   int iterations = 0;
   std::string end;
-  bool converged = false;
+  bool is_final = false;  ///< tighter tolerances bring no more
 };
 
 struct Solver {
   std::string name;
   std::string obstacle;  ///< why it does not apply
   std::function<Attempt(double tolerance)> run;
-  bool has_tolerance = true;
 };
 
 /// As many iterations as fit into the patience.
@@ -74,29 +72,28 @@ Solver by_corrector(const Setting& setting, const TrueOrbit& truth, const Correc
     const Timing timing = timing_of([&] { result = correction.by(method, tolerance, bound); }, setting.budget());
     return Attempt{tolerance,         timing.seconds,        truth.error_of(result.loop),
                    correction.unknowns(), result.iterations, std::string(corrector::name_of(result.outcome)),
-                   result.converged()};
+                   result.outcome == corrector::Outcome::iteration_limit};
   };
   return solver;
 }
 
-Solver collocation(const Setting& setting, const TrueOrbit& truth, const Directed& guess) {
+Solver collocation(const Setting& setting, const TrueOrbit& truth, const Directed& guess, const loop::Loop& orbit) {
   Solver solver{"collocation", obstacle_to_collocation(setting), {}};
   solver.run = [&](double tolerance) {
     CollocationResult result;
     const int cells = cells_for(setting, guess.loop.cutoff);
-    const Timing timing = timing_of([&] { result = by_collocation(setting, guess, cells, tolerance); }, setting.budget());
+    const Timing timing = timing_of([&] { result = by_collocation(setting, guess, orbit, cells, tolerance); }, setting.budget());
     return Attempt{tolerance,         timing.seconds,    truth.error_of(result.loop),
-                   result.unknowns, result.iterations, result.converged ? "converged" : result.reason,
-                   result.converged};
+                   result.unknowns, result.iterations, result.converged ? "converged" : result.reason};
   };
   return solver;
 }
 
 Solver shooting(const Setting& setting, const TrueOrbit& truth, const Directed& guess, int segments) {
-  Solver solver{segments == single ? "single shooting" : "multiple shooting", {}, {}, false};
-  solver.run = [&, segments](double tolerance) {
+  Solver solver{segments == single ? "single shooting" : "multiple shooting", {}, {}};
+  solver.run = [&, segments](double) {  // to rounding, whatever the tolerance
     Attempt attempt;
-    attempt.tolerance = tolerance;
+    attempt.is_final = true;
     try {
       const refine::Guess start = refine::guess_of(setting.plain(), *setting.system(), guess.loop, setting.isotropy());
       refine::ShotOrbit orbit;
@@ -104,7 +101,6 @@ Solver shooting(const Setting& setting, const TrueOrbit& truth, const Directed& 
       attempt.seconds = timing.seconds;
       attempt.error = truth.error_of(orbit);
       attempt.unknowns = static_cast<int>(orbit.states.size()) * guess.loop.dimension + 1;
-      attempt.converged = true;
       attempt.end = "converged";
     } catch (const core::NumericalError&) {
       attempt.end = "Newton's method finds no orbit";
@@ -115,8 +111,8 @@ Solver shooting(const Setting& setting, const TrueOrbit& truth, const Directed& 
 }
 
 std::vector<Solver> solvers_for(const Setting& setting, const TrueOrbit& truth, const Correction& correction,
-                                const Directed& guess) {
-  std::vector<Solver> solvers{collocation(setting, truth, guess)};
+                                const Directed& guess, const loop::Loop& orbit) {
+  std::vector<Solver> solvers{collocation(setting, truth, guess, orbit)};
   for (const Method method : {Method::newton_krylov, Method::nls, Method::ntr, Method::brgn, Method::lmvm,
                               Method::rprop_extrapolated, Method::rprop})
     solvers.push_back(by_corrector(setting, truth, correction, method));
@@ -138,36 +134,27 @@ void measure(const Setting& setting, const Take& take) {
               {{"orbit"}, {"solver"}, {"unknowns"}},
               {},
               {}};
-  for (const double target : targets) reach.columns.push_back({fmt::format("to {:.0e}", target), "s"});
-  reach.columns.push_back({"best error"});
+  for (Column& column : Reach::columns()) reach.columns.push_back(std::move(column));
   reach.columns.push_back({"end"});
   const double unit = setting.system()->scales().time;
   for (const Probe& probe : setting.probes()) {
     const TrueOrbit& truth = setting.truth_of(probe);
     const Directed guess = pushed_off(setting, probe);
     const Correction correction(setting, guess, setting.isotropy());
-    for (const Solver& solver : solvers_for(setting, truth, correction, guess)) {
-      if (!solver.obstacle.empty()) {
-        reach.rows.push_back({probe.name, solver.name, {}, {}, {}, {}, {}, {}, solver.obstacle});
-        continue;
-      }
-      std::vector<double> least(targets.size(), std::numeric_limits<double>::quiet_NaN());
-      double best = std::numeric_limits<double>::quiet_NaN();
+    for (const Solver& solver : solvers_for(setting, truth, correction, guess, probe.orbit.loop)) {
+      Reach reached;
       Attempt last;
-      for (const double tolerance : setting.quick() ? quick_tolerances : tolerances) {
-        last = solver.run(tolerance);
-        if (!solver.has_tolerance) last.tolerance = std::numeric_limits<double>::quiet_NaN();
-        all.rows.push_back({probe.name, probe.orbit.loop.period * unit, solver.name, last.tolerance, last.unknowns,
-                            last.iterations, last.seconds, last.error, last.end});
-        best = std::fmin(best, last.error);
-        for (std::size_t n = 0; n < targets.size(); ++n)
-          if (last.error <= targets[n]) least[n] = std::fmin(least[n], last.seconds);
-        if (!last.converged || !solver.has_tolerance) break;
-      }
-      std::vector<Cell> row{probe.name, solver.name, last.unknowns};
-      for (const double seconds : least) row.emplace_back(seconds);
-      row.emplace_back(best);
-      row.emplace_back(last.converged ? last.end : fmt::format("{} at tolerance {:.0e}", last.end, last.tolerance));
+      if (solver.obstacle.empty())
+        for (const double tolerance : setting.quick() ? quick_tolerances : tolerances) {
+          last = solver.run(tolerance);
+          all.rows.push_back({probe.name, probe.orbit.loop.period * unit, solver.name, last.tolerance, last.unknowns,
+                              last.iterations, last.seconds, last.error, last.end});
+          reached.add(last.seconds, last.error);
+          if (last.is_final) break;
+        }
+      std::vector<Cell> row{probe.name, solver.name, last.unknowns > 0 ? Cell(last.unknowns) : Cell()};
+      for (Cell& cell : reached.cells()) row.push_back(std::move(cell));
+      row.emplace_back(solver.obstacle.empty() ? last.end : solver.obstacle);
       reach.rows.push_back(std::move(row));
     }
   }

@@ -118,10 +118,18 @@ std::vector<Series> series_of(const Table& table, const std::string& panel) {
   return all;
 }
 
+/// Nothing to see: an axis without a length.
+bool has_one_place(const std::vector<Series>& all) {
+  const double x = all.front().points.front().first;
+  return std::all_of(all.begin(), all.end(), [&](const Series& s) {
+    return std::all_of(s.points.begin(), s.points.end(), [&](const auto& point) { return point.first == x; });
+  });
+}
+
 std::string script_of(const Table& table, const std::string& name, const std::string& panel, PlotFormat format) {
   const cost::Plot& plot = *table.plot;
   const std::vector<Series> all = series_of(table, panel);
-  if (all.empty()) return {};
+  if (all.empty() || has_one_place(all)) return {};
   std::string script;
   for (std::size_t n = 0; n < all.size(); ++n) {
     script += fmt::format("$data{} << END\n", n);
@@ -132,8 +140,8 @@ std::string script_of(const Table& table, const std::string& name, const std::st
       panel.empty() ? table.title : fmt::format("{} ({} {})", table.title, table.columns[*plot.panel].name, panel);
   script += fmt::format(
       "set terminal {} noenhanced\nset output {}\nset title {}\nset xlabel {}\nset ylabel {}\n"
-      "set logscale xy\nset grid linecolor '#dddddd'\nset border 3\nset tics nomirror\n"
-      "set key outside right top vertical noenhanced\nset format x '%.0e'\nset format y '%.0e'\n",
+      "set logscale xy\nset grid xtics ytics linecolor '#cccccc' linewidth 0.5\nset border 3\nset tics nomirror\n"
+      "set key below horizontal\nset format x '%g'\nset format y '%g'\n",
       terminal_of(format), quoted(fmt::format("{}.{}", name, ending_of(format))), quoted(title),
       quoted(head_text(table.columns[plot.x])), quoted(head_text(table.columns[plot.y])));
   for (std::size_t n = 0; n < all.size(); ++n)
