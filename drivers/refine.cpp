@@ -9,8 +9,8 @@
 #include <optional>
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "command.hpp"
 #include "failure.hpp"
@@ -93,12 +93,15 @@ Outcome refine_crossing(const archive::Archive& atlas, const RefineOptions& opti
   outcome.orbit = refine::refine_crossing(crossing.place.guess, condition, options.digits);
   const double period = static_cast<double>(outcome.orbit.period.value);
   if (!(std::abs(period - crossing.period) < same_crossing * crossing.period))
-    throw core::NumericalError(fmt::format("the crossing found has T = {:.12g}, and the archive's T = {:.12g}: it is another one",
-                                           period, crossing.period));
+    throw core::NumericalError(
+        fmt::format("the crossing found has T = {:.12g}, not T = {:.12g}: it is another one", period, crossing.period));
   std::string exact;
   if (archive::has_sector(condition.kind))
-    exact = fmt::format("the fundamental map (over T/{}) has the multiplier exp(2 pi i {}/{})", outcome.orbit.order,
-                        condition.sector_j, condition.sector_q);
+    exact =
+        fmt::format("{} the multiplier exp(2 pi i {}/{})",
+                    outcome.orbit.order == 1 ? "the orbit has"
+                                             : fmt::format("the fundamental map, over T/{}, has", outcome.orbit.order),
+                    condition.sector_j, condition.sector_q);
   else
     exact = condition.kind == archive::CrossingKind::fold_period ? "dT/ds = 0" : "dE/ds = 0";
   outcome.text = report::refined_text(
@@ -124,9 +127,9 @@ int refine_command(const RefineOptions& options) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   print_result(outcome.text);
   if (!options.output.empty()) write(options.output, outcome.text);
-  core::write_line(stderr, fmt::format("{:.2f} s: {} digits of arithmetic, Taylor series of order {}, {} steps",
-                                       seconds, outcome.orbit.working_digits, outcome.orbit.taylor_order,
-                                       outcome.orbit.steps));
+  core::write_line(stderr,
+                   fmt::format("{:.2f} s: {} digits of arithmetic, Taylor series of order {}, {} steps", seconds,
+                               outcome.orbit.working_digits, outcome.orbit.taylor_order, outcome.orbit.steps));
   return static_cast<int>(core::ExitStatus::done);
 }
 
@@ -137,7 +140,7 @@ Command make_refine_command(CLI::App& program) {
   auto options = std::make_shared<RefineOptions>();
   parser->add_option("ATLAS", options->atlas, "The atlas.h5 of a survey")->required();
   parser->add_option("FAMILY", options->family, "The name of a family");
-  parser->add_option("ORBIT", options->orbit, "T=PERIOD or E=ENERGY, a decimal number that is meant exactly, or a step");
+  parser->add_option("ORBIT", options->orbit, "T=PERIOD or E=ENERGY, meant exactly, or a step");
   parser->add_option("--crossing", options->crossing, "A row of the table of crossings, counted from 0");
   parser->add_option("--after", options->after, "The first orbit with this T or E after a step");
   parser->add_option("-n,--digits", options->digits, "Significant digits of every number")->capture_default_str();

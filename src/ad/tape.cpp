@@ -10,9 +10,7 @@ thread_local Recording* current = nullptr;
 
 const Tape::Node& at(Recorded x) { return current->tape().nodes[static_cast<std::size_t>(x.node())]; }
 
-bool is_constant(Recorded x, double value) {
-  return at(x).operation == Operation::constant && at(x).value == value;
-}
+bool is_constant(Recorded x, double value) { return at(x).operation == Operation::constant && at(x).value == value; }
 
 }  // namespace
 
@@ -24,8 +22,8 @@ Recording::Recording() {
 Recording::~Recording() { current = nullptr; }
 
 int Recording::append(const Tape::Node& node) {
-  const auto [known, is_new] = _known.try_emplace({node.operation, node.first, node.second, node.value},
-                                                  static_cast<int>(_tape.nodes.size()));
+  const auto [known, is_new] =
+      _known.try_emplace({node.operation, node.first, node.second, node.value}, static_cast<int>(_tape.nodes.size()));
   if (is_new) _tape.nodes.push_back(node);
   return known->second;
 }

@@ -24,11 +24,13 @@ constexpr double longest_step = 0.3;
 /// tenth of it, and what is left the iterations in extended arithmetic remove.
 constexpr double arrived = 1e-12;
 constexpr double nearly_arrived = 1e-9;
+/// An orbit that is further from the guess than this part of the guess's extent is another one, or an equilibrium.
+constexpr double farthest = 0.5;
 /// Of the diagonal of R: below this an iteration with the factors in double gains fewer than four digits.
 constexpr double singular = 1e-11;
 /// An iteration in extended arithmetic gains at least so many digits.
 constexpr double least_gain = 2.0;
-constexpr double first_gain = 6.0;  // assumed until it has been seen
+constexpr double cautious_gain = 10.0;  // assumed of the next ones where more has been seen
 /// Digits beyond those that an iteration is to have: sums of some hundred rounded terms.
 constexpr int guard = 5;
 
@@ -114,7 +116,23 @@ Eigen::MatrixXd ConditionedOrbit::jacobian(const Points<double>& points, const P
   return matrix;
 }
 
-Points<double> ConditionedOrbit::converge(Points<double> points, const Held& held) {
+void ConditionedOrbit::require_near(const Points<double>& points, const Points<double>& guess) const {
+  double extent = 0.0;
+  double distance = 0.0;
+  for (std::size_t m = 0; m < points.nodes.size(); ++m)
+    for (std::size_t i = 0; i < _setup.dimension(); ++i) {
+      const double scale = _setup.scales.coordinate(i);
+      extent = std::max(extent, std::abs(guess.nodes[m][i] - guess.nodes.front()[i]) / scale);
+      distance = std::max(distance, std::abs(points.nodes[m][i] - guess.nodes[m][i]) / scale);
+    }
+  if (distance > farthest * extent)
+    throw core::NumericalError(
+        fmt::format("Newton's method came to an orbit that is {:.2g} away from the guess, whose extent is {:.2g}",
+                    distance, extent));
+}
+
+Points<double> ConditionedOrbit::converge(const Points<double>& guess, const Held& held) {
+  Points<double> points = guess;
   double last = std::numeric_limits<double>::infinity();
   double size = 1.0;
   for (const std::vector<double>& node : points.nodes)
@@ -123,8 +141,7 @@ Points<double> ConditionedOrbit::converge(Points<double> points, const Held& hel
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     const Passage<double> passage = _shooting.pass(points, true);
     const Eigen::VectorXd right = rows(_shooting, points, passage, held);
-    Eigen::VectorXd step =
-        -Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(jacobian(points, passage, held)).solve(right);
+    Eigen::VectorXd step = -Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(jacobian(points, passage, held)).solve(right);
     const double length = step.lpNorm<Eigen::Infinity>();
     if (!std::isfinite(length)) break;
     if (length > longest_step) step *= longest_step / length;
@@ -133,11 +150,14 @@ Points<double> ConditionedOrbit::converge(Points<double> points, const Held& hel
       for (std::size_t i = 0; i < node.size(); ++i) node[i] += step(n++) * _setup.scales.coordinate(i);
     points.period += step(n) * _setup.scales.time;
     if (!(points.period > 0.0)) break;
-    if (length < arrived * size || (length < nearly_arrived * size && length > 0.5 * last)) return points;
+    if (length < arrived * size || (length < nearly_arrived * size && length > 0.5 * last)) {
+      require_near(points, guess);
+      return points;
+    }
     last = length;
   }
-  throw core::NumericalError(fmt::format(
-      "Newton's method found no orbit in double precision: its last step was {:.1e} of the scales", last));
+  throw core::NumericalError(
+      fmt::format("Newton's method found no orbit in double precision: its last step was {:.1e} of the scales", last));
 }
 
 Eigen::VectorXd ConditionedOrbit::direction(const Points<double>& points) {
@@ -147,18 +167,19 @@ Eigen::VectorXd ConditionedOrbit::direction(const Points<double>& points) {
 }
 
 void ConditionedOrbit::factor(const Points<double>& points, const Held& held) {
+  _gain = first_gain;
   _factor.compute(jacobian(points, _shooting.pass(points, true), held));
   const Eigen::VectorXd diagonal = _factor.matrixR().diagonal().cwiseAbs();
   if (!(diagonal.minCoeff() > singular * diagonal.maxCoeff()))
     throw core::NumericalError(fmt::format(
-        "the orbit is not isolated: the Jacobian's least pivot is {:.1e} of the largest. At an extremum of the period hold "
-        "the energy, at one of the energy the period",
+        "the orbit is not isolated: the Jacobian's least pivot is {:.1e} of the largest. At an extremum of the period "
+        "hold the energy, at one of the energy the period",
         diagonal.minCoeff() / diagonal.maxCoeff()));
 }
 
 void ConditionedOrbit::polish(Points<Extended>& points, const Held& held, double accuracy, int digits) {
   double known = accuracy;
-  double gain = first_gain;
+  double gain = _gain;
   double last_length = 0.0;
   for (int iteration = 0; iteration < most_iterations + digits; ++iteration) {
     const int target = std::min(digits, static_cast<int>(std::ceil(known + 1.5 * gain)) + 3);
@@ -190,6 +211,7 @@ void ConditionedOrbit::polish(Points<Extended>& points, const Held& held, double
       if (!(gain > least_gain))
         throw core::NumericalError(fmt::format(
             "iterations in extended arithmetic gain only {:.1f} digits: the orbit is too badly conditioned", gain));
+      _gain = std::min(gain, cautious_gain);
     }
     if (target == digits && (is_rounding || length + gain > digits)) return;
     last_length = length;

@@ -25,7 +25,7 @@ class ConditionedOrbit {
   explicit ConditionedOrbit(const ShootingSetup& setup) : _setup(setup), _shooting(setup, double_digits, 0) {}
 
   /// Newton's method in double. Throws NumericalError.
-  [[nodiscard]] Points<double> converge(Points<double> points, const Held& held);
+  [[nodiscard]] Points<double> converge(const Points<double>& guess, const Held& held);
   /// The direction of the family there, of unit length in the scales.
   [[nodiscard]] Eigen::VectorXd direction(const Points<double>& points);
   /// Factors the Jacobian at an orbit: what `polish` iterates with. Throws NumericalError where the condition does not
@@ -45,8 +45,10 @@ class ConditionedOrbit {
   int extra_order = 0;
 
   static constexpr double double_digits = 16.0;
+  static constexpr double first_gain = 6.0;  ///< digits an iteration, until it has been seen
 
  private:
+  void require_near(const Points<double>& points, const Points<double>& guess) const;
   template <class Real>
   [[nodiscard]] Vector<Real> rows(const Shooting<Real>& shooting, const Points<Real>& points,
                                   const Passage<Real>& passage, const Held& held) const;
@@ -56,6 +58,7 @@ class ConditionedOrbit {
   const ShootingSetup& _setup;
   Shooting<double> _shooting;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> _factor;
+  double _gain = first_gain;
   long _steps = 0;
 };
 

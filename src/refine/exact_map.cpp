@@ -9,8 +9,10 @@ namespace {
 
 /// Of entries of size 1 at most, as they come out of sines and products of a few matrices.
 constexpr double same_entry = 1e-14;
-/// Denominators, and parts of a turn, that symmetries are looked for with: a polygon of 24 corners has none larger.
+/// Denominators that entries are looked for with.
 constexpr int most_parts = 24;
+/// Parts of a turn: sines and cosines of a turn of a polygon of 24 corners are cosines of such.
+constexpr int most_parts_of_a_turn = 96;
 
 }  // namespace
 
@@ -43,7 +45,7 @@ ExactMatrix::Entry ExactMatrix::recognised(double declared) {
     if (std::abs(square - std::round(square)) < same_entry * n)
       return {Entry::Kind::root, sign, static_cast<int>(std::round(square)), n, 0.0};
   }
-  for (int n = 5; n <= most_parts; ++n)
+  for (int n = 5; n <= most_parts_of_a_turn; ++n)
     for (int m = 1; 4 * m < n; ++m)
       if (std::abs(size - std::cos(2.0 * std::numbers::pi * m / n)) < same_entry)
         return {Entry::Kind::cosine, sign, m, n, 0.0};
@@ -67,7 +69,8 @@ template <class Real>
 Matrix<Real> ExactMatrix::value() const {
   Matrix<Real> result(_size, _size);
   for (Eigen::Index i = 0; i < _size; ++i)
-    for (Eigen::Index l = 0; l < _size; ++l) result(i, l) = value_of<Real>(_entries[static_cast<std::size_t>(i * _size + l)]);
+    for (Eigen::Index l = 0; l < _size; ++l)
+      result(i, l) = value_of<Real>(_entries[static_cast<std::size_t>(i * _size + l)]);
   return result;
 }
 

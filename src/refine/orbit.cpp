@@ -20,9 +20,9 @@ using numerics::Extended;
 using numerics::WorkingDigits;
 
 /// Digits beyond those asked for, before anything is known of the orbit; what an orbit's growth takes is added.
-constexpr int first_guard = 10;
+constexpr int first_guard = 6;
 /// By how many digits the second computation is better than the first, and its order higher.
-constexpr int second_guard = 8;
+constexpr int second_guard = 6;
 constexpr int second_order = 5;
 /// Computations with more digits each, until the bounds hold.
 constexpr int most_attempts = 4;
@@ -31,9 +31,13 @@ constexpr double smallest_part = 1e-9;
 constexpr double smallest_multiplier = 1e-300;  // 1/mu has its own digits
 /// Digits that double precision gives of an orbit.
 constexpr double double_accuracy = 11.0;
-/// In double, the place of a crossing along the family, in the scales: what is left the secant method removes.
-constexpr double place_in_double = 1e-9;
-constexpr double first_probe = 1e-5;  // for the slope of its condition
+/// In double, the place of a crossing along the family, in the scales: what is left the secant method removes. Rounding
+/// moves it by less.
+constexpr double place_in_double = 1e-6;
+constexpr double probe = 1e-4;         // for the slope of its condition, to some digits whatever the rounding
+constexpr double probed_digits = 3.0;  // of that slope
+constexpr int most_probes = 12;
+constexpr int first_working = 20;  // digits of the first step of the secant method
 constexpr int most_secants = 40;
 /// How far along the family, in the scales, a crossing may lie from where the archive has it.
 constexpr double farthest = 0.5;
@@ -102,8 +106,7 @@ class Refinement {
 
   /// An orbit of a given period or energy.
   void hold(const HeldValue& value) {
-    _held.kind =
-        value.quantity == HeldValue::Quantity::period ? Held::Kind::period : Held::Kind::energy;
+    _held.kind = value.quantity == HeldValue::Quantity::period ? Held::Kind::period : Held::Kind::energy;
     _held.decimal = value.decimal;
     const Points<double> found = _orbit.converge(_setup.guess, _held);
     _orbit.factor(found, _held);
@@ -127,19 +130,15 @@ class Refinement {
       return _test->value(_orbit.in_double(), found, _orbit.in_double().pass(found, true));
     };
     double at = 0.0;
-    double f = value(at);
-    double next = first_probe;
     for (int n = 0;; ++n) {
-      const double g = value(next);
-      const double slope = (g - f) / (next - at);
-      if (n == most_secants || !std::isfinite(slope) || slope == 0.0 || !(std::abs(next) < farthest))
+      const double f = value(at);
+      const double slope = (value(at + probe) - f) / probe;
+      const double step = -f / slope;
+      if (n == most_probes || !std::isfinite(step) || !(std::abs(at + step) < farthest))
         throw core::NumericalError("no crossing was found near the place that the archive gives");
-      at = next;
-      f = g;
+      at += step;
       _slope = slope;
-      if (std::abs(f / slope) < place_in_double) break;
-      next = at - f / slope;
-      if (std::abs(next - at) < 1e-3 * first_probe) next = at + std::copysign(1e-3 * first_probe, next - at);
+      if (std::abs(step) < place_in_double) break;
     }
     _held = plane;
     _held.offset = at;
@@ -190,9 +189,8 @@ class Refinement {
     Extended last_offset;
     Extended last_value;
     bool has_last = false;
-    double place = std::min(-std::log10(place_in_double), double(digits));
-    if (_place > 0.0) place = _place;
-    int working = std::min(digits, static_cast<int>(std::ceil(2.2 * place)) + first_guard + growth());
+    double last_length = 0.0;
+    int working = std::min(digits, std::max(static_cast<int>(std::ceil(_accuracy)), first_working) + first_guard);
     double accuracy = _accuracy;
     for (int n = 0; n < most_secants; ++n) {
       Extended value;
@@ -205,7 +203,10 @@ class Refinement {
         value = numerics::rounded(_test->value(shooting, _points, passage));
         _orbit.count_steps(shooting.flow().steps());
       }
-      if (has_last && value != last_value) slope = (value - last_value) / (offset - last_offset);
+      if (has_last && value != last_value) {
+        slope = (value - last_value) / (offset - last_offset);
+        _slope_digits = std::max(_slope_digits, last_length);
+      }
       const Extended step = -value / slope;
       const double length = -numerics::log10_abs(step);
       if (n > 0 && length < 1.0)
@@ -215,17 +216,16 @@ class Refinement {
       has_last = true;
       numerics::add_to(offset, step);
       accuracy = std::min(length, static_cast<double>(working));
-      const bool is_done = working == digits && (length + place > digits || length > digits - growth() - 4);
+      const bool is_done = working == digits && length + _slope_digits > digits;
       if (is_done) {
         _held.offset = numerics::rounded(offset);
         _slope = numerics::rounded(slope);
-        _place = digits - growth();
         _orbit.polish(_points, _held, accuracy, digits);
         _accuracy = digits;
         return values_at(digits);
       }
-      place = length;
-      working = std::min(digits, static_cast<int>(std::ceil(2.2 * length)) + first_guard + growth());
+      last_length = length;
+      working = std::min(digits, static_cast<int>(std::ceil(length + _slope_digits + growth())) + first_guard);
     }
     throw core::NumericalError("the secant method did not find the crossing in extended arithmetic");
   }
@@ -236,10 +236,10 @@ class Refinement {
     _orbit.count_steps(shooting.flow().steps());
     _order_of_series = shooting.flow().order();
     Values values;
-    values.state = start_on_fixed_set(shooting);
+    values.state = start_on_fixed_set();
     values.period = _held.kind == Held::Kind::period ? numerics::extended_of(_held.decimal) : _points.period;
-    values.energy = _held.kind == Held::Kind::energy ? numerics::extended_of(_held.decimal)
-                                                     : shooting.energy(values.state);
+    values.energy =
+        _held.kind == Held::Kind::energy ? numerics::extended_of(_held.decimal) : shooting.energy(values.state);
     if (_setup.structure.pairs() == 1) {
       const Matrix<Extended> map = shooting.fundamental_map(passage);
       values.indices = {index_of(shooting.monodromy(map)), index_of(map)};
@@ -249,11 +249,10 @@ class Refinement {
   }
 
   /// The start, with what involutions say of it fulfilled to the last digit.
-  std::vector<Extended> start_on_fixed_set(const Shooting<Extended>& shooting) const {
+  [[nodiscard]] std::vector<Extended> start_on_fixed_set() const {
     std::vector<Extended> state = _points.nodes.front();
     const Index d = static_cast<Index>(state.size());
     const Extended two_pi = 2 * pi<Extended>();
-    static_cast<void>(shooting);
     for (const ShootingSetup::Map& map : _setup.maps) {
       if (map.between != ShootingSetup::Map::Between::start_and_start) continue;
       const Matrix<Extended> matrix = map.matrix.value<Extended>();
@@ -274,10 +273,10 @@ class Refinement {
   RefinedOrbit joined(const Values& first, const Values& second, int digits, int& missing) const {
     const WorkingDigits working(digits + second_guard);
     missing = std::numeric_limits<int>::min();
-    const auto number = [&](const Extended& a, const Extended& b, double scale, bool is_exact) {
+    const auto number = [&](const Extended& a, const Extended& b, double smallest, bool is_exact) {
       Number out{numerics::rounded(b), Extended(0)};
       if (is_exact) return out;
-      const double size = std::max(numerics::log10_abs(b), std::log10(scale * smallest_part));
+      const double size = std::max(numerics::log10_abs(b), std::log10(smallest));
       const Extended rounding = pow(Extended(10), static_cast<int>(std::floor(size)) + 1 - digits);
       out.error = 2 * abs(Extended(b - a)) + rounding;
       // half a unit of the last digit is for rounding to so many digits, a tenth for what is not known
@@ -287,10 +286,13 @@ class Refinement {
     RefinedOrbit out;
     for (std::size_t i = 0; i < first.state.size(); ++i) {
       const bool is_fixed = second.state[i] == 0 || first.state[i] == 0;
-      out.state.push_back(number(first.state[i], second.state[i], _setup.scales.coordinate(i), is_fixed));
+      out.state.push_back(
+          number(first.state[i], second.state[i], smallest_part * _setup.scales.coordinate(i), is_fixed));
     }
-    out.period = number(first.period, second.period, _setup.scales.time, _held.kind == Held::Kind::period);
-    out.energy = number(first.energy, second.energy, _setup.scales.energy(), _held.kind == Held::Kind::energy);
+    out.period =
+        number(first.period, second.period, smallest_part * _setup.scales.time, _held.kind == Held::Kind::period);
+    out.energy =
+        number(first.energy, second.energy, smallest_part * _setup.scales.energy(), _held.kind == Held::Kind::energy);
     if (!first.indices.empty()) {
       out.index = number(first.indices[0], second.indices[0], 1.0, false);
       out.fundamental_index = number(first.indices[1], second.indices[1], 1.0, false);
@@ -303,11 +305,13 @@ class Refinement {
         out.unit_circle = distance < 0;
         const std::vector<Extended> a = multipliers_of(first.indices[0], out.unit_circle);
         const std::vector<Extended> b = multipliers_of(k, out.unit_circle);
-        for (std::size_t i = 0; i < a.size(); ++i) out.multipliers.push_back(number(a[i], b[i], smallest_multiplier, false));
+        for (std::size_t i = 0; i < a.size(); ++i)
+          out.multipliers.push_back(number(a[i], b[i], out.unit_circle ? 1.0 : smallest_multiplier, false));
       }
     }
     if (!first.test.empty()) out.test_value = Number{second.test.front(), Extended(0)};
     out.order = _setup.order;
+    out.reversor = _setup.reversor_name;
     out.largest = _setup.phase;
     out.digits = _digits;
     out.working_digits = digits + second_guard;
@@ -326,7 +330,7 @@ class Refinement {
   double _accuracy = 0.0;
   double _growth = 0.0;
   Extended _slope;
-  double _place = 0.0;
+  double _slope_digits = probed_digits;  // to which the slope is known
   int _order_of_series = 0;
 };
 
@@ -334,6 +338,7 @@ class Refinement {
 
 RefinedOrbit refine_orbit(const Guess& guess, const HeldValue& held, int digits) {
   check_digits(digits);
+  static_cast<void>(numerics::extended_of(held.decimal));
   Refinement refinement(guess, digits);
   refinement.hold(held);
   return refinement.run();

@@ -80,9 +80,11 @@ ShootingSetup::ShootingSetup(const systems::Formulas& system_formulas, const sys
   order = group.order();
   mirrored = at_start != nullptr;
   generator = ExactMatrix(group.generator().matrix);
-  if (mirrored) reversor = ExactMatrix(at_start->map.matrix);
-  const int count =
-      std::clamp(loop.cutoff / (harmonics_a_segment * copies()), least_segments, most_segments);
+  if (mirrored) {
+    reversor = ExactMatrix(at_start->map.matrix);
+    reversor_name = at_start->name;
+  }
+  const int count = std::clamp(loop.cutoff / (harmonics_a_segment * copies()), least_segments, most_segments);
   const double end = 2.0 * std::numbers::pi / copies();
   for (int n = 0; n <= count; ++n) {
     const double s = end * n / count;
@@ -92,7 +94,7 @@ ShootingSetup::ShootingSetup(const systems::Formulas& system_formulas, const sys
   guess.period = loop.period;
   const auto add = [&](Map::Between between, const systems::AffineMap& map, const std::vector<double>& from,
                        const std::vector<double>& to) {
-    core::require(map.is_linear(), "symmetries with a shift of the state are not known to more digits");
+    if (!map.is_linear()) throw core::InputError("orbits with a symmetry that shifts the state cannot be refined yet");
     maps.push_back({between, ExactMatrix(map.matrix), turns_between(map, from, to, structure)});
   };
   const std::vector<double>& first = guess.nodes.front();
@@ -173,13 +175,12 @@ Vector<Real> Shooting<Real>::residual(const Points<Real>& points, const Passage<
     const Map& map = _setup.maps[n];
     const Vector<Real> image = _matrices[n] * as_vector(from(map, points));
     for (std::size_t i = 0; i < d; ++i)
-      rows(row++) =
-          (image(as_index(i)) + _two_pi * map.turns[i] - to(map, points)[i]) / scale_of(_setup, i);
+      rows(row++) = (image(as_index(i)) + _two_pi * map.turns[i] - to(map, points)[i]) / scale_of(_setup, i);
   }
   if (_setup.phase)
-    rows(row) = (field(points.nodes.front())(as_index(*_setup.phase)) -
-                 _two_pi * _setup.phase_winding / points.period) *
-                (_setup.scales.time / scale_of(_setup, *_setup.phase));
+    rows(row) =
+        (field(points.nodes.front())(as_index(*_setup.phase)) - _two_pi * _setup.phase_winding / points.period) *
+        (_setup.scales.time / scale_of(_setup, *_setup.phase));
   return rows;
 }
 
@@ -189,8 +190,8 @@ Matrix<Real> Shooting<Real>::jacobian(const Points<Real>& points, const Passage<
   const std::size_t segments = _setup.segments();
   const Index last = as_index(d * segments);
   const Index period = as_index(d * (segments + 1));
-  Matrix<Real> rows = Matrix<Real>::Zero(
-      as_index(d * (segments + _setup.maps.size()) + (_setup.phase ? 1 : 0)), period + 1);
+  Matrix<Real> rows =
+      Matrix<Real>::Zero(as_index(d * (segments + _setup.maps.size()) + (_setup.phase ? 1 : 0)), period + 1);
   const auto ratio = [&](std::size_t i, std::size_t c) { return scale_of(_setup, c) / scale_of(_setup, i); };
   Index row = 0;
   for (std::size_t m = 0; m < segments; ++m) {

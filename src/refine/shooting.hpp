@@ -23,7 +23,7 @@ struct Points {
 /// What follows from them by integration.
 template <class Real>
 struct Passage {
-  std::vector<std::vector<Real>> ends;     ///< one a segment
+  std::vector<std::vector<Real>> ends;    ///< one a segment
   std::vector<Matrix<Real>> transitions;  ///< the same; empty where they were not asked for
 };
 
@@ -44,14 +44,15 @@ struct ShootingSetup {
   systems::Formulas formulas;
   systems::Structure structure;
   systems::Scales scales;
-  int order = 1;                       ///< p
-  bool mirrored = false;               ///< a reversor halves the domain
-  ExactMatrix generator;               ///< g
-  ExactMatrix reversor;                ///< R of phase 0; the identity where there is none
+  int order = 1;          ///< p
+  bool mirrored = false;  ///< a reversor halves the domain
+  std::string reversor_name;
+  ExactMatrix generator;  ///< g
+  ExactMatrix reversor;   ///< R of phase 0; the identity where there is none
   std::vector<Map> maps;
-  std::vector<double> fractions;       ///< of the nodes, in parts of the period, but for the last, which is 1/copies
-  std::optional<std::size_t> phase;    ///< the coordinate that is largest at the start, without a reversor
-  double phase_winding = 0.0;          ///< its winding number
+  std::vector<double> fractions;     ///< of the nodes, in parts of the period, but for the last, which is 1/copies
+  std::optional<std::size_t> phase;  ///< the coordinate that is largest at the start, without a reversor
+  double phase_winding = 0.0;        ///< its winding number
   Points<double> guess;
 
   [[nodiscard]] std::size_t dimension() const { return static_cast<std::size_t>(formulas.dimension); }

@@ -28,9 +28,7 @@ constexpr double place_tolerance = 1e-12;  // in arclength
 
 bool is_between(double value, double a, double b) { return (a <= value && value < b) || (b < value && value <= a); }
 
-const char* letter_of(HeldValue::Quantity quantity) {
-  return quantity == HeldValue::Quantity::period ? "T" : "E";
-}
+const char* letter_of(HeldValue::Quantity quantity) { return quantity == HeldValue::Quantity::period ? "T" : "E"; }
 
 }  // namespace
 
@@ -161,8 +159,8 @@ StoredFamily::Place StoredFamily::at_arclength(double arclength) const {
   guess.period = 0.0;
   std::fill(guess.modes.begin(), guess.modes.end(), 0.0);
   for (std::size_t n = 0; n < loops.size(); ++n) {
-    const loop::Loop same = loops[n].time_map == map ? loop::with_cutoff(loops[n], cutoff)
-                                                     : loop::with_time_map(loops[n], map, cutoff);
+    const loop::Loop same =
+        loops[n].time_map == map ? loop::with_cutoff(loops[n], cutoff) : loop::with_time_map(loops[n], map, cutoff);
     guess.period += weights[n] * same.period;
     for (std::size_t i = 0; i < guess.modes.size(); ++i) guess.modes[i] += weights[n] * same.modes[i];
   }
@@ -193,8 +191,9 @@ StoredCrossing stored_crossing(const archive::Archive& atlas, std::size_t row) {
   const int order = static_cast<int>(table.integers("fundamental_order")[row]);
   const loop::SymmetryGroup group(place.guess.system->structure(), place.guess.isotropy);
   if (archive::has_sector(condition.kind) && group.order() != order)
-    throw core::InputError(fmt::format("the crossing's fundamental map has the order {}, that of {} {}: was the file changed?",
-                                       order, family.name(), group.order()));
+    throw core::InputError(
+        fmt::format("the fundamental map has the order {} at the crossing, {} on {}: was the file changed?", order,
+                    group.order(), family.name()));
   return {std::move(family), std::move(place), condition, table.reals("period")[row]};
 }
 

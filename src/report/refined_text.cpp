@@ -33,13 +33,24 @@ std::string bound_text(double log10_of_bound) {
   return fmt::format("{:.1f}e{:.0f}", digits, exponent);
 }
 
-Line line_of(const std::string& label, const Number& number, int digits) {
-  if (number.error == 0) {
-    const std::string text = numerics::decimal_text(number.value, digits);
-    return {label, number.value == 0 ? "0" : text, "exact"};
-  }
+/// Of a decimal number that `digits` digits hold, without the zeros at its end.
+std::string exact_text(const Extended& value, int digits) {
+  std::string text = numerics::decimal_text(value, digits);
+  const std::size_t exponent = std::min(text.find('e'), text.size());
+  std::size_t end = exponent;
+  if (text.find('.') < exponent)
+    while (text[end - 1] == '0') --end;
+  if (text[end - 1] == '.') --end;
+  return text.substr(0, end) + text.substr(exponent);
+}
+
+Line line_of(const std::string& label, const Number& number, const refine::RefinedOrbit& orbit) {
+  constexpr int guard = 3;  // of the arithmetic in which an exact number is held
+  if (number.error == 0) return {label, exact_text(number.value, orbit.working_digits - guard), "exact"};
+  const int digits = orbit.digits;
   const double size = numerics::log10_abs(number.value);
   const double error = numerics::log10_abs(number.error);
+  if (error >= size) return {label, "0", bound_text(numerics::log10_abs(Extended(number.error + abs(number.value))))};
   // As many digits as the bound allows: half a unit of the last one is their rounding.
   const int shown = std::clamp(static_cast<int>(std::floor(size - error)), 1, digits);
   const double half_unit = std::log10(0.5) + std::floor(size) + 1.0 - shown;
@@ -56,7 +67,7 @@ std::string parameter_texts(const systems::System& system) {
 
 std::string start_text(const systems::System& system, const refine::RefinedOrbit& orbit) {
   if (orbit.largest) return fmt::format("where {} is largest", system.info().state_names[*orbit.largest]);
-  return fmt::format("on the fixed set of a reversor, where {} is larger than half a period later",
+  return fmt::format("on the fixed set of {}, where {} is larger than half a period later", orbit.reversor,
                      system.info().state_names.front());
 }
 
@@ -69,17 +80,17 @@ std::string refined_text(const std::string& title, const RefinedLabels& labels, 
   heading.emplace_back("t = 0", start_text(system, orbit));
   std::string text = title + "\n";
   for (const auto& [label, words] : heading) text += fmt::format("  {:<19}{}\n", label, words);
-  std::vector<Line> lines{line_of("period", orbit.period, orbit.digits), line_of("energy", orbit.energy, orbit.digits)};
+  std::vector<Line> lines{line_of("period", orbit.period, orbit), line_of("energy", orbit.energy, orbit)};
   for (std::size_t i = 0; i < orbit.state.size(); ++i)
-    lines.push_back(line_of(system.info().state_names[i] + "(0)", orbit.state[i], orbit.digits));
+    lines.push_back(line_of(system.info().state_names[i] + "(0)", orbit.state[i], orbit));
   if (orbit.index) {
-    lines.push_back(line_of("index", *orbit.index, orbit.digits));
+    lines.push_back(line_of("index", *orbit.index, orbit));
     if (orbit.order > 1)
-      lines.push_back(line_of(fmt::format("index over T/{}", orbit.order), *orbit.fundamental_index, orbit.digits));
+      lines.push_back(line_of(fmt::format("index over T/{}", orbit.order), *orbit.fundamental_index, orbit));
   }
   const char* names[2][2] = {{"multiplier", "its inverse"}, {"multiplier, real", "imaginary"}};
   for (std::size_t i = 0; i < orbit.multipliers.size(); ++i)
-    lines.push_back(line_of(names[orbit.unit_circle ? 1 : 0][i], orbit.multipliers[i], orbit.digits));
+    lines.push_back(line_of(names[orbit.unit_circle ? 1 : 0][i], orbit.multipliers[i], orbit));
   std::size_t width = 0;
   for (const Line& line : lines) width = std::max(width, line.value.size() + (line.value.front() == '-' ? 0 : 1));
   for (const Line& line : lines) {

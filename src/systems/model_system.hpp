@@ -33,8 +33,8 @@ namespace orbweaver::systems {
 ///   template <class S> S action_density(const S* z) const;    // NaN where there is none
 /// and, if its structure may name guards,
 ///   double guard(int k, const double* z) const;
-/// Constants are doubles; what none is exactly (1/3, pi) is written as S(1.0) / 3.0 or a function of the scalar, so that
-/// more digits than those of a double can be had.
+/// Constants are doubles; what none is exactly (1/3) is written as S(1.0) / 3.0, so that more digits than those of a
+/// double can be had.
 template <class Model>
 class ModelSystem final : public ComplexSystem, public QuadSystem, public FormulaSystem {
  public:

@@ -19,7 +19,9 @@ using ad::Tape;
 
 /// The quickest order for a tolerance eps is -ln(eps)/2: a step is then 1/e^2 of the radius of convergence (Jorba and
 /// Zou 2005, section 3.2).
-int quickest_order(double digits) { return std::max(4, static_cast<int>(std::ceil(0.5 * std::numbers::ln10 * digits))); }
+int quickest_order(double digits) {
+  return std::max(4, static_cast<int>(std::ceil(0.5 * std::numbers::ln10 * digits)));
+}
 
 }  // namespace
 
@@ -298,7 +300,8 @@ Flow<Real>::Flow(const systems::Formulas& formulas, const std::vector<Real>& par
   core::require(parameters.size() == formulas.parameters.size(), "one value a parameter");
   const auto d = static_cast<std::size_t>(formulas.dimension);
   core::require(options.scales.empty() || options.scales.size() == d, "one scale a coordinate");
-  for (std::size_t i = 0; i < d; ++i) _log_scales.push_back(options.scales.empty() ? 0.0 : std::log10(options.scales[i]));
+  for (std::size_t i = 0; i < d; ++i)
+    _log_scales.push_back(options.scales.empty() ? 0.0 : std::log10(options.scales[i]));
 }
 
 template <class Real>

@@ -25,6 +25,11 @@ fill() {
       orbweaver) words+=("$program") ;;
       SCENE) words+=("$scene" "${quick[@]}") ;;
       ATLAS) words+=(DIR/atlas.h5) ;;
+      FAMILY) words+=(In-Phase) ;;
+      ORBIT) words+=(T=8.45) ;;
+      ROW) words+=(0) ;;
+      N) words+=(20) ;;
+      FILE.txt) words+=(DIR/refined.txt) ;;
       *) words+=("$word") ;;
     esac
   done

@@ -23,9 +23,9 @@ enum class Operation {
   negate,
   sqrt,
   exp,
-  sine,     ///< the next node is the cosine of the same operand
-  cosine,   ///< the node before is the sine
-  log,      ///< `second` is the derivative 1/x; as those of the next three theirs
+  sine,    ///< the next node is the cosine of the same operand
+  cosine,  ///< the node before is the sine
+  log,     ///< `second` is the derivative 1/x; as those of the next three theirs
   asin,
   acos,
   atan,

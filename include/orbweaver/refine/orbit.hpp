@@ -48,10 +48,11 @@ struct RefinedOrbit {
   std::vector<Number> state;  ///< at t = 0, in standard phase
   Number period;
   Number energy;
-  int order = 1;                             ///< p of the fundamental map
-  std::optional<Number> index;               ///< mu + 1/mu of the full period; none in the plane
-  std::optional<Number> fundamental_index;   ///< the same of the fundamental map
-  std::optional<std::size_t> largest;        ///< the coordinate that is largest at t = 0; none: a reversor fixes t = 0
+  int order = 1;                            ///< p of the fundamental map
+  std::optional<Number> index;              ///< mu + 1/mu of the full period; none in the plane
+  std::optional<Number> fundamental_index;  ///< the same of the fundamental map
+  std::string reversor;                     ///< on whose fixed set t = 0 lies; empty: none
+  std::optional<std::size_t> largest;       ///< then the coordinate that is largest at t = 0
   /// Of the full period, where the index is not +-2: mu > 1/mu in modulus, real; or the real and imaginary part of the
   /// one above the real axis.
   std::vector<Number> multipliers;
@@ -60,8 +61,8 @@ struct RefinedOrbit {
   int digits = 0;
   int working_digits = 0;  ///< of the last computation
   int taylor_order = 0;
-  long steps = 0;      ///< of all integrations
-  int segments = 0;    ///< of multiple shooting
+  long steps = 0;    ///< of all integrations
+  int segments = 0;  ///< of multiple shooting
 };
 
 /// The orbit near the guess whose period or energy is the held one.

@@ -31,8 +31,8 @@ class StoredFamily {
   };
   /// Throws InputError where the family has no such step.
   [[nodiscard]] Place at_step(int step) const;
-  /// The place with this period or energy, of those behind the step `after`. Throws InputError where the family has none
-  /// there, or several, naming them.
+  /// The place with this period or energy, the first one behind the step `after` if that is given. Throws InputError
+  /// where the family has none there, or has several and no step is given, naming them.
   [[nodiscard]] Place with(const HeldValue& value, std::optional<int> after) const;
   /// Polynomials through the orbits beside it. Throws InputError for a family of less than two orbits.
   [[nodiscard]] Place at_arclength(double arclength) const;

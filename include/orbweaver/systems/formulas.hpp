@@ -13,12 +13,12 @@ namespace orbweaver::systems {
 struct Formulas {
   int dimension = 0;
   ad::Tape tape;
-  std::vector<int> field;                              ///< f(z)
-  std::vector<int> variations;                         ///< df/dz V, entry (i, c) at i d + c
-  std::vector<int> conserved;                          ///< one a conserved quantity
-  std::vector<std::vector<int>> conserved_gradients;   ///< d nodes each
-  std::vector<std::string> parameters;                 ///< in the order of the tape's parameters
-  std::vector<double> values;                          ///< theirs
+  std::vector<int> field;                             ///< f(z)
+  std::vector<int> variations;                        ///< df/dz V, entry (i, c) at i d + c
+  std::vector<int> conserved;                         ///< one a conserved quantity
+  std::vector<std::vector<int>> conserved_gradients;  ///< d nodes each
+  std::vector<std::string> parameters;                ///< in the order of the tape's parameters
+  std::vector<double> values;                         ///< theirs
 };
 
 /// A system that gives its formulas, in the units of its parameters. All registered systems do.
