@@ -50,16 +50,17 @@ TrueOrbit::TrueOrbit(const std::shared_ptr<const systems::System>& plain, const 
       _orbit(refined(_guess, _held)),
       _fractions(even_fractions()),
       _states(in_scales(refine::states_of(_guess, _orbit, _fractions))) {
-  const Eigen::Index d = scaled.dimension();
   _neutral.resize(_states.size(), 2);
-  for (Eigen::Index n = 0; n < instants; ++n) {
-    const Eigen::VectorXd z = _states.segment(n * d, d);
-    Eigen::VectorXd f(d);
-    scaled.field(1, z.data(), f.data());
-    _neutral.col(0).segment(n * d, d) = f;
-  }
+  _neutral.col(0) = velocities(_states);
   _neutral.col(1) = samples_of(neighbour) - samples_of(near);
   _neutral.colwise().normalize();
+}
+
+Eigen::VectorXd TrueOrbit::velocities(const Eigen::VectorXd& states) const {
+  const Eigen::Index d = _scaled.dimension();
+  Eigen::VectorXd out(states.size());
+  for (Eigen::Index n = 0; n < states.size(); n += d) _scaled.field(1, states.data() + n, out.data() + n);
+  return out;
 }
 
 Eigen::VectorXd TrueOrbit::in_scales(const std::vector<std::vector<double>>& states) const {
@@ -89,8 +90,13 @@ double TrueOrbit::error_of(const loop::Loop& orbit) const {
   return rest.lpNorm<Eigen::Infinity>();
 }
 
-double TrueOrbit::error_of(const refine::ShotOrbit& orbit) const {
-  const Eigen::VectorXd off = in_scales(orbit.states) - in_scales(refine::states_of(_guess, _orbit, orbit.fractions));
+double TrueOrbit::error_of(const refine::ShotOrbit& orbit, bool shifted) const {
+  const Eigen::VectorXd states = in_scales(refine::states_of(_guess, _orbit, orbit.fractions));
+  Eigen::VectorXd off = in_scales(orbit.states) - states;
+  if (shifted) {
+    const Eigen::VectorXd shift = velocities(states);
+    off -= shift * (shift.dot(off) / shift.squaredNorm());
+  }
   return off.lpNorm<Eigen::Infinity>();
 }
 

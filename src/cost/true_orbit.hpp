@@ -24,14 +24,16 @@ class TrueOrbit {
   /// The largest |z - z_true| over instants of the period and over coordinates, in the scales, less what a shift of time
   /// and another place on the family explain (least squares): both are the solver's choice, not its error.
   [[nodiscard]] double error_of(const loop::Loop& orbit) const;
-  /// The same at the nodes of an orbit that has exactly the period or energy held.
-  [[nodiscard]] double error_of(const refine::ShotOrbit& orbit) const;
+  /// The same at the nodes of an orbit that has exactly the period or energy held, in standard phase or, `shifted`, a
+  /// little beside it.
+  [[nodiscard]] double error_of(const refine::ShotOrbit& orbit, bool shifted = false) const;
 
   [[nodiscard]] const refine::Guess& guess() const { return _guess; }
   [[nodiscard]] const refine::HeldValue& held() const { return _held; }
 
  private:
   [[nodiscard]] Eigen::VectorXd samples_of(const loop::Loop& orbit) const;
+  [[nodiscard]] Eigen::VectorXd velocities(const Eigen::VectorXd& states) const;
   [[nodiscard]] Eigen::VectorXd in_scales(const std::vector<std::vector<double>>& states) const;
 
   const systems::System& _scaled;

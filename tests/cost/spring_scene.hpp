@@ -17,7 +17,7 @@ starts:
     names: {[0, -1.3333333333]: [Swing, Bounce]}
   sweep: {period: [3, 8]}
 continuation: {start: 0.01}
-limits: {energy: [-.inf, -1.5], steps: 60}
+limits: {energy: [-.inf, -0.8], steps: 60}
 )",
                       "spring.yaml", overrides);
 }

@@ -13,7 +13,7 @@ cost::Table sample() {
   return {"ladder",
           "A family: error against time",
           {{"orbit"}, {"solver"}, {"time per orbit", "s"}, {"error"}},
-          {{"middle", "one", 0.25, 1e-3}, {"middle", "two, or \"so\"", 1.0 / 3.0, 0.0}, {"end", "one", {}, 2.0}},
+          {{"middle", "one", 0.25, 1e-3}, {"middle", "two, or \"so\"", 1.0 / 3.0, 0.0}, {"middle", "one", 0.5, 1e-5}, {"end", "one", {}, 2.0}},
           {"A remark."},
           cost::Plot{2, 3, {1}, 0}};
 }
@@ -23,6 +23,7 @@ TEST(CostReport, CsvHasUnitsAllDigitsAndQuotes) {
             "orbit,solver,time_per_orbit_s,error\n"
             "middle,one,0.25,0.001\n"
             "middle,\"two, or \"\"so\"\"\",0.3333333333333333,0\n"
+            "middle,one,0.5,1e-05\n"
             "end,one,,2\n");
 }
 
@@ -43,7 +44,7 @@ TEST(CostReport, APictureForEachPanelWithTheNumbersThatHaveAPlaceOnLogarithmicAx
   EXPECT_THAT(script, HasSubstr("set output 'ladder_middle.svg'"));
   EXPECT_THAT(script, HasSubstr("set xlabel 'time per orbit [s]'"));
   EXPECT_THAT(script, HasSubstr("set ylabel 'error'"));
-  EXPECT_THAT(script, HasSubstr("0.25 0.001\n"));
+  EXPECT_THAT(script, HasSubstr("0.25 0.001\n0.5 1e-05\n"));
   EXPECT_THAT(script, Not(HasSubstr("two, or")));  // its only error is 0
   cost::Table without = sample();
   without.plot.reset();

@@ -2,22 +2,18 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <fstream>
+#include <optional>
 #include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spawn.h>
-#include <sys/wait.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/process.hpp"
 #include "text_grid.hpp"
-
-extern char** environ;
 
 namespace orbweaver::report {
 
@@ -209,15 +205,9 @@ bool draw(const std::filesystem::path& folder, const Picture& picture) {
   file << "cd " << quoted(std::filesystem::absolute(folder).string()) << "\n" << picture.script;
   file.close();
   if (!file) throw core::EnvironmentError(fmt::format("cannot write {}", script.string()));
-  std::string program = "gnuplot";
-  std::string argument = script.string();
-  std::array<char*, 3> arguments{program.data(), argument.data(), nullptr};
-  pid_t process = 0;
-  const int failed = posix_spawnp(&process, program.c_str(), nullptr, nullptr, arguments.data(), environ);
-  if (failed == ENOENT) return false;
-  if (failed != 0) throw core::EnvironmentError(fmt::format("gnuplot cannot be started: {}", std::strerror(failed)));
-  int status = 0;
-  if (waitpid(process, &status, 0) != process || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
+  const std::optional<int> status = core::run_program({"gnuplot", script.string()});
+  if (!status) return false;
+  if (*status != 0)
     throw core::EnvironmentError(fmt::format("gnuplot could not draw {}; its messages are above", script.string()));
   return true;
 }
