@@ -42,7 +42,8 @@ int run(const Options& options, const Invocation& invocation) {
   if (!options.directory.empty() && comm.is_root()) {
     std::error_code error;
     std::filesystem::create_directories(options.directory, error);
-    if (error) throw core::EnvironmentError(fmt::format("cannot make {}: {}", options.directory.string(), error.message()));
+    if (error)
+      throw core::EnvironmentError(fmt::format("cannot make {}: {}", options.directory.string(), error.message()));
   }
   bool has_gnuplot = true;
   cost::measure(comm, scene, options.cost, [&](const cost::Table& table) {
@@ -53,7 +54,8 @@ int run(const Options& options, const Invocation& invocation) {
       has_gnuplot = has_gnuplot && report::draw(options.directory, picture);
   });
   if (!has_gnuplot)
-    core::log_warning("no pictures: gnuplot is not installed (apt-get install gnuplot-nox); the tables are there as CSV");
+    core::log_warning(
+        "no pictures: gnuplot is not installed (apt-get install gnuplot-nox); the tables are there as CSV");
   if (comm.is_root()) warn_of_unused_options(session, core::Communicator(MPI_COMM_SELF));
   return static_cast<int>(core::ExitStatus::done);
 }
@@ -64,7 +66,8 @@ Command make_cost_command(CLI::App& program) {
   const auto options = std::make_shared<Options>();
   CLI::App* parser = program.add_subcommand("cost", "What accuracy costs in time, on the scene's own families");
   add_scene_options(*parser, options->scene);
-  parser->add_option("-o,--output", options->directory, "A folder for the tables (CSV) and their plots")->type_name("DIR");
+  parser->add_option("-o,--output", options->directory, "A folder for the tables (CSV) and their plots")
+      ->type_name("DIR");
   parser->add_option("--only", options->cost.only, "Some of the ladders, as a,b")->delimiter(',')->type_name("NAMES");
   parser->add_option("--family", options->cost.family, "The family to measure on (default: the scene's first)")
       ->type_name("NAME");

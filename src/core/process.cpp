@@ -70,7 +70,8 @@ std::optional<int> run_program(const std::vector<std::string>& words, const Proc
   int status = 0;
   while (waitpid(process, &status, 0) == -1)
     if (errno != EINTR) throw EnvironmentError(fmt::format("{} was lost: {}", words.front(), std::strerror(errno)));
-  if (!WIFEXITED(status)) throw EnvironmentError(fmt::format("{} was ended by signal {}", words.front(), WTERMSIG(status)));
+  if (!WIFEXITED(status))
+    throw EnvironmentError(fmt::format("{} was ended by signal {}", words.front(), WTERMSIG(status)));
   return WEXITSTATUS(status);
 }
 

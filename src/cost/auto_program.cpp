@@ -22,8 +22,8 @@ namespace orbweaver::cost {
 
 namespace {
 
-/// A step of AUTO in parts of the period, and how many before the period it begins: it notices only what it passes after
-/// its first step.
+/// A step of AUTO in parts of the period, and how many before the period it begins: it notices only what it passes
+/// after its first step.
 constexpr double step = 1e-3;
 constexpr double begin = 2.5;
 constexpr int most_steps = 12;
@@ -171,7 +171,8 @@ AutoProgram::AutoProgram(const Setting& setting, const TrueOrbit& truth, const D
       _target(std::stod(truth.held().decimal)) {
   std::filesystem::create_directories(_folder);
   write(_folder / "system.f90", source(refine::refinable_formulas(*setting.plain()), _target));
-  std::vector<std::string> words{"gfortran", "-O3", "-march=native", "-fopenmp", "-w", "-fallow-argument-mismatch", "system.f90", "-o", "program"};
+  std::vector<std::string> words{"gfortran",   "-O3", "-march=native", "-fopenmp", "-w", "-fallow-argument-mismatch",
+                                 "system.f90", "-o",  "program"};
   for (const auto& entry : std::filesystem::directory_iterator(auto_folder() / "lib"))
     if (entry.path().extension() == ".o") words.push_back(entry.path().string());
   if (core::run_program(words, {_folder, {}, false}) != 0)

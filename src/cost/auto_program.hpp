@@ -10,9 +10,9 @@
 
 namespace orbweaver::cost {
 
-/// AUTO-07p on the same orbit: its program, made of the system's formulas and compiled in a folder of its own (which goes
-/// with the object), whole loop, Gauss collocation with four points a mesh interval. A conservative family has one
-/// parameter mu more, the multiple of grad H in the field; the free parameters are T and mu.
+/// AUTO-07p on the same orbit: its program, made of the system's formulas and compiled in a folder of its own (which
+/// goes with the object), whole loop, Gauss collocation with four points a mesh interval. A conservative family has
+/// one parameter mu more, the multiple of grad H in the field; the free parameters are T and mu.
 class AutoProgram {
  public:
   /// Why there is none: AUTO-07p or gfortran missing (AUTO_DIR, else /usr/lib/auto-07p), an orbit that its period does
@@ -29,7 +29,8 @@ class AutoProgram {
   void prepare(int intervals, double tolerance) const;
   /// Runs it: a process, from a little before the period to exactly the one held. False where it fails.
   [[nodiscard]] bool run() const;
-  /// What the last run found: the states at the ends of its mesh intervals. Throws NumericalError where it found nothing.
+  /// What the last run found: the states at the ends of its mesh intervals. Throws NumericalError where it found
+  /// nothing.
   [[nodiscard]] refine::ShotOrbit found() const;
 
   static constexpr int points = 4;

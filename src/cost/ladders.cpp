@@ -63,13 +63,17 @@ void measure(const core::Communicator& comm, const scene::Scene& scene, const Op
   check_names(options.only);
   const Setting setting(comm, scene, options);
   for (const Ladder* ladder : ladders) {
-    const bool wanted = options.only.empty() ||
-                        std::find(options.only.begin(), options.only.end(), ladder->name) != options.only.end();
+    const bool wanted =
+        options.only.empty() || std::find(options.only.begin(), options.only.end(), ladder->name) != options.only.end();
     if (!wanted) continue;
     try {
       if (comm.is_root() || ladder->collective) ladder->measure(setting, take);
     } catch (const core::NumericalError& error) {  // the other ladders may still be climbed
-      take({std::string(ladder->name), std::string(ladder->about), {}, {}, {fmt::format("not measured: {}", error.what())}});
+      take({std::string(ladder->name),
+            std::string(ladder->about),
+            {},
+            {},
+            {fmt::format("not measured: {}", error.what())}});
     }
     wait_for_root(comm);
   }

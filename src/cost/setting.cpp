@@ -58,9 +58,9 @@ void Setting::choose_family(const std::string& wanted) {
     }
     ++index;
   }
-  throw core::InputError(names.empty() ? "the scene has no family of small oscillations: nothing to measure on"
-                                       : fmt::format("expected --family to be one of {}, got `{}`",
-                                                     fmt::join(names, ", "), wanted));
+  throw core::InputError(
+      names.empty() ? "the scene has no family of small oscillations: nothing to measure on"
+                    : fmt::format("expected --family to be one of {}, got `{}`", fmt::join(names, ", "), wanted));
 }
 
 void Setting::trace() {
@@ -69,10 +69,12 @@ void Setting::trace() {
               return true;
             }).text();
   if (_orbits.size() < least_orbits)
-    throw core::InputError(fmt::format("{} has {} orbits, too few to measure on: {}", _family, _orbits.size(), _ending));
+    throw core::InputError(
+        fmt::format("{} has {} orbits, too few to measure on: {}", _family, _orbits.size(), _ending));
   const auto step_at = [this](double part) {
-    const auto at = std::lower_bound(_orbits.begin(), _orbits.end(), part * _orbits.back().arclength,
-                                     [](const continuation::Orbit& o, double arclength) { return o.arclength < arclength; });
+    const auto at =
+        std::lower_bound(_orbits.begin(), _orbits.end(), part * _orbits.back().arclength,
+                         [](const continuation::Orbit& o, double arclength) { return o.arclength < arclength; });
     return std::max<std::size_t>(1, static_cast<std::size_t>(at - _orbits.begin()));
   };
   continuation::Branch branch(system(), _start, _options);
@@ -89,8 +91,7 @@ void Setting::trace() {
 
 const TrueOrbit& Setting::truth_of(const Probe& probe) const {
   std::unique_ptr<TrueOrbit>& truth = _truths.at(static_cast<std::size_t>(&probe - _probes.data()));
-  if (!truth)
-    truth = std::make_unique<TrueOrbit>(_plain, *system(), probe.orbit.loop, probe.neighbour, isotropy());
+  if (!truth) truth = std::make_unique<TrueOrbit>(_plain, *system(), probe.orbit.loop, probe.neighbour, isotropy());
   return *truth;
 }
 
@@ -100,8 +101,8 @@ TrueOrbit Setting::truth_beside(const loop::Loop& orbit, const loop::Loop& neigh
 
 std::optional<FoundEvent> Setting::first_event(const continuation::Options& options) const {
   const systems::Structure& structure = system()->structure();
-  const auto functions = bifurcation::test_functions(
-      structure, loop::SymmetryGroup(structure, isotropy()).order(), this->scene().survey.subharmonics);
+  const auto functions = bifurcation::test_functions(structure, loop::SymmetryGroup(structure, isotropy()).order(),
+                                                     this->scene().survey.subharmonics);
   if (functions.empty()) return std::nullopt;
   continuation::FamilyCurve curve(system(), isotropy(), options);
   bifurcation::Detector detector;

@@ -33,9 +33,9 @@ struct FoundEvent {
   std::vector<continuation::FamilyCurve::Known> known;
 };
 
-/// What is measured on: a scene, one of its families, two orbits of that. The family: the first one of the scene's first
-/// equilibrium that has any (or the one named), as far as the scene follows it. The orbits: those in the middle of its
-/// arclength and at nine tenths of it.
+/// What is measured on: a scene, one of its families, two orbits of that. The family: the first one of the scene's
+/// first equilibrium that has any (or the one named), as far as the scene follows it. The orbits: those in the middle
+/// of its arclength and at nine tenths of it.
 class Setting {
  public:
   /// Throws as cost::measure.
@@ -45,8 +45,8 @@ class Setting {
   [[nodiscard]] bool quick() const { return _quick; }
   /// Seconds to spend on repetitions of one measurement.
   [[nodiscard]] double budget() const { return _quick ? 0.02 : 0.2; }
-  [[nodiscard]] const scene::Scene& asked() const { return _asked; }                  ///< in the units of the user
-  [[nodiscard]] const scene::Scene& scene() const { return _scaled.scene(); }         ///< in the scales
+  [[nodiscard]] const scene::Scene& asked() const { return _asked; }           ///< in the units of the user
+  [[nodiscard]] const scene::Scene& scene() const { return _scaled.scene(); }  ///< in the scales
   [[nodiscard]] const std::shared_ptr<const systems::System>& plain() const { return _plain; }
   [[nodiscard]] const std::shared_ptr<const systems::System>& system() const { return _scaled.system(); }
   [[nodiscard]] const std::string& family() const { return _family; }

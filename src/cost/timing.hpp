@@ -10,8 +10,8 @@ struct Timing {
   int repetitions = 0;
 };
 
-/// Runs it once to warm up, then until `budget` seconds have passed, at least once and at most `most_repetitions` times.
-/// What took longer than ten budgets the first time is not repeated: that time is the result.
+/// Runs it once to warm up, then until `budget` seconds have passed, at least once and at most `most_repetitions`
+/// times. What took longer than ten budgets the first time is not repeated: that time is the result.
 [[nodiscard]] Timing timing_of(const std::function<void()>& work, double budget);
 
 inline constexpr int most_repetitions = 101;

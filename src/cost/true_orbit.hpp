@@ -16,13 +16,13 @@ namespace orbweaver::cost {
 /// An orbit of a family to more digits than double precision has, to hold others against.
 class TrueOrbit {
  public:
-  /// The orbit with the period or the energy of `near`, a loop in the scales of `scaled` with this isotropy. `neighbour`:
-  /// an orbit of the family beside it, in phase with it. Throws what refine::refine_orbit does.
+  /// The orbit with the period or the energy of `near`, a loop in the scales of `scaled` with this isotropy.
+  /// `neighbour`: an orbit of the family beside it, in phase with it. Throws what refine::refine_orbit does.
   TrueOrbit(const std::shared_ptr<const systems::System>& plain, const systems::System& scaled, const loop::Loop& near,
             const loop::Loop& neighbour, const loop::Isotropy& isotropy);
 
-  /// The largest |z - z_true| over instants of the period and over coordinates, in the scales, less what a shift of time
-  /// and another place on the family explain (least squares): both are the solver's choice, not its error.
+  /// The largest |z - z_true| over instants of the period and over coordinates, in the scales, less what a shift of
+  /// time and another place on the family explain (least squares): both are the solver's choice, not its error.
   [[nodiscard]] double error_of(const loop::Loop& orbit) const;
   /// The same at the nodes of an orbit that has exactly the period or energy held, in standard phase or, `shifted`, a
   /// little beside it.
@@ -42,8 +42,8 @@ class TrueOrbit {
   refine::HeldValue _held;
   refine::RefinedOrbit _orbit;
   std::vector<double> _fractions;
-  Eigen::VectorXd _states;     // at the fractions, one after the other, in the scales
-  Eigen::MatrixXd _neutral;    // dz/dt and the family's direction there
+  Eigen::VectorXd _states;   // at the fractions, one after the other, in the scales
+  Eigen::MatrixXd _neutral;  // dz/dt and the family's direction there
 };
 
 }  // namespace orbweaver::cost

@@ -45,8 +45,8 @@ systems::Formulas refinable_formulas(const systems::System& system) {
   if (with_formulas == nullptr)
     throw core::InputError(fmt::format("{} cannot be refined: it does not give its formulas", system.info().title));
   if (structure.conserved.size() != 1 || !structure.symplectic)
-    throw core::InputError(
-        fmt::format("{} cannot be refined: only Hamiltonian systems that conserve one quantity can", system.info().title));
+    throw core::InputError(fmt::format("{} cannot be refined: only Hamiltonian systems that conserve one quantity can",
+                                       system.info().title));
   if (structure.pairs() > 1)
     throw core::InputError(fmt::format("{} cannot be refined: its orbits have {} pairs of multipliers, more than one",
                                        system.info().title, structure.pairs()));

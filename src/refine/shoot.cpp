@@ -59,7 +59,8 @@ std::vector<std::vector<double>> states_of(const Guess& guess, const RefinedOrbi
   double reached = 0.0;
   for (const double fraction : fractions) {
     core::require(fraction >= reached, "the instants increase");
-    if (fraction > reached) flow.advance(state, Extended((Extended(fraction) - Extended(reached)) * orbit.period.value));
+    if (fraction > reached)
+      flow.advance(state, Extended((Extended(fraction) - Extended(reached)) * orbit.period.value));
     reached = fraction;
     std::vector<double>& narrow = states.emplace_back();
     for (const Extended& x : state) narrow.push_back(static_cast<double>(x));

@@ -11,8 +11,8 @@ using namespace orbweaver;
 
 TEST(Timing, LeavesTheFirstRunOut) {
   int runs = 0;
-  const cost::Timing timing = cost::timing_of(
-      [&] { std::this_thread::sleep_for(std::chrono::milliseconds(++runs == 1 ? 60 : 4)); }, 0.02);
+  const cost::Timing timing =
+      cost::timing_of([&] { std::this_thread::sleep_for(std::chrono::milliseconds(++runs == 1 ? 60 : 4)); }, 0.02);
   EXPECT_LT(timing.seconds, 0.03);
   EXPECT_GE(timing.seconds, 0.004);
   EXPECT_EQ(timing.repetitions, runs - 1);
@@ -21,8 +21,12 @@ TEST(Timing, LeavesTheFirstRunOut) {
 
 TEST(Timing, DoesNotRepeatWhatTakesLong) {
   int runs = 0;
-  const cost::Timing timing =
-      cost::timing_of([&] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); ++runs; }, 0.001);
+  const cost::Timing timing = cost::timing_of(
+      [&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        ++runs;
+      },
+      0.001);
   EXPECT_EQ(runs, 1);
   EXPECT_EQ(timing.repetitions, 1);
   EXPECT_GE(timing.seconds, 0.02);

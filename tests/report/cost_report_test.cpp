@@ -13,7 +13,10 @@ cost::Table sample() {
   return {"ladder",
           "A family: error against time",
           {{"orbit"}, {"solver"}, {"time per orbit", "s"}, {"error"}},
-          {{"middle", "one", 0.25, 1e-3}, {"middle", "two, or \"so\"", 1.0 / 3.0, 0.0}, {"middle", "one", 0.5, 1e-5}, {"end", "one", {}, 2.0}},
+          {{"middle", "one", 0.25, 1e-3},
+           {"middle", "two, or \"so\"", 1.0 / 3.0, 0.0},
+           {"middle", "one", 0.5, 1e-5},
+           {"end", "one", {}, 2.0}},
           {"A remark."},
           cost::Plot{2, 3, {1}, 0}};
 }

@@ -13,9 +13,9 @@ namespace orbweaver::cost {
 
 /// What to measure, and how long.
 struct Options {
-  std::string family;              ///< its name; empty: the scene's first
-  std::vector<std::string> only;   ///< names of ladders; empty: all
-  bool quick = false;              ///< fewer rungs, fewer repetitions
+  std::string family;             ///< its name; empty: the scene's first
+  std::vector<std::string> only;  ///< names of ladders; empty: all
+  bool quick = false;             ///< fewer rungs, fewer repetitions
 };
 
 /// The ladders that there are: name and what each measures.
@@ -25,9 +25,9 @@ struct LadderInfo {
 };
 [[nodiscard]] std::vector<LadderInfo> known_ladders();
 
-/// Measures on the scene's own families (docs/accuracy.md) and hands over each table as it is done, on rank 0. Collective
-/// over `comm`: other ranks than 0 take part in the ladder `ranks` only. Throws InputError for a scene that cannot be
-/// surveyed, a family or a ladder that there is not, or a system that cannot be refined.
+/// Measures on the scene's own families (docs/accuracy.md) and hands over each table as it is done, on rank 0.
+/// Collective over `comm`: other ranks than 0 take part in the ladder `ranks` only. Throws InputError for a scene
+/// that cannot be surveyed, a family or a ladder that there is not, or a system that cannot be refined.
 void measure(const core::Communicator& comm, const scene::Scene& scene, const Options& options,
              const std::function<void(const Table&)>& take);
 

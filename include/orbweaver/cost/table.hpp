@@ -14,10 +14,10 @@ struct Cell {
   double number = std::numeric_limits<double>::quiet_NaN();
   std::string words{};
 
-  Cell(double value) : number(value) {}                      // NOLINT: cells of a row are written as they are
-  Cell(int value) : number(value) {}                         // NOLINT
-  Cell(std::string text) : words(std::move(text)) {}         // NOLINT
-  Cell(const char* text) : words(text) {}                    // NOLINT
+  Cell(double value) : number(value) {}               // NOLINT: cells of a row are written as they are
+  Cell(int value) : number(value) {}                  // NOLINT
+  Cell(std::string text) : words(std::move(text)) {}  // NOLINT
+  Cell(const char* text) : words(text) {}             // NOLINT
   /// Nothing: a dash.
   Cell() = default;
 };

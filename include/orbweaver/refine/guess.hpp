@@ -13,8 +13,8 @@ namespace orbweaver::refine {
 /// The isotropy of a loop, known at some phase of it, at its standard phase: there the first reversor has the shift 0.
 [[nodiscard]] loop::Isotropy in_standard_phase(const systems::Structure& structure, loop::Isotropy isotropy);
 
-/// A guess from a loop at any phase, told in the scales of `scaled`, with its `isotropy` at that phase. `plain`: the same
-/// system in the units of its parameters.
+/// A guess from a loop at any phase, told in the scales of `scaled`, with its `isotropy` at that phase. `plain`: the
+/// same system in the units of its parameters.
 [[nodiscard]] Guess guess_of(std::shared_ptr<const systems::System> plain, const systems::System& scaled,
                              const loop::Loop& loop, const loop::Isotropy& isotropy);
 

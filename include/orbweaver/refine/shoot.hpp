@@ -14,9 +14,9 @@ struct ShotOrbit {
   double period = 0.0;
 };
 
-/// Newton's method in double precision on `segments` segments of the fundamental domain: 1 is single shooting, 0 as many
-/// as refine_orbit begins with. Throws InputError as refine_orbit, NumericalError where Newton's method finds no orbit,
-/// MisuseError for more segments than those.
+/// Newton's method in double precision on `segments` segments of the fundamental domain: 1 is single shooting, 0 as
+/// many as refine_orbit begins with. Throws InputError as refine_orbit, NumericalError where Newton's method finds no
+/// orbit, MisuseError for more segments than those.
 [[nodiscard]] ShotOrbit shoot(const Guess& guess, const HeldValue& held, int segments);
 
 /// The states of a refined orbit, rounded to double, at instants t/T that increase, integrated with all of its digits.

@@ -83,7 +83,8 @@ void measure(const Setting& setting, const Take& take) {
     add("refine", digits, timing.seconds, static_cast<double>(found.period.value),
         static_cast<double>(numerics::Extended(found.period.error / found.period.value)));
   }
-  table.remarks.emplace_back("setting: the tolerance of the orbits, or the digits asked for; errors of refine are its bounds");
+  table.remarks.emplace_back(
+      "setting: the tolerance of the orbits, or the digits asked for; errors of refine are its bounds");
   take(table);
 }
 

@@ -23,7 +23,14 @@ double digits_of(const refine::Number& number) {
 void measure(const Setting& setting, const Take& take) {
   Table table{"digits",
               fmt::format("{}: digits of an orbit by `orbweaver refine` against time", setting.family()),
-              {{"orbit"}, {"T"}, {"digits asked for"}, {"time", "s"}, {"digits known"}, {"arithmetic"}, {"Taylor order"}, {"steps"}},
+              {{"orbit"},
+               {"T"},
+               {"digits asked for"},
+               {"time", "s"},
+               {"digits known"},
+               {"arithmetic"},
+               {"Taylor order"},
+               {"steps"}},
               {},
               {},
               Plot{3, 4, {0}, {}}};

@@ -57,8 +57,7 @@ void measure(const Setting& setting, const Take& take) {
     static_cast<void>(continuation::trace(setting.system(), setting.start(), setting.branch_options(),
                                           [](const continuation::Orbit&) { return true; }));
   };
-  const double an_orbit =
-      timing_of(trace, setting.budget()).seconds / static_cast<double>(setting.orbits().size());
+  const double an_orbit = timing_of(trace, setting.budget()).seconds / static_cast<double>(setting.orbits().size());
   Prices prices(setting, table, an_orbit);
   const std::size_t count = std::min(setting.quick() ? quick_samples : samples, setting.orbits().size() - 1);
   continuation::Branch branch(setting.system(), setting.start(), setting.branch_options());
@@ -84,8 +83,7 @@ void measure(const Setting& setting, const Take& take) {
     if (crossing)
       prices.add("kernel", crossing->point.loop, [&] {
         const bifurcation::Sector& sector = found->event.function.sector;
-        static_cast<void>(
-            bifurcation::kernel_of(system, crossing->point, isotropy, sector, sector.q <= 2 ? 1 : 2));
+        static_cast<void>(bifurcation::kernel_of(system, crossing->point, isotropy, sector, sector.q <= 2 ? 1 : 2));
       });
     else
       table.rows.push_back({"kernel", {}, {}, {}, {}, "no crossing was located: " + to_text(why)});
@@ -94,7 +92,8 @@ void measure(const Setting& setting, const Take& take) {
     table.rows.push_back({"kernel", {}, {}, {}, {}, "no crossing"});
   }
   table.rows.push_back({"section", {}, {}, {}, {}, "crossings of a section are not computed yet"});
-  table.remarks.emplace_back(fmt::format("an orbit of this branch takes {:.3g} ms; `orbits`: the price in them", 1e3 * an_orbit));
+  table.remarks.emplace_back(
+      fmt::format("an orbit of this branch takes {:.3g} ms; `orbits`: the price in them", 1e3 * an_orbit));
   take(table);
 }
 

@@ -32,7 +32,8 @@ constexpr double usual_tolerance = 1e-10;
 /// The first ranks of a communicator; none on the others. Collective.
 std::optional<core::Communicator> first_ranks(const core::Communicator& comm, int count) {
   MPI_Comm part = MPI_COMM_NULL;
-  core::check_mpi(MPI_Comm_split(comm.get(), comm.rank() < count ? 0 : MPI_UNDEFINED, comm.rank(), &part), "MPI_Comm_split");
+  core::check_mpi(MPI_Comm_split(comm.get(), comm.rank() < count ? 0 : MPI_UNDEFINED, comm.rank(), &part),
+                  "MPI_Comm_split");
   if (part == MPI_COMM_NULL) return std::nullopt;
   std::optional<core::Communicator> own(part);
   core::check_mpi(MPI_Comm_free(&part), "MPI_Comm_free");
@@ -49,9 +50,8 @@ void survey_with(const Setting& setting, const core::Communicator& part, int cou
   const std::filesystem::path folder = scratch_folder(part);
   const scene::Scene bases = scene::parse(setting.asked().text, "the scene", {"survey.depth=0"});
   survey::Summary summary;
-  const double seconds = seconds_of([&] {
-    summary = survey::run_survey(part, bases, setting.plain(), folder, {survey::Display::none});
-  });
+  const double seconds =
+      seconds_of([&] { summary = survey::run_survey(part, bases, setting.plain(), folder, {survey::Display::none}); });
   if (!part.is_root()) return;
   std::error_code ignored;
   std::filesystem::remove_all(folder, ignored);
@@ -75,13 +75,13 @@ void team_with(const Setting& setting, const core::Communicator& part, int count
   const Probe& probe = setting.probes().back();
   const int cutoff = loop::allowed_cutoff_at_least(setting.quick() ? quick_team_cutoff : team_cutoff);
   const Correction correction(setting, expanded(probe, probe.orbit.loop.time_map, cutoff), {});
-  const double newton = median_together(part, [&] {
-    static_cast<void>(correction.by(corrector::Method::newton_krylov, usual_tolerance, 0, &team));
-  });
+  const double newton = median_together(
+      part, [&] { static_cast<void>(correction.by(corrector::Method::newton_krylov, usual_tolerance, 0, &team)); });
   spectrum::FloquetOptions options;
   options.team = &team;
-  const double stability = median_together(
-      part, [&] { static_cast<void>(spectrum::floquet(*setting.system(), probe.orbit.loop, setting.isotropy(), options)); });
+  const double stability = median_together(part, [&] {
+    static_cast<void>(spectrum::floquet(*setting.system(), probe.orbit.loop, setting.isotropy(), options));
+  });
   if (!part.is_root()) return;
   table.rows.push_back({"whole loop, newton-krylov", count, cutoff, newton, {}});
   table.rows.push_back({"stability", count, probe.orbit.loop.cutoff, stability, {}});

@@ -21,7 +21,7 @@ namespace {
 
 /// Below what any loop reaches: every solver goes on as far as it can.
 constexpr double beyond_reach = 1e-14;
-constexpr double rung = 1.5;         // cutoffs grow by this
+constexpr double rung = 1.5;  // cutoffs grow by this
 constexpr double quick_rung = 2.2;
 constexpr int first_cutoff = 4;
 /// From the cutoff that the branch took on: twice the harmonics show the floor.
@@ -68,7 +68,8 @@ void measure(const Setting& setting, const Take& take) {
               Plot{6, 7, {2, 3}, 0},
               false};
   Table reach{"resolution_reach",
-              fmt::format("{}: seconds in which a way to solve reaches a true error, at the K that is enough", setting.family()),
+              fmt::format("{}: seconds in which a way to solve reaches a true error, at the K that is enough",
+                          setting.family()),
               {{"orbit"}, {"T"}, {"space"}, {"time map"}},
               {},
               {}};
@@ -85,8 +86,8 @@ void measure(const Setting& setting, const Take& take) {
         const Directed guess = expanded(probe, grid.map, cutoff);
         const auto add = [&](const char* space, int unknowns, double seconds, const loop::Loop& found) {
           const double error = truth.error_of(found);
-          table.rows.push_back({probe.name, probe.orbit.loop.period * unit, space, grid.name, found.cutoff, unknowns,
-                                seconds, error});
+          table.rows.push_back(
+              {probe.name, probe.orbit.loop.period * unit, space, grid.name, found.cutoff, unknowns, seconds, error});
           reached[space].add(seconds, error);
         };
         for (const auto& [space, isotropy] :
@@ -101,8 +102,8 @@ void measure(const Setting& setting, const Take& take) {
         if (!obstacle.empty() || cells == last_cells) continue;
         last_cells = cells;
         CollocationResult result;
-        const Timing timing =
-            timing_of([&] { result = by_collocation(setting, guess, guess.loop, cells, beyond_reach); }, setting.budget());
+        const Timing timing = timing_of(
+            [&] { result = by_collocation(setting, guess, guess.loop, cells, beyond_reach); }, setting.budget());
         add("collocation", result.unknowns, timing.seconds, result.loop);
       }
       for (const auto& [space, times] : reached) {
@@ -113,7 +114,8 @@ void measure(const Setting& setting, const Take& take) {
     }
   }
   reach.remarks.emplace_back(
-      "subspace and whole loop by newton-krylov, collocation on the fundamental domain; from the true orbit cut off at K");
+      "subspace and whole loop by newton-krylov, collocation on the fundamental domain; from the true orbit cut off at "
+      "K");
   take(table);
   take(reach);
 }

@@ -79,8 +79,12 @@ Solver by_corrector(const Setting& setting, const TrueOrbit& truth, const Correc
     const int bound = bound_on_iterations(setting, correction, method);
     corrector::Result result;
     const Timing timing = timing_of([&] { result = correction.by(method, tolerance, bound); }, setting.budget());
-    return Attempt{tolerance,         timing.seconds,        truth.error_of(result.loop),
-                   correction.unknowns(), result.iterations, std::string(corrector::name_of(result.outcome)),
+    return Attempt{tolerance,
+                   timing.seconds,
+                   truth.error_of(result.loop),
+                   correction.unknowns(),
+                   result.iterations,
+                   std::string(corrector::name_of(result.outcome)),
                    result.outcome == corrector::Outcome::iteration_limit};
   };
   return solver;
@@ -91,8 +95,9 @@ Solver collocation(const Setting& setting, const TrueOrbit& truth, const Directe
   solver.run = [&](double tolerance) {
     CollocationResult result;
     const int cells = cells_for(setting, guess.loop.cutoff);
-    const Timing timing = timing_of([&] { result = by_collocation(setting, guess, orbit, cells, tolerance); }, setting.budget());
-    return Attempt{tolerance,         timing.seconds,    truth.error_of(result.loop),
+    const Timing timing =
+        timing_of([&] { result = by_collocation(setting, guess, orbit, cells, tolerance); }, setting.budget());
+    return Attempt{tolerance,       timing.seconds,    truth.error_of(result.loop),
                    result.unknowns, result.iterations, result.converged ? "converged" : result.reason};
   };
   return solver;
@@ -156,13 +161,14 @@ std::vector<Solver> solvers_for(const Setting& setting, const TrueOrbit& truth, 
 }
 
 void measure(const Setting& setting, const Take& take) {
-  Table all{"solvers",
-            fmt::format("{}: solvers from one guess, error against time", setting.family()),
-            {{"orbit"}, {"T"}, {"solver"}, {"tolerance"}, {"unknowns"}, {"iterations"}, {"time", "s"}, {"error"}, {"end"}},
-            {},
-            {},
-            Plot{6, 7, {2}, 0},
-            false};
+  Table all{
+      "solvers",
+      fmt::format("{}: solvers from one guess, error against time", setting.family()),
+      {{"orbit"}, {"T"}, {"solver"}, {"tolerance"}, {"unknowns"}, {"iterations"}, {"time", "s"}, {"error"}, {"end"}},
+      {},
+      {},
+      Plot{6, 7, {2}, 0},
+      false};
   Table reach{"solvers_reach",
               fmt::format("{}: seconds in which solvers reach a true error, from one guess", setting.family()),
               {{"orbit"}, {"solver"}, {"unknowns"}},
@@ -197,7 +203,8 @@ void measure(const Setting& setting, const Take& take) {
       "first-order methods end after {} s",
       setting.branch_options().prediction_error, setting.quick() ? quick_patience : patience));
   reach.remarks.emplace_back(
-      "AUTO-07p: a process for each orbit, its start in it, whole loop, multipliers too; 2 to 4 steps along the family");
+      "AUTO-07p: a process for each orbit, its start in it, whole loop, multipliers too; 2 to 4 steps along the "
+      "family");
   take(all);
   take(reach);
 }

@@ -37,7 +37,14 @@ double worst_error(const Setting& setting, const std::vector<loop::Loop>& loops)
 void measure(const Setting& setting, const Take& take) {
   Table table{"tolerance",
               fmt::format("{}: the whole family against the tolerance on sqrt(loss)", setting.family()),
-              {{"solver"}, {"tolerance"}, {"orbits"}, {"largest K"}, {"time", "s"}, {"time per orbit", "s"}, {"worst error"}, {"end"}},
+              {{"solver"},
+               {"tolerance"},
+               {"orbits"},
+               {"largest K"},
+               {"time", "s"},
+               {"time per orbit", "s"},
+               {"worst error"},
+               {"end"}},
               {},
               {},
               Plot{4, 6, {0}, {}}};
@@ -68,7 +75,7 @@ void measure(const Setting& setting, const Take& take) {
                           timing.seconds / orbits, worst_error(setting, loops), end});
   }
   table.remarks.emplace_back(fmt::format("errors of {} orbits spread along the family, the last one included",
-                                      setting.quick() ? quick_samples : samples));
+                                         setting.quick() ? quick_samples : samples));
   take(table);
 }
 

@@ -84,8 +84,9 @@ std::string quoted(const std::string& text) {
 std::string key_of(const Table& table, const std::vector<Cell>& row, const std::vector<std::size_t>& columns) {
   std::vector<std::string> parts;
   for (const std::size_t column : columns)
-    parts.push_back(table.columns[column].name == "time map" ? (row[column].words == "yes" ? "time map" : "even in time")
-                                                             : cell_text(row[column]));
+    parts.push_back(table.columns[column].name == "time map"
+                        ? (row[column].words == "yes" ? "time map" : "even in time")
+                        : cell_text(row[column]));
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
@@ -141,9 +142,11 @@ std::string script_of(const Table& table, const std::string& name, const std::st
       terminal_of(format), quoted(fmt::format("{}.{}", name, ending_of(format))), quoted(title),
       quoted(head_text(table.columns[plot.x])), quoted(head_text(table.columns[plot.y])));
   for (std::size_t n = 0; n < all.size(); ++n)
-    script += fmt::format("{}$data{} using 1:2 with linespoints title {} linecolor '{}' linewidth 1.6 dashtype {} pointtype {} pointsize 0.7",
-                          n == 0 ? "plot " : ", \\\n     ", n, quoted(all[n].key), colours[n % colours.size()],
-                          n / colours.size() + 1, 4 + n % colours.size());
+    script += fmt::format(
+        "{}$data{} using 1:2 with linespoints title {} linecolor '{}' linewidth 1.6 dashtype {} pointtype {} pointsize "
+        "0.7",
+        n == 0 ? "plot " : ", \\\n     ", n, quoted(all[n].key), colours[n % colours.size()], n / colours.size() + 1,
+        4 + n % colours.size());
   return script + "\n";
 }
 
@@ -184,7 +187,8 @@ std::vector<Picture> pictures_of(const Table& table, PlotFormat format) {
   std::vector<Picture> pictures;
   if (!table.plot) return pictures;
   std::vector<std::string> panels;
-  if (!table.plot->panel) panels.emplace_back();
+  if (!table.plot->panel)
+    panels.emplace_back();
   else
     for (const std::vector<Cell>& row : table.rows)
       if (const std::string& panel = row[*table.plot->panel].words;
