@@ -24,7 +24,7 @@ namespace {
 
 /// A step of AUTO in parts of the period, and how many before the period it begins: it notices only what it passes
 /// after its first step.
-constexpr double step = 1e-3;
+constexpr double step = 2e-4;
 constexpr double begin = 2.5;
 constexpr int most_steps = 12;
 constexpr double least_tolerance = 1e-12;  // Newton's method reaches no less
@@ -200,11 +200,11 @@ void AutoProgram::prepare(int intervals, double tolerance) const {
   const double accuracy = std::max(tolerance, least_tolerance);
   write(_folder / "c.run",
         fmt::format("parnames={{1:'mu',11:'PERIOD'}}\nNDIM={}, NTST={}, NCOL={}, IAD=3, IPLT=0, NINT=0, NMX={}, NPR=0, "
-                    "MXBF=0, IID=0, ITMX=8, ITNW=8, NWTN=3, JAC=1\nEPSL={:.0e}, EPSU={:.0e}, EPSS={:.0e}, DS={:.6e}, "
-                    "DSMIN=1e-12, DSMAX=1.0, IADS=0, NPAR=16, THL={{11:0.0}}, THU={{}}, ILP=0\n"
+                    "MXBF=0, IID=0, ITMX=8, ITNW=12, NWTN=3, JAC=1\nEPSL={:.0e}, EPSU={:.0e}, EPSS={:.0e}, DS={:.6e}, "
+                    "DSMIN=1e-12, DSMAX={:.6e}, IADS=1, NPAR=16, THL={{11:0.0}}, THU={{}}, ILP=0\n"
                     "ISW=1, IPS=2, IRS=0, ISP=2, NBC=0\nICP=['PERIOD','mu']\nUZSTOP={{11:{:.17g}}}\n",
                     system.dimension(), intervals, points, most_steps, accuracy, accuracy, accuracy,
-                    step * _target * length, _target));
+                    step * _target * length, step * _target * length, _target));
 }
 
 bool AutoProgram::run() const {

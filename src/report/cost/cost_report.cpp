@@ -123,6 +123,24 @@ bool has_one_place(const std::vector<Series>& all) {
   });
 }
 
+/// gnuplot's filled and open shapes, then its crosses: no two lines of a plot have one.
+std::size_t point_of(std::size_t n) {
+  constexpr std::size_t first_shape = 4;
+  constexpr std::size_t shapes = 10;
+  return n < shapes ? first_shape + n : 1 + (n - shapes) % 3;
+}
+
+/// One notation along an axis: plain numbers where they are short, else powers of ten.
+template <class Of>
+const char* tics_of(const std::vector<Series>& all, const Of& of) {
+  constexpr double short_from = 0.1;
+  constexpr double short_to = 1e5;
+  for (const Series& series : all)
+    for (const auto& point : series.points)
+      if (of(point) < short_from || of(point) > short_to) return "%.0e";
+  return "%g";
+}
+
 std::string script_of(const Table& table, const std::string& name, const std::string& panel, PlotFormat format) {
   const cost::Plot& plot = *table.plot;
   const std::vector<Series> all = series_of(table, panel);
@@ -137,16 +155,19 @@ std::string script_of(const Table& table, const std::string& name, const std::st
       panel.empty() ? table.title : fmt::format("{} ({} {})", table.title, table.columns[*plot.panel].name, panel);
   script += fmt::format(
       "set terminal {} noenhanced\nset output {}\nset title {}\nset xlabel {}\nset ylabel {}\n"
-      "set logscale xy\nset grid xtics ytics linecolor '#cccccc' linewidth 0.5\nset border 3\nset tics nomirror\n"
-      "set key below horizontal\nset format x '%g'\nset format y '%g'\n",
+      "set logscale xy\nset grid xtics ytics linetype 1 linecolor '#dddddd' linewidth 0.6\nset border 3\nset tics "
+      "nomirror\n"
+      "set key below horizontal height 1\nset xlabel offset 0,0.4\nset format x '{}'\nset format y '{}'\n",
       terminal_of(format), quoted(fmt::format("{}.{}", name, ending_of(format))), quoted(title),
-      quoted(head_text(table.columns[plot.x])), quoted(head_text(table.columns[plot.y])));
+      quoted(head_text(table.columns[plot.x])), quoted(head_text(table.columns[plot.y])),
+      tics_of(all, [](const auto& point) { return point.first; }),
+      tics_of(all, [](const auto& point) { return point.second; }));
   for (std::size_t n = 0; n < all.size(); ++n)
     script += fmt::format(
         "{}$data{} using 1:2 with linespoints title {} linecolor '{}' linewidth 1.6 dashtype {} pointtype {} pointsize "
         "0.7",
         n == 0 ? "plot " : ", \\\n     ", n, quoted(all[n].key), colours[n % colours.size()], n / colours.size() + 1,
-        4 + n % colours.size());
+        point_of(n));
   return script + "\n";
 }
 
