@@ -22,11 +22,8 @@ namespace orbweaver::cost {
 
 namespace {
 
-/// A step of AUTO in parts of the period, and how many before the period it begins: it notices only what it passes
-/// after its first step.
-constexpr double step = 2e-4;
-constexpr double begin = 2.5;
-constexpr int most_steps = 12;
+/// AUTO's step along the family, in parts of the change of the orbit with its period: little but a correction.
+constexpr double step = 1e-6;
 constexpr double least_tolerance = 1e-12;  // Newton's method reaches no less
 
 std::filesystem::path auto_folder() {
@@ -89,7 +86,7 @@ SUBROUTINE STPNT(NDIM,U,PAR,T)
      ENDDO
      CLOSE(47)
   ENDIF
-  PAR(1)=0; PAR(11)=period
+  PAR(1)=0; PAR(3)=period; PAR(11)=period
   U=states(:,NINT(T*n))
 END SUBROUTINE STPNT
 
@@ -101,7 +98,7 @@ SUBROUTINE PVLS(NDIM,U,PAR)
   DOUBLE PRECISION, EXTERNAL :: GETP
   DOUBLE PRECISION t
   INTEGER i,n,c
-  IF(ABS(PAR(11)-TARGET)>1d-9*TARGET)RETURN
+  IF(PAR(11)==PAR(3))RETURN ! the guess itself
   n=NINT(GETP('NTST',0,U)); c=NINT(GETP('NCOL',0,U))
   OPEN(48,FILE='found.dat')
   WRITE(48,'(I8,ES25.16)')n,PAR(11)
@@ -121,7 +118,7 @@ SUBROUTINE FOPT
 END SUBROUTINE FOPT
 )";
 
-std::string source(const systems::Formulas& formulas, double target) {
+std::string source(const systems::Formulas& formulas) {
   const int d = formulas.dimension;
   std::string text = fmt::format(
       "SUBROUTINE FUNC(NDIM,U,ICP,PAR,IJAC,F,DFDU,DFDP)\n  IMPLICIT NONE\n"
@@ -142,10 +139,7 @@ std::string source(const systems::Formulas& formulas, double target) {
   text += "  IF(IJAC==1)RETURN\n";
   for (int i = 0; i < d; ++i) text += fmt::format("  DFDP({},1)=v({})\n", i + 1, gradient[at(i)]);
   text += "END SUBROUTINE FUNC\n";
-  std::string rest = subroutines;
-  for (std::size_t place = rest.find("TARGET"); place != std::string::npos; place = rest.find("TARGET", place))
-    rest.replace(place, std::string_view("TARGET").size(), literal(target));
-  return text + rest;
+  return text + subroutines;
 }
 
 void write(const std::filesystem::path& path, const std::string& text) {
@@ -164,13 +158,12 @@ std::string AutoProgram::obstacle(const TrueOrbit& truth) {
   return {};
 }
 
-AutoProgram::AutoProgram(const Setting& setting, const TrueOrbit& truth, const Directed& guess)
+AutoProgram::AutoProgram(const Setting& setting, const Directed& guess)
     : _setting(setting),
       _guess(guess),
-      _folder(std::filesystem::temp_directory_path() / fmt::format("orbweaver_auto_{}", getpid())),
-      _target(std::stod(truth.held().decimal)) {
+      _folder(std::filesystem::temp_directory_path() / fmt::format("orbweaver_auto_{}", getpid())) {
   std::filesystem::create_directories(_folder);
-  write(_folder / "system.f90", source(refine::refinable_formulas(*setting.plain()), _target));
+  write(_folder / "system.f90", source(refine::refinable_formulas(*setting.plain())));
   std::vector<std::string> words{"gfortran",   "-O3", "-march=native", "-fopenmp", "-w", "-fallow-argument-mismatch",
                                  "system.f90", "-o",  "program"};
   for (const auto& entry : std::filesystem::directory_iterator(auto_folder() / "lib"))
@@ -186,8 +179,7 @@ AutoProgram::~AutoProgram() {
 
 void AutoProgram::prepare(int intervals, double tolerance) const {
   const systems::System& system = *_setting.system();
-  const double by = -begin * step * _guess.loop.period / _guess.tangent.period();
-  const loop::Loop start = loop::in_units(loop::moved(_guess.loop, _guess.tangent, by), system.scales());
+  const loop::Loop start = loop::in_units(_guess.loop, system.scales());
   const int count = intervals * points;
   std::string text = fmt::format("{} {:.17g}\n", count, start.period);
   for (int j = 0; j <= count; ++j) {
@@ -196,15 +188,15 @@ void AutoProgram::prepare(int intervals, double tolerance) const {
   }
   write(_folder / "guess.dat", text);
   const loop::Loop change = loop::in_units(loop::perturbation(_guess.loop, _guess.tangent), system.scales());
-  const double length = loop::rms_size(change) / std::abs(_guess.tangent.period() * system.scales().time);
+  const double along =
+      step * start.period * loop::rms_size(change) / std::abs(_guess.tangent.period() * system.scales().time);
   const double accuracy = std::max(tolerance, least_tolerance);
   write(_folder / "c.run",
-        fmt::format("parnames={{1:'mu',11:'PERIOD'}}\nNDIM={}, NTST={}, NCOL={}, IAD=3, IPLT=0, NINT=0, NMX={}, NPR=0, "
+        fmt::format("parnames={{1:'mu',11:'PERIOD'}}\nNDIM={}, NTST={}, NCOL={}, IAD=3, IPLT=0, NINT=0, NMX=2, NPR=0, "
                     "MXBF=0, IID=0, ITMX=8, ITNW=12, NWTN=3, JAC=1\nEPSL={:.0e}, EPSU={:.0e}, EPSS={:.0e}, DS={:.6e}, "
                     "DSMIN=1e-12, DSMAX={:.6e}, IADS=1, NPAR=16, THL={{11:0.0}}, THU={{}}, ILP=0\n"
-                    "ISW=1, IPS=2, IRS=0, ISP=2, NBC=0\nICP=['PERIOD','mu']\nUZSTOP={{11:{:.17g}}}\n",
-                    system.dimension(), intervals, points, most_steps, accuracy, accuracy, accuracy,
-                    step * _target * length, step * _target * length, _target));
+                    "ISW=1, IPS=2, IRS=0, ISP=0, NBC=0\nICP=['PERIOD','mu']\n",
+                    system.dimension(), intervals, points, accuracy, accuracy, accuracy, along, along));
 }
 
 bool AutoProgram::run() const {
@@ -224,7 +216,7 @@ refine::ShotOrbit AutoProgram::found() const {
     std::vector<double>& state = orbit.states.emplace_back(static_cast<std::size_t>(_setting.system()->dimension()));
     for (double& z : state) file >> z;
   }
-  if (!file || count == 0) throw core::NumericalError("AUTO-07p does not come to the period");
+  if (!file || count == 0) throw core::NumericalError("AUTO-07p makes no step");
   return orbit;
 }
 

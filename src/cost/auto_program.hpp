@@ -20,14 +20,15 @@ class AutoProgram {
   [[nodiscard]] static std::string obstacle(const TrueOrbit& truth);
 
   /// Throws EnvironmentError where it cannot be compiled.
-  AutoProgram(const Setting& setting, const TrueOrbit& truth, const Directed& guess);
+  AutoProgram(const Setting& setting, const Directed& guess);
   ~AutoProgram();
   AutoProgram(const AutoProgram&) = delete;
   AutoProgram& operator=(const AutoProgram&) = delete;
 
   /// Writes a guess and constants for so many mesh intervals. `tolerance`: of Newton's method, relative.
   void prepare(int intervals, double tolerance) const;
-  /// Runs it: a process, from a little before the period to exactly the one held. False where it fails.
+  /// Runs it: a process that corrects the guess, by one step along the family of next to no length. False where it
+  /// fails.
   [[nodiscard]] bool run() const;
   /// What the last run found: the states at the ends of its mesh intervals. Throws NumericalError where it found
   /// nothing.
@@ -39,7 +40,6 @@ class AutoProgram {
   const Setting& _setting;
   Directed _guess;
   std::filesystem::path _folder;
-  double _target = 0.0;  // T, in the units of the system
 };
 
 }  // namespace orbweaver::cost

@@ -90,13 +90,18 @@ double TrueOrbit::error_of(const loop::Loop& orbit) const {
   return rest.lpNorm<Eigen::Infinity>();
 }
 
-double TrueOrbit::error_of(const refine::ShotOrbit& orbit, bool shifted) const {
+double TrueOrbit::error_of(const refine::ShotOrbit& orbit) const {
   const Eigen::VectorXd states = in_scales(refine::states_of(_guess, _orbit, orbit.fractions));
+  return (in_scales(orbit.states) - states).lpNorm<Eigen::Infinity>();
+}
+
+double TrueOrbit::error_at_its_period(const refine::ShotOrbit& orbit) const {
+  const refine::RefinedOrbit truth =
+      refined(_guess, {refine::HeldValue::Quantity::period, numerics::shortest_decimal(orbit.period)});
+  const Eigen::VectorXd states = in_scales(refine::states_of(_guess, truth, orbit.fractions));
+  const Eigen::VectorXd shift = velocities(states);
   Eigen::VectorXd off = in_scales(orbit.states) - states;
-  if (shifted) {
-    const Eigen::VectorXd shift = velocities(states);
-    off -= shift * (shift.dot(off) / shift.squaredNorm());
-  }
+  off -= shift * (shift.dot(off) / shift.squaredNorm());
   return off.lpNorm<Eigen::Infinity>();
 }
 

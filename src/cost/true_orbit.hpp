@@ -24,9 +24,11 @@ class TrueOrbit {
   /// The largest |z - z_true| over instants of the period and over coordinates, in the scales, less what a shift of
   /// time and another place on the family explain (least squares): both are the solver's choice, not its error.
   [[nodiscard]] double error_of(const loop::Loop& orbit) const;
-  /// The same at the nodes of an orbit that has exactly the period or energy held, in standard phase or, `shifted`, a
-  /// little beside it.
-  [[nodiscard]] double error_of(const refine::ShotOrbit& orbit, bool shifted = false) const;
+  /// The same at the nodes of an orbit that has exactly the period or energy held, in standard phase.
+  [[nodiscard]] double error_of(const refine::ShotOrbit& orbit) const;
+  /// The same at those of one with a period of its own near by, a little off the phase, against the true orbit of that
+  /// period.
+  [[nodiscard]] double error_at_its_period(const refine::ShotOrbit& orbit) const;
 
   [[nodiscard]] const refine::Guess& guess() const { return _guess; }
   [[nodiscard]] const refine::HeldValue& held() const { return _held; }

@@ -127,7 +127,7 @@ Solver shooting(const Setting& setting, const TrueOrbit& truth, const Directed& 
 Solver auto07p(const Setting& setting, const TrueOrbit& truth, const Directed& guess) {
   Solver solver{"AUTO-07p", AutoProgram::obstacle(truth), {}};
   if (!solver.obstacle.empty()) return solver;
-  const auto program = std::make_shared<AutoProgram>(setting, truth, guess);
+  const auto program = std::make_shared<AutoProgram>(setting, guess);
   solver.run = [&setting, &truth, program](double tolerance) {
     Attempt attempt;
     attempt.tolerance = tolerance;
@@ -138,7 +138,7 @@ Solver auto07p(const Setting& setting, const TrueOrbit& truth, const Directed& g
       bool ended_well = false;
       const Timing timing = timing_of([&] { ended_well = program->run(); }, setting.budget());
       attempt.seconds = timing.seconds;
-      attempt.error = truth.error_of(program->found(), true);
+      attempt.error = truth.error_at_its_period(program->found());
       attempt.end = ended_well ? "converged" : "failed";
     } catch (const core::NumericalError& error) {
       attempt.end = error.what();
@@ -203,8 +203,7 @@ void measure(const Setting& setting, const Take& take) {
       "first-order methods end after {} s",
       setting.branch_options().prediction_error, setting.quick() ? quick_patience : patience));
   reach.remarks.emplace_back(
-      "AUTO-07p: a process for each orbit, its start in it, whole loop, multipliers too; 2 to 4 steps along the "
-      "family");
+      "AUTO-07p: a process for each orbit, its start in it; whole loop, four Gauss points a mesh interval");
   take(all);
   take(reach);
 }
