@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "orbweaver/continuation/orbit.hpp"
+#include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/symmetry/standard_phase.hpp"
 #include "orbweaver/numerics/extended.hpp"
 #include "orbweaver/refine/guess.hpp"
@@ -18,8 +19,7 @@ constexpr int least_digits = 20;
 /// that no symmetry repeats them.
 constexpr int instants = 61;
 
-refine::HeldValue held_at(const refine::Guess& guess, const systems::System& scaled, const loop::Loop& near) {
-  const refine::HeldValue::Quantity quantity = refine::better_held(guess);
+refine::HeldValue held_at(const systems::System& scaled, const loop::Loop& near, refine::HeldValue::Quantity quantity) {
   const double value = quantity == refine::HeldValue::Quantity::period
                            ? near.period * scaled.scales().time
                            : continuation::energy_of(scaled, near) * scaled.scales().energy();
@@ -31,6 +31,19 @@ refine::RefinedOrbit refined(const refine::Guess& guess, const refine::HeldValue
   const double growth = orbit.index ? numerics::log10_abs(orbit.index->value) : 0.0;
   if (growth > 1.0) orbit = refine::refine_orbit(guess, held, least_digits + static_cast<int>(std::ceil(growth)));
   return orbit;
+}
+
+/// Held by what picks it better, or, where that does not pick it after all, by the other.
+refine::HeldValue held_near(const refine::Guess& guess, const systems::System& scaled, const loop::Loop& near) {
+  using Quantity = refine::HeldValue::Quantity;
+  const Quantity better = refine::better_held(guess);
+  const refine::HeldValue held = held_at(scaled, near, better);
+  try {
+    static_cast<void>(refine::refine_orbit(guess, held, 1));
+    return held;
+  } catch (const core::NumericalError&) {
+    return held_at(scaled, near, better == Quantity::period ? Quantity::energy : Quantity::period);
+  }
 }
 
 std::vector<double> even_fractions() {
@@ -46,7 +59,7 @@ TrueOrbit::TrueOrbit(const std::shared_ptr<const systems::System>& plain, const 
     : _scaled(scaled),
       _isotropy(isotropy),
       _guess(refine::guess_of(plain, scaled, near, isotropy)),
-      _held(held_at(_guess, scaled, near)),
+      _held(held_near(_guess, scaled, near)),
       _orbit(refined(_guess, _held)),
       _fractions(even_fractions()),
       _states(in_scales(refine::states_of(_guess, _orbit, _fractions))) {
