@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <fmt/format.h>
@@ -22,14 +23,19 @@ constexpr std::size_t quick_samples = 2;
 /// The last harmonics that are left out weigh some hundred times in the residual: as branches have it by default.
 constexpr double of_tail = 1e-2;
 
-/// Worst error of orbits spread along a branch.
-double worst_error(const Setting& setting, const std::vector<loop::Loop>& loops) {
+/// Worst error of orbits spread along a branch; those that neither period nor energy picks to more digits (`left_out`
+/// counts them) are passed over.
+double worst_error(const Setting& setting, const std::vector<loop::Loop>& loops, int& left_out) {
   const std::size_t count = setting.quick() ? quick_samples : samples;
-  double worst = 0.0;
+  double worst = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t n = 1; n <= count; ++n) {
     const std::size_t at = (loops.size() - 1) * n / count;
     if (at == 0) continue;
-    worst = std::max(worst, setting.truth_beside(loops[at], loops[at - 1]).error_of(loops[at]));
+    try {
+      worst = std::fmax(worst, setting.truth_beside(loops[at], loops[at - 1]).error_of(loops[at]));
+    } catch (const core::NumericalError&) {
+      ++left_out;
+    }
   }
   return worst;
 }
@@ -48,6 +54,7 @@ void measure(const Setting& setting, const Take& take) {
               {},
               {},
               Plot{4, 6, {0}, {}}};
+  int left_out = 0;
   for (int exponent = first_exponent; exponent <= last_exponent; exponent += setting.quick() ? quick_stride : 1) {
     continuation::Options options = setting.branch_options();
     options.corrector.tolerance = std::pow(10.0, -exponent);
@@ -72,10 +79,13 @@ void measure(const Setting& setting, const Take& take) {
     for (const loop::Loop& loop : loops) cutoff = std::max(cutoff, loop.cutoff);
     const auto orbits = static_cast<double>(loops.size());
     table.rows.push_back({"automatic", options.corrector.tolerance, orbits, cutoff, timing.seconds,
-                          timing.seconds / orbits, worst_error(setting, loops), end});
+                          timing.seconds / orbits, worst_error(setting, loops, left_out), end});
   }
   table.remarks.emplace_back(fmt::format("errors of {} orbits spread along the family, the last one included",
                                          setting.quick() ? quick_samples : samples));
+  if (left_out > 0)
+    table.remarks.push_back(
+        fmt::format("{} of all these have no true orbit: neither period nor energy picks it", left_out));
   take(table);
 }
 
