@@ -47,13 +47,16 @@ void Setting::choose_family(const std::string& wanted) {
   std::vector<std::string> names;
   int index = 0;
   for (const std::vector<double>& point : starts::find_fixed_points(system, this->scene().fixed_points.grid)) {
-    const starts::SweepOptions sweep = survey::sweep_options(this->scene().sweep, system, point);
+    const starts::SweepOptions sweep = survey::sweep_options(this->scene(), system, point);
     const auto all = bifurcation::small_oscillations(system, starts::sweep(system, point, sweep), sweep.cutoff);
-    for (const auto& [mode, place] : all.families) {
-      names.push_back(survey::base_family_name(this->scene(), system, point, index, place));
+    for (const bifurcation::SmallOscillation& family : all.families) {
+      names.push_back(survey::base_family_name(this->scene(), system, point, index, family.place));
       if (!wanted.empty() && names.back() != wanted) continue;
+      const starts::NormalMode& mode = family.mode;
+      const int cutoff = (static_cast<int>(mode.direction.modes.size() / point.size()) - 1) / 2;
       _family = names.back();
-      _start = {loop::constant_loop(point, mode.period, sweep.cutoff), mode.direction, mode.isotropy};
+      _start = {loop::constant_loop(point, mode.period, cutoff), mode.direction, mode.isotropy};
+      if (family.amplitude > 0.0) _options.start_amplitude = family.amplitude;
       return;
     }
     ++index;

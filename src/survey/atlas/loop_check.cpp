@@ -73,12 +73,6 @@ bool closer_together(const std::shared_ptr<const systems::System>& system, const
 
 }  // namespace
 
-loop::Loop started_as(const systems::Structure& system, const loop::Loop& loop, const loop::Loop& neighbour) {
-  constexpr double nearer = 0.5;
-  const loop::Alignment alignment = loop::align(system, loop, neighbour);
-  return alignment.distance < nearer * loop::mean_distance(loop, neighbour) ? loop::aligned(loop, alignment) : loop;
-}
-
 LoopAnswer LoopCheck::ask(const OrbitBeside& x) const {
   const systems::Structure& system = _system->structure();
   const bifurcation::IdentityOptions options;

@@ -10,7 +10,7 @@
 #include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
 #include "orbweaver/loop/symmetry/isotropy_text.hpp"
-#include "orbweaver/survey/atlas/loop_check.hpp"
+#include "orbweaver/survey/atlas/stored_orbits.hpp"
 #include "orbweaver/survey/run/scaled_scene.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/scaled_system.hpp"

@@ -32,11 +32,6 @@ struct OrbitBeside {
   std::size_t segment;  ///< between its orbits segment and segment + 1
 };
 
-/// Stored orbits start in a standard phase, which may jump between two neighbours: the loop with the start, and as the
-/// image, that brings it nearest to its neighbour, if that is twice as near as it stands.
-[[nodiscard]] loop::Loop started_as(const systems::Structure& system, const loop::Loop& loop,
-                                    const loop::Loop& neighbour);
-
 /// Holds loops of one atlas against families of the other.
 class LoopCheck {
  public:
