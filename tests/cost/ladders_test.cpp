@@ -44,7 +44,7 @@ TEST(Ladders, ALinearOscillationHasNoErrorAtAnyCutoff) {
 }
 
 TEST(Ladders, ErrorsFallAsHarmonicsGrow) {
-  const Table table = climbed({"resolution"}, "Swing").front();
+  const Table table = climbed({"resolution"}, "Cup").front();
   const std::size_t error = column(table, "error");
   double first = 0.0;
   double least = 1.0;
@@ -58,7 +58,7 @@ TEST(Ladders, ErrorsFallAsHarmonicsGrow) {
 }
 
 TEST(Ladders, ATighterToleranceGivesSmallerErrors) {
-  const Table table = climbed({"tolerance"}, "Swing").front();
+  const Table table = climbed({"tolerance"}, "Cup").front();
   const std::size_t error = column(table, "worst error");
   ASSERT_GE(table.rows.size(), 3U);
   EXPECT_LT(table.rows.back()[error].number, 1e-3 * table.rows.front()[error].number);
@@ -66,7 +66,7 @@ TEST(Ladders, ATighterToleranceGivesSmallerErrors) {
 }
 
 TEST(Ladders, MoreDigitsTakeLonger) {
-  const Table table = climbed({"digits"}, "Swing").front();
+  const Table table = climbed({"digits"}, "Cup").front();
   const std::size_t known = column(table, "digits known");
   for (const auto& row : table.rows) EXPECT_GE(row[known].number, row[column(table, "digits asked for")].number - 1.0);
   EXPECT_LT(table.rows[0][column(table, "time")].number, table.rows[1][column(table, "time")].number);

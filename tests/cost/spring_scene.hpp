@@ -14,10 +14,10 @@ system: {name: swinging_spring, parameters: {mass: 1, stiffness: 3, length: 1, g
 starts:
   fixed_points:
     grid: [[0], [-1.333]]
-    names: {[0, -1.3333333333]: [Swing, Bounce]}
+    names: {[0, -1.3333333333]: [Cup, Cap, Bounce]}
   sweep: {period: [3, 8]}
 continuation: {start: 0.01}
-limits: {energy: [-.inf, -0.8], steps: 60}
+limits: {energy: [-.inf, -0.3], steps: 60}
 )",
                       "spring.yaml", overrides);
 }
