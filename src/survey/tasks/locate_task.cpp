@@ -28,6 +28,9 @@ constexpr double in_sector = 1e-6;
 constexpr double error_bounds = 10.0;
 /// Rounding of a period at the limit, relative to it: such a family still begins on the limit.
 constexpr double at_limit = 1e-9;
+/// The slope of the energy at a fold that is located as a zero of the index, in parts of the slopes beside it: two
+/// locations to 1e-10 on a stretch of 1e-6 or more.
+constexpr double turning_slope = 1e-3;
 
 /// Null vectors that the multipliers at the crossing let expect.
 int expected_dimension(const bifurcation::Crossing& crossing, const bifurcation::Sector& sector) {
@@ -143,6 +146,7 @@ class Location {
     _outcome.kernel_singular_value = kernel.largest();
     _outcome.next_singular_value = kernel.next();
     if (kernel.dimension() == 0) return without_kernel(kernel, family);
+    if (sector.q == 1 && kernel.dimension() == 1 && turns_in_energy_at(crossing, family)) return as_fold(kernel);
     if (!starts) return;
     report();
     int number = 0;
@@ -177,6 +181,27 @@ class Location {
     } else {
       _failure = _outcome.remark;
     }
+  }
+
+  /// An index passes 2 with the energy, and nothing leaves: what is nearly flat is so for another reason, such as a
+  /// small amplitude.
+  void as_fold(const bifurcation::Kernel& kernel) {
+    _outcome.kind = CrossingKind::fold_energy;
+    _outcome.kernel_dimension = 0;
+    _outcome.kernel_singular_value = archive::not_computed;
+    _outcome.next_singular_value = kernel.largest();
+    _outcome.remark = fmt::format("the energy turns there (smallest singular value {:.2g})", kernel.largest());
+  }
+
+  /// At the crossing itself, not only between the orbits beside it.
+  [[nodiscard]] bool turns_in_energy_at(const bifurcation::Crossing& crossing, continuation::FamilyCurve& family) const {
+    const auto before = family.at(_work.from, true);
+    const auto after = family.at(_work.to, true);
+    if (!before || !after) return false;
+    const double from = bifurcation::energy_slope(*_system, *before);
+    const double to = bifurcation::energy_slope(*_system, *after);
+    return from * to < 0.0 && std::abs(bifurcation::energy_slope(*_system, crossing.point)) <
+                                  turning_slope * std::min(std::abs(from), std::abs(to));
   }
 
   [[nodiscard]] bool turns_in_energy(continuation::FamilyCurve& family) const {
