@@ -166,6 +166,10 @@ void append_column(Eigen::MatrixXd& matrix, const Eigen::VectorXd& column) {
   matrix.col(matrix.cols() - 1) = column;
 }
 
+/// Inverse iterations on a triplet, and what each must leave of its residuals to be followed by another.
+constexpr int most_cleanings = 6;
+constexpr double cleaned = 0.3;
+
 // Looks for `count` more triplets beside those found, and adds at least one.
 void search(Inverse& inverse, std::vector<Triplet>& found, int count, double tolerance) {
   const std::size_t before = found.size();
@@ -176,9 +180,12 @@ void search(Inverse& inverse, std::vector<Triplet>& found, int count, double tol
   for (Triplet& t : largest_of(inverse, count, tolerance)) {
     // Tiny values leave the solves little but their own vectors, and Lanczos vectors mix: inverse iteration cleans
     // them.
-    if (std::max(t.residual, t.left_residual) > share_of_value * t.value) {
+    for (int n = 0; n < most_cleanings && std::max(t.residual, t.left_residual) > share_of_value * t.value; ++n) {
+      const double before_cleaning = std::max(t.residual, t.left_residual);
       const Eigen::VectorXd right = inverse.apply(inverse.apply_transposed(t.right).normalized()).normalized();
       t = triplet_of(inverse.equations, right, inverse.apply_transposed(right));
+      if (getenv("TRIP")) fprintf(stderr, "TRIP have %zu clean %d value %.4e res %.1e %.1e (before %.1e)\n", found.size(), n, t.value, t.residual, t.left_residual, before_cleaning);
+      if (good(t) || !(std::max(t.residual, t.left_residual) < cleaned * before_cleaning)) break;
     }
     if (!good(t)) {
       failure = fmt::format("the next one ({:.3e}) has the residuals {:.1e} and {:.1e}, more than {:.1e}", t.value,

@@ -65,6 +65,15 @@ class Neighbours {
     return true;
   }
 
+  /// Of vectors that nearly agree, where energies have both signs: the equilibrium is about to lose its stability (a
+  /// Krein collision), and orbits of length r move both frequencies by the root of detuning^2 + r^2.
+  void about_to_collide(std::size_t slow, std::size_t fast) {
+    const double away = detuning(_all[slow], _all[fast], 1);
+    if (away > largest_detuning) return;
+    for (const std::size_t n : {slow, fast})
+      _apart_below[n] = std::min(_apart_below[n], std::max(away / margin, least_apart));
+  }
+
   void set(SharedPeriod& shared) const {
     for (const SharedPeriod::Member& member : shared.members) {
       if (member.harmonic == 1) shared.apart_below = std::min(shared.apart_below, _apart_below[member.oscillation]);
@@ -125,9 +134,15 @@ std::vector<SharedPeriod> shared_periods(const systems::System& system, std::spa
   const std::vector<Oscillation>& all = modes.oscillations;
   Neighbours neighbours(all, amplitude);
   for (std::size_t n = 0; n < all.size(); ++n) {
-    if (!out.empty() && neighbours.share(n - 1, n, 1)) {
+    if (!out.empty()) {
       SharedPeriod& last = out.back();
-      if (Eigen::MatrixXcd both = joined(last.kernel, all[n].kernel); both.size() > 0) {
+      Eigen::MatrixXcd both = joined(last.kernel, all[n].kernel);
+      if (both.size() == 0) {
+        SharedPeriod side;
+        side.kernel = side_by_side(last.kernel, all[n].kernel);
+        side.harmonics.assign(static_cast<std::size_t>(side.kernel.cols()), 1);
+        if (!have_one_sign(system, point, side)) neighbours.about_to_collide(n - 1, n);
+      } else if (neighbours.share(n - 1, n, 1)) {
         last.kernel = std::move(both);
         last.residual = std::max(last.residual, all[n].residual);
         last.members.push_back({n, 1});
