@@ -183,16 +183,15 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
   }
 }
 
-/// Twice as finely from here on. Beside a resonance the cells' own error in the phase, which the preconditioner has, may
-/// be larger than what an index is from 2: the equations are solved along all directions but the one that tells the
+/// Twice as finely from here on. Beside a resonance the cells' own error in the phase, which the preconditioner has,
+/// may be larger than what an index is from 2: the equations are solved along all directions but the one that tells the
 /// family from its neighbours, and the shortest step turns. The tail shows nothing of it.
 bool Tracer::resolve_twice() {
-  const int wanted = 2 * _problem->resolution().size;
+  const int before = _problem->resolution().size;
   std::optional<Resolution> finer;
-  const Resolution before = _problem->resolution();
-  while (_problem->resolution().size < wanted && (finer = _problem->next_resolution(_options.cutoff_to)))
+  while (_problem->resolution().size < 2 * before && (finer = _problem->next_resolution(_options.cutoff_to)))
     (void)_stepper.resolve(*finer);
-  if (_problem->resolution().size == before.size) return false;
+  if (_problem->resolution().size == before) return false;
   _frontier.problem.least_size = _problem->resolution().size;
   return true;
 }

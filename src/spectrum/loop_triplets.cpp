@@ -166,8 +166,8 @@ void append_column(Eigen::MatrixXd& matrix, const Eigen::VectorXd& column) {
   matrix.col(matrix.cols() - 1) = column;
 }
 
-/// Inverse iterations on a triplet, and what each may leave of its residuals to be followed by another. Beside kernels at
-/// 1e-14 each was seen to leave 0.2 to 0.4 (m2 = 16/9 m1).
+/// Inverse iterations on a triplet, and what each may leave of its residuals to be followed by another. Beside kernels
+/// at 1e-14 each was seen to leave 0.2 to 0.4 (m2 = 16/9 m1).
 constexpr int most_cleanings = 12;
 constexpr double cleaned = 0.7;
 

@@ -18,8 +18,8 @@ namespace {
 /// the equilibrium. No detuning above the second is near.
 constexpr double margin = 5.0;
 constexpr double largest_detuning = 0.05;
-/// Families start no nearer to the equilibrium to be apart: the terms that decide, r^2, are there
-/// 400 times the loss's tolerance (1e-10).
+/// Families start no nearer to the equilibrium to be apart: the terms that decide, r^2, are there 400 times the loss's
+/// tolerance (1e-10).
 constexpr double least_apart = 2e-4;
 /// Where periods are nearly in ratio 1:1 or 1:3 families that are born at r may turn at some 10 r (with m2 = 1.7778 m1
 /// the double pendulum's at 7 r) and come back. What is not told at the least amplitude starts beyond such turns.

@@ -47,8 +47,7 @@ struct ProblemState {
   static constexpr int wire_version = 3;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, resolution, amplitude, factor_point, factor_conditions, fits_cells,
-                            least_size);
+    core::serialize_members(archive, resolution, amplitude, factor_point, factor_conditions, fits_cells, least_size);
   }
 };
 

@@ -1,6 +1,8 @@
 #include "locate_task.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -193,22 +195,26 @@ class Location {
     _outcome.remark = fmt::format("the energy turns there (smallest singular value {:.2g})", kernel.largest());
   }
 
-  /// At the crossing itself, not only between the orbits beside it.
-  [[nodiscard]] bool turns_in_energy_at(const bifurcation::Crossing& crossing, continuation::FamilyCurve& family) const {
+  /// Slopes of the energy where the event was bracketed.
+  [[nodiscard]] std::optional<std::pair<double, double>> slopes_beside(continuation::FamilyCurve& family) const {
     const auto before = family.at(_work.from, true);
     const auto after = family.at(_work.to, true);
-    if (!before || !after) return false;
-    const double from = bifurcation::energy_slope(*_system, *before);
-    const double to = bifurcation::energy_slope(*_system, *after);
-    return from * to < 0.0 && std::abs(bifurcation::energy_slope(*_system, crossing.point)) <
-                                  turning_slope * std::min(std::abs(from), std::abs(to));
+    if (!before || !after) return std::nullopt;
+    return std::pair{bifurcation::energy_slope(*_system, *before), bifurcation::energy_slope(*_system, *after)};
   }
 
   [[nodiscard]] bool turns_in_energy(continuation::FamilyCurve& family) const {
-    const auto before = family.at(_work.from, true);
-    const auto after = family.at(_work.to, true);
-    return before && after &&
-           bifurcation::energy_slope(*_system, *before) * bifurcation::energy_slope(*_system, *after) < 0.0;
+    const auto slopes = slopes_beside(family);
+    return slopes && slopes->first * slopes->second < 0.0;
+  }
+
+  /// At the crossing itself, not only between the orbits beside it.
+  [[nodiscard]] bool turns_in_energy_at(const bifurcation::Crossing& crossing,
+                                        continuation::FamilyCurve& family) const {
+    const auto slopes = slopes_beside(family);
+    return slopes && slopes->first * slopes->second < 0.0 &&
+           std::abs(bifurcation::energy_slope(*_system, crossing.point)) <
+               turning_slope * std::min(std::abs(slopes->first), std::abs(slopes->second));
   }
 
   void add_starts(const bifurcation::Direction& direction, const LeavingRecord& leaving) {
