@@ -143,7 +143,8 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
   const double least =
       std::min(_options.smallest_step * (1.0 + amplitude) * std::min(1.0, amplitude), least_of_longest * at_most);
   _stepper.begin();
-  double length = std::min(std::max(length_to_try(), least), at_most);
+  const double longest = std::min(std::max(length_to_try(), least), at_most);
+  double length = longest;
   for (int halved = 0;; ++halved) {
     if (halved >= polynomial_attempts) _stepper.use_tangent();
     Trial trial = _stepper.step(length);
@@ -170,11 +171,29 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
     }
     _frontier.problem.factor_point.clear();
     length *= 0.5;
+    if (!(length >= least) && jumped && trial.converged && resolve_twice()) {
+      length = longest;
+      halved = -1;
+      continue;
+    }
     if (!(length >= least))
       return end(EndReason::failure, fmt::format("the corrector fails at T = {:.6g} even with step {:.1e}: {}",
                                                  here().period * _system->scales().time, length,
                                                  jumped ? "it leaves the family" : trial.reason));
   }
+}
+
+/// Twice as finely from here on. Beside a resonance the cells' own error in the phase, which the preconditioner has,
+/// may be larger than what an index is from 2: the equations are solved along all directions but the one that tells the
+/// family from its neighbours, and the shortest step turns. The tail shows nothing of it.
+bool Tracer::resolve_twice() {
+  const int before = _problem->resolution().size;
+  std::optional<Resolution> finer;
+  while (_problem->resolution().size < 2 * before && (finer = _problem->next_resolution(_options.cutoff_to)))
+    (void)_stepper.resolve(*finer);
+  if (_problem->resolution().size == before) return false;
+  _frontier.problem.least_size = _problem->resolution().size;
+  return true;
 }
 
 double Tracer::length_to_try() {
@@ -254,7 +273,8 @@ Orbit Tracer::accept(const Trial& trial) {
   }
   Orbit accepted = _frontier.orbit;
   const bool may_fit = accepted.step % refit_every == 0;
-  if (const std::optional<Resolution> coarser = _problem->coarser(trial, here(), may_fit)) _stepper.resolve(*coarser);
+  const std::optional<Resolution> coarser = _problem->coarser(trial, here(), may_fit);
+  if (coarser && coarser->size >= _frontier.problem.least_size) _stepper.resolve(*coarser);
   return accepted;
 }
 

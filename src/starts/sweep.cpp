@@ -143,6 +143,7 @@ class Sweep {
     mode.period = shared.period;
     mode.grid_period = seen;
     mode.residual = shared.residual;
+    mode.apart_below = shared.apart_below;
     mode.direction = direction_of(with_standard_phase(structure, shared.kernel.col(0)), cutoff);
     mode.grid_direction = direction_of(with_standard_phase(structure, _hessian.first_harmonic(seen)), cutoff);
     mode.isotropy = isotropy_of(structure, _result.fixed_point, mode.period, mode.direction, cutoff);

@@ -42,11 +42,12 @@ struct ProblemState {
   std::vector<double> factor_conditions;  ///< and under which conditions
   bool fits_cells = false;  ///< the preconditioner follows turns of the linearised flow over a cell: where no first
                             ///< orbit is found without, beside a fast motion
+  int least_size = 0;       ///< of a resolution: a step failed at half of it that the harmonics did not explain
 
-  static constexpr int wire_version = 2;
+  static constexpr int wire_version = 3;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, resolution, amplitude, factor_point, factor_conditions, fits_cells);
+    core::serialize_members(archive, resolution, amplitude, factor_point, factor_conditions, fits_cells, least_size);
   }
 };
 

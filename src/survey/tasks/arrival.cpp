@@ -47,7 +47,9 @@ constexpr double on_the_way = 0.7;
 /// With one more orbit the meeting's period and energy change by so much, relatively, or another is sought on what is
 /// left of the way, a few times: a tenth of the window in which crossings are compared.
 constexpr double settled = 1e-4;
-constexpr int most_on_the_way = 4;
+constexpr int most_on_the_way = 6;
+/// Where the corrector has slipped, so much of that way is left to look on. Not measured.
+constexpr double nearer = 0.5;
 /// The part is proportional to its signed part where it vanishes: its size may be so many times that, and so much more.
 /// A part that turns instead of vanishing keeps a size of about 1.
 constexpr double proportional = 2.0;
@@ -95,6 +97,10 @@ std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuat
     if (!point) break;
     const double part = watch.signed_part(gain, from.loop, point->loop);
     const double size = watch.relative_size(gain, from.loop, point->loop);
+    if (size < slipped) {  // so has `to`, and the meeting point may lie nearer
+      beyond = {before.position + nearer * (there - before.position), 0.0};
+      continue;
+    }
     if (size > proportional * std::abs(part) + still_vanishing) {
       if (n == 0) return std::nullopt;  // it turns instead of vanishing: no arrival
       break;

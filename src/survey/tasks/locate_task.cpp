@@ -1,6 +1,8 @@
 #include "locate_task.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -28,6 +30,9 @@ constexpr double in_sector = 1e-6;
 constexpr double error_bounds = 10.0;
 /// Rounding of a period at the limit, relative to it: such a family still begins on the limit.
 constexpr double at_limit = 1e-9;
+/// The slope of the energy at a fold that is located as a zero of the index, in parts of the slopes beside it: two
+/// locations to 1e-10 on a stretch of 1e-6 or more.
+constexpr double turning_slope = 1e-3;
 
 /// The run is to stop.
 struct Interrupted {};
@@ -133,6 +138,7 @@ class Location {
     _outcome.kernel_singular_value = kernel.largest();
     _outcome.next_singular_value = kernel.next();
     if (kernel.dimension() == 0) return without_kernel(kernel, family);
+    if (sector.q == 1 && kernel.dimension() == 1 && turns_in_energy_at(crossing, family)) return as_fold(kernel);
     if (!starts) return;
     report();
     int number = 0;
@@ -169,11 +175,36 @@ class Location {
     }
   }
 
-  [[nodiscard]] bool turns_in_energy(continuation::FamilyCurve& family) const {
+  /// An index passes 2 with the energy, and nothing leaves: what is nearly flat is so for another reason, such as a
+  /// small amplitude.
+  void as_fold(const bifurcation::Kernel& kernel) {
+    _outcome.kind = CrossingKind::fold_energy;
+    _outcome.kernel_dimension = 0;
+    _outcome.kernel_singular_value = archive::not_computed;
+    _outcome.next_singular_value = kernel.largest();
+    _outcome.remark = fmt::format("the energy turns there (smallest singular value {:.2g})", kernel.largest());
+  }
+
+  /// Slopes of the energy where the event was bracketed.
+  [[nodiscard]] std::optional<std::pair<double, double>> slopes_beside(continuation::FamilyCurve& family) const {
     const auto before = family.at(_work.from, true);
     const auto after = family.at(_work.to, true);
-    return before && after &&
-           bifurcation::energy_slope(*_system, *before) * bifurcation::energy_slope(*_system, *after) < 0.0;
+    if (!before || !after) return std::nullopt;
+    return std::pair{bifurcation::energy_slope(*_system, *before), bifurcation::energy_slope(*_system, *after)};
+  }
+
+  [[nodiscard]] bool turns_in_energy(continuation::FamilyCurve& family) const {
+    const auto slopes = slopes_beside(family);
+    return slopes && slopes->first * slopes->second < 0.0;
+  }
+
+  /// At the crossing itself, not only between the orbits beside it.
+  [[nodiscard]] bool turns_in_energy_at(const bifurcation::Crossing& crossing,
+                                        continuation::FamilyCurve& family) const {
+    const auto slopes = slopes_beside(family);
+    return slopes && slopes->first * slopes->second < 0.0 &&
+           std::abs(bifurcation::energy_slope(*_system, crossing.point)) <
+               turning_slope * std::min(std::abs(slopes->first), std::abs(slopes->second));
   }
 
   void add_starts(const bifurcation::Direction& direction, const LeavingRecord& leaving) {
