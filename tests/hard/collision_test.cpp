@@ -102,9 +102,8 @@ TEST(Collision, WithTheMoon) {
         .within(static_cast<double>(std::abs(r2(reached) / r2(near) - 1)), 1e-6);
     test::HardCase(name, "the limit, relative").within(std::abs(static_cast<double>(r2(near)) / limit - 1.0), 1e-9);
     test::HardCase(name, "vx/vy and y/r2 there")
-        .within(static_cast<double>(
-                    test::worse(static_cast<double>(std::abs(reached[2] / reached[3])),
-                                static_cast<double>(std::abs(reached[1] / r2(reached))))),
+        .within(static_cast<double>(test::worse(static_cast<double>(std::abs(reached[2] / reached[3])),
+                                                static_cast<double>(std::abs(reached[1] / r2(reached))))),
                 1e-5);
     // And on to the far end.
     const Point<4> back = law.after(far, orbit.period);

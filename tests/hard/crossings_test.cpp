@@ -50,7 +50,7 @@ struct Known {
 
 class BothSides : public testing::TestWithParam<Known> {};
 
-// The index passes c between T - 1e-8 and T + 1e-8, T being known from elsewhere, with the slope that it has further out;
+// The index passes c between T - 1e-8 and T + 1e-8, T being known from elsewhere, with the slope that it has beyond;
 // the orbits stay those of the family, though another one is 1e-4 away (the amplitude of what is born grows as a root).
 TEST_P(BothSides, OfAZeroOfTheIndex) {
   const Known& known = GetParam();
@@ -71,16 +71,15 @@ TEST_P(BothSides, OfAZeroOfTheIndex) {
   test::HardCase(name, "the family's symmetries").within(test::worse(before.broken, after.broken), 1e-11);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Hard, BothSides,
-    testing::Values(Known{"period doubling", test::in_phase(), 8.442930704977588405, 0.0},
-                    Known{"branch point", test::in_phase(), 10.416773281973249, 2.0},
-                    Known{"subharmonic (3)", test::in_phase(), 10.180534055738, 1.0},
-                    Known{"period doubling", test::out_phase(), 4.059557792801163, 0.0},
-                    Known{"subharmonic (3)", test::out_phase(), 5.177415388176, 1.0},
-                    Known{"branch point", test::out_phase(), 6.147515349731, 2.0}));
+INSTANTIATE_TEST_SUITE_P(Hard, BothSides,
+                         testing::Values(Known{"period doubling", test::in_phase(), 8.442930704977588405, 0.0},
+                                         Known{"branch point", test::in_phase(), 10.416773281973249, 2.0},
+                                         Known{"subharmonic (3)", test::in_phase(), 10.180534055738, 1.0},
+                                         Known{"period doubling", test::out_phase(), 4.059557792801163, 0.0},
+                                         Known{"subharmonic (3)", test::out_phase(), 5.177415388176, 1.0},
+                                         Known{"branch point", test::out_phase(), 6.147515349731, 2.0}));
 
-/// q'' = -V'(q), V = q^2/2 + a q^4/4 + b q^6/6 with a < 0 < b: first slower, then faster than 2 pi; its T has a maximum.
+/// q'' = -V'(q), V = q^2/2 + a q^4/4 + b q^6/6 with a < 0 < b: T grows at first, and has a maximum.
 class Oscillator final : public test::PointSystem {
  public:
   static constexpr double a = -0.5;
@@ -145,11 +144,12 @@ TEST(Folds, InThePeriod) {
   continuation::Options options;
   options.energy_to = 4.0;
   const loop::Isotropy isotropy = loop::find_isotropy(system->structure(), Oscillator::small_oscillation(), 1e-9);
-  const test::Trace family = test::trace_of(system,
-                                            {loop::constant_loop(std::vector<double>(2, 0.0), 2.0 * std::numbers::pi, 8),
-                                             {Oscillator::small_oscillation().modes},
-                                             isotropy},
-                                            options);
+  const test::Trace family =
+      test::trace_of(system,
+                     {loop::constant_loop(std::vector<double>(2, 0.0), 2.0 * std::numbers::pi, 8),
+                      {Oscillator::small_oscillation().modes},
+                      isotropy},
+                     options);
   ASSERT_EQ(family.ending.reason, continuation::EndReason::energy_limit) << family.ending.text();
   double worst = 0.0;
   for (const continuation::Orbit& orbit : family.orbits) {
@@ -186,12 +186,12 @@ TEST(Folds, InThePeriod) {
 /// The archive of one family of the restricted problem.
 test::Atlas lagrange_family() {
   const core::Communicator comm;
-  const survey::Summary summary = test::run(
-      comm,
-      scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_earth_moon.yaml",
-                  {"starts.fixed_points.grid=[[0.488], [0.866]]", "starts.fixed_points.names={}",
-                   "starts.fixed_points.letters={}", "starts.sweep.period=[20, 22]", "survey.depth=0"}),
-      "lagrange");
+  const survey::Summary summary =
+      test::run(comm,
+                scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_earth_moon.yaml",
+                            {"starts.fixed_points.grid=[[0.488], [0.866]]", "starts.fixed_points.names={}",
+                             "starts.fixed_points.letters={}", "starts.sweep.period=[20, 22]", "survey.depth=0"}),
+                "lagrange");
   EXPECT_EQ(summary.failures, 0U);
   return test::Atlas(summary.atlas);
 }
@@ -281,9 +281,9 @@ TEST(Collisions, OfTwoPairs) {
     }
 }
 
-// A form that turns with the circle, e (q (q_1^2 - p_1^2) + p 2 q_1 p_1)/2, opens a tongue about I = 1/2: with w = q_1 + i p_1 =
-// v exp(-i t/2), v' = -i ((I - 1/2) v + e r conj v), r^2 = 2 I, so that k = -2 cos(2 pi sqrt((I - 1/2)^2 - 2 I e^2)) and k = -2
-// at I = 1/2 + e^2 -+ sqrt(e^2 + e^4): two crossings, however near, and at e = 1e-8 none that rounding would tell from one.
+// A form that turns with the circle, e (q (q_1^2 - p_1^2) + p 2 q_1 p_1)/2, opens a tongue about I = 1/2: with
+// w = q_1 + i p_1 = v exp(-i t/2), v' = -i ((I - 1/2) v + e r conj v), r^2 = 2 I, so that
+// k = -2 cos(2 pi sqrt((I - 1/2)^2 - 2 I e^2)), and k = -2 at I = 1/2 + e^2 -+ sqrt(e^2 + e^4).
 TEST(Crossings, TwoThatAreNear) {
   for (const double e : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
     Eigen::Matrix2d by_q;
@@ -296,8 +296,8 @@ TEST(Crossings, TwoThatAreNear) {
     for (int n = 0; n <= 13; ++n) positions.push_back(0.36 + 0.3 * n / 13);
     const std::string name = fmt::format("two crossings at q = 2, {:.0e} apart", 2.0 * e);
     test::HardCase row(name, "both are found, where they are in closed form");
-    const test::Detection found = test::detect(
-        system.structure(), stability_at, {{bifurcation::TestFunction::Kind::sector, {2, 1}}}, positions, 1e-12);
+    const test::Detection found = test::detect(system.structure(), stability_at,
+                                               {{bifurcation::TestFunction::Kind::sector, {2, 1}}}, positions, 1e-12);
     double off = found.events.size() == 2 ? 0.0 : 1.0;
     for (std::size_t n = 0; n < found.events.size() && n < 2; ++n) {
       const double half_width = std::sqrt(e * e + e * e * e * e);
@@ -325,8 +325,8 @@ TEST(Collisions, OfATorus) {
         bifurcation::evaluate({bifurcation::TestFunction::Kind::torus, {}}, system.structure(), stability);
     double largest = 0.0;
     for (const std::complex<double>& mu : stability.full) largest = std::max(largest, std::abs(mu));
-    test::HardCase(name, "the modulus of the multipliers, exp(2 pi s)").within(std::abs(largest - std::exp(2.0 * std::numbers::pi * s)),
-                                                                  1e-10);
+    test::HardCase(name, "the modulus of the multipliers, exp(2 pi s)")
+        .within(std::abs(largest - std::exp(2.0 * std::numbers::pi * s)), 1e-10);
     test::HardCase(name, "the test function has its sign beyond its error")
         .is(reading.sign() != 0, "a sign", fmt::format("{:+.1e}", reading.value));
   }

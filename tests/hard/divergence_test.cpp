@@ -1,5 +1,5 @@
-// Starts on the divergence of the period: an orbit of the pendulum q'' = -sin q with T = 60, 1e-6 rad from upright, where
-// its state at rest says nothing of T.
+// Starts on the divergence of the period: an orbit of the pendulum q'' = -sin q with T = 60, 1e-6 rad from upright,
+// where its state at rest hardly says what T is.
 #include <cmath>
 #include <numbers>
 
@@ -106,7 +106,8 @@ TEST_P(Divergence, TheUsualFirstStep) {
   test::HardCase row(name, "amplitude(T) by elliptic integrals, all orbits");
   const test::Trace trace = from_divergence(period, period + 1.0, options);
   row.within(worst_reach(trace), 1e-10);
-  test::HardCase(name, "an end that is said").is(!trace.ending.text().empty(), "a limit or a reason", trace.ending.text());
+  test::HardCase(name, "an end that is said")
+      .is(!trace.ending.text().empty(), "a limit or a reason", trace.ending.text());
 }
 
 INSTANTIATE_TEST_SUITE_P(Hard, Divergence, testing::Values(30.0, 60.0));

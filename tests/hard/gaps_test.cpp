@@ -21,13 +21,14 @@ constexpr double last_energy = 1.35;
 const test::Atlas& deep_families() {
   static const test::Atlas atlas = [] {
     const core::Communicator comm;
-    const survey::Summary summary = test::run(
-        comm,
-        scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/double_pendulum_deep.yaml",
-                    {"survey.depth=2", "survey.subharmonics=3", "limits.period=33",
-                     fmt::format("limits.energy=[-.inf, {}]", last_energy), "starts.sweep.period=[8, 9]",
-                     "starts.fixed_points.grid=[[0], [0]]", "starts.fixed_points.names={[0, 0]: [In-Phase, Out-Phase]}"}),
-        "deep");
+    const survey::Summary summary =
+        test::run(comm,
+                  scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/double_pendulum_deep.yaml",
+                              {"survey.depth=2", "survey.subharmonics=3", "limits.period=33",
+                               fmt::format("limits.energy=[-.inf, {}]", last_energy), "starts.sweep.period=[8, 9]",
+                               "starts.fixed_points.grid=[[0], [0]]",
+                               "starts.fixed_points.names={[0, 0]: [In-Phase, Out-Phase]}"}),
+                  "deep");
     EXPECT_EQ(summary.failures, 0U) << testing::PrintToString(summary.failed_tasks);
     for (const survey::FindingSummary& finding : summary.findings)
       EXPECT_EQ(finding.severity, survey::Severity::cut) << finding.text;
@@ -59,9 +60,9 @@ First first_orbit(const std::string& family) {
           atlas.orbits().reals("energy")[row] - atlas.crossings().reals("energy")[crossing]};
 }
 
-// K. R. Meyer 1970, doi:10.1090/S0002-9947-1970-0259289-X: of the two families born at a multiplier e^(2 pi i j/q) one is
-// elliptic and one hyperbolic if q > 4. If q = 4 that is so where both lie on one side in energy; where they do not, both
-// are hyperbolic. q is that of the half map.
+// K. R. Meyer 1970, doi:10.1090/S0002-9947-1970-0259289-X: of the two families born at a multiplier e^(2 pi i j/q) one
+// is elliptic and one hyperbolic if q > 4. If q = 4 that is so where both lie on one side in energy; where they do not,
+// both are hyperbolic. q is that of the half map.
 TEST(Gaps, TwinsAreEllipticAndHyperbolicAsTheyMustBe) {
   for (const std::string twins : {"ID1", "ID2", "IT3", "IBT3-1", "IBD"}) {
     test::HardCase row(fmt::format("twins {0}a and {0}b", twins), "Meyer's theorem: signs of k - 2");
@@ -104,11 +105,12 @@ TEST(Gaps, AllAreOrbitsAndDifferent) {
       .is(nearest > 1e-6, "apart", fmt::format("{:.1e} apart", nearest));
 }
 
-// dW/dE = T along each family: between neighbours the slope of W lies between their T, unless T turns or one of them has
-// jumped to a neighbour.
+// dW/dE = T along each family: between neighbours the slope of W lies between their T, unless T turns or one of them
+// has jumped to a neighbour.
 TEST(Gaps, NoneJumpsToItsNeighbour) {
   const test::Atlas& atlas = deep_families();
-  test::HardCase row("families of the deep survey", "dW/dE between the T of neighbours, off by parts of their difference");
+  test::HardCase row("families of the deep survey",
+                     "dW/dE between the T of neighbours, off by parts of their difference");
   double worst = 0.0;
   for (const std::string& family : atlas.families().texts("name")) {
     const std::vector<double> periods = atlas.column("period", family);

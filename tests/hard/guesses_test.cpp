@@ -30,8 +30,8 @@ TEST_P(Guesses, ThirtyPercentOff) {
   int converged = 0;
   int same = 0;
   int silent = 0;
-  for (const auto method : {corrector::Method::newton_krylov, corrector::Method::nls, corrector::Method::ntr,
-                            corrector::Method::brgn})
+  for (const auto method :
+       {corrector::Method::newton_krylov, corrector::Method::nls, corrector::Method::ntr, corrector::Method::brgn})
     for (unsigned seed = 1; seed <= seeds; ++seed) {
       const corrector::Result result = problem.correct(problem.noisy(0.3, seed), {.method = method});
       ++tried;

@@ -44,7 +44,8 @@ TEST(Kernels, OfTwoPairsAtOnce) {
       for (int k = 0; k <= moved.cutoff; ++k)
         for (int i = 0; i < 6; ++i)
           if (k != 1 || i < 2)
-            other = test::worse(other, std::max(std::abs(moved.cosine(k, i)), k > 0 ? std::abs(moved.sine(k, i)) : 0.0));
+            other =
+                test::worse(other, std::max(std::abs(moved.cosine(k, i)), k > 0 ? std::abs(moved.sine(k, i)) : 0.0));
     }
   }
   row.is(dimensions == std::vector<int>(4, 4), "4, 4, 4, 4", fmt::format("{}", fmt::join(dimensions, ", ")));

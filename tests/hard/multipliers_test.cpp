@@ -18,8 +18,8 @@ using namespace orbweaver;
 
 constexpr double pi = std::numbers::pi;
 
-/// q'' = -q - q^3 beside x'' = rate^2 x, state q, p, x, y: along the orbits in the plane x = y = 0, of any period T, the
-/// multipliers are exp(+-rate T).
+/// q'' = -q - q^3 beside x'' = rate^2 x, state q, p, x, y: along the orbits in the plane x = y = 0, of any period T,
+/// the multipliers are exp(+-rate T).
 class BesideASaddle final : public test::PointSystem {
  public:
   explicit BesideASaddle(double rate) : PointSystem(described()), _rate(rate) {}

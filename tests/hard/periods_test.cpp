@@ -110,8 +110,7 @@ TEST(Periods, StraightOrbitsOfHenonAndHeiles) {
   continuation::Options options;
   options.period_limit = longest;
   test::HardCase row("Straight, Henon-Heiles, to T = 1000", "a family that diverges has an orbit of every period");
-  const test::Trace trace =
-      test::trace_of(system, {found[0].base, found[0].tangent, found[0].isotropy}, options);
+  const test::Trace trace = test::trace_of(system, {found[0].base, found[0].tangent, found[0].isotropy}, options);
   row.is(trace.ending.reason == continuation::EndReason::period_limit, "period limit (T = 1000)", trace.ending.text());
   ASSERT_FALSE(trace.orbits.empty());
   const loop::Loop& last = trace.last().loop;

@@ -61,13 +61,14 @@ TEST_P(Ratios, TheSlowSwingIsThatOfASimplePendulum) {
 
 std::string name_of(const testing::TestParamInfo<Limit>& tested) { return tested.param.name; }
 
-INSTANTIATE_TEST_SUITE_P(Hard, Ratios,
-                         testing::Values(Limit{"light_outer", {"m2=1e-6", "l2=0.3"}, "the inner bob alone", 1.0, 1.0, 1e-5},
-                                         Limit{"light_inner", {"m1=1e-6"}, "both rods in line", 2.0, 1.0, 1e-5},
-                                         Limit{"heavy_outer", {"m2=1e6"}, "both rods in line", 2.0, 1e6, 1e-5},
-                                         Limit{"strong_gravity", {"m1=1e-6", "g=1e6"}, "both rods in line", 2.0, 1e6, 1e-5},
-                                         Limit{"weak_gravity", {"m1=1e-6", "g=1e-6"}, "both rods in line", 2.0, 1e-6, 1e-5}),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(
+    Hard, Ratios,
+    testing::Values(Limit{"light_outer", {"m2=1e-6", "l2=0.3"}, "the inner bob alone", 1.0, 1.0, 1e-5},
+                    Limit{"light_inner", {"m1=1e-6"}, "both rods in line", 2.0, 1.0, 1e-5},
+                    Limit{"heavy_outer", {"m2=1e6"}, "both rods in line", 2.0, 1e6, 1e-5},
+                    Limit{"strong_gravity", {"m1=1e-6", "g=1e6"}, "both rods in line", 2.0, 1e6, 1e-5},
+                    Limit{"weak_gravity", {"m1=1e-6", "g=1e-6"}, "both rods in line", 2.0, 1e-6, 1e-5}),
+    name_of);
 // A minute: beside the slow swing a bob turns a thousand times as fast.
 INSTANTIATE_TEST_SUITE_P(Long, Ratios,
                          testing::Values(Limit{"short_outer", {"l2=1e-6"}, "both bobs at one place", 1.0, 2.0, 1e-5}),

@@ -25,8 +25,7 @@ using test::reference::Real;
 /// state q1, q2, p1, p2.
 class Resonant final : public test::PointSystem {
  public:
-  Resonant(int ratio, double detuning)
-      : PointSystem(described(ratio)), _ratio(ratio), _w(ratio * (1.0 + detuning)) {}
+  Resonant(int ratio, double detuning) : PointSystem(described(ratio)), _ratio(ratio), _w(ratio * (1.0 + detuning)) {}
 
   [[nodiscard]] Eigen::VectorXd field_at(const Eigen::VectorXd& z) const override {
     const Eigen::Vector4d g = gradient_at(z);
@@ -79,10 +78,9 @@ class Resonant final : public test::PointSystem {
   static systems::Structure described(int ratio) {
     systems::Structure d = test::structure_of(4, true, true);
     const Eigen::Matrix4d reverse = Eigen::Vector4d(1, 1, -1, -1).asDiagonal();
-    const Eigen::Matrix4d mirror =
-        ratio == 1 ? Eigen::Vector4d(-1, 1, -1, 1).asDiagonal().toDenseMatrix()
-        : ratio == 2 ? Eigen::Vector4d(-1, 1, -1, 1).asDiagonal().toDenseMatrix()
-                     : Eigen::Vector4d(-1, -1, -1, -1).asDiagonal().toDenseMatrix();
+    const Eigen::Matrix4d mirror = ratio == 1   ? Eigen::Vector4d(-1, 1, -1, 1).asDiagonal().toDenseMatrix()
+                                   : ratio == 2 ? Eigen::Vector4d(-1, 1, -1, 1).asDiagonal().toDenseMatrix()
+                                                : Eigen::Vector4d(-1, -1, -1, -1).asDiagonal().toDenseMatrix();
     d.equivariances = {{"S", mirror}};
     d.reversors = {{"R", reverse}, {"RS", reverse * mirror}};
     return d;
@@ -132,7 +130,8 @@ class Resonances : public testing::TestWithParam<Resonance> {};
 
 TEST_P(Resonances, AreFoundAsByShooting) {
   const auto [ratio, detuning] = GetParam();
-  const std::string name = fmt::format("1:{} resonance, 1 {:+.0e}", ratio, detuning);
+  const std::string name = detuning == 0.0 ? fmt::format("1:{} resonance", ratio)
+                                           : fmt::format("1:{} resonance, off by {:+.0e}", ratio, detuning);
   const auto system = std::make_shared<const Resonant>(ratio, detuning);
   const std::vector<double> origin(4, 0.0);
   constexpr double r = 0.05;
@@ -169,7 +168,7 @@ TEST_P(Resonances, AreFoundAsByShooting) {
   const int shot = brake_orbits_by_shooting(*system, r);
   row.is(brake == shot, fmt::format("{}", shot), fmt::format("{} of {} families", brake, slow));
   test::HardCase(name, "all close by extrapolation, relative").within(worst, 1e-9);
-  test::HardCase(name, "T/2 pi - 1 of the order of the amplitude").within(worst_period, 2.0 * r);
+  EXPECT_LT(worst_period, 2.0 * r) << "of the order of the amplitude";
 }
 
 INSTANTIATE_TEST_SUITE_P(Hard, Resonances,

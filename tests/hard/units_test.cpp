@@ -28,8 +28,8 @@ struct Units {
 };
 
 const std::vector<Units>& all_units() {
-  static const std::vector<Units> units{{1e9, 1, 1},      {1e-9, 1, 1},      {1, 1e9, 1},       {1, 1e-9, 1},
-                                        {1, 1, 1e9},      {1, 1, 1e-9},      {1e9, 1e9, 1e9},   {1e-9, 1e-9, 1e-9},
+  static const std::vector<Units> units{{1e9, 1, 1},      {1e-9, 1, 1},      {1, 1e9, 1},           {1, 1e-9, 1},
+                                        {1, 1, 1e9},      {1, 1, 1e-9},      {1e9, 1e9, 1e9},       {1e-9, 1e-9, 1e-9},
                                         {1e9, 1e-9, 1e9}, {1e-9, 1e9, 1e-9}, {3.7e8, 2.3e-7, 8.1e5}};
   return units;
 }
@@ -40,8 +40,8 @@ scene::Scene pendulum(const Units& units) {
        fmt::format("system.parameters.l1={:.17g}", units.length),
        fmt::format("system.parameters.l2={:.17g}", units.length),
        fmt::format("system.parameters.g={:.17g}", units.length / (units.time * units.time)), "starts.sweep={}",
-       fmt::format("limits.period={:.17g}", 10.0 * units.time), fmt::format("events.periods=[{:.17g}]", 8.5 * units.time),
-       "survey.depth=1", "survey.subharmonics=1"});
+       fmt::format("limits.period={:.17g}", 10.0 * units.time),
+       fmt::format("events.periods=[{:.17g}]", 8.5 * units.time), "survey.depth=1", "survey.subharmonics=1"});
 }
 
 scene::Scene spring(const Units& units) {
@@ -53,8 +53,8 @@ scene::Scene spring(const Units& units) {
        fmt::format("system.parameters.gravity={:.17g}", units.length / (units.time * units.time)),
        fmt::format("starts.fixed_points.grid=[[0], [{:.17g}]]", -1.333 * units.length), "starts.fixed_points.names={}",
        "starts.fixed_points.letters={}", "starts.sweep={}",
-       fmt::format("continuation.start={:.17g}", 0.01 * units.length * std::max(1.0, 1.0 / units.time)), "survey.depth=1",
-       "survey.subharmonics=2", fmt::format("limits.period={:.17g}", 30.0 * units.time),
+       fmt::format("continuation.start={:.17g}", 0.01 * units.length * std::max(1.0, 1.0 / units.time)),
+       "survey.depth=1", "survey.subharmonics=2", fmt::format("limits.period={:.17g}", 30.0 * units.time),
        fmt::format("limits.energy=[-.inf, {:.17g}]", 0.5 * units.energy())});
 }
 
@@ -79,8 +79,8 @@ double error_at_crossings(const test::Atlas& plain, const test::Atlas& other, co
   for (std::size_t row = 0; row < plain.crossings().rows(); ++row) {
     const double period = plain.crossings().reals("period")[row];
     worst = test::worse(worst, std::abs(other.crossings().reals("period")[row] / units.time / period - 1.0));
-    worst = test::worse(worst, off(plain.crossings().reals("energy")[row],
-                                   other.crossings().reals("energy")[row] / units.energy()));
+    worst = test::worse(
+        worst, off(plain.crossings().reals("energy")[row], other.crossings().reals("energy")[row] / units.energy()));
   }
   return worst;
 }
@@ -91,8 +91,8 @@ double error_at_ends(const test::Atlas& plain, const test::Atlas& other, const U
     const auto last = [&](const test::Atlas& atlas, const char* column) { return atlas.column(column, family).back(); };
     worst = test::worse(worst, std::abs(last(other, "period") / units.time / last(plain, "period") - 1.0));
     worst = test::worse(worst, off(last(plain, "energy"), last(other, "energy") / units.energy()));
-    worst = test::worse(
-        worst, std::abs(last(other, "action") / units.energy() / units.time / last(plain, "action") - 1.0));
+    worst =
+        test::worse(worst, std::abs(last(other, "action") / units.energy() / units.time / last(plain, "action") - 1.0));
   }
   return worst;
 }
@@ -115,7 +115,8 @@ void expect_scaled(const std::string& system, const Scene& scene_in) {
     crossings = test::worse(crossings, error_at_crossings(plain, other, units));
     ends = test::worse(ends, error_at_ends(plain, other, units));
   }
-  tree.is(others.empty(), "the same", others.empty() ? "the same" : fmt::format("others in {}", fmt::join(others, "; ")));
+  tree.is(others.empty(), "the same",
+          others.empty() ? "the same" : fmt::format("others in {}", fmt::join(others, "; ")));
   test::HardCase(name, "T ~ time, E ~ mass length^2/time^2 at crossings, relative").within(crossings, 1e-9);
   test::HardCase(name, "T, E and action of families' last orbits, relative").within(ends, 1e-9);
 }
