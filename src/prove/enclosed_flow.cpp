@@ -17,6 +17,7 @@ constexpr double order_a_digit = 1.3;
 constexpr int least_order = 8;
 /// A step is at most this part of the disc, so that the geometric series of what it leaves out falls off.
 constexpr double longest_part = 0.5;
+constexpr double largest_part = 0.9;  // of a last step, whose time is uncertain
 constexpr long disc_bits = 64;  // bounds need no more
 constexpr double first_radius = 0.1;
 constexpr double larger = 1.25;   // a disc that is tried after one was found
@@ -197,6 +198,7 @@ EnclosedFlow::Image EnclosedFlow::advance(const BallVector& box, const Ball& tim
     const Ball step = is_last ? remaining : Ball(longest);
     // Cauchy: the coefficient of t^k is at most the bound on the disc over radius^k.
     const Ball part = step.modulus() / disc.radius;
+    if (!(part <= Ball(largest_part))) throw NotProven("the time is too uncertain for its last step");
     Ball left_out;
     arb_pow_ui(left_out.get(), part.get(), static_cast<ulong>(_order) + 1, WorkingBits::in_force());
     left_out = left_out / (Ball(1.0) - part);

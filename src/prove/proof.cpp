@@ -24,15 +24,16 @@ using Quantity = refine::HeldValue::Quantity;
 
 /// Digits that the centre has beyond those aimed at, and those that steps and arithmetic have: sums of some hundred
 /// errors, and what Krawczyk's test needs to spare.
-constexpr int centre_guard = 12;
-constexpr int step_guard = 12;
-constexpr int arithmetic_guard = 25;
+constexpr int centre_guard = 6;
+constexpr int step_guard = 6;
+constexpr int arithmetic_guard = 20;
 constexpr double bits_a_digit = 3.3219280948873626;
 /// An instant for so many harmonics of the fundamental domain: boxes grow little in between.
 constexpr int harmonics_a_segment = 2;
 constexpr int least_segments = 2;
 constexpr int most_segments = 32;
-/// The narrow box is so many times as wide as the correction of its centre, and wider each time that it fails.
+/// The narrow box is at least this many digits better than aimed at, and so many times as wide as the correction of its centre, and wider each time that it fails.
+constexpr int least_narrow = 2;
 constexpr double narrow_factor = 8.0;
 constexpr double wider = 1e3;
 constexpr int most_narrow_boxes = 4;
@@ -145,8 +146,7 @@ double unique_radius(const ClosedOrbit& orbit, const Krawczyk& krawczyk, double 
       static_cast<void>(krawczyk.test(flow, radius));
       steps += flow.steps();
       return radius;
-    } catch (const core::NumericalError& failure) {
-      fprintf(stderr,"%.1e: %ld %s\n",radius,flow.steps(),failure.what());
+    } catch (const core::NumericalError&) {
       steps += flow.steps();
       if (given) throw;
     }
@@ -270,7 +270,7 @@ Proof prove(const Statement& statement, std::optional<double> radius) {
   for (Ball& x : centre) x = x.middle();
   EnclosedFlow flow = orbit.flow(statement.digits + step_guard);
   const Krawczyk krawczyk(orbit, centre, flow);
-  double narrow = std::max(narrow_factor * krawczyk.correction(), std::pow(10.0, -statement.digits - step_guard + 2));
+  double narrow = std::max(narrow_factor * krawczyk.correction(), std::pow(10.0, -statement.digits - least_narrow));
   std::optional<Krawczyk::Outcome> outcome;
   for (int n = 0; !outcome; ++n, narrow *= wider) {
     try {
@@ -290,6 +290,9 @@ Proof prove(const Statement& statement, std::optional<double> radius) {
   for (std::size_t n = 0; n < centre.size(); ++n)
     proof.distance = std::max(proof.distance, (outcome->image[n] - centre[n]).modulus().upper());
   const BallVector start = orbit.nodes(outcome->image).front();
+  const BallVector speed = flow.field(start);
+  if (std::all_of(speed.begin(), speed.end(), [](const Ball& f) { return f.contains(Ball(0.0)); }))
+    throw NotProven("the solution may be an equilibrium");
   for (std::size_t i = 0; i < start.size(); ++i)
     proof.state.push_back(enclosure_of(start[i] * Ball(statement.scales.coordinate(i))));
   const bool holds_energy = statement.held.quantity == Quantity::energy;
@@ -317,6 +320,7 @@ std::vector<std::string> check(const Proof& proof) {
   };
   require(proof.isolated_by == again.isolated_by, "isolation by " + proof.isolated_by);
   require(proof.order == again.order, "the order of the fundamental map");
+  require(again.radius == proof.radius, fmt::format("a radius of {:.3e}", proof.radius));
   require(again.distance <= proof.distance, "the distance from the centre");
   require(proof.state.size() == again.state.size(), "the size of the state");
   for (std::size_t i = 0; i < std::min(proof.state.size(), again.state.size()); ++i)

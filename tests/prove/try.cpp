@@ -1,7 +1,7 @@
 #include <chrono>
 #include <cstdio>
 #include "orbweaver/archive/read/reader.hpp"
-#include "orbweaver/prove/proof.hpp"
+#include "orbweaver/prove/proof_file.hpp"
 #include "orbweaver/refine/stored_family.hpp"
 using namespace orbweaver;
 int main(int argc,char**argv){
@@ -23,5 +23,6 @@ int main(int argc,char**argv){
   if(p.index)printf(" kf %s\n k %s\n",p.fundamental_index->text().c_str(),p.index->text().c_str());
   for(auto&e:p.multiplier)printf("  mu %s\n",e.text().c_str());
   printf("%.2f s\n",sec());
+  prove::write_proofs("/tmp/w/prove_x.h5",{p});for(auto&m:prove::check(prove::read_proofs("/tmp/w/prove_x.h5")[0]))printf("MISSING %s\n",m.c_str());printf("%.2f s\n",sec());
   }catch(const std::exception&e){printf("FAILED %s\n",e.what());return 1;}
 }
