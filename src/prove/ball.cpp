@@ -141,11 +141,11 @@ Ball operator-(Ball a) {
 bool operator<(const Ball& a, const Ball& b) { return arb_lt(a.get(), b.get()) != 0; }
 bool operator<=(const Ball& a, const Ball& b) { return arb_le(a.get(), b.get()) != 0; }
 
-#define ORBWEAVER_BALL_FUNCTION(name)             \
-  Ball name(const Ball& x) {                      \
-    Ball result;                                  \
+#define ORBWEAVER_BALL_FUNCTION(name)                 \
+  Ball name(const Ball& x) {                          \
+    Ball result;                                      \
     arb_##name(result.get(), x.get(), bits_in_force); \
-    return result;                                \
+    return result;                                    \
   }
 ORBWEAVER_BALL_FUNCTION(sqrt)
 ORBWEAVER_BALL_FUNCTION(exp)
@@ -185,11 +185,11 @@ Ball ComplexBall::modulus() const {
   return result;
 }
 
-#define ORBWEAVER_COMPLEX_OPERATION(symbol, name)                        \
+#define ORBWEAVER_COMPLEX_OPERATION(symbol, name)                           \
   ComplexBall operator symbol(const ComplexBall& a, const ComplexBall& b) { \
-    ComplexBall result;                                                  \
-    acb_##name(result.get(), a.get(), b.get(), bits_in_force);           \
-    return result;                                                       \
+    ComplexBall result;                                                     \
+    acb_##name(result.get(), a.get(), b.get(), bits_in_force);              \
+    return result;                                                          \
   }
 ORBWEAVER_COMPLEX_OPERATION(+, add)
 ORBWEAVER_COMPLEX_OPERATION(-, sub)

@@ -73,8 +73,7 @@ std::vector<double> ClosedOrbit::turns_between(const BallMatrix& matrix, const B
   const BallVector image = (matrix * BallMatrix::of(from)).column(0);
   std::vector<double> turns(from.size(), 0.0);
   for (std::size_t i = 0; i < from.size(); ++i)
-    if (_structure.is_angle(i))
-      turns[i] = std::round((to[i] - image[i]).middle_in_double() / (2.0 * std::numbers::pi));
+    if (_structure.is_angle(i)) turns[i] = std::round((to[i] - image[i]).middle_in_double() / (2.0 * std::numbers::pi));
   return turns;
 }
 
@@ -129,8 +128,7 @@ ClosedOrbit::ClosedOrbit(const systems::Formulas& formulas, const systems::Struc
     throw core::InputError("orbits with a symmetry that shifts the state cannot be proven yet");
   _generator = enclosed(ExactMatrix(group.generator().matrix), d);
   _held_value = Ball::of_decimal(held.decimal) / Ball(period_is_unknown() ? scales.energy() : scales.time);
-  for (const double value : formulas.values)
-    _parameters.push_back(Ball::of_decimal(numerics::shortest_decimal(value)));
+  for (const double value : formulas.values) _parameters.push_back(Ball::of_decimal(numerics::shortest_decimal(value)));
   const std::string at = period_is_unknown() ? "energy" : "period";
   if (_mirrored) {
     _reversor = enclosed(ExactMatrix(at_start->map.matrix), d);
@@ -253,8 +251,7 @@ BallMatrix ClosedOrbit::jacobian(const EnclosedFlow& flow, const BallVector& unk
     }
     if (period_is_unknown()) {
       const BallVector speed = flow.field(passage[m].state);
-      for (std::size_t i = 0; i < d; ++i)
-        rows.set(i, this->unknowns() - 1, (fraction(m + 1) - fraction(m)) * speed[i]);
+      for (std::size_t i = 0; i < d; ++i) rows.set(i, this->unknowns() - 1, (fraction(m + 1) - fraction(m)) * speed[i]);
     }
     for (std::size_t i = 0, row = d * m; i < d; ++i)
       if (_mirrored || !is_last || i != _left_out) result.set_block(row++, 0, rows.block(i, 0, 1, this->unknowns()));
@@ -292,8 +289,8 @@ std::optional<Ball> ClosedOrbit::fundamental_index(const Passage& passage) const
   if (_structure.pairs() != 1) return std::nullopt;
   BallMatrix across = passage.front().transition;
   for (std::size_t m = 1; m < passage.size(); ++m) across = passage[m].transition * across;
-  const BallMatrix map = _mirrored ? _reversor * inverse(across) * inverse(_generator * _reversor) * across
-                                   : inverse(_generator) * across;
+  const BallMatrix map =
+      _mirrored ? _reversor * inverse(across) * inverse(_generator * _reversor) * across : inverse(_generator) * across;
   return map.trace() - Ball(2.0);
 }
 

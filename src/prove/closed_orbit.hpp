@@ -84,9 +84,9 @@ class ClosedOrbit {
   bool _mirrored = false;
   BallMatrix _generator;
   BallMatrix _reversor;
-  FixedSet _start;  ///< of R
-  FixedSet _end;    ///< of g R
-  std::vector<double> _turns;      ///< of g, without a reversor
+  FixedSet _start;             ///< of R
+  FixedSet _end;               ///< of g R
+  std::vector<double> _turns;  ///< of g, without a reversor
   BallVector _section_point;
   BallVector _section_normal;
   std::size_t _left_out = 0;  ///< the closing equation that follows from the others

@@ -18,11 +18,11 @@ constexpr int least_order = 8;
 /// A step is at most this part of the disc, so that the geometric series of what it leaves out falls off.
 constexpr double longest_part = 0.5;
 constexpr double largest_part = 0.9;  // of a last step, whose time is uncertain
-constexpr long disc_bits = 64;  // bounds need no more
+constexpr long disc_bits = 64;        // bounds need no more
 constexpr double first_radius = 0.1;
-constexpr double larger = 1.25;   // a disc that is tried after one was found
-constexpr double smaller = 0.8;   // and after one was not
-constexpr int most_discs = 300;   // 0.8^300 is 1e-29
+constexpr double larger = 1.25;  // a disc that is tried after one was found
+constexpr double smaller = 0.8;  // and after one was not
+constexpr int most_discs = 300;  // 0.8^300 is 1e-29
 constexpr int most_inflations = 12;
 constexpr double inflation = 1.1;
 
@@ -143,8 +143,8 @@ std::optional<EnclosedFlow::Disc> EnclosedFlow::disc_of_radius(const BallVector&
       if (!(needed[i] <= reach[i])) holds = false;
     }
     if (holds) {
-      const std::vector<ComplexBall> slopes = ad::evaluate<ComplexBall>(
-          _formulas.tape, _formulas.variations, with_unit_columns(region), _complex_parameters);
+      const std::vector<ComplexBall> slopes = ad::evaluate<ComplexBall>(_formulas.tape, _formulas.variations,
+                                                                        with_unit_columns(region), _complex_parameters);
       BallMatrix slope(d, d);
       for (std::size_t i = 0; i < d; ++i)
         for (std::size_t c = 0; c < d; ++c) {
@@ -166,7 +166,8 @@ EnclosedFlow::Disc EnclosedFlow::analytic_disc(const BallVector& box, double gue
   double radius = guess;
   for (int n = 0; n < most_discs; ++n, radius *= smaller)
     if (std::optional<Disc> disc = disc_of_radius(box, radius)) return *disc;
-  throw NotProven("no time is short enough for an enclosure of the solutions: the box is too wide, or meets a singularity");
+  throw NotProven(
+      "no time is short enough for an enclosure of the solutions: the box is too wide, or meets a singularity");
 }
 
 double EnclosedFlow::step_size(const Disc& disc) const {

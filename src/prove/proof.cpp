@@ -13,6 +13,8 @@
 #include "enclosed_flow.hpp"
 #include "orbweaver/loop/symmetry/isotropy_text.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
+#include "orbweaver/refine/guess.hpp"
+#include "orbweaver/refine/stored_family.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/scaled_system.hpp"
 
@@ -45,7 +47,6 @@ constexpr double wide_guard = 6.0;
 constexpr double wide_least_digits = 10.0;
 /// A box that is too wide has ever shorter steps: it is given up after so many times those of the narrow one.
 constexpr long most_wide_steps = 2;
-constexpr int index_digits = 40;
 
 Enclosure enclosure_of(const Ball& ball) { return {ball.exact_text()}; }
 Ball ball_of(const Enclosure& enclosure) { return Ball::of_exact_text(enclosure.exact); }
@@ -67,18 +68,18 @@ ClosedOrbit closed_orbit_of(const Statement& statement) {
   for (const auto& [name, decimal] : statement.parameters) parameters[name] = std::stod(decimal);
   const std::shared_ptr<const systems::System> system =
       systems::scaled(systems::make_system(statement.system, parameters, statement.effects), statement.scales);
-  const auto* with_formulas = dynamic_cast<const systems::FormulaSystem*>(system.get());
-  if (with_formulas == nullptr)
-    throw core::InputError(statement.system + " does not give its formulas, without which nothing is proven");
-  if (system->structure().conserved.size() != 1 || !system->structure().symplectic)
-    throw core::InputError("only orbits of Hamiltonian systems that conserve one quantity can be proven");
   const auto d = static_cast<std::size_t>(system->dimension());
   if (statement.start.size() != d || statement.end.size() != d || statement.fractions.empty() ||
       statement.fractions.front() != 0.0)
     throw core::InputError("the statement does not fit its system");
-  return {with_formulas->formulas(), system->structure(), statement.scales,
-          loop::isotropy_of(system->structure(), statement.isotropy), statement.fractions, statement.held,
-          balls_of(statement.start), balls_of(statement.end)};
+  return {refine::refinable_formulas(*system),
+          system->structure(),
+          statement.scales,
+          loop::isotropy_of(system->structure(), statement.isotropy),
+          statement.fractions,
+          statement.held,
+          balls_of(statement.start),
+          balls_of(statement.end)};
 }
 
 /// Krawczyk's test of one box about a centre: where the operator maps the box into its interior, there is exactly one
@@ -199,8 +200,8 @@ double Enclosure::radius() const { return ball_of(*this).radius().upper(); }
 bool Enclosure::contains(const Enclosure& other) const { return ball_of(*this).contains(ball_of(other)); }
 bool Enclosure::contains(const numerics::Extended& number) const { return ball_of(*this).contains(Ball::of(number)); }
 
-std::string Enclosure::text() const {
-  char* raw = arb_get_str(ball_of(*this).get(), index_digits, 0);
+std::string Enclosure::text(int digits) const {
+  char* raw = arb_get_str(ball_of(*this).get(), digits, 0);
   std::string text(raw);
   flint_free(raw);
   return text;
@@ -223,6 +224,7 @@ Statement statement_about(const std::string& family, const std::vector<std::stri
   const refine::RefinedOrbit refined = refine::refine_orbit(guess, held, digits + centre_guard);
   Statement statement;
   statement.family = family;
+  statement.state_names = guess.system->info().state_names;
   statement.system = guess.system->info().name;
   for (const auto& [name, value] : guess.system->parameters())
     statement.parameters.emplace_back(name, numerics::shortest_decimal(value));
@@ -253,9 +255,14 @@ Statement statement_about(const std::string& family, const std::vector<std::stri
   statement.end = texts_of(end);
   const ClosedOrbit orbit = closed_orbit_of(statement);
   EnclosedFlow flow = orbit.flow(digits + step_guard);
-  statement.centre =
-      texts_of(orbit.candidate(flow, start, Ball::of(refined.period.value) / Ball(guess.scales.time)));
+  statement.centre = texts_of(orbit.candidate(flow, start, Ball::of(refined.period.value) / Ball(guess.scales.time)));
   return statement;
+}
+
+Statement statement_about(const archive::Archive& atlas, const std::string& family, const std::string& orbit,
+                          int digits) {
+  const auto named = refine::StoredFamily::named(atlas, family).named_orbit(orbit, std::nullopt);
+  return statement_about(family, atlas.header().effects, named.place.guess, named.held, digits);
 }
 
 Proof prove(const Statement& statement, std::optional<double> radius) {

@@ -21,6 +21,7 @@ template <class AnyProof, class Visit>
 void visit_columns(AnyProof& proof, const Visit& visit) {
   auto& statement = proof.statement;
   visit("family", statement.family);
+  visit("state_names", statement.state_names);
   visit("system", statement.system);
   visit("parameters", statement.parameters);
   visit("effects", statement.effects);
@@ -74,7 +75,7 @@ std::string to_text(const std::vector<Value>& values) {
 
 void from_text(const std::string& text, std::string& value) { value = text; }
 template <class Number>
-  requires std::is_arithmetic_v<Number>
+requires std::is_arithmetic_v<Number>
 void from_text(const std::string& text, Number& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) refuse(text);
@@ -140,8 +141,7 @@ std::vector<Proof> read_proofs(const std::filesystem::path& path) {
   std::vector<Proof> proofs(table.values.front().size());
   for (std::size_t row = 0; row < proofs.size(); ++row) {
     std::size_t column = 0;
-    visit_columns(proofs[row],
-                  [&](const char*, auto& value) { from_text(table.values[column++][row], value); });
+    visit_columns(proofs[row], [&](const char*, auto& value) { from_text(table.values[column++][row], value); });
   }
   return proofs;
 }

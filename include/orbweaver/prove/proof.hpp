@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "orbweaver/archive/read/reader.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/refine/orbit.hpp"
 #include "orbweaver/systems/scales.hpp"
@@ -28,20 +29,21 @@ struct Enclosure {
   [[nodiscard]] double radius() const;
   [[nodiscard]] bool contains(const Enclosure& other) const;
   [[nodiscard]] bool contains(const numerics::Extended& number) const;
-  /// "[1.23456 +/- 1.2e-30]", which holds it.
-  [[nodiscard]] std::string text() const;
+  /// "[1.23456 +/- 1.2e-30]", which holds it, with at most so many digits.
+  [[nodiscard]] std::string text(int digits = 40) const;
 };
 
 /// What is to be proven, with all that a proof starts from: nothing in it is taken on trust but the system, its
 /// symmetries and its conserved quantity.
 struct Statement {
-  std::string family;  ///< for people
+  std::string family;  ///< for people, as the names of the coordinates
+  std::vector<std::string> state_names;
   std::string system;
   std::vector<std::pair<std::string, std::string>> parameters;  ///< names, and the decimal numbers that are meant
   std::vector<std::string> effects;
-  systems::Scales scales;  ///< in which boxes are cubes
-  std::string isotropy;    ///< at the phase of `start`
-  refine::HeldValue held;  ///< what picks the orbit of its family
+  systems::Scales scales;          ///< in which boxes are cubes
+  std::string isotropy;            ///< at the phase of `start`
+  refine::HeldValue held;          ///< what picks the orbit of its family
   std::vector<double> fractions;   ///< instants of multiple shooting, in parts of the period, but for the last
   std::vector<std::string> start;  ///< states at the first and last instant, roughly, in the scales; as Enclosure
   std::vector<std::string> end;
@@ -66,7 +68,7 @@ struct Proof {
   std::vector<Enclosure> state;  ///< at t = 0
   Enclosure period;
   Enclosure energy;
-  int order = 1;  ///< p of the fundamental map
+  int order = 1;                               ///< p of the fundamental map
   std::optional<Enclosure> fundamental_index;  ///< mu + 1/mu of the fundamental map; none in the plane
   std::optional<Enclosure> index;              ///< of the full period
   Stability stability = Stability::none;
@@ -82,6 +84,10 @@ inline constexpr int most_proof_digits = 300;
 /// centre is refined to `digits` and some more. `effects`: those that the system was asked for. Throws as refine_orbit, and NotProven.
 [[nodiscard]] Statement statement_about(const std::string& family, const std::vector<std::string>& effects,
                                         const refine::Guess& guess, const refine::HeldValue& held, int digits);
+
+/// The same of an orbit of an archive: "T=9", "E=-0.5" or a step of the family (refine::StoredFamily::named_orbit).
+[[nodiscard]] Statement statement_about(const archive::Archive& atlas, const std::string& family,
+                                        const std::string& orbit, int digits);
 
 /// Encloses the orbit (docs/mathematics.md, "Proofs"). Without `radius`: the largest of a few in which there is one
 /// orbit. Throws NotProven where nothing can be shown, core::InputError for a statement that makes no sense.

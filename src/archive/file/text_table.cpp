@@ -72,7 +72,8 @@ std::optional<std::string> text_attribute(const H5Handle& file, const char* name
 
 std::vector<std::string> read_column(const std::filesystem::path& path, const H5Handle& file, const std::string& name) {
   const std::string problem = fmt::format("'{}' lacks the column /{}, or it is damaged", path.string(), name);
-  const H5Handle dataset(check_h5<core::InputError>(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), problem), H5Dclose);
+  const H5Handle dataset(check_h5<core::InputError>(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), problem),
+                         H5Dclose);
   const H5Handle type(check_h5<core::InputError>(H5Dget_type(dataset.get()), problem), H5Tclose);
   const H5Handle space(check_h5<core::InputError>(H5Dget_space(dataset.get()), problem), H5Sclose);
   if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0 ||
@@ -82,8 +83,8 @@ std::vector<std::string> read_column(const std::filesystem::path& path, const H5
   const auto rows = static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space.get())));
   std::string block(rows * width, '\0');
   if (rows > 0)
-    check_h5<core::InputError>(
-        H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, block.data()), problem);
+    check_h5<core::InputError>(H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, block.data()),
+                               problem);
   std::vector<std::string> texts;
   for (std::size_t row = 0; row < rows; ++row) {
     const std::string text = block.substr(row * width, width);
@@ -151,8 +152,9 @@ TextTable read_text_table(const std::filesystem::path& path, const TextTable& ex
       throw core::InputError(fmt::format("'{}' has columns of different lengths in /{}", path.string(), table.name));
   for (std::size_t row = 0; row < checksums.size(); ++row)
     if (checksums[row] != checksum_of(table, row))
-      throw core::InputError(fmt::format("'{}' has a changed row {} of /{}: it does not give the checksum stored with it",
-                                         path.string(), row, table.name));
+      throw core::InputError(
+          fmt::format("'{}' has a changed row {} of /{}: it does not give the checksum stored with it", path.string(),
+                      row, table.name));
   return table;
 }
 

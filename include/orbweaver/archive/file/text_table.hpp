@@ -9,11 +9,11 @@ namespace orbweaver::archive {
 
 /// A small HDF5 file beside an archive: one table, all of whose columns are texts.
 struct TextTable {
-  std::string format;                             ///< root attribute `format`
-  int version = 1;                                ///< root attribute `format_version`
-  std::string name;                               ///< of the group
-  std::vector<std::string> columns;               ///< names
-  std::vector<std::vector<std::string>> values;   ///< one list a column, one text a row
+  std::string format;                            ///< root attribute `format`
+  int version = 1;                               ///< root attribute `format_version`
+  std::string name;                              ///< of the group
+  std::vector<std::string> columns;              ///< names
+  std::vector<std::vector<std::string>> values;  ///< one list a column, one text a row
 };
 
 /// Writes PATH.part, syncs and renames; an older PATH stays until then. Each row gets a CRC-32 of its texts (column
