@@ -45,8 +45,9 @@ constexpr double next_radius = 0.31622776601683794;
 /// Digits of a wide box's integration beyond those of its radius.
 constexpr double wide_guard = 6.0;
 constexpr double wide_least_digits = 10.0;
-/// A box that is too wide has ever shorter steps: it is given up after so many times those of the narrow one.
-constexpr long most_wide_steps = 2;
+/// A box that is too wide has ever shorter steps: it is given up after so many times those of its
+/// centre.
+constexpr long most_wide_steps = 3;
 
 Enclosure enclosure_of(const Ball& ball) { return {ball.exact_text()}; }
 Ball ball_of(const Enclosure& enclosure) { return Ball::of_exact_text(enclosure.exact); }
@@ -137,12 +138,12 @@ class Krawczyk {
 
 /// The largest radius in which the zero of the narrow box is the only one.
 double unique_radius(const ClosedOrbit& orbit, const Krawczyk& krawczyk, double narrow, std::optional<double> given,
-                     long narrow_steps, long& steps) {
+                     long thin_steps, long& steps) {
   for (double radius = given.value_or(largest_radius); radius > narrow; radius *= next_radius) {
     const double digits = std::max(wide_least_digits, -std::log10(radius) + wide_guard);
     const WorkingBits working(static_cast<long>((digits + arithmetic_guard) * bits_a_digit));
     EnclosedFlow flow = orbit.flow(digits);
-    flow.limit_steps(most_wide_steps * narrow_steps);
+    flow.limit_steps(most_wide_steps * thin_steps);
     try {
       static_cast<void>(krawczyk.test(flow, radius));
       steps += flow.steps();
@@ -278,14 +279,16 @@ Proof prove(const Statement& statement, std::optional<double> radius) {
   EnclosedFlow flow = orbit.flow(statement.digits + step_guard);
   const Krawczyk krawczyk(orbit, centre, flow);
   double narrow = std::max(narrow_factor * krawczyk.correction(), std::pow(10.0, -statement.digits - least_narrow));
+  const long thin_steps = flow.steps();
   std::optional<Krawczyk::Outcome> outcome;
-  for (int n = 0; !outcome; ++n, narrow *= wider) {
+  for (int n = 0; !outcome; ++n) {
+    flow.limit_steps(flow.steps() + most_wide_steps * thin_steps);
     try {
       outcome = krawczyk.test(flow, narrow);
-    } catch (const NotProven&) {
+    } catch (const core::NumericalError&) {
       if (n + 1 == most_narrow_boxes) throw;
+      narrow *= wider;
     }
-    if (outcome) break;
   }
   Proof proof;
   proof.statement = statement;
@@ -293,7 +296,7 @@ Proof prove(const Statement& statement, std::optional<double> radius) {
   proof.order = orbit.order();
   proof.taylor_order = flow.order();
   proof.steps = flow.steps();
-  proof.radius = unique_radius(orbit, krawczyk, narrow, radius, flow.steps(), proof.steps);
+  proof.radius = unique_radius(orbit, krawczyk, narrow, radius, thin_steps, proof.steps);
   for (std::size_t n = 0; n < centre.size(); ++n)
     proof.distance = std::max(proof.distance, (outcome->image[n] - centre[n]).modulus().upper());
   const BallVector start = orbit.nodes(outcome->image).front();
@@ -315,7 +318,7 @@ std::vector<std::string> check(const Proof& proof) {
   Proof again;
   try {
     again = prove(proof.statement, proof.radius);
-  } catch (const NotProven& failure) {
+  } catch (const core::NumericalError& failure) {
     return {failure.what()};
   }
   std::vector<std::string> missing;
