@@ -66,7 +66,12 @@ std::vector<std::string> texts_of(const BallVector& balls) {
 
 ClosedOrbit closed_orbit_of(const Statement& statement) {
   std::map<std::string, double> parameters;
-  for (const auto& [name, decimal] : statement.parameters) parameters[name] = std::stod(decimal);
+  for (const auto& [name, decimal] : statement.parameters) {
+    const auto value = static_cast<double>(numerics::extended_of(decimal));
+    if (numerics::shortest_decimal(value) != decimal)
+      throw core::InputError(fmt::format("the parameter {} = {} is not what it is computed with", name, decimal));
+    parameters[name] = value;
+  }
   const std::shared_ptr<const systems::System> system =
       systems::scaled(systems::make_system(statement.system, parameters, statement.effects), statement.scales);
   const auto d = static_cast<std::size_t>(system->dimension());
