@@ -94,7 +94,7 @@ TEST(Prove, HoldsTheRefinedOrbit) {
   EXPECT_TRUE(proof.period.contains(refined.period.value));
 }
 
-// Around the origin, x + i y near e^(i t): entries sqrt(3)/2 of the symmetry, p = 3. And without reversor, on a section.
+// Around the origin, x + i y near e^(i t): entries sqrt(3)/2 of the symmetry, p = 3. And on a section.
 TEST(Prove, HoldsAnOrbitWithTheSymmetryOfATriangle) {
   constexpr double a = 0.316;
   const std::vector<double> none(4, 0.0);

@@ -58,8 +58,8 @@ enum class Stability { elliptic, hyperbolic, undecided, none };
 [[nodiscard]] const char* name_of(Stability stability);
 
 /// What was proven: in the cube of half width `radius` (in the scales) about the centre there is exactly one solution
-/// of the equations; it is a periodic orbit with the period, and all of its numbers lie in their enclosures, told in the
-/// units of the system.
+/// of the equations; it is a periodic orbit with the period, and all of its numbers lie in their enclosures, told in
+/// the units of the system.
 struct Proof {
   Statement statement;
   std::string isolated_by;  ///< which equations pick it
@@ -81,7 +81,8 @@ struct Proof {
 inline constexpr int most_proof_digits = 300;
 
 /// The orbit near the guess whose period or energy is the held one, as a statement about the system in its units: its
-/// centre is refined to `digits` and some more. `effects`: those that the system was asked for. Throws as refine_orbit, and NotProven.
+/// centre is refined to `digits` and some more. `effects`: those that the system was asked for. Throws as
+/// refine_orbit, and NotProven.
 [[nodiscard]] Statement statement_about(const std::string& family, const std::vector<std::string>& effects,
                                         const refine::Guess& guess, const refine::HeldValue& held, int digits);
 
