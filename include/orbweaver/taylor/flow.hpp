@@ -9,6 +9,9 @@
 
 namespace orbweaver::taylor {
 
+template <class Real>
+class Series;
+
 struct FlowOptions {
   /// The last term that a step keeps is below 10^-digits of the scales.
   double digits = 16.0;
@@ -45,17 +48,16 @@ class Flow {
   [[nodiscard]] long steps() const { return _steps; }
 
  private:
-  class Series;
-  void run(Series& series, std::vector<Real>& state, std::vector<Real>& transitions, const Real& time);
-  [[nodiscard]] double log_norm(Series& series, int k, std::size_t from, std::size_t to) const;
-  [[nodiscard]] double step_size(Series& series, std::size_t size) const;
+  void run(Series<Real>& series, std::vector<Real>& state, std::vector<Real>& transitions, const Real& time);
+  [[nodiscard]] double log_norm(Series<Real>& series, int k, std::size_t from, std::size_t to) const;
+  [[nodiscard]] double step_size(Series<Real>& series, std::size_t size) const;
 
   systems::Formulas _formulas;
   std::vector<Real> _parameters;
   FlowOptions _options;
   std::vector<double> _log_scales;
-  std::unique_ptr<Series> _state;
-  std::unique_ptr<Series> _variational;
+  std::unique_ptr<Series<Real>> _state;
+  std::unique_ptr<Series<Real>> _variational;
   long _steps = 0;
 };
 

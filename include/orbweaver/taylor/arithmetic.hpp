@@ -24,12 +24,16 @@ struct Arithmetic<double> {
   static bool is_finite(double x) { return std::isfinite(x); }
   static double to_double(double x) { return x; }
 
-  /// Sums of products.
+  /// Sums of products a_0 b_0, a_1 b_-1, ... of two arrays, the second one run through backwards.
   class Sum {
    public:
     void clear() { _sum = 0.0; }
-    void add_product(double a, double b) { _sum += a * b; }
-    void subtract_product(double a, double b) { _sum -= a * b; }
+    void add_products(const double* a, const double* b, int count) {
+      for (int j = 0; j < count; ++j) _sum += a[j] * b[-j];
+    }
+    void subtract_products(const double* a, const double* b, int count) {
+      for (int j = 0; j < count; ++j) _sum -= a[j] * b[-j];
+    }
     void add(double a) { _sum += a; }
     void twice() { _sum *= 2.0; }
     [[nodiscard]] double value() const { return _sum; }
@@ -61,13 +65,17 @@ struct Arithmetic<numerics::Extended> {
   class Sum {
    public:
     void clear() { mpfr_set_zero(raw(_sum), 1); }
-    void add_product(const Real& a, const Real& b) {
-      mpfr_mul(raw(_product), raw(a), raw(b), MPFR_RNDN);
-      mpfr_add(raw(_sum), raw(_sum), raw(_product), MPFR_RNDN);
+    void add_products(const Real* a, const Real* b, int count) {
+      for (int j = 0; j < count; ++j) {
+        mpfr_mul(raw(_product), raw(a[j]), raw(b[-j]), MPFR_RNDN);
+        mpfr_add(raw(_sum), raw(_sum), raw(_product), MPFR_RNDN);
+      }
     }
-    void subtract_product(const Real& a, const Real& b) {
-      mpfr_mul(raw(_product), raw(a), raw(b), MPFR_RNDN);
-      mpfr_sub(raw(_sum), raw(_sum), raw(_product), MPFR_RNDN);
+    void subtract_products(const Real* a, const Real* b, int count) {
+      for (int j = 0; j < count; ++j) {
+        mpfr_mul(raw(_product), raw(a[j]), raw(b[-j]), MPFR_RNDN);
+        mpfr_sub(raw(_sum), raw(_sum), raw(_product), MPFR_RNDN);
+      }
     }
     void add(const Real& a) { mpfr_add(raw(_sum), raw(_sum), raw(a), MPFR_RNDN); }
     void twice() { mpfr_mul_2ui(raw(_sum), raw(_sum), 1, MPFR_RNDN); }
