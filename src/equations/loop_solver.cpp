@@ -32,9 +32,8 @@ PetscErrorCode apply(Context& context, Product product, Vec x, Vec y) {
   PetscCall(VecGetLocalSize(x, &rows));
   PetscCall(VecGetArrayRead(x, &in));
   PetscCall(VecGetArrayWrite(y, &out));
-  const PetscErrorCode code = context.guard.run([&] {
-    (context.equations->*product)(loss::ConstVectorMap(in, rows), loss::VectorMap(out, rows));
-  });
+  const PetscErrorCode code = context.guard.run(
+      [&] { (context.equations->*product)(loss::ConstVectorMap(in, rows), loss::VectorMap(out, rows)); });
   PetscCall(VecRestoreArrayWrite(y, &out));
   PetscCall(VecRestoreArrayRead(x, &in));
   return code;

@@ -9,8 +9,8 @@
 namespace orbweaver::equations {
 
 /// GMRES on loop equations of one size, preconditioned from the right by their box scheme (which must be factored).
-/// Overridable under an options prefix. With equations of a team, solves are collective over it: each member iterates by
-/// itself on the same numbers, so that what they exchange is the equations' alone (core::Team).
+/// Overridable under an options prefix. With equations of a team, solves are collective over it: each member iterates
+/// by itself on the same numbers, and what they exchange is the equations' alone (core::Team).
 class LoopSolver {
  public:
   /// Relative residuals: asked for, and still accepted where rounding stops GMRES earlier.

@@ -144,7 +144,8 @@ void Team::end(const std::optional<std::string>& error, std::uint64_t digest) {
 }
 
 void Team::broadcast(std::string& bytes) {
-  const Problem problem = attempt([&] { require(bytes.size() <= INT_MAX, "bytes for a team are more than MPI can send"); });
+  const Problem problem =
+      attempt([&] { require(bytes.size() <= INT_MAX, "bytes for a team are more than MPI can send"); });
   meet("the leader's bytes", 0, problem, Waiting::asleep);
   auto length = static_cast<std::uint64_t>(bytes.size());
   detail::broadcast_bytes(comm(), &length, sizeof length, 0);

@@ -30,7 +30,8 @@ class BaseBirths final : public Check {
         const std::string key = base_key(static_cast<int>(n), oscillation.place);
         for (const char* side : {"", "+", "-"})
           if (const int row = evidence.row_of(key + side); row >= 0)
-            if (std::optional<Finding> finding = judged(evidence, row, n, oscillation.period)) found.push_back(*finding);
+            if (std::optional<Finding> finding = judged(evidence, row, n, oscillation.period))
+              found.push_back(*finding);
       }
     return found;
   }
@@ -65,8 +66,8 @@ class BaseBirths final : public Check {
     const TreeFamily& family = evidence.family(row);
     const auto& steps = evidence.tree.atlas.orbits().integers("step");
     const auto at = steps.begin() + static_cast<std::ptrdiff_t>(family.first_orbit);
-    const auto first = static_cast<std::size_t>(
-        std::lower_bound(at, at + static_cast<std::ptrdiff_t>(family.orbits()), 0) - at);
+    const auto first =
+        static_cast<std::size_t>(std::lower_bound(at, at + static_cast<std::ptrdiff_t>(family.orbits()), 0) - at);
     if (first + orbits_asked > family.orbits()) return std::nullopt;
     const double rest = energy_at(evidence, equilibrium);
     std::array<double, orbits_asked> energies{};
@@ -103,8 +104,7 @@ class BaseBirths final : public Check {
   /// The value at 0 of the polynomial through the first `count` values at `x`.
   static double through(const std::array<double, orbits_asked>& x, const std::array<double, orbits_asked>& values,
                         std::size_t count) {
-    const std::vector<double> weights =
-        numerics::lagrange_weights(std::span<const double>(x.data(), count), 0.0).value;
+    const std::vector<double> weights = numerics::lagrange_weights(std::span<const double>(x.data(), count), 0.0).value;
     double sum = 0.0;
     for (std::size_t n = 0; n < count; ++n) sum += weights[n] * values[n];
     return sum;
