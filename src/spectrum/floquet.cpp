@@ -59,16 +59,12 @@ double rounding_of(const Chain& chain, Eigen::Index m) {
   return epsilon * (step_roundings + std::min(1.0, chain.steps[m] * rate) * terms / chain.fields.col(m).norm());
 }
 
-/// What the factors' errors do to the trace of their product, for 2 x 2 matrices.
 struct TraceError {
-  double estimate = 0.0;  ///< of truncation: by the estimates of the factors' errors, as they are
   double truncation = 0.0;
   double rounding = 0.0;
 };
 
-/// `truncation` and `rounding` are bounds: an estimate says how large a factor's error is, not in which direction. On
-/// circles, whose segments are all alike, `estimate` was 80 times too small (docs/mathematics.md, "Floquet
-/// multipliers").
+/// Bounds on what the factors' errors do to the trace of their product, for 2 x 2 matrices.
 TraceError error_of_trace(const Chain& chain, const TransverseFlow& flow) {
   const Eigen::Index n = flow.factors.cols();
   Eigen::MatrixXd after(4, n);  // products of the factors behind each one
@@ -79,8 +75,7 @@ TraceError error_of_trace(const Chain& chain, const TransverseFlow& flow) {
   TraceError error;
   for (Eigen::Index m = 0; m < n; ++m) {
     const Eigen::Matrix2d others = before * matrix_in<2>(after, m, 2);
-    error.estimate += truncation_share * std::abs((others * matrix_in<2>(flow.errors, m, 2)).trace());
-    error.truncation += truncation_share * others.norm() * flow.errors.col(m).norm();
+    error.truncation += truncation_share * std::abs((others * matrix_in<2>(flow.errors, m, 2)).trace());
     error.rounding += rounding_of(chain, m) * flow.factors.col(m).norm() * others.norm();
     before = (matrix_in<2>(flow.factors, m, 2) * before).eval();
     error.rounding += epsilon * before.norm() * after.col(m).norm();
@@ -229,9 +224,7 @@ Integrated integrated(const systems::System& system, const loop::Loop& loop, con
     result.stability = without_errors(result.indices, group.order);
     result.trace =
         add_truncation(structure, result.chain, result.flow, group.order, result.indices, team, result.stability);
-    const double error = is_single_pair(structure, result.flow)
-                             ? result.trace.estimate / (1.0 + std::abs(result.indices.fundamental[0]))
-                             : largest_relative(result.stability.fundamental, result.stability.fundamental_error);
+    const double error = largest_relative(result.stability.fundamental, result.stability.fundamental_error);
     if (error <= options.tolerance || refinement >= options.refinements) return result;
     const double finer = std::min(most_finer, room * std::pow(error / options.tolerance, 1.0 / order_of_steps));
     least = static_cast<int>(finer * static_cast<double>(result.chain.segments()) * group.order) + 1;

@@ -190,7 +190,10 @@ TEST(TestFunctions, TorusKeepsItsValueBesideLargeMultipliers) {
     EXPECT_EQ(value(std::polar(size, 1.2), std::polar(size, -1.2), 2.0 * size).sign(), 0) << size;
   }
   // On both sides of where the numbers become relative ones.
-  EXPECT_NEAR(value(1e76, 1e73, 1e67).error, value(1e76, 1e75, 1e67).error * 1e2, 1e-9);
+  const double below = value(1e74, 1e75, 1e66).error;
+  const double beyond = value(1e76, 1e77, 1e68).error;
+  EXPECT_NEAR(below, 2.2e-8, 1e-13);
+  EXPECT_NEAR(beyond, below, 1e-13);
 }
 
 TEST(TestFunctions, MultiplierOfTheEnergyIsLeftOut) {
