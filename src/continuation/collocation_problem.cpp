@@ -11,7 +11,6 @@
 #include "collocation_metric.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/grid/time_map_fit.hpp"
-#include "orbweaver/loss/linearization.hpp"
 #include "regrid.hpp"
 
 namespace orbweaver::continuation {
@@ -48,6 +47,8 @@ constexpr double guarded_density = 1e-6;
 constexpr double shows_truncation = 10.0;
 /// Keeps quotients by the amplitude finite.
 constexpr double least_amplitude = 1e-300;
+/// Where the field is finite, and what the correction made of it is not.
+constexpr const char* beyond_numbers = "the correction met numbers that are not finite";
 
 }  // namespace
 
@@ -238,12 +239,12 @@ Trial CollocationProblem::correct(Prediction prediction, const std::vector<doubl
       state().factor_point.clear();
       trial.reason = result.finite ? fmt::format("no convergence in {} iterations, the last change {:.2g}",
                                                  result.iterations, result.last_change)
-                                   : not_finite_at(trial.values, predicted);
+                                   : not_finite_at(trial.values, predicted, beyond_numbers);
     }
   } catch (const core::NumericalError& error) {
     state().factor_point.clear();
     trial.converged = false;
-    trial.reason = error.what();
+    trial.reason = not_finite_at(trial.values, predicted, error.what());
   }
   if (trial.converged) judge(trial);
   if (trial.converged && (!trial.is_orbit || trial.at_rounding) && resolved(trial))
@@ -290,7 +291,7 @@ void CollocationProblem::judge(Trial& trial) {
     trial.reason = "the period is not positive";
   } else if (!std::isfinite(trial.loss_rms)) {
     trial.converged = false;
-    trial.reason = not_finite_at(trial.values, trial.values);
+    trial.reason = not_finite_at(trial.values, trial.values, beyond_numbers);
   } else if (trial.loss_rms < trial.threshold) {
     trial.is_orbit = true;
   } else if (trial.loss_rms < rounding_floor(trial, quality)) {
@@ -310,21 +311,24 @@ double CollocationProblem::rounding_floor(const Trial& trial, const Collocation:
                   nodal_rounding * quality.size * e.field_jacobian_rms());
 }
 
-/// The sentence that the loss has for a field that is not finite.
-std::string CollocationProblem::not_finite_at(const std::vector<double>& values, const std::vector<double>& predicted) {
+/// The sentence that the loss has for a field that is not finite, there or at what was predicted; `otherwise` where it
+/// is.
+std::string CollocationProblem::not_finite_at(const std::vector<double>& values, const std::vector<double>& predicted,
+                                              const std::string& otherwise) {
+  const Collocation& e = equations();
   for (const std::vector<double>* point : {&predicted, &values}) {
-    loop::Loop there = equations().to_loop(point->data());
+    std::vector<double> there = *point;
     // The field does not depend on T, which a correction that fails may have taken below 0.
-    if (!(there.period > 0.0)) there.period = predicted[scalars_at()];
-    const auto finite = [](double v) { return std::isfinite(v); };
-    if (!finite(there.period) || !std::all_of(there.modes.begin(), there.modes.end(), finite)) continue;
+    double& period = there[scalars_at()];
+    if (!(period > 0.0) || !std::isfinite(period)) period = predicted[scalars_at()];
+    if (!std::all_of(there.begin(), there.end(), [](double v) { return std::isfinite(v); })) continue;
     try {
-      const loss::Linearization probe(_system, there, loss::Linearization::Order::jacobian);
+      e.check_field(there.data());
     } catch (const core::NotFiniteError& error) {
       return error.what();
     }
   }
-  return "the correction met numbers that are not finite";
+  return otherwise;
 }
 
 /// At a small amplitude the period is known to eps / amplitude only: it must not decide how far a step went.

@@ -25,6 +25,7 @@ class CollocationProblem final : public PointProblem {
   [[nodiscard]] std::optional<Resolution> coarser(const Trial& accepted, const loop::Loop& loop, bool may_fit) override;
   Transfer resolve(const Resolution& to) override;
   void state_replaced() override { _equations.reset(); }
+  [[nodiscard]] bool can_fit_cells() const override { return true; }
 
   [[nodiscard]] std::vector<double> from_loop(const loop::Loop& loop) override;
   [[nodiscard]] std::vector<double> from_change(const loop::Loop& change) override;
@@ -56,7 +57,8 @@ class CollocationProblem final : public PointProblem {
   void sharpen(Trial& trial, double last_change, const std::vector<double>& conditions);
   void judge(Trial& trial);
   [[nodiscard]] double rounding_floor(const Trial& trial, const equations::Collocation::Quality& quality);
-  [[nodiscard]] std::string not_finite_at(const std::vector<double>& values, const std::vector<double>& predicted);
+  [[nodiscard]] std::string not_finite_at(const std::vector<double>& values, const std::vector<double>& predicted,
+                                          const std::string& otherwise);
   [[nodiscard]] double period_unit(double period);
   [[nodiscard]] std::optional<Resolution> remapped(const Trial& of, const std::vector<double>& settled);
 

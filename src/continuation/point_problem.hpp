@@ -61,6 +61,8 @@ class PointProblem {
   virtual Transfer resolve(const Resolution& to) = 0;
   /// After a change of the state from outside.
   virtual void state_replaced() {}
+  /// Whether points are preconditioned in another way where the state's `fits_cells` is the other one.
+  [[nodiscard]] virtual bool can_fit_cells() const { return false; }
 
   [[nodiscard]] virtual std::vector<double> from_loop(const loop::Loop& loop) = 0;
   /// The change of a loop (without winding) as a change of a point; scalars stay.

@@ -97,8 +97,10 @@ std::optional<Orbit> Tracer::first_orbit() {
       return accept(trial);
     }
     _frontier.problem.factor_point.clear();
-    _frontier.problem.fits_cells = !_frontier.problem.fits_cells;  // both ways at each amplitude
-    if (_frontier.problem.fits_cells) continue;
+    if (_problem->can_fit_cells()) {  // both ways at each amplitude
+      _frontier.problem.fits_cells = !_frontier.problem.fits_cells;
+      if (_frontier.problem.fits_cells) continue;
+    }
     amplitude *= 0.5;
     if (amplitude < least_start * _options.start_amplitude)
       return end(EndReason::failure, fmt::format("no orbit near the start: {}", trial.reason));

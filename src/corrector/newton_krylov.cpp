@@ -32,7 +32,7 @@ NewtonKrylovRun run_newton_krylov(const systems::System& system, const loop::Loo
   run.system = {std::shared_ptr<const systems::System>(), &system};
   core::Team* const team = core::worth_dividing(options.team, system.dimension());
   equations::LoopSolver inner(unknowns.size() + equations::LoopEquations::unfoldings(unknowns, image, slice),
-                              "corrector_inner_", team);
+                              "corrector_inner_");
   double last_loss = std::numeric_limits<double>::infinity();
   int without_progress = 0;
   while (run.stop == Stop::none) {

@@ -57,6 +57,9 @@ class Collocation final : public PreconditionedEquations {
   void residual(const double* u, double* r) const override;
   /// Builds the preconditioner at `u` under the present conditions.
   void factor(const double* u) override;
+  /// Throws NotFiniteError where the field or its Jacobian at `u` is not finite where these equations or their quality
+  /// ask for them.
+  void check_field(const double* u) const;
   /// From the next factor on: whether the preconditioner follows turns of the linearised flow over a cell, which helps
   /// beside a fast motion. Otherwise, and at first, it is the plain box scheme, which does better beside a narrow gap
   /// between families (mu = 0.001, 13 turns).
@@ -96,6 +99,7 @@ class Collocation final : public PreconditionedEquations {
 
  private:
   void midpoint_states(const double* u) const;
+  void node_states(const double* u) const;
   /// The system with the parameters of `u`.
   [[nodiscard]] const systems::System& system_at(const double* u) const;
   /// df/ds at the midpoints for a scalar s other than T, into _gradient.

@@ -134,7 +134,12 @@ void write_archive(const core::Communicator& comm, const scene::Scene& scene,
       std::vector<double>& point = known.equilibria.emplace_back(unpack_sweep_work(ended.first.payload).point);
       for (std::size_t i = 0; i < point.size(); ++i) point[i] *= system->scales().coordinate(i);
       std::vector<KernelRecord>& kernels = known.kernels.emplace_back();
-      if (!ended.second.failed) kernels = unpack_sweep_outcome(ended.second.payload).kernels;
+      std::vector<Oscillation>& oscillations = known.oscillations.emplace_back();
+      if (ended.second.failed) continue;
+      const SweepOutcome outcome = unpack_sweep_outcome(ended.second.payload);
+      kernels = outcome.kernels;
+      for (const FoundMode& mode : outcome.modes)
+        oscillations.push_back({mode.place, mode.period * system->scales().time});
     }
     for (const archive::FamilyRecord& family : tables.families) known.family_keys.push_back(family.key);
     std::sort(known.family_keys.begin(), known.family_keys.end());

@@ -220,11 +220,13 @@ class Run {
   Clock::time_point _began = Clock::now();
 };
 
-Summary follow_survey(const ScaledScene& scaled, core::Team& team) {
+/// The part of a rank that follows a leader.
+struct Follower {
+  Follower(const ScaledScene& scaled, core::Team& team) : member(scaled.scene(), scaled.system(), rows, &team) {}
+
   archive::Records rows;
-  Executor member(scaled.scene(), scaled.system(), rows, &team);
-  return follow(team, member, rows);
-}
+  Executor member;
+};
 
 }  // namespace
 
@@ -233,12 +235,20 @@ Summary run_survey(const core::Communicator& comm, const scene::Scene& scene,
                    const RunOptions& options) {
   const ScaledScene scaled(scene, system);
   Teams teams(comm, scene.survey.team_size);
+  std::optional<Run> run;
+  std::optional<Follower> follower;
+  core::collectively(comm.get(), [&] {  // nobody begins unless all can
+    if (teams.follows())
+      follower.emplace(scaled, *teams.team());
+    else
+      run.emplace(teams.queue(), scene, scaled, directory, options, teams.team());
+  });
   Summary summary;
-  if (teams.follows()) {
-    summary = follow_survey(scaled, *teams.team());
+  if (follower) {
+    summary = follow(*teams.team(), follower->member, follower->rows);
   } else {
     try {
-      summary = Run(teams.queue(), scene, scaled, directory, options, teams.team()).run(options.resume);
+      summary = run->run(options.resume);
     } catch (...) {
       dismiss(teams.team(), std::current_exception());
       throw;

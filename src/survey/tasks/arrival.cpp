@@ -7,6 +7,8 @@
 #include "orbweaver/bifurcation/subharmonic_crossing.hpp"
 #include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
+#include "orbweaver/loop/symmetry/standard_phase.hpp"
 #include "orbweaver/numerics/lagrange.hpp"
 
 namespace orbweaver::survey {
@@ -167,7 +169,11 @@ bool locate_beneath(const std::shared_ptr<const systems::System>& system, const 
   arrival.period = met.period;
   arrival.energy = continuation::energy_of(*system, met);
   CrossingBeneath& beneath = arrival.beneath.emplace_back();
-  describe(*system, found->event, found->crossing, beneath.crossing);
+  bifurcation::Crossing crossing = found->crossing;
+  crossing.point.loop = loop::at_first_reversor(system->structure(), orbit, loop::symmetry_tolerance);
+  const loop::Isotropy isotropy =
+      loop::find_isotropy(system->structure(), crossing.point.loop, loop::symmetry_tolerance);
+  describe(*system, found->event, crossing, isotropy, beneath.crossing);
   beneath.crossing.limited_by = order_limited;
   beneath.orbit = orbit;
   return true;

@@ -111,7 +111,7 @@ class Location {
   }
 
   void describe(const bifurcation::Crossing& crossing, const continuation::FamilyCurve& family) {
-    survey::describe(*_system, _event, crossing, _outcome);
+    survey::describe(*_system, _event, crossing, family.isotropy(), _outcome);
     const double position = crossing.point.position;
     _outcome.arclength = signed_arclength(_work.lineage, _work.before_first, family.arclength_at(position));
     _outcome.arclength_unit = family.arclength_unit_at(position);

@@ -9,6 +9,7 @@
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
 #include "orbweaver/systems/identities.hpp"
+#include "tasks/payload/keys.hpp"
 #include "tasks/payload/work.hpp"
 
 namespace orbweaver::survey {
@@ -94,7 +95,7 @@ std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const syst
       summary.remarks.push_back(fmt::format("dip passed over at {}: {}", point_text(system, found.point), reason));
     for (const FoundMode& mode : found.modes) {
       const std::string name = base_family_name(scene, system, found.point, found.index, mode.place);
-      const std::string branch_key = fmt::format("{:04}.{:04}", found.index, mode.place);
+      const std::string branch_key = base_key(found.index, mode.place);
       BranchWork work;
       work.key = work.lineage.family = branch_key;
       work.name = name;
@@ -138,7 +139,7 @@ void gather_failed_sweeps(const systems::System& system, const SweepsEnded& swee
     if (!outcome.failed) continue;
     const SweepWork work = unpack_sweep_work(task.payload);
     archive::FamilyRecord record;
-    record.key = fmt::format("{:04}", work.index);
+    record.key = equilibrium_key(work.index);
     record.name = equilibrium_name(work.index);
     record.end_reason =
         limited(failure_text(fmt::format("the sweep at {}: {}", point_text(system, work.point), outcome.reason)));

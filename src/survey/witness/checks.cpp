@@ -1,5 +1,6 @@
 #include "witness/checks.hpp"
 
+#include "witness/checks/base_births.hpp"
 #include "witness/checks/branch_counts.hpp"
 #include "witness/checks/ends.hpp"
 #include "witness/checks/equilibrium_families.hpp"
@@ -23,7 +24,7 @@ std::vector<std::unique_ptr<Check>> list() {
 }  // namespace
 
 std::vector<std::unique_ptr<Check>> all_checks() {
-  return list<FailedTasks, StoredTwice, SharedPoints, BranchCounts, EquilibriumFamilies, Ends, MirrorImages,
+  return list<FailedTasks, StoredTwice, SharedPoints, BranchCounts, EquilibriumFamilies, BaseBirths, Ends, MirrorImages,
               IndexChanges>();
 }
 

@@ -42,6 +42,8 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
                        "of some families that leave the equilibrium, {} oscillations of one period, the index "
                        "is not known",
                        f.other_number);
+    case FindingKind::base_birth:
+      return "its first orbits do not lead back to its equilibrium with the period of the oscillation there";
     case FindingKind::continuum:
       return fmt::format(
           "oscillations that share a period: {} orbits were found near the equilibrium whose neighbours "
@@ -106,6 +108,7 @@ std::string_view name_of(FindingKind kind) {
     case FindingKind::beyond_limits: return "beyond-limits";
     case FindingKind::beyond_families: return "beyond-families";
     case FindingKind::equilibrium_families: return "equilibrium-families";
+    case FindingKind::base_birth: return "base-birth";
     case FindingKind::continuum: return "continuum";
     case FindingKind::unlisted_target: return "unlisted-target";
     case FindingKind::unknown_direction: return "unknown-direction";

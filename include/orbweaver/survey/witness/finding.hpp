@@ -34,6 +34,7 @@ enum class FindingKind {
   beyond_limits,         ///< a direction along which the first orbit lies beyond limits
   beyond_families,       ///< a direction that limits.families left out
   equilibrium_families,  ///< indices of what leaves an equilibrium add up to number, not other_number
+  base_birth,            ///< does not begin at its equilibrium with the period of its oscillation
   continuum,             ///< number orbits found at an equilibrium are not isolated
   unlisted_target,       ///< ends at a crossing that the archive does not have
   unknown_direction,     ///< ends near the crossing, along none of its directions
