@@ -8,6 +8,7 @@
 #include "arrival.hpp"
 #include "crossing_outcome.hpp"
 #include "executor.hpp"
+#include "orbit_row.hpp"
 #include "orbweaver/archive/schema/records.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/bifurcation/directions.hpp"
@@ -38,6 +39,9 @@ int expected_dimension(const bifurcation::Crossing& crossing, const bifurcation:
   }
   return std::max(1, pairs) * (sector.q <= 2 ? 1 : 2);
 }
+
+/// Values of indices on the unit circle are no further apart.
+constexpr double apart_indices = 4.0;
 
 /// The run is to stop.
 struct Interrupted {};
@@ -93,7 +97,7 @@ class Location {
         _outcome.undecided = true;
         _outcome.remark = error.what();
       } catch (const core::NumericalError& error) {  // the crossing itself is located, and stays
-        _failure = error.what();
+        fail(crossing, error.what());
       }
     queue::TaskOutcome done;
     done.failed = _failure.has_value();
@@ -108,11 +112,26 @@ class Location {
     // Only minima that come near zero, and functions that vanish for other reasons, may turn out to be nothing.
     done.failed = !_event.tangency && why.reason != bifurcation::NotLocated::Reason::no_event;
     _outcome.remark = to_text(why);
+    if (done.failed && !is_isolated(family)) {
+      done.failed = false;
+      _outcome.undecided = true;
+      _outcome.remark += "; the family's orbits there are not told from their neighbours";
+    }
     if (done.failed)
       done.reason = fmt::format("the event between arclength {:.6g} and {:.6g} was not located: {}",
                                 family.arclength_at(_work.from), family.arclength_at(_work.to), _outcome.remark);
     done.payload = pack(_outcome);
     return done;
+  }
+
+  /// False where one of the orbits on both sides of the event is not told from its neighbours.
+  [[nodiscard]] bool is_isolated(const continuation::FamilyCurve& family) const {
+    for (const continuation::FamilyCurve::Known& known : family.known()) {
+      if (known.position != _work.from && known.position != _work.to) continue;
+      const auto stability = stability_of(*_system, known.loop, family.isotropy(), _team);
+      if (stability && !bifurcation::is_isolated(*stability)) return false;
+    }
+    return true;
   }
 
   void describe(const bifurcation::Crossing& crossing, const continuation::FamilyCurve& family) {
@@ -142,7 +161,7 @@ class Location {
     _outcome.kernel_dimension = kernel.dimension();
     _outcome.kernel_singular_value = kernel.largest();
     _outcome.next_singular_value = kernel.next();
-    if (kernel.dimension() == 0) return without_kernel(kernel, family);
+    if (kernel.dimension() == 0) return without_kernel(crossing, kernel, family);
     if (!starts) return;
     report();
     int number = 0;
@@ -167,7 +186,19 @@ class Location {
     }
   }
 
-  void without_kernel(const bifurcation::Kernel& kernel, continuation::FamilyCurve& family) {
+  /// Where rounding does not tell the crossing from those of other sectors, its kernel may be any of theirs.
+  void fail(const bifurcation::Crossing& crossing, const std::string& why) {
+    const double off = std::abs(bifurcation::index_deviation(crossing.stability, _event.function.sector).value);
+    if (!(off > apart_indices)) {
+      _failure = why;
+    } else {
+      _outcome.undecided = true;
+      _outcome.remark = fmt::format("between neighbouring positions the index changes by {:.2g}: {}", off, why);
+    }
+  }
+
+  void without_kernel(const bifurcation::Crossing& crossing, const bifurcation::Kernel& kernel,
+                      continuation::FamilyCurve& family) {
     _outcome.remark = fmt::format("no flat direction besides the family's own (smallest singular value {:.2g})",
                                   kernel.singular_values.empty() ? archive::not_computed : kernel.singular_values[0]);
     if (_event.tangency) {  // a minimum that came near zero, but is none
@@ -175,7 +206,7 @@ class Location {
     } else if (_event.function.sector.q == 1 && turns_in_energy(family)) {
       _outcome.kind = CrossingKind::fold_energy;
     } else {
-      _failure = _outcome.remark;
+      fail(crossing, _outcome.remark);
     }
   }
 
