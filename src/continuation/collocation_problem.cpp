@@ -16,6 +16,7 @@
 namespace orbweaver::continuation {
 
 using equations::Collocation;
+using equations::Preconditioner;
 
 namespace {
 
@@ -49,6 +50,10 @@ constexpr double shows_truncation = 10.0;
 constexpr double least_amplitude = 1e-300;
 /// Where the field is finite, and what the correction made of it is not.
 constexpr const char* beyond_numbers = "the correction met numbers that are not finite";
+/// Unknowns up to which the Jacobian itself is factored, where the box scheme fails.
+constexpr int exact_unknowns = 2048;
+
+bool is_affordable(const Collocation& equations) { return equations.size() <= exact_unknowns; }
 
 }  // namespace
 
@@ -81,9 +86,15 @@ std::optional<Resolution> CollocationProblem::next_resolution(int largest) const
   return Resolution{cells, resolution().time_map};
 }
 
+/// The Jacobian itself only as far as it can be afforded.
+Preconditioner CollocationProblem::preconditioner_of(const Collocation& equations) {
+  const Preconditioner wanted = state().preconditioner;
+  return wanted == Preconditioner::exact && !is_affordable(equations) ? Preconditioner::fitted_box : wanted;
+}
+
 std::shared_ptr<Collocation> CollocationProblem::equations_on(const Resolution& resolution) {
   auto e = std::make_shared<Collocation>(_system, _domain, _centre, _winding, resolution.size, resolution.time_map);
-  e->fit_cells(state().fits_cells);
+  e->precondition_by(preconditioner_of(*e));
   return e;
 }
 
@@ -214,7 +225,7 @@ equations::AndersonSolver::Options CollocationProblem::solver_options() {
 
 Trial CollocationProblem::correct(Prediction prediction, const std::vector<double>& conditions) {
   Collocation& e = equations();
-  e.fit_cells(state().fits_cells);
+  e.precondition_by(preconditioner_of(e));
   e.set_conditions(conditions, prediction.values);
   Trial trial;
   trial.order = prediction.order;
@@ -236,6 +247,7 @@ Trial CollocationProblem::correct(Prediction prediction, const std::vector<doubl
       state().factor_conditions = conditions;
     }
     if (!result.converged) {
+      if (result.finite) note_what_is_open(trial, last_change);
       state().factor_point.clear();
       trial.reason = result.finite ? fmt::format("no convergence in {} iterations, the last change {:.2g}",
                                                  result.iterations, result.last_change)
@@ -247,19 +259,51 @@ Trial CollocationProblem::correct(Prediction prediction, const std::vector<doubl
     trial.reason = not_finite_at(trial.values, predicted, error.what());
   }
   if (trial.converged) judge(trial);
-  if (trial.converged && (!trial.is_orbit || trial.at_rounding) && resolved(trial))
-    sharpen(trial, last_change, conditions);
+  if (trial.converged && may_be_sharper(trial)) sharpen(trial, last_change, conditions);
+  if (state().preconditioner == Preconditioner::exact && !is_affordable(e) && (!trial.converged || trial.unsolved)) {
+    trial.converged = false;
+    trial.under_resolved = true;  // once the cells resolve the fast motion they precondition it
+  }
   return trial;
+}
+
+/// Where the linearised equations are singular to rounding a solve goes astray among points at all of which they hold.
+void CollocationProblem::note_what_is_open(Trial& trial, double last_change) {
+  if (!(trial.values[scalars_at()] > 0.0)) return;
+  const Collocation::Quality quality = equations().quality(trial.values.data());
+  if (quality.asked < rounding_floor(trial, quality)) trial.known_to = last_change;
+}
+
+/// Harmonics that the solver has left wrong say nothing of the resolution: the equations must hold first.
+bool CollocationProblem::may_be_sharper(Trial& trial) {
+  return trial.unsolved || ((!trial.is_orbit || trial.at_rounding) && resolved(trial));
 }
 
 /// Solves on where the loss is above its threshold and harmonics would not help: the solver's own tolerance foresees a
 /// field whose Jacobian is of order 1, and its look for stagnation a preconditioner that resolves the fastest motion.
+/// Where not even patience helps, the linear systems are solved as they are.
 void CollocationProblem::sharpen(Trial& trial, double last_change, const std::vector<double>& conditions) {
+  Collocation& e = equations();
   equations::AndersonSolver::Options options = solver_options();
-  options.tolerance = sharpened * trial.threshold / trial.loss_rms * std::max(last_change, options.tolerance);
+  const double excess = trial.unsolved ? trial.asked_rms : trial.loss_rms;
+  options.tolerance = sharpened * trial.threshold / excess * std::max(last_change, options.tolerance);
   options.rounding = std::max(good_enough * options.tolerance, rounding_of_nodes());
   options.stagnation = 0.0;
   options.fresh_iterations = patience;
+  (void)sharpen_with(options, conditions, trial);
+  const bool failed = trial.unsolved || (!trial.is_orbit && resolved(trial));
+  if (!failed || !is_affordable(e) || state().preconditioner == Preconditioner::exact) return;
+  e.precondition_by(Preconditioner::exact);
+  const bool better = sharpen_with(solver_options(), conditions, trial);
+  if (better && trial.is_orbit)
+    state().preconditioner = Preconditioner::exact;
+  else
+    state().factor_point.clear();
+}
+
+/// False where the trial is no better than it was.
+bool CollocationProblem::sharpen_with(const equations::AndersonSolver::Options& options,
+                                      const std::vector<double>& conditions, Trial& trial) {
   Trial other = trial;
   try {
     auto result = _solver.solve(equations(), other.values, false, options);
@@ -268,11 +312,14 @@ void CollocationProblem::sharpen(Trial& trial, double last_change, const std::ve
     other.iterations += result.iterations;
   } catch (const core::NumericalError&) {
     state().factor_point.clear();
-    return;
+    return false;
   }
-  other.is_orbit = other.at_rounding = other.truncated = false;
+  other.is_orbit = other.at_rounding = other.truncated = other.unsolved = other.to_rounding = false;
   judge(other);
-  if (other.converged && other.loss_rms < trial.loss_rms) trial = std::move(other);
+  const bool better = trial.unsolved ? other.asked_rms < trial.asked_rms : other.loss_rms < trial.loss_rms;
+  if (!other.converged || !better) return false;
+  trial = std::move(other);
+  return true;
 }
 
 /// Accepts by the loss over the whole loop.
@@ -280,12 +327,16 @@ void CollocationProblem::judge(Trial& trial) {
   Collocation& e = equations();
   const Collocation::Quality quality = e.quality(trial.values.data());
   trial.loss_rms = quality.loss_rms;
+  trial.asked_rms = quality.asked;
   trial.amplitude = quality.amplitude;
   trial.size = quality.size;
   double centre = 0.0;
   for (const double c : e.centre()) centre += c * c;
   trial.threshold = corrector::acceptance_threshold(_options.corrector.tolerance, quality.speed_rms, std::sqrt(centre),
                                                     e.field_jacobian_rms());
+  const double floor = rounding_floor(trial, quality);
+  trial.unsolved = quality.asked > std::max(trial.threshold, floor);
+  trial.to_rounding = quality.unasked < floor;
   if (!(trial.values[static_cast<std::size_t>(e.period_at())] > 0.0)) {
     trial.converged = false;
     trial.reason = "the period is not positive";
@@ -294,7 +345,7 @@ void CollocationProblem::judge(Trial& trial) {
     trial.reason = not_finite_at(trial.values, trial.values, beyond_numbers);
   } else if (trial.loss_rms < trial.threshold) {
     trial.is_orbit = true;
-  } else if (trial.loss_rms < rounding_floor(trial, quality)) {
+  } else if (trial.loss_rms < floor) {
     trial.is_orbit = trial.at_rounding = true;  // unless truncation explains the loss: `resolved`
   } else {
     trial.truncated = quality.unasked > shows_truncation * quality.asked;
@@ -340,6 +391,8 @@ double CollocationProblem::period_unit(double period) { return period / std::min
 bool CollocationProblem::resolved(Trial& trial) {
   trial.loop = equations().to_loop(trial.values.data());
   const double last = loop::tail(trial.loop);
+  // Beside a fast motion rounding is magnified in the harmonics near it, and the residual does not see them.
+  if (trial.to_rounding) return true;
   if (last > tail_limit(trial.amplitude, trial.size, _options) || trial.truncated) return false;
   // A tail of the size of the modes' own rounding says nothing of the resolution.
   if (last <= mode_rounding * trial.size) return true;

@@ -54,6 +54,11 @@ class CollocationProblem final : public PointProblem {
   [[nodiscard]] equations::AndersonSolver::Options solver_options();
   [[nodiscard]] double bounded_amplitude();
   [[nodiscard]] double rounding_of_nodes();
+  void note_what_is_open(Trial& trial, double last_change);
+  [[nodiscard]] bool may_be_sharper(Trial& trial);
+  [[nodiscard]] bool sharpen_with(const equations::AndersonSolver::Options& options,
+                                  const std::vector<double>& conditions, Trial& trial);
+  [[nodiscard]] equations::Preconditioner preconditioner_of(const equations::Collocation& equations);
   void sharpen(Trial& trial, double last_change, const std::vector<double>& conditions);
   void judge(Trial& trial);
   [[nodiscard]] double rounding_floor(const Trial& trial, const equations::Collocation::Quality& quality);

@@ -11,6 +11,7 @@
 #include "least_guard.hpp"
 #include "limit_orbit.hpp"
 #include "orbweaver/continuation/off_branch.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "step_control.hpp"
 
 namespace orbweaver::continuation {
@@ -74,7 +75,8 @@ std::optional<Orbit> Tracer::first_orbit() {
   _problem->resolve(_problem->resolution_for(std::max(_start.base.cutoff, _options.cutoff_from), _start.base.time_map,
                                              _options.cutoff_to));
   while (true) {
-    _frontier.problem.amplitude = amplitude;
+    // Beside an orbit everything is measured by the orbit, however near the first one of the family lies.
+    _frontier.problem.amplitude = std::max(amplitude, loop::rms_amplitude(_start.base));
     const std::vector<double> base = _problem->from_loop(_start.base);
     Prediction prediction{base, _problem->from_change(loop::perturbation(_start.base, direction)), 1};
     prediction.tangent[_problem->scalars_at()] += direction.period();
@@ -97,9 +99,11 @@ std::optional<Orbit> Tracer::first_orbit() {
       return accept(trial);
     }
     _frontier.problem.factor_point.clear();
-    if (_problem->can_fit_cells()) {  // both ways at each amplitude
-      _frontier.problem.fits_cells = !_frontier.problem.fits_cells;
-      if (_frontier.problem.fits_cells) continue;
+    if (_problem->can_fit_cells()) {
+      using equations::Preconditioner;  // both kinds of cells at each amplitude
+      Preconditioner& cells = _frontier.problem.preconditioner;
+      cells = cells == Preconditioner::box ? Preconditioner::fitted_box : Preconditioner::box;
+      if (cells == Preconditioner::fitted_box) continue;
     }
     amplitude *= 0.5;
     if (amplitude < least_start * _options.start_amplitude)
@@ -178,10 +182,14 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
       halved = -1;
       continue;
     }
-    if (!(length >= least))
-      return end(EndReason::failure, fmt::format("the corrector fails at T = {:.6g} even with step {:.1e}: {}",
-                                                 here().period * _system->scales().time, length,
-                                                 jumped ? "it leaves the family" : trial.reason));
+    if (!(length >= least)) {
+      std::string detail =
+          fmt::format("the corrector fails at T = {:.6g} even with step {:.1e}: {}",
+                      here().period * _system->scales().time, length, jumped ? "it leaves the family" : trial.reason);
+      if (!(trial.known_to > length)) return end(EndReason::failure, std::move(detail));
+      return end(EndReason::undecided,
+                 fmt::format("rounding leaves orbits open by {:.1e}; {}", trial.known_to, std::move(detail)));
+    }
   }
 }
 

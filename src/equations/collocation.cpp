@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "box_scheme.hpp"
+#include "dense_factor.hpp"
 #include "fitted_cells.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
@@ -75,6 +76,7 @@ Collocation::~Collocation() = default;
 
 void Collocation::precondition(double* r) const {
   const core::LogEvent event(core::Event::precondition);
+  if (_exact) return _exact->solve(r);
   core::require(_box != nullptr, "collocation points are preconditioned before their matrices are factored");
   _box->solve(r);
 }
@@ -183,6 +185,7 @@ void Collocation::check_field(const double* u) const {
 
 void Collocation::factor(const double* u) {
   const core::LogEvent event(core::Event::factor);
+  _exact.reset();
   const int m = cells();
   const int d = dimension();
   const int stride = _grid.stride();
@@ -213,13 +216,22 @@ void Collocation::factor(const double* u) {
         _columns[at((p * d + i) * stride + j)] = -c * _gradient[at(i * m + j)];
       }
   }
-  const std::vector<double> fitted = _fits_cells ? fitted_cells(_blocks.data(), d, m, 1.0) : std::vector<double>{};
+  if (_preconditioner == Preconditioner::exact) return factor_jacobian();
+  const std::vector<double> fitted =
+      _preconditioner == Preconditioner::fitted_box ? fitted_cells(_blocks.data(), d, m, 1.0) : std::vector<double>{};
+  factor_box(fitted.empty() ? _blocks.data() : fitted.data());
+}
+
+void Collocation::factor_box(const double* blocks) {
+  const int m = cells();
+  const int d = dimension();
+  const int stride = _grid.stride();
   BoxScheme::Matrices matrices;
   matrices.cells = m;
   matrices.count = m;
   matrices.column_stride = stride;
   matrices.stride = stride;
-  matrices.blocks = fitted.empty() ? _blocks.data() : fitted.data();
+  matrices.blocks = blocks;
   matrices.columns = _columns.data();
   matrices.borders = borders();
   matrices.left = _ends.left;
@@ -234,6 +246,15 @@ void Collocation::factor(const double* u) {
   matrices.corner = corner.data();
   if (!_box) _box = BoxScheme::of_dimension(dimension(), BoxScheme::Storage::lanes);
   _box->factor(matrices);
+}
+
+void Collocation::factor_jacobian() {
+  std::vector<int> entries;  // without what fills the strides
+  for (int i = 0; i < dimension(); ++i)
+    for (int j = 0; j <= cells(); ++j) entries.push_back(i * _grid.stride() + j);
+  for (int q = 0; q < borders(); ++q) entries.push_back(period_at() + q);
+  _exact = std::make_unique<DenseFactor>(size(), std::move(entries),
+                                         [this](const double* v, double* r) { apply_jacobian(v, r); });
 }
 
 void Collocation::apply_jacobian(const double* v, double* r) const {

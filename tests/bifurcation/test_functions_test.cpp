@@ -223,4 +223,12 @@ TEST(Decided, IsAnIndexWhoseErrorIsSmallWhereItMayPassSomething) {
   EXPECT_FALSE(are_decided(stability_of({{1e8, 0.0}, {0.1, 0.0}}, 1e-3)));
 }
 
+TEST(Isolated, IsAnOrbitWhoseIndicesDifferFromTwoByMoreThanTheirErrors) {
+  EXPECT_TRUE(is_isolated(stability_of({{2.1, 0.0}}, 1e-3)));
+  EXPECT_FALSE(is_isolated(stability_of({{2.005, 0.0}}, 1e-3)));  // the bound is good to a factor of ten
+  EXPECT_FALSE(is_isolated(stability_of({{1.0, 0.0}}, 18.0)));
+  EXPECT_FALSE(is_isolated(stability_of({{-1.0, 0.0}, {2.0, 0.0}}, 1e-9)));
+  EXPECT_TRUE(is_isolated(stability_of({{-2.0, 0.0}}, 1e-9)));
+}
+
 }  // namespace

@@ -5,6 +5,7 @@
 #include "crossing_outcome.hpp"
 #include "orbweaver/bifurcation/directions.hpp"
 #include "orbweaver/bifurcation/subharmonic_crossing.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
@@ -66,6 +67,15 @@ int multiplicity_of(const bifurcation::SymmetryGain& gain) {
   return gain.name == "1" && !gain.reversing ? gain.shift_denominator : 1;
 }
 
+/// From `near` to where the broken part vanishes, in proportion to the way on which it falls from that of `from`; where
+/// `near` is `from` itself, to that of `to`.
+double distance_ahead(const bifurcation::SymmetryWatch& watch, const bifurcation::SymmetryGain& gain,
+                      const loop::Loop& from, const loop::Loop& near, const loop::Loop& to) {
+  const double part = watch.signed_part(gain, from, near);
+  if (part < on_the_way) return std::abs(part) / (1.0 - part) * loop::mean_distance(from, near);
+  return loop::mean_distance(from, to) / (1.0 - std::min(watch.signed_part(gain, from, to), 0.0));
+}
+
 std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuation::FamilyCurve& family,
                                         const bifurcation::SymmetryWatch& watch, const bifurcation::SymmetryGain& gain,
                                         const continuation::Orbit& from, const continuation::Orbit& to) {
@@ -123,6 +133,7 @@ std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuat
   record.energy = at_zero(samples, &Sample::energy);
   record.near = sketch_of(near);
   record.multiplicity = multiplicity_of(gain);
+  record.ahead = distance_ahead(watch, gain, from.loop, near, to.loop);
   return record;
 }
 

@@ -119,6 +119,10 @@ continuation::Ending BranchTask::follow() {
     if (!orbit) {
       continuation::Ending ending = _branch->ending().value();
       if (ending.failed() && _last && arrives_ahead()) return met();
+      if (ending.failed() && _last_stability && !bifurcation::is_isolated(*_last_stability)) {
+        ending.reason = continuation::EndReason::undecided;
+        ending.detail = "an index is 2 to rounding; " + ending.detail;
+      }
       note_limits(ending, before);
       if (ending.reason == continuation::EndReason::fixed_point) {
         const EquilibriumEnd end = equilibrium_end(_scene, *_system, _last->loop);
@@ -158,6 +162,7 @@ void BranchTask::note_limits(const continuation::Ending& ending, const continuat
     case EndReason::cutoff_limit:
     case EndReason::period_divergence:
     case EndReason::collision:
+    case EndReason::undecided:
     case EndReason::failure: return limited_by(orbit_limited, before);
     default: return;
   }

@@ -10,6 +10,7 @@
 #include "arrival.hpp"
 #include "crossing_outcome.hpp"
 #include "executor.hpp"
+#include "orbit_row.hpp"
 #include "orbweaver/archive/schema/records.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/bifurcation/directions.hpp"
@@ -33,6 +34,9 @@ constexpr double at_limit = 1e-9;
 /// The slope of the energy at a fold that is located as a zero of the index, in parts of the slopes beside it: two
 /// locations to 1e-10 on a stretch of 1e-6 or more.
 constexpr double turning_slope = 1e-3;
+
+/// Values of indices on the unit circle are no further apart.
+constexpr double apart_indices = 4.0;
 
 /// The run is to stop.
 struct Interrupted {};
@@ -88,7 +92,7 @@ class Location {
         _outcome.undecided = true;
         _outcome.remark = error.what();
       } catch (const core::NumericalError& error) {  // the crossing itself is located, and stays
-        _failure = error.what();
+        fail(crossing, error.what());
       }
     queue::TaskOutcome done;
     done.failed = _failure.has_value();
@@ -103,11 +107,26 @@ class Location {
     // Only minima that come near zero, and functions that vanish for other reasons, may turn out to be nothing.
     done.failed = !_event.tangency && why.reason != bifurcation::NotLocated::Reason::no_event;
     _outcome.remark = to_text(why);
+    if (done.failed && !is_isolated(family)) {
+      done.failed = false;
+      _outcome.undecided = true;
+      _outcome.remark += "; the family's orbits there are not told from their neighbours";
+    }
     if (done.failed)
       done.reason = fmt::format("the event between arclength {:.6g} and {:.6g} was not located: {}",
                                 family.arclength_at(_work.from), family.arclength_at(_work.to), _outcome.remark);
     done.payload = pack(_outcome);
     return done;
+  }
+
+  /// False where one of the orbits on both sides of the event is not told from its neighbours.
+  [[nodiscard]] bool is_isolated(const continuation::FamilyCurve& family) const {
+    for (const continuation::FamilyCurve::Known& known : family.known()) {
+      if (known.position != _work.from && known.position != _work.to) continue;
+      const auto stability = stability_of(*_system, known.loop, family.isotropy(), _team);
+      if (stability && !bifurcation::is_isolated(*stability)) return false;
+    }
+    return true;
   }
 
   void describe(const bifurcation::Crossing& crossing, const continuation::FamilyCurve& family) {
@@ -137,7 +156,7 @@ class Location {
     _outcome.kernel_dimension = kernel.dimension();
     _outcome.kernel_singular_value = kernel.largest();
     _outcome.next_singular_value = kernel.next();
-    if (kernel.dimension() == 0) return without_kernel(kernel, family);
+    if (kernel.dimension() == 0) return without_kernel(crossing, kernel, family);
     if (sector.q == 1 && kernel.dimension() == 1 && turns_in_energy_at(crossing, family)) return as_fold(kernel);
     if (!starts) return;
     report();
@@ -163,7 +182,19 @@ class Location {
     }
   }
 
-  void without_kernel(const bifurcation::Kernel& kernel, continuation::FamilyCurve& family) {
+  /// Where rounding does not tell the crossing from those of other sectors, its kernel may be any of theirs.
+  void fail(const bifurcation::Crossing& crossing, const std::string& why) {
+    const double off = std::abs(bifurcation::index_deviation(crossing.stability, _event.function.sector).value);
+    if (!(off > apart_indices)) {
+      _failure = why;
+    } else {
+      _outcome.undecided = true;
+      _outcome.remark = fmt::format("between neighbouring positions the index changes by {:.2g}: {}", off, why);
+    }
+  }
+
+  void without_kernel(const bifurcation::Crossing& crossing, const bifurcation::Kernel& kernel,
+                      continuation::FamilyCurve& family) {
     _outcome.remark = fmt::format("no flat direction besides the family's own (smallest singular value {:.2g})",
                                   kernel.singular_values.empty() ? archive::not_computed : kernel.singular_values[0]);
     if (_event.tangency) {  // a minimum that came near zero, but is none
@@ -171,7 +202,7 @@ class Location {
     } else if (_event.function.sector.q == 1 && turns_in_energy(family)) {
       _outcome.kind = CrossingKind::fold_energy;
     } else {
-      _failure = _outcome.remark;
+      fail(crossing, _outcome.remark);
     }
   }
 

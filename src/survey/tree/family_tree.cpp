@@ -69,7 +69,10 @@ void FamilyTree::add(const queue::Task& task, const queue::TaskOutcome& outcome)
     if (outcome.failed) _failures[place_of(task.key)] = outcome.reason;
     if (outcome.payload.empty()) return;
     LocateOutcome crossing = unpack_locate_outcome(outcome.payload);
-    if (crossing.kind) add_crossing(std::move(crossing));
+    if (crossing.kind)
+      add_crossing(std::move(crossing));
+    else if (crossing.undecided)
+      _undecided[place_of(task.key)] = std::move(crossing.remark);
   }
 }
 
@@ -210,7 +213,7 @@ FamilyTree::Result FamilyTree::resolve() const {
   add_families(
       families, _crossings, rows, _units, [this](const std::string& key) { return _pruning.arrival(key); }, result);
   result.evidence =
-      evidence_of({_branches, _crossings, _failures, _pruning, kept, rows, _units,
+      evidence_of({_branches, _crossings, _failures, _undecided, _pruning, _arrivals, kept, rows, _units,
                    [this](const std::string& branch, const Lineage& lineage) { return fate_of(branch, lineage); }});
   std::unordered_set<std::string> kept_families;
   for (const Family& family : families) kept_families.insert(family.key);

@@ -71,6 +71,9 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
     case FindingKind::index_change:
       return fmt::format("a multiplier passes exp(2 pi i {}/{}), and no crossing is listed there", f.number,
                          f.other_number);
+    case FindingKind::undecided_end:
+      return fmt::format("ends where rounding does not tell orbits from their neighbours: {}", f.detail);
+    case FindingKind::undecided_event: return f.detail;
     case FindingKind::undecided_indices:
       return fmt::format("a stability index is known to {:.2g} only: crossings are not told from rounding there",
                          f.deviation);
@@ -121,6 +124,8 @@ std::string_view name_of(FindingKind kind) {
     case FindingKind::mirror_place: return "mirror-place";
     case FindingKind::mirror_end: return "mirror-end";
     case FindingKind::index_change: return "index-change";
+    case FindingKind::undecided_end: return "undecided-end";
+    case FindingKind::undecided_event: return "undecided-event";
     case FindingKind::undecided_indices: return "undecided-indices";
     case FindingKind::failed_task: return "failed-task";
     case FindingKind::disputed_arrival: return "disputed-arrival";

@@ -47,6 +47,8 @@ enum class FindingKind {
   mirror_place,          ///< a crossing of its mirror image lies elsewhere
   mirror_end,            ///< its mirror image ends otherwise, or elsewhere
   index_change,          ///< the index passes exp(2 pi i number/other_number), where no crossing is listed
+  undecided_end,         ///< ends where orbits are not told from their neighbours
+  undecided_event,       ///< in `detail`: not located, where orbits are not told from their neighbours
   undecided_indices,     ///< an index is known to `deviation` only, too badly to tell what it passes
   failed_task,           ///< in `detail`
   disputed_arrival,      ///< arrivals contradict each other

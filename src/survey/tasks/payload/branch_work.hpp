@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -54,11 +55,12 @@ struct ArrivalRecord {
   loop::Loop near;                       ///< an orbit of the branch shortly before
   int multiplicity = 1;                  ///< times that it goes around the orbit it meets, where that is all it gains
   std::vector<CrossingBeneath> beneath{};  ///< one, where the crossing that is met was located
+  double ahead = std::numeric_limits<double>::infinity();  ///< rms distance from `near` to the orbit met, if known
 
-  static constexpr int wire_version = 2;
+  static constexpr int wire_version = 3;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, period, energy, near, multiplicity, beneath);
+    core::serialize_members(archive, period, energy, near, multiplicity, beneath, ahead);
   }
 };
 
