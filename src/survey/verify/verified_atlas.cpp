@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -14,6 +15,7 @@
 #include "orbweaver/survey/run/scaled_scene.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/scaled_system.hpp"
+#include "tasks/certified.hpp"
 #include "witness/tolerance.hpp"
 
 namespace orbweaver::survey {
@@ -88,6 +90,23 @@ bool VerifiedAtlas::is_requested(std::size_t orbit) const {
   const auto& events = _scene.events;
   return std::any_of(events.periods.begin(), events.periods.end(), near(_archive->orbits().reals("period")[orbit])) ||
          std::any_of(events.energies.begin(), events.energies.end(), near(_archive->orbits().reals("energy")[orbit]));
+}
+
+certificate::Level VerifiedAtlas::certificate_level() const {
+  return std::max(survey::certificate_level(_scene), certificate::Level::closure);
+}
+
+bool VerifiedAtlas::claims_certificates() const {
+  return _archive->format_minor() >= archive::certificates_since && is_certified_by_branches(_scene);
+}
+
+certificate::Evidence stored_evidence(const VerifiedAtlas& atlas, std::size_t orbit, const loop::Loop& loop) {
+  const archive::Table& orbits = atlas.archive().orbits();
+  const archive::Header& header = atlas.archive().header();
+  const std::size_t width = archive::stability_width(header);
+  return evidence_of(loop, orbits.reals("loss_rms")[orbit],
+                     std::span(orbits.reals("stability")).subspan(orbit * width, width),
+                     archive::has_complex_stability(header), orbits.reals("stability_error")[orbit]);
 }
 
 }  // namespace orbweaver::survey

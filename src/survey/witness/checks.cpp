@@ -1,6 +1,7 @@
 #include "witness/checks.hpp"
 
 #include "witness/checks/branch_counts.hpp"
+#include "witness/checks/certificates.hpp"
 #include "witness/checks/ends.hpp"
 #include "witness/checks/equilibrium_families.hpp"
 #include "witness/checks/failed_tasks.hpp"
@@ -24,7 +25,7 @@ std::vector<std::unique_ptr<Check>> list() {
 
 std::vector<std::unique_ptr<Check>> all_checks() {
   return list<FailedTasks, StoredTwice, SharedPoints, BranchCounts, EquilibriumFamilies, Ends, MirrorImages,
-              IndexChanges>();
+              IndexChanges, Certificates>();
 }
 
 }  // namespace orbweaver::survey

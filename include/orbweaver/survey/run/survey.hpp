@@ -24,6 +24,7 @@ struct FamilySummary {
   double energy_from = 0.0;
   double energy_to = 0.0;
   std::string end_reason;
+  std::string doubts;  ///< "2 of 30 orbits: closure contradicts", of certificates that do not hold; else empty
   bool failed = false;
   int depth = 0;  ///< 0 for base families
 };
