@@ -165,8 +165,8 @@ class Certifier::Parts {
     }
     found.beside_flow = 0.0;
     for (std::size_t m = 0; m < _gaps.size(); ++m)
-      found.beside_flow = std::max(
-          found.beside_flow, (squares > 0.0 ? _gaps[m] - along / squares * _fields[m + 1] : _gaps[m]).norm());
+      found.beside_flow =
+          std::max(found.beside_flow, (squares > 0.0 ? _gaps[m] - along / squares * _fields[m + 1] : _gaps[m]).norm());
     _taylor_gaps = _gaps;
     const std::optional<States> series = taylor_ends();
     if (!series) return;
@@ -224,8 +224,8 @@ class Certifier::Parts {
       for (int m = 0; m < _segments; ++m) {
         const Eigen::VectorXd image =
             element.map.matrix * vector_of(_states[static_cast<std::size_t>(m)]) + element.map.offset;
-        largest = std::max(largest, reduced_distance(_states[image_of(element, m)],
-                                                     State(image.data(), image.data() + image.size())));
+        largest = std::max(
+            largest, reduced_distance(_states[image_of(element, m)], State(image.data(), image.data() + image.size())));
       }
     return largest;
   }
@@ -253,8 +253,7 @@ class Certifier::Parts {
     for (const loop::SymmetryElement& element : _group.elements())
       for (int m = 0; m < _segments; ++m)
         sums[image_of(element, m)] += element.map.matrix * states[static_cast<std::size_t>(m)];
-    for (std::size_t m = 0; m < states.size(); ++m)
-      states[m] = sums[m] / static_cast<double>(_group.elements().size());
+    for (std::size_t m = 0; m < states.size(); ++m) states[m] = sums[m] / static_cast<double>(_group.elements().size());
   }
 
   void linearized(Certificate& found) const {
@@ -330,9 +329,9 @@ class Certifier::Parts {
   int _segments = 1;
   std::optional<taylor::ManyFlows> _taylor;
   const loop::Loop* _loop = nullptr;
-  States _states;                         // M + 1
-  std::vector<Eigen::VectorXd> _fields;   // at these
-  std::vector<Eigen::VectorXd> _gaps;     // M
+  States _states;                        // M + 1
+  std::vector<Eigen::VectorXd> _fields;  // at these
+  std::vector<Eigen::VectorXd> _gaps;    // M
   std::vector<Eigen::VectorXd> _taylor_gaps;
 };
 

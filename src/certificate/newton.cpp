@@ -65,8 +65,7 @@ NewtonSystem::Step NewtonSystem::solve(const std::vector<Eigen::VectorXd>& gaps)
     const Eigen::VectorXd& after = m + 1 == gaps.size() ? step.states.front() : step.states[m + 1];
     const Eigen::VectorXd known =
         right[m - 1] - pivot.first * step.states.front() - pivot.next * after - pivot.period * step.period;
-    step.states[m] =
-        pivot.factors.matrixQR().topRows(d).template triangularView<Eigen::Upper>().solve(known);
+    step.states[m] = pivot.factors.matrixQR().topRows(d).template triangularView<Eigen::Upper>().solve(known);
   }
   return step;
 }

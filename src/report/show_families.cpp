@@ -71,8 +71,8 @@ std::string end_text(const archive::Archive& atlas, std::size_t family) {
 
 std::string details(const archive::Archive& atlas, std::size_t family) {
   std::string text;
-  for (const std::string& part : {atlas.families().texts("isotropy")[family], stability_text(atlas, family),
-                                  doubts_text(atlas, family)})
+  for (const std::string& part :
+       {atlas.families().texts("isotropy")[family], stability_text(atlas, family), doubts_text(atlas, family)})
     if (!part.empty()) text += part + "; ";
   return text + end_text(atlas, family);
 }

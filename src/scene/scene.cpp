@@ -33,8 +33,9 @@ void read_starts(const Field& field, const systems::System& system, Scene& scene
 }
 
 Scene read_scene(const Field& root) {
-  const Keys keys(root, {"name", "system", "starts", "continuation", "survey", "compute", "limits", "events", "section", "output"},
-                  smallest_scene);
+  const Keys keys(
+      root, {"name", "system", "starts", "continuation", "survey", "compute", "limits", "events", "section", "output"},
+      smallest_scene);
   Scene scene;
   read_system(require_key(keys, root, "system", "system: {name: double_pendulum}"), scene.system);
   const auto bound = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);

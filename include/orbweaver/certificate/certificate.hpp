@@ -19,7 +19,7 @@ enum class Level {
 
 struct Options {
   Level level = Level::closure;
-  int segments = 32;         ///< equal parts of the period, at least; as many more as the isotropy's time shifts ask for
+  int segments = 32;  ///< equal parts of the period, at least; as many more as the isotropy's time shifts ask for
   double tolerance = 1e-13;  ///< of the integrator (integrate.hpp)
 };
 
@@ -32,7 +32,7 @@ struct Certificate {
   double closure = unknown;         ///< largest |z(t_m+1) - Phi(z(t_m))| over the segments, z being the loop
   double taylor_closure = unknown;  ///< the same by Taylor series (taylor/flow.hpp), which share the field only
   double apart = unknown;           ///< the largest distance of the two integrators' ends: what either may be wrong by
-  double beside_flow = unknown;     ///< the closure but for what a wrong period explains: gaps along the field, all alike
+  double beside_flow = unknown;  ///< the closure but for what a wrong period explains: gaps along the field, all alike
   double single_shot =
       unknown;  ///< |z(T) - Phi_T(z(0))|: once around without help; grows with the largest multiplier; NaN if that fails
   double energy_drift = unknown;     ///< largest |H(z(t_m)) - H(z(0))|

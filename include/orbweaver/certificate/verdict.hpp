@@ -9,7 +9,7 @@ namespace orbweaver::certificate {
 /// What a certificate says of its orbit; in the archive by its number, so none changes its place.
 enum class Verdict {
   holds,
-  says_nothing,  ///< the integration is off by as much as the orbit is large, as its multipliers allow
+  says_nothing,         ///< the integration is off by as much as the orbit is large, as its multipliers allow
   closure_contradicts,  ///< a part of the period is off by more than the orbit's residual and its multipliers explain
   drift_contradicts,    ///< a conserved quantity changes along the orbit by more than its residual explains
   wrong_period,         ///< the closure is off, and all of it is explained by another period

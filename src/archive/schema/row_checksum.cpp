@@ -93,7 +93,9 @@ std::int64_t header_checksum(const std::string& format, std::int64_t minor, cons
   return bytes.checksum();
 }
 
-void set_checksums(Table& table, std::uint64_t first) { table.integers(name_of_sum) = checksums_of(table, first, format_minor); }
+void set_checksums(Table& table, std::uint64_t first) {
+  table.integers(name_of_sum) = checksums_of(table, first, format_minor);
+}
 
 std::vector<std::size_t> changed_rows(const Table& table, std::int64_t minor) {
   const std::vector<std::int64_t> found = checksums_of(table, 0, minor);

@@ -192,9 +192,8 @@ void write_orbits(MPI_Comm comm, ParallelFile& file, const Order& order, const N
         }
       });
       if (!order.certificates.empty())
-        fill_columns(block, certificate_columns(), [&](std::size_t row) -> const CertificateRecord& {
-          return order.certificates[mine.begin + row];
-        });
+        fill_columns(block, certificate_columns(),
+                     [&](std::size_t row) -> const CertificateRecord& { return order.certificates[mine.begin + row]; });
       set_checksums(block, mine.begin);
     });
     file.write_table(block, mine.begin);

@@ -158,11 +158,11 @@ class OrbitCheck {
     const std::int64_t verdict = _orbits.integers("verdict")[_row];
     const bool has_closure = verdict >= 0 || _atlas.archive().format_minor() < archive::certificates_since;
     if (has_closure) {
-    within("closure", record.closure, integration);
-    if (!(real("single_shot") > found.reach && !(found.single_shot <= found.reach)))
-      within("single_shot", record.single_shot, integration * growth);
-    within("energy_drift", record.energy_drift,
-           std::max(found.steepness * integration, sum_rounding * epsilon * found.steepness * found.reach));
+      within("closure", record.closure, integration);
+      if (!(real("single_shot") > found.reach && !(found.single_shot <= found.reach)))
+        within("single_shot", record.single_shot, integration * growth);
+      within("energy_drift", record.energy_drift,
+             std::max(found.steepness * integration, sum_rounding * epsilon * found.steepness * found.reach));
     }
     if (verdict >= 0) {
       within("taylor_closure", record.taylor_closure, integration);

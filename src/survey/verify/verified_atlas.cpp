@@ -9,7 +9,9 @@
 #include "orbweaver/archive/read/loop_of.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/in_units.hpp"
+#include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
+#include "orbweaver/loop/symmetry/shift_search.hpp"
 #include "orbweaver/loop/symmetry/isotropy_text.hpp"
 #include "orbweaver/survey/atlas/stored_orbits.hpp"
 #include "orbweaver/survey/run/scaled_scene.hpp"
@@ -80,7 +82,13 @@ bool VerifiedAtlas::has_reversor(std::size_t family) const {
 loop::Loop VerifiedAtlas::begun_as(std::size_t family, const loop::Loop& loop, const loop::Loop& neighbour) const {
   const systems::Structure& system = _system->structure();
   if (has_reversor(family)) return started_as(system, loop, neighbour);
-  return loop::aligned(loop, loop::align(system, loop, neighbour));
+  // Neighbours differ by where they begin, not by a symmetry: only shifts are looked through.
+  const loop::Loop from = loop::resolved_in_time(loop);
+  const loop::Loop to = loop::resolved_in_time(neighbour);
+  const double shift = loop::shift_minima(from, to, system.angles).front().shift;
+  loop::Alignment alignment{"1", false, systems::AffineMap::identity(system.dimension), shift - std::floor(shift)};
+  (void)loop::difference_at(from, to, system.angles, shift, &alignment.turns);
+  return loop::aligned(loop, alignment);
 }
 
 bool VerifiedAtlas::is_requested(std::size_t orbit) const {

@@ -50,8 +50,8 @@ struct CrossingBeneath {
 struct ArrivalRecord {
   double period = 0.0;  ///< where it meets, by interpolation, or as the crossing there was located
   double energy = 0.0;
-  loop::Loop near;                       ///< an orbit of the branch shortly before
-  int multiplicity = 1;                  ///< times that it goes around the orbit it meets, where that is all it gains
+  loop::Loop near;                         ///< an orbit of the branch shortly before
+  int multiplicity = 1;                    ///< times that it goes around the orbit it meets, where that is all it gains
   std::vector<CrossingBeneath> beneath{};  ///< one, where the crossing that is met was located
 
   static constexpr int wire_version = 3;
@@ -85,7 +85,8 @@ struct BranchOutcome {
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, key, orbits, period_from, period_to, energy_from, energy_to, last_period,
-                            last_energy, last_cutoff, end, arrival, equilibrium, remarks, tolerance_met, limited_by, before_limit);
+                            last_energy, last_cutoff, end, arrival, equilibrium, remarks, tolerance_met, limited_by,
+                            before_limit);
     if constexpr (Archive::is_loading::value) check_limits(limited_by);
   }
 };
