@@ -53,14 +53,14 @@ Judgement judge(const Certificate& c, const Evidence& evidence) {
   const double explained = unexplained * error;
   const double resolved = informative * evidence.amplitude;
 
-  const double drift_allowed = c.steepness * explained;
-  if (c.energy_drift > drift_allowed) return {Verdict::drift_contradicts, c.energy_drift, drift_allowed};
-  if (c.other_drift > explained) return {Verdict::drift_contradicts, c.other_drift, explained};
-
   const double grown = explained * growth;
   const double closure = std::fmax(c.closure, c.taylor_closure);
   if (closure > grown)
     return {c.beside_flow <= grown ? Verdict::wrong_period : Verdict::closure_contradicts, closure, grown};
+  const double drift_allowed = c.steepness * explained;
+  if (c.energy_drift > drift_allowed) return {Verdict::drift_contradicts, c.energy_drift, drift_allowed};
+  if (c.other_drift > explained) return {Verdict::drift_contradicts, c.other_drift, explained};
+
   if (c.apart > unexplained * integration_error * c.reach * growth)
     return {Verdict::integrators_differ, c.apart, unexplained * integration_error * c.reach * growth};
   if (c.single_shot > unexplained * grown) return {Verdict::return_contradicts, c.single_shot, unexplained * grown};
