@@ -11,8 +11,7 @@ namespace {
 /// Of |z|: what the integrator's tolerance and rounding leave.
 constexpr double integration_error = 1e-13;
 /// How much more than its residual lets expect an orbit may be off. The closures of 10,000 orbits of the double
-/// pendulum, the swinging spring and the restricted problem were at most 5 times that, their drifts 0.6 times, their
-/// returns after a period 130 times.
+/// pendulum, the swinging spring and the restricted problem were at most 5 times that, their drifts 0.6 times.
 constexpr double unexplained = 1e3;
 /// Of the amplitude: fewer digits than four confirm no orbit.
 constexpr double informative = 1e-4;
@@ -61,9 +60,10 @@ Judgement judge(const Certificate& c, const Evidence& evidence) {
   if (c.energy_drift > drift_allowed) return {Verdict::drift_contradicts, c.energy_drift, drift_allowed};
   if (c.other_drift > explained) return {Verdict::drift_contradicts, c.other_drift, explained};
 
-  if (c.apart > unexplained * integration_error * c.reach * growth)
-    return {Verdict::integrators_differ, c.apart, unexplained * integration_error * c.reach * growth};
-  if (c.single_shot > unexplained * grown) return {Verdict::return_contradicts, c.single_shot, unexplained * grown};
+  if (c.apart > grown) return {Verdict::integrators_differ, c.apart, grown};
+  // An error of the energy is one of the period too, however stable the orbit is.
+  const double returned = explained * (growth + evidence.period * c.steepness * c.steepness);
+  if (c.single_shot > returned) return {Verdict::return_contradicts, c.single_shot, returned};
 
   if (c.symmetry_defect > explained) return {Verdict::not_symmetric, c.symmetry_defect, explained};
   // An orbit that is all error has no period at all.

@@ -75,8 +75,9 @@ TEST_P(Certified, EachDefectHasItsVerdict) {
       stretched.period += 32.0 * 10.0 * explained / loop::rms_speed(loop);
       EXPECT_EQ(verdict(stretched, evidence, level, isotropy), name_of(Verdict::wrong_period));
 
-      if (reverses)
+      if (reverses) {
         EXPECT_EQ(verdict(loop::time_shifted(loop, 0.1), evidence, level, isotropy), name_of(Verdict::not_symmetric));
+      }
 
       const loop::Loop even = loop::evenly_in_time(loop);
       certificate::Evidence twice = evidence;
@@ -98,7 +99,7 @@ TEST_P(Certified, EachDefectHasItsVerdict) {
 
 INSTANTIATE_TEST_SUITE_P(Systems, Certified,
                          ::testing::Values("double_pendulum", "henon_heiles", "pcr3bp_earth_moon"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& of) { return std::string(of.param); });
 
 /// By the branches, by tasks of the queue, and not at all.
 TEST(CertifiedSurvey, DoesWhatItsSceneAsks) {

@@ -86,7 +86,10 @@ loop::Loop VerifiedAtlas::begun_as(std::size_t family, const loop::Loop& loop, c
   const loop::Loop from = loop::resolved_in_time(loop);
   const loop::Loop to = loop::resolved_in_time(neighbour);
   const double shift = loop::shift_minima(from, to, system.angles).front().shift;
-  loop::Alignment alignment{"1", false, systems::AffineMap::identity(system.dimension), shift - std::floor(shift)};
+  loop::Alignment alignment;
+  alignment.name = "1";
+  alignment.map = systems::AffineMap::identity(system.dimension);
+  alignment.shift = shift - std::floor(shift);
   (void)loop::difference_at(from, to, system.angles, shift, &alignment.turns);
   return loop::aligned(loop, alignment);
 }
