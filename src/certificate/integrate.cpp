@@ -157,8 +157,8 @@ void Group::advance(double time, double tolerance) {
   }
 }
 
-/// The places of the states, those where the solution turns fastest for its size first: a group's steps are those of its
-/// fastest state.
+/// The places of the states, those where the solution turns fastest for its size first: a group's steps are those of
+/// its fastest state.
 std::vector<std::size_t> by_speed(const systems::System& system, std::span<const State> states) {
   std::vector<double> speeds;
   State field(static_cast<std::size_t>(system.dimension()));

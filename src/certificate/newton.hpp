@@ -18,7 +18,7 @@ namespace orbweaver::certificate {
 class NewtonSystem {
  public:
   /// `transitions`: P_m, d x d. `fields`: f_m at the M + 1 ends, the last being the first's. `rank` of the closing
-  /// condition on x_0 and tau: d less the conserved quantities, each of which makes one equation follow from the others.
+  /// condition on x_0 and tau: d less the conserved quantities, each of which makes an equation follow from the others.
   NewtonSystem(const std::vector<Eigen::MatrixXd>& transitions, const std::vector<Eigen::VectorXd>& fields, int rank);
 
   struct Step {

@@ -128,7 +128,8 @@ TEST(CertifiedSurvey, DoesWhatItsSceneAsks) {
   EXPECT_THAT(least.orbits().integers("verdict"), Each(-1));
   EXPECT_THAT(least.orbits().reals("closure"), Each(::testing::IsNan()));
   for (const char* column : {"closure", "single_shot", "taylor_closure", "symmetry_defect", "recurrence"}) {
-    EXPECT_THAT(branches.orbits().reals(column), ::testing::Pointwise(::testing::DoubleNear(1e-12), tasks.orbits().reals(column)))
+    EXPECT_THAT(branches.orbits().reals(column),
+                ::testing::Pointwise(::testing::DoubleNear(1e-12), tasks.orbits().reals(column)))
         << column;
     EXPECT_EQ(tasks.orbits().reals(column), most.orbits().reals(column)) << column;
   }

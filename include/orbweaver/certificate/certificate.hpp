@@ -33,8 +33,8 @@ struct Certificate {
   double taylor_closure = unknown;  ///< the same by Taylor series (taylor/flow.hpp), which share the field only
   double apart = unknown;           ///< the largest distance of the two integrators' ends: what either may be wrong by
   double beside_flow = unknown;  ///< the closure but for what a wrong period explains: gaps along the field, all alike
-  double single_shot =
-      unknown;  ///< |z(T) - Phi_T(z(0))|: once around without help; grows with the largest multiplier; NaN if that fails
+  /// |z(T) - Phi_T(z(0))|: once around without help; grows with the largest multiplier; NaN if that fails.
+  double single_shot = unknown;
   double energy_drift = unknown;     ///< largest |H(z(t_m)) - H(z(0))|
   double other_drift = unknown;      ///< the same of the other conserved quantities, each in its scale
   double symmetry_defect = unknown;  ///< largest |z(t_m) - g z(t_m)| over the isotropy's elements g
