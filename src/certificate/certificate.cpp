@@ -29,7 +29,7 @@ using States = std::vector<State>;
 /// Of the Taylor series: a digit more than the Runge-Kutta integrator keeps. More digits are more time, and rounding.
 constexpr double taylor_digits = 14.0;
 /// Of the transition matrices: a Newton step is good to their digits, and so are multipliers.
-constexpr double transition_tolerance = 1e-11;
+constexpr double transition_tolerance = 1e-10;
 /// An orbit gone around m times is one gone around as often as any prime factor of m says. A survey asks for orders up
 /// to 16.
 constexpr std::array primes{2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31};

@@ -16,12 +16,13 @@ constexpr double unexplained = 1e3;
 /// Of the amplitude: fewer digits than four confirm no orbit.
 constexpr double informative = 1e-4;
 /// Of the product of the multipliers, and of an index relative to 1 + |k| beside its bound: transition matrices are
-/// integrated to 1e-11 of 1 + their entries.
+/// integrated to 1e-10 of 1 + their entries.
 constexpr double unpaired_by = 1e-6;
 constexpr double times_index_bound = 16.0;
-/// A second step of Newton's method that is no smaller than this part of the first leads nowhere, where it is more than
-/// rounding.
+/// A second step of Newton's method that is no smaller than this part of the first leads nowhere, where the first is
+/// more than this part of the amplitude: below it both are rounding, which near a crossing grows by 1e7.
 constexpr double contracting = 0.5;
+constexpr double beyond_rounding = 1e-6;
 
 }  // namespace
 
@@ -75,7 +76,7 @@ Judgement judge(const Certificate& c, const Evidence& evidence) {
       times_index_bound * evidence.index_error + unpaired_by * (1.0 + std::abs(evidence.index));
   if (const double gap = std::abs(c.index - evidence.index); gap > index_allowed)
     return {Verdict::other_multipliers, gap, index_allowed};
-  if (c.distance > resolved || (c.contraction > contracting && c.distance > explained))
+  if (c.distance > resolved || (c.contraction > contracting && c.distance > beyond_rounding * evidence.amplitude))
     return {Verdict::no_orbit_near, c.distance, resolved};
 
   // Newton's method follows an orbit segment by segment, however unstable it is.

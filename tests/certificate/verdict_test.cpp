@@ -81,6 +81,10 @@ TEST(Verdict, NamesEachDefect) {
   EXPECT_EQ(with(&Certificate::index, 2.5001), Verdict::other_multipliers);
   EXPECT_EQ(with(&Certificate::distance, 1e-3), Verdict::no_orbit_near);
   EXPECT_EQ(with(&Certificate::contraction, 0.9), Verdict::holds) << "two steps of rounding";
+  Certificate aimless = whole();
+  aimless.contraction = 0.9;
+  aimless.distance = 1e-5;
+  EXPECT_EQ(judge(aimless, evidence).verdict, Verdict::no_orbit_near);
 }
 
 // The multipliers let nothing be integrated, but Newton's method follows the orbit from segment to segment.

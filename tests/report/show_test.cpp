@@ -78,7 +78,8 @@ TEST(Show, OrbitsAsJson) {
       "\"state\": [1000, -1000.015625], \"closure\": null, \"single_shot\": null, \"energy_drift\": null, "
       "\"tail\": 0.009765625, \"modes_begin\": 10, \"modes_count\": 14, \"time_map_begin\": 5, "
       "\"time_map_count\": 0, \"winding\": [0], \"verdict\": -1, \"taylor_closure\": null, "
-      "\"integrators_apart\": null, \"other_drift\": null, \"symmetry_defect\": null, \"recurrence\": null, \"orbit_distance\": null, "
+      "\"integrators_apart\": null, \"other_drift\": null, \"symmetry_defect\": null, \"recurrence\": null, "
+      "\"orbit_distance\": null, "
       "\"contraction\": null, \"pairing\": null, \"index_gap\": null},");
 }
 

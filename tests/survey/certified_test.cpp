@@ -97,8 +97,7 @@ TEST_P(Certified, EachDefectHasItsVerdict) {
   EXPECT_GE(judged, 2U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Systems, Certified,
-                         ::testing::Values("double_pendulum", "henon_heiles", "pcr3bp_earth_moon"),
+INSTANTIATE_TEST_SUITE_P(Systems, Certified, ::testing::Values("double_pendulum", "henon_heiles", "pcr3bp_earth_moon"),
                          [](const auto& of) { return std::string(of.param); });
 
 /// By the branches, by tasks of the queue, and not at all.

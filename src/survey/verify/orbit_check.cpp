@@ -195,7 +195,7 @@ class OrbitCheck {
   static constexpr double certificate_rounding = 1e-13;
   /// Of a distance between two places of one loop.
   static constexpr double same_recurrence = 1e-9;
-  /// Times that: what Newton's method makes of it; and of multipliers from transition matrices integrated to 1e-11.
+  /// Times that: what Newton's method makes of it; and of multipliers from transition matrices integrated to 1e-10.
   static constexpr double newton_rounding = 1e3;
   static constexpr double transition_rounding = 1e-7;
 
