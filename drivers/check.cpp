@@ -138,6 +138,16 @@ std::string depth_text(int depth) {
   return fmt::format("the base families and {} generations of branches", depth);
 }
 
+std::string certificate_text(scene::Certificate certificate) {
+  switch (certificate) {
+    case scene::Certificate::automatic: return "closure of every orbit, as it is found";
+    case scene::Certificate::none: return "none";
+    case scene::Certificate::closure: return "closure of every orbit, when all families are known";
+    case scene::Certificate::full: break;
+  }
+  return "closure of every orbit, its distance to the true one and its multipliers, when all families are known";
+}
+
 void print_survey(const scene::Scene& scene) {
   const scene::Survey& survey = scene.survey;
   const bool all = survey.spectrum == scene::Spectrum::all;
@@ -146,6 +156,7 @@ void print_survey(const scene::Scene& scene) {
                {"subharmonics", fmt::format("branches that close after up to {} period{}", survey.subharmonics,
                                             survey.subharmonics == 1 ? "" : "s")},
                {"spectrum", all ? "at every orbit" : "at events"},
+               {"certificate", certificate_text(scene.compute.certificate)},
                {"team size", fmt::format("{} rank{} a task", survey.team_size, survey.team_size == 1 ? "" : "s")}});
 }
 

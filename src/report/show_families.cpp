@@ -8,6 +8,7 @@
 #include "orbweaver/survey/tree/family_end.hpp"
 #include "show_crossings.hpp"
 #include "show_stability.hpp"
+#include "show_verdicts.hpp"
 #include "text_grid.hpp"
 
 namespace orbweaver::report {
@@ -70,7 +71,8 @@ std::string end_text(const archive::Archive& atlas, std::size_t family) {
 
 std::string details(const archive::Archive& atlas, std::size_t family) {
   std::string text;
-  for (const std::string& part : {atlas.families().texts("isotropy")[family], stability_text(atlas, family)})
+  for (const std::string& part :
+       {atlas.families().texts("isotropy")[family], stability_text(atlas, family), doubts_text(atlas, family)})
     if (!part.empty()) text += part + "; ";
   return text + end_text(atlas, family);
 }

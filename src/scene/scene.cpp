@@ -33,8 +33,9 @@ void read_starts(const Field& field, const systems::System& system, Scene& scene
 }
 
 Scene read_scene(const Field& root) {
-  const Keys keys(root, {"name", "system", "starts", "continuation", "survey", "limits", "events", "section", "output"},
-                  smallest_scene);
+  const Keys keys(
+      root, {"name", "system", "starts", "continuation", "survey", "compute", "limits", "events", "section", "output"},
+      smallest_scene);
   Scene scene;
   read_system(require_key(keys, root, "system", "system: {name: double_pendulum}"), scene.system);
   const auto bound = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
@@ -44,6 +45,7 @@ Scene read_scene(const Field& root) {
   read_starts(require_key(keys, root, "starts", "starts: {fixed_points: {grid: [[0, 180], [0, 180]]}}"), system, scene);
   if (const auto field = keys.find("continuation")) read_continuation(*field, system, scene.continuation);
   if (const auto field = keys.find("survey")) read_survey(*field, scene.survey);
+  if (const auto field = keys.find("compute")) read_compute(*field, scene.compute);
   if (const auto field = keys.find("limits")) read_limits(*field, system, scene.limits);
   if (const auto field = keys.find("events")) read_events(*field, scene.events);
   if (const auto field = keys.find("section")) read_section(*field, system, scene.section);

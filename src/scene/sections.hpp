@@ -11,6 +11,7 @@ namespace orbweaver::scene {
 void read_sweep(const Field& field, Sweep& sweep);
 void read_continuation(const Field& field, const systems::System& system, Continuation& continuation);
 void read_survey(const Field& field, Survey& survey);
+void read_compute(const Field& field, Compute& compute);
 void read_limits(const Field& field, const systems::System& system, Limits& limits);
 void read_events(const Field& field, Events& events);
 void read_section(const Field& field, const systems::System& system, Section& section);

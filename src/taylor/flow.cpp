@@ -20,6 +20,12 @@ int quickest_order(double digits) {
   return std::max(4, static_cast<int>(std::ceil(0.5 * std::numbers::ln10 * digits)));
 }
 
+/// The component's, or the entry's of a transition, in log10.
+double log_scale(const std::vector<double>& log_scales, std::size_t i) {
+  const std::size_t d = log_scales.size();
+  return i < d ? log_scales[i] : log_scales[(i - d) / d] - log_scales[(i - d) % d];
+}
+
 }  // namespace
 
 template <class Real>
@@ -63,13 +69,9 @@ void Flow<Real>::advance(std::vector<Real>& state, std::vector<Real>& transition
 
 template <class Real>
 double Flow<Real>::log_norm(Series<Real>& series, int k, std::size_t from, std::size_t to) const {
-  const std::size_t d = _log_scales.size();
   double norm = -std::numeric_limits<double>::infinity();
-  for (std::size_t i = from; i < to; ++i) {
-    const double scale =
-        i < d ? _log_scales[i] : _log_scales[(i - d) / d] - _log_scales[(i - d) % d];  // entry of a transition
-    norm = std::max(norm, numerics::log10_abs(series.own(i, k)) - scale);
-  }
+  for (std::size_t i = from; i < to; ++i)
+    norm = std::max(norm, numerics::log10_abs(series.own(i, k)) - log_scale(_log_scales, i));
   return norm;
 }
 
@@ -112,6 +114,86 @@ void Flow<Real>::run(Series<Real>& series, std::vector<Real>& state, std::vector
     }
     A::subtract(remaining, remaining, step);
     ++_steps;
+  }
+}
+
+namespace {
+
+constexpr std::size_t width = ad::Lanes::width;
+
+std::vector<ad::Lanes> in_all_lanes(const std::vector<double>& values) { return {values.begin(), values.end()}; }
+
+}  // namespace
+
+ManyFlows::ManyFlows(const systems::Formulas& formulas, const FlowOptions& options)
+    : _options(options),
+      _dimension(static_cast<std::size_t>(formulas.dimension)),
+      _series(std::make_unique<Series<ad::Lanes>>(formulas.tape, formulas.field, in_all_lanes(formulas.values),
+                                                  quickest_order(options.digits) + options.extra_order)) {
+  core::require(options.scales.empty() || options.scales.size() == _dimension, "one scale a coordinate");
+  for (std::size_t i = 0; i < _dimension; ++i) _scales.push_back(options.scales.empty() ? 1.0 : options.scales[i]);
+}
+
+ManyFlows::~ManyFlows() = default;
+ManyFlows::ManyFlows(ManyFlows&&) noexcept = default;
+
+double ManyFlows::step_size(std::size_t lane) const {
+  const int order = _series->order();
+  double log_step = std::numeric_limits<double>::infinity();
+  for (const int k : {order - 1, order}) {  // one of them may vanish by a symmetry
+    double norm = 0.0;
+    for (std::size_t i = 0; i < _dimension; ++i) {
+      const double term = std::abs(_series->own(i, k).packed[lane]) / _scales[i];
+      if (!std::isfinite(term))
+        throw core::NotFiniteError("the Taylor series of a solution is not finite: a singularity of the field");
+      norm = std::max(norm, term);
+    }
+    log_step = std::min(log_step, (-_options.digits - std::log10(norm)) / k);
+  }
+  return std::pow(10.0, log_step);
+}
+
+void ManyFlows::advance(std::vector<std::vector<double>>& states, double time) {
+  for (const std::vector<double>& state : states)
+    core::require(state.size() == _dimension, "a state of another dimension");
+  if (states.empty() || time == 0.0) return;
+  std::size_t next = 0;
+  std::size_t running = 0;
+  std::array<std::size_t, width> place{};
+  std::array<double, width> remaining{};
+  std::array<long, width> steps{};
+  std::vector<ad::Lanes> at(_dimension, ad::Lanes(0.0));
+  const auto load = [&](std::size_t lane) {  // a lane without work repeats the last state, and nobody asks
+    const bool works = next < states.size();
+    place[lane] = works ? next++ : states.size();
+    remaining[lane] = works ? time : 0.0;
+    steps[lane] = 0;
+    if (works) ++running;
+    const std::vector<double>& state = works ? states[place[lane]] : states.back();
+    for (std::size_t i = 0; i < _dimension; ++i) at[i].packed[lane] = state[i];
+  };
+  for (std::size_t lane = 0; lane < width; ++lane) load(lane);
+  const std::vector<ad::Lanes> none;
+  while (running > 0) {
+    _series->expand(at, none);
+    ad::Lanes step(0.0);
+    for (std::size_t lane = 0; lane < width; ++lane)
+      if (place[lane] < states.size()) {
+        const double length = step_size(lane);
+        step.packed[lane] =
+            length >= std::abs(remaining[lane]) ? remaining[lane] : std::copysign(length, remaining[lane]);
+      }
+    for (std::size_t i = 0; i < _dimension; ++i) _series->sum(i, step, at[i]);
+    for (std::size_t lane = 0; lane < width; ++lane) {
+      if (place[lane] == states.size()) continue;
+      remaining[lane] -= step.packed[lane];
+      if (++steps[lane] > _options.most_steps)
+        throw core::NumericalError("a Taylor integration was given up: its steps become ever shorter");
+      if (remaining[lane] != 0.0) continue;
+      for (std::size_t i = 0; i < _dimension; ++i) states[place[lane]][i] = at[i].packed[lane];
+      --running;
+      load(lane);
+    }
   }
 }
 

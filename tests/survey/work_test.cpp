@@ -63,7 +63,6 @@ BranchOutcome sample_branch_outcome() {
           {continuation::EndReason::period_limit, "T = 30"},
           {{8.5, -1.5, sample_loop()}},
           2,
-          {{{certificate::Verdict::says_nothing, 65.0, 1e-4, 29.0, 1e251}, 3}},
           {"a remark"},
           5e-13,
           period_limited,

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "orbweaver/ad/lanes.hpp"
 #include "orbweaver/numerics/extended.hpp"
 
 namespace orbweaver::taylor {
@@ -10,37 +11,49 @@ namespace orbweaver::taylor {
 template <class Real>
 struct Arithmetic;
 
-template <>
-struct Arithmetic<double> {
-  static void set(double& x, double value) { x = value; }
-  static void add(double& out, double a, double b) { out = a + b; }
-  static void subtract(double& out, double a, double b) { out = a - b; }
-  static void multiply(double& out, double a, double b) { out = a * b; }
-  static void divide(double& out, double a, double b) { out = a / b; }
-  static void negate(double& out, double a) { out = -a; }
-  static void multiply(double& out, double a, long k) { out = a * static_cast<double>(k); }
-  static void divide(double& out, double a, long k) { out = a / static_cast<double>(k); }
-  static bool is_zero(double x) { return x == 0.0; }
-  static bool is_finite(double x) { return std::isfinite(x); }
-  static double to_double(double x) { return x; }
+/// Of doubles, one or as many as a vector register holds.
+template <class Real>
+struct InRegisters {
+  static void set(Real& x, Real value) { x = value; }
+  static void add(Real& out, Real a, Real b) { out = a + b; }
+  static void subtract(Real& out, Real a, Real b) { out = a - b; }
+  static void multiply(Real& out, Real a, Real b) { out = a * b; }
+  static void divide(Real& out, Real a, Real b) { out = a / b; }
+  static void negate(Real& out, Real a) { out = -a; }
+  static void multiply(Real& out, Real a, long k) { out = a * static_cast<double>(k); }
+  static void divide(Real& out, Real a, long k) { out = a / static_cast<double>(k); }
+  static Real power(Real x, double exponent) {
+    using std::pow;
+    return pow(x, exponent);
+  }
 
   /// Sums of products a_0 b_0, a_1 b_-1, ... of two arrays, the second one run through backwards.
   class Sum {
    public:
     void clear() { _sum = 0.0; }
-    void add_products(const double* a, const double* b, int count) {
+    void add_products(const Real* a, const Real* b, int count) {
       for (int j = 0; j < count; ++j) _sum += a[j] * b[-j];
     }
-    void subtract_products(const double* a, const double* b, int count) {
+    void subtract_products(const Real* a, const Real* b, int count) {
       for (int j = 0; j < count; ++j) _sum -= a[j] * b[-j];
     }
-    void add(double a) { _sum += a; }
+    void add(Real a) { _sum += a; }
     void twice() { _sum *= 2.0; }
-    [[nodiscard]] double value() const { return _sum; }
+    [[nodiscard]] Real value() const { return _sum; }
 
    private:
-    double _sum = 0.0;
+    Real _sum = 0.0;
   };
+};
+
+template <>
+struct Arithmetic<ad::Lanes> : InRegisters<ad::Lanes> {};
+
+template <>
+struct Arithmetic<double> : InRegisters<double> {
+  static bool is_zero(double x) { return x == 0.0; }
+  static bool is_finite(double x) { return std::isfinite(x); }
+  static double to_double(double x) { return x; }
 };
 
 template <>
@@ -60,6 +73,7 @@ struct Arithmetic<numerics::Extended> {
   static void divide(Real& out, const Real& a, long k) { mpfr_div_si(raw(out), raw(a), k, MPFR_RNDN); }
   static bool is_zero(const Real& x) { return mpfr_zero_p(raw(x)) != 0; }
   static bool is_finite(const Real& x) { return mpfr_number_p(raw(x)) != 0; }
+  static Real power(const Real& x, double exponent) { return pow(x, Real(exponent)); }
   static double to_double(const Real& x) { return mpfr_get_d(raw(x), MPFR_RNDN); }
 
   class Sum {

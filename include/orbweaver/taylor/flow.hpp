@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "orbweaver/ad/lanes.hpp"
 #include "orbweaver/numerics/extended.hpp"
 #include "orbweaver/systems/formulas.hpp"
 
@@ -59,6 +60,28 @@ class Flow {
   std::unique_ptr<Series<Real>> _state;
   std::unique_ptr<Series<Real>> _variational;
   long _steps = 0;
+};
+
+/// The same in double for many states over one time, as many at once as a vector register holds, each with steps of its
+/// own: a result does not depend on the other states. Some four times as fast as one after the other.
+class ManyFlows {
+ public:
+  /// With the formulas' own parameter values.
+  explicit ManyFlows(const systems::Formulas& formulas, const FlowOptions& options = {});
+  ~ManyFlows();
+  ManyFlows(ManyFlows&&) noexcept;
+
+  /// Takes each state (d numbers) to where it is after `time`. Throws what Flow::advance does; the states are then
+  /// lost.
+  void advance(std::vector<std::vector<double>>& states, double time);
+
+ private:
+  [[nodiscard]] double step_size(std::size_t lane) const;
+
+  FlowOptions _options;
+  std::size_t _dimension;
+  std::vector<double> _scales;
+  std::unique_ptr<Series<ad::Lanes>> _series;
 };
 
 extern template class Flow<double>;

@@ -126,7 +126,7 @@ class Series {
   Real& derived(int a, int k) { return _derived[static_cast<std::size_t>(a)][static_cast<std::size_t>(k)]; }
 
   void compute_first(std::size_t n) {
-    using std::acos, std::asin, std::atan, std::cos, std::exp, std::log, std::pow, std::sin, std::sqrt;
+    using std::acos, std::asin, std::atan, std::cos, std::exp, std::log, std::sin, std::sqrt;
     const ad::Tape::Node& node = _nodes[n];
     Real& out = at(n, 0);
     switch (node.operation) {
@@ -146,7 +146,7 @@ class Series {
       case Operation::asin: A::set(out, asin(at(node.first, 0))); break;
       case Operation::acos: A::set(out, acos(at(node.first, 0))); break;
       case Operation::atan: A::set(out, atan(at(node.first, 0))); break;
-      case Operation::power: A::set(out, pow(at(node.first, 0), Real(node.value))); break;
+      case Operation::power: A::set(out, A::power(at(node.first, 0), node.value)); break;
     }
   }
 

@@ -31,6 +31,8 @@ class SerialFile {
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return _path; }
   [[nodiscard]] const Header& header() const noexcept { return _header; }
 
+  /// Its format_minor.
+  [[nodiscard]] std::int64_t minor() const noexcept { return _minor; }
   /// Whether its rows carry checksums: those of older versions do not.
   [[nodiscard]] bool has_checksums() const noexcept { return _minor >= checksums_since; }
   /// What is wrong with the root attributes, for `expect`; empty: they give their checksum, or there is none.

@@ -10,7 +10,6 @@
 
 #include <fmt/format.h>
 
-#include "doubt_text.hpp"
 #include "family_names.hpp"
 #include "orbweaver/core/error.hpp"
 #include "tasks/payload/keys.hpp"
@@ -39,14 +38,6 @@ std::vector<Family> families_of(const std::vector<FamilySide>& branches) {
   std::vector<Family> ordered;
   for (auto& [place, family] : families) ordered.push_back(std::move(family));
   return ordered;
-}
-
-std::vector<DoubtfulOrbits> doubtful_orbits_of(const Family& family) {
-  std::vector<DoubtfulOrbits> all;
-  for (const FamilySide side : family.sides)
-    if (side->second.outcome)
-      for (const DoubtfulOrbits& doubtful : side->second.outcome->doubtful) survey::add(all, doubtful);
-  return all;
 }
 
 }  // namespace
@@ -230,9 +221,6 @@ FamilyTree::Result FamilyTree::resolve() const {
   if (beyond > 0)
     result.remarks.push_back(
         fmt::format("{} crossings lead to orbits beyond limits.period: nothing was started there", beyond));
-  for (const Family& family : families)
-    for (const DoubtfulOrbits& doubtful : doubtful_orbits_of(family))
-      result.remarks.push_back(fmt::format("{} ({}): {}", family.key, family.name, doubt_text(doubtful)));
   for (const FamilySide branch : kept)
     if (branch->second.outcome)
       for (const std::string& remark : branch->second.outcome->remarks)

@@ -2,6 +2,7 @@
 
 #include "witness/checks/base_births.hpp"
 #include "witness/checks/branch_counts.hpp"
+#include "witness/checks/certificates.hpp"
 #include "witness/checks/ends.hpp"
 #include "witness/checks/equilibrium_families.hpp"
 #include "witness/checks/failed_tasks.hpp"
@@ -25,7 +26,7 @@ std::vector<std::unique_ptr<Check>> list() {
 
 std::vector<std::unique_ptr<Check>> all_checks() {
   return list<FailedTasks, StoredTwice, SharedPoints, BranchCounts, EquilibriumFamilies, BaseBirths, Ends, MirrorImages,
-              IndexChanges>();
+              IndexChanges, Certificates>();
 }
 
 }  // namespace orbweaver::survey

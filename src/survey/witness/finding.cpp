@@ -77,6 +77,11 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
     case FindingKind::undecided_indices:
       return fmt::format("a stability index is known to {:.2g} only: crossings are not told from rounding there",
                          f.deviation);
+    case FindingKind::failed_certificate:
+      return fmt::format("{} of {} orbits are not what they are said to be: {}", f.number, f.other_number, f.detail);
+    case FindingKind::silent_certificate:
+      return fmt::format("the certificates of {} of {} orbits say nothing: so unstable that integrating confirms none",
+                         f.number, f.other_number);
     case FindingKind::failed_task: return f.detail;
     case FindingKind::disputed_arrival:
       return "another branch arrives where this one starts, yet it is kept: arrivals contradict each other about which "
@@ -127,6 +132,8 @@ std::string_view name_of(FindingKind kind) {
     case FindingKind::undecided_end: return "undecided-end";
     case FindingKind::undecided_event: return "undecided-event";
     case FindingKind::undecided_indices: return "undecided-indices";
+    case FindingKind::failed_certificate: return "failed-certificate";
+    case FindingKind::silent_certificate: return "silent-certificate";
     case FindingKind::failed_task: return "failed-task";
     case FindingKind::disputed_arrival: return "disputed-arrival";
     case FindingKind::interrupted: return "interrupted";

@@ -50,6 +50,8 @@ enum class FindingKind {
   undecided_end,         ///< ends where orbits are not told from their neighbours
   undecided_event,       ///< in `detail`: not located, where orbits are not told from their neighbours
   undecided_indices,     ///< an index is known to `deviation` only, too badly to tell what it passes
+  failed_certificate,    ///< number of other_number orbits have the verdict `detail`; the first of them
+  silent_certificate,    ///< the same: the integration says nothing of them
   failed_task,           ///< in `detail`
   disputed_arrival,      ///< arrivals contradict each other
   interrupted,           ///< put aside, or not begun before limits.time
@@ -70,7 +72,7 @@ struct Finding {
   double deviation = std::numeric_limits<double>::quiet_NaN();  ///< how far off (docs/file_format.md says in what)
   int number = 0;
   int other_number = 0;
-  std::string detail{};  ///< what a task said of its failure
+  std::string detail{};  ///< what a task said of its failure, or the verdict
 };
 
 /// The names that a text about a finding needs.

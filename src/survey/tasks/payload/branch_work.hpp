@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "doubtful_orbits.hpp"
 #include "lineage.hpp"
 #include "locate_work.hpp"
 #include "orbweaver/continuation/branch.hpp"
@@ -52,8 +51,8 @@ struct CrossingBeneath {
 struct ArrivalRecord {
   double period = 0.0;  ///< where it meets, by interpolation, or as the crossing there was located
   double energy = 0.0;
-  loop::Loop near;                       ///< an orbit of the branch shortly before
-  int multiplicity = 1;                  ///< times that it goes around the orbit it meets, where that is all it gains
+  loop::Loop near;                         ///< an orbit of the branch shortly before
+  int multiplicity = 1;                    ///< times that it goes around the orbit it meets, where that is all it gains
   std::vector<CrossingBeneath> beneath{};  ///< one, where the crossing that is met was located
   double ahead = std::numeric_limits<double>::infinity();  ///< rms distance from `near` to the orbit met, if known
 
@@ -77,9 +76,8 @@ struct BranchOutcome {
   double last_energy = 0.0;
   int last_cutoff = 0;
   continuation::Ending end;
-  std::vector<ArrivalRecord> arrival;    ///< one or none
-  int equilibrium = -1;                  ///< at which it ended, among the survey's; -1: at none of them
-  std::vector<DoubtfulOrbits> doubtful;  ///< an entry a verdict
+  std::vector<ArrivalRecord> arrival;  ///< one or none
+  int equilibrium = -1;                ///< at which it ended, among the survey's; -1: at none of them
   std::vector<std::string> remarks;
   double tolerance_met = 0.0;  ///< the largest of the orbits', where rounding keeps one above the tolerance; else 0
   int limited_by = 0;          ///< Limit: with wider ones the branch would have gone on
@@ -89,8 +87,8 @@ struct BranchOutcome {
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, key, orbits, period_from, period_to, energy_from, energy_to, last_period,
-                            last_energy, last_cutoff, end, arrival, equilibrium, doubtful, remarks, tolerance_met,
-                            limited_by, before_limit);
+                            last_energy, last_cutoff, end, arrival, equilibrium, remarks, tolerance_met, limited_by,
+                            before_limit);
     if constexpr (Archive::is_loading::value) check_limits(limited_by);
   }
 };
