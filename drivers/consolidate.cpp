@@ -50,7 +50,7 @@ Command make_consolidate_command(CLI::App& program) {
   const auto options = std::make_shared<Options>();
   CLI::App* parser = program.add_subcommand(
       "consolidate", "Make the archive of what a survey that was broken off has come to (under mpirun or alone)");
-  parser->add_option("directory", options->directory, "The folder of the survey")->required();
+  parser->add_option("directory", options->directory, "The folder of the survey")->required()->check(named_path());
   add_log_options(*parser, options->log);
   return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
 }

@@ -1,6 +1,7 @@
 #include <exception>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -30,7 +31,7 @@ struct Options {
   LogOptions log;
   std::filesystem::path directory;
   bool resume = false;
-  std::string walltime;
+  std::optional<std::string> walltime;
   std::string progress = "auto";
 };
 
@@ -59,7 +60,7 @@ int survey_on(const core::Communicator& comm, const Options& options) {
   survey::RunOptions run_options{display_for(options), options.resume};
   agree(comm, [&] {
     scene = options.scene.load();
-    if (!options.walltime.empty()) run_options.walltime = seconds_of(options.walltime);
+    if (options.walltime) run_options.walltime = seconds_of(*options.walltime);
   });
   stop_on_signals();
   agree(comm, [&] {
@@ -113,7 +114,9 @@ Command make_survey_command(CLI::App& program) {
   CLI::App* parser =
       program.add_subcommand("survey", "Find, follow and archive the families of a scene (under mpirun or alone)");
   add_scene_options(*parser, options->scene);
-  parser->add_option("-o,--output", options->directory, "Folder for the archive, atlas.h5")->required();
+  parser->add_option("-o,--output", options->directory, "Folder for the archive, atlas.h5")
+      ->required()
+      ->check(named_path());
   parser->add_flag("--resume", options->resume,
                    "Go on with the survey in the folder, if there is one; limits may have become wider");
   parser->add_option("--walltime", options->walltime,

@@ -70,6 +70,7 @@ void SerialFile::open() {
   const auto status = std::filesystem::status(_path, code);
   expect(std::filesystem::exists(status), "does not exist");
   expect(!std::filesystem::is_directory(status), fmt::format("is a folder; {} was expected", _kind->noun));
+  expect(std::filesystem::is_regular_file(status), fmt::format("is not a regular file; {} was expected", _kind->noun));
   expect(H5Fis_hdf5(_path.c_str()) > 0,
          fmt::format("is not an HDF5 file, or was cut short, or may not be read; {} was expected", _kind->noun));
   const H5Handle access(check_h5(H5Pcreate(H5P_FILE_ACCESS), "H5Pcreate"), H5Pclose);

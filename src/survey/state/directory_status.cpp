@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -59,8 +60,9 @@ DirectoryStatus status_of(const Checkpoint& checkpoint, const std::filesystem::p
   const bool widened = std::any_of(differences.begin(), differences.end(), [](const scene::Difference& difference) {
     return difference.change == scene::Change::widened;
   });
-  if (checkpoint.stage != Stage::finished || widened || !std::filesystem::exists(directory / "atlas.h5"))
+  if (checkpoint.stage != Stage::finished || !std::filesystem::exists(directory / "atlas.h5"))
     return DirectoryStatus::unfinished;
+  if (widened) return DirectoryStatus::finished_within_narrower_limits;
   return checkpoint.failures > 0 ? DirectoryStatus::finished_with_failures : DirectoryStatus::finished;
 }
 
@@ -83,11 +85,18 @@ DirectoryStatus status_of(const std::filesystem::path& directory, const scene::S
 
 void require_startable(DirectoryStatus status, const std::filesystem::path& directory, bool resume) {
   if (status == DirectoryStatus::none || resume) return;
-  const bool unfinished = status == DirectoryStatus::unfinished;
+  std::string_view what = "a finished survey";
+  std::string_view advice = "accept it as it is";
+  if (status == DirectoryStatus::unfinished) {
+    what = "an unfinished survey";
+    advice = "go on with it";
+  } else if (status == DirectoryStatus::finished_within_narrower_limits) {
+    what = "a finished survey with narrower limits";
+    advice = "go on with it to the wider ones";
+  }
   throw core::InputError(
-      fmt::format("{} already holds {} survey, and nothing was changed: give another folder with -o, or --resume to {}",
-                  directory.string(), unfinished ? "an unfinished" : "a finished",
-                  unfinished ? "go on with it" : "accept it as it is"));
+      fmt::format("{} already holds {}, and nothing was changed: give another folder with -o, or --resume to {}",
+                  directory.string(), what, advice));
 }
 
 }  // namespace orbweaver::survey
