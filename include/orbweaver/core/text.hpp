@@ -12,8 +12,8 @@ namespace orbweaver::core {
 /// Whether a character is a control character: U+0000 to U+001F, U+007F to U+009F.
 [[nodiscard]] bool is_control(std::string_view character);
 
-/// The first byte that belongs to no character of UTF-8 (RFC 3629: no overlong forms, no surrogates, nothing above U+10FFFF), or is
-/// zero; npos: there is none.
+/// The first byte that belongs to no character of UTF-8 (RFC 3629: no overlong forms, no surrogates, nothing above
+/// U+10FFFF), or is zero; npos: there is none.
 [[nodiscard]] std::size_t first_untextual(std::string_view text);
 
 /// The text on one line: control characters and bytes that are not UTF-8 as `\x1b`, `\n`, `\t`
