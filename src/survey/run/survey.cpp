@@ -130,7 +130,11 @@ class Run {
 
   /// A survey writes its first checkpoint before anything else.
   void expect_nothing(bool resume) const {
-    if (std::filesystem::exists(checkpoint_path(_folder)) || std::filesystem::exists(previous_checkpoint_path(_folder)))
+    const auto stands = [](const std::filesystem::path& path) {
+      std::error_code ignored;
+      return std::filesystem::symlink_status(path, ignored).type() != std::filesystem::file_type::not_found;
+    };
+    if (stands(checkpoint_path(_folder)) || stands(previous_checkpoint_path(_folder)))
       throw core::InputError(fmt::format("{} already holds a survey, and nothing was changed: --resume goes on with it",
                                          _folder.parent_path().string()));
     for (const auto& entry : std::filesystem::directory_iterator(_folder)) {
