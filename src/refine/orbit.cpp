@@ -9,6 +9,7 @@
 
 #include "conditioned_orbit.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/refine/guess.hpp"
 
 namespace orbweaver::refine {
 
@@ -49,20 +50,6 @@ struct Values {
   std::vector<Extended> indices;  // full period, fundamental map; or none
   std::vector<Extended> test;     // one, at a crossing
 };
-
-systems::Formulas formulas_of(const systems::System& system) {
-  const auto* with_formulas = dynamic_cast<const systems::FormulaSystem*>(&system);
-  const systems::Structure& structure = system.structure();
-  if (with_formulas == nullptr)
-    throw core::InputError(fmt::format("{} cannot be refined: it does not give its formulas", system.info().title));
-  if (structure.conserved.size() != 1 || !structure.symplectic)
-    throw core::InputError(fmt::format("{} cannot be refined: only Hamiltonian systems that conserve one quantity can",
-                                       system.info().title));
-  if (structure.pairs() > 1)
-    throw core::InputError(fmt::format("{} cannot be refined: its orbits have {} pairs of multipliers, more than one",
-                                       system.info().title, structure.pairs()));
-  return with_formulas->formulas();
-}
 
 void check_digits(int digits) {
   if (digits < 1 || digits > most_digits)
@@ -110,7 +97,7 @@ class Test {
 class Refinement {
  public:
   Refinement(const Guess& guess, int digits)
-      : _setup(formulas_of(*guess.system), guess.system->structure(), guess.scales, guess.loop, guess.isotropy),
+      : _setup(refinable_formulas(*guess.system), guess.system->structure(), guess.scales, guess.loop, guess.isotropy),
         _orbit(_setup),
         _digits(digits) {}
 
@@ -370,7 +357,7 @@ RefinedOrbit refine_crossing(const Guess& guess, const CrossingCondition& condit
 HeldValue::Quantity better_held(const Guess& guess) {
   // A period that moves by less than this part of a step along the family loses that many digits.
   constexpr double nearly_at_rest = 1e-3;
-  const ShootingSetup setup(formulas_of(*guess.system), guess.system->structure(), guess.scales, guess.loop,
+  const ShootingSetup setup(refinable_formulas(*guess.system), guess.system->structure(), guess.scales, guess.loop,
                             guess.isotropy);
   ConditionedOrbit orbit(setup);
   const Eigen::VectorXd along = orbit.direction(setup.guess);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,6 +13,7 @@
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "orbweaver/numerics/lagrange.hpp"
 #include "orbweaver/numerics/locate.hpp"
+#include "orbweaver/refine/guess.hpp"
 #include "orbweaver/survey/atlas/stored_orbits.hpp"
 
 namespace orbweaver::refine {
@@ -25,28 +25,6 @@ constexpr std::size_t orbits_beside = 6;
 /// What a symmetry of the family may be off at a guess between two orbits, in the scales.
 constexpr double symmetry_of_a_guess = 1e-2;
 constexpr double place_tolerance = 1e-12;  // in arclength
-
-/// Stored orbits are in standard phase, whatever the phase at which the isotropy was found: there the first reversor
-/// has the shift 0.
-loop::Isotropy in_standard_phase(const systems::Structure& structure, loop::Isotropy isotropy) {
-  const loop::SymmetryGroup group(structure, isotropy);
-  for (const systems::Symmetry& reversor : structure.reversors)
-    for (const loop::SymmetryElement& element : group.elements()) {
-      if (!element.reversing || element.name != reversor.name) continue;
-      for (loop::SymmetryElement& generator : isotropy) {
-        if (!generator.reversing) continue;
-        const int q = std::lcm(generator.shift_denominator, element.shift_denominator);
-        const int shift = generator.shift_numerator * (q / generator.shift_denominator) -
-                          element.shift_numerator * (q / element.shift_denominator);
-        const int positive = ((shift % q) + q) % q;
-        const int common = std::gcd(positive, q);
-        generator.shift_numerator = positive / common;
-        generator.shift_denominator = q / common;
-      }
-      return isotropy;
-    }
-  return isotropy;
-}
 
 bool is_between(double value, double a, double b) { return (a <= value && value < b) || (b < value && value <= a); }
 

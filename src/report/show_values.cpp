@@ -44,19 +44,29 @@ std::string value_text(const archive::Column& column, std::size_t at, const Numb
 
 std::string plain(const std::string& text) { return text; }
 
+// Those that are shown: all but the checksums, which an archive has been held against when it was opened.
+std::vector<const archive::Column*> shown_columns(const archive::Table& table) {
+  std::vector<const archive::Column*> columns;
+  for (const archive::Column& column : table.columns())
+    if (!archive::is_checksum(column.spec)) columns.push_back(&column);
+  return columns;
+}
+
 }  // namespace
 
 void print_csv(std::ostream& out, const archive::Header& header, const archive::Table& table) {
   std::vector<std::string> heads;
-  for (const archive::Column& column : table.columns())
-    for (std::size_t i = 0; i < column.spec.width(); ++i) heads.push_back(csv_text(value_name(header, column.spec, i)));
+  const std::vector<const archive::Column*> columns = shown_columns(table);
+  for (const archive::Column* column : columns)
+    for (std::size_t i = 0; i < column->spec.width(); ++i)
+      heads.push_back(csv_text(value_name(header, column->spec, i)));
   out << fmt::format("{}\n", fmt::join(heads, ","));
   for (std::size_t row = 0; row < table.rows(); ++row) {
     std::vector<std::string> cells;
-    for (const archive::Column& column : table.columns()) {
-      const std::size_t width = column.spec.width();
+    for (const archive::Column* column : columns) {
+      const std::size_t width = column->spec.width();
       for (std::size_t i = 0; i < width; ++i)
-        cells.push_back(value_text(column, row * width + i, csv_number, csv_text));
+        cells.push_back(value_text(*column, row * width + i, csv_number, csv_text));
     }
     out << fmt::format("{}\n", fmt::join(cells, ","));
   }
@@ -86,10 +96,11 @@ std::string json_value(const archive::Column& column, std::size_t row) {
 
 void print_json(std::ostream& out, const archive::Table& table) {
   out << '[';
+  const std::vector<const archive::Column*> columns = shown_columns(table);
   for (std::size_t row = 0; row < table.rows(); ++row) {
     std::vector<std::string> members;
-    for (const archive::Column& column : table.columns())
-      members.push_back(fmt::format("\"{}\": {}", column.spec.name, json_value(column, row)));
+    for (const archive::Column* column : columns)
+      members.push_back(fmt::format("\"{}\": {}", column->spec.name, json_value(*column, row)));
     out << fmt::format("{}\n  {{{}}}", row == 0 ? "" : ",", fmt::join(members, ", "));
   }
   out << (table.rows() == 0 ? "]\n" : "\n]\n");
@@ -97,14 +108,14 @@ void print_json(std::ostream& out, const archive::Table& table) {
 
 void print_readable(std::ostream& out, const archive::Header& header, const archive::Table& table) {
   TextGrid grid;
-  for (const archive::Column& column : table.columns()) {
-    const std::size_t width = column.spec.width();
+  for (const archive::Column* column : shown_columns(table)) {
+    const std::size_t width = column->spec.width();
     for (std::size_t i = 0; i < width; ++i) {
       std::vector<std::string> cells;
       for (std::size_t row = 0; row < table.rows(); ++row)
-        cells.push_back(value_text(column, row * width + i, short_number, plain));
-      grid.add_column(value_name(header, column.spec, i), std::move(cells),
-                      column.spec.type != archive::ColumnType::text);
+        cells.push_back(value_text(*column, row * width + i, short_number, plain));
+      grid.add_column(value_name(header, column->spec, i), std::move(cells),
+                      column->spec.type != archive::ColumnType::text);
     }
   }
   grid.print(out);

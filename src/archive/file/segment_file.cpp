@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "schema/row_checksum.hpp"
 #include "write/fingerprint.hpp"
 
 namespace orbweaver::archive {
@@ -24,6 +25,33 @@ void SegmentFile::check_values() const {
   for (std::size_t i = 0; i < counts.size(); ++i)
     _file.expect(counts[i] == (2 * cutoffs[i] + 1) * dimension,
                  fmt::format("has {} modes in row {}; cutoff {} asks for another number", counts[i], i, cutoffs[i]));
+  const std::string problem = _file.change_in_header();
+  _file.expect(problem.empty(), problem);
+  check_rows(_orbits, _orbit_rows);
+  check_rows(_sections, _section_rows);
+}
+
+void SegmentFile::check_rows(const TableSpec& spec, std::uint64_t rows) const {
+  if (!_file.has_checksums()) return;
+  const std::vector<std::size_t> changed = changed_rows(_file.read_table(spec, rows));
+  _file.expect(changed.empty(), changed.empty() ? "" : changed_row(spec.name, changed.front()));
+}
+
+void SegmentFile::check_loops() const {
+  if (!_file.has_checksums()) return;
+  check_loops("modes", "modes");
+  check_loops("time_map", "time_maps");
+}
+
+void SegmentFile::check_loops(const std::string& name, const std::string& dataset) const {
+  const auto begins = orbit_integers((name + "_begin").c_str());
+  const auto counts = orbit_integers((name + "_count").c_str());
+  const auto sums = orbit_integers((name + "_checksum").c_str());
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const std::vector<double> values =
+        _file.read_flat(dataset, static_cast<std::uint64_t>(begins[i]), static_cast<std::uint64_t>(counts[i]));
+    _file.expect(values_checksum(values) == sums[i], changed_values(name, i));
+  }
 }
 
 void SegmentFile::check_ranges(const char* begin, const char* count, std::uint64_t total) const {

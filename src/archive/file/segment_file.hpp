@@ -10,8 +10,11 @@ class SegmentFile {
   /// Opens and checks the columns, not yet the values. Throws InputError.
   explicit SegmentFile(const std::filesystem::path& path);
 
-  /// Checks that modes and time maps lie row after row without gaps, and fill their datasets. Throws InputError.
+  /// Checks that modes and time maps lie row after row without gaps, and fill their datasets, and that attributes and
+  /// rows give their checksums. Throws InputError.
   void check_values() const;
+  /// Checks that the modes and time maps of every row give their checksums. Throws InputError.
+  void check_loops() const;
 
   [[nodiscard]] const SerialFile& file() const noexcept { return _file; }
   [[nodiscard]] const TableSpec& orbits_spec() const noexcept { return _orbits; }
@@ -29,6 +32,8 @@ class SegmentFile {
 
  private:
   void check_ranges(const char* begin, const char* count, std::uint64_t total) const;
+  void check_rows(const TableSpec& spec, std::uint64_t rows) const;
+  void check_loops(const std::string& name, const std::string& dataset) const;
 
   SerialFile _file;
   TableSpec _orbits;

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "h5_types.hpp"
+#include "schema/row_checksum.hpp"
 
 namespace orbweaver::archive {
 
@@ -33,7 +34,7 @@ std::vector<std::string> split(const std::string& block, std::size_t count, std:
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < count; ++i) {
     const std::string text = block.substr(i * width, width);
-    texts.push_back(text.substr(0, text.find('\0')));
+    texts.push_back(text.substr(0, text.find_last_not_of('\0') + 1));
   }
   return texts;
 }
@@ -98,7 +99,8 @@ void SerialFile::read_header() {
   _header.state_names = text_attribute("state_names");
   _header.winding_names = text_attribute("winding_names");
   expect(!_header.state_names.empty(), "names no state coordinate (attribute 'state_names' is empty)");
-  if (H5Aexists(_file.get(), "format_minor") > 0 && integer_attribute("format_minor") >= 1) {
+  if (H5Aexists(_file.get(), "format_minor") > 0) _minor = integer_attribute("format_minor");
+  if (_minor >= 1) {
     _header.system = single_text_attribute("system");
     _header.effects = text_attribute("effects");
     _header.parameter_names = text_attribute("parameter_names");
@@ -198,6 +200,12 @@ void SerialFile::expect_type(const std::string& name, ColumnSpec& spec) {
   if (spec.type == ColumnType::text) spec.text_width = H5Tget_size(type.get());
 }
 
+std::string SerialFile::change_in_header() const {
+  if (!has_checksums()) return "";
+  const bool holds = integer_attribute("checksum") == header_checksum(_kind->format, _minor, _header);
+  return holds ? "" : "has root attributes that were changed: they do not give the checksum stored with them";
+}
+
 bool SerialFile::has_table(const std::string& name) const {
   return H5Lexists(_file.get(), name.c_str(), H5P_DEFAULT) > 0;
 }
@@ -205,6 +213,7 @@ bool SerialFile::has_table(const std::string& name) const {
 std::uint64_t SerialFile::expect_table(TableSpec& spec) {
   std::vector<hsize_t> first_shape;
   for (ColumnSpec& column : spec.columns) {
+    if (column.since > _minor) continue;
     const std::string name = spec.name + '/' + column.name;
     expect_type(name, column);
     const std::vector<hsize_t> actual = extents(dataset(name));
@@ -229,6 +238,7 @@ std::uint64_t SerialFile::expect_flat(const std::string& name) {
 Column SerialFile::read(const std::string& table, const ColumnSpec& spec, std::uint64_t first,
                         std::uint64_t count) const {
   Column column(spec, count);
+  if (spec.since > _minor) return column;
   const std::string name = table + '/' + spec.name;
   std::vector<hsize_t> counts{count};
   counts.insert(counts.end(), spec.row_shape.begin(), spec.row_shape.end());

@@ -31,6 +31,11 @@ class SerialFile {
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return _path; }
   [[nodiscard]] const Header& header() const noexcept { return _header; }
 
+  /// Whether its rows carry checksums: those of older versions do not.
+  [[nodiscard]] bool has_checksums() const noexcept { return _minor >= checksums_since; }
+  /// What is wrong with the root attributes, for `expect`; empty: they give their checksum, or there is none.
+  [[nodiscard]] std::string change_in_header() const;
+
   /// Whether the file has this table: one that older versions did not write.
   [[nodiscard]] bool has_table(const std::string& name) const;
   /// Checks that all columns exist with the right type and shape and equally many rows; fills in the text widths and
@@ -65,6 +70,7 @@ class SerialFile {
   std::filesystem::path _path;
   const FileKind* _kind;
   Header _header;
+  std::int64_t _minor = 0;
   H5Handle _file;
   std::map<std::string, H5Handle> _datasets;
 };

@@ -5,6 +5,7 @@ namespace orbweaver::archive {
 namespace {
 
 constexpr RowNumber row_number{};
+constexpr Checksum checksum{};
 
 }  // namespace
 
@@ -20,6 +21,7 @@ const ColumnDefinitions<FamilyRecord>& family_columns() {
       {"end_reason", &FamilyRecord::end_reason},
       {"end_family", row_number},
       {"end_crossing", row_number},
+      {"checksum", checksum},
   };
   return columns;
 }
@@ -49,6 +51,9 @@ const ColumnDefinitions<OrbitRecord>& orbit_columns() {
       {"time_map_begin", row_number},
       {"time_map_count", row_number},
       {"winding", &OrbitRecord::winding, RowShape::winding},
+      {"modes_checksum", checksum},
+      {"time_map_checksum", checksum},
+      {"checksum", checksum},
   };
   return columns;
 }
@@ -69,6 +74,7 @@ const ColumnDefinitions<CrossingRecord>& crossing_columns() {
       {"fundamental_order", &CrossingRecord::fundamental_order},
       {"test_value", &CrossingRecord::test_value},
       {"kernel_residual", &CrossingRecord::kernel_residual},
+      {"checksum", checksum},
   };
   return columns;
 }
@@ -78,6 +84,7 @@ const ColumnDefinitions<SectionRecord>& section_columns() {
       {"orbit", row_number},
       {"time", &SectionRecord::time},
       {"state", &SectionRecord::state, RowShape::state},
+      {"checksum", checksum},
   };
   return columns;
 }
@@ -88,7 +95,7 @@ const ColumnDefinitions<FindingRecord>& finding_columns() {
       {"family", &FindingRecord::family},     {"other_family", &FindingRecord::other_family},
       {"crossing", &FindingRecord::crossing}, {"period", &FindingRecord::period},
       {"energy", &FindingRecord::energy},     {"deviation", &FindingRecord::deviation},
-      {"text", &FindingRecord::text},
+      {"text", &FindingRecord::text},         {"checksum", checksum},
   };
   return columns;
 }

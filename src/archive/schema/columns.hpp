@@ -19,12 +19,15 @@ enum class RowShape { one, state, winding, stability };
 /// An integer that says where other rows lie: it is filled in when the rows are numbered, and -1 until then.
 struct RowNumber {};
 
+/// A checksum (row_checksum.hpp): it is filled in when the row is complete, and -1 until then.
+struct Checksum {};
+
 /// One column of a table: its name, the member of the record that a row is taken from, and the shape of a row. The
 /// lists below are the only place where a column is defined; the schema, the segments and the atlas follow from them.
 template <class Record>
 struct ColumnDefinition {
-  using Member = std::variant<RowNumber, int Record::*, double Record::*, std::string Record::*, CrossingKind Record::*,
-                              std::vector<double> Record::*>;
+  using Member = std::variant<RowNumber, Checksum, int Record::*, double Record::*, std::string Record::*,
+                              CrossingKind Record::*, std::vector<double> Record::*>;
   const char* name;
   Member member = RowNumber{};
   RowShape shape = RowShape::one;
@@ -49,7 +52,7 @@ void fill_columns(Table& table, const ColumnDefinitions<Record>& columns, const 
     std::visit(
         [&](const auto& member) {
           using Member = std::decay_t<decltype(member)>;
-          if constexpr (!std::is_same_v<Member, RowNumber>) {
+          if constexpr (!std::is_same_v<Member, RowNumber> && !std::is_same_v<Member, Checksum>) {
             Column& column = table.column(definition.name);
             const std::size_t width = column.spec.width();
             for (std::size_t row = 0; row < table.rows(); ++row) {

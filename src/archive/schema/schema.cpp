@@ -30,7 +30,8 @@ ColumnSpec spec_of(const ColumnDefinition<Record>& column, const Header& header)
   if (std::holds_alternative<CrossingKind Record::*>(member)) type = ColumnType::text;
   if (std::holds_alternative<double Record::*>(member)) type = ColumnType::real;
   if (std::holds_alternative<std::vector<double> Record::*>(member)) type = ColumnType::real;
-  return {column.name, type, extents_of(column.shape, header)};
+  const int since = std::holds_alternative<Checksum>(member) ? checksums_since : 0;
+  return {column.name, type, extents_of(column.shape, header), 0, since};
 }
 
 template <class Record>
@@ -45,6 +46,8 @@ TableSpec spec_of(const char* name, const ColumnDefinitions<Record>& columns, co
 std::size_t ColumnSpec::width() const {
   return std::accumulate(row_shape.begin(), row_shape.end(), std::size_t{1}, std::multiplies<>());
 }
+
+bool is_checksum(const ColumnSpec& spec) { return spec.name.ends_with("checksum"); }
 
 bool has_complex_stability(const Header& header) { return !header.symplectic || header.pairs > 1; }
 

@@ -2,12 +2,14 @@
 #include "orbweaver/core/mpi/collective.hpp"
 
 #include <algorithm>
+#include <span>
 
 #include "file/parallel_file.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
 #include "read/row_reader.hpp"
 #include "root_tables.hpp"
 #include "schema/check_records.hpp"
+#include "schema/row_checksum.hpp"
 
 namespace orbweaver::archive {
 
@@ -125,6 +127,12 @@ class Values {
     }
   }
 
+  /// Of the orbit at `target` of the range.
+  [[nodiscard]] std::span<const double> of(std::size_t target) const {
+    const std::size_t row = _range.begin + target;
+    return std::span(_values).subspan(_at[row] - first_value(), _at[row + 1] - _at[row]);
+  }
+
   [[nodiscard]] std::uint64_t first_value() const { return _at[_range.begin]; }
   [[nodiscard]] const std::vector<double>& get() const { return _values; }
 
@@ -149,6 +157,16 @@ void number_orbits(Table& block, const Numbering& numbering, Range range) {
   }
 }
 
+// A row from before there were checksums gets one.
+void check_values(const Run& run, const RowSource& source, Table& block, const std::string& name,
+                  const Values& values) {
+  std::int64_t& stored = block.integers(name + "_checksum")[source.target];
+  const std::int64_t sum = values_checksum(values.of(source.target));
+  if (run.segment.file().has_checksums())
+    run.segment.file().expect(stored == sum, changed_values(name, static_cast<std::size_t>(source.row)));
+  stored = sum;
+}
+
 void write_orbits(MPI_Comm comm, ParallelFile& file, const Order& order, const Numbering& numbering) {
   std::vector<std::uint64_t> weight(numbering.modes_at.size());
   for (std::size_t i = 0; i < weight.size(); ++i)
@@ -165,7 +183,12 @@ void write_orbits(MPI_Comm comm, ParallelFile& file, const Order& order, const N
         read_columns(run, run.segment.orbits_spec(), {"family_key", "modes_begin", "time_map_begin"}, block);
         modes.read(run, "modes");
         maps.read(run, "time_maps");
+        for (const RowSource* source = run.begin; source != run.end; ++source) {
+          check_values(run, *source, block, "modes", modes);
+          check_values(run, *source, block, "time_map", maps);
+        }
       });
+      set_checksums(block, mine.begin);
     });
     file.write_table(block, mine.begin);
     file.write_flat("modes", modes.get(), modes.first_value());
@@ -186,6 +209,7 @@ void write_sections(MPI_Comm comm, ParallelFile& file, const Order& order, const
       for_each_run(order.segments, sources_of(numbering.sections, mine), [&](const Run& run) {
         read_columns(run, run.segment.sections_spec(), {"family_key", "step"}, block);
       });
+      set_checksums(block, mine.begin);
     });
     file.write_table(block, mine.begin);
   }

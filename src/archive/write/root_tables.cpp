@@ -7,6 +7,7 @@
 
 #include "orbweaver/archive/write/consolidate.hpp"
 #include "schema/columns.hpp"
+#include "schema/row_checksum.hpp"
 
 namespace orbweaver::archive {
 
@@ -100,12 +101,15 @@ RootTables make_root_tables(const Header& header, const Records& tables, const s
   fill_columns(root.families, family_columns(), [&](std::size_t row) -> const FamilyRecord& { return *families[row]; });
   for (std::size_t row = 0; row < families.size(); ++row)
     number_family(root.families, row, *families[row], keys, crossing_rows, numbering);
+  set_checksums(root.families, 0);
+  set_checksums(root.crossings, 0);
   return root;
 }
 
 Table make_findings(const std::vector<FindingRecord>& findings) {
   Table table(findings_spec(), findings.size());
   fill_columns(table, finding_columns(), [&](std::size_t row) -> const FindingRecord& { return findings[row]; });
+  set_checksums(table, 0);
   return table;
 }
 

@@ -12,6 +12,7 @@
 #include "orbweaver/core/pause.hpp"
 #include "schema/check_records.hpp"
 #include "schema/columns.hpp"
+#include "schema/row_checksum.hpp"
 
 namespace orbweaver::archive {
 
@@ -31,11 +32,13 @@ std::uint64_t count_values(const Records& mine, VectorMember member) {
 void fill_ranges(Table& table, const Records& mine, VectorMember member, const std::string& name, std::uint64_t first) {
   auto& begins = table.integers(name + "_begin");
   auto& counts = table.integers(name + "_count");
+  auto& sums = table.integers(name + "_checksum");
   auto next = static_cast<std::int64_t>(first);
   for (std::size_t i = 0; i < mine.orbits.size(); ++i) {
     begins[i] = next;
     counts[i] = static_cast<std::int64_t>((mine.orbits[i].*member).size());
     next += counts[i];
+    sums[i] = values_checksum(mine.orbits[i].*member);
   }
 }
 
@@ -141,6 +144,8 @@ WrittenSegment write_segment(MPI_Comm comm, const std::filesystem::path& path, c
     sections = section_table(header, mine);
     fill_ranges(orbits, mine, &OrbitRecord::modes, "modes", modes.first);
     fill_ranges(orbits, mine, &OrbitRecord::time_map, "time_map", maps.first);
+    set_checksums(orbits, orbit_rows.first);
+    set_checksums(sections, section_rows.first);
   });
   agree_on_text_widths(comm, orbits);
   agree_on_text_widths(comm, sections);
@@ -167,6 +172,7 @@ WrittenSegment write_segment(MPI_Comm comm, const std::filesystem::path& path, c
 SegmentInfo inspect_segment(const std::filesystem::path& path) {
   const SegmentFile segment(path);
   segment.check_values();
+  segment.check_loops();
   return {segment.file().header(), segment.orbits(), segment.sections(), segment.mode_values(), segment.fingerprint()};
 }
 

@@ -6,6 +6,7 @@
 #include "orbweaver/core/mpi/team.hpp"
 #include "orbweaver/queue/executor.hpp"
 #include "orbweaver/scene/scene.hpp"
+#include "orbweaver/survey/tasks/branch_options.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "tasks/payload/work.hpp"
 
@@ -28,8 +29,5 @@ class Executor : public queue::Executor {
   archive::Records& _rows;
   core::Team* _team;
 };
-
-/// What the scene says of continuation, as options of a branch.
-[[nodiscard]] continuation::Options branch_options(const scene::Scene& scene, core::Team* team);
 
 }  // namespace orbweaver::survey

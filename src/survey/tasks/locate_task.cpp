@@ -29,16 +29,6 @@ constexpr double error_bounds = 10.0;
 /// Rounding of a period at the limit, relative to it: such a family still begins on the limit.
 constexpr double at_limit = 1e-9;
 
-/// Null vectors that the multipliers at the crossing let expect.
-int expected_dimension(const bifurcation::Crossing& crossing, const bifurcation::Sector& sector) {
-  int pairs = 0;
-  for (std::size_t n = 0; n < crossing.stability.fundamental.size(); ++n) {
-    const double away = std::abs(crossing.stability.fundamental[n] - sector.index());
-    if (away < std::max(in_sector, error_bounds * crossing.stability.fundamental_error[n])) ++pairs;
-  }
-  return std::max(1, pairs) * (sector.q <= 2 ? 1 : 2);
-}
-
 /// The run is to stop.
 struct Interrupted {};
 
@@ -138,7 +128,7 @@ class Location {
     settings.most_harmonics = _scene.continuation.cutoff_to;
     settings.team = _team;
     const bifurcation::Kernel kernel = bifurcation::kernel_of(*_system, crossing.point, isotropy, sector,
-                                                              expected_dimension(crossing, sector), settings);
+                                                              expected_dimension(crossing.stability, sector), settings);
     _outcome.kernel_dimension = kernel.dimension();
     _outcome.kernel_singular_value = kernel.largest();
     _outcome.next_singular_value = kernel.next();
@@ -217,6 +207,15 @@ class Location {
 };
 
 }  // namespace
+
+int expected_dimension(const spectrum::Stability& stability, const bifurcation::Sector& sector) {
+  int pairs = 0;
+  for (std::size_t n = 0; n < stability.fundamental.size(); ++n) {
+    const double away = std::abs(stability.fundamental[n] - sector.index());
+    if (away < std::max(in_sector, error_bounds * stability.fundamental_error[n])) ++pairs;
+  }
+  return std::max(1, pairs) * (sector.q <= 2 ? 1 : 2);
+}
 
 queue::TaskOutcome locate(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
                           const LocateWork& work, queue::TaskContext& context, core::Team* team) {

@@ -2,13 +2,18 @@
 
 #include <memory>
 
+#include "orbweaver/bifurcation/sector.hpp"
 #include "orbweaver/core/mpi/team.hpp"
 #include "orbweaver/queue/executor.hpp"
 #include "orbweaver/scene/scene.hpp"
+#include "orbweaver/spectrum/floquet.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "tasks/payload/work.hpp"
 
 namespace orbweaver::survey {
+
+/// Null vectors that the multipliers at a crossing let expect in its sector.
+[[nodiscard]] int expected_dimension(const spectrum::Stability& stability, const bifurcation::Sector& sector);
 
 /// Locates an event, finds its kernel and the directions in which families leave, and makes a start task of each that
 /// the scene's depth and period allow. `team` divides the work; may be null.

@@ -13,8 +13,10 @@ inline constexpr const char* atlas_format = "orbweaver-atlas";
 inline constexpr const char* segment_format = "orbweaver-segment";
 inline constexpr int format_version = 1;
 /// Root attribute `format_minor`: it rises with every table, column or attribute that is added; older files of the
-/// version are read. 1: /findings, system, effects, parameters, scales.
-inline constexpr int format_minor = 1;
+/// version are read. 1: /findings, system, effects, parameters, scales. 2: checksums.
+inline constexpr int format_minor = 2;
+/// The first with checksums.
+inline constexpr int checksums_since = 2;
 
 enum class ColumnType { integer, real, text };
 
@@ -24,10 +26,14 @@ struct ColumnSpec {
   ColumnType type = ColumnType::real;
   std::vector<std::size_t> row_shape;
   std::size_t text_width = 0;  ///< bytes of a text; set when the column is written
+  int since = 0;  ///< the first format_minor that has it: read from an older file, it is NaN or -1 throughout
 
   /// Values in one row.
   [[nodiscard]] std::size_t width() const;
 };
+
+/// A column that says nothing of the orbits: it is there to find changed bytes.
+[[nodiscard]] bool is_checksum(const ColumnSpec& spec);
 
 /// One group of datasets with a common number of rows.
 struct TableSpec {

@@ -1,0 +1,87 @@
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "command.hpp"
+#include "common_options.hpp"
+#include "failure.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/core/log/log.hpp"
+#include "orbweaver/core/mpi/communicator.hpp"
+#include "orbweaver/core/petsc/session.hpp"
+#include "orbweaver/cost/ladders.hpp"
+#include "orbweaver/report/cost/cost_report.hpp"
+#include "unused_options.hpp"
+
+namespace orbweaver::drivers {
+
+namespace {
+
+struct Options {
+  SceneOptions scene;
+  cost::Options cost;
+  std::filesystem::path directory;
+  report::PlotFormat format = report::PlotFormat::svg;
+};
+
+void write_csv(const std::filesystem::path& directory, const cost::Table& table) {
+  const std::filesystem::path path = directory / (table.name + ".csv");
+  std::ofstream file(path);
+  file << report::table_csv(table);
+  file.close();
+  if (!file) throw core::EnvironmentError(fmt::format("cannot write {}", path.string()));
+}
+
+int run(const Options& options, const Invocation& invocation) {
+  const scene::Scene scene = options.scene.load();
+  const core::Session session(invocation.petsc_options);
+  const core::Communicator comm;
+  if (!options.directory.empty() && comm.is_root()) {
+    std::error_code error;
+    std::filesystem::create_directories(options.directory, error);
+    if (error)
+      throw core::EnvironmentError(fmt::format("cannot make {}: {}", options.directory.string(), error.message()));
+  }
+  bool has_gnuplot = true;
+  cost::measure(comm, scene, options.cost, [&](const cost::Table& table) {
+    if (table.printed) print_result(report::table_text(table));
+    if (options.directory.empty()) return;
+    write_csv(options.directory, table);
+    for (const report::Picture& picture : report::pictures_of(table, options.format))
+      has_gnuplot = has_gnuplot && report::draw(options.directory, picture);
+  });
+  if (!has_gnuplot)
+    core::log_warning(
+        "no pictures: gnuplot is not installed (apt-get install gnuplot-nox); the tables are there as CSV");
+  if (comm.is_root()) warn_of_unused_options(session, core::Communicator(MPI_COMM_SELF));
+  return static_cast<int>(core::ExitStatus::done);
+}
+
+}  // namespace
+
+Command make_cost_command(CLI::App& program) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* parser = program.add_subcommand("cost", "What accuracy costs in time, on the scene's own families");
+  add_scene_options(*parser, options->scene);
+  parser->add_option("-o,--output", options->directory, "A folder for the tables (CSV) and their plots")
+      ->type_name("DIR");
+  parser->add_option("--only", options->cost.only, "Some of the ladders, as a,b")->delimiter(',')->type_name("NAMES");
+  parser->add_option("--family", options->cost.family, "The family to measure on (default: the scene's first)")
+      ->type_name("NAME");
+  parser->add_flag("--quick", options->cost.quick, "Fewer rungs and repetitions");
+  const std::map<std::string, report::PlotFormat> formats{
+      {"svg", report::PlotFormat::svg}, {"pdf", report::PlotFormat::pdf}, {"png", report::PlotFormat::png}};
+  parser->add_option("--format", options->format, "Of the plots: svg, pdf or png")
+      ->transform(CLI::CheckedTransformer(formats))
+      ->type_name("FORMAT");
+  std::string ladders = "Ladders:";
+  for (const cost::LadderInfo& ladder : cost::known_ladders())
+    ladders += fmt::format("\n  {:<12}{}", ladder.name, ladder.about);
+  parser->footer(ladders);
+  return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
+}
+
+}  // namespace orbweaver::drivers

@@ -1,0 +1,124 @@
+#include "ranks.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <mpi.h>
+#include <unistd.h>
+
+#include "correction.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/core/mpi/check_mpi.hpp"
+#include "orbweaver/core/mpi/team.hpp"
+#include "orbweaver/spectrum/floquet.hpp"
+#include "orbweaver/survey/run/survey.hpp"
+#include "timing.hpp"
+
+namespace orbweaver::cost {
+
+namespace {
+
+/// Whole loops with so many harmonics: what teams are for.
+constexpr int team_cutoff = 1000;
+constexpr int quick_team_cutoff = 300;
+constexpr int team_repetitions = 5;
+constexpr double usual_tolerance = 1e-10;
+
+/// The first ranks of a communicator; none on the others. Collective.
+std::optional<core::Communicator> first_ranks(const core::Communicator& comm, int count) {
+  MPI_Comm part = MPI_COMM_NULL;
+  core::check_mpi(MPI_Comm_split(comm.get(), comm.rank() < count ? 0 : MPI_UNDEFINED, comm.rank(), &part),
+                  "MPI_Comm_split");
+  if (part == MPI_COMM_NULL) return std::nullopt;
+  std::optional<core::Communicator> own(part);
+  core::check_mpi(MPI_Comm_free(&part), "MPI_Comm_free");
+  return own;
+}
+
+std::filesystem::path scratch_folder(const core::Communicator& comm) {
+  int process = static_cast<int>(getpid());
+  core::check_mpi(MPI_Bcast(&process, 1, MPI_INT, 0, comm.get()), "MPI_Bcast");
+  return std::filesystem::temp_directory_path() / fmt::format("orbweaver_cost_{}", process);
+}
+
+void survey_with(const Setting& setting, const core::Communicator& part, int count, Table& table) {
+  const std::filesystem::path folder = scratch_folder(part);
+  const scene::Scene bases = scene::parse(setting.asked().text, "the scene", {"survey.depth=0"});
+  survey::Summary summary;
+  const double seconds =
+      seconds_of([&] { summary = survey::run_survey(part, bases, setting.plain(), folder, {survey::Display::none}); });
+  if (!part.is_root()) return;
+  std::error_code ignored;
+  std::filesystem::remove_all(folder, ignored);
+  table.rows.push_back({"survey", count, static_cast<double>(summary.orbits), seconds, {}});
+}
+
+/// Each time with a barrier before it: members that come late would be waited for.
+double median_together(const core::Communicator& part, const std::function<void()>& work) {
+  std::vector<double> times;
+  for (int n = 0; n <= team_repetitions; ++n) {
+    core::check_mpi(MPI_Barrier(part.get()), "MPI_Barrier");
+    const double seconds = seconds_of(work);
+    if (n > 0) times.push_back(seconds);  // the first one warms up
+  }
+  std::nth_element(times.begin(), times.begin() + team_repetitions / 2, times.end());
+  return times[team_repetitions / 2];
+}
+
+void team_with(const Setting& setting, const core::Communicator& part, int count, Table& table) {
+  core::Team team(part.get());
+  const Probe& probe = setting.probes().back();
+  const int cutoff = loop::allowed_cutoff_at_least(setting.quick() ? quick_team_cutoff : team_cutoff);
+  const Correction correction(setting, expanded(probe, probe.orbit.loop.time_map, cutoff), {});
+  const double newton = median_together(
+      part, [&] { static_cast<void>(correction.by(corrector::Method::newton_krylov, usual_tolerance, 0, &team)); });
+  spectrum::FloquetOptions options;
+  options.team = &team;
+  const double stability = median_together(part, [&] {
+    static_cast<void>(spectrum::floquet(*setting.system(), probe.orbit.loop, setting.isotropy(), options));
+  });
+  if (!part.is_root()) return;
+  table.rows.push_back({"whole loop, newton-krylov", count, cutoff, newton, {}});
+  table.rows.push_back({"stability", count, probe.orbit.loop.cutoff, stability, {}});
+}
+
+/// How many times quicker than one rank.
+void add_speedups(Table& table) {
+  for (std::vector<Cell>& row : table.rows)
+    for (const std::vector<Cell>& first : table.rows)
+      if (first[0].words == row[0].words && first[1].number == 1.0) row[4] = first[3].number / row[3].number;
+}
+
+void measure(const Setting& setting, const Take& take) {
+  Table table{"ranks",
+              fmt::format("{}: ranks for a survey, teams for one orbit", setting.family()),
+              {{"what"}, {"ranks"}, {"orbits or K"}, {"time", "s"}, {"times quicker"}},
+              {},
+              {},
+              Plot{1, 3, {0}, {}}};
+  for (int count = 1; count <= setting.comm().size(); ++count) {
+    const std::optional<core::Communicator> part = first_ranks(setting.comm(), count);
+    if (part) {
+      survey_with(setting, *part, count, table);
+      team_with(setting, *part, count, table);
+    }
+    core::check_mpi(MPI_Barrier(setting.comm().get()), "MPI_Barrier");
+  }
+  if (!setting.comm().is_root()) return;
+  add_speedups(table);
+  if (setting.comm().size() == 1)
+    table.remarks.emplace_back("one rank only: start under mpirun -n 2 (or more) to see what ranks and teams bring");
+  table.remarks.emplace_back("survey: the scene's base families; the others: at the end probe");
+  take(table);
+}
+
+}  // namespace
+
+const Ladder ranks_ladder{"ranks", "ranks for a survey, teams for one orbit", measure, true};
+
+}  // namespace orbweaver::cost

@@ -1,0 +1,455 @@
+#include "verify/crossing_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "orbweaver/archive/schema/crossing_kind.hpp"
+#include "orbweaver/bifurcation/crossing.hpp"
+#include "orbweaver/bifurcation/kernel.hpp"
+#include "orbweaver/bifurcation/test_functions.hpp"
+#include "orbweaver/continuation/family_curve.hpp"
+#include "orbweaver/continuation/orbit.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/corrector/method.hpp"
+#include "orbweaver/loop/curve/in_units.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/loop/symmetry/alignment.hpp"
+#include "orbweaver/numerics/locate.hpp"
+#include "tasks/executor.hpp"
+#include "tasks/locate_task.hpp"
+#include "tasks/orbit_row.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+using archive::CrossingKind;
+
+/// From which a crossing's is found: as a location has them (survey/tasks/branch_task.cpp).
+constexpr std::size_t orbits_given = 5;
+/// Relative, of period and energy, and of the state relative to the orbit's size; of 1 + the arclength. At most a
+/// hundredth of it was seen.
+constexpr double same_place = 1e-10;
+/// Crossings beneath the end of a branch get their arclength by comparison of orbits (witness/placement).
+constexpr double same_placement = 1e-6;
+/// Of an arclength, in parts of the way between the orbits beside: chords are measured in a loop's parameter, which the
+/// standard phase has turned where no reversor fixes the phase.
+constexpr double same_chord = 1e-2;
+/// Relative to 1 + the position: rounding.
+constexpr double position_width = 1e-14;
+/// Of an index at a crossing besides its error bound: rounding; and of how much it changes over a length of 1, since
+/// crossings are located to 1e-10 of the length along the family.
+constexpr double index_rounding = 1e-10;
+constexpr double located = 1e-9;
+/// Between two computations of the largest singular value of a kernel, and what of it is rounding.
+constexpr double kernel_factor = 100.0;
+constexpr double kernel_rounding = 1e-8;
+/// A slope that vanishes, relative to those at the orbits beside it.
+constexpr double vanishing_slope = 1e-5;
+/// How far the first orbit of a family may lie from its crossing, and the last from where it ends, in parts of the way
+/// to the next orbit or of the orbit's amplitude, whichever is more.
+constexpr double steps_away = 3.0;
+constexpr double amplitudes_away = 0.1;
+
+/// Stretches of the orbit where a stored state may be, and halvings of them: to rounding.
+constexpr std::size_t nearest_nodes = 6;
+constexpr int golden_sections = 80;
+
+struct Place {
+  continuation::CurvePoint point;
+  double before = 0.0;  ///< lengths in scales to the orbits beside it
+  double after = 0.0;
+};
+
+class CrossingCheck {
+ public:
+  CrossingCheck(const VerifiedAtlas& atlas, std::size_t row, Findings& findings)
+      : _atlas(atlas),
+        _table(atlas.archive().crossings()),
+        _system(*atlas.system()),
+        _row(row),
+        _crossing(atlas.tree().crossings[row]),
+        _family(atlas.tree().families[static_cast<std::size_t>(_crossing.family)]),
+        _isotropy(atlas.isotropy(static_cast<std::size_t>(_crossing.family))),
+        _kind(atlas.archive().crossing_kinds()[row]),
+        _findings(findings),
+        _claims(findings, "crossings", static_cast<std::int64_t>(row)) {}
+
+  void run() {
+    const double arclength = real("arclength");
+    if (_family.orbits() < 2) return;  // one orbit has no curve
+    if (arclength < _family.arclengths.front() || arclength > _family.arclengths.back())
+      return _claims.object("arclength", fmt::format("is {:.12g}; its family runs from {:.12g} to {:.12g}", arclength,
+                                                     _family.arclengths.front(), _family.arclengths.back()));
+    // As many orbits as a location had been given, of which the last one or two lie behind the crossing; after those
+    // one that went by Newton's method on whole loops, since collocation had failed.
+    Findings best;
+    bool any = false;
+    for (const corrector::Method method : {options().corrector.method, corrector::Method::newton_krylov})
+      for (const std::size_t behind : {1, 2}) {
+        Findings findings;
+        compare(method, behind, findings);
+        if (findings.objections.empty()) return merge(_findings, std::move(findings));
+        if (!any || findings.objections.size() < best.objections.size()) best = std::move(findings);
+        any = true;
+      }
+    merge(_findings, std::move(best));
+  }
+
+ private:
+  [[nodiscard]] double real(const char* column) const { return _table.reals(column)[_row]; }
+  [[nodiscard]] continuation::Options options() const { return branch_options(_atlas.scene(), nullptr); }
+
+  void compare(corrector::Method method, std::size_t behind, Findings& findings) {
+    Claims claims(findings, "crossings", static_cast<std::int64_t>(_row));
+    std::optional<Place> place;
+    try {
+      place = find(method, behind, claims);
+      if (place) hold(*place, claims);
+    } catch (const core::NumericalError& error) {
+      claims.object("", error.what());
+    }
+    if (place && findings.objections.empty()) families(*place, findings);
+  }
+
+  /// The family's orbit whose period, or energy where that changes more, is the row's.
+  [[nodiscard]] std::optional<Place> find(corrector::Method method, std::size_t behind, Claims& claims) {
+    const double arclength = real("arclength");
+    const auto& number = _atlas.archive().orbits().integers("step");
+    std::vector<std::size_t> steps;  // without the orbits between them that the scene asked for
+    for (std::size_t n = 0; n < _family.orbits(); ++n)
+      if (!_atlas.is_requested(_family.first_orbit + n)) steps.push_back(n);
+    if (steps.size() < 2) return std::nullopt;
+    const auto after = std::lower_bound(steps.begin(), steps.end(), arclength,
+                                        [&](std::size_t n, double s) { return _family.arclengths[n] < s; });
+    std::size_t next = std::clamp<std::size_t>(static_cast<std::size_t>(after - steps.begin()), 1, steps.size() - 1);
+    // A branch that runs backwards has its orbits the other way round.
+    if (number[_family.first_orbit + steps[next]] < 0) {
+      std::reverse(steps.begin(), steps.end());
+      next = steps.size() - next;
+    }
+    const std::size_t end = std::min(next + behind, steps.size());
+    const std::size_t first = end > orbits_given ? end - orbits_given : 0;
+    continuation::Options how = options();
+    how.corrector.method = method;
+    continuation::FamilyCurve curve(_atlas.system(), _isotropy, how);
+    double position = 0.0;
+    for (std::size_t i = first; i < end; ++i) {
+      loop::Loop loop = _atlas.loop(_family.first_orbit + steps[i]);
+      if (i > first) {
+        const loop::Loop& last = curve.known().back().loop;
+        loop = _atlas.begun_as(static_cast<std::size_t>(_crossing.family), loop, last);
+        position += continuation::arclength_between(last, loop);
+      }
+      curve.add({position, loop, _family.arclengths[steps[i]]}, orbits_given);
+    }
+    const continuation::FamilyCurve::Known& a = curve.known()[next - 1 - first];
+    const continuation::FamilyCurve::Known& b = curve.known()[next - first];
+    const double length = b.position - a.position;
+    const double share = std::clamp((arclength - a.arclength) / (b.arclength - a.arclength), 0.0, 1.0);
+    const double told = a.position + share * length;
+    const std::optional<double> found = position_of(curve, a, b, told);
+    if (!found) {
+      claims.object("period", fmt::format("{:.17g} with energy {:.17g}: no orbit between those beside it has it",
+                                          real("period"), real("energy")));
+      return std::nullopt;
+    }
+    const double way = _atlas.has_reversor(static_cast<std::size_t>(_crossing.family)) && !is_placed()
+                           ? same_place * (1.0 + std::abs(arclength))
+                           : same_chord * std::abs(b.arclength - a.arclength);
+    claims.agree("arclength", arclength, a.arclength + (*found - a.position) / length * (b.arclength - a.arclength),
+                 way);
+    std::optional<continuation::CurvePoint> point = curve.at(*found, true);
+    if (!point) {
+      claims.object("arclength", fmt::format("is {:.12g}: no orbit converges there", arclength));
+      return std::nullopt;
+    }
+    if (archive::is_fold(_kind)) slopes(curve, a.position, b.position);
+    return Place{std::move(*point), *found - a.position, b.position - *found};
+  }
+
+  [[nodiscard]] std::optional<double> position_of(continuation::FamilyCurve& curve,
+                                                  const continuation::FamilyCurve::Known& a,
+                                                  const continuation::FamilyCurve::Known& b, double told) const {
+    const systems::Scales& units = _system.scales();
+    const double energy_a = continuation::energy_of(_system, a.loop);
+    const double energy_b = continuation::energy_of(_system, b.loop);
+    const double in_period = std::abs(b.loop.period / a.loop.period - 1.0);
+    const double in_energy = std::abs(energy_b - energy_a) / std::max(std::abs(energy_a), std::abs(energy_b));
+    // Not by the one that turns; false where there is no energy.
+    const bool by_energy =
+        _kind == CrossingKind::fold_period || (_kind != CrossingKind::fold_energy && in_energy > in_period);
+    const double wanted = by_energy ? real("energy") / units.energy() : real("period") / units.time;
+    const auto off = [&](double position) {
+      const auto point = curve.at(position);
+      if (!point) return std::numeric_limits<double>::quiet_NaN();
+      return (by_energy ? continuation::energy_of(_system, point->loop) : point->loop.period) - wanted;
+    };
+    // The quantity may turn between the two: near the place it does not, unless the crossing is a fold.
+    const double length = b.position - a.position;
+    for (const double reach : {1e-6, 1e-3, 1e-2, 1.0}) {
+      const double from = std::max(a.position, told - reach * length);
+      const double to = std::min(b.position, told + reach * length);
+      const auto place = numerics::locate_root(off, from, to, position_width * (1.0 + std::abs(to)));
+      if (place) return place->position;
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] bool is_placed() const { return _crossing.multiplicity > _atlas.scene().survey.subharmonics; }
+
+  /// The slopes at the orbits beside a fold.
+  void slopes(continuation::FamilyCurve& curve, double from, double to) {
+    _slopes.clear();
+    for (const double position : {from, to})
+      if (const auto point = curve.at(position, true)) _slopes.push_back(slope(*point));
+  }
+
+  [[nodiscard]] double slope(const continuation::CurvePoint& point) const {
+    return _kind == CrossingKind::fold_period ? bifurcation::period_slope(point)
+                                              : bifurcation::energy_slope(_system, point);
+  }
+
+  void hold(const Place& place, Claims& claims) {
+    const loop::Loop& loop = place.point.loop;
+    const systems::Scales& units = _system.scales();
+    const bool placed = is_placed();
+    const double allowed = placed ? same_placement : same_place;
+    claims.agree("period", real("period"), loop.period * units.time, allowed * real("period"));
+    const double energy = continuation::energy_of(_system, loop) * units.energy();
+    const double scale = std::fmax(std::abs(energy), _crossing.energy_scale);
+    claims.agree("energy", real("energy"), energy, allowed * (std::isnan(scale) ? 1.0 : scale));
+    state(loop, allowed, claims);
+    const std::optional<spectrum::Stability> stability = stability_of(_system, loop, _isotropy);
+    if (stability)
+      claims.expect(
+          stability->fundamental_order == _table.integers("fundamental_order")[_row], "fundamental_order",
+          fmt::format("is {}, found {}", _table.integers("fundamental_order")[_row], stability->fundamental_order));
+    rules(claims);
+    if (archive::has_sector(_kind))
+      sector(place, stability, placed, claims);
+    else if (archive::is_fold(_kind))
+      fold(place, claims);
+    else if (_kind != CrossingKind::unknown)
+      function(stability, claims);
+  }
+
+  /// The state is one of the orbit; at which phase, the standard one does not tell.
+  void state(const loop::Loop& loop, double allowed, Claims& claims) {
+    const auto dimension = static_cast<std::size_t>(loop.dimension);
+    const auto stored = _table.reals("state").begin() + static_cast<std::ptrdiff_t>(_row * dimension);
+    std::vector<double> target(stored, stored + static_cast<std::ptrdiff_t>(dimension));
+    for (std::size_t i = 0; i < dimension; ++i) target[i] /= _system.scales().coordinate(i);
+    claims.below("state", distance_to(loop, target), allowed * (1.0 + loop::rms_size(loop)),
+                 "the distance of the state from the orbit there");
+  }
+
+  [[nodiscard]] double distance_to(const loop::Loop& loop, const std::vector<double>& target) const {
+    const auto gap = [&](double time) {
+      const std::vector<double> z = loop::state_at(loop, time);
+      double sum = 0.0;
+      for (std::size_t i = 0; i < z.size(); ++i) {
+        double off = z[i] - target[i];
+        const auto& angles = _system.structure().angles;
+        if (std::find(angles.begin(), angles.end(), static_cast<int>(i)) != angles.end())
+          off = std::remainder(off, 2.0 * std::numbers::pi);
+        sum += off * off;
+      }
+      return std::sqrt(sum);
+    };
+    // Golden sections beside the nodes, even in s, that are nearer than their neighbours: the nearest ones.
+    const int nodes = 4 * loop.cutoff + 8;
+    std::vector<double> times;
+    std::vector<double> gaps;
+    for (int j = 0; j <= nodes; ++j) {
+      times.push_back(loop.period * loop.time_map.phase(2.0 * std::numbers::pi * j / nodes) / (2.0 * std::numbers::pi));
+      gaps.push_back(gap(times.back()));
+    }
+    std::vector<std::size_t> minima;
+    for (std::size_t j = 0; j < gaps.size(); ++j)
+      if ((j == 0 || gaps[j] <= gaps[j - 1]) && (j + 1 == gaps.size() || gaps[j] <= gaps[j + 1])) minima.push_back(j);
+    std::sort(minima.begin(), minima.end(), [&](std::size_t a, std::size_t b) { return gaps[a] < gaps[b]; });
+    minima.resize(std::min(minima.size(), nearest_nodes));
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::size_t j : minima)
+      least = std::min(least, least_between(gap, times[j > 0 ? j - 1 : 0], times[std::min(j + 1, times.size() - 1)]));
+    return least;
+  }
+
+  template <class Gap>
+  static double least_between(const Gap& gap, double from, double to) {
+    const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
+    double least = std::min(gap(from), gap(to));
+    for (int n = 0; n < golden_sections; ++n) {
+      const double a = to - golden * (to - from);
+      const double b = from + golden * (to - from);
+      const double at_a = gap(a);
+      const double at_b = gap(b);
+      least = std::min({least, at_a, at_b});
+      (at_a < at_b ? to : from) = at_a < at_b ? b : a;
+    }
+    return least;
+  }
+
+  /// Multiplicity, sector and kind say the same.
+  void rules(Claims& claims) {
+    const bifurcation::Sector sector{_crossing.sector_q, _crossing.sector_j};
+    const int order = static_cast<int>(_table.integers("fundamental_order")[_row]);
+    const int multiplicity = archive::has_sector(_kind) && order >= 1 ? sector.multiplicity(order) : 1;
+    claims.expect(_crossing.multiplicity == multiplicity, "multiplicity",
+                  fmt::format("is {}; sector and order give {}", _crossing.multiplicity, multiplicity));
+    if (!archive::has_sector(_kind)) return;
+    const CrossingKind kind = multiplicity == 1   ? CrossingKind::branch_point
+                              : multiplicity == 2 ? CrossingKind::period_doubling
+                                                  : CrossingKind::subharmonic;
+    claims.expect(
+        _kind == kind, "kind",
+        fmt::format("is {}; a multiplicity of {} is called {}", _crossing.kind, multiplicity, archive::name_of(kind)));
+  }
+
+  void sector(const Place& place, const std::optional<spectrum::Stability>& stability, bool placed, Claims& claims) {
+    const bifurcation::Sector sector{_crossing.sector_q, _crossing.sector_j};
+    if (!stability) return claims.object("test_value", "the multipliers there cannot be computed");
+    const bifurcation::Reading found = bifurcation::index_deviation(*stability, sector);
+    const double allowed = found.error + (placed ? same_placement : index_rounding);
+    claims.agree("test_value", real("test_value"), sector.index() + found.value, allowed);
+    claims.agree("residual", real("residual"), found.value, allowed);
+    claims.below("sector_q", std::abs(found.value), allowed + located * rate(sector, place),
+                 "the index there, from its sector's,");
+    if (_crossing.kernel_dimension < 0 || placed) return;
+    kernel(place, *stability, sector, claims);
+  }
+
+  /// How fast the index changes with the length along the family, from the orbits beside.
+  [[nodiscard]] double rate(const bifurcation::Sector& sector, const Place& place) const {
+    const double length = place.before + place.after;
+    double rate = 1.0;
+    const std::size_t width = archive::stability_width(_atlas.archive().header());
+    const auto& values = _atlas.archive().orbits().reals("fundamental_stability");
+    const auto after = std::upper_bound(_family.arclengths.begin(), _family.arclengths.end(), real("arclength"));
+    if (after == _family.arclengths.begin() || after == _family.arclengths.end() || width == 0) return rate;
+    const std::size_t next = _family.first_orbit + static_cast<std::size_t>(after - _family.arclengths.begin());
+    for (const std::size_t row : {next - 1, next}) {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (std::size_t i = 0; i < width; ++i)
+        nearest = std::min(nearest, std::abs(values[row * width + i] - sector.index()));
+      if (std::isfinite(nearest)) rate = std::max(rate, 2.0 * nearest / length);
+    }
+    return rate;
+  }
+
+  void kernel(const Place& place, const spectrum::Stability& stability, const bifurcation::Sector& sector,
+              Claims& claims) {
+    bifurcation::KernelOptions settings;
+    settings.even_in_time = false;
+    const bifurcation::Kernel kernel = bifurcation::kernel_of(_system, place.point, _isotropy, sector,
+                                                              expected_dimension(stability, sector), settings);
+    claims.expect(kernel.dimension() == _crossing.kernel_dimension, "kernel_dimension",
+                  fmt::format("is {}, found {}", _crossing.kernel_dimension, kernel.dimension()));
+    if (kernel.dimension() > 0)
+      claims.agree_within(kernel_factor, "kernel_residual", real("kernel_residual"), kernel.largest(), kernel_rounding);
+  }
+
+  void fold(const Place& place, Claims& claims) {
+    if (_slopes.size() != 2) return claims.object("kind", "no orbits beside it converge");
+    const double steepest = std::max(std::abs(_slopes[0]), std::abs(_slopes[1]));
+    claims.expect(_slopes[0] * _slopes[1] < 0.0, "kind",
+                  fmt::format("is {}; the slopes beside it, {:.3g} and {:.3g}, have one sign", _crossing.kind,
+                              _slopes[0], _slopes[1]));
+    claims.below("residual", std::abs(slope(place.point)) / steepest, vanishing_slope,
+                 "the slope there, in parts of those beside it,");
+  }
+
+  void function(const std::optional<spectrum::Stability>& stability, Claims& claims) {
+    if (!stability) return claims.object("residual", "the multipliers there cannot be computed");
+    bifurcation::TestFunction function;
+    function.kind =
+        _kind == CrossingKind::krein ? bifurcation::TestFunction::Kind::krein : bifurcation::TestFunction::Kind::torus;
+    const bifurcation::Reading found = bifurcation::evaluate(function, _system.structure(), *stability);
+    const double allowed = 2.0 * found.error + index_rounding;
+    claims.agree("residual", real("residual"), found.value, allowed);
+    claims.below("kind", std::abs(found.value), allowed, "the test function there");
+  }
+
+  /// Families that were born here, and those that end here.
+  void families(const Place& place, Findings& findings) {
+    const auto& all = _atlas.tree().families;
+    const loop::Loop& loop = place.point.loop;
+    std::optional<loop::Loop> around;
+    const auto orbit = [&]() -> const loop::Loop& {
+      if (!around)
+        around =
+            _crossing.multiplicity == 1 ? loop : loop::repeated(loop::evenly_in_time(loop), _crossing.multiplicity);
+      return *around;
+    };
+    for (std::size_t n = 0; n < all.size(); ++n) {
+      const bool born = all[n].crossing == static_cast<int>(_row);
+      const bool ends = all[n].end_crossing == static_cast<int>(_row);
+      if (all[n].orbits() < 2 || !(born || ends)) continue;
+      Claims claims(findings, "families", static_cast<std::int64_t>(n));
+      if (born) near(all[n], first_of(all[n]), orbit(), "crossing", claims);
+      if (ends) {
+        // Forwards, or backwards where that end has joined.
+        Findings forwards;
+        Claims there(forwards, "families", static_cast<std::int64_t>(n));
+        near(all[n], all[n].orbits() - 1, orbit(), "end_crossing", there);
+        Findings backwards;
+        Claims back(backwards, "families", static_cast<std::int64_t>(n));
+        if (!forwards.objections.empty()) near(all[n], 0, orbit(), "end_crossing", back);
+        merge(findings, std::move(forwards.objections.empty() || !backwards.objections.empty() ? forwards : backwards));
+      }
+    }
+  }
+
+  [[nodiscard]] std::size_t first_of(const TreeFamily& family) const {
+    const auto& steps = _atlas.archive().orbits().integers("step");
+    std::size_t first = 0;
+    for (std::size_t n = 0; n < family.orbits(); ++n)
+      if (std::abs(steps[family.first_orbit + n]) < std::abs(steps[family.first_orbit + first])) first = n;
+    return first;
+  }
+
+  void near(const TreeFamily& family, std::size_t orbit, const loop::Loop& crossing, const char* column,
+            Claims& claims) {
+    const std::size_t beside = orbit + 1 < family.orbits() ? orbit + 1 : orbit - 1;
+    const loop::Loop own = _atlas.loop(family.first_orbit + orbit);
+    const loop::Loop next = _atlas.loop(family.first_orbit + beside);
+    const systems::Structure& system = _system.structure();
+    const double step = std::hypot(loop::align(system, next, own).distance, next.period / own.period - 1.0);
+    const double away = std::hypot(loop::align(system, crossing, own).distance, crossing.period / own.period - 1.0);
+    claims.below(column, away, std::max(steps_away * step, amplitudes_away * loop::rms_amplitude(own)),
+                 fmt::format("the distance of orbit {} from the crossing in row {}", family.first_orbit + orbit, _row));
+  }
+
+  const VerifiedAtlas& _atlas;
+  const archive::Table& _table;
+  const systems::System& _system;
+  std::size_t _row;
+  const TreeCrossing& _crossing;
+  const TreeFamily& _family;
+  const loop::Isotropy& _isotropy;
+  CrossingKind _kind;
+  Findings& _findings;
+  Claims _claims;
+  std::vector<double> _slopes;
+};
+
+}  // namespace
+
+void check_crossing(const VerifiedAtlas& atlas, std::size_t crossing, Findings& findings) {
+  try {
+    CrossingCheck(atlas, crossing, findings).run();
+  } catch (const core::InputError& error) {
+    Claims(findings, "crossings", static_cast<std::int64_t>(crossing)).object("", error.what());
+  }
+}
+
+}  // namespace orbweaver::survey

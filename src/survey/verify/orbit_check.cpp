@@ -1,0 +1,242 @@
+#include "verify/orbit_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "orbweaver/archive/schema/schema.hpp"
+#include "orbweaver/certificate/certificate.hpp"
+#include "orbweaver/certificate/verdict.hpp"
+#include "orbweaver/continuation/orbit.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/in_units.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/loss/linearization.hpp"
+#include "tasks/orbit_row.hpp"
+#include "tasks/stability_columns.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+// What is allowed, with the largest that was seen in 10,000 orbits (docs/accuracy.md).
+/// Of the rounding that a residual can have: the modes' own, turned into the standard phase, and the transforms'.
+constexpr double residual_rounding = 32.0;
+/// Of a sum over the loop: energies, actions, states.
+constexpr double sum_rounding = 256.0;
+/// Of a stability value besides the two bounds.
+constexpr double index_rounding = 1e-13;
+/// Of the bound computed again, where that of the stored values is not stored.
+constexpr double both_bounds = 4.0;
+/// Between two bounds or integrations of one orbit whose loops differ by rounding.
+constexpr double bounds_factor = 64.0;
+constexpr double certificate_factor = 16.0;
+/// Of the way between two orbits; and where no reversor fixes the phase: a branch measures it between loops that were
+/// begun nearly, not quite, where they are nearest to each other.
+constexpr double same_way = 1e-9;
+constexpr double same_way_without_phase = 1e-2;
+
+/// Stored and computed values of one orbit.
+class OrbitCheck {
+ public:
+  OrbitCheck(const VerifiedAtlas& atlas, std::size_t row, const loop::Loop& loop, Findings& findings)
+      : _atlas(atlas),
+        _orbits(atlas.archive().orbits()),
+        _system(*atlas.system()),
+        _row(row),
+        _family(static_cast<std::size_t>(_orbits.integers("family")[row])),
+        _loop(loop),
+        _findings(findings),
+        _claims(findings, "orbits", static_cast<std::int64_t>(row)) {}
+
+  void run() {
+    _size = loop::rms_size(_loop);
+    equation();
+    const certificate::Certificate found = certificate::certify(_system, _loop);
+    constants(found.steepness);
+    shape();
+    const std::optional<spectrum::Stability> stability = stability_of(_system, _loop, _atlas.isotropy(_family));
+    multipliers(stability);
+    certificate(found, stability);
+  }
+
+ private:
+  [[nodiscard]] double real(const char* column) const { return _orbits.reals(column)[_row]; }
+
+  /// The residual of loop and period, and what it can be of rounding alone.
+  void equation() {
+    const double rate = 2.0 * std::numbers::pi / _loop.period;
+    const double of_slope = rate * std::pow(static_cast<double>(_loop.cutoff) + 1.0, 1.5) * _size;
+    const loss::Linearization there(_system, _loop, loss::Linearization::Order::jacobian);
+    _residual = std::sqrt(there.loss());
+    _rounding = residual_rounding * epsilon * (of_slope + loop::rms_speed(_loop) + rms_jacobian(there) * _size);
+    _claims.agree("loss_rms", real("loss_rms"), _residual, _rounding + 1e-9 * real("loss_rms"));
+  }
+
+  /// sqrt of the mean over time of |df/dz|^2.
+  [[nodiscard]] static double rms_jacobian(const loss::Linearization& there) {
+    double sum = 0.0;
+    for (int i = 0; i < there.dimension(); ++i)
+      for (int l = 0; l < there.dimension(); ++l) {
+        const double* entries = there.field_jacobian(i, l);
+        for (int j = 0; j < there.nodes(); ++j)
+          sum += there.density()[static_cast<std::size_t>(j)] * entries[j] * entries[j];
+      }
+    return std::sqrt(sum / there.nodes());
+  }
+
+  /// `steepness`: the largest |dH/dz| along the loop.
+  void constants(double steepness) {
+    const systems::Scales& units = _system.scales();
+    const double error = _loop.period * (_residual + _rounding);
+    const double energy = continuation::energy_of(_system, _loop);
+    const double energy_rounding = sum_rounding * epsilon * (std::abs(energy) + steepness * _size) + steepness * error;
+    _claims.agree("energy", real("energy"), energy * units.energy(), energy_rounding * units.energy());
+    const double action = continuation::action_of(_system, _loop);
+    const double momentum = std::abs(action) + _loop.period * steepness * _size;
+    _claims.agree("action", real("action"), action * units.action(),
+                  sum_rounding * epsilon * momentum * units.action());
+    _claims.agree("parameter", real("parameter"), archive::not_computed, 0.0);
+  }
+
+  void shape() {
+    const loop::Loop in_units = loop::in_units(_loop, _system.scales());
+    const std::vector<double> state = loop::state_at(in_units, 0.0);
+    const std::size_t d = state.size();
+    const double rounding = sum_rounding * epsilon * loop::rms_size(in_units);
+    for (std::size_t i = 0; i < d; ++i)
+      _claims.agree("state", _orbits.reals("state")[_row * d + i], state[i], rounding);
+    _claims.agree("tail", real("tail"), loop::tail(_loop), sum_rounding * epsilon * _size);
+    const std::size_t angles = _system.structure().angles.size();
+    for (std::size_t n = 0; n < angles; ++n) {
+      const double turns = _orbits.reals("winding")[_row * angles + n];
+      _claims.agree("winding", turns, std::round(turns), 0.0);
+    }
+    for (const loop::SymmetryElement& element : _atlas.isotropy(_family))
+      _claims.below("modes", loop::symmetry_defect(_loop, element, _system.structure().angles),
+                    loop::symmetry_tolerance * (1.0 + _size),
+                    fmt::format("the distance from being symmetric under {}", loop::to_text({element})));
+  }
+
+  void multipliers(const std::optional<spectrum::Stability>& stability) {
+    archive::OrbitRecord found;
+    set_stability(_system.structure(), stability, found);
+    const double errors = std::fmax(real("stability_error"), 0.0) + std::fmax(found.stability_error, 0.0);
+    const auto compare = [&](const char* column, const std::vector<double>& values, double allowed) {
+      for (std::size_t i = 0; i < values.size(); ++i)
+        _claims.agree(column, _orbits.reals(column)[_row * values.size() + i], values[i],
+                      allowed + index_rounding * (1.0 + std::abs(values[i])));
+    };
+    double fundamental = 0.0;
+    if (stability)
+      for (const double error : stability->fundamental_error) fundamental = std::max(fundamental, error);
+    compare("stability", found.stability, errors);
+    compare("fundamental_stability", found.fundamental_stability, both_bounds * fundamental);
+    _claims.agree_within(bounds_factor, "stability_error", real("stability_error"), found.stability_error,
+                         index_rounding);
+  }
+
+  void certificate(const certificate::Certificate& found, const std::optional<spectrum::Stability>& stability) {
+    double growth = archive::not_computed;
+    if (stability) {
+      growth = 0.0;
+      for (const std::complex<double>& value : stability->full) growth = std::max(growth, std::abs(value));
+    }
+    const double integration = certificate_rounding * found.reach;
+    const double unstable = std::isnan(growth) ? 1.0 : std::max(1.0, growth);
+    _claims.agree_within(certificate_factor, "closure", real("closure"), found.closure, integration);
+    if (!(real("single_shot") > found.reach && !(found.single_shot <= found.reach)))
+      _claims.agree_within(certificate_factor, "single_shot", real("single_shot"), found.single_shot,
+                           integration * unstable);
+    _claims.agree_within(certificate_factor, "energy_drift", real("energy_drift"), found.energy_drift,
+                         std::max(found.steepness * integration, energy_rounding_of(found)));
+    const certificate::Judgement judged =
+        certificate::judge(found, {_loop.period, _residual, loop::rms_amplitude(_loop), growth});
+    if (judged.verdict == certificate::Verdict::says_nothing) ++_findings.uninformative;
+    _claims.expect(judged.verdict != certificate::Verdict::closure_contradicts &&
+                       judged.verdict != certificate::Verdict::drift_contradicts,
+                   "",
+                   fmt::format("its certificate contradicts it: {:.3g} off where {:.3g} is explained", judged.found,
+                               judged.allowed));
+  }
+
+  [[nodiscard]] double energy_rounding_of(const certificate::Certificate& found) const {
+    return sum_rounding * epsilon * found.steepness * found.reach;
+  }
+
+  /// Of the largest state: what one integration of a segment can be off by rounding.
+  static constexpr double certificate_rounding = 1e-13;
+
+  const VerifiedAtlas& _atlas;
+  const archive::Table& _orbits;
+  const systems::System& _system;
+  std::size_t _row;
+  std::size_t _family;
+  const loop::Loop& _loop;
+  Findings& _findings;
+  Claims _claims;
+  double _size = 0.0;
+  double _residual = 0.0;
+  double _rounding = 0.0;
+};
+
+/// From the last orbit of the steps to this one, as the archive adds it up.
+void check_way(const VerifiedAtlas& atlas, std::size_t from, const loop::Loop& a, std::size_t to, const loop::Loop& b,
+               Findings& findings) {
+  const archive::Table& orbits = atlas.archive().orbits();
+  const auto& arclengths = orbits.reals("arclength");
+  const auto family = static_cast<std::size_t>(orbits.integers("family")[to]);
+  const bool backwards = orbits.integers("step")[to] < 0;  // it was followed the other way
+  const auto end = [&](const loop::Loop& near) {
+    return arclengths[from] +
+           continuation::arclength_in_units(*atlas.system(), backwards ? near : a, backwards ? a : near);
+  };
+  const double rounding = sum_rounding * epsilon * (std::abs(arclengths[from]) + std::abs(arclengths[to]));
+  const double step = std::abs(arclengths[to] - arclengths[from]);
+  const double allowed = (atlas.has_reversor(family) ? same_way : same_way_without_phase) * step + rounding;
+  double found = end(b);
+  if (std::abs(found - arclengths[to]) > allowed) found = end(atlas.begun_as(family, b, a));
+  Claims(findings, "orbits", static_cast<std::int64_t>(to)).agree("arclength", arclengths[to], found, allowed);
+}
+
+}  // namespace
+
+void check_orbits(const VerifiedAtlas& atlas, std::size_t first, std::size_t end, Findings& findings) {
+  const archive::Table& orbits = atlas.archive().orbits();
+  const auto& steps = orbits.integers("step");
+  const auto& families = orbits.integers("family");
+  std::size_t before = first;
+  while (before > 0 && families[before - 1] == families[first] && (before == first || atlas.is_requested(before)))
+    --before;
+  std::optional<loop::Loop> last;
+  const auto unless_wrong = [&](std::size_t row, const auto& work) {
+    try {
+      work();
+    } catch (const core::InputError& error) {
+      Claims(findings, "orbits", static_cast<std::int64_t>(row)).object("modes", error.what());
+    } catch (const core::NumericalError& error) {
+      Claims(findings, "orbits", static_cast<std::int64_t>(row)).object("modes", error.what());
+    }
+  };
+  if (before < first) unless_wrong(before, [&] { last = atlas.loop(before); });
+  for (std::size_t row = first; row < end; ++row)
+    unless_wrong(row, [&] {
+      const loop::Loop loop = atlas.loop(row);
+      OrbitCheck(atlas, row, loop, findings).run();
+      if (atlas.is_requested(row)) return;
+      const bool same_side = (steps[before] < 0) == (steps[row] < 0);
+      if (last && same_side && before < row) check_way(atlas, before, *last, row, loop, findings);
+      last = loop;
+      before = row;
+    });
+}
+
+}  // namespace orbweaver::survey

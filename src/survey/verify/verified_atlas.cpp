@@ -1,0 +1,93 @@
+#include "verify/verified_atlas.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "orbweaver/archive/read/loop_of.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/in_units.hpp"
+#include "orbweaver/loop/symmetry/alignment.hpp"
+#include "orbweaver/loop/symmetry/isotropy_text.hpp"
+#include "orbweaver/survey/atlas/stored_orbits.hpp"
+#include "orbweaver/survey/run/scaled_scene.hpp"
+#include "orbweaver/systems/registry.hpp"
+#include "orbweaver/systems/scaled_system.hpp"
+#include "witness/tolerance.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+/// Relative: an orbit at a period or an energy that the scene asks for is solved for at it.
+constexpr double at_request = 1e-9;
+
+/// The scales that the columns are told in; all 1 in archives from before there were any.
+systems::Scales scales_of(const archive::Header& header, const systems::System& system) {
+  systems::Scales scales;
+  const auto dimension = static_cast<std::size_t>(system.dimension());
+  const std::size_t conserved = system.structure().conserved.size();
+  if (header.scales.empty()) return scales;
+  if (header.scales.size() != 1 + dimension + conserved)
+    throw core::InputError(fmt::format("the archive has {} scales; its system {} asks for {}", header.scales.size(),
+                                       system.info().name, 1 + dimension + conserved));
+  scales.time = header.scales.front();
+  scales.coordinates.assign(header.scales.begin() + 1, header.scales.begin() + 1 + static_cast<long>(dimension));
+  scales.conserved.assign(header.scales.begin() + 1 + static_cast<long>(dimension), header.scales.end());
+  return scales;
+}
+
+std::shared_ptr<const systems::System> system_of(const archive::Header& header, const scene::Scene& scene) {
+  auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  const bool fits =
+      header.state_names == system->info().state_names && header.winding_names == system->winding_names() &&
+      header.pairs == system->structure().pairs() &&
+      archive::has_complex_stability(header) == (!system->structure().symplectic || system->structure().pairs() > 1);
+  if (!fits)
+    throw core::InputError(fmt::format(
+        "the archive's columns are not those of the system {} that its scene names: it was written by another version, "
+        "or changed",
+        scene.system.name));
+  const systems::Scales scales = scales_of(header, *system);
+  return scales.are_one() ? system : systems::scaled(system, scales);
+}
+
+}  // namespace
+
+VerifiedAtlas::VerifiedAtlas(const std::filesystem::path& path) : VerifiedAtlas(archive::Archive(path)) {}
+
+VerifiedAtlas::VerifiedAtlas(archive::Archive&& open)
+    : _archive(std::make_unique<archive::Archive>(std::move(open))),
+      _scene(scene::parse(_archive->header().scene, fmt::format("the scene in {}", _archive->path().string()))),
+      _system(system_of(_archive->header(), _scene)),
+      _tree(std::make_unique<AtlasTree>(*_archive, witness_tolerance)) {
+  for (const TreeFamily& family : _tree->families)
+    _isotropies.push_back(loop::isotropy_of(_system->structure(), family.isotropy));
+}
+
+loop::Loop VerifiedAtlas::loop(std::size_t orbit) const {
+  return loop::in_scales(archive::loop_of(*_archive, orbit, _system->structure().angles), _system->scales());
+}
+
+bool VerifiedAtlas::has_reversor(std::size_t family) const {
+  return std::any_of(_isotropies[family].begin(), _isotropies[family].end(),
+                     [](const loop::SymmetryElement& element) { return element.reversing; });
+}
+
+loop::Loop VerifiedAtlas::begun_as(std::size_t family, const loop::Loop& loop, const loop::Loop& neighbour) const {
+  const systems::Structure& system = _system->structure();
+  if (has_reversor(family)) return started_as(system, loop, neighbour);
+  return loop::aligned(loop, loop::align(system, loop, neighbour));
+}
+
+bool VerifiedAtlas::is_requested(std::size_t orbit) const {
+  const auto near = [](double value) {
+    return [value](double wanted) { return std::abs(value - wanted) <= at_request * std::abs(wanted); };
+  };
+  const auto& events = _scene.events;
+  return std::any_of(events.periods.begin(), events.periods.end(), near(_archive->orbits().reals("period")[orbit])) ||
+         std::any_of(events.energies.begin(), events.energies.end(), near(_archive->orbits().reals("energy")[orbit]));
+}
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "orbweaver/archive/read/reader.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
+#include "orbweaver/scene/scene.hpp"
+#include "orbweaver/survey/atlas/atlas_tree.hpp"
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::survey {
+
+/// An archive with the system that its scene names, in the survey's scales.
+class VerifiedAtlas {
+ public:
+  /// Throws InputError where the scene or its system is not known here, or does not fit the header.
+  explicit VerifiedAtlas(const std::filesystem::path& path);
+  /// Of an archive that is open, which is moved from.
+  explicit VerifiedAtlas(archive::Archive&& open);
+
+  [[nodiscard]] const archive::Archive& archive() const { return *_archive; }
+  [[nodiscard]] const AtlasTree& tree() const { return *_tree; }
+  [[nodiscard]] const scene::Scene& scene() const { return _scene; }
+  [[nodiscard]] const std::shared_ptr<const systems::System>& system() const { return _system; }
+  [[nodiscard]] const loop::Isotropy& isotropy(std::size_t family) const { return _isotropies[family]; }
+
+  /// Row `orbit` of /orbits, in the survey's scales. Throws InputError where the row holds no loop.
+  [[nodiscard]] loop::Loop loop(std::size_t orbit) const;
+  /// A loop of the family, begun as its neighbour is. Reversors fix where a family's loops begin, to half a period;
+  /// others were begun where they are nearest to their neighbour, and are stored in a standard phase.
+  [[nodiscard]] loop::Loop begun_as(std::size_t family, const loop::Loop& loop, const loop::Loop& neighbour) const;
+  [[nodiscard]] bool has_reversor(std::size_t family) const;
+  /// Whether the scene asked for this orbit: it lies between two others of its branch, apart from the steps.
+  [[nodiscard]] bool is_requested(std::size_t orbit) const;
+
+ private:
+  std::unique_ptr<archive::Archive> _archive;
+  scene::Scene _scene;
+  std::shared_ptr<const systems::System> _system;
+  std::unique_ptr<AtlasTree> _tree;
+  std::vector<loop::Isotropy> _isotropies;
+};
+
+}  // namespace orbweaver::survey
