@@ -9,6 +9,7 @@
 #include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/report/summary_text.hpp"
 #include "orbweaver/survey/run/survey.hpp"
+#include "summary_status.hpp"
 #include "unused_options.hpp"
 
 namespace orbweaver::drivers {
@@ -26,7 +27,7 @@ int consolidate_on(const core::Communicator& comm, const Options& options) {
   agree(comm, [&] {
     if (comm.is_root()) print_result(report::to_text(summary));
   });
-  return static_cast<int>(core::ExitStatus::done);
+  return static_cast<int>(status_of(summary));
 }
 
 int run(const Options& options, const Invocation& invocation) {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/interruption.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/core/text.hpp"
@@ -39,6 +40,9 @@ Failure describe_failure(const std::exception_ptr& error) {
     return {e.status(), e.what()};
   } catch (const Agreed& e) {
     return describe_failure(e.cause());
+  } catch (const core::Interrupted&) {
+    return {static_cast<int>(core::ExitStatus::stopped_early),
+            "stopped before the survey had begun: there is nothing to go on from"};
   } catch (const std::exception& e) {
     return {environment_failed, e.what()};
   } catch (...) {

@@ -13,6 +13,7 @@
 #include "failure.hpp"
 #include "orbweaver/core/blas_kernels.hpp"
 #include "orbweaver/core/error.hpp"
+#include "signals.hpp"
 
 namespace {
 
@@ -73,12 +74,14 @@ int run(std::vector<std::string> words) {
   }
   const auto chosen =
       std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.parser->parsed(); });
+  if (!chosen->stops_on_signals) orbweaver::drivers::release_signals();
   return chosen->run(invocation);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  orbweaver::drivers::hold_signals();  // also those that come while MPI starts
   open_standard_streams();
   std::signal(SIGXFSZ, SIG_IGN);  // beyond `ulimit -f` a write fails, as on a full disk, and the program says so
   orbweaver::core::prefer_fitting_blas_kernels(argv);

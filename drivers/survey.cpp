@@ -19,6 +19,7 @@
 #include "orbweaver/survey/state/directory_status.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "signals.hpp"
+#include "summary_status.hpp"
 #include "terminal.hpp"
 #include "unused_options.hpp"
 
@@ -41,11 +42,6 @@ survey::Display display_for(const Options& options) {
   return options.progress == "live" ? survey::Display::live : survey::Display::lines;
 }
 
-core::ExitStatus status_of(const survey::Summary& summary) {
-  if (summary.stopped_early) return core::ExitStatus::stopped_early;
-  return summary.failures > 0 ? core::ExitStatus::goal_missed : core::ExitStatus::done;
-}
-
 std::string how_to_go_on(const Options& options) {
   const std::string signal = stop_signal();
   return fmt::format(
@@ -62,7 +58,7 @@ int survey_on(const core::Communicator& comm, const Options& options) {
     scene = options.scene.load();
     if (options.walltime) run_options.walltime = seconds_of(*options.walltime);
   });
-  stop_on_signals();
+  stop_on_signals();  // again, whatever MPI and PETSc made of them
   agree(comm, [&] {
     if (!comm.is_root()) return;  // folders need not look alike from every machine
     status = survey::status_of(options.directory, scene);
@@ -91,6 +87,7 @@ int survey_on(const core::Communicator& comm, const Options& options) {
 }
 
 int run(const Options& options, const Invocation& invocation) {
+  stop_on_signals();
   const core::Session session(invocation.petsc_options);
   const core::Communicator comm;
   core::start_logging(options.log.level(), comm.rank(), comm.size());
@@ -126,7 +123,7 @@ Command make_survey_command(CLI::App& program) {
       ->check(CLI::IsMember({"auto", "live", "lines"}))
       ->capture_default_str();
   add_log_options(*parser, options->log);
-  return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
+  return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }, true};
 }
 
 }  // namespace orbweaver::drivers

@@ -9,6 +9,7 @@
 #include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/interruption.hpp"
 
 namespace orbweaver::certificate {
 
@@ -78,6 +79,7 @@ std::vector<double> integrate(const systems::System& system, std::vector<double>
   double step = first_step(state, field, time, tolerance);
   State next(state.size());
   for (int steps = 0; reached != time; ++steps) {
+    core::interruption_point();
     if (steps == step_limit) fail(system, reached, time, "the limit of a million steps is reached");
     const bool last = std::abs(time - reached) <= std::abs(step);
     if (last) step = time - reached;

@@ -47,6 +47,21 @@ bool holds_files(const std::filesystem::path& folder) {
   return false;
 }
 
+/// Throws InputError unless every row and loop of the archive is as it was written.
+void require_whole(const std::filesystem::path& atlas) {
+  try {
+    const archive::Archive archive(atlas);
+    for (std::size_t orbit = 0; orbit < archive.orbits().rows(); ++orbit) {
+      (void)archive.modes(orbit);
+      (void)archive.time_map(orbit);
+    }
+  } catch (const core::InputError& error) {
+    throw core::InputError(fmt::format(
+        "{} The survey has finished: once this archive is moved away, --resume makes it again from its segments.",
+        error.what()));
+  }
+}
+
 DirectoryStatus status_of(const Checkpoint& checkpoint, const std::filesystem::path& directory,
                           const scene::Scene& scene) {
   const scene::Scene before = scene::parse(checkpoint.scene, "the checkpoint's scene");
@@ -63,6 +78,7 @@ DirectoryStatus status_of(const Checkpoint& checkpoint, const std::filesystem::p
   if (checkpoint.stage != Stage::finished || !std::filesystem::exists(directory / "atlas.h5"))
     return DirectoryStatus::unfinished;
   if (widened) return DirectoryStatus::finished_within_narrower_limits;
+  require_whole(directory / "atlas.h5");
   return checkpoint.failures > 0 ? DirectoryStatus::finished_with_failures : DirectoryStatus::finished;
 }
 

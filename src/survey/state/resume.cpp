@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
+#include "orbweaver/core/text.hpp"
 #include "orbweaver/scene/differences.hpp"
 #include "reopen.hpp"
 #include "tasks/payload/work.hpp"
@@ -46,6 +48,18 @@ void expect_readable(const EndedTask& entry) {
   }
 }
 
+// Files are found, counted on and removed by these names.
+void expect_name(const std::filesystem::path& path, const std::string& name, std::string_view before,
+                 std::string_view behind) {
+  constexpr std::size_t most_digits = 9;
+  const bool framed = name.starts_with(before) && name.ends_with(behind) && name.size() > before.size() + behind.size();
+  const std::string digits =
+      framed ? name.substr(before.size(), name.size() - before.size() - behind.size()) : std::string();
+  if (digits.empty() || digits.size() > most_digits || digits.find_first_not_of("0123456789") != std::string::npos)
+    throw core::InputError(fmt::format("{}: it lists a file `{}`, where {}NNNNNN{} was expected", path.string(),
+                                       core::printable(name), before, behind));
+}
+
 template <class Items>
 void expect_all_readable(const std::filesystem::path& path, const Items& items) {
   try {
@@ -60,6 +74,9 @@ std::optional<Checkpoint> readable(const std::filesystem::path& folder, const st
                                    std::vector<std::string>& problems) {
   try {
     Checkpoint checkpoint = read_checkpoint(path);
+    for (const archive::WrittenSegment& segment : checkpoint.segments)
+      expect_name(path, segment.name, "segment-", ".h5");
+    for (const JournalFile& journal : checkpoint.journals) expect_name(path, journal.name, "journal-", "");
     expect_all_readable(path, checkpoint.unfinished);
     expect_all_readable(path, checkpoint.left_out);
     for (const JournalFile& journal : checkpoint.journals)
