@@ -118,7 +118,8 @@ std::string grown(Mutator& mutator, int levels) {
   const bool map = mutator.below(3) > 0;
   std::string text = map ? "{" : "[";
   for (std::size_t n = mutator.below(5); n > 0; --n)
-    text += (map ? mutator.one_of(keys) + ": " : "") + grown(mutator, levels - 1) + ", ";
+    text += map ? fmt::format("{}: {}, ", mutator.one_of(keys), grown(mutator, levels - 1))
+                : fmt::format("{}, ", grown(mutator, levels - 1));
   return text + (map ? "}" : "]");
 }
 
@@ -126,10 +127,10 @@ TEST(Fuzz, GrownScenes) {
   Mutator mutator(2);
   FuzzBounds bounds;
   for (int n = orbweaver::test::fuzz_count(3000); n > 0; --n) {
-    const std::string text = mutator.below(2) == 0
-                                 ? grown(mutator, 5)
-                                 : "system: {name: double_pendulum}\nstarts: " + grown(mutator, 3) +
-                                       "\nlimits: " + grown(mutator, 2) + "\nevents: " + grown(mutator, 2) + "\n";
+    std::string text = grown(mutator, 5);
+    if (mutator.below(2) == 0)
+      text = fmt::format("system: {{name: double_pendulum}}\nstarts: {}\nlimits: {}\nevents: {}\n", grown(mutator, 3),
+                         grown(mutator, 2), grown(mutator, 2));
     bounds.run(text, [&] { (void)scene::parse(text, "fuzz.yaml"); });
   }
   bounds.check("grown scenes");
