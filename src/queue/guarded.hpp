@@ -17,7 +17,7 @@ struct Execution {
   bool given_up = false;  ///< within a step; the outcome is empty
 };
 
-/// What the executor comes to; a thrown exception becomes a failed outcome. `asked`: whether to give it up within a step.
+/// What the executor comes to; an exception becomes a failed outcome. `asked`: whether to give it up within a step.
 [[nodiscard]] Execution execute_guarded(Executor& executor, const Task& task, TaskContext& context,
                                         const std::function<bool()>& asked);
 

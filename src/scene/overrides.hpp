@@ -7,7 +7,7 @@
 
 namespace orbweaver::scene {
 
-/// Splits each "limits.period=30" at the first '='; the value is YAML. Throws core::InputError naming the override, also
+/// Splits each "limits.period=30" at the first '='; the value is YAML. Throws core::InputError with the override, also
 /// where there are more of them, or more bytes in all, than a scene could hold.
 [[nodiscard]] std::vector<Override> parse_overrides(const std::vector<std::string>& overrides);
 

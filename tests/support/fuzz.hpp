@@ -67,8 +67,8 @@ class Mutator {
   std::mt19937_64 _random;
 };
 
-/// Bounds on everything that is done with the inputs of a test: 5 s each, 500 MB in all, and no way out but an InputError
-/// whose text can be shown.
+/// Bounds on what is done with the inputs of a test: 5 s each, 500 MB in all, and no way out but an InputError whose
+/// text can be shown.
 class FuzzBounds {
  public:
   template <class Body>
