@@ -213,7 +213,7 @@ TEST(Show, ALongChainOfParentsTakesALineEach) {
     family.key = fmt::format("{:06}", n);
     family.name = fmt::format("f{}", n);
     if (n > 0) family.parent_key = fmt::format("{:06}", n - 1);
-    family.end_reason = "-";
+    family.end_reason.assign(1, '-');
     records.families.push_back(family);
   }
   const Archive atlas(test::write_sample_atlas(test::fresh_folder("chain"), header, records));
