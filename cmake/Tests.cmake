@@ -53,14 +53,6 @@ function(orbweaver_test name)
   endforeach()
 endfunction()
 
-# orbweaver_fuzz_test(<name> ...), as orbweaver_test without RANKS: a test of some seconds, and with 100,000 inputs of each kind among
-# the long ones.
-function(orbweaver_fuzz_test name)
-  orbweaver_test(${name} ${ARGN})
-  orbweaver_add_ctest(${name}.long 1 "fuzz;long" 3600 $<TARGET_FILE:test_${name}>)
-  set_property(TEST ${name}.long APPEND PROPERTY ENVIRONMENT "ORBWEAVER_FUZZ=100000")
-endfunction()
-
 # orbweaver_add_ctest(<name> <processors> <labels> <timeout> <command> [args...])
 # Any command as a CTest in the common environment.
 function(orbweaver_add_ctest name processors labels timeout)
