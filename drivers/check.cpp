@@ -12,6 +12,7 @@
 #include "common_options.hpp"
 #include "failure.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/text.hpp"
 #include "orbweaver/scene/in_scales.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/starts/natural_scales.hpp"
@@ -234,7 +235,7 @@ int check(const SceneOptions& options, const Invocation& invocation) {
   const auto bound = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
   const systems::System& system = *bound;
   systems::require_identities(system, starts::find_fixed_points(system, scene.fixed_points.grid));
-  fmt::print("{}: a valid scene, \"{}\"\n", options.file.string(), scene.name);
+  fmt::print("{}: a valid scene, \"{}\"\n", core::printable(options.file.string()), scene.name);
   print_system(scene, system);
   print_starts(scene, system);
   print_continuation(scene, system);

@@ -12,6 +12,7 @@
 #include <CLI/CLI.hpp>
 
 #include "command.hpp"
+#include "common_options.hpp"
 #include "failure.hpp"
 #include "orbweaver/archive/read/reader.hpp"
 #include "orbweaver/core/log/log.hpp"
@@ -122,7 +123,7 @@ Command make_refine_command(CLI::App& program) {
   parser->add_option("--crossing", options->crossing, "A row of the table of crossings, counted from 0");
   parser->add_option("--after", options->after, "The first orbit with this T or E after a step");
   parser->add_option("-n,--digits", options->digits, "Significant digits of every number")->capture_default_str();
-  parser->add_option("-o,--output", options->output, "A file for the text too");
+  parser->add_option("-o,--output", options->output, "A file for the text too")->check(named_path());
   return {parser, [options](const Invocation&) { return refine_command(*options); }};
 }
 

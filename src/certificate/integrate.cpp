@@ -12,6 +12,7 @@
 
 #include "orbweaver/ad/lanes.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/interruption.hpp"
 
 namespace orbweaver::certificate {
 
@@ -137,6 +138,7 @@ void Group::advance(double time, double tolerance) {
   double step = first_step(field, time, tolerance);
   State next(_values.size());
   for (int steps = 0; reached != time; ++steps) {
+    core::interruption_point();
     if (steps == step_limit) fail(_system, reached, time, "the limit of a million steps is reached");
     const bool last = std::abs(time - reached) <= std::abs(step);
     if (last) step = time - reached;

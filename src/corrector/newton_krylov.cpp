@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "orbweaver/core/interruption.hpp"
 #include "orbweaver/equations/loop_equations.hpp"
 #include "orbweaver/equations/loop_solver.hpp"
 
@@ -36,6 +37,7 @@ NewtonKrylovRun run_newton_krylov(const systems::System& system, const loop::Loo
   double last_loss = std::numeric_limits<double>::infinity();
   int without_progress = 0;
   while (run.stop == Stop::none) {
+    core::interruption_point();
     equations::LoopEquations equations(*run.system, run.loop, unknowns, image, slice, team);
     const double threshold = acceptance_threshold(run.loop, equations.linearization(), options.tolerance);
     without_progress = equations.loss() < least_progress * last_loss ? 0 : without_progress + 1;

@@ -10,9 +10,9 @@
 
 #include <fmt/format.h>
 
+#include "document.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
-#include "source.hpp"
 #include "system_section.hpp"
 #include "units.hpp"
 

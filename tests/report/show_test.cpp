@@ -208,6 +208,24 @@ TEST(Show, ChildrenStandBehindTheirParentWhateverTheOrderOfKeys) {
               ElementsAre("family", "other side", "one", "  child", "    grandchild", "  second child"));
 }
 
+TEST(Show, ALongChainOfParentsTakesALineEach) {
+  const Header header = test::sample_header();
+  constexpr int length = 20000;  // lines of 2 n columns would be 400 MB
+  Records records;
+  for (int n = 0; n < length; ++n) {
+    FamilyRecord family;
+    family.key = fmt::format("{:06}", n);
+    family.name = fmt::format("f{}", n);
+    if (n > 0) family.parent_key = fmt::format("{:06}", n - 1);
+    family.end_reason.assign(1, '-');
+    records.families.push_back(family);
+  }
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("chain"), header, records));
+  const std::string text = shown(atlas, "families", TextFormat::readable);
+  EXPECT_LT(text.size(), std::size_t{length} * 200);
+  EXPECT_THAT(text, HasSubstr("\n                        f19999 "));
+}
+
 // The one family of five orbits with T = 1 ... 5, these stabilities, and this error bound.
 std::string stability_of(const Header& header, const std::vector<std::vector<double>>& values, double error) {
   Records records = test::sample_records(header);

@@ -94,14 +94,9 @@ TEST(Payload, AnotherKindIsRefusedByName) {
 }
 
 TEST(Payload, AnotherVersionIsRefused) {
-  std::ostringstream stream;
-  {
-    boost::archive::binary_oarchive archive(stream);
-    const std::string name = SweepWork::payload_name;
-    const int version = SweepWork::wire_version + 1;
-    archive << name << version;
-  }
-  const std::string text = environment_error_of([&] { (void)unpack_sweep_work(stream.str()); });
+  const PayloadType other{SweepWork::payload_name, SweepWork::wire_version + 1, 0};
+  const std::string bytes = write_payload(other, [](auto&) {});
+  const std::string text = environment_error_of([&] { (void)unpack_sweep_work(bytes); });
   EXPECT_THAT(text, HasSubstr("got a sweep work of version 2"));
 }
 

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/interruption.hpp"
 #include "orbweaver/core/mpi/check_mpi.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/queue/message.hpp"
@@ -145,6 +146,7 @@ Teams::Teams(const core::Communicator& comm, int team_size) {
 
 queue::TaskOutcome TeamExecutor::execute(const queue::Task& task, queue::TaskContext& context) {
   if (_team == nullptr) return _member.execute(task, context);
+  const core::InterruptionScope whole(nullptr);  // the others would wait for this one
   _team->begin();
   give(*_team, Order::task, queue::pack(queue::Assign{task}));
   MemberContext shared(*_team, &context, nullptr);
