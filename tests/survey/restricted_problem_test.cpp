@@ -127,7 +127,7 @@ TEST(RestrictedProblem, CrossingsOfHigherOrderLieOnTheirFamilies) {
 TEST(RestrictedProblem, TheFamilyBesideTheLongOneIsFollowed) {
   const core::Communicator comm;
   const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_mu_0.001.yaml",
-                                         {"starts.fixed_points.grid=[[0.499], [0.866]]", "starts.sweep.period=[6, 7]",
+                                         {"starts.fixed_points.grid=[[0.499], [0.866]]", "starts.sweep.period=[6, 80]",
                                           "starts.sweep.step=0.1", "survey.depth=1", "survey.subharmonics=13",
                                           "limits.period=82.5", "limits.energy=[-.inf, -1.23]", "limits.steps=60"});
   const survey::Summary summary = test::run(comm, scene, "beside");
