@@ -181,7 +181,9 @@ void search(Inverse& inverse, std::vector<Triplet>& found, int count, double tol
   for (Triplet& t : largest_of(inverse, count, tolerance)) {
     // Tiny values leave the solves little but their own vectors, and Lanczos vectors mix: inverse iteration cleans
     // them.
-    for (int n = 0; n < most_cleanings && std::max(t.residual, t.left_residual) > share_of_value * t.value; ++n) {
+    // Where one is found already, the next search finds the others better than these do.
+    const int cleanings = found.size() == before ? most_cleanings : 1;
+    for (int n = 0; n < cleanings && std::max(t.residual, t.left_residual) > share_of_value * t.value; ++n) {
       const double before_cleaning = std::max(t.residual, t.left_residual);
       const Eigen::VectorXd right = inverse.apply(inverse.apply_transposed(t.right).normalized()).normalized();
       t = triplet_of(inverse.equations, right, inverse.apply_transposed(right));

@@ -21,7 +21,7 @@ constexpr double largest_detuning = 0.05;
 /// Families start no nearer to the equilibrium to be apart: the terms that decide, r^2, are there 400 times the loss's
 /// tolerance (1e-10).
 constexpr double least_apart = 2e-4;
-/// Where periods are nearly in ratio 1:1 or 1:3 families that are born at r may turn at some 10 r (with m2 = 1.7778 m1
+/// Where periods are nearly in ratio 1:3 families that are born at r may turn at some 10 r (with m2 = 1.7778 m1
 /// the double pendulum's at 7 r) and come back. What is not told at the least amplitude starts beyond such turns.
 constexpr double beyond_turns = 40.0;
 /// Oscillations of nearly one period whose vectors nearly agree are not taken together: their combinations would be
@@ -55,8 +55,9 @@ class Neighbours {
     const double away = detuning(_all[slow], _all[fast], harmonic);
     const double told = told_below(away, harmonic);
     if (told >= _amplitude) return false;
-    // At 1:2 what is born does not turn and come back.
-    const bool may_turn = harmonic != 2;
+    // At 1:2 what is born does not turn and come back. At 1:1 it is born where an index is (2 pi r^2)^2 from 2, which
+    // rounding hides at small amplitudes.
+    const bool may_turn = harmonic == 3;
     if (may_turn && told >= least_apart) {
       for (const std::size_t n : {slow, fast}) _apart_below[n] = std::min(_apart_below[n], told);
       return false;

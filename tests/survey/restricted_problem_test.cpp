@@ -126,10 +126,11 @@ TEST(RestrictedProblem, CrossingsOfHigherOrderLieOnTheirFamilies) {
 // from 2, and cells that hold all its harmonics do not tell its orbits from others.
 TEST(RestrictedProblem, TheFamilyBesideTheLongOneIsFollowed) {
   const core::Communicator comm;
-  const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_mu_0.001.yaml",
-                                         {"starts.fixed_points.grid=[[0.499], [0.866]]", "starts.sweep.period=[6, 7]",
-                                          "starts.sweep.step=0.1", "survey.depth=1", "survey.subharmonics=13",
-                                          "limits.period=82.5", "limits.energy=[-.inf, -1.23]", "limits.steps=60"});
+  if (comm.size() == 1) GTEST_SKIP() << "a minute on two ranks";
+  const scene::Scene scene =
+      scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_mu_0.001.yaml",
+                  {"starts.fixed_points.grid=[[0.499], [0.866]]", "starts.sweep.period=[6, 80]",
+                   "starts.sweep.step=0.1", "survey.depth=1", "survey.subharmonics=13", "limits.period=120"});
   const survey::Summary summary = test::run(comm, scene, "beside");
   EXPECT_EQ(summary.failures, 0U);
   if (!comm.is_root()) return;
