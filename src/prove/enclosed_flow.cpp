@@ -182,7 +182,7 @@ double EnclosedFlow::step_size(const Disc& disc) const {
 EnclosedFlow::Image EnclosedFlow::advance(const BallVector& box, const Ball& time) {
   const std::size_t d = static_cast<std::size_t>(_formulas.dimension);
   core::require(box.size() == d, "a state of another dimension");
-  core::require(time.lower() > 0.0, "a proof runs forward in time");
+  if (!(time.lower() > 0.0)) throw NotProven("the time is not positive on all of its ball");
   Set set(box);
   const BallMatrix unit = BallMatrix::identity(d);
   BallVector unit_rows;

@@ -23,7 +23,8 @@ class EnclosedFlow {
     BallVector state;       ///< holds the solutions through all states of the box
     BallMatrix transition;  ///< holds their derivatives by the state they come from
   };
-  /// After `time` > 0, for all times in that ball. Throws NotProven where that cannot be enclosed.
+  /// After `time`, for all times in that ball. Throws NotProven where that cannot be enclosed, as where they are not
+  /// all positive.
   [[nodiscard]] Image advance(const BallVector& box, const Ball& time);
 
   [[nodiscard]] BallVector field(const BallVector& z) const;

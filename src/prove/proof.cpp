@@ -34,8 +34,8 @@ constexpr double bits_a_digit = 3.3219280948873626;
 constexpr int harmonics_a_segment = 2;
 constexpr int least_segments = 2;
 constexpr int most_segments = 32;
-/// The narrow box is no narrower than so many digits beyond those aimed at, nor than so many times the correction of its
-/// centre, and wider each time that it fails.
+/// The narrow box is no narrower than so many digits beyond those aimed at, nor than so many times the correction of
+/// its centre, and wider each time that it fails.
 constexpr int least_narrow = 2;
 constexpr double narrow_factor = 8.0;
 constexpr double wider = 1e3;

@@ -88,6 +88,7 @@ TEST(Prove, HoldsTheRefinedOrbit) {
     for (std::size_t i = 0; i < 4; ++i)
       EXPECT_TRUE(proof.state[i].contains(refined.state[i].value)) << isotropy << ' ' << i;
   }
+  const WorkingDigits digits(60);
   const HeldValue by_period{Quantity::period, numerics::decimal_text(refined.period.value, 50)};
   const Proof proof = prove(statement_about("Straight", {}, straight("S@0 R@0"), by_period, 30));
   EXPECT_TRUE(proof.energy.contains(extended_of("0.1")));
