@@ -116,14 +116,17 @@ TEST(States, AStopWithinAStepGoesOnFromTheLastFlush) {
   Steps steps(comm);
   constexpr int count = 30;
   std::vector<Task> remaining = tasks(count);
+  queue::Options options = often();
+  options.flush_rows = 5;  // tasks are flushed before the middle
   for (const int victim : {0, comm.size() - 1}) {
+    steps.die_at(-1);
     steps.hang_in_the_middle(true);
     const auto began = std::chrono::steady_clock::now();
     std::thread stopper([&] {
       std::this_thread::sleep_for(std::chrono::milliseconds(300));
       if (comm.rank() == victim) queue::request_stop();
     });
-    const auto summary = queue::run(comm, often(), remaining, steps, steps, steps);
+    const auto summary = queue::run(comm, options, remaining, steps, steps, steps);
     stopper.join();
     queue::clear_stop();
     EXPECT_TRUE(summary.stopped_early);
@@ -131,8 +134,9 @@ TEST(States, AStopWithinAStepGoesOnFromTheLastFlush) {
     remaining = steps.unfinished();
   }
   EXPECT_GE(steps.given_up(), 2);
+  steps.die_at(-1);
   steps.hang_in_the_middle(false);
-  EXPECT_FALSE(queue::run(comm, often(), remaining, steps, steps, steps).stopped_early);
+  EXPECT_FALSE(queue::run(comm, options, remaining, steps, steps, steps).stopped_early);
   EXPECT_GT(steps.gone_on(), 0) << "some task must have gone on from a state";
   steps.expect_each_once(count);
 }
