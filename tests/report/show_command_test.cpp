@@ -68,12 +68,13 @@ TEST_F(ShowCommand, WrongInputExitsWithTwo) {
   EXPECT_THAT(missing.out, HasSubstr("'none.h5' does not exist"));
 }
 
-// As an archive from elsewhere may have them: the writer refuses bytes that are not UTF-8.
+// As an archive from elsewhere, without checksums, may have them: the writer refuses bytes that are not UTF-8.
 TEST_F(ShowCommand, StoredNamesAreEscaped) {
   const auto header = test::sample_header();
   archive::Records records = test::sample_records(header);
   records.families[0].name = "Odd\x1b[31m\xC2\x9B@@";
   const std::filesystem::path odd = test::write_sample_atlas(test::fresh_folder("odd"), header, records);
+  test::remove_checksums(odd);
   std::string bytes = (std::ostringstream() << std::ifstream(odd, std::ios::binary).rdbuf()).str();
   for (std::size_t at = bytes.find("@@"); at != std::string::npos; at = bytes.find("@@", at))
     bytes[at] = bytes[at + 1] = '\xFF';

@@ -99,7 +99,7 @@ std::string read_sealed(const std::filesystem::path& path, const Seal& seal) {
   const auto version = number_at<std::uint32_t>(all, mark_bytes);
   if (version > seal.version)
     throw core::NewerVersionError(
-        fmt::format("{}: its version is {}, and this Orbweaver reads up to {}; nothing was changed: use the newer "
+        fmt::format("{}: its version is {}, and this Orbweaver reads version {}; nothing was changed: use the newer "
                     "Orbweaver that wrote it",
                     path.string(), version, seal.version));
   if (version < seal.version)
