@@ -127,7 +127,7 @@ void expect_adds_up(const survey::Summary& summary, double m2) {
 // than that, and at the turn singular values are small because the amplitude is.
 TEST(Resonance, NearOneToThreeThePendulumsFamiliesStartApart) {
   expect_adds_up(pendulum(1.77779), 1.77779);
-  for (const double m2 : {1.7778, 1.7779}) {
+  for (const double m2 : {1.77779, 1.7778, 1.7779}) {
     const survey::Summary summary = pendulum(m2, {"survey.subharmonics=3"});
     expect_adds_up(summary, m2);
     const test::Atlas atlas(summary.atlas);
