@@ -55,6 +55,14 @@ constexpr int exact_unknowns = 2048;
 
 bool is_affordable(const Collocation& equations) { return equations.size() <= exact_unknowns; }
 
+/// Over the last quarter harmonics that truncation leaves fall by a hundred where they end below 1e-8 of the first: what
+/// is more than this part of those before it is rounding, of which further ones have as much.
+constexpr double fallen = 0.3;
+
+bool falls_no_further(const loop::Loop& loop, double tail) {
+  return tail > fallen * loop::tail(loop::with_cutoff(loop, loop.cutoff - loop.cutoff / 4));
+}
+
 }  // namespace
 
 std::string CollocationProblem::obstacle(const FamilyOf& family) {
@@ -392,7 +400,7 @@ bool CollocationProblem::resolved(Trial& trial) {
   trial.loop = equations().to_loop(trial.values.data());
   const double last = loop::tail(trial.loop);
   // Beside a fast motion rounding is magnified in the harmonics near it, and the residual does not see them.
-  if (trial.to_rounding) return true;
+  if (trial.to_rounding && falls_no_further(trial.loop, last)) return true;
   if (last > tail_limit(trial.amplitude, trial.size, _options) || trial.truncated) return false;
   // A tail of the size of the modes' own rounding says nothing of the resolution.
   if (last <= mode_rounding * trial.size) return true;

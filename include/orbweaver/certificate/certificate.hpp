@@ -41,6 +41,7 @@ struct Certificate {
   double recurrence = unknown;       ///< least distance from an orbit gone around m times, m prime
   double tail = unknown;             ///< loop::tail
   double reach = 0.0;                ///< largest |z(t_m)|
+  double energy = 0.0;               ///< |H(z(0))|
   double steepness = 0.0;            ///< largest |dH/dz(z(t_m))|; 0 for a system that conserves no energy
 
   // Level::full

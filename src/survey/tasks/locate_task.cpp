@@ -151,8 +151,9 @@ class Location {
     settings.even_in_time = starts;
     settings.most_harmonics = _scene.continuation.cutoff_to;
     settings.team = _team;
-    const bifurcation::Kernel kernel = bifurcation::kernel_of(*_system, crossing.point, isotropy, sector,
-                                                              expected_dimension(crossing.stability, sector), settings);
+    const bifurcation::Kernel kernel =
+        bifurcation::kernel_of(*_system, crossing.point, isotropy, sector,
+                               expected_dimension(crossing.stability, sector, _event.tangency), settings);
     _outcome.kernel_dimension = kernel.dimension();
     _outcome.kernel_singular_value = kernel.largest();
     _outcome.next_singular_value = kernel.next();
@@ -270,13 +271,13 @@ class Location {
 
 }  // namespace
 
-int expected_dimension(const spectrum::Stability& stability, const bifurcation::Sector& sector) {
+int expected_dimension(const spectrum::Stability& stability, const bifurcation::Sector& sector, bool touches) {
   int pairs = 0;
   for (std::size_t n = 0; n < stability.fundamental.size(); ++n) {
     const double away = std::abs(stability.fundamental[n] - sector.index());
     if (away < std::max(in_sector, error_bounds * stability.fundamental_error[n])) ++pairs;
   }
-  return std::max(1, pairs) * (sector.q <= 2 ? 1 : 2);
+  return std::max(1, pairs) * (sector.q <= 2 && !touches ? 1 : 2);
 }
 
 queue::TaskOutcome locate(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,

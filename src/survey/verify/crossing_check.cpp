@@ -354,8 +354,9 @@ class CrossingCheck {
               Claims& claims) {
     bifurcation::KernelOptions settings;
     settings.even_in_time = false;
+    const bool touches = _crossing.kernel_dimension > expected_dimension(stability, sector, false);
     const bifurcation::Kernel kernel = bifurcation::kernel_of(_system, place.point, _isotropy, sector,
-                                                              expected_dimension(stability, sector), settings);
+                                                              expected_dimension(stability, sector, touches), settings);
     claims.expect(kernel.dimension() == _crossing.kernel_dimension, "kernel_dimension",
                   fmt::format("is {}, found {}", _crossing.kernel_dimension, kernel.dimension()));
     if (kernel.dimension() > 0)
