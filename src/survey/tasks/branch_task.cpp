@@ -110,6 +110,10 @@ queue::TaskOutcome BranchTask::run() {
   if (_outcome.tolerance_met > 0.0)
     _outcome.remarks.push_back(fmt::format("the tolerance {:.2g} is below what rounding allows here: {:.2g} met",
                                            _scene.continuation.tolerance, _outcome.tolerance_met));
+  if (_outcome.moved_out > 0.0)
+    _outcome.remarks.push_back(fmt::format(
+        "a first orbit at continuation.start would be lost in rounding: it is taken {:.2g} times as far out",
+        _outcome.moved_out));
   queue::TaskOutcome done;
   done.failed = ending.failed();
   done.reason = ending.failed() ? ending.text() : "";
@@ -345,6 +349,7 @@ void BranchTask::store(continuation::Orbit orbit, const std::optional<spectrum::
   _outcome.last_energy = energy;
   _outcome.last_cutoff = orbit.loop.cutoff;
   _outcome.tolerance_met = std::max(_outcome.tolerance_met, orbit.tolerance_met);
+  _outcome.moved_out = std::max(_outcome.moved_out, orbit.moved_out);
   // The other side of a crossing: counted backwards from it.
   orbit.step = _work.lineage.side > 0 ? _outcome.orbits : -1 - _outcome.orbits;
   orbit.arclength = signed_arclength(_work.lineage, _before_first, _curve.arclength_at(orbit.arclength));
