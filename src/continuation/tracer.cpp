@@ -76,6 +76,7 @@ std::optional<Orbit> Tracer::first_orbit() {
   const bool is_at_rest = loop::rms_amplitude(_start.base) == 0.0;
   const double least =
       is_at_rest ? above_least_known * corrector::least_known_amplitude(*_system, _start.base, direction) : 0.0;
+  const double nearest = std::max(least, least_start * _options.start_amplitude);
   double amplitude = std::max(_options.start_amplitude, least);
   _problem->resolve(_problem->resolution_for(std::max(_start.base.cutoff, _options.cutoff_from), _start.base.time_map,
                                              _options.cutoff_to));
@@ -101,7 +102,13 @@ std::optional<Orbit> Tracer::first_orbit() {
       if (_ending) return std::nullopt;
       _frontier.next_length =
           std::min(growth_after_first * _problem->distance(trial.values, base), _options.largest_step);
+      const Frontier before = _frontier;
       Orbit first = accept(trial);
+      if (_options.too_far && 0.5 * amplitude >= nearest && _options.too_far(first)) {
+        go_on_from(before);
+        amplitude *= 0.5;
+        continue;
+      }
       if (amplitude > _options.start_amplitude) first.moved_out = amplitude / _options.start_amplitude;
       return first;
     }
@@ -113,8 +120,7 @@ std::optional<Orbit> Tracer::first_orbit() {
       if (cells == Preconditioner::fitted_box) continue;
     }
     amplitude *= 0.5;
-    if (amplitude < std::max(least, least_start * _options.start_amplitude))
-      return end(EndReason::failure, fmt::format("no orbit near the start: {}", trial.reason));
+    if (amplitude < nearest) return end(EndReason::failure, fmt::format("no orbit near the start: {}", trial.reason));
   }
 }
 

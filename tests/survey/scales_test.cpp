@@ -164,19 +164,6 @@ TEST(Scales, AToleranceBelowRoundingIsToldOfOnceAFamily) {
   EXPECT_EQ(told, 1) << testing::PrintToString(summary.remarks);
 }
 
-TEST(Scales, AFirstOrbitBelowRoundingIsToldOfOnceAFamily) {
-  const core::Communicator comm;
-  const survey::Summary summary = test::run(
-      comm, test::quick_scene({"continuation.start=1e-14rad", "limits.steps=2", "compute.certificate=none"}), "below");
-  EXPECT_EQ(summary.failures, 0U) << testing::PrintToString(summary.failed_tasks);
-  const auto told_of = [](const char* key) {
-    return testing::StartsWith(std::string(key) +
-                               ": a first orbit at continuation.start would be lost in rounding: it is taken 1");
-  };
-  EXPECT_THAT(summary.remarks, testing::Contains(told_of("0001.0000")).Times(1)) << "beside (0, pi)";
-  EXPECT_THAT(summary.remarks, testing::Not(testing::Contains(told_of("0000.0000")))) << "beside (0, 0)";
-}
-
 TEST(Scales, ATaskIsReadInTheScalesItWasMadeIn) {
   const scene::Scene scene = test::quick_scene({"system.parameters.g=16"});
   const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
