@@ -284,6 +284,7 @@ void CollocationProblem::note_what_is_open(Trial& trial, double last_change) {
 
 /// Harmonics that the solver has left wrong say nothing of the resolution: the equations must hold first.
 bool CollocationProblem::may_be_sharper(Trial& trial) {
+  if (trial.lost_in_rounding) return false;
   return trial.unsolved || ((!trial.is_orbit || trial.at_rounding) && resolved(trial));
 }
 
@@ -323,6 +324,7 @@ bool CollocationProblem::sharpen_with(const equations::AndersonSolver::Options& 
     return false;
   }
   other.is_orbit = other.at_rounding = other.truncated = other.unsolved = other.to_rounding = false;
+  other.lost_in_rounding = false;
   judge(other);
   const bool better = trial.unsolved ? other.asked_rms < trial.asked_rms : other.loss_rms < trial.loss_rms;
   if (!other.converged || !better) return false;
@@ -340,8 +342,11 @@ void CollocationProblem::judge(Trial& trial) {
   trial.size = quality.size;
   double centre = 0.0;
   for (const double c : e.centre()) centre += c * c;
-  trial.threshold = corrector::acceptance_threshold(_options.corrector.tolerance, quality.speed_rms, std::sqrt(centre),
-                                                    e.field_jacobian_rms());
+  const double size = std::sqrt(centre);
+  const double jacobian = e.field_jacobian_rms();
+  const double tolerance = _options.corrector.tolerance;
+  trial.threshold = corrector::acceptance_threshold(tolerance, quality.speed_rms, size, jacobian);
+  trial.tolerance_met = corrector::tolerance_met(tolerance, trial.loss_rms, quality.speed_rms, size, jacobian);
   const double floor = rounding_floor(trial, quality);
   trial.unsolved = quality.asked > std::max(trial.threshold, floor);
   trial.to_rounding = quality.unasked < floor;
@@ -359,6 +364,10 @@ void CollocationProblem::judge(Trial& trial) {
     trial.truncated = quality.unasked > shows_truncation * quality.asked;
     trial.reason = fmt::format("sqrt(loss) = {:.3g} falls no further, wanted {:.3g}", trial.loss_rms, trial.threshold);
   }
+  if (!trial.is_orbit || quality.speed_rms >= corrector::least_known_speed(size, jacobian)) return;
+  trial.is_orbit = trial.at_rounding = false;
+  trial.lost_in_rounding = true;
+  trial.reason = corrector::lost_in_rounding_text(quality.speed_rms, size, jacobian);
 }
 
 /// As for a loop, but for what the elimination leaves in the nodal values, which the field's Jacobian multiplies:

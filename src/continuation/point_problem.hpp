@@ -21,7 +21,8 @@ struct Trial {
   bool to_rounding = false;     ///< the loss between the places where the equations ask is no more than rounding leaves
   bool truncated = false;       ///< its equations hold where they ask, and the loop does not obey them in between
   bool at_rounding = false;     ///< an orbit, though rounding keeps its loss above the threshold
-  std::string reason;           ///< where it is no orbit
+  bool lost_in_rounding = false;  ///< it would be an orbit, but its speed is not known (corrector::largest_unknown)
+  std::string reason;             ///< where it is no orbit
   std::vector<double> values;
   int order = 0;  ///< of the prediction
   int iterations = 0;
@@ -32,9 +33,10 @@ struct Trial {
   double loss_rms = 0.0;
   double asked_rms = 0.0;  ///< the same where the equations ask
   double threshold = 0.0;
-  double amplitude = 0.0;  ///< rms distance from its mean, winding left out
-  double size = 0.0;       ///< rms size, winding left out
-  loop::Loop loop;         ///< set by `PointProblem::resolved`
+  double tolerance_met = 0.0;  ///< corrector::tolerance_met
+  double amplitude = 0.0;      ///< rms distance from its mean, winding left out
+  double size = 0.0;           ///< rms size, winding left out
+  loop::Loop loop;             ///< set by `PointProblem::resolved`
 };
 
 /// What the last harmonics of a loop may weigh, by its rms distance from its mean and its rms size, without winding.
