@@ -61,7 +61,6 @@ class CollocationProblem final : public PointProblem {
   [[nodiscard]] equations::Preconditioner preconditioner_of(const equations::Collocation& equations);
   void sharpen(Trial& trial, double last_change, const std::vector<double>& conditions);
   void judge(Trial& trial);
-  [[nodiscard]] double rounding_floor(const Trial& trial, const equations::Collocation::Quality& quality);
   [[nodiscard]] std::string not_finite_at(const std::vector<double>& values, const std::vector<double>& predicted,
                                           const std::string& otherwise);
   [[nodiscard]] double period_unit(double period);
