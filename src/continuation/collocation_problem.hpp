@@ -25,7 +25,7 @@ class CollocationProblem final : public PointProblem {
   [[nodiscard]] std::optional<Resolution> coarser(const Trial& accepted, const loop::Loop& loop, bool may_fit) override;
   Transfer resolve(const Resolution& to) override;
   void state_replaced() override { _equations.reset(); }
-  [[nodiscard]] bool can_fit_cells() const override { return true; }
+  [[nodiscard]] bool can_fit_cells() override { return equations().has_cells_to_fit(); }
 
   [[nodiscard]] std::vector<double> from_loop(const loop::Loop& loop) override;
   [[nodiscard]] std::vector<double> from_change(const loop::Loop& change) override;
