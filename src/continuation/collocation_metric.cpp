@@ -1,6 +1,9 @@
 #include "collocation_metric.hpp"
 
+#include <algorithm>
 #include <cmath>
+
+#include "orbweaver/corrector/correct.hpp"
 
 namespace orbweaver::continuation {
 
@@ -60,6 +63,12 @@ std::vector<double> step_conditions(const Collocation& e, const Prediction& pred
   for (std::size_t n = 0; n < size; ++n) weights[n] /= std::sqrt(square);
   if (e.borders() > 1) phase_condition(e, prediction, weights);
   return weights;
+}
+
+double rounding_floor(const Collocation& e, const Collocation::Quality& quality, double period) {
+  return std::max(
+      corrector::rounding_floor(e.grid().cutoff(), period, quality.size, quality.speed_rms, e.field_jacobian_rms()),
+      nodal_rounding * quality.size * e.field_jacobian_rms());
 }
 
 void take_out_shift(const Collocation& e, Prediction& prediction, const std::vector<double>& last) {

@@ -32,8 +32,6 @@ constexpr double good_enough = 0.3;
 /// and slow motions are 50 times apart the changes shrink by 0.9 each (m2 = 1000).
 constexpr double sharpened = 0.3;
 constexpr int patience = 60;
-/// Roundings of nodal values after a filter over the whole loop and the elimination. Not measured.
-constexpr double nodal_rounding = 50.0 * std::numeric_limits<double>::epsilon();
 /// Roundings of a mode, some of the transforms' own: their number was not measured.
 constexpr double mode_rounding = 4.0 * std::numeric_limits<double>::epsilon();
 /// What the harmonics that a new time map leaves out may add to the loss, in parts of its threshold: the rest is
@@ -50,10 +48,8 @@ constexpr double shows_truncation = 10.0;
 constexpr double least_amplitude = 1e-300;
 /// Where the field is finite, and what the correction made of it is not.
 constexpr const char* beyond_numbers = "the correction met numbers that are not finite";
-/// Unknowns up to which the Jacobian itself is factored, where the box scheme fails.
-constexpr int exact_unknowns = 2048;
 
-bool is_affordable(const Collocation& equations) { return equations.size() <= exact_unknowns; }
+bool is_affordable(const Collocation& equations) { return equations.size() <= equations::exact_unknowns; }
 
 /// Over the last quarter harmonics that truncation leaves fall by a hundred where they end below 1e-8 of the first: what
 /// is more than this part of those before it is rounding, of which further ones have as much.
@@ -279,7 +275,7 @@ Trial CollocationProblem::correct(Prediction prediction, const std::vector<doubl
 void CollocationProblem::note_what_is_open(Trial& trial, double last_change) {
   if (!(trial.values[scalars_at()] > 0.0)) return;
   const Collocation::Quality quality = equations().quality(trial.values.data());
-  if (quality.asked < rounding_floor(trial, quality)) trial.known_to = last_change;
+  if (quality.asked < rounding_floor(equations(), quality, trial.values[scalars_at()])) trial.known_to = last_change;
 }
 
 /// Harmonics that the solver has left wrong say nothing of the resolution: the equations must hold first.
@@ -347,7 +343,7 @@ void CollocationProblem::judge(Trial& trial) {
   const double tolerance = _options.corrector.tolerance;
   trial.threshold = corrector::acceptance_threshold(tolerance, quality.speed_rms, size, jacobian);
   trial.tolerance_met = corrector::tolerance_met(tolerance, trial.loss_rms, quality.speed_rms, size, jacobian);
-  const double floor = rounding_floor(trial, quality);
+  const double floor = rounding_floor(equations(), quality, trial.values[scalars_at()]);
   trial.unsolved = quality.asked > std::max(trial.threshold, floor);
   trial.to_rounding = quality.unasked < floor;
   if (!(trial.values[static_cast<std::size_t>(e.period_at())] > 0.0)) {
@@ -368,15 +364,6 @@ void CollocationProblem::judge(Trial& trial) {
   trial.is_orbit = trial.at_rounding = false;
   trial.lost_in_rounding = true;
   trial.reason = corrector::lost_in_rounding_text(quality.speed_rms, size, jacobian);
-}
-
-/// As for a loop, but for what the elimination leaves in the nodal values, which the field's Jacobian multiplies:
-/// beside a motion a thousand times as fast that is most of it (m2 = 1e6).
-double CollocationProblem::rounding_floor(const Trial& trial, const Collocation::Quality& quality) {
-  const Collocation& e = equations();
-  return std::max(corrector::rounding_floor(e.grid().cutoff(), trial.values[scalars_at()], quality.size,
-                                            quality.speed_rms, e.field_jacobian_rms()),
-                  nodal_rounding * quality.size * e.field_jacobian_rms());
 }
 
 /// The sentence that the loss has for a field that is not finite, there or at what was predicted; `otherwise` where it

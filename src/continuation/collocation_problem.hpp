@@ -25,7 +25,7 @@ class CollocationProblem final : public PointProblem {
   [[nodiscard]] std::optional<Resolution> coarser(const Trial& accepted, const loop::Loop& loop, bool may_fit) override;
   Transfer resolve(const Resolution& to) override;
   void state_replaced() override { _equations.reset(); }
-  [[nodiscard]] bool can_fit_cells() const override { return true; }
+  [[nodiscard]] bool can_fit_cells() override { return equations().has_cells_to_fit(); }
 
   [[nodiscard]] std::vector<double> from_loop(const loop::Loop& loop) override;
   [[nodiscard]] std::vector<double> from_change(const loop::Loop& change) override;
@@ -61,7 +61,6 @@ class CollocationProblem final : public PointProblem {
   [[nodiscard]] equations::Preconditioner preconditioner_of(const equations::Collocation& equations);
   void sharpen(Trial& trial, double last_change, const std::vector<double>& conditions);
   void judge(Trial& trial);
-  [[nodiscard]] double rounding_floor(const Trial& trial, const equations::Collocation::Quality& quality);
   [[nodiscard]] std::string not_finite_at(const std::vector<double>& values, const std::vector<double>& predicted,
                                           const std::string& otherwise);
   [[nodiscard]] double period_unit(double period);

@@ -69,8 +69,9 @@ class PointProblem {
   virtual Transfer resolve(const Resolution& to) = 0;
   /// After a change of the state from outside.
   virtual void state_replaced() {}
-  /// Whether cells are preconditioned in another way where the state's `preconditioner` is the fitted box.
-  [[nodiscard]] virtual bool can_fit_cells() const { return false; }
+  /// Whether cells would have been preconditioned in another way in the last correction, had the state's
+  /// `preconditioner` been the fitted box.
+  [[nodiscard]] virtual bool can_fit_cells() { return false; }
 
   [[nodiscard]] virtual std::vector<double> from_loop(const loop::Loop& loop) = 0;
   /// The change of a loop (without winding) as a change of a point; scalars stay.

@@ -113,12 +113,11 @@ std::optional<Orbit> Tracer::first_orbit() {
       return first;
     }
     _frontier.problem.factor_point.clear();
-    if (_problem->can_fit_cells()) {
-      using equations::Preconditioner;  // both kinds of cells at each amplitude
-      Preconditioner& cells = _frontier.problem.preconditioner;
-      cells = cells == Preconditioner::box ? Preconditioner::fitted_box : Preconditioner::box;
-      if (cells == Preconditioner::fitted_box) continue;
-    }
+    using equations::Preconditioner;  // both kinds of cells at each amplitude
+    Preconditioner& cells = _frontier.problem.preconditioner;
+    const bool both_tried = cells != Preconditioner::box || !_problem->can_fit_cells();
+    cells = both_tried ? Preconditioner::box : Preconditioner::fitted_box;
+    if (!both_tried) continue;
     amplitude *= 0.5;
     if (amplitude < nearest) return end(EndReason::failure, fmt::format("no orbit near the start: {}", trial.reason));
   }

@@ -190,6 +190,19 @@ TEST(Ends, NoWholeLoopIsTriedTwiceAtTheVeryStart) {
   EXPECT_EQ(walled->asked.size(), different.size());
 }
 
+// A slow oscillation leaves nothing to fit: a second attempt would be the first again.
+TEST(Ends, NoCellIsFittedAtTheVeryStartThatNeedsNoFit) {
+  const auto walled = std::make_shared<const Recorder>(std::make_shared<const test::Oscillator>(0.0, -1.0));
+  const test::Trace trace = test::trace_of(walled, circles(*walled), {});
+  EXPECT_THAT(trace.ending.text(), HasSubstr("no orbit near the start"));
+  const std::multiset<std::vector<double>> all(walled->asked.begin(), walled->asked.end());
+  const std::set<std::vector<double>> different(walled->asked.begin(), walled->asked.end());
+  std::size_t most = 0;
+  for (const std::vector<double>& states : different) most = std::max(most, all.count(states));
+  EXPECT_GT(different.size(), 3U);
+  EXPECT_LE(most, 2U) << "by the corrector, and by the look for what is not finite";
+}
+
 /// q' = p, p' = -q - stiffness q^3: the period depends on the amplitude. The field is NaN where |p| > wall.
 class Spring final : public test::StatedSystem {
  public:

@@ -137,10 +137,7 @@ continuation::Ending BranchTask::follow() {
     if (!orbit) {
       continuation::Ending ending = _branch->ending().value();
       if (ending.failed() && _last && arrives_ahead()) return met();
-      if (ending.failed() && _last_stability && !bifurcation::is_isolated(*_last_stability)) {
-        ending.reason = continuation::EndReason::undecided;
-        ending.detail = "an index is 2 to rounding; " + ending.detail;
-      }
+      if (ending.failed() && _last) decide(ending);
       note_limits(ending, before);
       if (ending.reason == continuation::EndReason::fixed_point) {
         const EquilibriumEnd end = equilibrium_end(_scene, *_system, _last->loop);
@@ -162,6 +159,16 @@ continuation::Ending BranchTask::follow() {
                          [&] { return pack(state_at(_branch->restart_frontier())); });
     if (_stopped) return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", period)};
   }
+}
+
+/// Where its last orbits are not told apart a branch may fail for no other reason.
+void BranchTask::decide(continuation::Ending& ending) const {
+  const std::vector<continuation::FamilyCurve::Known>& known = _curve.known();
+  const loop::Loop* before = known.size() > 1 ? &known[known.size() - 2].loop : nullptr;
+  const std::string why = not_told_apart(*_system, _last->loop, before, _start.isotropy, _team);
+  if (why.empty()) return;
+  ending.reason = continuation::EndReason::undecided;
+  ending.detail = why + "; " + ending.detail;
 }
 
 continuation::Ending BranchTask::met() const {

@@ -42,6 +42,7 @@ class BranchTask {
   bool arrive(const continuation::Orbit& orbit);
   [[nodiscard]] static bool is_nearly_two(const spectrum::Stability& stability);
   bool arrives_ahead();
+  void decide(continuation::Ending& ending) const;
   [[nodiscard]] continuation::Ending met() const;
   void detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability);
   void detect_from_birth();

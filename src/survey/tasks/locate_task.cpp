@@ -107,11 +107,12 @@ class Location {
     // Only minima that come near zero, and functions that vanish for other reasons, may turn out to be nothing.
     done.failed = !_event.tangency && why.reason != bifurcation::NotLocated::Reason::no_event;
     _outcome.remark = to_text(why);
-    if (done.failed && !is_isolated(family)) {
-      done.failed = false;
-      _outcome.undecided = true;
-      _outcome.remark += "; the family's orbits there are not told from their neighbours";
-    }
+    if (done.failed)
+      if (const std::string hidden = hidden_in(family); !hidden.empty()) {
+        done.failed = false;
+        _outcome.undecided = true;
+        _outcome.remark += "; " + hidden;
+      }
     if (done.failed)
       done.reason = fmt::format("the event between arclength {:.6g} and {:.6g} was not located: {}",
                                 family.arclength_at(_work.from), family.arclength_at(_work.to), _outcome.remark);
@@ -119,14 +120,16 @@ class Location {
     return done;
   }
 
-  /// False where one of the orbits on both sides of the event is not told from its neighbours.
-  [[nodiscard]] bool is_isolated(const continuation::FamilyCurve& family) const {
+  /// Why one of the orbits on both sides of the event is not told from others; empty where both are.
+  [[nodiscard]] std::string hidden_in(const continuation::FamilyCurve& family) const {
+    const loop::Loop* beside = nullptr;
+    std::string why;
     for (const continuation::FamilyCurve::Known& known : family.known()) {
       if (known.position != _work.from && known.position != _work.to) continue;
-      const auto stability = stability_of(*_system, known.loop, family.isotropy(), _team);
-      if (stability && !bifurcation::is_isolated(*stability)) return false;
+      if (why.empty()) why = not_told_apart(*_system, known.loop, beside, family.isotropy(), _team);
+      beside = &known.loop;
     }
-    return true;
+    return why;
   }
 
   void describe(const bifurcation::Crossing& crossing, const continuation::FamilyCurve& family) {

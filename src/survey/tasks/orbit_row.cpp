@@ -1,12 +1,27 @@
 #include "orbit_row.hpp"
 
+#include <fmt/format.h>
+
 #include "certified.hpp"
+#include "orbweaver/bifurcation/test_functions.hpp"
+#include "orbweaver/continuation/left_open.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loop/symmetry/standard_phase.hpp"
 #include "stability_columns.hpp"
 
 namespace orbweaver::survey {
+
+std::string not_told_apart(const systems::System& system, const loop::Loop& orbit, const loop::Loop* neighbour,
+                           const loop::Isotropy& isotropy, core::Team* team) {
+  const std::optional<spectrum::Stability> stability = stability_of(system, orbit, isotropy, team);
+  if (stability && !bifurcation::is_isolated(*stability)) return "an index is 2 to rounding";
+  if (neighbour == nullptr) return {};
+  const double apart = continuation::arclength_between(*neighbour, orbit);
+  const double open = continuation::left_open_by_rounding(system, orbit, isotropy);
+  if (!(open > apart)) return {};
+  return fmt::format("rounding leaves an orbit open by {:.2g}, and its neighbour is {:.2g} away", open, apart);
+}
 
 std::optional<spectrum::Stability> stability_of(const systems::System& system, const loop::Loop& loop,
                                                 const loop::Isotropy& isotropy, core::Team* team) {
