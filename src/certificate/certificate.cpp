@@ -198,6 +198,7 @@ class Certifier::Parts {
     for (const State& state : _states) {
       _system.conserved_gradient(0, state, gradient);
       found.steepness = std::max(found.steepness, norm(gradient));
+      found.energy_size = std::max(found.energy_size, std::abs(_system.conserved(0, state)));
     }
   }
 
