@@ -194,11 +194,11 @@ class Certifier::Parts {
       for (const State& state : _states) drift = std::max(drift, std::abs(_system.conserved(k, state) - start));
     }
     if (count == 0) return;
-    found.energy = std::abs(_system.conserved(0, _states.front()));
     State gradient(_states.front().size());
     for (const State& state : _states) {
       _system.conserved_gradient(0, state, gradient);
       found.steepness = std::max(found.steepness, norm(gradient));
+      found.energy_size = std::max(found.energy_size, std::abs(_system.conserved(0, state)));
     }
   }
 

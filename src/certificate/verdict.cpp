@@ -8,13 +8,13 @@ namespace orbweaver::certificate {
 
 namespace {
 
-/// Of 1 + |z|: what the integrator's tolerance, of both, and rounding leave.
+/// Of |z|: what the integrator's tolerance and rounding leave.
 constexpr double integration_error = 1e-13;
-/// Of the energy: what rounding leaves of a sum of terms of its size.
-constexpr double energy_rounding = std::numeric_limits<double>::epsilon();
 /// How much more than its residual lets expect an orbit may be off. The closures of 10,000 orbits of the double
 /// pendulum, the swinging spring and the restricted problem were at most 5 times that, their drifts 0.6 times.
 constexpr double unexplained = 1e3;
+/// Of |H|: what summing its terms leaves, however small the orbit is. Measured: up to 2 eps at amplitudes of 1e-7.
+constexpr double energy_roundings = 32.0 * std::numeric_limits<double>::epsilon();
 /// Of the amplitude: fewer digits than four confirm no orbit.
 constexpr double informative = 1e-4;
 /// Of the product of the multipliers, and of an index relative to 1 + |k| beside its bound: transition matrices are
@@ -49,7 +49,7 @@ std::string_view name_of(Verdict verdict) {
 
 // What was not computed is NaN, and compares as not larger.
 Judgement judge(const Certificate& c, const Evidence& evidence) {
-  const double error = evidence.period * evidence.residual + integration_error * (1.0 + c.reach);
+  const double error = evidence.period * evidence.residual + integration_error * c.reach;
   const double growth =
       std::isnan(evidence.growth) ? std::numeric_limits<double>::infinity() : std::max(1.0, evidence.growth);
   const double explained = unexplained * error;
@@ -59,7 +59,7 @@ Judgement judge(const Certificate& c, const Evidence& evidence) {
   const double closure = std::fmax(c.closure, c.taylor_closure);
   if (closure > grown)
     return {c.beside_flow <= grown ? Verdict::wrong_period : Verdict::closure_contradicts, closure, grown};
-  const double drift_allowed = c.steepness * explained + unexplained * energy_rounding * c.energy;
+  const double drift_allowed = std::max(c.steepness * explained, energy_roundings * c.energy_size);
   if (c.energy_drift > drift_allowed) return {Verdict::drift_contradicts, c.energy_drift, drift_allowed};
   if (c.other_drift > explained) return {Verdict::drift_contradicts, c.other_drift, explained};
 

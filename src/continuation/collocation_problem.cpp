@@ -61,11 +61,14 @@ bool falls_no_further(const loop::Loop& loop, double tail) {
 
 }  // namespace
 
-std::string CollocationProblem::obstacle(const FamilyOf& family) {
+std::string CollocationProblem::obstacle(const FamilyOf& family, int largest_cutoff) {
   const loop::FundamentalDomain domain = loop::fundamental_domain(family.system.structure(), family.isotropy);
   if (!domain.expresses(family.isotropy)) return "one part of the loop, repeated, does not have all of their isotropy";
   if (!domain.is_square()) return "the ends of their fundamental domain hold more or fewer conditions than coordinates";
   if (!Collocation::applies(family.system, domain)) return "it takes a reversor or a conserved quantity";
+  const int coarsest = cell_counts::cutoff_of(domain, cell_counts::least);
+  if (coarsest > largest_cutoff)
+    return fmt::format("its fewest cells have K = {}, and at most {} is allowed", coarsest, largest_cutoff);
   return {};
 }
 
@@ -80,7 +83,7 @@ CollocationProblem::CollocationProblem(const FamilyOf& family, const Options& op
 
 Resolution CollocationProblem::resolution_for(int cutoff, const loop::TimeMap& map, int largest) const {
   int cells = cell_counts::at_least_for_cutoff(_domain, cutoff);
-  while (cells > 8 && cutoff_of(cells) > largest) cells = cell_counts::previous(cells);
+  while (cells > cell_counts::least && cutoff_of(cells) > largest) cells = cell_counts::previous(cells);
   return {cells, map};
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "cell_counts.hpp"
 #include "orbweaver/equations/collocation.hpp"
 #include "orbweaver/equations/orbit_solver.hpp"
 #include "orbweaver/loop/symmetry/fundamental_domain.hpp"
@@ -15,7 +16,7 @@ namespace orbweaver::continuation {
 class CollocationProblem final : public PointProblem {
  public:
   /// Why this does not apply to a family, as the end of a sentence; empty where it does.
-  [[nodiscard]] static std::string obstacle(const FamilyOf& family);
+  [[nodiscard]] static std::string obstacle(const FamilyOf& family, int largest_cutoff);
   CollocationProblem(const FamilyOf& family, const Options& options, ProblemState& state);
 
   [[nodiscard]] Resolution resolution_for(int cutoff, const loop::TimeMap& map, int largest) const override;
@@ -50,7 +51,7 @@ class CollocationProblem final : public PointProblem {
   equations::Collocation& equations();
   [[nodiscard]] std::shared_ptr<equations::Collocation> equations_on(const Resolution& resolution);
   /// The highest harmonic on a grid of `cells`.
-  [[nodiscard]] int cutoff_of(int cells) const { return (cells * _domain.copies() - 1) / 2; }
+  [[nodiscard]] int cutoff_of(int cells) const { return cell_counts::cutoff_of(_domain, cells); }
   [[nodiscard]] equations::AndersonSolver::Options solver_options();
   [[nodiscard]] double bounded_amplitude();
   [[nodiscard]] double rounding_of_nodes();

@@ -137,9 +137,13 @@ double tolerance_met(double tolerance, double loss_rms, double speed, double siz
 }
 
 double least_known_amplitude(const systems::System& system, const loop::Loop& rest, const loop::Tangent& direction) {
-  const loss::Linearization at_rest(system, rest, loss::Linearization::Order::jacobian);
-  return least_known_speed(loop::rms_size(rest), rms_field_jacobian(at_rest)) /
-         loop::rms_speed(loop::perturbation(rest, direction));
+  const double speed = loop::rms_speed(loop::perturbation(rest, direction));
+  try {
+    const loss::Linearization at_rest(system, rest, loss::Linearization::Order::jacobian);
+    return least_known_speed(loop::rms_size(rest), rms_field_jacobian(at_rest)) / speed;
+  } catch (const core::NotFiniteError&) {
+    return 0.0;
+  }
 }
 
 double rounding_floor(int cutoff, double period, double size, double speed, double field_jacobian) {

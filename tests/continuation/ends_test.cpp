@@ -89,6 +89,20 @@ TEST(Ends, StepLimit) {
   EXPECT_EQ(trace.last().step, 3);
 }
 
+// Collocation has K = 15 at least for orbits of four equal parts.
+TEST(Ends, NoOrbitHasMoreHarmonicsThanTheCutoffAllows) {
+  for (const int cutoff : {8, 10, 14, 15}) {
+    const test::Trace trace =
+        test::trace_of(test::in_phase(), {.cutoff_from = 8, .cutoff_to = cutoff, .start_amplitude = 1e-4});
+    EXPECT_EQ(trace.ending.reason, EndReason::cutoff_limit) << trace.ending.text();
+    ASSERT_FALSE(trace.orbits.empty()) << cutoff << ": " << trace.ending.text();
+    for (const Orbit& orbit : trace.orbits) EXPECT_LE(orbit.loop.cutoff, cutoff);
+  }
+  EXPECT_THROW(
+      (void)test::trace_of(test::in_phase(), {.corrector = {.method = corrector::Method::collocation}, .cutoff_to = 8}),
+      core::InputError);
+}
+
 TEST(Ends, CutoffLimit) {
   const test::Trace trace = test::trace_of(test::in_phase(), {.cutoff_to = 31});
   EXPECT_EQ(trace.ending.reason, EndReason::cutoff_limit);

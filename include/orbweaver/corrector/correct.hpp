@@ -92,7 +92,7 @@ inline constexpr double largest_unknown = 1e-2;
                                           double tolerance);
 
 /// The least length at which `direction`, with unit |dz(s = 0)|, leads from the equilibrium `rest` (a constant loop) to
-/// loops of `least_known_speed`.
+/// loops of `least_known_speed`; 0 where the field there is not finite, which a correction says better.
 [[nodiscard]] double least_known_amplitude(const systems::System& system, const loop::Loop& rest,
                                            const loop::Tangent& direction);
 
