@@ -241,6 +241,25 @@ TEST_F(VerifyOf, NumbersOfCrossingsChangedByAPartInABillionAreFound) {
                                                                          << text_of(found);
 }
 
+/// A family's first orbit lies up to three steps from its birth, where its crossings are not found from orbits beside them.
+TEST_F(VerifyOf, CrossingsBetweenABirthAndItsFirstOrbitAreTakenAsTheyAre) {
+  std::size_t row = 0;
+  const test::Atlas atlas(whole);
+  const auto& families = atlas.crossings().integers("family");
+  while (records.families[static_cast<std::size_t>(families[row])].crossing < 0) ++row;
+  std::vector<double> arclengths;
+  for (const archive::OrbitRecord& orbit : records.orbits)
+    if (orbit.family_key == records.crossings[row].family_key) arclengths.push_back(orbit.arclength);
+  for (const double steps : {2.0, 4.0}) {
+    archive::Records changed = records;
+    changed.crossings[row].arclength = arclengths[0] - steps * (arclengths[1] - arclengths[0]);
+    const Verification found = verified(changed);
+    if (world->is_root()) {
+      EXPECT_EQ(named(found).contains(fmt::format("crossings {}", row)), steps > 3.0) << text_of(found);
+    }
+  }
+}
+
 TEST_F(VerifyOf, IndicesOfFamiliesThatPointElsewhereAreFound) {
   std::size_t born = 0;
   while (records.families[born].crossing < 0) ++born;

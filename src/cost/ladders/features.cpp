@@ -32,7 +32,7 @@ class Prices {
   void add(const char* thing, const loop::Loop& at, const std::function<void()>& work) {
     const double period = at.period * _setting.system()->scales().time;
     try {
-      const Timing timing = timing_of(work, _setting.budget());
+      const Timing timing = timing_of(work, _setting.budget(), _setting.patience());
       _table.rows.push_back({thing, period, at.cutoff, timing.seconds, timing.seconds / _orbit_seconds, {}});
     } catch (const core::NumericalError& error) {
       _table.rows.push_back({thing, period, at.cutoff, {}, {}, error.what()});
@@ -55,8 +55,10 @@ void measure(const Setting& setting, const Take& take) {
   const systems::System& system = *setting.system();
   const loop::Isotropy& isotropy = setting.isotropy();
   const auto trace = [&] {
-    static_cast<void>(continuation::trace(setting.system(), setting.start(), setting.branch_options(),
-                                          [](const continuation::Orbit&) { return true; }));
+    std::size_t orbits = 0;
+    static_cast<void>(
+        continuation::trace(setting.system(), setting.start(), setting.branch_options(),
+                            [&](const continuation::Orbit&) { return ++orbits < setting.orbits().size(); }));
   };
   const double an_orbit = timing_of(trace, setting.budget()).seconds / static_cast<double>(setting.orbits().size());
   Prices prices(setting, table, an_orbit);
@@ -69,8 +71,7 @@ void measure(const Setting& setting, const Take& take) {
     const loop::Loop orbit = branch.frontier().orbit.loop;
     const loop::Tangent tangent = branch.frontier().tangent;
     prices.add("stability", orbit, [&] { static_cast<void>(spectrum::floquet(system, orbit, isotropy)); });
-    for (const auto& [name, level] : {std::pair{"certificate none", certificate::Level::none},
-                                      std::pair{"certificate closure", certificate::Level::closure},
+    for (const auto& [name, level] : {std::pair{"certificate closure", certificate::Level::closure},
                                       std::pair{"certificate full", certificate::Level::full}}) {
       certificate::Options options;
       options.level = level;

@@ -1,5 +1,7 @@
 #include "orbit_row.hpp"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "certified.hpp"
@@ -8,6 +10,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loop/symmetry/standard_phase.hpp"
+#include "orbweaver/loss/linearization.hpp"
 #include "stability_columns.hpp"
 
 namespace orbweaver::survey {
@@ -34,6 +37,20 @@ std::optional<spectrum::Stability> stability_of(const systems::System& system, c
   }
 }
 
+namespace {
+
+/// Of the loop that is stored, on the loss's grid. A branch by collocation has it from its own nodes, which between them miss
+/// up to a third beside a collision.
+double residual_of(const systems::System& system, const loop::Loop& stored, double otherwise) {
+  try {
+    return std::sqrt(loss::Linearization(system, stored, loss::Linearization::Order::residual).loss());
+  } catch (const core::NumericalError&) {  // not finite between the branch's nodes
+    return otherwise;
+  }
+}
+
+}  // namespace
+
 archive::OrbitRecord orbit_row(const systems::System& system, const std::string& family,
                                const continuation::Orbit& orbit, const loop::Isotropy& isotropy,
                                const std::optional<spectrum::Stability>& stability, certificate::Certifier* certifier) {
@@ -48,7 +65,7 @@ archive::OrbitRecord orbit_row(const systems::System& system, const std::string&
   row.energy = orbit.energy * units.energy();
   row.action = orbit.action * units.action();
   row.cutoff = stored.cutoff;
-  row.loss_rms = orbit.loss_rms;
+  row.loss_rms = residual_of(system, stored, orbit.loss_rms);
   row.off_branch_eigenvalue = orbit.off_branch_eigenvalue;
   row.tail = loop::tail(stored);
   row.state = loop::state_at(in_units, 0.0);
