@@ -50,7 +50,7 @@ std::vector<double> along(const Collocation& e) {
 }  // namespace
 
 double left_open_by_rounding(const systems::System& system, const loop::Loop& orbit, const loop::Isotropy& isotropy) {
-  if (!CollocationProblem::obstacle({system, orbit, isotropy}).empty()) return 0.0;
+  if (!CollocationProblem::obstacle({system, orbit, isotropy}, orbit.cutoff).empty()) return 0.0;
   const loop::FundamentalDomain domain = loop::fundamental_domain(system.structure(), isotropy);
   const std::vector<double> centre(orbit.modes.begin(), orbit.modes.begin() + orbit.dimension);
   Collocation e(system, domain, centre, orbit.winding, cell_counts::at_least_for_cutoff(domain, orbit.cutoff),
