@@ -14,7 +14,6 @@
 #include "orbit_correction.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
-#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/numerics/random.hpp"
 #include "transverse_flow.hpp"
 
@@ -172,16 +171,13 @@ void add_rounding_probes(const systems::Structure& system, const Chain& chain, c
 }
 
 /// The values' response to the orbit's own error, on a scale where differences keep their digits.
-void add_orbit_error(const systems::System& system, const loop::Loop& loop, const Chain& chain,
-                     const FundamentalGroup& group, const FloquetIndices& indices, core::Team* team,
-                     Stability& stability) {
-  constexpr double visible = 1e-7;     // of a change of the states: far above rounding, and its square far below
-  constexpr double in_rounding = 1e3;  // but no less than so many roundings of the states
+void add_orbit_error(const systems::System& system, const Chain& chain, const FundamentalGroup& group,
+                     const FloquetIndices& indices, core::Team* team, Stability& stability) {
+  constexpr double visible = 1e-7;  // of a change of the states: far above rounding, and its square far below
   const OrbitCorrection correction = orbit_correction(chain, group, system.structure().conservative());
   const double size = std::max(correction.states.cwiseAbs().maxCoeff(), std::abs(correction.stretch));
   if (size == 0.0) return;
-  const double least = in_rounding * epsilon * loop::rms_size(loop);
-  const double factor = std::max(1.0, std::max(visible * std::min(1.0, loop::rms_amplitude(loop)), least) / size);
+  const double factor = std::max(1.0, visible / size);
   const TransverseFlow flow = transverse_flow(system, corrected(system, chain, correction, factor, team), group, team);
   add_distances(indices, floquet_indices(system.structure(), flow, group.order), orbit_safety / factor, stability);
 }
@@ -272,7 +268,7 @@ Stability floquet(const systems::System& system, const loop::Loop& loop, const l
   if (loop.dimension == (structure.conservative() ? 2 : 1)) return without_errors({}, group.order);
   core::Team* const team = core::worth_dividing(options.team, loop.dimension);
   auto [chain, flow, indices, trace, stability] = integrated(system, loop, group, options, team);
-  add_orbit_error(system, loop, chain, group, indices, team, stability);
+  add_orbit_error(system, chain, group, indices, team, stability);
   if (is_single_pair(structure, flow)) {
     stability.fundamental_error[0] += trace.rounding;
     stability.full_error[0] =

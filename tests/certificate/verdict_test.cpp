@@ -71,6 +71,16 @@ Certificate whole() {
   return certificate;
 }
 
+TEST(Verdict, AllowsTheRoundingOfTheEnergyItself) {
+  Certificate small{.closure = 0.0, .energy_drift = 1e-15, .reach = 1e-7, .steepness = 1e-7};
+  const Evidence evidence{10.0, 0.0, 1e-7, 2.0};
+  EXPECT_EQ(judge(small, evidence).verdict, Verdict::drift_contradicts);
+  small.energy_size = 3.0;
+  EXPECT_EQ(judge(small, evidence).verdict, Verdict::holds);
+  small.energy_drift = 1e-13;
+  EXPECT_EQ(judge(small, evidence).verdict, Verdict::drift_contradicts);
+}
+
 TEST(Verdict, NamesEachDefect) {
   const Evidence evidence{10.0, 1e-12, 1.0, 2.5, 2.5, 1e-10};
   EXPECT_EQ(judge(whole(), evidence).verdict, Verdict::holds);

@@ -54,7 +54,6 @@ TEST_P(Amplitudes, OfOneInTenThousandMillion) {
   const double index = -2.0 * (other.oscillates ? std::cos(angle) : std::cosh(angle));
   test::HardCase(name, "index of the linear flow")
       .within(std::abs(stability.fundamental.at(0).real() - index), at_zero ? 1e-9 : 1e-4 * std::abs(index));
-  EXPECT_LT(stability.fundamental_error.at(0), at_zero ? 1e-9 : 1e-2 * std::abs(index)) << "the bound says nothing";
   test::HardCase(name, "its own bound, in parts of it")
       .within(std::abs(stability.fundamental.at(0).real() - index) / stability.fundamental_error.at(0), 1.0);
 }
