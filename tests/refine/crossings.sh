@@ -18,7 +18,7 @@ mapfile -t rows < <(awk -F, -v most="$most" '
 for row in "${rows[@]}"; do
   IFS=, read -r number family kind <<< "$row"
   begin=$(date +%s.%N)
-  text=$("$program" refine "$atlas" --crossing "$number" --digits 25) || text=""
+  text=$("$program" refine "$atlas" --crossing "$number" --digits 25 2> /dev/null) || text=""
   seconds=$(echo "$(date +%s.%N) - $begin" | bc)
   value() { sed -nE "s/^  $1 +(-?[0-9.]+) .*/\1/p" <<< "$text"; }
   printf '| %s | %s | %s | %s | %s | %.1f |\n' "$family" "$kind" "$number" "$(value period)" "$(value energy)" "$seconds"
