@@ -45,8 +45,8 @@ TEST(Verdict, ContradictsWhereTheEnergyChanges) {
   EXPECT_EQ(verdict(1e-11, std::numeric_limits<double>::quiet_NaN(), 2.0), Verdict::holds) << "nothing is conserved";
 }
 
-// The first orbit of a family of small oscillations (double pendulum, m2 = 1.7778): an integrator's tolerance is that of
-// a state of size 1 all the same, and its energy of order 1 is rounded.
+// The first orbit of a family of small oscillations (double pendulum, m2 = 1.7778): an integrator's tolerance is that
+// of a state of size 1 all the same, and its energy of order 1 is rounded.
 TEST(Verdict, OfASmallOrbitAllowsForToleranceAndRoundingOfOrderOne) {
   Certificate small = {.closure = 2e-16, .energy_drift = 5e-16, .reach = 5e-4, .energy = 4.6, .steepness = 5e-4};
   small.single_shot = 1.9e-13;
