@@ -21,8 +21,8 @@ namespace orbweaver::continuation {
 /// Roundings of nodal values after a filter over the whole loop and the elimination. Not measured.
 inline constexpr double nodal_rounding = 50.0 * std::numeric_limits<double>::epsilon();
 
-/// What rounding leaves of the residual: as of a loop, but for what the elimination leaves in the nodal values, which the
-/// field's Jacobian multiplies: beside a motion a thousand times as fast that is most of it (m2 = 1e6).
+/// What rounding leaves of the residual: as of a loop, but for what the elimination leaves in the nodal values, which
+/// the field's Jacobian multiplies: beside a motion a thousand times as fast that is most of it (m2 = 1e6).
 [[nodiscard]] double rounding_floor(const equations::Collocation& equations,
                                     const equations::Collocation::Quality& quality, double period);
 

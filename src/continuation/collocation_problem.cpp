@@ -51,8 +51,8 @@ constexpr const char* beyond_numbers = "the correction met numbers that are not 
 
 bool is_affordable(const Collocation& equations) { return equations.size() <= equations::exact_unknowns; }
 
-/// Over the last quarter harmonics that truncation leaves fall by a hundred where they end below 1e-8 of the first: what
-/// is more than this part of those before it is rounding, of which further ones have as much.
+/// Over the last quarter harmonics that truncation leaves fall by a hundred where they end below 1e-8 of the first:
+/// what is more than this part of those before it is rounding, of which further ones have as much.
 constexpr double fallen = 0.3;
 
 bool falls_no_further(const loop::Loop& loop, double tail) {

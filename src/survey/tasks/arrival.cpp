@@ -144,8 +144,8 @@ std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuat
   return record;
 }
 
-/// Of several gains, those whose parts vanish on the way: there they are proportional to that of `from`. Beside an orbit
-/// of a higher symmetry the sign of a part turns for those too that come near to it.
+/// Of several gains, those whose parts vanish on the way: there they are proportional to that of `from`. Beside an
+/// orbit of a higher symmetry the sign of a part turns for those too that come near to it.
 std::vector<bifurcation::SymmetryGain> vanishing(std::vector<bifurcation::SymmetryGain> gains,
                                                  continuation::FamilyCurve& family,
                                                  const bifurcation::SymmetryWatch& watch,
