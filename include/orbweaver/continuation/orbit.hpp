@@ -19,8 +19,8 @@ struct Orbit {
   double tail = 0.0;
   /// Where rounding keeps sqrt(loss) above the tolerance: the tolerance that it meets; else 0.
   double tolerance_met = 0.0;
-  /// Of a branch's first orbit, where rounding hides those as near as asked for: how many times as far from the start it
-  /// was taken; else 0.
+  /// Of a branch's first orbit, where rounding hides those as near as asked for: how many times as far from the start
+  /// it was taken; else 0.
   double moved_out = 0.0;
   int iterations = 0;
   double off_branch_eigenvalue = std::numeric_limits<double>::quiet_NaN();

@@ -72,8 +72,8 @@ inline constexpr double least_explained = 1e-2;
 [[nodiscard]] double state_rounding(double size, double field_jacobian);
 
 /// A loop of which that rounding is a larger part of rms |dz/dt| is no orbit that is known: T is open by this part of
-/// itself at most, and a tangent or multipliers likewise. Measured around (0, pi) of the double pendulum: T is off by an
-/// eightieth of the part.
+/// itself at most, and a tangent or multipliers likewise. Measured around (0, pi) of the double pendulum: T is off by
+/// an eightieth of the part.
 inline constexpr double largest_unknown = 1e-2;
 /// The rms |dz/dt| at which rounding is just that part.
 [[nodiscard]] double least_known_speed(double size, double field_jacobian);

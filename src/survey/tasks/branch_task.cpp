@@ -37,8 +37,8 @@ constexpr double zero_at_birth = 1e-6;
 /// Not measured.
 constexpr double nearly_two = 1e-4;
 
-/// Length of an oscillation's modes at which it has the indices of the linear motion to a part of 1e-10, and rounding leaves as
-/// much.
+/// Length of an oscillation's modes at which it has the indices of the linear motion to a part of 1e-10, and rounding
+/// leaves as much.
 constexpr double nearly_at_rest = 1e-5;
 /// Between an equilibrium and the first orbit a test function changes with the square of the amplitude. Of its larger
 /// modulus, but 0.1 at least: where it changes by more, the fourth power may give it zeros in pairs. Not measured.
