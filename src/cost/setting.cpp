@@ -26,8 +26,8 @@ namespace orbweaver::cost {
 
 namespace {
 
-/// Where the probes lie, in parts of the family's arclength, and how far before that one is looked for that can be refined:
-/// beside a collision it cannot.
+/// Where the probes lie, in parts of the family's arclength, and how far before that one is looked for that can be
+/// refined: beside a collision it cannot.
 constexpr double middle = 0.5;
 constexpr double near_end = 0.9;
 constexpr double nearer_start = 0.1;

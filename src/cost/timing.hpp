@@ -22,8 +22,8 @@ struct Timing {
 };
 
 /// Runs it once to warm up, then until `budget` seconds have passed, at least once and at most `most_repetitions`
-/// times. What took longer than ten budgets the first time is not repeated: that time is the result. Throws GivenUp after
-/// `patience` seconds of the first run.
+/// times. What took longer than ten budgets the first time is not repeated: that time is the result. Throws GivenUp
+/// after `patience` seconds of the first run.
 [[nodiscard]] Timing timing_of(const std::function<void()>& work, double budget,
                                double patience = std::numeric_limits<double>::infinity());
 

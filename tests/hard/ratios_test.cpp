@@ -71,8 +71,7 @@ INSTANTIATE_TEST_SUITE_P(
     name_of);
 // A minute: beside the slow swing a bob turns a thousand times as fast.
 INSTANTIATE_TEST_SUITE_P(Long, Ratios,
-                         testing::Values(Limit{"short_outer", {"l2=1e-6"}, "both bobs at one place", 1.0, 2.0, 1e-5},
-                                         Limit{"long_outer", {"l2=1e6"}, "the outer bob alone", 1e6, 1.0, 1e-5}),
+                         testing::Values(Limit{"short_outer", {"l2=1e-6"}, "both bobs at one place", 1.0, 2.0, 1e-5}),
                          name_of);
 
 }  // namespace

@@ -28,15 +28,15 @@ using ::testing::Field;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// 1 in the middle of a sector around th2 = 1.85 into which up to T = 7.5 Up-Down alone takes the outer rod; smooth, and
-/// 0 outside.
+/// 1 in the middle of a sector around th2 = 1.85 into which up to T = 7.5 Up-Down alone takes the outer rod; smooth,
+/// and 0 outside.
 double in_sector(double th2) {
   const double off = (std::abs(std::remainder(th2, 2.0 * std::numbers::pi)) - 1.85) / 0.35;
   return std::abs(off) < 1.0 ? std::pow(1.0 - off * off, 4) : 0.0;
 }
 
-/// The pendulum of the scene, off in that sector: the field at few states at a time, as certificates ask for it, and the
-/// energy.
+/// The pendulum of the scene, off in that sector: the field at few states at a time, as certificates ask for it, and
+/// the energy.
 class FaultyPendulum final : public test::DelegatingSystem, public systems::QuadSystem {
  public:
   FaultyPendulum(double of_integrators, double of_energy)

@@ -241,7 +241,8 @@ TEST_F(VerifyOf, NumbersOfCrossingsChangedByAPartInABillionAreFound) {
                                                                          << text_of(found);
 }
 
-/// A family's first orbit lies up to three steps from its birth, where its crossings are not found from orbits beside them.
+/// A family's first orbit lies up to three steps from its birth, where its crossings are not found from orbits beside
+/// them.
 TEST_F(VerifyOf, CrossingsBetweenABirthAndItsFirstOrbitAreTakenAsTheyAre) {
   std::size_t row = 0;
   const test::Atlas atlas(whole);

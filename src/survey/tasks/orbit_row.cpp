@@ -39,8 +39,8 @@ std::optional<spectrum::Stability> stability_of(const systems::System& system, c
 
 namespace {
 
-/// Of the loop that is stored, on the loss's grid. A branch by collocation has it from its own nodes, which between them miss
-/// up to a third beside a collision.
+/// Of the loop that is stored, on the loss's grid. A branch by collocation has it from its own nodes, which between
+/// them miss up to a third beside a collision.
 double residual_of(const systems::System& system, const loop::Loop& stored, double otherwise) {
   try {
     return std::sqrt(loss::Linearization(system, stored, loss::Linearization::Order::residual).loss());

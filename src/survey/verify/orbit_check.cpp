@@ -41,8 +41,8 @@ constexpr double both_bounds = 4.0;
 constexpr double bounds_factor = 64.0;
 constexpr double certificate_factor = 16.0;
 /// Of the way between two orbits; and where no reversor fixes the phase: a branch measures it between loops that were
-/// begun nearly, not quite, where they are nearest to each other. By 8.5e-5 at most in 10,000 steps of the pendulum and of
-/// the restricted problem.
+/// begun nearly, not quite, where they are nearest to each other. By 8.5e-5 at most in 10,000 steps of the pendulum and
+/// of the restricted problem.
 constexpr double same_way = 1e-9;
 constexpr double same_way_without_phase = 3e-4;
 /// Of the way: smaller harmonics change its length by the square of that part.
