@@ -44,6 +44,9 @@ constexpr double guarded_density = 1e-6;
 /// The residual between the places where the equations ask, in parts of that at them, from which on it is truncation's,
 /// and not the solver's or rounding's, which are alike at both. Truncation was seen at 900.
 constexpr double shows_truncation = 10.0;
+/// Of the loss of the loop that is stored, what its mean over the nodes shows at least: a third is missed beside a
+/// collision.
+constexpr double seen_by_nodes = 0.7;
 /// Keeps quotients by the amplitude finite.
 constexpr double least_amplitude = 1e-300;
 /// Where the field is finite, and what the correction made of it is not.
@@ -347,7 +350,7 @@ void CollocationProblem::judge(Trial& trial) {
   trial.threshold = corrector::acceptance_threshold(tolerance, quality.speed_rms, size, jacobian);
   trial.tolerance_met = corrector::tolerance_met(tolerance, trial.loss_rms, quality.speed_rms, size, jacobian);
   const double floor = rounding_floor(equations(), quality, trial.values[scalars_at()]);
-  trial.unsolved = quality.asked > std::max(trial.threshold, floor);
+  trial.unsolved = quality.asked > std::max(trial.threshold, floor) && e.has_cells_to_fit();
   trial.to_rounding = quality.unasked < floor;
   if (!(trial.values[static_cast<std::size_t>(e.period_at())] > 0.0)) {
     trial.converged = false;
@@ -355,7 +358,7 @@ void CollocationProblem::judge(Trial& trial) {
   } else if (!std::isfinite(trial.loss_rms)) {
     trial.converged = false;
     trial.reason = not_finite_at(trial.values, trial.values, beyond_numbers);
-  } else if (trial.loss_rms < trial.threshold) {
+  } else if (trial.loss_rms < seen_by_nodes * trial.threshold) {
     trial.is_orbit = true;
   } else if (trial.loss_rms < floor) {
     trial.is_orbit = trial.at_rounding = true;  // unless truncation explains the loss: `resolved`
@@ -399,7 +402,7 @@ bool CollocationProblem::resolved(Trial& trial) {
   trial.loop = equations().to_loop(trial.values.data());
   const double last = loop::tail(trial.loop);
   // Beside a fast motion rounding is magnified in the harmonics near it, and the residual does not see them.
-  if (trial.to_rounding && falls_no_further(trial.loop, last)) return true;
+  if (trial.to_rounding && falls_no_further(trial.loop, last) && equations().has_cells_to_fit()) return true;
   if (last > tail_limit(trial.amplitude, trial.size, _options) || trial.truncated) return false;
   // A tail of the size of the modes' own rounding says nothing of the resolution.
   if (last <= mode_rounding * trial.size) return true;

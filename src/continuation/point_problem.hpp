@@ -17,7 +17,7 @@ struct Trial {
   bool converged = false;       ///< the problem's equations are solved
   bool under_resolved = false;  ///< they are not, and more harmonics may help
   bool is_orbit = false;        ///< converged, and the loss over the whole loop is under its threshold
-  bool unsolved = false;        ///< the loss where the equations ask is above its threshold and rounding
+  bool unsolved = false;        ///< beside a fast motion: the loss where the equations ask is above threshold
   bool to_rounding = false;     ///< the loss between the places where the equations ask is no more than rounding leaves
   bool truncated = false;       ///< its equations hold where they ask, and the loop does not obey them in between
   bool at_rounding = false;     ///< an orbit, though rounding keeps its loss above the threshold
