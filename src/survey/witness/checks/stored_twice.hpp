@@ -101,7 +101,7 @@ class StoredTwice final : public Check {
     });
   }
 
-  // Two ends of one curve that have run past one another: with more steps one would have come to the birth of the other.
+  // Two ends of one curve that have run past one another: with more steps one comes to where the other begins.
   static bool is_cut(const Evidence& evidence, const Pair& pair) {
     return pair.first != pair.second && is_out_of_steps(evidence.family(pair.first)) &&
            is_out_of_steps(evidence.family(pair.second));
