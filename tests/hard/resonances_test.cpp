@@ -142,7 +142,8 @@ TEST_P(Resonances, AreFoundAsByShooting) {
   const bifurcation::SmallOscillations all =
       bifurcation::small_oscillations(*system, starts::sweep(*system, origin, options), 10);
   // Those that begin at rest with q1 > 0, their images under the mirror among them; where small oscillations start
-  // apart, those that are born at the equilibrium: another one begins at a fold, at an amplitude of the root of the detuning.
+  // apart, those that are born at the equilibrium: another one begins at a fold, where the amplitude is the root of the
+  // detuning.
   int brake = 0;
   double worst = 0.0;
   double worst_period = 0.0;
