@@ -65,7 +65,8 @@ Judgement judge(const Certificate& c, const Evidence& evidence) {
 
   if (c.apart > grown) return {Verdict::integrators_differ, c.apart, grown};
   // An error of the energy is one of the period too, however stable the orbit is.
-  const double returned = explained * (growth + evidence.period * c.steepness * c.steepness);
+  const double shear = std::fmax(evidence.period * c.steepness * c.steepness, c.energy_growth);
+  const double returned = explained * (growth + shear);
   if (c.single_shot > returned) return {Verdict::return_contradicts, c.single_shot, returned};
 
   if (c.symmetry_defect > explained) return {Verdict::not_symmetric, c.symmetry_defect, explained};

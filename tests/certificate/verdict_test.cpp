@@ -54,6 +54,14 @@ TEST(Verdict, OfASmallOrbitAllowsForRoundingOfItsEnergy) {
   EXPECT_EQ(judge(small, evidence).verdict, Verdict::drift_contradicts);
 }
 
+TEST(Verdict, ReturnsAsFarOffAsAnErrorOfTheEnergyGrows) {
+  Certificate certificate = {.closure = 1e-16, .single_shot = 1e-4, .reach = 1.0, .steepness = 1.0};
+  const Evidence evidence{2.0, 1e-14, 1.0, 1.0};
+  EXPECT_EQ(judge(certificate, evidence).verdict, Verdict::return_contradicts);
+  certificate.energy_growth = 1e9;
+  EXPECT_NE(judge(certificate, evidence).verdict, Verdict::return_contradicts);
+}
+
 /// Of an orbit that all is well with, at the level `full`.
 Certificate whole() {
   Certificate certificate;
