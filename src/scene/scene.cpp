@@ -117,9 +117,6 @@ std::vector<std::string> not_built_yet(const Scene& scene) {
   const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
   say(!system->structure().conservative(),
       "system: continuation of systems without a conserved energy is not built yet.");
-  say(!scene.section.coordinate.empty(),
-      fmt::format("section: crossings of the Poincare section {} = {:g} are not computed yet.",
-                  scene.section.coordinate, scene.section.value));
   return sentences;
 }
 

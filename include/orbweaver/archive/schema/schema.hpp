@@ -13,12 +13,15 @@ inline constexpr const char* atlas_format = "orbweaver-atlas";
 inline constexpr const char* segment_format = "orbweaver-segment";
 inline constexpr int format_version = 1;
 /// Root attribute `format_minor`: it rises with every table, column or attribute that is added; older files of the
-/// version are read. 1: /findings, system, effects, parameters, scales. 2: checksums. 3: what certificates say.
-inline constexpr int format_minor = 3;
+/// version are read. 1: /findings, system, effects, parameters, scales. 2: checksums. 3: what certificates say. 4:
+/// /sections is filled.
+inline constexpr int format_minor = 4;
 /// The first with checksums.
 inline constexpr int checksums_since = 2;
 /// The first with verdicts.
 inline constexpr int certificates_since = 3;
+/// The first whose /sections has what the scene asks for.
+inline constexpr int sections_since = 4;
 
 enum class ColumnType { integer, real, text };
 
