@@ -82,6 +82,7 @@ class Values {
     add("survey.subharmonics", scene.survey.subharmonics);
     add("survey.spectrum", scene.survey.spectrum == Spectrum::all ? "all" : "events");
     add("survey.team_size", scene.survey.team_size);
+    add("compute.stability", scene.compute.stability ? "true" : "false");
     add("compute.certificate", name_of(scene.compute.certificate));
     add_limits(scene.limits);
     add("events.periods", list_text(scene.events.periods, text_of));

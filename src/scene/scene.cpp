@@ -47,6 +47,9 @@ Scene read_scene(const Field& root) {
   if (const auto field = keys.find("continuation")) read_continuation(*field, system, scene.continuation);
   if (const auto field = keys.find("survey")) read_survey(*field, scene.survey);
   if (const auto field = keys.find("compute")) read_compute(*field, scene.compute);
+  if (!scene.compute.stability && scene.survey.depth > 0)
+    keys.find("compute")->fail("`stability: true`, as branches are found by multipliers",
+                               fmt::format("false, with survey.depth {}", scene.survey.depth), "leave one of them out");
   if (const auto field = keys.find("limits")) read_limits(*field, system, scene.limits);
   if (const auto field = keys.find("events")) read_events(*field, scene.events);
   if (const auto field = keys.find("section")) read_section(*field, system, scene.section);

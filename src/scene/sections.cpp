@@ -62,7 +62,8 @@ void read_survey(const Field& field, Survey& survey) {
 }
 
 void read_compute(const Field& field, Compute& compute) {
-  const Keys keys(field, {"certificate"}, "compute: {certificate: full}");
+  const Keys keys(field, {"stability", "certificate"}, "compute: {certificate: full}");
+  if (const auto stability = keys.find("stability")) compute.stability = stability->choice({"true", "false"}) == "true";
   if (const auto certificate = keys.find("certificate")) {
     const std::string level = certificate->choice({"automatic", "none", "closure", "full"});
     compute.certificate = level == "automatic" ? Certificate::automatic

@@ -59,6 +59,7 @@ const std::map<std::string, Case> cases{
     {"survey.subharmonics", {"4", "5"}},
     {"survey.spectrum", {"events", "all"}},
     {"survey.team_size", {"1", "2", Change::free}},
+    {"compute.stability", {"true", "false"}},
     {"compute.certificate", {"automatic", "full"}},
     {"limits.period", {"30.0", "31", Change::widened}},
     {"limits.energy", {"[-.inf, .inf]", "[-10, .inf]", Change::narrowed}},

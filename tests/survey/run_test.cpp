@@ -5,6 +5,7 @@
 
 #include "archive/sample.hpp"
 #include "orbweaver/archive/read/reader.hpp"
+#include "orbweaver/certificate/verdict.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/survey/run/survey.hpp"
 #include "orbweaver/survey/tree/family_end.hpp"
@@ -166,9 +167,30 @@ TEST(RunSurvey, StabilityColumnsHoldTheIndexAndABoundOfItsError) {
   EXPECT_NEAR(half.back(), reference, 1e-10);
 }
 
+TEST(RunSurvey, WithoutStabilityTheSameOrbitsHaveNoMultipliers) {
+  const core::Communicator comm;
+  const auto folder = test::fresh_folder(own_folder(comm, "without_stability"), comm.get());
+  const auto with = run(comm, test::quick_scene({"limits.period=12"}), folder / "with");
+  const auto without =
+      run(comm, test::quick_scene({"limits.period=12", "compute.stability=false"}), folder / "without");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(without.failures, 0U);
+  const archive::Archive whole(with.atlas);
+  const archive::Archive bare(without.atlas);
+  ASSERT_GT(bare.orbits().rows(), 10U);
+  ASSERT_GT(whole.crossings().rows(), 0U);
+  EXPECT_EQ(bare.crossings().rows(), 0U);
+  for (const char* column : {"period", "energy", "action", "state", "closure"})
+    EXPECT_EQ(bare.orbits().reals(column), whole.orbits().reals(column)) << column;
+  for (const char* column : {"stability", "fundamental_stability", "stability_error"})
+    for (const double value : bare.orbits().reals(column)) EXPECT_TRUE(std::isnan(value)) << column;
+  for (const std::int64_t verdict : bare.orbits().integers("verdict"))
+    EXPECT_EQ(verdict, static_cast<std::int64_t>(certificate::Verdict::holds));
+}
+
 TEST(RunSurvey, ManySmallFlushesGiveTheArchiveOfOneRankAndOneFlush) {
   const core::Communicator comm;
-  scene::Scene scene = test::quick_scene({"limits.period=8.5"});
+  scene::Scene scene = test::quick_scene({"limits.period=8.5", "section={coordinate: w1, value: 0}"});
   const auto pieces = test::fresh_folder(own_folder(comm, "pieces"), comm.get());
   const auto foreign = pieces / "segments" / "notes.txt";
   if (comm.is_root()) {

@@ -66,7 +66,9 @@ enum class Certificate {
   full,
 };
 
+/// What is computed of each orbit; what is off costs nothing, and has NaN in the archive.
 struct Compute {
+  bool stability = true;  ///< multipliers, and with them every crossing but folds; branches need it
   Certificate certificate = Certificate::automatic;
 };
 

@@ -52,6 +52,14 @@ continuation::Options options_of(const scene::Scene& scene, const BranchWork& wo
   return options;
 }
 
+/// None where the scene asks for no multipliers.
+std::vector<bifurcation::TestFunction> functions_of(const scene::Scene& scene, const systems::System& system,
+                                                    const loop::Isotropy& isotropy) {
+  if (!scene.compute.stability) return {};
+  return bifurcation::test_functions(system.structure(), loop::SymmetryGroup(system.structure(), isotropy).order(),
+                                     scene.survey.subharmonics);
+}
+
 }  // namespace
 
 BranchTask::BranchTask(const scene::Scene& scene, std::shared_ptr<const systems::System> system, BranchWork work,
@@ -66,9 +74,7 @@ BranchTask::BranchTask(const scene::Scene& scene, std::shared_ptr<const systems:
       _start(start_of(_work, _system->structure())),
       _curve(_system, _start.isotropy, branch_options(scene, team)),
       _symmetry(_system->structure(), _start.isotropy),
-      _functions(bifurcation::test_functions(_system->structure(),
-                                             loop::SymmetryGroup(_system->structure(), _start.isotropy).order(),
-                                             scene.survey.subharmonics)) {
+      _functions(functions_of(scene, *_system, _start.isotropy)) {
   _outcome.key = _work.key;
   if (is_certified_by_branches(scene)) {
     certificate::Options options;
@@ -78,8 +84,9 @@ BranchTask::BranchTask(const scene::Scene& scene, std::shared_ptr<const systems:
   _may_arrive_ahead =
       _system->structure().symplectic && std::none_of(_start.isotropy.begin(), _start.isotropy.end(),
                                                       [](const loop::SymmetryElement& e) { return e.reversing; });
-  if (_work.lineage.crossing.empty()) _options.too_far = [this](const auto& first) { return is_too_far(first); };
-  if (_system->structure().symplectic)
+  if (_work.lineage.crossing.empty() && scene.compute.stability)
+    _options.too_far = [this](const auto& first) { return is_too_far(first); };
+  if (_system->structure().symplectic && scene.compute.stability)
     _options.jumped = [this](const auto& from, const auto& to) { return jumped(from, to); };
   begin(state);
 }
@@ -245,10 +252,15 @@ bool BranchTask::arrives_ahead() {
   return ahead.has_value();
 }
 
+std::optional<spectrum::Stability> BranchTask::asked_stability(const loop::Loop& loop) const {
+  if (!_scene.compute.stability) return std::nullopt;
+  return stability_of(*_system, loop, _start.isotropy, _team);
+}
+
 /// Not computed again for the orbit that was asked for last.
 const std::optional<spectrum::Stability>& BranchTask::stability_at(const continuation::Orbit& orbit) {
   if (_asked != orbit.loop.modes) {
-    _stability = stability_of(*_system, orbit.loop, _start.isotropy, _team);
+    _stability = asked_stability(orbit.loop);
     _asked = orbit.loop.modes;
   }
   return _stability;
@@ -331,7 +343,7 @@ void BranchTask::detect(const continuation::Orbit& orbit, const std::optional<sp
 /// The first orbit may lie so far out that an index has passed the values of other sectors on the way from the crossing
 /// where the family is born.
 void BranchTask::detect_from_birth() {
-  if (_work.lineage.crossing.empty() || _curve.known().empty()) return;
+  if (_work.lineage.crossing.empty() || _curve.known().empty() || _functions.empty()) return;
   const continuation::FamilyCurve::Known& first = _curve.known().front();
   std::optional<spectrum::Stability> birth = stability_of(*_system, _start.base, _start.isotropy, _team);
   // Its value tells: its error bound is that of a place where orbits are not isolated.
@@ -376,7 +388,7 @@ void BranchTask::add_event(const bifurcation::Event& event, double from, double 
 
 void BranchTask::solve_requested(const continuation::Orbit& orbit) {
   for (continuation::Orbit& wanted : requested_orbits(_scene, *_system, _curve, *_last, orbit, _outcome.remarks))
-    store(wanted, stability_of(*_system, wanted.loop, _start.isotropy, _team));
+    store(wanted, asked_stability(wanted.loop));
 }
 
 void BranchTask::store(continuation::Orbit orbit, const std::optional<spectrum::Stability>& stability) {

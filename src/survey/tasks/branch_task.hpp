@@ -36,6 +36,8 @@ class BranchTask {
   void limited_by(int limits, const continuation::Frontier& before);
   void finish();
   bool take(const continuation::Orbit& orbit);
+  /// Of any loop of the family; none where the scene asks for no multipliers.
+  [[nodiscard]] std::optional<spectrum::Stability> asked_stability(const loop::Loop& loop) const;
   const std::optional<spectrum::Stability>& stability_at(const continuation::Orbit& orbit);
   bool jumped(const continuation::Orbit& from, const continuation::Orbit& to);
   [[nodiscard]] bool is_too_far(const continuation::Orbit& first);

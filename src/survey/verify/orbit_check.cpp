@@ -69,7 +69,8 @@ class OrbitCheck {
     const certificate::Certificate found = _certifier(_loop);
     constants(found.steepness);
     shape();
-    const std::optional<spectrum::Stability> stability = stability_of(_system, _loop, _atlas.isotropy(_family));
+    std::optional<spectrum::Stability> stability;
+    if (_atlas.scene().compute.stability) stability = stability_of(_system, _loop, _atlas.isotropy(_family));
     multipliers(stability);
     certificate(found);
   }
