@@ -26,6 +26,7 @@ struct Limit {
   double weight;  ///< its mass times gravity
   /// Corrections are of first order in the small ratio; with gravity alone there are none.
   double bound;
+  std::vector<std::string> overrides{};
 };
 
 class Ratios : public testing::TestWithParam<Limit> {};
@@ -46,6 +47,7 @@ TEST_P(Ratios, TheSlowSwingIsThatOfASimplePendulum) {
                                      "limits.families=1",
                                      "limits.period=.inf",
                                      fmt::format("limits.energy=[-.inf, {:.17g}]", energy)};
+  overrides.insert(overrides.end(), with.overrides.begin(), with.overrides.end());
   for (const std::string& parameter : with.parameters) overrides.push_back("system.parameters." + parameter);
   const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/double_pendulum.yaml", overrides);
   const survey::Summary summary = test::run(comm, scene, "ratio");
@@ -69,9 +71,12 @@ INSTANTIATE_TEST_SUITE_P(
                     Limit{"strong_gravity", {"m1=1e-6", "g=1e6"}, "both rods in line", 2.0, 1e6, 1e-5},
                     Limit{"weak_gravity", {"m1=1e-6", "g=1e-6"}, "both rods in line", 2.0, 1e-6, 1e-5}),
     name_of);
-// A minute: beside the slow swing a bob turns a thousand times as fast.
-INSTANTIATE_TEST_SUITE_P(Long, Ratios,
-                         testing::Values(Limit{"short_outer", {"l2=1e-6"}, "both bobs at one place", 1.0, 2.0, 1e-5}),
-                         name_of);
+// Beside the slow swing the outer bob turns a thousand times as fast: from one orbit to the next its phase gains six
+// turns, and the multipliers say nothing that can be followed (docs/accuracy.md, "Hard cases").
+INSTANTIATE_TEST_SUITE_P(
+    WithoutMultipliers, Ratios,
+    testing::Values(Limit{
+        "short_outer", {"l2=1e-6"}, "both bobs at one place", 1.0, 2.0, 1e-5, {"compute.stability=false"}}),
+    name_of);
 
 }  // namespace
