@@ -91,7 +91,7 @@ double first_coordinate(const loop::Loop& loop, double fraction) {
   return loop::state_at(loop, fraction * loop.period).front();
 }
 
-// The first coordinate that moves at s = 0 does so upwards.
+// The first coordinate that moves at s = 0 does so upwards: of two sides that are images of one another either will do.
 double upward(const loop::Loop& direction) {
   const std::vector<double> at_start = loop::state_at(direction, 0.0);
   for (const std::vector<double>* numbers : {&at_start, &direction.modes})
@@ -121,8 +121,9 @@ Direction counted(const KernelActions& group, const Eigen::VectorXd& v, Directio
 }
 
 // The direction of a fixed line: made exactly symmetric, started where the reversor has phase 0.
-Direction direction_along(const systems::Structure& system, const KernelActions& group, const loop::Loop& base,
+Direction direction_along(const systems::System& of, const KernelActions& group, const loop::Loop& base,
                           const Eigen::VectorXd& v, const DirectionOptions& options) {
+  const systems::Structure& system = of.structure();
   const loop::Loop vector = loop::perturbation(base, group.vector_at(v));
   loop::Loop mean = vector;
   std::fill(mean.modes.begin(), mean.modes.end(), 0.0);
@@ -132,7 +133,8 @@ Direction direction_along(const systems::Structure& system, const KernelActions&
 
   const Rank rank = rank_of(group, system, v);
   double start = 0.0;
-  if (rank.reversor < std::numeric_limits<int>::max()) {
+  const bool is_reversible = rank.reversor < std::numeric_limits<int>::max();
+  if (is_reversible) {
     // Of the two instants on the fixed set the one with the larger first coordinate.
     start = 0.5 * rank.phase;
     if (first_coordinate(base, start + 0.5) > first_coordinate(base, start) + visible) start += 0.5;
@@ -142,11 +144,12 @@ Direction direction_along(const systems::Structure& system, const KernelActions&
   mean = loop::time_shifted(mean, start);
   double length = 0.0;
   for (const double c : mean.modes) length += c * c;
-  const double scale = upward(mean) / std::sqrt(length);
   out.tangent.modes = mean.modes;
-  out.tangent *= scale;
-  out.isotropy = isotropy_along(system, group, out.base, out.tangent, options);
+  out.tangent *= 1.0 / std::sqrt(length);
   out.both_sides = has_other_sides(group, v);
+  const int rising = out.both_sides ? rising_side(of, out.base, out.tangent, is_reversible) : 0;
+  out.tangent *= rising != 0 ? rising : upward(mean);
+  out.isotropy = isotropy_along(system, group, out.base, out.tangent, options);
   return counted(group, v, std::move(out));
 }
 
@@ -225,7 +228,7 @@ std::vector<Direction> along_lines(const systems::System& system, const KernelAc
   std::vector<Direction> out;
   std::vector<std::vector<double>> numbers;
   for (const Line& line : lines) {
-    out.push_back(direction_along(system.structure(), group, base, line.vector, options));
+    out.push_back(direction_along(system, group, base, line.vector, options));
     numbers.push_back(at_symmetric_instants(system, out.back().base));
   }
   if (group.constant()) return out;

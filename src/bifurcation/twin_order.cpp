@@ -14,6 +14,9 @@ namespace orbweaver::bifurcation {
 
 namespace {
 
+/// How far to both sides of a base its numbers are compared, in parts of its amplitude where that is below 1: far above
+/// what kernel vectors are off by (1e-6), and near enough to tell on which side they grow.
+constexpr double beside = 0.01;
 /// A rotation with a smaller sine is none, or half a turn.
 constexpr double no_sense = 1e-3;
 
@@ -51,6 +54,19 @@ std::vector<double> at_symmetric_instants(const systems::System& system, const l
     numbers.insert(numbers.end(), values->begin(), values->end());
   }
   return numbers;
+}
+
+int rising_side(const systems::System& system, const loop::Loop& base, const loop::Tangent& line, bool is_reversible) {
+  const double amplitude = loop::rms_amplitude(base);
+  const double away = beside * (amplitude > 0.0 ? std::min(1.0, amplitude) : 1.0);
+  const auto numbers_at = [&](double distance) {
+    const loop::Loop there = loop::moved(base, line, distance);
+    return is_reversible ? at_symmetric_instants(system, there) : std::vector<double>{loop::rms_speed(there)};
+  };
+  const std::vector<double> ahead = numbers_at(away);
+  const std::vector<double> behind = numbers_at(-away);
+  if (stands_before(ahead, behind, of_crossings)) return 1;
+  return stands_before(behind, ahead, of_crossings) ? -1 : 0;
 }
 
 void put_in_order(const systems::System& system, std::vector<FoundOrbit>& found) {

@@ -25,6 +25,11 @@ inline constexpr double of_orbits_found = 1e-9;
 /// reversor has phase 0.
 [[nodiscard]] std::vector<double> at_symmetric_instants(const systems::System& system, const loop::Loop& loop);
 
+/// The side of a line to which the first number grows that tells its sides apart, +1 or -1: of those at symmetric
+/// instants where a reversor keeps the line with phase 0, else the mean speed. 0 where none tells them apart.
+[[nodiscard]] int rising_side(const systems::System& system, const loop::Loop& base, const loop::Tangent& line,
+                              bool is_reversible);
+
 /// Orbits whose parts in the kernel have one length: by period, energy, mean speed, the larger first.
 void put_in_order(const systems::System& system, std::vector<FoundOrbit>& found);
 

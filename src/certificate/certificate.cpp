@@ -73,6 +73,10 @@ class Certifier::Parts {
     int shifts = 1;
     for (const loop::SymmetryElement& element : _group.elements()) shifts = std::lcm(shifts, element.shift_denominator);
     _segments = (options.segments + shifts - 1) / shifts * shifts;
+    for (int m = 0; m < _segments; ++m) _sources.push_back({m, nullptr});
+    for (const loop::SymmetryElement& element : _group.elements())
+      for (int m = 0; m < _segments && !element.reversing; ++m)
+        if (Source& source = _sources[image_of(element, m)]; m < source.segment) source = {m, &element.map.matrix};
     if (const auto* formulas = dynamic_cast<const systems::FormulaSystem*>(&system)) {
       taylor::FlowOptions flow;
       flow.digits = taylor_digits;
@@ -90,10 +94,9 @@ class Certifier::Parts {
     set_states();
     set_fields();
     closures(found);
-    found.single_shot = single_shot();
     conserved(found);
     for (const State& state : _states) found.reach = std::max(found.reach, norm(state));
-    if (found.single_shot > far_return * found.reach) found.energy_growth = energy_growth(found.reach);
+    once_around(found);
     found.symmetry_defect = symmetry_defect();
     found.recurrence = recurrence();
     found.tail = loop::tail(loop);
@@ -123,6 +126,27 @@ class Certifier::Parts {
   }
 
   [[nodiscard]] States starts() const { return {_states.begin(), _states.end() - 1}; }
+
+  /// Of states at the segments' starts, those of which the others are images by time shifts of the isotropy.
+  [[nodiscard]] States sources_of(const States& states) const {
+    States out;
+    for (int m = 0; m < _segments; ++m)
+      if (_sources[static_cast<std::size_t>(m)].segment == m) out.push_back(states[static_cast<std::size_t>(m)]);
+    return out;
+  }
+
+  /// What the segments have, from what their sources have, in their order: `image(map, value)`.
+  template <class Value, class Image>
+  [[nodiscard]] std::vector<Value> for_all(const std::vector<Value>& of_sources, const Image& image) const {
+    std::vector<Value> out;
+    std::size_t next = 0;
+    for (int m = 0; m < _segments; ++m) {
+      const Source& source = _sources[static_cast<std::size_t>(m)];
+      out.push_back(source.segment == m ? of_sources[next++]
+                                        : image(*source.map, out[static_cast<std::size_t>(source.segment)]));
+    }
+    return out;
+  }
 
   [[nodiscard]] States runge_kutta_ends() const {
     try {
@@ -182,30 +206,26 @@ class Certifier::Parts {
     for (std::size_t m = 0; m < ends.size(); ++m) found.apart = std::max(found.apart, distance(ends[m], (*series)[m]));
   }
 
-  // NaN where the orbit is so unstable that the integration leaves the region where the system is defined.
-  [[nodiscard]] double single_shot() const {
-    try {
-      return distance(integrate(_system, _states.front(), _loop->period, _options.tolerance), _states.back());
-    } catch (const core::NumericalError&) {
-      return unknown;
+  // NaN where the orbit is so unstable that the integration leaves the region where the system is defined. The
+  // displaced state goes along in the register of the orbit's own.
+  void once_around(Certificate& found) const {
+    States starts{_states.front()};
+    if (!_system.structure().conserved.empty()) {
+      State gradient(_states.front().size());
+      _system.conserved_gradient(0, _states.front(), gradient);
+      const double length = norm(gradient);
+      State moved = _states.front();
+      for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += displaced * found.reach / length * gradient[i];
+      if (length > 0.0) starts.push_back(std::move(moved));
     }
-  }
-
-  // By a difference: NaN where the integration leaves the region where the system is defined, or nothing is conserved.
-  [[nodiscard]] double energy_growth(double reach) const {
-    if (_system.structure().conserved.empty()) return unknown;
-    State gradient(_states.front().size());
-    _system.conserved_gradient(0, _states.front(), gradient);
-    const double length = norm(gradient);
-    if (!(length > 0.0)) return unknown;
-    State moved = _states.front();
-    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += displaced * reach / length * gradient[i];
-    try {
-      const State end = integrate(_system, _states.front(), _loop->period, _options.tolerance);
-      return distance(integrate(_system, moved, _loop->period, _options.tolerance), end) / (displaced * reach);
-    } catch (const core::NumericalError&) {
-      return unknown;
-    }
+    for (; !starts.empty(); starts.pop_back()) try {
+        const States ends = integrate_together(_system, starts, _loop->period, _options.tolerance);
+        found.single_shot = distance(ends.front(), _states.back());
+        if (ends.size() > 1 && found.single_shot > far_return * found.reach)
+          found.energy_growth = distance(ends[1], ends[0]) / (displaced * found.reach);
+        return;
+      } catch (const core::NumericalError&) {  // the displaced one may have left, and the orbit's own not
+      }
   }
 
   void conserved(Certificate& found) const {
@@ -281,11 +301,15 @@ class Certifier::Parts {
   }
 
   void linearized(Certificate& found) const {
-    std::vector<Eigen::MatrixXd> matrices;
+    std::vector<Eigen::MatrixXd> of_sources;
     const Eigen::Index d = _system.dimension();
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    for (const State& entries : transitions(_system, starts(), step(), transition_tolerance))
-      matrices.emplace_back(Eigen::Map<const RowMajor>(entries.data(), d, d));
+    for (const State& entries : transitions(_system, sources_of(_states), step(), transition_tolerance))
+      of_sources.emplace_back(Eigen::Map<const RowMajor>(entries.data(), d, d));
+    const std::vector<Eigen::MatrixXd> matrices =
+        for_all(of_sources, [](const Eigen::MatrixXd& g, const Eigen::MatrixXd& matrix) -> Eigen::MatrixXd {
+          return g * matrix * g.inverse();
+        });
     newton(matrices, found);
     multipliers(matrices, found);
   }
@@ -307,12 +331,19 @@ class Certifier::Parts {
     found.distance = std::numeric_limits<double>::infinity();
     found.contraction = found.distance;
     try {
-      const States ends = integrate_together(_system, moved, step() + first.period / _segments, _options.tolerance);
+      const States ends =
+          integrate_together(_system, sources_of(moved), step() + first.period / _segments, _options.tolerance);
       moved.push_back(moved.front());
       for (std::size_t i = 0; i < moved.back().size(); ++i)
         moved.back()[i] += 2.0 * std::numbers::pi * _loop->winding[i];
-      std::vector<Eigen::VectorXd> gaps;
-      for (std::size_t m = 0; m < ends.size(); ++m) gaps.emplace_back(vector_of(moved[m + 1]) - vector_of(ends[m]));
+      std::vector<Eigen::VectorXd> of_sources;
+      for (std::size_t m = 0; of_sources.size() < ends.size(); ++m)
+        if (_sources[m].segment == static_cast<int>(m))
+          of_sources.emplace_back(vector_of(moved[m + 1]) - vector_of(ends[of_sources.size()]));
+      const std::vector<Eigen::VectorXd> gaps =
+          for_all(of_sources, [](const Eigen::MatrixXd& g, const Eigen::VectorXd& gap) -> Eigen::VectorXd {
+            return g * gap;
+          });
       NewtonSystem::Step second = system.solve(gaps);
       project(second.states);
       found.contraction = moves > 0.0 ? largest(second.states) / moves : 0.0;
@@ -347,10 +378,17 @@ class Certifier::Parts {
     found.index = product.trace();
   }
 
+  /// Of which segment another one is the image, by which matrix; itself without one.
+  struct Source {
+    int segment;
+    const Eigen::MatrixXd* map;
+  };
+
   const systems::System& _system;
   loop::SymmetryGroup _group;
   Options _options;
   int _segments = 1;
+  std::vector<Source> _sources;
   std::optional<taylor::ManyFlows> _taylor;
   const loop::Loop* _loop = nullptr;
   States _states;                        // M + 1

@@ -14,7 +14,9 @@
 #include "orbit_correction.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/numerics/quad.hpp"
 #include "orbweaver/numerics/random.hpp"
+#include "orbweaver/systems/quad_system.hpp"
 #include "transverse_flow.hpp"
 
 namespace orbweaver::spectrum {
@@ -52,11 +54,34 @@ void add_distances(const FloquetIndices& indices, const FloquetIndices& others, 
   add_distances(indices.fundamental, others.fundamental, factor, stability.fundamental_error);
 }
 
-/// Relative rounding error of one factor: the step's arithmetic, and the direction of f where the orbit is slow.
-double rounding_of(const Chain& chain, Eigen::Index m) {
-  const double rate = chain.jacobians.col(m).norm();
-  const double terms = rate * (1.0 + chain.states.col(m).norm());
-  return epsilon * (step_roundings + std::min(1.0, chain.steps[m] * rate) * terms / chain.fields.col(m).norm());
+/// Below this size of a state the rounding of f is measured: it may be of the state's size, as f is about an
+/// equilibrium at 0, or of that of constants which cancel. Above, what constants leave is at most 1e3 roundings.
+constexpr double near_zero = 1e-3;
+/// Of the error measured at one state, which may happen to be small: the largest of the others is some three times as
+/// large.
+constexpr double measured_safety = 4.0;
+
+/// |f - f(z)| at the chain's state m, f(z) being computed in quadruple precision.
+double field_error(const systems::QuadSystem& system, const Chain& chain, Eigen::Index m) {
+  numerics::QuadVector f(chain.dimension());
+  numerics::QuadMatrix jacobian(chain.dimension(), chain.dimension());
+  system.linearize(chain.states.col(m).cast<numerics::Quad>(), f, jacobian);
+  return (chain.fields.col(m).cast<numerics::Quad>() - f).norm().convert_to<double>();
+}
+
+/// Relative rounding error of each factor: the step's arithmetic, and the direction of f where the orbit is slow.
+Eigen::VectorXd roundings_of(const systems::System& system, const Chain& chain) {
+  const auto* quad = dynamic_cast<const systems::QuadSystem*>(&system);
+  Eigen::VectorXd out(chain.segments());
+  for (Eigen::Index m = 0; m < chain.segments(); ++m) {
+    const double rate = chain.jacobians.col(m).norm();
+    const double size = chain.states.col(m).norm();
+    double terms = rate * (1.0 + size);
+    if (quad != nullptr && size < near_zero)
+      terms = std::min(terms, rate * size + measured_safety / epsilon * field_error(*quad, chain, m));
+    out(m) = epsilon * (step_roundings + std::min(1.0, chain.steps[m] * rate) * terms / chain.fields.col(m).norm());
+  }
+  return out;
 }
 
 /// Frobenius norm of entries whose squares may be beyond range.
@@ -76,7 +101,7 @@ struct TraceError {
 /// What the factors' errors do to the trace of their product, for 2 x 2 matrices: bounds, but for `estimate`. An
 /// estimate says how large a factor's entries' errors are, not of which sign: on circles, whose segments are all alike,
 /// the trace with the estimates is up to 32 times too small.
-TraceError error_of_trace(const Chain& chain, const TransverseFlow& flow) {
+TraceError error_of_trace(const Eigen::VectorXd& roundings, const TransverseFlow& flow) {
   const Eigen::Index n = flow.factors.cols();
   Eigen::MatrixXd after(4, n);  // products of the factors behind each one
   matrix_in<2>(after, n - 1, 2).setIdentity();
@@ -89,7 +114,7 @@ TraceError error_of_trace(const Chain& chain, const TransverseFlow& flow) {
     const auto estimated = matrix_in<2>(flow.errors, m, 2);
     error.estimate += truncation_share * std::abs((others * estimated).trace());
     error.truncation += truncation_share * (others.cwiseAbs() * estimated.cwiseAbs()).trace();
-    error.rounding += rounding_of(chain, m) * flow.factors.col(m).norm() * norm_of(others);
+    error.rounding += roundings(m) * flow.factors.col(m).norm() * norm_of(others);
     before = (matrix_in<2>(flow.factors, m, 2) * before).eval();
     error.rounding += epsilon * norm_of(before) * norm_of(after.col(m));
   }
@@ -145,10 +170,11 @@ void add_probes(const systems::Structure& system, const TransverseFlow& flow, in
 }
 
 /// Bounds what the chain's truncation errors do to the indices; returns the rounding's share if it comes with it.
-TraceError add_truncation(const systems::Structure& system, const Chain& chain, const TransverseFlow& flow, int order,
+TraceError add_truncation(const systems::System& of, const Chain& chain, const TransverseFlow& flow, int order,
                           const FloquetIndices& indices, core::Team* team, Stability& stability) {
+  const systems::Structure& system = of.structure();
   if (is_single_pair(system, flow)) {
-    const TraceError error = error_of_trace(chain, flow);
+    const TraceError error = error_of_trace(roundings_of(of, chain), flow);
     stability.fundamental_error[0] += error.truncation;
     return error;
   }
@@ -159,15 +185,16 @@ TraceError add_truncation(const systems::Structure& system, const Chain& chain, 
   return {};
 }
 
-void add_rounding_probes(const systems::Structure& system, const Chain& chain, const TransverseFlow& flow, int order,
+void add_rounding_probes(const systems::System& system, const Chain& chain, const TransverseFlow& flow, int order,
                          const FloquetIndices& indices, core::Team* team, Stability& stability) {
+  const Eigen::VectorXd roundings = roundings_of(system, chain);
   const auto change = [&](Eigen::Index m, auto& random) {
-    const double scale = rounding_of(chain, m) * flow.factors.col(m).norm();
+    const double scale = roundings(m) * flow.factors.col(m).norm();
     Eigen::VectorXd changes(flow.factors.rows());
     for (double& entry : changes) entry = scale * random();
     return changes;
   };
-  add_probes(system, flow, order, indices, change, team, stability);
+  add_probes(system.structure(), flow, order, indices, change, team, stability);
 }
 
 /// The values' response to the orbit's own error, on a scale where differences keep their digits.
@@ -243,7 +270,7 @@ Integrated integrated(const systems::System& system, const loop::Loop& loop, con
     require_one_in_range(result.indices.fundamental, loop);
     result.stability = without_errors(result.indices, group.order);
     result.trace =
-        add_truncation(structure, result.chain, result.flow, group.order, result.indices, team, result.stability);
+        add_truncation(system, result.chain, result.flow, group.order, result.indices, team, result.stability);
     const double error = is_single_pair(structure, result.flow)
                              ? result.trace.estimate / (1.0 + std::abs(result.indices.fundamental[0]))
                              : largest_relative(result.stability.fundamental, result.stability.fundamental_error);
@@ -274,7 +301,7 @@ Stability floquet(const systems::System& system, const loop::Loop& loop, const l
     stability.full_error[0] =
         repeated_index_error(stability.fundamental[0].real(), stability.fundamental_error[0], group.order);
   } else {
-    add_rounding_probes(structure, chain, flow, group.order, indices, team, stability);
+    add_rounding_probes(system, chain, flow, group.order, indices, team, stability);
   }
   mark_beyond_range(stability.full, stability.full_error);
   mark_beyond_range(stability.fundamental, stability.fundamental_error);

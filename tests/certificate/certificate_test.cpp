@@ -10,6 +10,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/scaled_system.hpp"
+#include "spectrum/point_systems.hpp"
 
 namespace orbweaver::certificate {
 namespace {
@@ -45,6 +46,46 @@ TEST(Certificate, AcceptsAnExactOrbit) {
   EXPECT_LT(certificate.closure, 5e-14);
   EXPECT_LT(certificate.single_shot, 1e-12);
   EXPECT_LT(certificate.energy_drift, 5e-15);
+}
+
+/// A rotator whose orbits turn with 1 + shear (I - 1/2), I = (q^2 + p^2)/2; q = cos t, p = -sin t is one. Conserved is
+/// 3 (I + shear (I - 1/2)^2 / 2).
+class ShearedRotator final : public test::PointSystem {
+ public:
+  explicit ShearedRotator(double shear) : PointSystem(test::structure_of(2, true)), _shear(shear) {}
+
+  [[nodiscard]] Eigen::VectorXd field_at(const Eigen::VectorXd& z) const override {
+    return rate(z) * Eigen::Vector2d(z(1), -z(0));
+  }
+  [[nodiscard]] Eigen::MatrixXd jacobian_at(const Eigen::VectorXd& z) const override {
+    Eigen::Matrix2d turn;
+    turn << 0.0, rate(z), -rate(z), 0.0;
+    return turn + _shear * Eigen::Vector2d(z(1), -z(0)) * z.transpose();
+  }
+  [[nodiscard]] Eigen::VectorXd gradient_at(const Eigen::VectorXd& z) const override { return 3.0 * rate(z) * z; }
+  [[nodiscard]] double conserved(int, std::span<const double> z) const override {
+    const double more = 0.5 * (z[0] * z[0] + z[1] * z[1]) - 0.5;
+    return 3.0 * (more + 0.5 + 0.5 * _shear * more * more);
+  }
+
+ private:
+  [[nodiscard]] double rate(const Eigen::VectorXd& z) const { return 1.0 + _shear * (0.5 * z.squaredNorm() - 0.5); }
+  double _shear;
+};
+
+// Displaced by delta along dH/dz an orbit turns by 2 pi shear delta further: once around it is
+// sqrt(1 + (2 pi shear)^2) delta off.
+TEST(Certificate, MeasuresHowAnErrorOfTheEnergyGrows) {
+  loop::Loop loop = loop::constant_loop(std::vector<double>{0.0, 0.0}, 2.0 * pi, 3);
+  loop.cosine(1, 0) = 1.0;
+  loop.sine(1, 1) = -1.0;
+  for (const double shear : {1e5, 1e6}) {
+    loop::Loop longer = loop;
+    longer.period += 1e-8;  // an orbit that returns to rounding is not asked
+    const Certificate found = certify(ShearedRotator(shear), longer);
+    EXPECT_NEAR(found.energy_growth / std::hypot(1.0, 2.0 * pi * shear), 1.0, 0.02) << shear;
+  }
+  EXPECT_TRUE(std::isnan(certify(ShearedRotator(0.0), loop).energy_growth)) << "it returns to rounding";
 }
 
 TEST(Certificate, IsThatOfTheOrbitUnderAnyTimeMap) {
@@ -155,7 +196,7 @@ TEST(Certificate, SeesAnErrorAnywhereOnTheLoop) {
 
 TEST(Certificate, OneSegmentIsASingleShot) {
   const Certificate certificate = certify(*oscillator(), oscillation(3.0), {}, {.segments = 1});
-  EXPECT_EQ(certificate.closure, certificate.single_shot);
+  EXPECT_NEAR(certificate.closure, certificate.single_shot, 1e-12);  // steps of one state, and of two
 }
 
 TEST(Certificate, MeasuresEnergyAlongTheLoop) {

@@ -54,7 +54,7 @@ inline const std::vector<Case>& cases() {
       {"triangle",
        "henon_heiles",
        {"survey.subharmonics=4"},
-       rotation(0.4),
+       rotation(2.5),
        {},
        "0.02",
        "0.01",

@@ -7,9 +7,13 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "orbweaver/core/mpi/collective.hpp"
+#include "orbweaver/survey/verify/verify.hpp"
 #include "survey/atlas.hpp"
+#include "survey/atlas_records.hpp"
 
 namespace {
 
@@ -120,6 +124,45 @@ TEST(RestrictedProblem, CrossingsOfHigherOrderLieOnTheirFamilies) {
     EXPECT_EQ(atlas.families().integers("end_crossing")[atlas.row_of("Long-" + place)],
               static_cast<std::int64_t>(*row));
   }
+}
+
+// Where the long-period family ends rounding hides what of its orbits does not repeat 13 times a period, and decides
+// where its branch gives up: the shipped scene's is 1.24 from the crossing. The crossing beneath the last orbit tells
+// that it is the right one; of orbits far from there it does not.
+TEST(RestrictedProblem, EndsBeforeTheirResonanceAreVerified) {
+  const core::Communicator comm;
+  const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_mu_0.001.yaml",
+                                         {"starts.fixed_points.grid=[[0.499], [0.866]]",
+                                          "starts.sweep.period=[6.2, 80]", "starts.sweep.step=0.1", "survey.depth=0"});
+  const survey::Summary summary = test::run(comm, scene, "ends");
+  const auto is_refused = [&](double energy) {  // the end, where the family's last orbit is the one at that energy
+    const auto folder = test::fresh_folder(fmt::format("cut{}", comm.size()), comm.get());
+    if (comm.is_root()) {
+      const test::Atlas atlas(summary.atlas);
+      const std::string cut = test::key_of(static_cast<std::int64_t>(atlas.row_of("Long-4")));
+      archive::Records records = test::records_of(atlas);
+      std::erase_if(records.orbits, [&](const auto& o) { return o.family_key == cut && o.energy > energy; });
+      for (std::size_t row = 0; row < records.families.size(); ++row) {
+        records.families[row].end_family_key = test::key_of(atlas.families().integers("end_family")[row]);
+        records.families[row].end_crossing = static_cast<int>(atlas.families().integers("end_crossing")[row]);
+      }
+      for (std::size_t row = 0; row < records.crossings.size(); ++row) {
+        const auto state = atlas.crossings().reals("state").begin() + static_cast<std::ptrdiff_t>(4 * row);
+        records.crossings[row].state.assign(state, state + 4);
+        records.crossings[row].residual = atlas.crossings().reals("residual")[row];
+        records.crossings[row].test_value = atlas.crossings().reals("test_value")[row];
+      }
+      test::write_sample_atlas(folder, atlas.header(), records);
+    }
+    MPI_Barrier(comm.get());
+    const survey::Verification found = survey::verify(comm, folder / "atlas.h5");
+    return core::agreed(comm.get(), std::any_of(found.objections.begin(), found.objections.end(),
+                                                [](const auto& o) { return o.column == "end_crossing"; }));
+  };
+  // Some of the last orbits, of which rounding decides on which side of an index of 2 they are.
+  const std::vector<double> near{-1.252, -1.255, -1.258, -1.262, -1.265};
+  EXPECT_FALSE(std::all_of(near.begin(), near.end(), is_refused));
+  EXPECT_TRUE(is_refused(-1.32)) << "what does not repeat is most of the orbit";
 }
 
 // From the crossing of order 13 one way leads along the long-period family, the other beside it. There an index is 7e-5

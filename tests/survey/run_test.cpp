@@ -160,7 +160,7 @@ TEST(RunSurvey, StabilityColumnsHoldTheIndexAndABoundOfItsError) {
     EXPECT_GE(error[row], 0.0);
     EXPECT_LE(error[row], 1e-9 * (1.0 + std::abs(full[row])));
   }
-  // In-phase at T = 10, from the quarter period in quadruple precision (tests/spectrum/floquet_test.cpp).
+  // In-phase at T = 10, from the quarter period in quadruple precision (tests/spectrum/floquet_pendulum_test.cpp).
   const double reference = 0.42291741949564062723;
   EXPECT_EQ(atlas.orbits().reals("period").back(), 10.0);
   EXPECT_NEAR(full.back(), reference * reference - 2.0, error.back());

@@ -32,6 +32,7 @@ struct ListedFamily {
   std::string isotropy;
   std::int64_t multiplicity = 1;
   std::multiset<std::string> ends;
+  bool grows = false;  ///< of orbits on both sides of a crossing: whether T is longer at the end of the side that is +
   std::vector<ListedCrossing> crossings;  // by period
 };
 
@@ -49,6 +50,10 @@ inline std::map<std::string, ListedFamily> listed(const Atlas& atlas, double tim
     family.multiplicity = atlas.families().integers("multiplicity")[row];
     for (const survey::EndKind end : survey::ends_in(atlas.families().texts("end_reason")[row]))
       family.ends.insert(std::string(survey::name_of(end)));
+    const auto begin = static_cast<std::size_t>(atlas.families().integers("first_orbit")[row]);
+    const std::size_t end = begin + static_cast<std::size_t>(atlas.families().integers("orbit_count")[row]);
+    const auto& periods = atlas.orbits().reals("period");
+    if (atlas.orbits().integers("step")[begin] < 0) family.grows = periods[end - 1] > periods[begin];
     const auto joined = atlas.families().integers("end_family")[row];
     if (joined >= 0) family.ends.insert("at " + names[static_cast<std::size_t>(joined)]);
   }
@@ -84,6 +89,7 @@ inline void expect_same_tree(const Atlas& a, const Atlas& b, double time = 1.0, 
     EXPECT_EQ(other->second.isotropy, family.isotropy);
     EXPECT_EQ(other->second.multiplicity, family.multiplicity);
     EXPECT_EQ(other->second.ends, family.ends);
+    EXPECT_EQ(other->second.grows, family.grows);
     EXPECT_EQ(other->second.crossings.size(), family.crossings.size());
     for (std::size_t n = 0; n < std::min(family.crossings.size(), other->second.crossings.size()); ++n) {
       const ListedCrossing& x = family.crossings[n];

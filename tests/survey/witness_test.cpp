@@ -109,6 +109,33 @@ TEST_F(WitnessOf, ACurveStoredTwice) {
   EXPECT_THAT(said.records[0].text, HasSubstr("Curved: the same orbits are stored in Again"));
 }
 
+// Both ends of one curve, followed until they have run past one another: more steps bring each to the other's start.
+TEST_F(WitnessOf, ACurveStoredTwiceForWantOfSteps) {
+  const std::string out_of_steps = "step limit";
+  const auto said_of = [&](const std::string& end, const std::string& other_end) {
+    input = {};
+    if (world->is_root()) {
+      records = records_of(*atlas);
+      const auto orbits = orbits_of(key_named("Curved"));
+      archive::FamilyRecord& again = add_family_like("Curved", "0000.9000");
+      again.name = "Again";
+      if (!other_end.empty()) again.end_reason = other_end;
+      if (!end.empty()) records.families[static_cast<std::size_t>(row_named("Curved"))].end_reason = end;
+      remove_orbits(key_named("Curved"));
+      add_every_second(orbits, 0, key_named("Curved"));
+      add_every_second(orbits, 1, "0000.9000");
+    }
+    return testimony();
+  };
+  const Testimony both = said_of(out_of_steps, out_of_steps);
+  const Testimony one = said_of(out_of_steps, "");
+  EXPECT_EQ(both.wrong, 0U) << "on every rank";
+  EXPECT_EQ(one.wrong, 1U);
+  if (!world->is_root()) return;
+  EXPECT_THAT(both.records, ElementsAre(finding("cut", "duplicate-curve")));
+  EXPECT_THAT(one.records, ElementsAre(finding("contradiction", "duplicate-curve")));
+}
+
 TEST_F(WitnessOf, ACurveThatTurnsBackOnItself) {
   if (world->is_root()) {
     std::vector<archive::OrbitRecord> orbits = orbits_of(key_named("Curved"));

@@ -8,7 +8,7 @@
 #include "orbweaver/archive/schema/schema.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
-#include "orbweaver/queue/run.hpp"
+#include "orbweaver/queue/run_for_outcomes.hpp"
 #include "tasks/certified.hpp"
 #include "tasks/payload/payload.hpp"
 #include "verify/verified_atlas.hpp"
@@ -71,10 +71,6 @@ class CertifyExecutor final : public queue::Executor {
   std::optional<VerifiedAtlas> _atlas;
 };
 
-class NothingToFlush final : public queue::Flusher {
-  void flush(int /*number*/) override {}
-};
-
 /// In the order of their keys.
 std::vector<queue::Task> tasks_of(const archive::Archive& atlas) {
   std::vector<queue::Task> tasks;
@@ -95,19 +91,12 @@ std::optional<std::vector<archive::CertificateRecord>> certificates_of(const cor
                                                                        const std::filesystem::path& atlas) {
   std::vector<queue::Task> tasks;
   core::on_root(comm.get(), [&] { tasks = tasks_of(archive::Archive(atlas)); });
-  std::vector<archive::CertificateRecord> rows;
-  if (!core::agreed(comm.get(), !tasks.empty())) return rows;
   CertifyExecutor executor(core::agreed(comm.get(), atlas.string()));
-  queue::Observer observer;
-  NothingToFlush flusher;
-  queue::Options options;
-  options.keep_outcomes = true;
-  options.flush_seconds = 0.0;
-  options.flush_rows = 0;
-  const queue::RunSummary run = queue::run(comm, options, std::move(tasks), executor, observer, flusher);
-  if (run.stopped_early) return std::nullopt;
+  const auto outcomes = queue::run_for_outcomes(comm, std::move(tasks), executor);
+  if (!outcomes) return std::nullopt;
+  std::vector<archive::CertificateRecord> rows;
   core::on_root(comm.get(), [&] {
-    for (const queue::TaskOutcome& outcome : run.outcomes) {
+    for (const queue::TaskOutcome& outcome : *outcomes) {
       if (outcome.failed) throw core::NumericalError("certificates: " + outcome.reason);
       const auto done = from_payload<CertifiedRows>(outcome.payload);
       rows.insert(rows.end(), done.rows.begin(), done.rows.end());

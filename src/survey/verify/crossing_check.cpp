@@ -13,6 +13,7 @@
 
 #include "orbweaver/archive/schema/crossing_kind.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
+#include "orbweaver/bifurcation/directions.hpp"
 #include "orbweaver/bifurcation/kernel.hpp"
 #include "orbweaver/bifurcation/test_functions.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
@@ -23,6 +24,7 @@
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
 #include "orbweaver/numerics/locate.hpp"
+#include "tasks/arrival.hpp"
 #include "tasks/executor.hpp"
 #include "tasks/locate_task.hpp"
 #include "tasks/orbit_row.hpp"
@@ -409,9 +411,25 @@ class CrossingCheck {
         Findings backwards;
         Claims back(backwards, "families", static_cast<std::int64_t>(n));
         if (!forwards.objections.empty()) near(all[n], 0, orbit(), "end_crossing", back);
-        merge(findings, std::move(forwards.objections.empty() || !backwards.objections.empty() ? forwards : backwards));
+        const bool is_near = forwards.objections.empty() || backwards.objections.empty();
+        if (!is_near && lies_beneath(all[n])) continue;
+        merge(findings, std::move(forwards.objections.empty() || !is_near ? forwards : backwards));
       }
     }
+  }
+
+  /// Whether a branch's last orbit lies beside this crossing, as what of it repeats tells: before a weak resonance
+  /// rounding hides the rest of the way, which may be many steps long (survey/tasks/arrival.hpp).
+  [[nodiscard]] bool lies_beneath(const TreeFamily& family) const {
+    if (_crossing.multiplicity < bifurcation::least_weak_resonance) return false;
+    for (const std::size_t orbit : {family.orbits() - 1, std::size_t{0}}) {
+      ArrivalRecord found;
+      found.multiplicity = _crossing.multiplicity;
+      if (!locate_beneath(_atlas.system(), options(), _atlas.loop(family.first_orbit + orbit), found)) continue;
+      const double period = found.period / _crossing.multiplicity * _system.scales().time;
+      if (std::abs(period - real("period")) <= same_placement * real("period")) return true;
+    }
+    return false;
   }
 
   [[nodiscard]] std::size_t first_of(const TreeFamily& family) const {

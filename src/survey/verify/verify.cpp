@@ -7,8 +7,9 @@
 #include <utility>
 
 #include "orbweaver/archive/read/reader.hpp"
+#include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
-#include "orbweaver/queue/run.hpp"
+#include "orbweaver/queue/run_for_outcomes.hpp"
 #include "verify/table_rules.hpp"
 #include "verify/verified_atlas.hpp"
 #include "verify/verify_task.hpp"
@@ -24,10 +25,6 @@ constexpr std::int64_t orbits_a_task = 8;
 constexpr std::int64_t checksums_a_task = 512;
 constexpr std::int64_t sections_a_task = 256;
 
-class NothingToFlush final : public queue::Flusher {
-  void flush(int /*number*/) override {}
-};
-
 void add_blocks(What what, std::int64_t first, std::int64_t end, std::int64_t most, std::vector<queue::Task>& tasks) {
   for (; first < end; first += most) tasks.push_back(task_of({what, first, std::min(first + most, end)}));
 }
@@ -35,19 +32,13 @@ void add_blocks(What what, std::int64_t first, std::int64_t end, std::int64_t mo
 /// Does the tasks, given on rank 0, and adds there what they found.
 void run_tasks(const core::Communicator& comm, const std::vector<queue::Task>& tasks, VerifyExecutor& executor,
                Findings& findings) {
-  if (!core::agreed(comm.get(), !tasks.empty())) return;
-  queue::Observer observer;
-  NothingToFlush flusher;
-  queue::Options options;
-  options.keep_outcomes = true;
-  options.flush_seconds = 0.0;
-  options.flush_rows = 0;
-  queue::RunSummary run = queue::run(comm, options, tasks, executor, observer, flusher);
+  const auto outcomes = queue::run_for_outcomes(comm, tasks, executor);
+  if (!outcomes) throw core::EnvironmentError("verify: stopped before all was computed");
   core::on_root(comm.get(), [&] {
     // Outcomes come by key, as tasks have been made but for their kinds.
     std::vector<queue::Task> sorted = tasks;
     std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
-    for (std::size_t n = 0; n < run.outcomes.size(); ++n) merge(findings, findings_in(sorted[n], run.outcomes[n]));
+    for (std::size_t n = 0; n < outcomes->size(); ++n) merge(findings, findings_in(sorted[n], (*outcomes)[n]));
   });
 }
 

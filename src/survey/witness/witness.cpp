@@ -7,7 +7,7 @@
 
 #include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
-#include "orbweaver/queue/run.hpp"
+#include "orbweaver/queue/run_for_outcomes.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
 #include "witness/checks.hpp"
 #include "witness/tolerance.hpp"
@@ -15,10 +15,6 @@
 namespace orbweaver::survey {
 
 namespace {
-
-class NothingToFlush final : public queue::Flusher {
-  void flush(int /*number*/) override {}
-};
 
 FindingNames names_of(const AtlasTree& tree, const Finding& finding) {
   const auto name = [&](int row) { return row < 0 ? "" : tree.families[static_cast<std::size_t>(row)].name; };
@@ -95,21 +91,11 @@ std::optional<Testimony> testify(const core::Communicator& comm, const std::file
     witness.emplace(atlas, scene, system, std::move(input));
     tasks = witness->tasks();
   });
-  std::vector<queue::TaskOutcome> outcomes;
-  if (core::agreed(comm.get(), !tasks.empty())) {
-    LoopExecutor executor(core::agreed(comm.get(), atlas.string()), system);
-    queue::Observer observer;
-    NothingToFlush flusher;
-    queue::Options options;
-    options.keep_outcomes = true;
-    options.flush_seconds = 0.0;
-    options.flush_rows = 0;
-    queue::RunSummary run = queue::run(comm, options, std::move(tasks), executor, observer, flusher);
-    if (run.stopped_early) return std::nullopt;
-    outcomes = std::move(run.outcomes);
-  }
+  LoopExecutor executor(core::agreed(comm.get(), atlas.string()), system);
+  const auto outcomes = queue::run_for_outcomes(comm, std::move(tasks), executor);
+  if (!outcomes) return std::nullopt;
   Testimony testimony;
-  core::on_root(comm.get(), [&] { testimony = witness->testimony(outcomes); });
+  core::on_root(comm.get(), [&] { testimony = witness->testimony(*outcomes); });
   testimony.wrong = core::agreed(comm.get(), testimony.wrong);
   return testimony;
 }
