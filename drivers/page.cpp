@@ -39,11 +39,12 @@ int run(const PageOptions& options) {
   file.close();
   if (!file) throw core::EnvironmentError(fmt::format("cannot write {}: is the disk full?", part.string()));
   publish(part, options.output);
+  const auto megabytes = [](std::size_t bytes) { return static_cast<double>(bytes) / 1e6; };
+  print_result(fmt::format("{}: {:.1f} MB, {} families, {} orbits\n", options.output.string(), megabytes(summary.bytes),
+                           summary.families, summary.orbits));
   print_result(fmt::format(
-      "{}: {:.1f} MB, {} families, {} orbits\nloops ({:.1f} MB): {} of {} harmonics; each coordinate within {:g} of its range\n",
-      options.output.string(), static_cast<double>(summary.bytes) / 1e6, summary.families, summary.orbits,
-      static_cast<double>(summary.loop_bytes) / 1e6, summary.harmonics_kept, summary.harmonics_stored,
-      report::page_tolerance));
+      "loops of {} orbits, {:.1f} MB: {} of {} harmonics, coordinates within {:.1e} of their ranges\n", summary.loops,
+      megabytes(summary.loop_bytes), summary.harmonics_kept, summary.harmonics_stored, summary.deviation));
   return static_cast<int>(core::ExitStatus::done);
 }
 

@@ -28,7 +28,7 @@ OrbitStability::OrbitStability(const archive::Archive& atlas)
 
 std::optional<bool> OrbitStability::of(std::size_t orbit) const {
   const double error = std::isnan(_errors[orbit]) ? 0.0 : _errors[orbit];
-  if (_pairs == 0 || error > largest_error) return std::nullopt;
+  if (_pairs == 0) return std::nullopt;
   bool stable = true;
   for (std::size_t pair = 0; pair < _pairs; ++pair) {
     const std::complex<double> k = value(orbit, pair);
@@ -36,7 +36,7 @@ std::optional<bool> OrbitStability::of(std::size_t orbit) const {
     stable = stable && (_multipliers ? std::abs(k) <= 1.0 + error
                                      : std::abs(k.imag()) <= error && std::abs(k.real()) <= 2.0 + error);
   }
-  return stable;
+  return stable && error > largest_error ? std::nullopt : std::optional<bool>(stable);
 }
 
 std::complex<double> OrbitStability::value(std::size_t orbit, std::size_t pair) const {

@@ -18,7 +18,7 @@ class OrbitStability {
   explicit OrbitStability(const archive::Archive& atlas);
 
   /// True if within `stability_error` all indices are real and between -2 and 2, or all multipliers within the unit
-  /// circle. Nothing where they are not known, or the error exceeds 1e-3.
+  /// circle. Nothing where they are not known, or the error exceeds 1e-3 and leaves it open whether they are.
   [[nodiscard]] std::optional<bool> of(std::size_t orbit) const;
 
  private:

@@ -29,6 +29,7 @@ fill() {
       ORBIT) words+=(T=8.45) ;;
       ROW) words+=(0) ;;
       N) words+=(20) ;;
+      FILE.html) words+=(DIR/atlas.html) ;;
       FILE.txt) words+=(DIR/refined.txt) ;;
       PROOFS.h5) words+=(DIR/proofs.h5) ;;
       *) words+=("$word") ;;

@@ -36,29 +36,74 @@ class Bytes {
   std::vector<std::uint8_t>& _bytes;
 };
 
-/// One periodic function of s: `modes` a_0, a_1, b_1, ... Returns the harmonics kept.
-int add_channel(Bytes& bytes, const std::vector<double>& modes, double allowed) {
-  const double half = allowed / 2;
-  int kept = static_cast<int>(modes.size() - 1) / 2;
-  const auto at = [&](int k) { return modes.begin() + (2 * k - 1); };
-  for (double left_out = 0.0; kept > 0; --kept) {
-    left_out += std::hypot(*at(kept), *(at(kept) + 1));
-    if (left_out > half) break;
+/// A periodic function of s as whole numbers times a step.
+struct Channel {
+  double step = 0.0;
+  double mean = 0.0;
+  std::vector<std::int64_t> numbers;  ///< a_1, b_1, a_2, ...
+};
+
+/// The harmonics whose sum of squares is more than `left_out` squared, halved for the mean over s, and the rest rounded
+/// so that the same is true of what that changes.
+Channel rounded(const std::vector<double>& modes, double left_out) {
+  auto kept = (modes.size() - 1) / 2;
+  double dropped = 0.0;
+  for (; kept > 0; --kept) {
+    const double a = modes[2 * kept - 1];
+    const double b = modes[2 * kept];
+    dropped += (a * a + b * b) / 2;
+    if (dropped > left_out * left_out) break;
   }
-  // 2 kept numbers, each off by half a step at most.
-  const double step = half / std::max(1, kept);
-  bytes.add(step);
-  bytes.add(modes.front());
-  bytes.add_count(static_cast<std::uint64_t>(kept));
-  for (auto mode = modes.begin() + 1; mode < modes.begin() + (2 * kept + 1); ++mode)
-    bytes.add_signed(std::llround(*mode / step));
-  return kept;
+  Channel channel;
+  channel.mean = modes.front();
+  channel.step = left_out * std::sqrt(12.0 / static_cast<double>(std::max<std::size_t>(1, kept)));  // of equal chances
+  for (std::size_t at = 1; at <= 2 * kept; ++at) channel.numbers.push_back(std::llround(modes[at] / channel.step));
+  return channel;
+}
+
+std::vector<double> synthesized(const std::vector<double>& modes, int nodes) {
+  std::vector<double> values(static_cast<std::size_t>(nodes));
+  const int cutoff = static_cast<int>(modes.size() - 1) / 2;
+  loop::FourierGrid::of_size(nodes).synthesize(cutoff, 1, modes.data(), values.data());
+  return values;
+}
+
+double largest_difference(const std::vector<double>& modes, const Channel& channel, int nodes) {
+  std::vector<double> difference = modes;
+  difference.front() = 0.0;
+  for (std::size_t i = 0; i < channel.numbers.size(); ++i)
+    difference[i + 1] -= static_cast<double>(channel.numbers[i]) * channel.step;
+  double largest = 0.0;
+  for (const double value : synthesized(difference, nodes)) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+struct Added {
+  int harmonics = 0;
+  double deviation = 0.0;
+};
+
+/// One periodic function of s, within `allowed` of `modes` (a_0, a_1, b_1, ...) at the nodes.
+Added add_channel(Bytes& bytes, const std::vector<double>& modes, double allowed, int nodes) {
+  // The largest value of what is left out is some three times its rms; where it is more, there is another attempt.
+  double left_out = allowed / 4;
+  Channel channel = rounded(modes, left_out);
+  double deviation = largest_difference(modes, channel, nodes);
+  while (deviation > allowed) {
+    left_out *= 0.75;
+    channel = rounded(modes, left_out);
+    deviation = largest_difference(modes, channel, nodes);
+  }
+  bytes.add(channel.step);
+  bytes.add(channel.mean);
+  bytes.add_count(channel.numbers.size() / 2);
+  for (const std::int64_t number : channel.numbers) bytes.add_signed(number);
+  return {static_cast<int>(channel.numbers.size() / 2), deviation};
 }
 
 /// t/T - s/(2 pi).
-std::vector<double> time_modes(const loop::Loop& loop) {
+std::vector<double> time_modes(const loop::Loop& loop, int nodes) {
   if (loop.time_map.is_identity()) return {0.0};
-  const int nodes = loop::nodes_for(loop);
   std::vector<double> values(static_cast<std::size_t>(nodes));
   for (int j = 0; j < nodes; ++j) {
     const double s = 2 * std::numbers::pi * j / nodes;
@@ -112,11 +157,12 @@ ThinnedLoop thinned(const loop::Loop& loop, double tolerance) {
   double widest = *std::max_element(ranges.begin(), ranges.end());
   if (widest == 0.0) widest = 1.0;  // a constant loop
   Bytes bytes(result.bytes);
-  add_channel(bytes, time_modes(loop), tolerance);
+  result.deviation = add_channel(bytes, time_modes(loop, samples.nodes), tolerance, samples.nodes).deviation;
   for (std::size_t i = 0; i < dimension; ++i) {
     const double range = std::max(ranges[i], least_range * widest);
-    result.harmonics =
-        std::max(result.harmonics, add_channel(bytes, modes_of(loop, static_cast<int>(i)), tolerance * range));
+    const Added added = add_channel(bytes, modes_of(loop, static_cast<int>(i)), tolerance * range, samples.nodes);
+    result.harmonics = std::max(result.harmonics, added.harmonics);
+    result.deviation = std::max(result.deviation, added.deviation / range);
   }
   const int width = (loop.cutoff + most_bins - 1) / most_bins;
   const int bins = (loop.cutoff + width - 1) / width;

@@ -15,13 +15,14 @@ struct ThinnedLoop {
   /// pairs zigzag varints.
   std::vector<std::uint8_t> bytes;
   int harmonics = 0;            ///< the most that a coordinate has
+  double deviation = 0.0;       ///< the largest from the loop itself at its nodes, in parts of a coordinate's range
   double amplitude = 0.0;       ///< rms over time of the distance from the mean
   std::vector<double> largest;  ///< of each coordinate over the orbit; NaN where it winds
 };
 
-/// The loop with each coordinate as far as its range times `tolerance` needs it: the moduli of the harmonics left out
-/// and the rounding of the others add up to no more. Coordinates that hardly move count with 1e-4 of the range of the one
-/// that moves most.
+/// The loop with as many harmonics and digits of each coordinate as keep it within `tolerance` times the coordinate's
+/// range, measured at the nodes of loop::samples_of; the time, within `tolerance` of the period. Coordinates that
+/// hardly move count with 1e-4 of the range of the one that moves most.
 [[nodiscard]] ThinnedLoop thinned(const loop::Loop& loop, double tolerance);
 
 /// The most bins of a spectrum; with more harmonics a bin is the largest of several.

@@ -81,6 +81,7 @@ async function start(): Promise<void> {
   };
   const diagrams = h('div', { class: 'diagrams' }, first.element, second.element);
   const layout = (): void => {
+    main.dataset['colour'] = store.state.colour;
     second.element.hidden = !store.state.hasSecond;
     diagrams.classList.toggle('two', store.state.hasSecond);
   };

@@ -49,7 +49,7 @@ export class Store {
       brushed: null,
     };
     this.read();
-    if (this.state.orbit < 0 && atlas.orbits > 0) this.state.orbit = this.firstOf(atlas.familyOf[0]!);
+    if (this.state.orbit < 0 && atlas.orbits > 0) this.state.orbit = this.typicalOf(atlas.familyOf[0]!);
     window.addEventListener('hashchange', () => {
       this.read();
       this.tell('orbit', 'crossing', 'diagrams', 'look');
@@ -76,13 +76,20 @@ export class Store {
     return this.quantities.find((q) => q.id === id) ?? this.quantities[0]!;
   }
 
-  /** Its first stable orbit, else its first. */
-  firstOf(row: number): number {
+  /** The middle of its longest run of stable orbits, else of all. */
+  typicalOf(row: number): number {
     const family = this.atlas.families[row];
     if (!family || family.count === 0) return -1;
-    for (let orbit = family.first; orbit < family.first + family.count; ++orbit)
-      if (this.atlas.stable[orbit] === 1) return orbit;
-    return family.first;
+    let [begin, longest, middle] = [-1, 0, family.first + (family.count >> 1)];
+    for (let orbit = family.first; orbit <= family.first + family.count; ++orbit) {
+      if (orbit < family.first + family.count && this.atlas.stable[orbit] === 1) {
+        if (begin < 0) begin = orbit;
+      } else if (begin >= 0) {
+        if (orbit - begin > longest) [longest, middle] = [orbit - begin, (begin + orbit - 1) >> 1];
+        begin = -1;
+      }
+    }
+    return middle;
   }
 
   pick(orbit: number): void {
@@ -90,7 +97,7 @@ export class Store {
     this.set({ orbit, crossing: -1 }, 'orbit', 'crossing');
   }
   pickFamily(row: number): void {
-    this.pick(this.firstOf(row));
+    this.pick(this.typicalOf(row));
   }
   /** The crossing, and the orbit of its family that is nearest to it. */
   pickCrossing(row: number): void {
@@ -170,7 +177,7 @@ export class Store {
     const family = named.find((f) => String(f.row) === words.get('row')) ?? named[0];
     if (family) {
       const step = Number(words.get('step'));
-      s.orbit = this.firstOf(family.row);
+      s.orbit = this.typicalOf(family.row);
       for (let i = family.first; i < family.first + family.count; ++i)
         if (this.atlas.value('step', i) === step) s.orbit = i;
     }

@@ -12,20 +12,27 @@ namespace orbweaver::report {
 /// 1000 pixels high.
 inline constexpr double page_tolerance = 5e-4;
 
+/// Bytes that the thinned loops may take, compressed; beyond that only every n-th orbit of a family has its loop. With
+/// it and base64 a page of 10,000 orbits stays below 25 MB.
+inline constexpr std::size_t most_loop_bytes = 16'000'000;
+
 /// What a page holds.
 struct PageSummary {
   std::size_t families = 0;
   std::size_t orbits = 0;
   std::size_t bytes = 0;             ///< of the file
   std::size_t loop_bytes = 0;        ///< of it, the thinned loops
-  std::size_t harmonics_stored = 0;  ///< of all orbits in the archive
-  std::size_t harmonics_kept = 0;    ///< of them, those that a coordinate has on the page, the most of its coordinates
+  std::size_t loops = 0;             ///< orbits that have theirs
+  std::size_t harmonics_stored = 0;  ///< of these orbits, in the archive
+  std::size_t harmonics_kept = 0;    ///< on the page, in the coordinate that needs most
+  double deviation = 0.0;            ///< the largest of a coordinate, in parts of its range
 };
 
 /// Writes the interactive atlas (docs/page.md): `page_template`, with the archive's data in the place of its line
-/// `<!-- atlas -->`. Columns keep all of their digits; loops are thinned: what is left out moves no coordinate by more
-/// than `page_tolerance` of its range. Everything from the archive is written as base64, so that no text in it is
+/// `<!-- atlas -->`. Columns keep all of their digits. Loops are thinned to `page_tolerance` and, where there are
+/// many, to what `loop_bytes` hold. Everything from the archive is written as base64, so that no text in it is
 /// markup. Throws MisuseError for a template without that line, InputError where the archive cannot be read.
-PageSummary write_page(std::ostream& out, const archive::Archive& atlas, std::string_view page_template);
+PageSummary write_page(std::ostream& out, const archive::Archive& atlas, std::string_view page_template,
+                       std::size_t loop_bytes = most_loop_bytes);
 
 }  // namespace orbweaver::report

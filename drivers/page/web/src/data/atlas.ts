@@ -7,8 +7,8 @@ type Column<T> = T[];
 interface Index {
   page: number;
   orbits: number;
-  orbitsABlock: number;
-  tolerance: number;
+  loops: number;
+  deviation: number;
   harmonicsKept: number;
   harmonicsStored: number;
   blocks: number[];
@@ -207,14 +207,24 @@ export class Atlas {
     return this.index.multipliers ? values : values.flatMap(ofIndex);
   }
 
+  /** The orbit itself, or the nearest of its family that has a loop on the page. */
+  nearestWithLoop(orbit: number): number {
+    const { first, count } = this.family(orbit);
+    for (let by = 0; by < count; ++by)
+      for (const other of [orbit - by, orbit + by])
+        if (other >= first && other < first + count && this.value('loop_block', other) >= 0) return other;
+    return -1;
+  }
+
+  /** The loop of an orbit that has one. */
   async loop(orbit: number): Promise<Loop> {
-    const number = Math.floor(orbit / this.index.orbitsABlock);
+    const number = this.value('loop_block', orbit);
     let block = this.blocks.get(number);
     this.blocks.delete(number);
     if (!block) {
       const [begin, end] = [this.index.blocks[2 * number]!, this.index.blocks[2 * number + 1]!];
       const text = this.loopText.slice((begin / 3) * 4, Math.ceil(end / 3) * 4);
-      block = inflated(fromBase64(text.padEnd(Math.ceil(text.length / 4) * 4, '=')).slice(0, end - begin));
+      block = inflated(fromBase64(text).slice(0, end - begin));
     }
     this.blocks.set(number, block);
     if (this.blocks.size > blocksKept) this.blocks.delete(this.blocks.keys().next().value!);

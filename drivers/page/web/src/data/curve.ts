@@ -17,20 +17,29 @@ export interface Curve {
 
 const noPiece = -2;
 
-/** Slopes at vertices by the parabola through each and its neighbours (Bessel's), against arclength. */
+/**
+ * Slopes at vertices by the parabola through each and its neighbours (Bessel's), against arclength, limited so that no piece
+ * leaves the range of its ends (Fritsch and Carlson 1980): folds that were located are vertices themselves.
+ */
 function slopes(s: Float64Array, v: Float64Array): Float64Array {
   const n = v.length;
   const out = new Float64Array(n);
   const rate = (i: number): number => (s[i + 1]! > s[i]! ? (v[i + 1]! - v[i]!) / (s[i + 1]! - s[i]!) : 0);
-  for (let i = 0; i < n; ++i) {
-    if (n === 1) break;
-    if (i === 0) out[i] = n > 2 ? rate(0) + ((rate(0) - rate(1)) * (s[1]! - s[0]!)) / (s[2]! - s[0]! || 1) : rate(0);
-    else if (i === n - 1)
-      out[i] = n > 2 ? rate(n - 2) + ((rate(n - 2) - rate(n - 3)) * (s[n - 1]! - s[n - 2]!)) / (s[n - 1]! - s[n - 3]! || 1) : rate(n - 2);
-    else {
+  const limited = (slope: number, ...rates: number[]): number => {
+    const sign = Math.sign(rates[0]!);
+    if (rates.some((r) => Math.sign(r) !== sign)) return 0;
+    return sign * Math.min(Math.max(0, sign * slope), ...rates.map((r) => 3 * Math.abs(r)));
+  };
+  for (let i = 0; i < n && n > 1; ++i) {
+    if (i === 0 || i === n - 1) {
+      const at = i === 0 ? 0 : n - 2;
+      const beside = i === 0 ? 1 : n - 3;
+      const bend = n > 2 ? (rate(at) - rate(beside)) * (s[at + 1]! - s[at]!) / (Math.abs(s[Math.max(at, beside) + 1]! - s[Math.min(at, beside)]!) || 1) : 0;
+      out[i] = limited(rate(at) + bend, rate(at));
+    } else {
       const a = s[i]! - s[i - 1]!;
       const b = s[i + 1]! - s[i]!;
-      out[i] = a + b > 0 ? (rate(i - 1) * b + rate(i) * a) / (a + b) : 0;
+      out[i] = a + b > 0 ? limited((rate(i - 1) * b + rate(i) * a) / (a + b), rate(i - 1), rate(i)) : 0;
     }
     if (!Number.isFinite(out[i]!)) out[i] = 0;
   }

@@ -52,6 +52,16 @@ export function quantitiesOf(atlas: Atlas): Quantity[] {
   };
   const names = atlas.index.stateNames;
   add('T', 'period T', 'T', column('period'), { ofCrossing: (c) => c.period });
+  const turns = atlas.families.map((family) => {
+    let product = family.multiplicity;
+    for (let up = family.parent, n = 0; up >= 0 && n < atlas.families.length; up = atlas.families[up]!.parent, ++n)
+      product *= atlas.families[up]!.multiplicity;
+    return product;
+  });
+  if (turns.some((n) => n > 1))
+    add('T/m', "period T / m, m turns of the first family's", 'T/m',
+      Float64Array.from({ length: atlas.orbits }, (_, orbit) => atlas.value('period', orbit) / turns[atlas.familyOf[orbit]!]!),
+      { ofCrossing: (c) => c.period / (turns[c.family] ?? 1) });
   add('E', 'energy E', 'E', column('energy'), { ofCrossing: (c) => c.energy });
   add('parameter', 'parameter', 'parameter', column('parameter'));
   add('action', 'action', 'action', column('action'));

@@ -36,7 +36,8 @@ export function drawPotential(pen: Pen, f: (x: number, y: number) => number, lev
     ctx.fill(trace(pen, values, energy), 'evenodd');
     ctx.globalAlpha = 1;
   }
-  ctx.strokeStyle = pen.theme.grid;
+  ctx.strokeStyle = pen.theme.soft;
+  ctx.globalAlpha = 0.45;
   ctx.lineWidth = 1;
   for (const level of levels) ctx.stroke(trace(pen, values, level));
   ctx.restore();

@@ -255,10 +255,13 @@ export class Frame {
     ctx.textBaseline = 'middle';
     ctx.textAlign = 'right';
     ctx.beginPath();
+    let above = Infinity;
     yTicks.at.forEach((v, i) => {
       const py = Math.round(this.py(v)) + 0.5;
       ctx.moveTo(x0, py);
       ctx.lineTo(x1, py);
+      if (py > above - text * 1.1) return;
+      above = py;
       ctx.fillText(yTicks.labels[i]!, x0 - text * 0.4, py);
     });
     ctx.textBaseline = 'top';

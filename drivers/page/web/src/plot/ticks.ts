@@ -53,7 +53,8 @@ export function axisTicks(low: number, high: number, count: number, warp?: Warp)
 }
 
 function warpedTicks(low: number, high: number, count: number, warp: Warp): Ticks {
-  const values = [-2, 0, 2];
+  // Beyond some ten decades there is no room for both.
+  const values = high - low > 40 ? [0] : [-2, 0, 2];
   for (let decade = 1; decade <= 300; ++decade) for (const sign of [-1, 1]) values.push(sign * 10 ** decade);
   let at = values.map((value) => ({ value, drawn: warp.to(value) })).filter((t) => t.drawn >= low && t.drawn <= high);
   at.sort((a, b) => a.drawn - b.drawn);

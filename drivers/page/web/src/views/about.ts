@@ -1,4 +1,5 @@
 import { kinds } from '../data/kinds';
+import { rounded } from '../data/quantities';
 import { h } from '../dom';
 import type { Store } from '../state';
 
@@ -45,7 +46,7 @@ export function aboutDialog(store: Store): HTMLDialogElement {
   const kindsHere = new Set(store.atlas.findings.map((f) => f.severity));
   return dialog('About this atlas',
     h('table', { class: 'numbers' }, rows.map(([name, value]) => h('tr', {}, h('th', { scope: 'row' }, name), h('td', {}, value)))),
-    h('p', {}, `What is cut: orbits are drawn with as many harmonics as the eye needs, so that no coordinate is off by more than ${index.tolerance} of its range on the orbit. States, periods, energies, actions and stability have all of their digits; what certificates measured has seven. The archive has all of it.`),
+    h('p', {}, `What is cut: orbits are drawn with as many harmonics as the eye needs; no coordinate is off by more than ${rounded(index.deviation, 2)} of its range on the orbit. ${index.loops < store.atlas.orbits ? `${index.loops} of ${store.atlas.orbits} orbits have their own drawing, the others that of a neighbour. ` : ''}States, periods, energies, actions and stability have all of their digits; what certificates measured has seven. The archive has all of it.`),
     h('details', {}, h('summary', {}, `What the survey says of itself (${store.atlas.findings.length}${kindsHere.size ? `: ${[...kindsHere].join(', ')}` : ''})`),
       h('ul', { class: 'findings' }, store.atlas.findings.slice(0, 500).map((f) => h('li', {}, h('strong', {}, `${f.severity}, ${f.kind}: `), f.text)))),
     h('details', {}, h('summary', {}, 'Scene'), h('pre', {}, index.scene)),

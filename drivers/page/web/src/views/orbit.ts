@@ -57,6 +57,7 @@ export class OrbitView {
   private readonly multiplierList = h('div', { class: 'values' });
   private readonly certificate = h('div', {});
   private readonly note = h('p', { class: 'note', role: 'status', 'aria-live': 'polite' });
+  private readonly stand = h('p', { class: 'soft', hidden: true });
   private readonly play = h('button', { type: 'button', class: 'icon' });
   private readonly scrub = h('input', { type: 'range', min: '0', max: '1', step: '0.001', value: '0', 'aria-label': 'Time in the period' });
   private readonly picture: Picture | null;
@@ -163,6 +164,7 @@ export class OrbitView {
         button('Family as CSV', 'csv', () => this.family && download(fileName(this.family.name, 'csv'), familyCsv(store, this.family), 'text/csv'), 'All orbits of the family')),
       this.note,
       section(this.picture?.title ?? 'Moving', true,
+        this.stand,
         h('div', { class: 'plot picture' }, f.picture.canvas),
         h('div', { class: 'player' }, this.play, this.scrub, speed)),
       section('State and numbers', true, this.stateTable, this.facts),
@@ -227,9 +229,13 @@ export class OrbitView {
     this.fillHead();
     if (isOther) this.fillStrip();
     this.fillNumbers();
-    const loop = await atlas.loop(orbit);
+    const drawn = atlas.nearestWithLoop(orbit);
+    const loop = drawn < 0 ? null : await atlas.loop(drawn);
     if (this.shown !== orbit) return;
     this.loop = loop;
+    this.stand.hidden = drawn === orbit;
+    this.stand.textContent = drawn < 0 ? 'This page has no loop of this family.' : `Drawn is step ${atlas.value('step', drawn)} of the family: of ${atlas.orbits} orbits the page has ${atlas.index.loops} loops.`;
+    if (!loop) return;
     this.fitPicture();
     this.planeAxes.forEach((_, i) => this.fitPlane(i));
     this.fitTime();

@@ -50,7 +50,7 @@ export function hitsOf(store: Store, query: string): Hit[] {
     .sort((a, b) => rank(a.name) - rank(b.name) || a.row - b.row)
     .slice(0, mostHits)
     .map((f) => {
-      const orbit = store.firstOf(f.row);
+      const orbit = store.typicalOf(f.row);
       return { text: f.name, detail: `${f.count} orbits; ${state(orbit)}`, orbit };
     });
 }
