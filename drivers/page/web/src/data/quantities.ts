@@ -47,7 +47,7 @@ export function quantitiesOf(atlas: Atlas): Quantity[] {
     Float64Array.from({ length: atlas.orbits }, (_, orbit) => atlas.value(name, orbit, part));
   const list: Quantity[] = [];
   const add = (id: string, label: string, short: string, values: Float64Array, more: Partial<Quantity> = {}): void => {
-    if (!values.some(Number.isFinite)) return;
+    if (id !== 'T' && !values.some(Number.isFinite)) return;
     list.push({ id, label, short, values, ofCrossing: (c) => interpolated(atlas, c, values), ...more });
   };
   const names = atlas.index.stateNames;

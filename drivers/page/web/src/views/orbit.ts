@@ -9,6 +9,7 @@ import { Frame } from '../plot/frame';
 import { currentTheme, familyColour } from '../plot/theme';
 import type { Store } from '../state';
 import { Clock } from './clock';
+import { Space } from './space';
 import { familyCsv, fileName, orbitJson } from './export';
 import { stabilityBand } from './tree';
 
@@ -65,6 +66,7 @@ export class OrbitView {
   private readonly planeAxes: [number, number][];
   private readonly hiddenCourses = new Set<number>();
   private readonly swatches: HTMLElement[] = [];
+  private readonly space: Space | null;
 
   constructor(private readonly store: Store) {
     const { atlas } = store;
@@ -116,6 +118,8 @@ export class OrbitView {
       speed.append(h('option', { value: String(seconds) }, label));
     speed.value = '6';
     speed.addEventListener('change', () => (this.clock.seconds = Number(speed.value)));
+    // Systems with three places and three velocities have their path in space.
+    this.space = d >= 3 ? new Space(names, [0, 1, 2], d === 6) : null;
     const button = (text: string, id: string, act: () => void, title = ''): HTMLButtonElement =>
       h('button', { type: 'button', id, title, click: act }, text);
     const section = (title: string, open: boolean, ...content: (Node | string)[]): HTMLDetailsElement => {
@@ -169,6 +173,7 @@ export class OrbitView {
         h('div', { class: 'player' }, this.play, this.scrub, speed)),
       section('State and numbers', true, this.stateTable, this.facts),
       section('Paths', true, h('div', { class: 'planes' }, ...planes)),
+      this.space ? section('Path in three coordinates', d === 6, this.space.element) : '',
       section('Time courses and spectrum', true, courses, h('div', { class: 'plot small' }, f.time.canvas), h('div', { class: 'plot small' }, f.spectrum.canvas)),
       section('Multipliers', true, h('div', { class: 'multipliers' }, h('div', { class: 'plot round' }, f.multipliers.canvas), this.multiplierList)),
       section('Certificate', true, this.certificate));
@@ -209,6 +214,7 @@ export class OrbitView {
   redraw(): void {
     const f = this.frames;
     for (const frame of [f.picture, ...f.planes, f.time, f.spectrum, f.multipliers]) frame.draw();
+    this.space?.frame.draw();
     const theme = currentTheme();
     this.swatches.forEach((swatch, i) => (swatch.style.background = familyColour(theme, i)));
     this.fillStrip();
@@ -219,6 +225,7 @@ export class OrbitView {
     this.fillCrossing();
     const orbit = state.orbit;
     if (orbit < 0) {
+      this.element.classList.add('empty');
       replaceChildren(this.head, h('h2', {}, 'This atlas has no orbits'));
       return;
     }
@@ -238,6 +245,7 @@ export class OrbitView {
     if (!loop) return;
     this.fitPicture();
     this.planeAxes.forEach((_, i) => this.fitPlane(i));
+    this.space?.show(loop);
     this.fitTime();
     this.fitSpectrum();
     this.frames.multipliers.draw();

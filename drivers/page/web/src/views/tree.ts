@@ -118,10 +118,11 @@ export class Tree {
       low = Math.min(low, atlas.value('period', i));
       high = Math.max(high, atlas.value('period', i));
     }
-    const range = family.count ? `T ${rounded(low, 4)} – ${rounded(high, 4)}` : 'no orbits';
+    const range = family.count ? `T ${rounded(low, 4)} – ${rounded(high, 4)}` : `no orbits: ${family.endReason}`;
     const stable = family.count && atlas.stable.subarray(family.first, family.first + family.count).some((s) => s === 1);
     const bornAt = crossing ? `${kindOf(crossing.kind).text}${family.multiplicity > 1 ? `, m ${family.multiplicity}` : ''}` : '';
     const item = h('li', {
+      title: family.count ? undefined : range,
       role: 'treeitem', tabindex: '-1', 'aria-level': String(depth + 1),
       'aria-label': `${family.name}, ${family.count} orbits${stable ? ', some stable' : ''}, ${range}${bornAt ? `, born at ${bornAt}` : ''}`,
       'aria-expanded': hasChildren ? String(isOpen) : undefined,
