@@ -219,7 +219,7 @@ TEST_F(Page, NeverHasATextOfTheArchiveAsMarkup) {
 TEST_F(Page, LeavesLoopsOutWhereThereAreTooMany) {
   std::string page;
   const report::PageSummary all = write("In-Phase", page);
-  const report::PageSummary some = write("In-Phase", page, 200);
+  const report::PageSummary some = write("In-Phase", page, 50);
   EXPECT_LT(some.loops, all.loops);
   EXPECT_GE(some.loops, 2U * 4U) << "the first and last orbit of each family keep theirs";
   EXPECT_EQ(some.orbits, all.orbits);

@@ -24,8 +24,8 @@ constexpr std::size_t orbits_a_block = 64;
 /// Bytes in four letters.
 constexpr std::size_t base64_group = 3;
 
-/// Orbits from which the size of all is estimated.
-constexpr std::size_t most_tried = 256;
+/// Blocks from which the size of all is estimated.
+constexpr std::size_t blocks_tried = 8;
 
 struct Loops {
   std::vector<std::uint8_t> bytes;   ///< of all blocks, compressed
@@ -71,15 +71,19 @@ class Blocks {
 /// Every n-th orbit of a family keeps its loop, n the least with which they fit into `bytes`, by estimate.
 std::size_t stride_of(const archive::Archive& atlas, const std::vector<int>& angles, std::size_t bytes) {
   const std::size_t orbits = atlas.orbits().rows();
-  const std::size_t every = orbits / most_tried + 1;
-  std::vector<std::uint8_t> tried;
+  const std::size_t every = std::max(orbits_a_block, orbits / blocks_tried);
+  std::size_t size = 0;
   std::size_t count = 0;
-  for (std::size_t orbit = 0; orbit < orbits; orbit += every, ++count) {
-    const std::vector<std::uint8_t> loop = thinned(archive::loop_of(atlas, orbit, angles), page_tolerance).bytes;
-    tried.insert(tried.end(), loop.begin(), loop.end());
+  for (std::size_t first = 0; first < orbits; first += every) {
+    std::vector<std::uint8_t> block;
+    for (std::size_t orbit = first; orbit < std::min(orbits, first + orbits_a_block); ++orbit, ++count) {
+      const std::vector<std::uint8_t> loop = thinned(archive::loop_of(atlas, orbit, angles), page_tolerance).bytes;
+      block.insert(block.end(), loop.begin(), loop.end());
+    }
+    size += deflated(block).size();
   }
   if (count == 0) return 1;
-  const double each = static_cast<double>(deflated(tried).size()) / static_cast<double>(count);
+  const double each = static_cast<double>(size) / static_cast<double>(count);
   const double all = each * static_cast<double>(orbits);
   return static_cast<std::size_t>(std::max(1.0, std::ceil(all / static_cast<double>(bytes))));
 }

@@ -13,6 +13,8 @@ export interface Curve {
   /** Slopes at the vertices times a third of the piece before and behind: Bezier's control points. */
   before: Float64Array;
   behind: Float64Array;
+  /** Of the vertices, and so of the pieces, which are limited to them. */
+  box: { x0: number; x1: number; y0: number; y1: number };
 }
 
 const noPiece = -2;
@@ -92,6 +94,14 @@ export function curvesOf(atlas: Atlas, qx: Quantity, qy: Quantity): Curve[] {
       behind[2 * i] = x[i]! + mx[i]! * on;
       behind[2 * i + 1] = y[i]! + my[i]! * on;
     }
-    return { family: family.row, vertices, x, y, stable, before, behind };
+    const box = { x0: Infinity, x1: -Infinity, y0: Infinity, y1: -Infinity };
+    for (let i = 0; i < n; ++i) {
+      if (!Number.isFinite(x[i]!) || !Number.isFinite(y[i]!)) continue;
+      box.x0 = Math.min(box.x0, x[i]!);
+      box.x1 = Math.max(box.x1, x[i]!);
+      box.y0 = Math.min(box.y0, y[i]!);
+      box.y1 = Math.max(box.y1, y[i]!);
+    }
+    return { family: family.row, vertices, x, y, stable, before, behind, box };
   });
 }

@@ -51,7 +51,6 @@ export class Frame {
   onView: () => void = () => {};
   onKey: (event: KeyboardEvent) => boolean = () => false;
   private whole: Box = { x0: 0, x1: 1, y0: 0, y1: 1 };
-  private margin = { left: 0, right: 0, top: 0, bottom: 0 };
   private waiting = false;
   private readonly pointers = new Map<number, { x: number; y: number }>();
   private drag: { x: number; y: number; tool: Tool; moved: boolean } | null = null;
@@ -114,17 +113,13 @@ export class Frame {
     this.draw();
   }
 
-  get inner(): Box {
-    const m = this.margin;
-    return { x0: m.left, x1: this.width - m.right, y0: m.top, y1: this.height - m.bottom };
-  }
+  /** Where the data are drawn, in pixels; y0 is the upper edge. */
+  inner: Box = { x0: 0, x1: 1, y0: 0, y1: 1 };
   px(x: number): number {
-    const { x0, x1 } = this.inner;
-    return x0 + ((x - this.x.low) / (this.x.high - this.x.low)) * (x1 - x0);
+    return this.inner.x0 + ((x - this.x.low) / (this.x.high - this.x.low)) * (this.inner.x1 - this.inner.x0);
   }
   py(y: number): number {
-    const { y0, y1 } = this.inner;
-    return y1 - ((y - this.y.low) / (this.y.high - this.y.low)) * (y1 - y0);
+    return this.inner.y1 - ((y - this.y.low) / (this.y.high - this.y.low)) * (this.inner.y1 - this.inner.y0);
   }
   fromX(px: number): number {
     const { x0, x1 } = this.inner;
@@ -163,7 +158,7 @@ export class Frame {
     this.theme = currentTheme();
     ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
     ctx.clearRect(0, 0, this.width, this.height);
-    if (this.options.bare) this.margin = { left: 6, right: 6, top: 6, bottom: 6 };
+    if (this.options.bare) this.setInner(6, 6, 6, 6);
     if (this.options.square) this.squareView();
     if (!this.options.bare) this.drawAxes();
     const { x0, x1, y0, y1 } = this.inner;
@@ -232,12 +227,16 @@ export class Frame {
     return `${Math.max(11, Math.round(this.theme.text * scale))}px system-ui, sans-serif`;
   }
 
+  private setInner(left: number, right: number, top: number, bottom: number): void {
+    this.inner = { x0: Math.ceil(left), x1: this.width - Math.ceil(right), y0: Math.ceil(top), y1: this.height - Math.ceil(bottom) };
+  }
+
   private measureMargins(): ReturnType<typeof axisTicks> {
     const text = Math.max(11, this.theme.text * 0.78);
     this.context.font = this.font();
     const ticks = axisTicks(this.y.low, this.y.high, Math.max(2, this.height / (text * 4)), this.y.warp);
     const widest = Math.max(...ticks.labels.map((label) => this.context.measureText(label).width), 0);
-    this.margin = { left: Math.ceil(widest + text * 2.1), right: Math.ceil(text), top: Math.ceil(text * 0.9), bottom: Math.ceil(text * 3) };
+    this.setInner(widest + text * 2.1, text, text * 0.9, text * 3);
     return ticks;
   }
 

@@ -115,15 +115,19 @@ export class Diagram {
 
   private boundsOf(curves: Curve[]): Box {
     const box = { x0: Infinity, x1: -Infinity, y0: Infinity, y1: -Infinity };
-    for (const { x, y } of curves)
-      for (let i = 0; i < x.length; ++i) {
-        if (!Number.isFinite(x[i]!) || !Number.isFinite(y[i]!)) continue;
-        box.x0 = Math.min(box.x0, x[i]!);
-        box.x1 = Math.max(box.x1, x[i]!);
-        box.y0 = Math.min(box.y0, y[i]!);
-        box.y1 = Math.max(box.y1, y[i]!);
-      }
+    for (const { box: own } of curves) {
+      box.x0 = Math.min(box.x0, own.x0);
+      box.x1 = Math.max(box.x1, own.x1);
+      box.y0 = Math.min(box.y0, own.y0);
+      box.y1 = Math.max(box.y1, own.y1);
+    }
     return Number.isFinite(box.x0) ? box : { x0: 0, x1: 1, y0: 0, y1: 1 };
+  }
+
+  /** Whether a curve may come within so many pixels of a rectangle on the canvas. */
+  private isNear({ box }: Curve, x0: number, x1: number, y0: number, y1: number, reach: number): boolean {
+    const { frame } = this;
+    return frame.px(box.x1) >= x0 - reach && frame.px(box.x0) <= x1 + reach && frame.py(box.y0) >= y0 - reach && frame.py(box.y1) <= y1 + reach;
   }
 
   private showFamily(): void {
@@ -166,15 +170,20 @@ export class Diagram {
     const [w, e, n, s] = [inner.x0 - 4, inner.x1 + 4, inner.y0 - 4, inner.y1 + 4];
     let drawn = 0;
     for (const curve of this.curves) {
+      if (!this.isNear(curve, w, e, n, s, 0)) continue;
       const { x, y, stable } = curve;
       let lastX = NaN;
       let lastY = NaN;
       let lastStyle: Style | null = null;
+      const byStable: Style[] = [];
       for (let i = 0; i + 1 < x.length; ++i) {
         if (stable[i] === -2) continue;
-        const [ax, ay, bx, by] = [frame.px(x[i]!), frame.py(y[i]!), frame.px(x[i + 1]!), frame.py(y[i + 1]!)];
+        const ax = frame.px(x[i]!);
+        const ay = frame.py(y[i]!);
+        const bx = frame.px(x[i + 1]!);
+        const by = frame.py(y[i + 1]!);
         const long = Math.abs(bx - ax) + Math.abs(by - ay);
-        const own = style(curve.family, stable[i]!);
+        const own = (byStable[stable[i]! + 1] ??= style(curve.family, stable[i]!));
         if (long < bendFrom) {
           if (Math.max(ax, bx) < w || Math.min(ax, bx) > e || Math.max(ay, by) < n || Math.min(ay, by) > s) {
             lastStyle = null;
@@ -355,7 +364,7 @@ export class Diagram {
     const state = this.store.state;
     const picked = state.isolate && state.orbit >= 0 ? this.store.atlas.familyOf[state.orbit]! : -1;
     for (const curve of this.curves) {
-      if (picked >= 0 && curve.family !== picked) continue;
+      if ((picked >= 0 && curve.family !== picked) || !this.isNear(curve, px, px, py, py, pickReach)) continue;
       for (let i = 0; i < curve.x.length; ++i) {
         if (curve.vertices[i]! < 0) continue;
         const far = Math.hypot(frame.px(curve.x[i]!) - px, frame.py(curve.y[i]!) - py);
@@ -366,6 +375,7 @@ export class Diagram {
     least = 10;
     const { x0, x1, y0, y1 } = frame.inner;
     for (const curve of this.curves) {
+      if (!this.isNear(curve, px, px, py, py, least)) continue;
       for (let i = 0; i + 1 < curve.x.length; ++i) {
         if (curve.stable[i] === -2) continue;
         const c = [curve.x[i]!, curve.behind[2 * i]!, curve.before[2 * i + 2]!, curve.x[i + 1]!].map((v) => frame.px(v));
