@@ -47,17 +47,21 @@ const pixels = (page, selector) => page.$eval(selector, (c) => c.toDataURL());
 const change = (page, selector, value) => page.select(selector, value);
 const item = (page, name) => page.evaluateHandle((n) => [...document.querySelectorAll('[role=treeitem]')].find((e) => e.querySelector('.name').textContent === n), name);
 
-/** Scans the diagram for a place where something is to be picked, and returns what the hint says there. */
-async function findOrbit(page, wanted = () => true) {
-  const box = await (await page.$('#diagram1')).boundingBox();
-  for (let i = 2; i < 60; ++i)
-    for (let j = 2; j < 30; ++j) {
-      const [x, y] = [box.x + (box.width * i) / 62, box.y + (box.height * j) / 32];
-      await page.mouse.move(x, y);
-      const hint = await page.$eval('.diagram .tip', (tip) => (tip.hidden ? '' : tip.textContent));
-      if (hint && wanted(hint)) return { x, y, hint };
-    }
-  throw new Error('no orbit was found in the diagram');
+/** Looks over the diagram for a place where something is to be picked, and returns what the hint says there. */
+async function findOrbit(page, begin = '') {
+  const found = await page.$eval('#diagram1', (canvas, wanted) => {
+    const box = canvas.getBoundingClientRect();
+    const tip = document.querySelector('.diagram .tip');
+    for (let x = box.left + 60; x < box.right - 20; x += 5)
+      for (let y = box.top + 20; y < box.bottom - 50; y += 5) {
+        canvas.dispatchEvent(new PointerEvent('pointermove', { clientX: x, clientY: y, pointerId: 99 }));
+        if (!tip.hidden && tip.textContent.startsWith(wanted)) return { x, y };
+      }
+    return null;
+  }, begin);
+  assert.ok(found, `the diagram shows no ${begin}`);
+  await page.mouse.move(found.x, found.y);
+  return { ...found, hint: await text(page, '.diagram .tip') };
 }
 
 /** Stands in for the clipboard, which headless browsers refuse. */
@@ -77,17 +81,39 @@ await checkPage('opens from disk, without a message or a request, and says what 
 });
 
 await checkPage('a click picks the orbit that the hint names', 'pendulum', {}, async (page) => {
-  const { x, y, hint } = await findOrbit(page, (h) => /step \d+/.test(h));
+  const { x, y, hint } = await findOrbit(page, 'OBDa, step');  // one with orbits close together
   await page.mouse.click(x, y);
   const [, name, step] = /^(.*), step (-?\d+)/.exec(hint);
   assert.match(await text(page, '.orbit h2'), new RegExp(`^${name}`));
   const state = await fragment(page);
   assert.equal(state.family, name);
   assert.equal(state.step, step);
+  // Where on the diagram that is, by zooming there and beside it.
+  const place = async (px, py) => {
+    await page.mouse.move(px, py);
+    for (let i = 0; i < 60; ++i) await page.mouse.wheel({ deltaY: -200 });
+    const view = (await fragment(page)).view.split(',').map(Number);
+    await page.focus('#diagram1');
+    await page.keyboard.press('0');
+    return [(view[0] + view[1]) / 2, (view[2] + view[3]) / 2];
+  };
+  const [t, e] = await place(x, y);
+  const box = await (await page.$('#diagram1')).boundingBox();
+  const up = y > box.y + box.height / 2 ? -60 : 60;
+  const [tBeside, eBeside] = await place(x + 60, y + up);
+  const far = (row) => 60 * Math.hypot((row.period - t) / (tBeside - t), (row.energy - e) / (eBeside - e));
+  const nearest = rows.reduce((best, row) => (far(row) < far(best) ? row : best));
+  assert.ok(far(nearest) < 28);
+  const json = JSON.parse(await page.evaluate(() => new Promise((done) => {
+    navigator.clipboard.writeText = async (copied) => done(copied);
+    document.getElementById('copy-json').click();
+  })));
+  const picked = rows.find((row) => Number(row.period) === json.period && Number(row.energy) === json.energy);
+  assert.ok(far(picked) < far(nearest) + 0.5, 'another orbit is nearer');  // twins are at one place
 });
 
 await checkPage('a click picks a crossing and says what is born there', 'pendulum', {}, async (page) => {
-  const { x, y, hint } = await findOrbit(page, (h) => h.startsWith('period doubling on In-Phase'));
+  const { x, y, hint } = await findOrbit(page, 'period doubling on In-Phase');
   await page.mouse.click(x, y);
   assert.match(await text(page, '.crossing'), /Period doubling.*Born here: I/);
   assert.ok(hint.includes('m 2'));
@@ -129,6 +155,7 @@ await checkPage('search finds names, periods and energies', 'pendulum', {}, asyn
     return page.$$eval('#hits li', (e) => e.map((n) => n.textContent));
   };
   assert.match((await hits('ida'))[0], /^IDa/);
+  assert.match((await hits('ob'))[0], /^OB\d/, 'the name itself comes first');
   const periods = await hits('T=9');
   assert.match(periods[0], /T 9\.?|T 8\.9/);
   assert.ok(periods.every((hit) => !hit.includes('does not reach')));
@@ -142,7 +169,7 @@ await checkPage('search finds names, periods and energies', 'pendulum', {}, asyn
 
 await checkPage('wheel, keys and buttons zoom and pan, down to the last digit of a double', 'pendulum', {}, async (page) => {
   const box = await (await page.$('#diagram1')).boundingBox();
-  const { x, y } = await findOrbit(page, (h) => /step \d+/.test(h));
+  const { x, y } = await findOrbit(page, 'In-Phase, step');
   await page.mouse.move(x, y);
   const ranges = async () => (await fragment(page)).view?.split(',').map(Number);
   assert.equal(await ranges(), undefined);
@@ -265,7 +292,9 @@ await checkPage('a link leads back to the same view', 'pendulum', {}, async (pag
   const other = await open(browser, `${folder}/pendulum.html`, { hash: link.split('#')[1] });
   assert.match(await text(other.page, '.orbit h2'), /^IDb/);
   assert.equal(await text(other.page, '.place'), place);
-  assert.deepEqual(await fragment(other.page), await fragment(page));
+  const state = await fragment(page);
+  assert.deepEqual(await fragment(other.page), state);
+  for (const name of ['family', 'step', 'x', 'y', 'view', 'colour']) assert.ok(state[name], name);
   await other.page.close();
   const odd = await open(browser, `${folder}/pendulum.html`, { hash: 'family=%zz&view=1,2,NaN,4&x=nothing&crossing=-7&step=1e99' });
   assert.deepEqual(odd.troubles, []);
