@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# run.sh install|types|pages|browser|bench PROGRAM MAKE_ATLAS SOURCES BUILD FOLDER: one part of the tests of the page; exit status 77
+# run.sh without_node|install|types|pages|browser|bench PROGRAM MAKE_ATLAS SOURCES BUILD FOLDER: one part of the tests of the page; exit status 77
 # where what it needs is not installed.
 set -euo pipefail
 part=$1 program=$2 make_atlas=$3 sources=$4 build=$5 folder=$6
@@ -11,6 +11,24 @@ need() {
     command -v "$name" >/dev/null || { echo "skipped: $name is not installed (./quickstart test installs it)"; exit 77; }
   done
 }
+
+# What drivers/page/embed.cmake writes where something is missing, and that it fails where the page's own sources are wrong.
+without_node() {
+  local web="$sources/drivers/page/web" out="$folder/without_node/page_template.cpp"
+  rm -rf "$folder/without_node"
+  mkdir -p "$folder/without_node"
+  embed() { cmake "-DWEB=$1" "-DBUILD=$folder/without_node/web" "-DOUT=$out" "-DNODE=$2" "-DNPM=$3" -P "$sources/drivers/page/embed.cmake"; }
+  embed "$web" "" ""
+  grep -q '^// missing' "$out" && grep -q 'Node was not found.*quickstart page' "$out" || { echo "no word of Node in $out"; exit 1; }
+  embed "$web" "$(type -P true)" "$(type -P false)"
+  grep -q 'is the npm registry reachable' "$out" || { echo "no word of npm in $out"; exit 1; }
+  cp -r "$web" "$folder/without_node/broken"
+  ! embed "$folder/without_node/broken" "$(type -P false)" "$(type -P true)" || { echo "a bundle that failed was taken"; exit 1; }
+}
+if [[ "$part" == without_node ]]; then
+  without_node
+  exit 0
+fi
 
 need node npm
 modules="$folder/packages"

@@ -47,6 +47,11 @@ while IFS= read -r line; do
     try 2 "${words[@]}"
     continue
   fi
+  # A program that was built without Node has no page, and says so.
+  if [[ "${words[1]}" == page ]] && ! command -v npm >/dev/null; then
+    try 3 "${words[@]}"
+    continue
+  fi
   try 0 "${words[@]}"
   while IFS= read -r group; do
     [[ -n "$group" ]] || continue
