@@ -22,8 +22,11 @@ without_node() {
   grep -q '^// missing' "$out" && grep -q 'Node was not found.*quickstart page' "$out" || { echo "no word of Node in $out"; exit 1; }
   embed "$web" "$(type -P true)" "$(type -P false)"
   grep -q 'is the npm registry reachable' "$out" || { echo "no word of npm in $out"; exit 1; }
-  cp -r "$web" "$folder/without_node/broken"
-  ! embed "$folder/without_node/broken" "$(type -P false)" "$(type -P true)" || { echo "a bundle that failed was taken"; exit 1; }
+  printf '#!/bin/sh\nmkdir -p node_modules\n' >"$folder/without_node/npm"
+  chmod +x "$folder/without_node/npm"
+  local said
+  ! said=$(embed "$web" "$(type -P false)" "$folder/without_node/npm" 2>&1) || { echo "a bundle that failed was taken"; exit 1; }
+  grep -q 'could not be bundled' <<<"$said" || { echo "$said"; exit 1; }
 }
 if [[ "$part" == without_node ]]; then
   without_node

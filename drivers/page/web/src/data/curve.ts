@@ -13,6 +13,10 @@ export interface Curve {
   /** Slopes at the vertices times a third of the piece before and behind: Bezier's control points. */
   before: Float64Array;
   behind: Float64Array;
+  /** Vertices in order, the coarsest first: each is at least `apart` from the one before, in parts of the whole diagram. */
+  levels: { apart: number; vertices: Int32Array }[];
+  /** Places in `vertices` of crossings. */
+  crossings: Int32Array;
   /** Of the vertices, and so of the pieces, which are limited to them. */
   box: { x0: number; x1: number; y0: number; y1: number };
 }
@@ -46,6 +50,28 @@ function slopes(s: Float64Array, v: Float64Array): Float64Array {
     if (!Number.isFinite(out[i]!)) out[i] = 0;
   }
   return out;
+}
+
+/** The coarsest level, in parts of the whole diagram, and how many there are, each twice as fine. */
+const coarsest = 1 / 500;
+const mostLevels = 8;
+
+/** Makes a curve's levels; a vertex at which stability changes is in all of them. */
+export function addLevels(curve: Curve, width: number, height: number): void {
+  const { x, y, stable } = curve;
+  const n = x.length;
+  for (let level = 0, apart = coarsest; level < mostLevels; ++level, apart /= 2) {
+    const kept: number[] = n ? [0] : [];
+    for (let i = 1, last = 0; i < n; ++i) {
+      const far = Math.hypot((x[i]! - x[last]!) / width, (y[i]! - y[last]!) / height);
+      if (i < n - 1 && stable[i] === stable[i - 1] && far < apart) continue;
+      kept.push(i);
+      last = i;
+    }
+    // As fine as the curve itself.
+    if (kept.length > 0.8 * n) break;
+    curve.levels.push({ apart, vertices: Int32Array.from(kept) });
+  }
 }
 
 export function curvesOf(atlas: Atlas, qx: Quantity, qy: Quantity): Curve[] {
@@ -102,6 +128,7 @@ export function curvesOf(atlas: Atlas, qx: Quantity, qy: Quantity): Curve[] {
       box.y0 = Math.min(box.y0, y[i]!);
       box.y1 = Math.max(box.y1, y[i]!);
     }
-    return { family: family.row, vertices, x, y, stable, before, behind, box };
+    const crossings = Int32Array.from(vertices.keys()).filter((i) => vertices[i]! < 0);
+    return { family: family.row, vertices, x, y, stable, before, behind, levels: [], crossings, box };
   });
 }

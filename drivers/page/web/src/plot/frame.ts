@@ -50,7 +50,7 @@ export class Frame {
   onBrush: (box: Box | null) => void = () => {};
   onView: () => void = () => {};
   onKey: (event: KeyboardEvent) => boolean = () => false;
-  private whole: Box = { x0: 0, x1: 1, y0: 0, y1: 1 };
+  whole: Box = { x0: 0, x1: 1, y0: 0, y1: 1 };
   private waiting = false;
   private readonly pointers = new Map<number, { x: number; y: number }>();
   private drag: { x: number; y: number; tool: Tool; moved: boolean } | null = null;

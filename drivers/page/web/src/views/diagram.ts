@@ -1,4 +1,4 @@
-import { curvesOf, type Curve } from '../data/curve';
+import { addLevels, curvesOf, type Curve } from '../data/curve';
 import { drawMark, kindOf } from '../data/kinds';
 import { rounded, type Quantity } from '../data/quantities';
 import { h, select } from '../dom';
@@ -6,7 +6,7 @@ import { Frame, type Box, type Tool } from '../plot/frame';
 import { familyColour } from '../plot/theme';
 import type { Store } from '../state';
 
-/** Vertices nearer than this to the one before are left out, in pixels. */
+/** Vertices nearer than this to the one before may be left out, in pixels. */
 const nearest = 0.75;
 /** Pieces longer than this are drawn as curves. */
 const bendFrom = 4;
@@ -104,6 +104,8 @@ export class Diagram {
       const view = own.view;
       this.frame.setWhole(this.boundsOf(this.curves));
       own.view = view;
+      const { whole } = this.frame;
+      for (const curve of this.curves) addLevels(curve, whole.x1 - whole.x0, whole.y1 - whole.y0);
       this.axes = axes;
     }
     const view = own.view;
@@ -167,44 +169,48 @@ export class Diagram {
       return found;
     };
     const inner = frame.inner;
-    const [w, e, n, s] = [inner.x0 - 4, inner.x1 + 4, inner.y0 - 4, inner.y1 + 4];
+    const [w, e, north, south] = [inner.x0 - 4, inner.x1 + 4, inner.y0 - 4, inner.y1 + 4];
+    const { whole } = frame;
+    // Pixels that the whole diagram would have.
+    const magnified = Math.max(((inner.x1 - inner.x0) * (whole.x1 - whole.x0)) / (frame.x.high - frame.x.low), ((inner.y1 - inner.y0) * (whole.y1 - whole.y0)) / (frame.y.high - frame.y.low));
     let drawn = 0;
     for (const curve of this.curves) {
-      if (!this.isNear(curve, w, e, n, s, 0)) continue;
+      if (!this.isNear(curve, w, e, north, south, 0)) continue;
       const { x, y, stable } = curve;
-      let lastX = NaN;
-      let lastY = NaN;
-      let lastStyle: Style | null = null;
+      // The coarsest level of which nobody sees that it is one.
+      const vertices = curve.levels.find((level) => level.apart * magnified < nearest)?.vertices;
+      const count = vertices?.length ?? x.length;
+      let joined: Style | null = null;
       const byStable: Style[] = [];
-      for (let i = 0; i + 1 < x.length; ++i) {
-        if (stable[i] === -2) continue;
+      for (let n = 0; n + 1 < count; ++n) {
+        const i = vertices ? vertices[n]! : n;
+        const j = vertices ? vertices[n + 1]! : n + 1;
+        if (stable[i] === -2) {
+          joined = null;
+          continue;
+        }
         const ax = frame.px(x[i]!);
         const ay = frame.py(y[i]!);
-        const bx = frame.px(x[i + 1]!);
-        const by = frame.py(y[i + 1]!);
-        const long = Math.abs(bx - ax) + Math.abs(by - ay);
+        const bx = frame.px(x[j]!);
+        const by = frame.py(y[j]!);
         const own = (byStable[stable[i]! + 1] ??= style(curve.family, stable[i]!));
-        if (long < bendFrom) {
-          if (Math.max(ax, bx) < w || Math.min(ax, bx) > e || Math.max(ay, by) < n || Math.min(ay, by) > s) {
-            lastStyle = null;
+        if (j > i + 1 || Math.abs(bx - ax) + Math.abs(by - ay) < bendFrom) {
+          if (Math.max(ax, bx) < w || Math.min(ax, bx) > e || Math.max(ay, by) < north || Math.min(ay, by) > south) {
+            joined = null;
             continue;
           }
-          if (lastStyle === own && Math.abs(bx - lastX) + Math.abs(by - lastY) < nearest && i + 2 < x.length && stable[i + 1] === stable[i]) continue;
-          if (lastStyle !== own) own.path.moveTo(ax, ay);
+          if (joined !== own) own.path.moveTo(ax, ay);
           own.path.lineTo(bx, by);
-          [lastX, lastY, lastStyle] = [bx, by, own];
-          ++drawn;
+          joined = own;
         } else {
-          const control = [x[i]!, y[i]!, curve.behind[2 * i]!, curve.behind[2 * i + 1]!, curve.before[2 * i + 2]!, curve.before[2 * i + 3]!, x[i + 1]!, y[i + 1]!];
+          const control = [x[i]!, y[i]!, curve.behind[2 * i]!, curve.behind[2 * i + 1]!, curve.before[2 * j]!, curve.before[2 * j + 1]!, x[j]!, y[j]!];
           for (let c = 0; c < 8; c += 2) {
             control[c] = frame.px(control[c]!);
             control[c + 1] = frame.py(control[c + 1]!);
           }
-          if (this.bend(own.path, control, lastStyle === own && lastX === ax && lastY === ay, 0)) {
-            [lastX, lastY, lastStyle] = [bx, by, own];
-            ++drawn;
-          } else lastStyle = null;
+          joined = this.bend(own.path, control, joined === own, 0) ? own : null;
         }
+        ++drawn;
       }
     }
     const dashed = !(frame.isMoving && drawn > dashedWhileMoving);
@@ -324,7 +330,7 @@ export class Diagram {
       }
     };
     const order = [...this.curves].sort((a, b) => Number(b.family === picked) - Number(a.family === picked));
-    for (const curve of order) for (let i = 0; i < curve.x.length; ++i) if (curve.vertices[i]! < 0) draw(curve, i);
+    for (const curve of order) for (const i of curve.crossings) draw(curve, i);
   }
 
   private drawPicked(): void {
