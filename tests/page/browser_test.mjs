@@ -195,6 +195,29 @@ await checkPage('wheel, keys and buttons zoom and pan, down to the last digit of
   assert.ok(await ranges());
 });
 
+const tenth = rows.find((row) => row.family === '0' && row.step === '10');
+const around = [tenth.period, tenth.energy].flatMap((v) => [Number(v) - 1.5e-13, Number(v) + 1.5e-13]).join(',');
+await checkPage('a stored orbit is where it is, to the last digit', 'pendulum', { hash: `family=In-Phase&step=10&x=T&y=E&view=${around}` }, async (page) => {
+  const view = (await fragment(page)).view.split(',').map(Number);
+  assert.ok(view[1] - view[0] < 4e-13);
+  const [px, py] = await page.$eval('#diagram1', (canvas) => {
+    // The ring around the picked orbit: the mean place of its colour.
+    const { data, width } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    const hex = getComputedStyle(document.documentElement).getPropertyValue('--pick').trim();
+    const ink = [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
+    let [n, x, y] = [0, 0, 0];
+    for (let at = 0; at < data.length; at += 4)
+      if (ink.every((v, c) => Math.abs(data[at + c] - v) < 4)) [n, x, y] = [n + 1, x + ((at / 4) % width), y + Math.floor(at / 4 / width)];
+    return [x / n, y / n];
+  });
+  const box = await (await page.$('#diagram1')).boundingBox();
+  await page.mouse.move(box.x + px, box.y + py);
+  assert.match(await text(page, '.diagram .tip'), /^In-Phase, step 10,/);
+  // A hundred pixels beside it there is none: these are 1e-13.
+  await page.mouse.move(box.x + px + 100, box.y + py);
+  assert.ok(await page.$eval('.diagram .tip', (tip) => tip.hidden || !tip.textContent.includes('step 10')));
+});
+
 await checkPage('dragging pans, zooms to a rectangle, or selects in all views', 'pendulum', {}, async (page) => {
   const box = await (await page.$('#diagram1')).boundingBox();
   const drag = async (...key) => {

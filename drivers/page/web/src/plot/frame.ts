@@ -280,7 +280,7 @@ export class Frame {
     ctx.strokeStyle = theme.soft;
     ctx.strokeRect(Math.round(x0) + 0.5, Math.round(y0) + 0.5, Math.round(x1 - x0), Math.round(y1 - y0));
     const title = (axis: Axis, ticks: typeof xTicks): string =>
-      `${axis.label}${ticks.base ? ` − ${ticks.base}` : ''}${ticks.power ? ` (× ${powerOfTen(ticks.power)})` : ''}`;
+      `${axis.label}${ticks.base.startsWith('−') ? ` + ${ticks.base.slice(1)}` : ticks.base ? ` − ${ticks.base}` : ''}${ticks.power ? ` (× ${powerOfTen(ticks.power)})` : ''}`;
     const write = (label: string, room: number): void => {
       // Shrunk where there is little room: the digits of a base are not cut.
       ctx.font = this.font(0.82);
