@@ -487,6 +487,20 @@ for (const [file, title] of [['galaxy', /potential/i], ['spring', /spring/i], ['
     assert.ok(inks > 20, `${inks} colours`);
   });
 
+await checkPage('a dissipative system that nobody knows has phase planes, its parameter and its multipliers', 'unknown', {}, async (page) => {
+  const axis = (name) => page.$eval(`[aria-label="${name}"]`, (e) => e.value);
+  assert.equal(await axis('Horizontal axis of the diagram'), 'parameter');
+  assert.equal(await axis('Vertical axis of the second diagram'), 'rho');
+  assert.match(await text(page, 'h1'), /unknown_attractor.*with noise/);
+  assert.match(await text(page, '.orbit details summary'), /^Moving$/);
+  assert.match(await text(page, '.values'), /Over the period.* [−+] .* i, \|μ\| = /);
+  assert.match(await text(page, '.legend'), /torus/);
+  const options = await page.$$eval('[aria-label="Vertical axis of the diagram"] option', (e) => e.map((o) => o.textContent));
+  assert.ok(options.includes('multiplier 1, imaginary part') && !options.includes('energy E'), options.join());
+  // |mu| = 1 at s = 1.387: the band says stable, then unstable.
+  assert.equal(await page.$eval('.band', (e) => e.style.backgroundImage.match(/rgb/g).length), 2);
+});
+
 const luminance = ([r, g, b]) => {
   const linear = [r, g, b].map((v) => (v / 255 <= 0.04045 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4));
   return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];

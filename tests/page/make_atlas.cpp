@@ -1,4 +1,4 @@
-// make_atlas hostile|empty|many FILE.h5 [ORBITS]: writes an atlas that no survey would make.
+// make_atlas hostile|empty|many|unknown FILE.h5 [ORBITS]: writes an atlas that no survey of today would make.
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -13,6 +13,56 @@
 namespace {
 
 using namespace orbweaver;
+
+/// A dissipative system of which the program knows nothing, along a parameter.
+archive::Header unknown_header() {
+  archive::Header header;
+  header.orbweaver_version = "9.0.0";
+  header.scene = "system: unknown\n";
+  header.state_names = {"x", "y", "z"};
+  header.pairs = 2;
+  header.symplectic = false;
+  header.system = "unknown_attractor";
+  header.effects = {"noise"};
+  header.parameter_names = {"rho"};
+  header.parameter_values = {28};
+  header.scale_names = {"time", "x", "y", "z"};
+  header.scales = {1, 1, 1, 1};
+  return header;
+}
+
+archive::Records unknown_records() {
+  archive::Records records;
+  archive::FamilyRecord family;
+  family.key = "0000";
+  family.name = "Cycle";
+  family.end_reason = "parameter limit";
+  records.families.push_back(family);
+  for (int step = 0; step < 40; ++step) {
+    const double s = 0.05 * step;
+    archive::OrbitRecord orbit;
+    orbit.family_key = family.key;
+    orbit.step = step;
+    orbit.arclength = s;
+    orbit.parameter = 20 + 3 * s - s * s;
+    orbit.period = 1 + 0.1 * s;
+    orbit.stability = {0.6 * s, 0.4 * s, 0.6 * s, -0.4 * s};
+    orbit.stability_error = 1e-9;
+    orbit.cutoff = 4;
+    orbit.modes.assign(9 * 3, 0.0);
+    for (int i = 0; i < 3; ++i) orbit.modes[static_cast<std::size_t>(3 * (1 + i) + i)] = 1 + s;
+    orbit.state = {1 + s, 0, 0};
+    records.orbits.push_back(orbit);
+  }
+  archive::CrossingRecord crossing;
+  crossing.family_key = family.key;
+  crossing.arclength = 1.38;
+  crossing.period = 1.138;
+  crossing.kind = archive::CrossingKind::torus;
+  crossing.state = {2.38, 0, 0};
+  records.crossings.push_back(crossing);
+  return records;
+}
 
 archive::Header header_of() {
   archive::Header header;
@@ -106,7 +156,9 @@ int main(int argc, char** argv) {
   const std::filesystem::path folder = std::filesystem::path(argv[2]).parent_path() / "parts";
   std::filesystem::create_directories(folder);
   const auto orbits = argc > 3 ? std::atoi(argv[3]) : 100'000;
-  const auto atlas = test::write_sample_atlas(folder, header_of(), records_of(argv[1], orbits));
+  const bool unknown = std::string(argv[1]) == "unknown";
+  const auto atlas = unknown ? test::write_sample_atlas(folder, unknown_header(), unknown_records())
+                             : test::write_sample_atlas(folder, header_of(), records_of(argv[1], orbits));
   std::filesystem::rename(atlas, argv[2]);
   std::filesystem::remove_all(folder);
   return 0;

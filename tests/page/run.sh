@@ -72,6 +72,8 @@ case "$part" in
     page hostile
     "$make_atlas" empty "$folder/empty.h5"
     page empty
+    "$make_atlas" unknown "$folder/unknown.h5"
+    page unknown
     "$program" show "$folder/pendulum.h5" orbits --csv >"$folder/pendulum.csv"
     ;;
   browser)

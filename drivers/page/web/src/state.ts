@@ -34,7 +34,7 @@ export class Store {
   constructor(readonly atlas: Atlas, readonly quantities: Quantity[]) {
     const has = (id: string): boolean => quantities.some((q) => q.id === id);
     const first = quantities[0]?.id ?? 'T';
-    const stability = has('k') ? 'k' : has('k0') ? 'k0' : first;
+    const stability = has('k') ? 'k' : has('rho') ? 'rho' : first;
     this.state = {
       orbit: -1,
       crossing: -1,

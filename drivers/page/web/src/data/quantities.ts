@@ -78,6 +78,11 @@ export function quantitiesOf(atlas: Atlas): Quantity[] {
       add(id, `${noun}${number}${side}${of}`, id, column(name, part), { warp: indexWarp });
     }
   }
+  if (atlas.index.complex)
+    add('rho', 'largest |multiplier|', '|μ|', Float64Array.from({ length: atlas.orbits }, (_, orbit) => {
+      const sizes = atlas.multipliers('stability', orbit).map((m) => Math.hypot(m.re, m.im));
+      return sizes.length ? Math.max(...sizes) : NaN;
+    }), { warp: indexWarp });
   add('amplitude', 'amplitude (rms about the mean)', 'amplitude', column('amplitude'));
   names.forEach((name, i) => add(`max-${name}`, `largest ${name}`, `max ${name}`, column('largest', i)));
   names.forEach((name, i) =>
