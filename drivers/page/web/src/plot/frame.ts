@@ -18,6 +18,8 @@ export interface FrameOptions {
   bare?: boolean;
   /** It cannot be zoomed. */
   fixed?: boolean;
+  /** It lies in a panel that scrolls: the wheel zooms once it was clicked, or with Ctrl. */
+  inPanel?: boolean;
 }
 
 export interface Box {
@@ -339,6 +341,7 @@ export class Frame {
   private listen(): void {
     const canvas = this.canvas;
     canvas.addEventListener('wheel', (event) => {
+      if (this.options.inPanel && !event.ctrlKey && document.activeElement !== canvas) return;
       event.preventDefault();
       const at = this.place(event);
       const lines = event.deltaMode === 1 ? 30 : 1;

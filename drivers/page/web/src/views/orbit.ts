@@ -78,10 +78,10 @@ export class OrbitView {
     this.planeAxes = d >= 4 ? [[0, 1], [0, half]] : [[0, Math.min(1, d - 1)], [0, d - 1]];
     const bare = this.picture !== null && !this.picture.axes;
     this.frames = {
-      picture: new Frame({ label: 'The orbit, animated', square: true, bare }),
-      planes: this.planeAxes.map((_, i) => new Frame({ label: `Path ${i + 1}` })),
-      time: new Frame({ label: 'Time courses' }),
-      spectrum: new Frame({ label: 'Fourier spectrum' }),
+      picture: new Frame({ label: 'The orbit, animated', square: true, bare, inPanel: true }),
+      planes: this.planeAxes.map((_, i) => new Frame({ label: `Path ${i + 1}`, inPanel: true })),
+      time: new Frame({ label: 'Time courses', inPanel: true }),
+      spectrum: new Frame({ label: 'Fourier spectrum', inPanel: true }),
       multipliers: new Frame({ label: 'Multipliers', square: true, bare: true, fixed: true }),
     };
     const f = this.frames;
