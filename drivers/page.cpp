@@ -28,9 +28,9 @@ void publish(const std::filesystem::path& part, const std::filesystem::path& pat
 }
 
 int run(const PageOptions& options) {
+  const archive::Archive atlas(options.atlas);
   const std::string_view page = page_template();
   if (page.empty()) throw core::EnvironmentError(fmt::format("cannot make a page: {}", missing_page_reason()));
-  const archive::Archive atlas(options.atlas);
   std::filesystem::path part = options.output;
   part += ".part";
   std::ofstream file(part, std::ios::binary);
