@@ -28,6 +28,7 @@ Command make_check_command(CLI::App& program);
 Command make_compare_command(CLI::App& program);
 Command make_consolidate_command(CLI::App& program);
 Command make_cost_command(CLI::App& program);
+Command make_page_command(CLI::App& program);
 Command make_refine_command(CLI::App& program);
 Command make_show_command(CLI::App& program);
 Command make_survey_command(CLI::App& program);

@@ -2,63 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "orbit_stability.hpp"
+
 namespace orbweaver::report {
 
 namespace {
 
-constexpr double largest_error = 1e-3;
 constexpr std::size_t most_intervals = 8;
-
-// The file does not say which of the two a complex value is: multipliers, or indices of two or more symplectic pairs.
-bool holds_multipliers(const archive::Archive& atlas) {
-  if (!archive::has_complex_stability(atlas.header())) return false;
-  if (atlas.header().pairs == 1) return true;
-  for (const double energy : atlas.orbits().reals("energy"))
-    if (!std::isnan(energy)) return false;
-  return true;
-}
-
-class Stability {
- public:
-  explicit Stability(const archive::Archive& atlas)
-      : _values(atlas.orbits().reals("stability")),
-        _errors(atlas.orbits().reals("stability_error")),
-        _pairs(static_cast<std::size_t>(atlas.header().pairs)),
-        _complex(archive::has_complex_stability(atlas.header())),
-        _multipliers(holds_multipliers(atlas)) {}
-
-  // Nothing where it is not known.
-  [[nodiscard]] std::optional<bool> of(std::size_t orbit) const {
-    const double error = std::isnan(_errors[orbit]) ? 0.0 : _errors[orbit];
-    if (_pairs == 0 || error > largest_error) return std::nullopt;
-    bool stable = true;
-    for (std::size_t pair = 0; pair < _pairs; ++pair) {
-      const std::complex<double> k = value(orbit, pair);
-      if (std::isnan(k.real()) || std::isnan(k.imag())) return std::nullopt;
-      stable = stable && (_multipliers ? std::abs(k) <= 1.0 + error
-                                       : std::abs(k.imag()) <= error && std::abs(k.real()) <= 2.0 + error);
-    }
-    return stable;
-  }
-
- private:
-  [[nodiscard]] std::complex<double> value(std::size_t orbit, std::size_t pair) const {
-    const std::size_t at = orbit * _pairs + pair;
-    return _complex ? std::complex<double>(_values[2 * at], _values[2 * at + 1]) : _values[at];
-  }
-
-  const std::vector<double>& _values;
-  const std::vector<double>& _errors;
-  std::size_t _pairs;
-  bool _complex;
-  bool _multipliers;
-};
 
 // The period at which stability changes between neighbouring orbits: of the crossing that was located there, or that of
 // the stable one.
@@ -126,7 +81,7 @@ std::string interval_text(const archive::Archive& atlas, std::size_t family, dou
 }  // namespace
 
 std::string stability_text(const archive::Archive& atlas, std::size_t family) {
-  const Stability stability(atlas);
+  const OrbitStability stability(atlas);
   const auto& periods = atlas.orbits().reals("period");
   const auto first = static_cast<std::size_t>(atlas.families().integers("first_orbit")[family]);
   const auto end = first + static_cast<std::size_t>(atlas.families().integers("orbit_count")[family]);

@@ -12,7 +12,8 @@ namespace orbweaver::report {
 /// the last, or of the crossings that were located between these and their neighbours. Intervals run along the family:
 /// where T turns in one, the turns stand between its ends in that order ("25.27 .. 25.3 .. 25.26"), up to three. An
 /// orbit is stable if within `stability_error` all its indices are real and between -2 and 2, or all its multipliers
-/// within the unit circle; one whose error exceeds 1e-3 is not classified and interrupts an interval.
+/// within the unit circle; one of which an error above 1e-3 leaves that open is not classified. What is not stable
+/// interrupts an interval.
 [[nodiscard]] std::string stability_text(const archive::Archive& atlas, std::size_t family);
 
 }  // namespace orbweaver::report

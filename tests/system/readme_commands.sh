@@ -29,6 +29,7 @@ fill() {
       ORBIT) words+=(T=8.45) ;;
       ROW) words+=(0) ;;
       N) words+=(20) ;;
+      FILE.html) words+=(DIR/atlas.html) ;;
       FILE.txt) words+=(DIR/refined.txt) ;;
       PROOFS.h5) words+=(DIR/proofs.h5) ;;
       *) words+=("$word") ;;
@@ -44,6 +45,11 @@ while IFS= read -r line; do
   fill "$base"
   if [[ "$now" =~ ^\ *later ]]; then
     try 2 "${words[@]}"
+    continue
+  fi
+  # A program that was built without Node has no page, and says so.
+  if [[ "${words[1]}" == page ]] && ! command -v npm >/dev/null; then
+    try 3 "${words[@]}"
     continue
   fi
   try 0 "${words[@]}"

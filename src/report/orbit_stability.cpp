@@ -1,0 +1,47 @@
+#include "orbit_stability.hpp"
+
+#include <cmath>
+
+namespace orbweaver::report {
+
+namespace {
+
+constexpr double largest_error = 1e-3;
+
+}  // namespace
+
+// The file does not say which of the two a complex value is: multipliers, or indices of two or more symplectic pairs.
+bool holds_multipliers(const archive::Archive& atlas) {
+  if (!archive::has_complex_stability(atlas.header())) return false;
+  if (atlas.header().pairs == 1) return true;
+  for (const double energy : atlas.orbits().reals("energy"))
+    if (!std::isnan(energy)) return false;
+  return true;
+}
+
+OrbitStability::OrbitStability(const archive::Archive& atlas)
+    : _values(atlas.orbits().reals("stability")),
+      _errors(atlas.orbits().reals("stability_error")),
+      _pairs(static_cast<std::size_t>(atlas.header().pairs)),
+      _complex(archive::has_complex_stability(atlas.header())),
+      _multipliers(holds_multipliers(atlas)) {}
+
+std::optional<bool> OrbitStability::of(std::size_t orbit) const {
+  const double error = std::isnan(_errors[orbit]) ? 0.0 : _errors[orbit];
+  if (_pairs == 0) return std::nullopt;
+  bool stable = true;
+  for (std::size_t pair = 0; pair < _pairs; ++pair) {
+    const std::complex<double> k = value(orbit, pair);
+    if (std::isnan(k.real()) || std::isnan(k.imag())) return std::nullopt;
+    stable = stable && (_multipliers ? std::abs(k) <= 1.0 + error
+                                     : std::abs(k.imag()) <= error && std::abs(k.real()) <= 2.0 + error);
+  }
+  return stable && error > largest_error ? std::nullopt : std::optional<bool>(stable);
+}
+
+std::complex<double> OrbitStability::value(std::size_t orbit, std::size_t pair) const {
+  const std::size_t at = orbit * _pairs + pair;
+  return _complex ? std::complex<double>(_values[2 * at], _values[2 * at + 1]) : _values[at];
+}
+
+}  // namespace orbweaver::report

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <complex>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "orbweaver/archive/read/reader.hpp"
+
+namespace orbweaver::report {
+
+/// Whether the archive's stability values are multipliers; else they are indices mu + 1/mu of symplectic pairs.
+[[nodiscard]] bool holds_multipliers(const archive::Archive& atlas);
+
+/// Which orbits of an archive are linearly stable. It must not outlive the archive.
+class OrbitStability {
+ public:
+  explicit OrbitStability(const archive::Archive& atlas);
+
+  /// True if within `stability_error` all indices are real and between -2 and 2, or all multipliers within the unit
+  /// circle. Nothing where they are not known, or the error exceeds 1e-3 and leaves it open whether they are.
+  [[nodiscard]] std::optional<bool> of(std::size_t orbit) const;
+
+ private:
+  [[nodiscard]] std::complex<double> value(std::size_t orbit, std::size_t pair) const;
+
+  const std::vector<double>& _values;
+  const std::vector<double>& _errors;
+  std::size_t _pairs;
+  bool _complex;
+  bool _multipliers;
+};
+
+}  // namespace orbweaver::report

@@ -1,0 +1,165 @@
+// make_atlas hostile|empty|many|unknown FILE.h5 [ORBITS]: writes an atlas that no survey of today would make.
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "archive/sample.hpp"
+#include "orbweaver/core/petsc/session.hpp"
+
+namespace {
+
+using namespace orbweaver;
+
+/// A dissipative system of which the program knows nothing, along a parameter.
+archive::Header unknown_header() {
+  archive::Header header;
+  header.orbweaver_version = "9.0.0";
+  header.scene = "system: unknown\n";
+  header.state_names = {"x", "y", "z"};
+  header.pairs = 2;
+  header.symplectic = false;
+  header.system = "unknown_attractor";
+  header.effects = {"noise"};
+  header.parameter_names = {"rho"};
+  header.parameter_values = {28};
+  header.scale_names = {"time", "x", "y", "z"};
+  header.scales = {1, 1, 1, 1};
+  return header;
+}
+
+archive::Records unknown_records() {
+  archive::Records records;
+  archive::FamilyRecord family;
+  family.key = "0000";
+  family.name = "Cycle";
+  family.end_reason = "parameter limit";
+  records.families.push_back(family);
+  for (int step = 0; step < 40; ++step) {
+    const double s = 0.05 * step;
+    archive::OrbitRecord orbit;
+    orbit.family_key = family.key;
+    orbit.step = step;
+    orbit.arclength = s;
+    orbit.parameter = 20 + 3 * s - s * s;
+    orbit.period = 1 + 0.1 * s;
+    orbit.stability = {0.6 * s, 0.4 * s, 0.6 * s, -0.4 * s};
+    orbit.stability_error = 1e-9;
+    orbit.cutoff = 4;
+    orbit.modes.assign(9 * 3, 0.0);
+    for (int i = 0; i < 3; ++i) orbit.modes[static_cast<std::size_t>(3 * (1 + i) + i)] = 1 + s;
+    orbit.state = {1 + s, 0, 0};
+    records.orbits.push_back(orbit);
+  }
+  archive::CrossingRecord crossing;
+  crossing.family_key = family.key;
+  crossing.arclength = 1.38;
+  crossing.period = 1.138;
+  crossing.kind = archive::CrossingKind::torus;
+  crossing.state = {2.38, 0, 0};
+  records.crossings.push_back(crossing);
+  return records;
+}
+
+archive::Header header_of() {
+  archive::Header header;
+  header.orbweaver_version = "0.1.0";
+  header.scene = "name: </script><script>window.hacked = 1</script>\n";
+  header.state_names = {"th1", "th2", "w1", "w2"};
+  header.winding_names = {"n1", "n2"};
+  header.pairs = 1;
+  header.system = "double_pendulum";
+  header.parameter_names = {"g", "l1", "l2", "m1", "m2"};
+  header.parameter_values = {1, 1, 1, 1, 1};
+  header.scale_names = {"time", "th1", "th2", "w1", "w2", "energy"};
+  header.scales = {1, 1, 1, 1, 1, 1};
+  return header;
+}
+
+/// Some ellipse with harmonics; T and E are smooth functions of the place along the family.
+archive::OrbitRecord orbit_of(const std::string& key, int step, double s, double family) {
+  archive::OrbitRecord orbit;
+  orbit.family_key = key;
+  orbit.step = step;
+  orbit.arclength = s;
+  orbit.period = 6 + 0.3 * family + s + 0.2 * std::sin(3 * s + family);
+  orbit.energy = -3 + 0.2 * family + 1.5 * s + 0.1 * std::cos(5 * s);
+  orbit.action = orbit.period * orbit.energy;
+  orbit.stability = {2.6 * std::cos(4 * s + family)};
+  orbit.fundamental_stability = orbit.stability;
+  orbit.stability_error = 1e-9;
+  orbit.cutoff = 24;
+  orbit.modes.assign(49 * 4, 0.0);
+  for (int k = 1; k <= 24; ++k)
+    for (int i = 0; i < 4; ++i)
+      orbit.modes[static_cast<std::size_t>((2 * k - 1 + i / 2) * 4 + i)] =
+          (0.2 + s) * std::exp(-0.5 * (k - 1)) * std::cos(k * (i + 1) + family);
+  orbit.state = {orbit.modes[4], orbit.modes[5], 0.0, 0.0};
+  orbit.winding = {0, 0};
+  orbit.loss_rms = 1e-12;
+  orbit.verdict = 0;
+  orbit.closure = 1e-11;
+  return orbit;
+}
+
+void add_family(archive::Records& records, int number, const std::string& name, int orbits) {
+  archive::FamilyRecord family;
+  family.key = fmt::format("{:04}", number);
+  family.name = name;
+  family.isotropy = "S@1/2 R@0";
+  family.end_reason = fmt::format("period limit {}", name);
+  records.families.push_back(family);
+  for (int step = 0; step < orbits; ++step)
+    records.orbits.push_back(orbit_of(family.key, step, 2.0 * step / std::max(1, orbits - 1), number));
+  archive::CrossingRecord crossing;
+  crossing.family_key = family.key;
+  crossing.arclength = 0.9;
+  crossing.period = orbits > 0 ? records.orbits.back().period : 6;
+  crossing.energy = 0;
+  crossing.kind = archive::CrossingKind::period_doubling;
+  crossing.multiplicity = 2;
+  crossing.state = {0, 0, 0, 0};
+  if (orbits > 0) records.crossings.push_back(crossing);
+}
+
+archive::Records records_of(const std::string& what, int orbits) {
+  archive::Records records;
+  if (what == "hostile") {
+    const std::string names[] = {"</script><script>window.hacked = 1</script>",
+                                 "<img src=x onerror=\"window.hacked = 2\">",
+                                 "\"><svg onload='window.hacked = 3'>",
+                                 "javascript:alert(1)&amp;#x3c;%3Cb%3E",
+                                 "=HYPERLINK(\"http://example.org\")",
+                                 "\xe2\x80\xae" "gnp.exe",
+                                 "../../etc/passwd",
+                                 "a b&family=In-Phase#x=E"};
+    int number = 0;
+    for (const std::string& name : names) add_family(records, number++, name, 12);
+  } else if (what == "many") {
+    constexpr int families = 200;
+    for (int number = 0; number < families; ++number)
+      add_family(records, number, fmt::format("F{}", number), orbits / families);
+  } else {
+    add_family(records, 0, "Left out", 0);
+  }
+  return records;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 3) return 2;
+  const core::Session session;
+  const std::filesystem::path folder = std::filesystem::path(argv[2]).parent_path() / "parts";
+  std::filesystem::create_directories(folder);
+  const auto orbits = argc > 3 ? std::atoi(argv[3]) : 100'000;
+  const bool unknown = std::string(argv[1]) == "unknown";
+  const auto atlas = unknown ? test::write_sample_atlas(folder, unknown_header(), unknown_records())
+                             : test::write_sample_atlas(folder, header_of(), records_of(argv[1], orbits));
+  std::filesystem::rename(atlas, argv[2]);
+  std::filesystem::remove_all(folder);
+  return 0;
+}
