@@ -11,6 +11,7 @@
 #include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/loop/curve/system_at.hpp"
 #include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/taylor/flow.hpp"
 
@@ -128,9 +129,11 @@ double single_shot_of(const systems::System& system, const std::vector<State>& s
 
 }  // namespace
 
-Certificate certify(const systems::System& system, const loop::Loop& loop, const Options& options) {
+Certificate certify(const systems::System& family, const loop::Loop& loop, const Options& options) {
   const core::LogStage stage(core::Stage::certificate);
-  require_certifiable(system, loop, options);
+  require_certifiable(family, loop, options);
+  const std::shared_ptr<const systems::System> here = loop::system_at(family, loop);
+  const systems::System& system = *here;
   const std::vector<State> states = states_at_segment_ends(loop, options.segments);
   Certificate certificate;
   certificate.closure = largest_gap(runge_kutta_ends(system, loop, states, options), states, 1);
@@ -141,9 +144,11 @@ Certificate certify(const systems::System& system, const loop::Loop& loop, const
   return certificate;
 }
 
-Closures closures(const systems::System& system, const loop::Loop& loop, const Options& options) {
+Closures closures(const systems::System& family, const loop::Loop& loop, const Options& options) {
   const core::LogStage stage(core::Stage::certificate);
-  require_certifiable(system, loop, options);
+  require_certifiable(family, loop, options);
+  const std::shared_ptr<const systems::System> here = loop::system_at(family, loop);
+  const systems::System& system = *here;
   const std::vector<State> states = states_at_segment_ends(loop, options.segments);
   const std::vector<State> by_runge_kutta = runge_kutta_ends(system, loop, states, options);
   const std::vector<State> by_taylor = taylor_ends(system, loop, states, options);

@@ -55,6 +55,10 @@ std::optional<Ending> collision_of(const Frontier& frontier, const systems::Syst
 
 }  // namespace
 
+double level_of(const systems::System& system, const Orbit& orbit) {
+  return system.family_kind().free.empty() ? orbit.energy : orbit.loop.parameters.front();
+}
+
 int guard_number(const systems::Structure& structure, const std::string& name) {
   const std::vector<systems::Guard>& guards = structure.guards;
   const auto found = std::find_if(guards.begin(), guards.end(), [&](const auto& guard) { return guard.name == name; });
@@ -72,6 +76,9 @@ std::optional<Ending> end_at(const Frontier& frontier, const systems::System& sy
     return Ending{EndReason::guard_limit,
                   fmt::format("{} = {:.12g}", structure.guards[guard].name, frontier.guards[guard].least)};
   }
+  if (frontier.on_parameter_limit)
+    return Ending{EndReason::parameter_limit, fmt::format("{} = {:.12g}", system.family_kind().free.front(),
+                                                          orbit.loop.parameters.front() * units.parameter(0))};
   if (frontier.on_energy_limit)
     return Ending{EndReason::energy_limit, fmt::format("E = {:.12g}", orbit.energy * units.energy())};
   if (orbit.loop.period >= options.period_limit)
@@ -105,6 +112,13 @@ std::optional<Ending> beyond_limits(const systems::System& system, const loop::L
     return Ending{EndReason::energy_limit,
                   fmt::format("left out: begins at E = {:.9g}, outside [{:g}, {:g}]", energy * units.energy(),
                               options.energy_from * units.energy(), options.energy_to * units.energy())};
+  if (!first.parameters.empty())
+    if (const double value = first.parameters.front(); value > options.parameter_to || value < options.parameter_from) {
+      const double unit = units.parameter(0);
+      return Ending{EndReason::parameter_limit,
+                    fmt::format("left out: begins at {} = {:.9g}, outside [{:g}, {:g}]", system.family_kind().free.front(),
+                                value * unit, options.parameter_from * unit, options.parameter_to * unit)};
+    }
   for (const auto& [name, limit] : options.guard_limits)
     if (const double least = least_guard(system, guard_number(system.structure(), name), first); least < limit)
       return Ending{EndReason::guard_limit,
@@ -114,24 +128,28 @@ std::optional<Ending> beyond_limits(const systems::System& system, const loop::L
 
 namespace {
 
-bool period_diverges(const Frontier& frontier) {
+bool period_diverges(const Frontier& frontier, const systems::System& system) {
   const Orbit& orbit = frontier.orbit;
   if (orbit.loop.modes.empty() || orbit.loop.period < grown_period * frontier.first.period) return false;
-  const double range = std::abs(orbit.energy - frontier.first_energy);
-  return std::abs(orbit.energy - frontier.earlier_energy) < settled_energy * range;
+  const double level = level_of(system, orbit);
+  return std::abs(level - frontier.earlier_level) < settled_energy * std::abs(level - frontier.first_level);
 }
 
 }  // namespace
 
 Ending end_between(const Frontier& frontier, const systems::System& system, EndReason reason, std::string detail) {
   const systems::Scales& units = system.scales();
-  if (!period_diverges(frontier)) {
+  if (!period_diverges(frontier, system)) {
     if (std::optional<Ending> collision = collision_of(frontier, system, detail)) return *std::move(collision);
     return {reason, std::move(detail)};
   }
   return {EndReason::period_divergence,
-          fmt::format("T = {:.6g}, E = {:.12g}; {}", frontier.orbit.loop.period * units.time,
-                      frontier.orbit.energy * units.energy(), detail)};
+          system.family_kind().free.empty()
+              ? fmt::format("T = {:.6g}, E = {:.12g}; {}", frontier.orbit.loop.period * units.time,
+                            frontier.orbit.energy * units.energy(), detail)
+              : fmt::format("T = {:.6g}, {} = {:.12g}; {}", frontier.orbit.loop.period * units.time,
+                            system.family_kind().free.front(),
+                            frontier.orbit.loop.parameters.front() * units.parameter(0), detail)};
 }
 
 }  // namespace orbweaver::continuation

@@ -9,6 +9,9 @@
 /// texts tell in the units of the scene.
 namespace orbweaver::continuation {
 
+/// What a family that runs into a divergence of its period settles in: the energy, or the parameter that moves.
+[[nodiscard]] double level_of(const systems::System& system, const Orbit& orbit);
+
 /// Growth of T over which the energy is compared where the period may diverge: a tenth, which near a saddle multiplies
 /// the distance from the connecting orbit by exp(-rate T/10). Not measured; it decides only how an end is called.
 inline constexpr double period_window = 1.1;

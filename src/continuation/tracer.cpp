@@ -71,13 +71,15 @@ std::optional<Orbit> Tracer::end(EndReason reason, std::string detail) {
 std::optional<Orbit> Tracer::first_orbit() {
   const loop::Tangent direction = start_direction();
   double amplitude = _options.start_amplitude;
+  _frontier.problem.held_energy = energy_of(*_system, _start.base);
   _problem->resolve(_problem->resolution_for(std::max(_start.base.cutoff, _options.cutoff_from), _start.base.time_map,
                                              _options.cutoff_to));
   while (true) {
     _frontier.problem.amplitude = amplitude;
     const std::vector<double> base = _problem->from_loop(_start.base);
     Prediction prediction{base, _problem->from_change(loop::perturbation(_start.base, direction)), 1};
-    prediction.tangent[_problem->scalars_at()] += direction.period();
+    for (std::size_t n = 0; n < direction.scalars.size(); ++n)
+      prediction.tangent[_problem->scalars_at() + n] += direction.scalars[n];
     for (std::size_t n = 0; n < base.size(); ++n) prediction.values[n] += amplitude * prediction.tangent[n];
     const std::vector<double> conditions = _problem->conditions_at(prediction);
     Trial trial = _problem->correct(std::move(prediction), conditions);
@@ -111,6 +113,8 @@ loop::Tangent Tracer::start_direction() const {
   for (const double v : loop::state_at(loop::perturbation(_start.base, _start.direction), 0.0)) square += v * v;
   double length = 0.0;
   for (const double v : _start.direction.modes) length += v * v;
+  if (length == 0.0)  // along a parameter
+    for (const double v : _start.direction.scalars) length += v * v;
   const double unit = square > still_at_start * length ? std::sqrt(square) : std::sqrt(length);
   loop::Tangent direction = _start.direction;
   for (std::vector<double>* numbers : {&direction.modes, &direction.scalars})
@@ -165,7 +169,7 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
       // The step may have gone over to another family, on which there is no such orbit.
       if (!refused.failed() || 0.5 * length < least) return end(refused.reason, std::move(refused.detail));
       trial.reason = std::move(refused.detail);
-      _frontier.on_energy_limit = false;
+      _frontier.on_energy_limit = _frontier.on_parameter_limit = false;
       _frontier.on_guard_limit = -1;
     }
     _frontier.problem.factor_point.clear();
@@ -191,7 +195,8 @@ std::optional<Orbit> Tracer::accept_within_limits(const Trial& trial, double len
   const double value = energy_of(*_system, trial.loop);
   const bool is_late = scalar(trial, period) > _options.period_limit;
   const bool is_outside = is_beyond_energies(value);
-  if (!is_late && !is_outside) return accept_within_guards(trial, length, refused);
+  const bool is_beside = is_beyond_parameters(trial);
+  if (!is_late && !is_outside && !is_beside) return accept_within_guards(trial, length, refused);
   OnLimit on_limit;
   if (is_late) {
     on_limit = orbit_at_scalar(
@@ -204,6 +209,19 @@ std::optional<Orbit> Tracer::accept_within_limits(const Trial& trial, double len
         orbit_at_value(_stepper, {EndReason::energy_limit, "E", limit, length, trial, _system->scales().energy()},
                        _frontier.orbit.energy, [this](const Trial& other) { return energy_of(*_system, other.loop); });
     _frontier.on_energy_limit = on_limit.trial.has_value();
+  }
+  const bool others = is_late || is_outside;
+  if (is_beside && (!others || (on_limit.trial && is_beyond_parameters(*on_limit.trial)))) {
+    constexpr int parameter = 1;  // among the scalars
+    const double limit = scalar(trial, parameter) > _options.parameter_to ? _options.parameter_to
+                                                                          : _options.parameter_from;
+    on_limit = orbit_at_scalar(_stepper,
+                               {EndReason::parameter_limit, _system->family_kind().free.front(), limit, length, trial,
+                                _system->scales().parameter(0)},
+                               parameter);
+    if (on_limit.trial) on_limit.trial->loop.parameters.front() = limit;
+    _frontier.on_energy_limit = false;
+    _frontier.on_parameter_limit = on_limit.trial.has_value();
   }
   if (on_limit.trial) return accept_within_guards(std::move(*on_limit.trial), length, refused);
   refused = std::move(on_limit.ending);
@@ -223,7 +241,7 @@ std::optional<Orbit> Tracer::accept_within_guards(Trial trial, double length, En
       return std::nullopt;
     }
     trial = std::move(*on_limit.trial);
-    _frontier.on_energy_limit = false;
+    _frontier.on_energy_limit = _frontier.on_parameter_limit = false;
     _frontier.on_guard_limit = guard;
   }
   return accept(trial);
@@ -265,13 +283,13 @@ void Tracer::keep(Orbit& orbit, double increment, double amplitude) {
     orbit.step = frontier.orbit.step + 1;
     orbit.arclength = frontier.orbit.arclength + increment;
     if (orbit.loop.period > period_window * frontier.earlier_period) {
-      frontier.earlier_energy = frontier.orbit.energy;
+      frontier.earlier_level = level_of(*_system, frontier.orbit);
       frontier.earlier_period = here().period;
     }
   } else {
     frontier.first = orbit.loop;
     frontier.first_amplitude = amplitude;
-    frontier.first_energy = frontier.earlier_energy = orbit.energy;
+    frontier.first_level = frontier.earlier_level = level_of(*_system, orbit);
     frontier.earlier_period = orbit.loop.period;
   }
   keep_guards(orbit.loop);

@@ -29,6 +29,12 @@ class Tracer {
   [[nodiscard]] bool is_beyond_energies(double value) const {
     return value > _options.energy_to || value < _options.energy_from;
   }
+  [[nodiscard]] bool is_beyond_parameters(const Trial& trial) {
+    if (_system->family_kind().free.empty()) return false;
+    constexpr int parameter = 1;  // among the scalars
+    const double value = scalar(trial, parameter);
+    return value > _options.parameter_to || value < _options.parameter_from;
+  }
   [[nodiscard]] double scalar(const Trial& trial, int number) {
     return trial.values[_problem->scalars_at() + static_cast<std::size_t>(number)];
   }

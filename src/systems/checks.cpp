@@ -98,9 +98,9 @@ std::string range_text(const Parameter& parameter) {
 }
 
 Bound bound_to(const ModelInfo& info, const std::map<std::string, double>& given,
-               const std::vector<std::string>& effects) {
+               const std::vector<std::string>& effects, const FamilyKind& kind) {
   const std::vector<Parameter> allowed = allowed_parameters(info, effects);
-  Bound bound{{}, effects};
+  Bound bound{{}, effects, kind};
   for (const Parameter& parameter : allowed) bound.parameters[parameter.name] = parameter.standard;
   for (const auto& [name, value] : given) {
     const Parameter* parameter = find_named(allowed, name);
@@ -108,6 +108,8 @@ Bound bound_to(const ModelInfo& info, const std::map<std::string, double>& given
     check_value(info, *parameter, value);
     bound.parameters[name] = value;
   }
+  for (const std::string& name : kind.free)
+    if (find_named(allowed, name) == nullptr) refuse_parameter(info, allowed, name);
   return bound;
 }
 

@@ -45,6 +45,7 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
   [[nodiscard]] const ModelInfo& info() const override { return Registered<Model>::info(); }
   [[nodiscard]] const Structure& structure() const override { return _structure; }
   [[nodiscard]] const std::map<std::string, double>& parameters() const override { return _bound.parameters; }
+  [[nodiscard]] const FamilyKind& family_kind() const override { return _bound.kind; }
 
   void field(std::size_t nodes, const double* z, double* f) const override {
     for_each_group(nodes, [=, this](std::size_t j, std::size_t count) {
@@ -75,7 +76,7 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
                  numerics::QuadMatrix& jacobian) const override {
     using S = ad::First<Model::dimension, numerics::Quad>;
     core::require(z.size() == Model::dimension, "a state of another dimension");
-    BoundTo<S> bound{{}, _bound.effects};
+    BoundTo<S> bound{{}, _bound.effects, {}};
     for (const auto& [name, value] : _bound.parameters) bound.parameters.emplace(name, S(value));
     const typename Model::template With<S> model(bound);
     const auto whole = [&model](const S* state, S* value) { model.field(state, value); };
@@ -96,7 +97,7 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
     ad::Recording recording;
     Formulas formulas;
     formulas.dimension = Model::dimension;
-    BoundTo<First> bound{{}, _bound.effects};
+    BoundTo<First> bound{{}, _bound.effects, {}};
     for (const auto& [name, value] : _bound.parameters) {
       First parameter(0.0);
       parameter.value = recording.parameter(static_cast<int>(formulas.parameters.size()));
@@ -133,7 +134,7 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
                              double* derivatives) const override {
     using S = ad::First<1, ad::Lanes>;
     core::require(_bound.parameters.contains(name), "a field is differentiated by a parameter that it has");
-    BoundTo<S> bound{{}, _bound.effects};
+    BoundTo<S> bound{{}, _bound.effects, {}};
     for (const auto& [other, value] : _bound.parameters)
       bound.parameters.emplace(other, other == name ? S::variable(ad::Lanes(value), 0) : S(value));
     const typename Model::template With<S> model(bound);

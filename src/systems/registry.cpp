@@ -49,9 +49,9 @@ std::vector<std::string> system_names() {
 const ModelInfo& model_info(const std::string& name) { return find_line(name).info(); }
 
 std::shared_ptr<const System> make_system(const std::string& name, const std::map<std::string, double>& parameters,
-                                          const std::vector<std::string>& effects) {
+                                          const std::vector<std::string>& effects, const FamilyKind& kind) {
   const RegistryLine& found = find_line(name);
-  return found.make(bound_to(found.info(), parameters, effects));
+  return found.make(bound_to(found.info(), parameters, effects, kind));
 }
 
 }  // namespace orbweaver::systems

@@ -17,9 +17,10 @@ namespace orbweaver::systems {
 [[nodiscard]] const ModelInfo& model_info(const std::string& name);
 
 /// Binds parameters and effects. Throws core::InputError on an unknown system, parameter or effect, or a value out of
-/// range, saying what is known or allowed.
+/// range, saying what is known or allowed; the same for the parameters that move along families.
 [[nodiscard]] std::shared_ptr<const System> make_system(const std::string& name,
                                                         const std::map<std::string, double>& parameters = {},
-                                                        const std::vector<std::string>& effects = {});
+                                                        const std::vector<std::string>& effects = {},
+                                                        const FamilyKind& kind = {});
 
 }  // namespace orbweaver::systems
