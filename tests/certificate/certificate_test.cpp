@@ -88,7 +88,7 @@ TEST(Closures, SayHowFarTheIntegratorsAreApart) {
 
 TEST(Closures, AreThoseOfTheSystemInItsScales) {
   const auto plain = systems::make_system("double_pendulum");
-  systems::Scales scales{2.0, {1.0, 1.0, 0.25, 0.25}, {8.0}};
+  systems::Scales scales{2.0, {1.0, 1.0, 0.25, 0.25}, {8.0}, {}};
   const std::vector<double> hanging{0.3, -0.2, 0.1, 0.0};
   const loop::Loop loop = loop::constant_loop(hanging, 3.0, 3);
   const Closures told = closures(*systems::scaled(plain, scales), loop);

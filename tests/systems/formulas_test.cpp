@@ -64,7 +64,7 @@ TEST(Formulas, AreThoseOfTheSystem) {
 }
 
 TEST(Formulas, AreToldInTheScales) {
-  const Scales scales{0.7, {1.0, 1.0, 0.3, 4.0}, {2.5}};
+  const Scales scales{0.7, {1.0, 1.0, 0.3, 4.0}, {2.5}, {}};
   expect_formulas_of(*scaled(make_system("double_pendulum"), scales), state, "scaled");
 }
 
