@@ -220,7 +220,7 @@ int check(const SceneOptions& options, const Invocation& invocation) {
         fmt::format("check: expected no PETSc options, got `{}`; it follows no family, so drop `--` and what follows",
                     fmt::join(invocation.petsc_options, " ")));
   const scene::Scene scene = options.load();
-  const auto bound = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  const auto bound = scene::bound_system(scene.system);
   const systems::System& system = *bound;
   systems::require_identities(system, starts::find_fixed_points(system, scene.fixed_points.grid));
   fmt::print("{}: a valid scene, \"{}\"\n", options.file.string(), scene.name);

@@ -115,9 +115,10 @@ std::optional<Ending> beyond_limits(const systems::System& system, const loop::L
   if (!first.parameters.empty())
     if (const double value = first.parameters.front(); value > options.parameter_to || value < options.parameter_from) {
       const double unit = units.parameter(0);
-      return Ending{EndReason::parameter_limit,
-                    fmt::format("left out: begins at {} = {:.9g}, outside [{:g}, {:g}]", system.family_kind().free.front(),
-                                value * unit, options.parameter_from * unit, options.parameter_to * unit)};
+      return Ending{
+          EndReason::parameter_limit,
+          fmt::format("left out: begins at {} = {:.9g}, outside [{:g}, {:g}]", system.family_kind().free.front(),
+                      value * unit, options.parameter_from * unit, options.parameter_to * unit)};
     }
   for (const auto& [name, limit] : options.guard_limits)
     if (const double least = least_guard(system, guard_number(system.structure(), name), first); least < limit)

@@ -25,7 +25,11 @@ std::vector<double> as_change(loop::Tangent tangent) {
 }  // namespace
 
 LoopProblem::LoopProblem(const FamilyOf& family, const Options& options, ProblemState& state)
-    : PointProblem(family.system, state), _system(family.system), _base(family.base), _isotropy(family.isotropy), _options(options) {}
+    : PointProblem(family.system, state),
+      _system(family.system),
+      _base(family.base),
+      _isotropy(family.isotropy),
+      _options(options) {}
 
 Resolution LoopProblem::resolution_for(int cutoff, const loop::TimeMap& map, int largest) const {
   return {std::min(loop::allowed_cutoff_at_least(cutoff), largest), map};

@@ -37,8 +37,7 @@ std::vector<double> PointProblem::conditions_with(const Prediction& prediction, 
 }
 
 Trial PointProblem::correct(Prediction prediction, const std::vector<double>& conditions) {
-  if (_family.family_kind().hold != systems::FamilyKind::Hold::energy)
-    return solve(std::move(prediction), conditions);
+  if (_family.family_kind().hold != systems::FamilyKind::Hold::energy) return solve(std::move(prediction), conditions);
   const std::size_t size = prediction.values.size();
   const auto rows = static_cast<Eigen::Index>(conditions.size() / size);
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -50,7 +49,8 @@ Trial PointProblem::correct(Prediction prediction, const std::vector<double>& co
     const double off = energy_of(_family, trial.loop) - _state.held_energy;
     if (std::abs(off) <= energy_rounding * (1.0 + std::abs(_state.held_energy))) break;
     // The shift that the other conditions do not see.
-    const Eigen::VectorXd factors = (matrix * matrix.transpose()).ldlt().solve(-off * Eigen::VectorXd::Unit(rows, hold));
+    const Eigen::VectorXd factors =
+        (matrix * matrix.transpose()).ldlt().solve(-off * Eigen::VectorXd::Unit(rows, hold));
     const Eigen::VectorXd shift = matrix.transpose() * factors;
     Prediction next{trial.values, prediction.tangent, trial.order};
     for (std::size_t k = 0; k < size; ++k) next.values[k] += shift(static_cast<Eigen::Index>(k));

@@ -11,6 +11,7 @@
 #include "least_guard.hpp"
 #include "limit_orbit.hpp"
 #include "orbweaver/continuation/off_branch.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "step_control.hpp"
 
 namespace orbweaver::continuation {
@@ -58,7 +59,7 @@ void Tracer::go_on_from(Frontier frontier) {
 
 std::optional<Orbit> Tracer::advance() {
   if (_ending) return std::nullopt;
-  if (!begun()) return first_orbit();
+  if (!begun()) return _start.base_is_orbit ? base_orbit() : first_orbit();
   _ending = end_at(_frontier, *_system, _options);
   return _ending ? std::nullopt : next_on_family();
 }
@@ -104,6 +105,43 @@ std::optional<Orbit> Tracer::first_orbit() {
     amplitude *= 0.5;
     if (amplitude < least_start * _options.start_amplitude)
       return end(EndReason::failure, fmt::format("no orbit near the start: {}", trial.reason));
+  }
+}
+
+std::optional<Orbit> Tracer::base_orbit() {
+  const std::vector<double>& scalars = _start.direction.scalars;
+  const auto held = static_cast<std::size_t>(
+      std::find_if(scalars.begin(), scalars.end(), [](double v) { return v != 0.0; }) - scalars.begin());
+  _frontier.problem.held_energy = energy_of(*_system, _start.base);
+  _frontier.problem.amplitude = loop::rms_amplitude(_start.base);
+  _problem->resolve(_problem->resolution_for(std::max(_start.base.cutoff, _options.cutoff_from), _start.base.time_map,
+                                             _options.cutoff_to));
+  while (true) {
+    const std::vector<double> base = _problem->from_loop(_start.base);
+    Prediction prediction{base, std::vector<double>(base.size(), 0.0), 1};
+    prediction.tangent[_problem->scalars_at() + held] = scalars[held];
+    const std::vector<double> conditions = _problem->conditions_with(prediction, static_cast<int>(held));
+    Trial trial = _problem->correct(prediction, conditions);
+    if (_stepper.needs_more_harmonics(trial)) {
+      const std::optional<Resolution> finer = _problem->next_resolution(_options.cutoff_to);
+      if (!finer)
+        return end(EndReason::cutoff_limit, fmt::format("the first orbit needs more than K = {}", _options.cutoff_to));
+      _problem->resolve(*finer);
+      continue;
+    }
+    if (!trial.is_orbit) return end(EndReason::failure, fmt::format("no orbit near the start: {}", trial.reason));
+    _ending = beyond_limits(*_system, trial.loop, scalar(trial, 0), _options);
+    if (_ending) return std::nullopt;
+    // The family's direction stands for an orbit before this one.
+    prediction.values = trial.values;
+    std::vector<double> before = trial.values;
+    const std::vector<double> direction = _problem->direction_at(trial.values, prediction);
+    const double length = std::sqrt(_problem->product(direction, std::vector<double>(direction.size(), 0.0), direction,
+                                                      std::vector<double>(direction.size(), 0.0)));
+    for (std::size_t n = 0; n < before.size(); ++n) before[n] -= _options.start_amplitude / length * direction[n];
+    _frontier.points = {{std::move(before), 0.0}};
+    _frontier.next_length = std::min(_options.start_amplitude, _options.largest_step);
+    return accept(trial);
   }
 }
 
@@ -213,8 +251,8 @@ std::optional<Orbit> Tracer::accept_within_limits(const Trial& trial, double len
   const bool others = is_late || is_outside;
   if (is_beside && (!others || (on_limit.trial && is_beyond_parameters(*on_limit.trial)))) {
     constexpr int parameter = 1;  // among the scalars
-    const double limit = scalar(trial, parameter) > _options.parameter_to ? _options.parameter_to
-                                                                          : _options.parameter_from;
+    const double limit =
+        scalar(trial, parameter) > _options.parameter_to ? _options.parameter_to : _options.parameter_from;
     on_limit = orbit_at_scalar(_stepper,
                                {EndReason::parameter_limit, _system->family_kind().free.front(), limit, length, trial,
                                 _system->scales().parameter(0)},

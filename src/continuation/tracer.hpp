@@ -40,6 +40,8 @@ class Tracer {
   }
 
   std::optional<Orbit> first_orbit();
+  /// The start's base itself, corrected with one scalar held.
+  std::optional<Orbit> base_orbit();
   [[nodiscard]] loop::Tangent start_direction() const;
   std::optional<Orbit> next_on_family();
   /// With a step of at most this length.

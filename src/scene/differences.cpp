@@ -62,8 +62,7 @@ std::string range_text(double from, double to) { return list_text(std::array{fro
 // All keys of a scene with their values, the ones it does not give included.
 class Values {
  public:
-  explicit Values(const Scene& scene)
-      : _system(systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects)) {
+  explicit Values(const Scene& scene) : _system(bound_system(scene.system)) {
     add("name", scene.name);
     add_system(scene.system);
     add_starts(scene);

@@ -15,7 +15,7 @@ namespace {
 // The layer `systems` knows what is allowed; the scene knows where it was asked for.
 void ask_system(const Field& field, const SystemChoice& choice) {
   try {
-    static_cast<void>(systems::make_system(choice.name, choice.parameters, choice.effects));
+    static_cast<void>(bound_system(choice));
   } catch (const core::InputError& error) {
     field.fail(error.what());
   }
@@ -46,6 +46,10 @@ bool is_asked_for(const SystemChoice& choice, const systems::Effect& effect) {
 }
 
 }  // namespace
+
+std::shared_ptr<const systems::System> bound_system(const SystemChoice& choice) {
+  return systems::make_system(choice.name, choice.parameters, choice.effects, choice.kind);
+}
 
 std::vector<systems::Parameter> known_parameters(const systems::ModelInfo& info, const SystemChoice& choice) {
   std::vector<systems::Parameter> known = info.parameters;
@@ -78,7 +82,7 @@ namespace {
 // One number each, > 0, for time, coordinates that are no angles, and conserved quantities.
 void read_scales(const Field& field, SystemChoice& choice) {
   if (field.plain_scalar() == "auto") return;
-  const auto system = systems::make_system(choice.name, choice.parameters, choice.effects);
+  const auto system = bound_system(choice);
   const systems::Structure& structure = system->structure();
   const std::vector<std::string>& coordinates = system->info().state_names;
   const std::vector<std::string> names = scale_names(*system);
@@ -108,7 +112,8 @@ void read_scales(const Field& field, SystemChoice& choice) {
 
 std::vector<std::string> scale_names(const systems::System& system) {
   std::vector<std::string> names{"time"};
-  for (const std::vector<std::string>* more : {&system.info().state_names, &system.structure().conserved})
+  for (const std::vector<std::string>* more :
+       {&system.info().state_names, &system.structure().conserved, &system.family_kind().free})
     names.insert(names.end(), more->begin(), more->end());
   return names;
 }

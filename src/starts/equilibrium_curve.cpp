@@ -9,9 +9,9 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
 #include <Eigen/Dense>
 #include <Eigen/Eigenvalues>
-#include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
@@ -53,12 +53,15 @@ struct Node {
 class Curve {
  public:
   Curve(const systems::System& system, const EquilibriumCurveOptions& options)
-      : _system(system), _name(system.family_kind().free.front()), _unit(system.parameter_scale(_name)),
-        _options(options), _d(system.dimension()) {}
+      : _system(system),
+        _name(system.family_kind().free.front()),
+        _unit(system.parameter_scale(_name)),
+        _options(options),
+        _d(system.dimension()) {}
 
   struct Linear {
     VectorXd f;
-    MatrixXd jacobian;     // d x d
+    MatrixXd jacobian;  // d x d
     VectorXd by_parameter;
   };
 
@@ -114,9 +117,7 @@ class Curve {
   }
 
   [[nodiscard]] std::optional<HopfPoint> hopf_at(const VectorXd& x) const;
-  [[nodiscard]] Equilibrium equilibrium(const VectorXd& x) const {
-    return {{x.data(), x.data() + _d}, x(_d)};
-  }
+  [[nodiscard]] Equilibrium equilibrium(const VectorXd& x) const { return {{x.data(), x.data() + _d}, x(_d)}; }
   [[nodiscard]] bool is_within(double parameter) const {
     return parameter >= _options.parameter_from && parameter <= _options.parameter_to;
   }
@@ -161,8 +162,8 @@ std::optional<HopfPoint> Curve::hopf_at(const VectorXd& x) const {
     oscillation.sine(1, static_cast<int>(i)) = -v(i).imag() / length;
   }
   out.direction.modes = std::move(oscillation.modes);
-  out.isotropy =
-      loop::find_isotropy(_system.structure(), loop::moved(std::move(loop), out.direction, 1.0), loop::symmetry_tolerance);
+  out.isotropy = loop::find_isotropy(_system.structure(), loop::moved(std::move(loop), out.direction, 1.0),
+                                     loop::symmetry_tolerance);
   return out;
 }
 

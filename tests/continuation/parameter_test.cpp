@@ -48,7 +48,8 @@ TEST(VanDerPolFamily, HasTheKnownPeriods) {
 /// From the Hopf point of the upper right equilibrium. The family is unstable, and ends where its orbit meets the origin.
 TEST(LorenzFamily, GoesFromTheHopfPointToTheHomoclinicOrbit) {
   const auto system = std::make_shared<LorenzEquations>(24.0);
-  const auto curve = starts::follow_equilibrium(*system, std::vector<double>{8.0, 8.0, 23.0}, {.parameter_from = 2.0, .parameter_to = 30.0});
+  const auto curve = starts::follow_equilibrium(*system, std::vector<double>{8.0, 8.0, 23.0},
+                                                {.parameter_from = 2.0, .parameter_to = 30.0});
   ASSERT_EQ(curve.hopf.size(), 1U);
   const starts::HopfPoint& hopf = curve.hopf.front();
   continuation::Start start{loop::constant_loop(hopf.at.state, hopf.period, 10), hopf.direction, hopf.isotropy};
@@ -57,7 +58,7 @@ TEST(LorenzFamily, GoesFromTheHopfPointToTheHomoclinicOrbit) {
   options.period_limit = 20.0;
   const Trace trace = trace_of(system, start, options);
   printf("%zu orbits, K %d, T %.15g rho %.15g loss %.2g %s\n", trace.orbits.size(), trace.last().loop.cutoff,
-           trace.last().loop.period, trace.last().loop.parameters[0], trace.last().loss_rms, trace.ending.text().c_str());
+         trace.last().loop.period, trace.last().loop.parameters[0], trace.last().loss_rms, trace.ending.text().c_str());
   EXPECT_NEAR(trace.last().loop.parameters.front(), 13.926557, 1e-6);
 }
 

@@ -61,6 +61,10 @@ archive::Header header_of(const scene::Scene& scene, const systems::System& syst
     header.scale_names.push_back(system.structure().conserved[k]);
     header.scales.push_back(scales.conserved.empty() ? 1.0 : scales.conserved[k]);
   }
+  for (std::size_t n = 0; n < system.family_kind().free.size(); ++n) {
+    header.scale_names.push_back(system.family_kind().free[n]);
+    header.scales.push_back(scales.parameter(n));
+  }
   return header;
 }
 
@@ -167,8 +171,7 @@ Summary archive_survey(const core::Communicator& comm, const std::filesystem::pa
   if (!found.found) throw core::InputError(fmt::format("{} holds no survey with a checkpoint", directory.string()));
   const std::string text = core::agreed(comm.get(), found.checkpoint.scene);
   const scene::Scene scene = scene::parse(text, "the checkpoint's scene");
-  const ScaledScene scaled(scene,
-                           systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects));
+  const ScaledScene scaled(scene, scene::bound_system(scene.system));
   const auto& system = scaled.system();
   core::on_root(comm.get(), [&] { scaled.expect(found.checkpoint.scales); });
   FamilyTree tree(scaled.scene(), system->structure(), system->scales());

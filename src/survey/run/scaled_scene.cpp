@@ -1,5 +1,8 @@
 #include "orbweaver/survey/run/scaled_scene.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -22,11 +25,21 @@ void require_one_quantity(const systems::System& system) {
                     system.info().name, fmt::join(conserved, ", ")));
 }
 
+/// The power of two at or below the largest of its value and its finite limits; 1 where all are 0.
+double scale_of_parameter(double value, const scene::Limits& limits) {
+  double largest = std::abs(value);
+  for (const double limit : {limits.parameter_from, limits.parameter_to})
+    if (std::isfinite(limit)) largest = std::max(largest, std::abs(limit));
+  return largest > 0.0 ? std::exp2(std::floor(std::log2(largest))) : 1.0;
+}
+
 std::shared_ptr<const systems::System> in_own_scales(const scene::Scene& scene,
                                                      const std::shared_ptr<const systems::System>& system) {
   require_one_quantity(*system);
-  return systems::scaled(system,
-                         scene::scales_of(scene, *system, starts::natural_scales(*system, scene.fixed_points.grid)));
+  systems::Scales natural = starts::natural_scales(*system, scene.fixed_points.grid);
+  for (const std::string& name : system->family_kind().free)
+    natural.parameters.push_back(scale_of_parameter(system->parameters().at(name), scene.limits));
+  return systems::scaled(system, scene::scales_of(scene, *system, natural));
 }
 
 }  // namespace

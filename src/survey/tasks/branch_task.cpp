@@ -266,9 +266,19 @@ void BranchTask::detect(const continuation::Orbit& orbit, const std::optional<sp
   const auto probing = [this](double position) { return probe(position); };
   for (const bifurcation::Bracket& b : _detector.advance(test_point(orbit.arclength, stability), probing))
     add_event({Kind::test_function, _functions[b.function], b.tangency}, b.from, b.to, _curve.known());
-  for (const bifurcation::Fold& fold : _folds.advance(orbit.arclength, orbit.loop.period, orbit.energy))
-    add_event({fold.quantity == bifurcation::Fold::Quantity::period ? Kind::fold_period : Kind::fold_energy, {}, false},
-              fold.from, fold.to, _curve.known());
+  // Where a parameter moves only it folds; T and the energy have extrema that say nothing.
+  using Quantity = bifurcation::Fold::Quantity;
+  const bool moves = !orbit.loop.parameters.empty();
+  const std::vector<bifurcation::Fold> folds =
+      moves
+          ? _folds.advance(orbit.arclength, archive::not_computed, archive::not_computed, orbit.loop.parameters.front())
+          : _folds.advance(orbit.arclength, orbit.loop.period, orbit.energy);
+  for (const bifurcation::Fold& fold : folds) {
+    const Kind kind = fold.quantity == Quantity::period   ? Kind::fold_period
+                      : fold.quantity == Quantity::energy ? Kind::fold_energy
+                                                          : Kind::fold_parameter;
+    add_event({kind, {}, false}, fold.from, fold.to, _curve.known());
+  }
 }
 
 /// The first orbit may lie so far out that an index has passed the values of other sectors on the way from the crossing

@@ -16,6 +16,7 @@ using bifurcation::Event;
 CrossingKind kind_of(const Event& event, int multiplicity) {
   if (event.kind == Event::Kind::fold_period) return CrossingKind::fold_period;
   if (event.kind == Event::Kind::fold_energy) return CrossingKind::fold_energy;
+  if (event.kind == Event::Kind::fold_parameter) return CrossingKind::fold_parameter;
   if (!bifurcation::has_sector(event.function.kind)) {
     const std::string_view name = bifurcation::name_of(event.function.kind);
     const CrossingKind kind = archive::crossing_kind_of(name);

@@ -162,18 +162,24 @@ class Location {
                                   kernel.singular_values.empty() ? archive::not_computed : kernel.singular_values[0]);
     if (_event.tangency) {  // a minimum that came near zero, but is none
       _outcome.kind.reset();
-    } else if (_event.function.sector.q == 1 && turns_in_energy(family)) {
-      _outcome.kind = CrossingKind::fold_energy;
+    } else if (_event.function.sector.q == 1 && turns(family)) {
+      _outcome.kind = moves() ? CrossingKind::fold_parameter : CrossingKind::fold_energy;
     } else {
       _failure = _outcome.remark;
     }
   }
 
-  [[nodiscard]] bool turns_in_energy(continuation::FamilyCurve& family) const {
+  [[nodiscard]] bool moves() const { return !_system->family_kind().free.empty(); }
+
+  /// In the energy, or the parameter that moves: there an index of 2 is no birth.
+  [[nodiscard]] bool turns(continuation::FamilyCurve& family) const {
     const auto before = family.at(_work.from, true);
     const auto after = family.at(_work.to, true);
-    return before && after &&
-           bifurcation::energy_slope(*_system, *before) * bifurcation::energy_slope(*_system, *after) < 0.0;
+    if (!before || !after) return false;
+    const auto slope = [&](const continuation::CurvePoint& point) {
+      return moves() ? bifurcation::parameter_slope(point) : bifurcation::energy_slope(*_system, point);
+    };
+    return slope(*before) * slope(*after) < 0.0;
   }
 
   void add_starts(const bifurcation::Direction& direction, const LeavingRecord& leaving) {

@@ -39,7 +39,7 @@ systems::Scales scales_of(const archive::Header& header, const systems::System& 
 }
 
 std::shared_ptr<const systems::System> system_of(const archive::Header& header, const scene::Scene& scene) {
-  auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  auto system = scene::bound_system(scene.system);
   const bool fits =
       header.state_names == system->info().state_names && header.winding_names == system->winding_names() &&
       header.pairs == system->structure().pairs() &&

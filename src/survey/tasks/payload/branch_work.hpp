@@ -22,15 +22,16 @@ struct BranchWork {
   std::string key;
   std::string name;  ///< for progress; final names are given at the end
   Lineage lineage;
-  loop::Loop base;          ///< the equilibrium, or the crossing's orbit as many times around as it takes
+  loop::Loop base;          ///< the equilibrium, the crossing's orbit as many times around as it takes, or an orbit
   loop::Tangent direction;  ///< in its modes, to this branch's side
   loop::Isotropy isotropy;
-  double amplitude = 0.0;  ///< |dz(s = 0)| of the first orbit; 0: the scene's
+  double amplitude = 0.0;      ///< |dz(s = 0)| of the first orbit; 0: the scene's
+  bool base_is_orbit = false;  ///< `base` is the family's first orbit, `direction` one of its scalars
 
-  static constexpr int wire_version = 1;
+  static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, key, name, lineage, base, direction, isotropy, amplitude);
+    core::serialize_members(archive, key, name, lineage, base, direction, isotropy, amplitude, base_is_orbit);
   }
 };
 
@@ -51,8 +52,8 @@ struct CrossingBeneath {
 struct ArrivalRecord {
   double period = 0.0;  ///< where it meets, by interpolation, or as the crossing there was located
   double energy = 0.0;
-  loop::Loop near;                       ///< an orbit of the branch shortly before
-  int multiplicity = 1;                  ///< times that it goes around the orbit it meets, where that is all it gains
+  loop::Loop near;                         ///< an orbit of the branch shortly before
+  int multiplicity = 1;                    ///< times that it goes around the orbit it meets, where that is all it gains
   std::vector<CrossingBeneath> beneath{};  ///< one, where the crossing that is met was located
 
   static constexpr int wire_version = 2;

@@ -33,6 +33,7 @@ class Ends final : public Check {
       case EndReason::energy_limit:
       case EndReason::step_limit:
       case EndReason::cutoff_limit:
+      case EndReason::parameter_limit:
       case EndReason::guard_limit:
       case EndReason::stopped: return true;
       case EndReason::collision:
