@@ -109,7 +109,10 @@ std::vector<std::string> not_built_yet(const Scene& scene) {
     if (asked) sentences.push_back(sentence);
   };
   const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
-  say(!system->structure().conservative(),
+  const systems::FamilyKind kind = system->structure().family_kind();
+  say(kind == systems::FamilyKind::none,
+      "system: with damping and without a drive all motions come to rest; there are no families to follow.");
+  say(kind != systems::FamilyKind::none && kind != systems::FamilyKind::conservative,
       "system: continuation of systems without a conserved energy is not built yet.");
   say(!scene.section.coordinate.empty(),
       fmt::format("section: crossings of the Poincare section {} = {:g} are not computed yet.",

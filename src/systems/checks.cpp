@@ -73,6 +73,7 @@ void check(const Structure& structure, const ModelInfo& info, int dimension, int
   for (const int i : structure.angles)
     core::require(i >= 0 && i < dimension && !info.winding_names[static_cast<std::size_t>(i)].empty(),
                   "an angle is a coordinate whose winding number has a name");
+  core::require(!structure.driven || structure.is_angle(d - 1), "a drive's phase is the last coordinate and an angle");
   std::set<std::string> names{identity_name};
   for (const auto* symmetries : {&structure.equivariances, &structure.reversors})
     for (const Symmetry& s : *symmetries) {

@@ -24,6 +24,7 @@ namespace orbweaver::systems {
 ///   static constexpr int quantities;                          // functions that can be conserved
 ///   static ModelInfo info();
 ///   static Structure structure(const Bound& bound);           // what holds with these parameters and effects
+///   static std::vector<EffectRules> effects();                // those composed into it (effects/composition.hpp), if any
 ///   template <class P> class With;                            // the model with parameters of type P
 /// and With<P>, P being double or (to differentiate by a parameter, in quadruple precision, and in formulas) the scalar
 /// S of the field, has
@@ -262,6 +263,17 @@ template <class Model>
 const ModelInfo& Registered<Model>::info() {
   static const ModelInfo info = Model::info();
   return info;
+}
+
+template <class Model>
+const std::vector<std::string>& Registered<Model>::effects() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> found;
+    if constexpr (requires { Model::effects(); })
+      for (const auto& effect : Model::effects()) found.push_back(effect.info().name);
+    return found;
+  }();
+  return names;
 }
 
 template <class Model>

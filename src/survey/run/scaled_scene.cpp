@@ -22,9 +22,25 @@ void require_one_quantity(const systems::System& system) {
                     system.info().name, fmt::join(conserved, ", ")));
 }
 
+/// Systems whose structure says neither, as a test's may, are let through: their surveys find no family and say so.
+void require_families(const systems::System& system) {
+  const systems::Structure& structure = system.structure();
+  if (structure.decays)
+    throw core::InputError(fmt::format(
+        "expected a system that has families of periodic orbits, got {}: damped and without a drive, all its motions "
+        "come to rest; add an effect that drives it, or leave out the damping (orbweaver systems lists the effects)",
+        system.info().title));
+  if (structure.dissipative || structure.driven)
+    throw core::InputError(fmt::format(
+        "expected a system with a conserved quantity, got {}, which is {}: its families, in a parameter, are not "
+        "followed yet; leave out the effects that take the conserved quantity away",
+        system.info().title, structure.driven ? "driven" : "dissipative"));
+}
+
 std::shared_ptr<const systems::System> in_own_scales(const scene::Scene& scene,
                                                      const std::shared_ptr<const systems::System>& system) {
   require_one_quantity(*system);
+  require_families(*system);
   return systems::scaled(system,
                          scene::scales_of(scene, *system, starts::natural_scales(*system, scene.fixed_points.grid)));
 }
