@@ -56,7 +56,7 @@ std::optional<Ending> collision_of(const Frontier& frontier, const systems::Syst
 }  // namespace
 
 double level_of(const systems::System& system, const Orbit& orbit) {
-  return system.family_kind().free.empty() ? orbit.energy : orbit.loop.parameters.front();
+  return system.family_scalars().free.empty() ? orbit.energy : orbit.loop.parameters.front();
 }
 
 int guard_number(const systems::Structure& structure, const std::string& name) {
@@ -77,7 +77,7 @@ std::optional<Ending> end_at(const Frontier& frontier, const systems::System& sy
                   fmt::format("{} = {:.12g}", structure.guards[guard].name, frontier.guards[guard].least)};
   }
   if (frontier.on_parameter_limit)
-    return Ending{EndReason::parameter_limit, fmt::format("{} = {:.12g}", system.family_kind().free.front(),
+    return Ending{EndReason::parameter_limit, fmt::format("{} = {:.12g}", system.family_scalars().free.front(),
                                                           orbit.loop.parameters.front() * units.parameter(0))};
   if (frontier.on_energy_limit)
     return Ending{EndReason::energy_limit, fmt::format("E = {:.12g}", orbit.energy * units.energy())};
@@ -117,7 +117,7 @@ std::optional<Ending> beyond_limits(const systems::System& system, const loop::L
       const double unit = units.parameter(0);
       return Ending{
           EndReason::parameter_limit,
-          fmt::format("left out: begins at {} = {:.9g}, outside [{:g}, {:g}]", system.family_kind().free.front(),
+          fmt::format("left out: begins at {} = {:.9g}, outside [{:g}, {:g}]", system.family_scalars().free.front(),
                       value * unit, options.parameter_from * unit, options.parameter_to * unit)};
     }
   for (const auto& [name, limit] : options.guard_limits)
@@ -145,11 +145,11 @@ Ending end_between(const Frontier& frontier, const systems::System& system, EndR
     return {reason, std::move(detail)};
   }
   return {EndReason::period_divergence,
-          system.family_kind().free.empty()
+          system.family_scalars().free.empty()
               ? fmt::format("T = {:.6g}, E = {:.12g}; {}", frontier.orbit.loop.period * units.time,
                             frontier.orbit.energy * units.energy(), detail)
               : fmt::format("T = {:.6g}, {} = {:.12g}; {}", frontier.orbit.loop.period * units.time,
-                            system.family_kind().free.front(),
+                            system.family_scalars().free.front(),
                             frontier.orbit.loop.parameters.front() * units.parameter(0), detail)};
 }
 

@@ -13,7 +13,7 @@ using equations::Collocation;
 namespace {
 
 /// Those that move along the family: behind T.
-std::size_t parameters_of(const Collocation& e) { return e.system().family_kind().free.size(); }
+std::size_t parameters_of(const Collocation& e) { return e.system().family_scalars().free.size(); }
 
 }  // namespace
 
@@ -101,8 +101,8 @@ std::vector<double> step_conditions(const Collocation& e, const Prediction& pred
   }
   for (std::size_t n = 0; n < size; ++n) weights[n] /= std::sqrt(square);
   double* next = weights.data() + size;
-  using Hold = systems::FamilyKind::Hold;
-  const Hold hold = e.system().family_kind().hold;
+  using Hold = systems::FamilyScalars::Hold;
+  const Hold hold = e.system().family_scalars().hold;
   if (hold == Hold::energy) energy_condition(e, prediction, next);
   if (hold == Hold::period) next[at_period] = 1.0;
   if (hold != Hold::nothing) next += size;

@@ -141,7 +141,7 @@ loop::Tangent CollocationProblem::tangent_of(const std::vector<double>& directio
   grid->to_modes(values.data(), out.modes.data());
   out = loop::with_cutoff(std::move(out), at.cutoff, at.dimension);
   const auto scalars = values.end() - own.borders();
-  out.scalars.assign(scalars, scalars + 1 + static_cast<std::ptrdiff_t>(_system.family_kind().free.size()));
+  out.scalars.assign(scalars, scalars + 1 + static_cast<std::ptrdiff_t>(_system.family_scalars().free.size()));
   out.normalize();
   return out;
 }
@@ -178,7 +178,7 @@ std::vector<double> CollocationProblem::conditions_at(const Prediction& predicti
 
 void CollocationProblem::settle(Prediction& prediction, const std::vector<double>& last) {
   const Collocation& e = equations();
-  if (_system.family_kind().hold == systems::FamilyKind::Hold::period) {
+  if (_system.family_scalars().hold == systems::FamilyScalars::Hold::period) {
     prediction.values[scalars_at()] = last[scalars_at()];
     prediction.tangent[scalars_at()] = 0.0;
   }

@@ -151,7 +151,7 @@ double LoopProblem::action(const Trial& trial) { return action_of(_system, trial
 const loss::Unknowns& LoopProblem::unknowns() {
   if (!_unknowns || _unknowns->subspace.cutoff() != resolution().size) {
     std::vector<loss::Scalar> scalars{loss::Scalar::period()};
-    for (const std::string& name : _system.family_kind().free) scalars.push_back(loss::Scalar::of_parameter(name));
+    for (const std::string& name : _system.family_scalars().free) scalars.push_back(loss::Scalar::of_parameter(name));
     _unknowns.emplace(
         loss::Unknowns{loop::Subspace(_base.dimension, resolution().size, _isotropy), std::move(scalars)});
   }
@@ -164,7 +164,7 @@ std::vector<double> LoopProblem::time_shift(const std::vector<double>& values) {
 }
 
 void LoopProblem::settle(Prediction& prediction, const std::vector<double>& last) {
-  if (_system.family_kind().hold == systems::FamilyKind::Hold::period) {
+  if (_system.family_scalars().hold == systems::FamilyScalars::Hold::period) {
     prediction.values[scalars_at()] = last[scalars_at()];
     prediction.tangent[scalars_at()] = 0.0;
   }
@@ -195,8 +195,8 @@ std::vector<double> LoopProblem::conditions_at(const Prediction& prediction) {
 }
 
 std::vector<double> LoopProblem::held_condition(const Prediction& prediction) {
-  using Hold = systems::FamilyKind::Hold;
-  const Hold hold = _system.family_kind().hold;
+  using Hold = systems::FamilyScalars::Hold;
+  const Hold hold = _system.family_scalars().hold;
   if (hold == Hold::nothing) return {};
   std::vector<double> row(prediction.values.size(), 0.0);
   if (hold == Hold::period) {

@@ -42,7 +42,7 @@ class LoopProblem final : public PointProblem {
 
  private:
   /// T and the parameters that move.
-  [[nodiscard]] std::size_t scalars() const { return 1 + _system.family_kind().free.size(); }
+  [[nodiscard]] std::size_t scalars() const { return 1 + _system.family_scalars().free.size(); }
   [[nodiscard]] loop::Tangent as_tangent(std::span<const double> change) const;
   [[nodiscard]] loop::Loop to_loop(const std::vector<double>& values) const;
   [[nodiscard]] std::vector<double> to_values(const loop::Loop& loop) const;

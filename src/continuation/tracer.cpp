@@ -254,7 +254,7 @@ std::optional<Orbit> Tracer::accept_within_limits(const Trial& trial, double len
     const double limit =
         scalar(trial, parameter) > _options.parameter_to ? _options.parameter_to : _options.parameter_from;
     on_limit = orbit_at_scalar(_stepper,
-                               {EndReason::parameter_limit, _system->family_kind().free.front(), limit, length, trial,
+                               {EndReason::parameter_limit, _system->family_scalars().free.front(), limit, length, trial,
                                 _system->scales().parameter(0)},
                                parameter);
     if (on_limit.trial) on_limit.trial->loop.parameters.front() = limit;

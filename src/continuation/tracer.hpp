@@ -30,7 +30,7 @@ class Tracer {
     return value > _options.energy_to || value < _options.energy_from;
   }
   [[nodiscard]] bool is_beyond_parameters(const Trial& trial) {
-    if (_system->family_kind().free.empty()) return false;
+    if (_system->family_scalars().free.empty()) return false;
     constexpr int parameter = 1;  // among the scalars
     const double value = scalar(trial, parameter);
     return value > _options.parameter_to || value < _options.parameter_from;

@@ -27,13 +27,13 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 std::vector<loss::Scalar> Collocation::scalars_of_families(const systems::System& system,
                                                            const loop::FundamentalDomain& domain) {
   std::vector<loss::Scalar> scalars{loss::Scalar::period()};
-  for (const std::string& name : system.family_kind().free) scalars.push_back(loss::Scalar::of_parameter(name));
+  for (const std::string& name : system.family_scalars().free) scalars.push_back(loss::Scalar::of_parameter(name));
   if (system.structure().conservative() && !domain.reversor) scalars.push_back(loss::Scalar::unfolding());
   return scalars;
 }
 
 int Collocation::conditions_of_families(const systems::System& system, const loop::FundamentalDomain& domain) {
-  const int holds = system.family_kind().hold == systems::FamilyKind::Hold::nothing ? 0 : 1;
+  const int holds = system.family_scalars().hold == systems::FamilyScalars::Hold::nothing ? 0 : 1;
   return 1 + holds + (domain.reversor ? 0 : 1);
 }
 
@@ -386,7 +386,7 @@ loop::Loop Collocation::to_loop(const double* u) const {
   out.modes.resize((2 * at(out.cutoff) + 1) * at(out.dimension));
   _grid.to_modes(u, out.modes.data());
   for (std::size_t i = 0; i < at(out.dimension); ++i) out.modes[i] += _centre[i];
-  for (std::size_t n = 0; n < _system.family_kind().free.size(); ++n)
+  for (std::size_t n = 0; n < _system.family_scalars().free.size(); ++n)
     out.parameters.push_back(u[period_at() + 1 + static_cast<int>(n)]);
   return out;
 }

@@ -18,7 +18,7 @@ systems::Scales scales_of(const Scene& scene, const systems::System& system, con
   const std::vector<std::string>& quantities = system.structure().conserved;
   for (std::size_t k = 0; k < quantities.size(); ++k)
     scales.conserved.push_back(value(quantities[k], natural.conserved.empty() ? 1.0 : natural.conserved[k]));
-  const std::vector<std::string>& free = system.family_kind().free;
+  const std::vector<std::string>& free = system.family_scalars().free;
   for (std::size_t n = 0; n < free.size(); ++n) scales.parameters.push_back(value(free[n], natural.parameter(n)));
   return scales;
 }

@@ -37,7 +37,7 @@ Scene read_scene(const Field& root) {
                   smallest_scene);
   Scene scene;
   read_system(require_key(keys, root, "system", "system: {name: double_pendulum}"), scene.system);
-  read_family_kind(keys.find("continuation"), scene.system);
+  read_family_scalars(keys.find("continuation"), scene.system);
   const auto bound = bound_system(scene.system);
   const systems::System& system = *bound;
   scene.name = scene.system.name;
@@ -109,6 +109,9 @@ std::vector<std::string> not_built_yet(const Scene& scene) {
   const auto say = [&](bool asked, const std::string& sentence) {
     if (asked) sentences.push_back(sentence);
   };
+  const auto system = bound_system(scene.system);
+  say(system->structure().family_kind() == systems::FamilyKind::none,
+      "system: with damping and without a drive all motions come to rest; there are no families to follow.");
   say(!scene.section.coordinate.empty(),
       fmt::format("section: crossings of the Poincare section {} = {:g} are not computed yet.",
                   scene.section.coordinate, scene.section.value));

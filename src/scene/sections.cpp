@@ -64,8 +64,8 @@ std::vector<std::string> names_of(const std::vector<systems::Parameter>& paramet
 
 }  // namespace
 
-void read_family_kind(const std::optional<Field>& field, SystemChoice& choice) {
-  using Hold = systems::FamilyKind::Hold;
+void read_family_scalars(const std::optional<Field>& field, SystemChoice& choice) {
+  using Hold = systems::FamilyScalars::Hold;
   const bool conservative = bound_system(choice)->structure().conservative();
   const std::vector<std::string> names = names_of(known_parameters(systems::model_info(choice.name), choice));
   std::optional<Field> free;
@@ -76,12 +76,12 @@ void read_family_kind(const std::optional<Field>& field, SystemChoice& choice) {
     free = keys.find("free");
     hold = keys.find("hold");
   }
-  if (free) choice.kind.free = {free->choice(names)};
+  if (free) choice.moving.free = {free->choice(names)};
   if (hold && (!free || !conservative))
     hold->fail(free ? "no such key, as the system conserves nothing" : "no such key without `free`", hold->got(),
                "leave it out");
   if (free && conservative)
-    choice.kind.hold = hold && hold->choice({"energy", "period"}) == "period" ? Hold::period : Hold::energy;
+    choice.moving.hold = hold && hold->choice({"energy", "period"}) == "period" ? Hold::period : Hold::energy;
 }
 
 void read_states(const Field& field, const systems::System& system, std::vector<StateStart>& states) {
@@ -141,7 +141,7 @@ void read_limits(const Field& field, const systems::System& system, Limits& limi
   if (const auto energy = keys.find("energy"))
     std::tie(limits.energy_from, limits.energy_to) = energy->range({.infinite = true, .example = "[-.inf, .inf]"});
   if (const auto parameter = keys.find("parameter")) {
-    if (system.family_kind().free.empty())
+    if (system.family_scalars().free.empty())
       parameter->fail("no such key, as no parameter moves", parameter->got(),
                       "name one with `continuation: {free: ...}`");
     std::tie(limits.parameter_from, limits.parameter_to) = parameter->range({.infinite = true, .example = "[0, 0.5]"});

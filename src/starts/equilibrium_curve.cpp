@@ -54,7 +54,7 @@ class Curve {
  public:
   Curve(const systems::System& system, const EquilibriumCurveOptions& options)
       : _system(system),
-        _name(system.family_kind().free.front()),
+        _name(system.family_scalars().free.front()),
         _unit(system.parameter_scale(_name)),
         _options(options),
         _d(system.dimension()) {}
@@ -255,7 +255,7 @@ std::optional<VectorXd> zero_between(const Curve& curve, const Node& a, const No
 
 EquilibriumCurve follow_equilibrium(const systems::System& system, std::span<const double> start,
                                     const EquilibriumCurveOptions& options) {
-  core::require(!system.family_kind().free.empty(), "equilibria are followed in a parameter that moves");
+  core::require(!system.family_scalars().free.empty(), "equilibria are followed in a parameter that moves");
   core::require(static_cast<int>(start.size()) == system.dimension(), "a state of another dimension");
   const Curve curve(system, options);
   const Index d = curve.dimension();

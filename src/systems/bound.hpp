@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "orbweaver/systems/family_kind.hpp"
+#include "orbweaver/systems/family_scalars.hpp"
 
 namespace orbweaver::systems {
 
@@ -15,7 +15,7 @@ template <class P>
 struct BoundTo {
   std::map<std::string, P> parameters;
   std::vector<std::string> effects;
-  FamilyKind kind{};
+  FamilyScalars scalars{};
 
   [[nodiscard]] const P& operator[](const std::string& parameter) const { return parameters.at(parameter); }
   [[nodiscard]] bool has(const std::string& effect) const {

@@ -24,6 +24,7 @@ namespace orbweaver::systems {
 ///   static constexpr int quantities;                          // functions that can be conserved
 ///   static ModelInfo info();
 ///   static Structure structure(const Bound& bound);           // what holds with these parameters and effects
+///   static std::vector<EffectRules> effects();                // those composed into it (effects/composition.hpp), if any
 ///   template <class P> class With;                            // the model with parameters of type P
 /// and With<P>, P being double or (to differentiate by a parameter, in quadruple precision, and in formulas) the scalar
 /// S of the field, has
@@ -45,7 +46,7 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
   [[nodiscard]] const ModelInfo& info() const override { return Registered<Model>::info(); }
   [[nodiscard]] const Structure& structure() const override { return _structure; }
   [[nodiscard]] const std::map<std::string, double>& parameters() const override { return _bound.parameters; }
-  [[nodiscard]] const FamilyKind& family_kind() const override { return _bound.kind; }
+  [[nodiscard]] const FamilyScalars& family_scalars() const override { return _bound.scalars; }
 
   void field(std::size_t nodes, const double* z, double* f) const override {
     for_each_group(nodes, [=, this](std::size_t j, std::size_t count) {
@@ -263,6 +264,17 @@ template <class Model>
 const ModelInfo& Registered<Model>::info() {
   static const ModelInfo info = Model::info();
   return info;
+}
+
+template <class Model>
+const std::vector<std::string>& Registered<Model>::effects() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> found;
+    if constexpr (requires { Model::effects(); })
+      for (const auto& effect : Model::effects()) found.push_back(effect.info().name);
+    return found;
+  }();
+  return names;
 }
 
 template <class Model>

@@ -39,7 +39,7 @@ class ScaledSystem : public System {
   [[nodiscard]] const Structure& structure() const override { return _structure; }
   [[nodiscard]] const std::map<std::string, double>& parameters() const override { return _system->parameters(); }
   [[nodiscard]] const Scales& scales() const override { return _scales; }
-  [[nodiscard]] const FamilyKind& family_kind() const override { return _system->family_kind(); }
+  [[nodiscard]] const FamilyScalars& family_scalars() const override { return _system->family_scalars(); }
 
   void field(std::size_t nodes, const double* z, double* f) const override {
     _system->field(nodes, in_units(nodes, z), f);
@@ -197,7 +197,7 @@ void check(const System& system, const Scales& scales) {
   const auto d = static_cast<std::size_t>(system.dimension());
   core::require(system.scales().are_one(), "a system is scaled once");
   core::require(scales.coordinates.empty() || scales.coordinates.size() == d, "one scale a coordinate");
-  core::require(scales.parameters.empty() || scales.parameters.size() == system.family_kind().free.size(),
+  core::require(scales.parameters.empty() || scales.parameters.size() == system.family_scalars().free.size(),
                 "one scale a parameter that moves");
   core::require(scales.conserved.empty() || scales.conserved.size() == system.structure().conserved.size(),
                 "one scale a conserved quantity");

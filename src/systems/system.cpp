@@ -17,13 +17,13 @@ const Scales& System::scales() const {
   return units;
 }
 
-const FamilyKind& System::family_kind() const {
-  static const FamilyKind only_period;
+const FamilyScalars& System::family_scalars() const {
+  static const FamilyScalars only_period;
   return only_period;
 }
 
 double System::parameter_scale(const std::string& name) const {
-  const std::vector<std::string>& free = family_kind().free;
+  const std::vector<std::string>& free = family_scalars().free;
   const auto found = std::find(free.begin(), free.end(), name);
   return found == free.end() ? 1.0 : scales().parameter(static_cast<std::size_t>(found - free.begin()));
 }

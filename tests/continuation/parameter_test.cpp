@@ -33,7 +33,7 @@ continuation::Options to(double parameter) {
 }
 
 TEST(VanDerPolFamily, HasTheKnownPeriods) {
-  const auto system = std::make_shared<VanDerPol>(0.0, systems::FamilyKind{{"mu"}, {}});
+  const auto system = std::make_shared<VanDerPol>(0.0, systems::FamilyScalars{{"mu"}, {}});
   for (const auto& [mu, period] : {std::pair(1.0, 6.663286859323130), std::pair(10.0, 19.07836956694)}) {
     const Trace trace = trace_of(system, circle(), to(mu));
     EXPECT_EQ(trace.ending.reason, EndReason::parameter_limit) << trace.ending.text();

@@ -38,7 +38,7 @@ const std::map<std::string, Case> cases{
     {"system.parameters.l1", {"1", "0.5"}},
     {"system.parameters.l2", {"1", "0.5"}},
     {"system.parameters.g", {"1", "9.81"}},
-    {"system.effects", {"[]", ""}},  // no system has one yet
+    {"system.effects", {"[]", ""}},  // brings parameters: tested below
     {"system.scales.time", {"auto", "2"}},
     {"system.scales.th1", {"auto", ""}},  // 1, as of every angle
     {"system.scales.th2", {"auto", ""}},
@@ -130,6 +130,18 @@ TEST(Differences, EachKeyIsFoundAloneAndNamed) {
     if (key.starts_with("starts.fixed_points")) continue;  // completed to all coordinates
     EXPECT_EQ(found[0].now, values.other);
   }
+}
+
+TEST(Differences, EffectsBringTheirParameters) {
+  const auto keys = [](const std::vector<std::string>& before, const std::vector<std::string>& now) {
+    std::vector<std::string> found;
+    for (const auto& difference : differences(with(before), with(now))) found.push_back(difference.key);
+    return found;
+  };
+  EXPECT_THAT(keys({}, {"system.effects=[rod_inertia]"}),
+              testing::UnorderedElementsAre("system.effects", "system.parameters.rod1", "system.parameters.rod2"));
+  EXPECT_THAT(keys({"system.effects=[rod_inertia]"}, {"system.effects=[rod_inertia]", "system.parameters={rod1: 2}"}),
+              testing::ElementsAre("system.parameters.rod1"));
 }
 
 TEST(Differences, DefaultsAreFilledIn) {

@@ -28,6 +28,12 @@ TEST(NotBuiltYet, SaysNothingAboutBranchesAndEvents) {
               IsEmpty());
 }
 
+TEST(NotBuiltYet, TellsDampingAndDrivesApart) {
+  EXPECT_THAT(sentences({"system.effects=[damping]"}), testing::ElementsAre(HasSubstr("come to rest")));
+  EXPECT_THAT(sentences({"system.effects=[damping, pivot_drive]"}), testing::ElementsAre(HasSubstr("not built yet")));
+  EXPECT_THAT(sentences({"system.effects=[rod_inertia]"}), IsEmpty());
+}
+
 TEST(NotBuiltYet, SaysOneSentenceForEachThingAsked) {
   const std::vector<std::pair<std::string, std::string>> cases{{"section={coordinate: w1}", "section:"}};
   std::vector<std::string> all;

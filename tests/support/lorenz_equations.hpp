@@ -18,8 +18,8 @@ class LorenzEquations final : public StatedSystem {
       : StatedSystem(structure_with_symmetry(), "lorenz"), _rho(rho), _parameters{{"rho", rho}} {}
 
   [[nodiscard]] const std::map<std::string, double>& parameters() const override { return _parameters; }
-  [[nodiscard]] const systems::FamilyKind& family_kind() const override {
-    static const systems::FamilyKind kind{{"rho"}, systems::FamilyKind::Hold::nothing};
+  [[nodiscard]] const systems::FamilyScalars& family_scalars() const override {
+    static const systems::FamilyScalars kind{{"rho"}, systems::FamilyScalars::Hold::nothing};
     return kind;
   }
 

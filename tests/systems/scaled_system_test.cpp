@@ -91,6 +91,22 @@ TEST(ScaledSystem, KeepsGuardsInTheSystemsUnits) {
   EXPECT_EQ(spring->guard(0, std::vector<double>{6.0, 8.0, 0.0, 0.0}), 5.0);
 }
 
+TEST(ScaledSystem, APhaseHasTheScaleOne) {
+  const auto plain = make_system("swinging_spring", {{"drive_direction", 90.0}}, {"drive"});
+  EXPECT_THROW(static_cast<void>(scaled(plain, {2.0, {1.0, 1.0, 1.0, 1.0, 2.0}, {}})), core::MisuseError);
+  const auto told = scaled(plain, {2.0, {0.5, 0.5, 0.25, 0.25, 1.0}, {}});
+  const auto offset = told->structure().equivariances.front().map.offset;
+  EXPECT_EQ(offset(4), plain->structure().equivariances.front().map.offset(4));
+  EXPECT_NE(offset(4), 0.0);
+  const std::vector<double> state{0.6, -2.4, 0.7, 0.9, 0.4};
+  const std::vector<double> in_units{0.3, -1.2, 0.175, 0.225, 0.4};
+  std::vector<double> f(5), g(5);
+  plain->field(1, in_units.data(), f.data());
+  told->field(1, state.data(), g.data());
+  const std::vector<double> rates{4.0, 4.0, 8.0, 8.0, 2.0};
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(g[i], rates[i] * f[i]);
+}
+
 TEST(ScaledSystem, RefusesScalesThatMeanNothing) {
   const auto pendulum = make_system("double_pendulum");
   EXPECT_THROW(static_cast<void>(scaled(pendulum, {1.0, {2.0, 1.0, 1.0, 1.0}, {1.0}})), core::MisuseError);  // an angle

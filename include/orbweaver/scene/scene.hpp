@@ -19,7 +19,7 @@ struct SystemChoice {
   std::vector<std::string> effects;
   /// Scales that the scene gives, by name: time, a coordinate, a conserved quantity. The others are found (`auto`).
   std::map<std::string, double> scales;
-  systems::FamilyKind kind;  ///< what moves along its families (continuation.free, continuation.hold)
+  systems::FamilyScalars moving;  ///< what moves along its families (continuation.free, continuation.hold)
 };
 
 /// The system with its parameters, effects and kind of families, in their units.

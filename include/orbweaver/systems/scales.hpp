@@ -10,7 +10,7 @@ namespace orbweaver::systems {
 
 /// The units in which a system's numbers are told, each in the units of its parameters (docs/mathematics.md, "Scales"):
 /// a time t stands for t * time, coordinate i of a state z for z_i * coordinate(i), value n of the parameters that move
-/// along families (FamilyKind) for p_n * parameter(n). Angles have 1, in radians.
+/// along families (FamilyScalars) for p_n * parameter(n). Angles have 1, in radians.
 struct Scales {
   double time = 1.0;
   std::vector<double> coordinates;  ///< one a coordinate; empty: all 1

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "orbweaver/systems/family_kind.hpp"
+#include "orbweaver/systems/family_scalars.hpp"
 #include "orbweaver/systems/model_info.hpp"
 #include "orbweaver/systems/scales.hpp"
 #include "orbweaver/systems/structure.hpp"
@@ -37,7 +37,7 @@ class System {
   /// (systems/scaled_system.hpp).
   [[nodiscard]] virtual const Scales& scales() const;
   /// What moves along its families. Loops of such a system carry the values (loop::Loop::parameters).
-  [[nodiscard]] virtual const FamilyKind& family_kind() const;
+  [[nodiscard]] virtual const FamilyScalars& family_scalars() const;
   [[nodiscard]] int dimension() const { return structure().dimension; }
   /// Of a parameter: that of its scales where it moves along families, else 1.
   [[nodiscard]] double parameter_scale(const std::string& name) const;

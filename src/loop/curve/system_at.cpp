@@ -10,7 +10,7 @@
 namespace orbweaver::loop {
 
 std::shared_ptr<const systems::System> system_at(const systems::System& system, const Loop& loop) {
-  const std::vector<std::string>& free = system.family_kind().free;
+  const std::vector<std::string>& free = system.family_scalars().free;
   core::require(loop.parameters.size() == free.size(),
                 "a loop has a value for every parameter that moves along the families of its system");
   std::map<std::string, double> moved;

@@ -17,7 +17,7 @@ systems::Scales scales_of(const archive::Header& header, const systems::System& 
   systems::Scales scales;
   const auto coordinates = static_cast<std::ptrdiff_t>(system.dimension());
   const auto conserved = static_cast<std::ptrdiff_t>(system.structure().conserved.size());
-  const std::size_t free = system.family_kind().free.size();
+  const std::size_t free = system.family_scalars().free.size();
   if (header.scales.size() != static_cast<std::size_t>(1 + coordinates + conserved) + free) return scales;
   scales.time = header.scales.front();
   scales.coordinates.assign(header.scales.begin() + 1, header.scales.begin() + 1 + coordinates);

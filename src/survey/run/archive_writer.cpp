@@ -61,8 +61,8 @@ archive::Header header_of(const scene::Scene& scene, const systems::System& syst
     header.scale_names.push_back(system.structure().conserved[k]);
     header.scales.push_back(scales.conserved.empty() ? 1.0 : scales.conserved[k]);
   }
-  for (std::size_t n = 0; n < system.family_kind().free.size(); ++n) {
-    header.scale_names.push_back(system.family_kind().free[n]);
+  for (std::size_t n = 0; n < system.family_scalars().free.size(); ++n) {
+    header.scale_names.push_back(system.family_scalars().free[n]);
     header.scales.push_back(scales.parameter(n));
   }
   return header;

@@ -33,11 +33,30 @@ double scale_of_parameter(double value, const scene::Limits& limits) {
   return largest > 0.0 ? std::exp2(std::floor(std::log2(largest))) : 1.0;
 }
 
+/// Systems whose structure says neither, as a test's may, are let through: their surveys find no family and say so.
+void require_families(const systems::System& system) {
+  const systems::Structure& structure = system.structure();
+  if (structure.decays)
+    throw core::InputError(fmt::format(
+        "expected a system that has families of periodic orbits, got {}: damped and without a drive, all its motions "
+        "come to rest; add an effect that drives it, or leave out the damping (orbweaver systems lists the effects)",
+        system.info().title));
+  if ((structure.dissipative || structure.driven) && system.family_scalars().free.empty()) {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : system.parameters()) names.push_back(name);
+    throw core::InputError(fmt::format(
+        "expected `continuation: {{free: ...}}`, the parameter that moves along the families of {}, which conserves "
+        "nothing: one of {}",
+        system.info().title, fmt::join(names, ", ")));
+  }
+}
+
 std::shared_ptr<const systems::System> in_own_scales(const scene::Scene& scene,
                                                      const std::shared_ptr<const systems::System>& system) {
   require_one_quantity(*system);
+  require_families(*system);
   systems::Scales natural = starts::natural_scales(*system, scene.fixed_points.grid);
-  for (const std::string& name : system->family_kind().free)
+  for (const std::string& name : system->family_scalars().free)
     natural.parameters.push_back(scale_of_parameter(system->parameters().at(name), scene.limits));
   return systems::scaled(system, scene::scales_of(scene, *system, natural));
 }

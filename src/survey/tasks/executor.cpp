@@ -34,7 +34,7 @@ queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
   queue::TaskOutcome done;
   if (work.period > 0.0)
     done.payload = pack(state_start(_scene, _system, work, _team));
-  else if (_system->family_kind().free.empty())
+  else if (_system->family_scalars().free.empty())
     done.payload = pack(small_oscillations(work));
   else if (!_system->structure().conservative())
     done.payload = pack(hopf_starts(_scene, *_system, work));

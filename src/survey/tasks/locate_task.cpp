@@ -169,7 +169,7 @@ class Location {
     }
   }
 
-  [[nodiscard]] bool moves() const { return !_system->family_kind().free.empty(); }
+  [[nodiscard]] bool moves() const { return !_system->family_scalars().free.empty(); }
 
   /// In the energy, or the parameter that moves: there an index of 2 is no birth.
   [[nodiscard]] bool turns(continuation::FamilyCurve& family) const {

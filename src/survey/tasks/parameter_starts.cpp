@@ -59,7 +59,7 @@ loop::Loop guess_of(const systems::System& system, const SweepWork& work) {
          loop::mean_distance(out, loop::with_cutoff(out, loop::previous_cutoff(cutoff))) < allowed)
     cutoff = loop::previous_cutoff(cutoff);
   out = loop::with_cutoff(out, loop::allowed_cutoff_at_least(cutoff));
-  for (const std::string& name : system.family_kind().free)
+  for (const std::string& name : system.family_scalars().free)
     out.parameters.push_back(system.parameters().at(name) / system.parameter_scale(name));
   return out;
 }

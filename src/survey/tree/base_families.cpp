@@ -51,7 +51,7 @@ void remark_grid(const scene::Scene& scene, const systems::System& system, Summa
 /// What to do where a survey has found no family at all.
 std::string nothing_found_advice(const systems::System& system, bool left_out) {
   if (left_out) return "all their periods lie outside starts.sweep.period: make it wider, or `auto`";
-  if (!system.family_kind().free.empty())
+  if (!system.family_scalars().free.empty())
     return "no curve of equilibria has a Hopf point within limits.parameter: widen it, or give an orbit with "
            "starts.states";
   return "none of the equilibria has small oscillations: let starts.fixed_points.grid lead to others";
@@ -64,7 +64,7 @@ namespace {
 /// Families in T begin at equilibria, and those of a system that conserves nothing at Hopf points. A conservative
 /// family in a parameter has no small orbits.
 bool has_equilibrium_families(const systems::System& system) {
-  return system.family_kind().free.empty() || !system.structure().conservative();
+  return system.family_scalars().free.empty() || !system.structure().conservative();
 }
 
 /// Of an orbit that the scene gives: the states come behind the equilibria.
@@ -108,9 +108,9 @@ std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::S
                                 ? fmt::format("from {:g} to {:g}", scene.sweep.period->from * system.scales().time,
                                               scene.sweep.period->to * system.scales().time)
                                 : "over all oscillations";
-  const std::string look = system.family_kind().free.empty()
+  const std::string look = system.family_scalars().free.empty()
                                ? fmt::format("sweeping the period {} at each", range)
-                               : fmt::format("following each in {}", system.family_kind().free.front());
+                               : fmt::format("following each in {}", system.family_scalars().free.front());
   if (equilibria > 0) core::log_info(fmt::format("{} equilibria; {}", equilibria, look));
   if (equilibria < tasks.size()) core::log_info(fmt::format("{} given orbits", tasks.size() - equilibria));
   if (tasks.empty() && !has_equilibrium_families(system))
@@ -131,7 +131,7 @@ std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const syst
     if (outcome.failed) continue;  // gather_failed_sweeps
     const SweepOutcome found = unpack_sweep_outcome(outcome.payload);
     check_names(scene, system, found);
-    if (found.modes.empty() && found.rejected.empty() && !system.family_kind().free.empty()) {
+    if (found.modes.empty() && found.rejected.empty() && !system.family_scalars().free.empty()) {
       summary.remarks.push_back(
           fmt::format("no Hopf point on the curve of equilibria through {}", point_text(system, found.point)));
     } else if (found.modes.empty() && found.rejected.empty()) {

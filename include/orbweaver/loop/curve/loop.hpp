@@ -25,7 +25,7 @@ struct Loop {
   std::vector<double>
       winding;       ///< n of each coordinate (size dimension, whole numbers; 0 but for angles that turn over)
   TimeMap time_map;  ///< phi: how s runs with time
-  /// Values of the parameters that move along the families of its system (systems::FamilyKind), in their order; empty
+  /// Values of the parameters that move along the families of its system (systems::FamilyScalars), in their order; empty
   /// where none does.
   std::vector<double> parameters;
 
