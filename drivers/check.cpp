@@ -43,7 +43,7 @@ std::string value_text(const systems::System& system, std::size_t coordinate, do
   return system.structure().is_angle(coordinate) ? in_degrees(value) : fmt::format("{:.6g}", value);
 }
 
-std::string parameter_text(const systems::System& system, const std::string& name, double value) {
+std::string value_of_parameter(const systems::System& system, const std::string& name, double value) {
   std::vector<systems::Parameter> known = system.info().parameters;
   for (const systems::Effect& effect : system.info().effects)
     known.insert(known.end(), effect.parameters.begin(), effect.parameters.end());
@@ -75,7 +75,7 @@ void print_system(const scene::Scene& scene, const systems::System& system) {
     coordinates.push_back(system.info().state_names[i] + (system.structure().is_angle(i) ? " (angle)" : ""));
   Lines lines{{"coordinates", fmt::format("{}", fmt::join(coordinates, ", "))}};
   for (const auto& [name, value] : system.parameters())
-    lines.emplace_back(lines.size() == 1 ? "parameters" : "", parameter_text(system, name, value));
+    lines.emplace_back(lines.size() == 1 ? "parameters" : "", value_of_parameter(system, name, value));
   const auto& effects = scene.system.effects;
   lines.emplace_back("effects", effects.empty() ? "none" : fmt::format("{}", fmt::join(effects, ", ")));
   lines.emplace_back("scales", scales_text(scene, system));

@@ -24,7 +24,7 @@ namespace orbweaver::systems {
 ///   static constexpr int quantities;                          // functions that can be conserved
 ///   static ModelInfo info();
 ///   static Structure structure(const Bound& bound);           // what holds with these parameters and effects
-///   static std::vector<EffectRules> effects();                // those composed into it (effects/composition.hpp), if any
+///   static std::vector<EffectRules> effects();                // composed into it (effects/composition.hpp), if any
 ///   template <class P> class With;                            // the model with parameters of type P
 /// and With<P>, P being double or (to differentiate by a parameter, in quadruple precision, and in formulas) the scalar
 /// S of the field, has

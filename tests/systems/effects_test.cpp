@@ -170,7 +170,7 @@ template <int N, class Lagrangian>
 void expect_equations_of(const std::string& name) {
   std::mt19937 generator(31);
   for (const std::vector<std::string>& effects : built_effects(name)) {
-    SCOPED_TRACE(Built{name, effects}.title());
+    SCOPED_TRACE((Built{name, effects}.title()));
     for (int sample = 0; sample < 50; ++sample) {
       const auto parameters = random_parameters(model_info(name), generator, effects);
       const auto system = make_system(name, parameters, effects);
@@ -184,7 +184,9 @@ void expect_equations_of(const std::string& name) {
         EXPECT_EQ(f[i], z[N + i]);
         EXPECT_NEAR(f[N + i], expected(static_cast<Eigen::Index>(i)), 1e-12 * (1.0 + expected.norm()));
       }
-      if (system->structure().driven) EXPECT_EQ(f.back(), frequency);
+      if (system->structure().driven) {
+        EXPECT_EQ(f.back(), frequency);
+      }
     }
   }
 }
@@ -202,7 +204,7 @@ TEST(Effects, EnergiesFollowFromTheLagrangian) {
       const auto parameters = random_parameters(model_info(name), generator, effects);
       const auto system = make_system(name, parameters, effects);
       if (!system->structure().conservative()) continue;
-      SCOPED_TRACE(Built{name, effects}.title());
+      SCOPED_TRACE((Built{name, effects}.title()));
       auto z = random_state(*system, generator);
       z.push_back(0.0);
       const auto [value, gradient] = ad::value_gradient<5>(Lagrangian{parameters}, z.data());
