@@ -363,7 +363,9 @@ class ByHand {
     struct Nothing {
       explicit Nothing(const std::map<std::string, P>&) {}
       template <class S>
-      void field(const S*, S*) const {}
+      void field(const S*, S* f) const {
+        for (int i = 0; i < dimension; ++i) f[i] = S(0.0);
+      }
     };
     std::conditional_t<std::is_same_v<P, double>, Hand, Nothing> _hand;
   };
