@@ -110,8 +110,6 @@ std::vector<std::string> not_built_yet(const Scene& scene) {
   };
   const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
   const systems::FamilyKind kind = system->structure().family_kind();
-  say(kind == systems::FamilyKind::none,
-      "system: with damping and without a drive all motions come to rest; there are no families to follow.");
   say(kind != systems::FamilyKind::none && kind != systems::FamilyKind::conservative,
       "system: continuation of systems without a conserved energy is not built yet.");
   say(!scene.section.coordinate.empty(),
