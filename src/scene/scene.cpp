@@ -109,9 +109,6 @@ std::vector<std::string> not_built_yet(const Scene& scene) {
   const auto say = [&](bool asked, const std::string& sentence) {
     if (asked) sentences.push_back(sentence);
   };
-  const auto system = bound_system(scene.system);
-  say(system->structure().family_kind() == systems::FamilyKind::none,
-      "system: with damping and without a drive all motions come to rest; there are no families to follow.");
   say(!scene.section.coordinate.empty(),
       fmt::format("section: crossings of the Poincare section {} = {:g} are not computed yet.",
                   scene.section.coordinate, scene.section.value));

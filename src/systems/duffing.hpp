@@ -16,7 +16,7 @@ namespace orbweaver::systems {
 ///   H = v^2/2 + alpha x^2/2 + beta x^4/4.
 ///
 /// Terms of effects have
-///   void add_force(const S* z, S* force) const;
+///   void add_acceleration(const S* z, S* out) const;
 template <class... Effects>
 class Duffing {
  public:
@@ -40,7 +40,7 @@ class Duffing {
     void field(const S* z, S* f) const {
       f[0] = z[1];
       f[1] = -(z[0] * (z[0] * z[0] * _beta + _alpha));
-      _terms.for_each([&](const auto& terms) { terms.add_force(z, f + 1); });
+      _terms.for_each([&](const auto& terms) { terms.add_acceleration(z, f + 1); });
       if constexpr (driven) f[2] = S(_frequency);
     }
 

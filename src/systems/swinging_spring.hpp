@@ -21,7 +21,7 @@ namespace orbweaver::systems {
 ///   stiffness length = 3 mass gravity.
 ///
 /// Terms of effects have
-///   void add_force(const S* z, S* force) const;   // along x and y
+///   void add_acceleration(const S* z, S* out) const;   // along x and y
 template <class... Effects>
 class SwingingSpring {
  public:
@@ -55,12 +55,7 @@ class SwingingSpring {
       f[1] = z[3];
       f[2] = -(z[0] * pull);
       f[3] = -(z[1] * pull) - _gravity;
-      if constexpr (sizeof...(Effects) > 0) {
-        S force[2] = {S(0.0), S(0.0)};
-        _terms.for_each([&](const auto& terms) { terms.add_force(z, force); });
-        f[2] = f[2] + force[0] * (1.0 / _mass);
-        f[3] = f[3] + force[1] * (1.0 / _mass);
-      }
+      _terms.for_each([&](const auto& terms) { terms.add_acceleration(z, f + 2); });
       if constexpr (driven) f[4] = S(_frequency);
     }
 

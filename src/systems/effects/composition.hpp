@@ -51,6 +51,15 @@ inline constexpr bool is_conservative = !((Effects::dissipates || Effects::drive
 /// pairs of multipliers if something dissipates.
 [[nodiscard]] Structure with_effects(Structure ideal, const std::vector<EffectRules>& effects, const Bound& bound);
 
+/// The mass of a point that moves along so many coordinates: that of the system in a plane, 1 on a line.
+template <int coordinates, class P>
+[[nodiscard]] P mass_of_point(const BoundTo<P>& bound) {
+  if constexpr (coordinates == 1)
+    return P(1.0);
+  else
+    return bound["mass"];
+}
+
 /// Whether a symmetry of an ideal system changes the sign of its first coordinate: of an angle, or to the side.
 [[nodiscard]] bool mirrors(const Symmetry& ideal);
 

@@ -25,16 +25,16 @@ class Damping {
   template <class P>
   class With {
    public:
-    explicit With(const BoundTo<P>& bound) : _damping(bound["damping"]) {}
+    explicit With(const BoundTo<P>& bound) : _rate(bound["damping"] / mass_of_point<coordinates>(bound)) {}
 
-    /// `force`: one a coordinate, of the state z: positions, velocities, and the phase if there is one.
+    /// `out`: one a coordinate, of the state z: positions, velocities, and the phase if there is one.
     template <class S>
-    void add_force(const S* z, S* force) const {
-      for (int i = 0; i < coordinates; ++i) force[i] = force[i] - z[coordinates + i] * _damping;
+    void add_acceleration(const S* z, S* out) const {
+      for (int i = 0; i < coordinates; ++i) out[i] = out[i] - z[coordinates + i] * _rate;
     }
 
    private:
-    P _damping;
+    P _rate;
   };
 };
 

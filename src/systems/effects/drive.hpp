@@ -37,7 +37,7 @@ class Drive {
   class With {
    public:
     explicit With(const BoundTo<P>& bound) {
-      const P& amplitude = bound["drive_amplitude"];
+      const P amplitude = bound["drive_amplitude"] / mass_of_point<coordinates>(bound);
       if constexpr (coordinates == 1) {
         _amplitude[0] = amplitude;
       } else {
@@ -47,12 +47,12 @@ class Drive {
       }
     }
 
-    /// `force`: one a coordinate, of the state z: positions, velocities, phase.
+    /// `out`: one a coordinate, of the state z: positions, velocities, phase.
     template <class S>
-    void add_force(const S* z, S* force) const {
+    void add_acceleration(const S* z, S* out) const {
       using std::cos;
       const S wave = cos(z[2 * coordinates]);
-      for (int i = 0; i < coordinates; ++i) force[i] = force[i] + wave * _amplitude[i];
+      for (int i = 0; i < coordinates; ++i) out[i] = out[i] + wave * _amplitude[i];
     }
 
    private:
