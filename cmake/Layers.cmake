@@ -1,7 +1,7 @@
 # The layers in the order of docs/architecture.md. A layer may include only those before it; tests/structure checks the includes.
 set(ORBWEAVER_LAYERS
   core ad numerics systems taylor scene loop loss equations spectrum corrector starts continuation bifurcation certificate archive queue
-  survey refine cost report)
+  survey refine prove cost report)
 
 # g++ 12 reports its own AVX-512 intrinsics as maybe-uninitialized wherever Eigen inlines them.
 set(ORBWEAVER_WARNING_FLAGS -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wno-maybe-uninitialized)

@@ -13,6 +13,7 @@
 #include "common_options.hpp"
 #include "failure.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/text.hpp"
 #include "orbweaver/scene/in_scales.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/starts/natural_scales.hpp"
@@ -179,6 +180,16 @@ std::string depth_text(int depth) {
   return fmt::format("the base families and {} generations of branches", depth);
 }
 
+std::string certificate_text(scene::Certificate certificate) {
+  switch (certificate) {
+    case scene::Certificate::automatic: return "closure of every orbit, as it is found";
+    case scene::Certificate::none: return "none";
+    case scene::Certificate::closure: return "closure of every orbit, when all families are known";
+    case scene::Certificate::full: break;
+  }
+  return "closure of every orbit, its distance to the true one and its multipliers, when all families are known";
+}
+
 void print_survey(const scene::Scene& scene) {
   const scene::Survey& survey = scene.survey;
   const bool all = survey.spectrum == scene::Spectrum::all;
@@ -187,6 +198,7 @@ void print_survey(const scene::Scene& scene) {
                {"subharmonics", fmt::format("branches that close after up to {} period{}", survey.subharmonics,
                                             survey.subharmonics == 1 ? "" : "s")},
                {"spectrum", all ? "at every orbit" : "at events"},
+               {"certificate", certificate_text(scene.compute.certificate)},
                {"team size", fmt::format("{} rank{} a task", survey.team_size, survey.team_size == 1 ? "" : "s")}});
 }
 
@@ -265,7 +277,7 @@ int check(const SceneOptions& options, const Invocation& invocation) {
   const systems::System& system = *bound;
   const std::vector<std::vector<double>> points = resting_points(scene, system);
   systems::require_identities(system, points);
-  fmt::print("{}: a valid scene, \"{}\"\n", options.file.string(), scene.name);
+  fmt::print("{}: a valid scene, \"{}\"\n", core::printable(options.file.string()), scene.name);
   print_system(scene, system);
   print_simulated(scene, system, points);
   print_starts(scene, system);

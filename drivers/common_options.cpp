@@ -7,6 +7,11 @@ core::LogLevel LogOptions::level() const {
   return verbose ? core::LogLevel::debug : core::LogLevel::info;
 }
 
+CLI::Validator named_path() {
+  return {[](const std::string& path) { return path.empty() ? std::string("expected a path, got nothing") : ""; }, "",
+          "named_path"};
+}
+
 void add_scene_options(CLI::App& parser, SceneOptions& options) {
   parser.add_option("scene", options.file, "The scene file (YAML)")->required()->type_name("SCENE");
   parser.add_option("--set", options.overrides, "Override a key of the scene: --set limits.period=20 (repeatable)")

@@ -28,6 +28,9 @@ struct LogOptions {
   [[nodiscard]] core::LogLevel level() const;
 };
 
+/// A check for paths: no empty word, which would be the working folder or no file at all.
+[[nodiscard]] CLI::Validator named_path();
+
 /// Adds the options to a subcommand; `options` must outlive the parser.
 void add_scene_options(CLI::App& parser, SceneOptions& options);
 void add_log_options(CLI::App& parser, LogOptions& options);

@@ -1,5 +1,4 @@
 #include <filesystem>
-#include <iostream>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -8,6 +7,7 @@
 #include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/report/compare/comparison.hpp"
 #include "orbweaver/report/compare/comparison_text.hpp"
+#include "result_stream.hpp"
 
 namespace orbweaver::drivers {
 
@@ -25,9 +25,9 @@ int compare(const CommandOptions& options, const Invocation& invocation) {
   const archive::Archive a(options.a);
   const archive::Archive b(options.b);
   const report::Comparison comparison = report::compare(a, b, options.compare);
-  (options.json ? report::print_comparison_json : report::print_comparison)(std::cout, comparison);
-  std::cout.flush();
-  if (!std::cout) throw core::EnvironmentError("cannot write to the standard output: is the disk full?");
+  ResultStream out;
+  (options.json ? report::print_comparison_json : report::print_comparison)(out, comparison);
+  out.finish();
   return comparison.same() ? 0 : static_cast<int>(core::ExitStatus::goal_missed);
 }
 

@@ -9,6 +9,7 @@
 #include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/report/summary_text.hpp"
 #include "orbweaver/survey/run/survey.hpp"
+#include "summary_status.hpp"
 #include "unused_options.hpp"
 
 namespace orbweaver::drivers {
@@ -26,7 +27,7 @@ int consolidate_on(const core::Communicator& comm, const Options& options) {
   agree(comm, [&] {
     if (comm.is_root()) print_result(report::to_text(summary));
   });
-  return static_cast<int>(core::ExitStatus::done);
+  return static_cast<int>(status_of(summary));
 }
 
 int run(const Options& options, const Invocation& invocation) {
@@ -50,7 +51,7 @@ Command make_consolidate_command(CLI::App& program) {
   const auto options = std::make_shared<Options>();
   CLI::App* parser = program.add_subcommand(
       "consolidate", "Make the archive of what a survey that was broken off has come to (under mpirun or alone)");
-  parser->add_option("directory", options->directory, "The folder of the survey")->required();
+  parser->add_option("directory", options->directory, "The folder of the survey")->required()->check(named_path());
   add_log_options(*parser, options->log);
   return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
 }

@@ -6,8 +6,10 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/interruption.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
+#include "orbweaver/core/text.hpp"
 
 namespace orbweaver::drivers {
 
@@ -38,6 +40,9 @@ Failure describe_failure(const std::exception_ptr& error) {
     return {e.status(), e.what()};
   } catch (const Agreed& e) {
     return describe_failure(e.cause());
+  } catch (const core::Interrupted&) {
+    return {static_cast<int>(core::ExitStatus::stopped_early),
+            "stopped before the survey had begun: there is nothing to go on from"};
   } catch (const std::exception& e) {
     return {environment_failed, e.what()};
   } catch (...) {
@@ -52,13 +57,15 @@ int report_failure(const std::exception_ptr& error) {
   } catch (const ReportedElsewhere&) {
     return failure.status;
   } catch (...) {
-    core::write_line(stderr, fmt::format("orbweaver: {}", failure.message));
+    core::write_line(stderr, core::printable_lines(fmt::format("orbweaver: {}", failure.message)));
   }
   return failure.status;
 }
 
 void print_result(const std::string& text) {
-  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  const std::string escaped = core::printable_lines(text);
+  const bool written =
+      std::fwrite(escaped.data(), 1, escaped.size(), stdout) == escaped.size() && std::fflush(stdout) == 0;
   if (written) return;
   std::clearerr(stdout);
   throw core::EnvironmentError("cannot write to the standard output: is the disk full, or the output closed?");
@@ -81,7 +88,8 @@ int run_on_ranks(const core::Communicator& comm, const std::function<int()>& bod
   } catch (...) {
     if (comm.size() == 1) throw;
     const Failure failure = describe_failure(std::current_exception());
-    core::write_line(stderr, fmt::format("orbweaver: rank {}: {}", comm.rank(), failure.message));
+    core::write_line(stderr,
+                     core::printable_lines(fmt::format("orbweaver: rank {}: {}", comm.rank(), failure.message)));
     std::fflush(nullptr);
     MPI_Abort(comm.get(), failure.status);
     return failure.status;

@@ -32,7 +32,8 @@ class ReportedElsewhere : public std::exception {
 /// Prints `orbweaver: <message>` to stderr (nothing for ReportedElsewhere) and returns the exit status.
 int report_failure(const std::exception_ptr& error);
 
-/// Writes a command's result to the standard output; throws EnvironmentError if it cannot be written.
+/// Writes a command's result, escaped (core::printable_lines), to the standard output; throws EnvironmentError if it
+/// cannot be written.
 void print_result(const std::string& text);
 
 /// Collective over `comm`. Runs `stage` on every rank. If it throws on any, all throw before anyone enters the next

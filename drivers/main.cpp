@@ -13,13 +13,12 @@
 #include "failure.hpp"
 #include "orbweaver/core/blas_kernels.hpp"
 #include "orbweaver/core/error.hpp"
+#include "signals.hpp"
 
 namespace {
 
 using orbweaver::drivers::Command;
 using orbweaver::drivers::Invocation;
-
-constexpr int wrong_input = static_cast<int>(orbweaver::core::ExitStatus::wrong_input);
 
 std::vector<Command> add_commands(CLI::App& program) {
   using namespace orbweaver::drivers;
@@ -59,26 +58,31 @@ int run(std::vector<std::string> words) {
   program.require_subcommand(1);
   const std::vector<Command> commands = add_commands(program);
   const Invocation invocation = take_petsc_options(words);
-  const std::string first = words.empty() ? "" : words.front();
+  const auto word = std::find_if(words.begin(), words.end(), [](const std::string& w) { return !w.starts_with('-'); });
+  const std::string got = word != words.end() ? *word : words.empty() ? "" : words.front();
+  const bool is_empty = words.empty();
   std::reverse(words.begin(), words.end());  // the order in which CLI11 wants a vector
   try {
     program.parse(words);
-  } catch (const CLI::RequiredError& error) {
-    if (!first.empty() && !first.starts_with('-') && program.get_subcommands().empty())
-      throw orbweaver::core::InputError(fmt::format("expected a command, one of {}, got `{}`; see orbweaver --help",
-                                                    fmt::join(names_of(commands), ", "), first));
-    return program.exit(error) == 0 ? 0 : wrong_input;
   } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? 0 : wrong_input;
+    if (error.get_exit_code() == 0) return program.exit(error);  // --help, --version
+    const bool lacks_command = program.get_subcommands().empty();
+    throw orbweaver::core::InputError(
+        lacks_command
+            ? fmt::format("expected a command, one of {}, got {}; see orbweaver --help",
+                          fmt::join(names_of(commands), ", "), is_empty ? "none" : fmt::format("`{}`", got))
+            : fmt::format("{}; see orbweaver {} --help", error.what(), program.get_subcommands().front()->get_name()));
   }
   const auto chosen =
       std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.parser->parsed(); });
+  if (!chosen->stops_on_signals) orbweaver::drivers::release_signals();
   return chosen->run(invocation);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  orbweaver::drivers::hold_signals();  // also those that come while MPI starts
   open_standard_streams();
   std::signal(SIGXFSZ, SIG_IGN);  // beyond `ulimit -f` a write fails, as on a full disk, and the program says so
   orbweaver::core::prefer_fitting_blas_kernels(argv);

@@ -1,6 +1,5 @@
 #include "orbweaver/refine/orbit.hpp"
 
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include <CLI/CLI.hpp>
 
 #include "command.hpp"
+#include "common_options.hpp"
 #include "failure.hpp"
 #include "orbweaver/archive/read/reader.hpp"
 #include "orbweaver/core/log/log.hpp"
@@ -50,38 +50,17 @@ std::string place_text(const archive::Archive& atlas, const refine::StoredFamily
   return fmt::format("{}, {} in {}; symmetries {}", family.name(), where, atlas.path().string(), symmetries);
 }
 
-std::optional<int> step_in(const std::string& text) {
-  int step = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), step);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return step;
-}
-
 Outcome refine_one(const archive::Archive& atlas, const RefineOptions& options) {
   using Quantity = refine::HeldValue::Quantity;
   const auto family = refine::StoredFamily::named(atlas, options.family);
-  std::optional<refine::StoredFamily::Place> place;
-  refine::HeldValue held{Quantity::period, ""};
-  if (const std::optional<int> step = step_in(options.orbit)) {
-    place = family.at_step(*step);
-    held.quantity = refine::better_held(place->guess);
-    held.decimal = family.stored(held.quantity, *step);
-  } else if (options.orbit.starts_with("T=") || options.orbit.starts_with("E=")) {
-    held.quantity = options.orbit.front() == 'T' ? Quantity::period : Quantity::energy;
-    held.decimal = options.orbit.substr(2);
-    static_cast<void>(numerics::extended_of(held.decimal));
-    place = family.with(held, options.after);
-  } else {
-    throw core::InputError(
-        fmt::format("expected a step of {}, T=PERIOD or E=ENERGY, got `{}`", options.family, options.orbit));
-  }
+  const auto [place, held] = family.named_orbit(options.orbit, options.after);
   const char* name = held.quantity == Quantity::period ? "T" : "E";
   Outcome outcome;
-  outcome.orbit = refine::refine_orbit(place->guess, held, options.digits);
+  outcome.orbit = refine::refine_orbit(place.guess, held, options.digits);
   outcome.text = report::refined_text(
       fmt::format("{}, {} = {}", family.name(), name, held.decimal),
-      {{"family", place_text(atlas, family, *place)}, {"held", fmt::format("{} = {} exactly", name, held.decimal)}},
-      *place->guess.system, outcome.orbit);
+      {{"family", place_text(atlas, family, place)}, {"held", fmt::format("{} = {} exactly", name, held.decimal)}},
+      *place.guess.system, outcome.orbit);
   return outcome;
 }
 
@@ -144,7 +123,7 @@ Command make_refine_command(CLI::App& program) {
   parser->add_option("--crossing", options->crossing, "A row of the table of crossings, counted from 0");
   parser->add_option("--after", options->after, "The first orbit with this T or E after a step");
   parser->add_option("-n,--digits", options->digits, "Significant digits of every number")->capture_default_str();
-  parser->add_option("-o,--output", options->output, "A file for the text too");
+  parser->add_option("-o,--output", options->output, "A file for the text too")->check(named_path());
   return {parser, [options](const Invocation&) { return refine_command(*options); }};
 }
 

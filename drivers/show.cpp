@@ -1,5 +1,4 @@
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <string>
 
@@ -7,6 +6,7 @@
 
 #include "command.hpp"
 #include "orbweaver/report/show.hpp"
+#include "result_stream.hpp"
 
 namespace orbweaver::drivers {
 
@@ -26,12 +26,12 @@ struct ShowOptions {
 
 int show(const ShowOptions& options) {
   const archive::Archive atlas(options.atlas);
+  ResultStream out;
   if (options.table.empty())
-    report::print_summary(std::cout, atlas);
+    report::print_summary(out, atlas);
   else
-    report::print_table(std::cout, atlas, options.table, options.format());
-  std::cout.flush();
-  if (!std::cout) throw core::EnvironmentError("cannot write to the standard output: is the disk full?");
+    report::print_table(out, atlas, options.table, options.format());
+  out.finish();
   return 0;
 }
 

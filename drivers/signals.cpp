@@ -8,6 +8,15 @@ namespace orbweaver::drivers {
 
 namespace {
 
+constexpr int stop_signals[]{SIGTERM, SIGUSR1, SIGINT};
+
+sigset_t stopping_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : stop_signals) sigaddset(&signals, signal);
+  return signals;
+}
+
 volatile std::sig_atomic_t last_signal = 0;
 volatile std::sig_atomic_t interrupted = 0;
 
@@ -23,13 +32,24 @@ extern "C" void ask_to_stop(int signal) {
 
 }  // namespace
 
+void hold_signals() {
+  const sigset_t signals = stopping_signals();
+  sigprocmask(SIG_BLOCK, &signals, nullptr);
+}
+
+void release_signals() {
+  const sigset_t signals = stopping_signals();
+  sigprocmask(SIG_UNBLOCK, &signals, nullptr);
+}
+
 void stop_on_signals() {
-  for (const int signal : {SIGTERM, SIGUSR1, SIGINT}) {
+  for (const int signal : stop_signals) {
     struct sigaction action {};
     action.sa_handler = ask_to_stop;
     action.sa_flags = SA_RESTART;
     sigaction(signal, &action, nullptr);
   }
+  release_signals();
 }
 
 std::string stop_signal() {

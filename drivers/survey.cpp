@@ -1,6 +1,7 @@
 #include <exception>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -18,6 +19,7 @@
 #include "orbweaver/survey/state/directory_status.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "signals.hpp"
+#include "summary_status.hpp"
 #include "terminal.hpp"
 #include "unused_options.hpp"
 
@@ -30,7 +32,7 @@ struct Options {
   LogOptions log;
   std::filesystem::path directory;
   bool resume = false;
-  std::string walltime;
+  std::optional<std::string> walltime;
   std::string progress = "auto";
 };
 
@@ -38,11 +40,6 @@ survey::Display display_for(const Options& options) {
   if (options.log.quiet) return survey::Display::none;
   if (options.progress == "auto") return stderr_reaches_terminal() ? survey::Display::live : survey::Display::lines;
   return options.progress == "live" ? survey::Display::live : survey::Display::lines;
-}
-
-core::ExitStatus status_of(const survey::Summary& summary) {
-  if (summary.stopped_early) return core::ExitStatus::stopped_early;
-  return summary.failures > 0 ? core::ExitStatus::goal_missed : core::ExitStatus::done;
 }
 
 std::string how_to_go_on(const Options& options) {
@@ -59,9 +56,9 @@ int survey_on(const core::Communicator& comm, const Options& options) {
   survey::RunOptions run_options{display_for(options), options.resume};
   agree(comm, [&] {
     scene = options.scene.load();
-    if (!options.walltime.empty()) run_options.walltime = seconds_of(options.walltime);
+    if (options.walltime) run_options.walltime = seconds_of(*options.walltime);
   });
-  stop_on_signals();
+  stop_on_signals();  // again, whatever MPI and PETSc made of them
   agree(comm, [&] {
     if (!comm.is_root()) return;  // folders need not look alike from every machine
     status = survey::status_of(options.directory, scene);
@@ -90,6 +87,7 @@ int survey_on(const core::Communicator& comm, const Options& options) {
 }
 
 int run(const Options& options, const Invocation& invocation) {
+  stop_on_signals();
   const core::Session session(invocation.petsc_options);
   const core::Communicator comm;
   core::start_logging(options.log.level(), comm.rank(), comm.size());
@@ -113,7 +111,9 @@ Command make_survey_command(CLI::App& program) {
   CLI::App* parser =
       program.add_subcommand("survey", "Find, follow and archive the families of a scene (under mpirun or alone)");
   add_scene_options(*parser, options->scene);
-  parser->add_option("-o,--output", options->directory, "Folder for the archive, atlas.h5")->required();
+  parser->add_option("-o,--output", options->directory, "Folder for the archive, atlas.h5")
+      ->required()
+      ->check(named_path());
   parser->add_flag("--resume", options->resume,
                    "Go on with the survey in the folder, if there is one; limits may have become wider");
   parser->add_option("--walltime", options->walltime,
@@ -123,7 +123,7 @@ Command make_survey_command(CLI::App& program) {
       ->check(CLI::IsMember({"auto", "live", "lines"}))
       ->capture_default_str();
   add_log_options(*parser, options->log);
-  return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
+  return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }, true};
 }
 
 }  // namespace orbweaver::drivers

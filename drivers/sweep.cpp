@@ -53,7 +53,7 @@ Command make_sweep_command(CLI::App& program) {
       program.add_subcommand("sweep", "Smallest eigenvalues against the period at the scene's fixed points");
   add_scene_options(*parser, options->scene);
   parser->add_flag("--table", options->table, "Print the smallest eigenvalue at every period of the sweep");
-  parser->add_option("--csv", options->csv, "Write that table to a CSV file");
+  parser->add_option("--csv", options->csv, "Write that table to a CSV file")->check(named_path());
   return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
 }
 

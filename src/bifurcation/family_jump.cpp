@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "orbweaver/bifurcation/crossing.hpp"
@@ -65,6 +66,18 @@ bool has_index_two_between(const std::shared_ptr<const systems::System>& system,
   return root && root->value == 0.0;
 }
 
+bool is_elliptic(const spectrum::Stability& s) {
+  return s.fundamental.size() == 1 && std::abs(s.fundamental[0].real()) + s.fundamental_error[0] < 2.0;
+}
+
+/// By which neighbours of an elliptic orbit go around, in the sense of its twist.
+double angle_of(const spectrum::Stability& s) {
+  return std::copysign(std::acos(0.5 * s.fundamental[0].real()), s.twist);
+}
+
+/// Of a turn, by which it may change over a step.
+constexpr double most_rotation = 0.25;
+
 }  // namespace
 
 bool passes_two_only_at_folds(const systems::Structure& system, const loop::Isotropy& isotropy) {
@@ -73,16 +86,20 @@ bool passes_two_only_at_folds(const systems::Structure& system, const loop::Isot
 }
 
 bool passes_one_unseen(const spectrum::Stability& from, const spectrum::Stability& to) {
-  const auto is_elliptic = [](const spectrum::Stability& s) {
-    return s.fundamental.size() == 1 && std::abs(s.fundamental[0].real()) + s.fundamental_error[0] < 2.0;
-  };
   if (!is_elliptic(from) || !is_elliptic(to)) return false;
   return from.twist * to.twist < 0.0 && from.fundamental[0].real() + to.fundamental[0].real() > 0.0;
 }
 
+bool rotates_too_far(const spectrum::Stability& from, const spectrum::Stability& to) {
+  if (!is_elliptic(from) || !is_elliptic(to) || std::isnan(from.twist * to.twist)) return false;
+  const double turn = 2.0 * std::numbers::pi;
+  const double change = std::remainder(angle_of(to) - angle_of(from), turn);
+  return std::abs(change) > most_rotation * turn;
+}
+
 bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
                 const continuation::Options& options, const KnownStability& from, const KnownStability& to) {
-  if (passes_one_unseen(from.stability, to.stability)) return true;
+  if (passes_one_unseen(from.stability, to.stability) || rotates_too_far(from.stability, to.stability)) return true;
   const TestFunction two{TestFunction::Kind::sector, {1, 0}};
   const int before = evaluate(two, system->structure(), from.stability).sign();
   const int after = evaluate(two, system->structure(), to.stability).sign();

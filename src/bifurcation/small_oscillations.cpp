@@ -38,17 +38,19 @@ loop::Tangent at_unit_start(const loop::Loop& base, loop::Tangent tangent) {
 class Gatherer {
  public:
   Gatherer(const systems::System& system, const starts::SweepResult& sweep, int cutoff)
-      : _system(system), _sweep(sweep), _cutoff(cutoff) {
-    _options.amplitude = std::max(sweep.range.amplitude, starts::least_search_amplitude);
-  }
+      : _system(system), _sweep(sweep), _cutoff(cutoff) {}
 
   SmallOscillations run() {
     for (const starts::SharedPeriod& shared : _sweep.left_out) add_left_out(shared);
     for (const starts::UndecidedEigenvalues& eigenvalues : _sweep.linear.undecided)
       if (std::isfinite(eigenvalues.period()))
         _entries.push_back({eigenvalues.period(), none, {}, {eigenvalues.period(), 0, eigenvalues.count, true}});
-    for (const starts::NormalMode& mode : _sweep.modes)
-      _entries.push_back({mode.period, first_with(mode.period), SmallOscillation{mode}, {}});
+    for (const starts::NormalMode& mode : _sweep.modes) {
+      Entry& entry = _entries.emplace_back(Entry{mode.period, first_with(mode.period), SmallOscillation{mode}, {}});
+      if (!std::isfinite(mode.apart_below)) continue;
+      set_amplitude(entry, mode.apart_below);
+      entry.family->amplitude = std::min(entry.family->amplitude, _sweep.range.amplitude);
+    }
     for (const starts::DegenerateMode& mode : _sweep.degenerate) add(mode);
     std::stable_sort(_entries.begin(), _entries.end(),
                      [](const Entry& a, const Entry& b) { return a.period > b.period; });
@@ -68,8 +70,16 @@ class Gatherer {
   }
 
  private:
+  /// Of first orbits: their length in the kernel.
+  [[nodiscard]] double amplitude_in(const starts::SharedPeriod& shared) const {
+    const double wanted = std::max(_sweep.range.amplitude, starts::least_search_amplitude);
+    return std::min(std::max(wanted, shared.together_from), shared.apart_below);
+  }
+
   [[nodiscard]] EquilibriumDirections directions_of(const starts::SharedPeriod& shared) const {
-    EquilibriumDirections all = equilibrium_directions(_system, _sweep.fixed_point, shared, _cutoff, _options);
+    DirectionOptions options;
+    options.amplitude = amplitude_in(shared);
+    EquilibriumDirections all = equilibrium_directions(_system, _sweep.fixed_point, shared, _cutoff, options);
     std::erase_if(all.found, [](const Direction& direction) { return direction.repetitions > 1; });
     return all;
   }
@@ -137,13 +147,17 @@ class Gatherer {
   // All families of a kernel start at one length in it: what is born further out is a crossing on one of them, what was
   // born further in is among those found.
   void set_amplitudes(const starts::SharedPeriod& shared) {
-    for (Entry& entry : _entries) {
-      if (!entry.family || repetitions_in(entry, shared) == 0 || entry.family->amplitude > 0.0) continue;
-      const loop::Tangent& direction = entry.family->mode.direction;
-      const loop::Loop base = loop::constant_loop(_sweep.fixed_point, entry.period, cutoff_of(direction));
-      entry.family->amplitude =
-          _options.amplitude * loop::change_at_start(base, direction) / loop::Tangent{direction.modes, {}}.norm();
-    }
+    for (Entry& entry : _entries)
+      if (entry.family && repetitions_in(entry, shared) > 0 && entry.family->amplitude == 0.0)
+        set_amplitude(entry, amplitude_in(shared));
+  }
+
+  /// From a length in the kernel.
+  void set_amplitude(Entry& entry, double length) const {
+    const loop::Tangent& direction = entry.family->mode.direction;
+    const loop::Loop base = loop::constant_loop(_sweep.fixed_point, entry.period, cutoff_of(direction));
+    entry.family->amplitude =
+        length * loop::change_at_start(base, direction) / loop::Tangent{direction.modes, {}}.norm();
   }
 
   [[nodiscard]] int cutoff_of(const loop::Tangent& direction) const {
@@ -169,7 +183,6 @@ class Gatherer {
   const systems::System& _system;
   const starts::SweepResult& _sweep;
   int _cutoff;
-  DirectionOptions _options;
   std::vector<Entry> _entries;
   std::vector<int> _not_isolated;  // one a kernel
   SmallOscillations _all;

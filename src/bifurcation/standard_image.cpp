@@ -6,25 +6,9 @@
 #include <vector>
 
 #include "orbweaver/loop/symmetry/isotropy.hpp"
-#include "orbweaver/loop/symmetry/shift_search.hpp"
 #include "orbweaver/loop/symmetry/standard_phase.hpp"
 
 namespace orbweaver::bifurcation {
-
-namespace {
-
-/// An orbit about an equilibrium started where the first reversor that it has, at any phase, has phase 0.
-loop::Loop from_reversor(const systems::Structure& system, const loop::Loop& orbit, double tolerance) {
-  for (const systems::Symmetry& reversor : system.reversors) {
-    const loop::Loop image = loop::transformed(orbit, reversor.map, true, 0.0);
-    const std::vector<loop::ShiftMinimum> minima = loop::shift_minima(image, orbit, system.angles);
-    if (!minima.empty() && minima.front().square < tolerance * tolerance)
-      return loop::time_shifted(orbit, -0.5 * minima.front().shift);
-  }
-  return orbit;
-}
-
-}  // namespace
 
 bool starts_further(const loop::Loop& a, const loop::Loop& b, double tolerance) {
   const std::vector<double> here = loop::state_at(a, 0.0);
@@ -39,7 +23,7 @@ loop::Loop standard_image(const systems::Structure& system, const KernelActions&
   std::optional<loop::Loop> first;
   for (const Action& action : group.actions()) {
     if (action.element.shift_numerator != 0) continue;
-    loop::Loop image = from_reversor(system, loop::transformed(orbit, action.element), tolerance);
+    loop::Loop image = loop::at_first_reversor(system, loop::transformed(orbit, action.element), tolerance);
     image = loop::in_standard_phase(system, image, loop::find_isotropy(system, image, tolerance, group.denominator()));
     if (!first || starts_further(image, *first, tolerance)) first = std::move(image);
   }

@@ -84,6 +84,13 @@ struct SymmetryWatch::Products {
   double second;  // <c(B), c(B)>
 };
 
+struct SymmetryWatch::Resolved {
+  const SampledOrbit& a;
+  const SampledOrbit& b;
+  std::optional<SampledOrbit> finer_a{};
+  std::optional<SampledOrbit> finer_b{};
+};
+
 SymmetryWatch::SymmetryWatch(const systems::Structure& system, const loop::Isotropy& own, int largest_order,
                              int largest_repetition)
     : _system(system), _own(own) {
@@ -159,29 +166,32 @@ SymmetryWatch::Products SymmetryWatch::compare(const SymmetryGain& gain, const S
   return {broken_a.squaredNorm(), mixed, broken_b.squaredNorm()};
 }
 
-SymmetryWatch::Products SymmetryWatch::compare_resolved(SymmetryGain& gain, const SampledOrbit& a,
-                                                        const SampledOrbit& b) const {
-  Products products = compare(gain, a, b);
-  std::optional<SampledOrbit> finer_a, finer_b;
+SymmetryWatch::Products SymmetryWatch::compare_resolved(SymmetryGain& gain, Resolved& orbits) const {
+  Products products = compare(gain, orbits.a, orbits.b);
+  const SampledOrbit* a = &orbits.a;
+  const SampledOrbit* b = &orbits.b;
   // What is left out looks like a broken part; that may be smaller than it seemed, which asks for more again.
   while (true) {
-    const SampledOrbit& of_a = finer_a ? *finer_a : a;
-    const SampledOrbit& of_b = finer_b ? *finer_b : b;
     const double part = std::sqrt(std::min(products.first, products.second));
-    const double wanted = std::max(small_share * part, negligible * std::min(of_a.size, of_b.size));
-    if (std::max(of_a.left_out, of_b.left_out) <= wanted) return products;
-    SampledOrbit next_a = sampled_with(a.source, loop::resolved_in_time(a.source, wanted));
-    SampledOrbit next_b = sampled_with(b.source, loop::resolved_in_time(b.source, wanted));
-    const bool is_finest = next_a.loop.cutoff <= of_a.loop.cutoff && next_b.loop.cutoff <= of_b.loop.cutoff;
-    if (is_finest) return products;
-    finer_a = std::move(next_a);
-    finer_b = std::move(next_b);
+    const double wanted = std::max(small_share * part, negligible * std::min(a->size, b->size));
+    if (std::max(a->left_out, b->left_out) <= wanted) return products;
+    const bool is_finer_known = orbits.finer_a && a == &orbits.a;
+    if (!is_finer_known) {
+      SampledOrbit next_a = sampled_with(orbits.a.source, loop::resolved_in_time(orbits.a.source, wanted));
+      SampledOrbit next_b = sampled_with(orbits.b.source, loop::resolved_in_time(orbits.b.source, wanted));
+      const bool is_finest = next_a.loop.cutoff <= a->loop.cutoff && next_b.loop.cutoff <= b->loop.cutoff;
+      if (is_finest) return products;
+      orbits.finer_a = std::move(next_a);
+      orbits.finer_b = std::move(next_b);
+    }
+    a = &*orbits.finer_a;
+    b = &*orbits.finer_b;
     if (gain.reversing) {
-      const loop::Loop image = loop::transformed(finer_a->loop, gain.map, true, 0.0);
-      const double shift = loop::shift_minimum_near(image, finer_a->loop, _system.angles, -gain.phase).shift;
+      const loop::Loop image = loop::transformed(a->loop, gain.map, true, 0.0);
+      const double shift = loop::shift_minimum_near(image, a->loop, _system.angles, -gain.phase).shift;
       gain.phase = -shift + std::ceil(shift);
     }
-    products = compare(gain, *finer_a, *finer_b);
+    products = compare(gain, *a, *b);
   }
 }
 
@@ -242,6 +252,7 @@ std::size_t SymmetryWatch::generated_with(const SymmetryGain& gain) const {
 std::vector<SymmetryGain> SymmetryWatch::nearly_gained(const SampledOrbit& from, const SampledOrbit& to) const {
   const Eigen::Index moving = to.coefficients.cols() - 1;
   const double small = nearly * to.coefficients.rightCols(moving).norm();
+  Resolved orbits{from, to};
   std::vector<std::pair<std::size_t, SymmetryGain>> found;
   for (const auto& [symmetry, candidates] : _equivariances) {
     if (!keeps_winding(symmetry.map.matrix, 1.0, to.loop)) continue;
@@ -250,7 +261,7 @@ std::vector<SymmetryGain> SymmetryWatch::nearly_gained(const SampledOrbit& from,
     for (const SymmetryGain& candidate : candidates) {
       if (!(correlation.at(shift_of(candidate)) < small * small)) continue;
       SymmetryGain seen = candidate;
-      const Products products = compare_resolved(seen, from, to);
+      const Products products = compare_resolved(seen, orbits);
       if (products.mixed > 0.0 && products.second < std::min(products.first, small * small))
         found.emplace_back(generated_with(candidate), candidate);
     }
@@ -260,8 +271,9 @@ std::vector<SymmetryGain> SymmetryWatch::nearly_gained(const SampledOrbit& from,
 
 std::vector<SymmetryGain> SymmetryWatch::all_passed(const SampledOrbit& from, const SampledOrbit& to) const {
   std::vector<std::pair<std::size_t, SymmetryGain>> found;
+  Resolved orbits{from, to};
   const auto consider = [&](SymmetryGain candidate) {
-    const Products products = compare_resolved(candidate, from, to);
+    const Products products = compare_resolved(candidate, orbits);
     if (std::sqrt(products.first) <= negligible * from.size) return;
     if (products.mixed < 0.0 || std::sqrt(products.second) <= negligible * to.size)
       found.emplace_back(generated_with(candidate), candidate);
@@ -288,13 +300,19 @@ std::vector<SymmetryGain> SymmetryWatch::all_passed(const SampledOrbit& from, co
 
 double SymmetryWatch::signed_part(const SymmetryGain& gain, const loop::Loop& a, const loop::Loop& at) const {
   SymmetryGain seen = gain;
-  const Products products = compare_resolved(seen, sampled(a), sampled(at));
+  const SampledOrbit of_a = sampled(a);
+  const SampledOrbit of_at = sampled(at);
+  Resolved orbits{of_a, of_at};
+  const Products products = compare_resolved(seen, orbits);
   return products.mixed / products.first;
 }
 
 double SymmetryWatch::relative_size(const SymmetryGain& gain, const loop::Loop& a, const loop::Loop& at) const {
   SymmetryGain seen = gain;
-  const Products products = compare_resolved(seen, sampled(a), sampled(at));
+  const SampledOrbit of_a = sampled(a);
+  const SampledOrbit of_at = sampled(at);
+  Resolved orbits{of_a, of_at};
+  const Products products = compare_resolved(seen, orbits);
   return std::sqrt(products.second / products.first);
 }
 

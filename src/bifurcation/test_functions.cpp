@@ -42,12 +42,20 @@ const Rule& checked_rule(const TestFunction& function, const systems::Structure&
 /// fast motions 6 times apart has (m2 = 1e-6), a tenth of the best with 2000 times (m2 = 1e6).
 constexpr double told_to = 1e-4;
 constexpr double near_circle = 3.0;
+/// Of its bound, the error that an index may have: the bound is an estimate, good to a factor.
+constexpr double error_margin = 10.0;
 
 }  // namespace
 
 bool are_decided(const spectrum::Stability& stability) {
   for (std::size_t i = 0; i < stability.fundamental.size(); ++i)
     if (std::abs(stability.fundamental[i]) <= near_circle && stability.fundamental_error[i] > told_to) return false;
+  return true;
+}
+
+bool is_isolated(const spectrum::Stability& stability) {
+  for (std::size_t i = 0; i < stability.fundamental.size(); ++i)
+    if (std::abs(stability.fundamental[i] - 2.0) <= error_margin * stability.fundamental_error[i]) return false;
   return true;
 }
 

@@ -1,17 +1,22 @@
 #include "orbweaver/certificate/certificate.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
+#include <numeric>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "newton.hpp"
 #include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/loop/curve/system_at.hpp"
+#include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/taylor/flow.hpp"
 
@@ -20,79 +25,17 @@ namespace orbweaver::certificate {
 namespace {
 
 using State = std::vector<double>;
+using States = std::vector<State>;
 
-double distance(const State& a, const State& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-  return std::sqrt(sum);
-}
-
-/// z(t_0), ..., z(t_segments); the last is the first after all windings, so that it is exactly as far as the angles
-/// turned.
-std::vector<State> states_at_segment_ends(const loop::Loop& loop, int segments) {
-  std::vector<State> states;
-  for (int m = 0; m < segments; ++m) states.push_back(loop::state_at(loop, loop.period * m / segments));
-  State end = states.front();
-  for (std::size_t i = 0; i < end.size(); ++i) end[i] += 2.0 * std::numbers::pi * loop.winding[i];
-  states.push_back(std::move(end));
-  return states;
-}
-
-/// Where `advance(state, time)` takes the states at the segments' beginnings.
-template <class Advance>
-std::vector<State> ends_of(const systems::System& system, const loop::Loop& loop, const std::vector<State>& states,
-                           const Options& options, const Advance& advance) {
-  std::vector<State> ends;
-  for (int m = 0; m < options.segments; ++m) {
-    try {
-      ends.push_back(advance(states[static_cast<std::size_t>(m)], loop.period / options.segments));
-    } catch (const core::NumericalError& error) {
-      const double period = loop.period * system.scales().time;
-      throw core::NumericalError(fmt::format("segment {} of {} of a loop with period {} (from t = {}): {}", m + 1,
-                                             options.segments, period, period * m / options.segments, error.what()));
-    }
-  }
-  return ends;
-}
-
-std::vector<State> runge_kutta_ends(const systems::System& system, const loop::Loop& loop,
-                                    const std::vector<State>& states, const Options& options) {
-  return ends_of(system, loop, states, options,
-                 [&](const State& state, double time) { return integrate(system, state, time, options.tolerance); });
-}
-
-std::vector<State> taylor_ends(const systems::System& system, const loop::Loop& loop, const std::vector<State>& states,
-                               const Options& options) {
-  const auto* with_formulas = dynamic_cast<const systems::FormulaSystem*>(&system);
-  core::require(with_formulas != nullptr, "Taylor series are of systems that give their formulas");
-  const systems::Formulas formulas = with_formulas->formulas();
-  taylor::Flow<double> flow(formulas, formulas.values, {});
-  return ends_of(system, loop, states, options, [&](State state, double time) {
-    flow.advance(state, time);
-    return state;
-  });
-}
-
-/// The largest distance between the segments' ends and `states`, from the state number `first` on.
-double largest_gap(const std::vector<State>& ends, const std::vector<State>& states, std::size_t first) {
-  double largest = 0.0;
-  for (std::size_t m = 0; m < ends.size(); ++m) largest = std::max(largest, distance(ends[m], states[m + first]));
-  return largest;
-}
-
-void require_certifiable(const systems::System& system, const loop::Loop& loop, const Options& options) {
-  loop::validate(loop);
-  core::require(loop.dimension == system.dimension(), "the loop and the system must have the same dimension");
-  core::require(options.segments >= 1, "a certificate needs at least one segment");
-}
-
-double energy_drift_of(const systems::System& system, const std::vector<State>& states) {
-  if (!system.structure().conservative()) return std::numeric_limits<double>::quiet_NaN();
-  const double start = system.conserved(0, states.front());
-  double largest = 0.0;
-  for (const State& state : states) largest = std::max(largest, std::abs(system.conserved(0, state) - start));
-  return largest;
-}
+/// Of the Taylor series: a digit more than the Runge-Kutta integrator keeps. More digits are more time, and rounding.
+constexpr double taylor_digits = 14.0;
+/// Of the transition matrices: a Newton step is good to their digits, and so are multipliers.
+constexpr double transition_tolerance = 1e-10;
+/// An orbit gone around m times is one gone around as often as any prime factor of m says. A survey asks for orders up
+/// to 16.
+constexpr std::array primes{2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31};
+/// Of how far the orbit reaches from z(0): returns that come no nearer at one time need not be looked at all around.
+constexpr double near_return = 0.01;
 
 double norm(const State& state) {
   double sum = 0.0;
@@ -100,60 +43,317 @@ double norm(const State& state) {
   return std::sqrt(sum);
 }
 
-double reach_of(const std::vector<State>& states) {
-  double largest = 0.0;
-  for (const State& state : states) largest = std::max(largest, norm(state));
-  return largest;
+double distance(const State& a, const State& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum);
 }
 
-double steepness_of(const systems::System& system, const std::vector<State>& states) {
-  if (!system.structure().conservative()) return 0.0;
-  double largest = 0.0;
-  State gradient(states.front().size());
-  for (const State& state : states) {
-    system.conserved_gradient(0, state, gradient);
-    largest = std::max(largest, norm(gradient));
-  }
-  return largest;
+Eigen::VectorXd vector_of(const State& state) {
+  return Eigen::Map<const Eigen::VectorXd>(state.data(), static_cast<Eigen::Index>(state.size()));
 }
 
-// NaN where the orbit is so unstable that the integration leaves the region where the system is defined.
-double single_shot_of(const systems::System& system, const std::vector<State>& states, double period,
-                      double tolerance) {
-  try {
-    return distance(integrate(system, states.front(), period, tolerance), states.back());
-  } catch (const core::NumericalError&) {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
+double largest(const std::vector<Eigen::VectorXd>& vectors) {
+  double largest = 0.0;
+  for (const Eigen::VectorXd& vector : vectors) largest = std::max(largest, vector.norm());
+  return largest;
 }
 
 }  // namespace
 
-Certificate certify(const systems::System& family, const loop::Loop& loop, const Options& options) {
-  const core::LogStage stage(core::Stage::certificate);
-  require_certifiable(family, loop, options);
-  const std::shared_ptr<const systems::System> here = loop::system_at(family, loop);
-  const systems::System& system = *here;
-  const std::vector<State> states = states_at_segment_ends(loop, options.segments);
-  Certificate certificate;
-  certificate.closure = largest_gap(runge_kutta_ends(system, loop, states, options), states, 1);
-  certificate.single_shot = single_shot_of(system, states, loop.period, options.tolerance);
-  certificate.energy_drift = energy_drift_of(system, states);
-  certificate.reach = reach_of(states);
-  certificate.steepness = steepness_of(system, states);
-  return certificate;
-}
+class Certifier::Parts {
+ public:
+  Parts(const systems::System& system, const loop::Isotropy& isotropy, const Options& options)
+      : _system(system), _isotropy(isotropy), _group(system.structure(), isotropy), _options(options) {
+    core::require(options.segments >= 1, "a certificate needs at least one segment");
+    int shifts = 1;
+    for (const loop::SymmetryElement& element : _group.elements()) shifts = std::lcm(shifts, element.shift_denominator);
+    _segments = (options.segments + shifts - 1) / shifts * shifts;
+    if (const auto* formulas = dynamic_cast<const systems::FormulaSystem*>(&system)) {
+      taylor::FlowOptions flow;
+      flow.digits = taylor_digits;
+      _taylor.emplace(formulas->formulas(), flow);
+    }
+  }
 
-Closures closures(const systems::System& family, const loop::Loop& loop, const Options& options) {
-  const core::LogStage stage(core::Stage::certificate);
-  require_certifiable(family, loop, options);
-  const std::shared_ptr<const systems::System> here = loop::system_at(family, loop);
-  const systems::System& system = *here;
-  const std::vector<State> states = states_at_segment_ends(loop, options.segments);
-  const std::vector<State> by_runge_kutta = runge_kutta_ends(system, loop, states, options);
-  const std::vector<State> by_taylor = taylor_ends(system, loop, states, options);
-  return {largest_gap(by_runge_kutta, states, 1), largest_gap(by_taylor, states, 1),
-          largest_gap(by_runge_kutta, by_taylor, 0)};
+  Certificate at_its_parameters(const loop::Loop& loop) {
+    const std::shared_ptr<const systems::System> here = loop::system_at(_system, loop);
+    if (here.get() == &_system) return certify(loop);
+    return Parts(*here, _isotropy, _options).certify(loop);
+  }
+
+  Certificate certify(const loop::Loop& loop) {
+    const core::LogStage stage(core::Stage::certificate);
+    loop::validate(loop);
+    core::require(loop.dimension == _system.dimension(), "the loop and the system must have the same dimension");
+    Certificate found;
+    if (_options.level == Level::none) return found;
+    _loop = &loop;
+    set_states();
+    set_fields();
+    closures(found);
+    found.single_shot = single_shot();
+    conserved(found);
+    for (const State& state : _states) found.reach = std::max(found.reach, norm(state));
+    found.symmetry_defect = symmetry_defect();
+    found.recurrence = recurrence();
+    found.tail = loop::tail(loop);
+    if (_options.level == Level::full) linearized(found);
+    return found;
+  }
+
+ private:
+  [[nodiscard]] double step() const { return _loop->period / _segments; }
+
+  /// z(t_0), ..., z(t_M); the last is the first after all windings, so that it is exactly as far as the angles turned.
+  void set_states() {
+    _states.clear();
+    for (int m = 0; m < _segments; ++m) _states.push_back(loop::state_at(*_loop, _loop->period * m / _segments));
+    State end = _states.front();
+    for (std::size_t i = 0; i < end.size(); ++i) end[i] += 2.0 * std::numbers::pi * _loop->winding[i];
+    _states.push_back(std::move(end));
+  }
+
+  void set_fields() {
+    _fields.clear();
+    State field(_states.front().size());
+    for (const State& state : _states) {
+      _system.field(1, state.data(), field.data());
+      _fields.push_back(vector_of(field));
+    }
+  }
+
+  [[nodiscard]] States starts() const { return {_states.begin(), _states.end() - 1}; }
+
+  [[nodiscard]] States runge_kutta_ends() const {
+    try {
+      return integrate_together(_system, starts(), step(), _options.tolerance);
+    } catch (const core::NumericalError&) {  // one by one, to name it
+    }
+    States ends;
+    for (int m = 0; m < _segments; ++m) try {
+        ends.push_back(integrate(_system, _states[static_cast<std::size_t>(m)], step(), _options.tolerance));
+      } catch (const core::NumericalError& error) {
+        const double period = _loop->period * _system.scales().time;
+        throw core::NumericalError(fmt::format("segment {} of {} of a loop with period {} (from t = {}): {}", m + 1,
+                                               _segments, period, period * m / _segments, error.what()));
+      }
+    return ends;
+  }
+
+  /// None where the series fail, or there are none.
+  [[nodiscard]] std::optional<States> taylor_ends() {
+    if (!_taylor) return std::nullopt;
+    States ends = starts();
+    try {
+      _taylor->advance(ends, step());
+    } catch (const core::NumericalError&) {
+      return std::nullopt;
+    }
+    return ends;
+  }
+
+  /// e_m = z(t_m+1) - Phi(z(t_m)).
+  [[nodiscard]] std::vector<Eigen::VectorXd> gaps_of(const States& ends) const {
+    std::vector<Eigen::VectorXd> gaps;
+    for (std::size_t m = 0; m < ends.size(); ++m) gaps.emplace_back(vector_of(_states[m + 1]) - vector_of(ends[m]));
+    return gaps;
+  }
+
+  void closures(Certificate& found) {
+    const States ends = runge_kutta_ends();
+    _gaps = gaps_of(ends);
+    found.closure = largest(_gaps);
+    double along = 0.0;
+    double squares = 0.0;
+    for (std::size_t m = 0; m < _gaps.size(); ++m) {
+      along += _gaps[m].dot(_fields[m + 1]);
+      squares += _fields[m + 1].squaredNorm();
+    }
+    found.beside_flow = 0.0;
+    for (std::size_t m = 0; m < _gaps.size(); ++m)
+      found.beside_flow =
+          std::max(found.beside_flow, (squares > 0.0 ? _gaps[m] - along / squares * _fields[m + 1] : _gaps[m]).norm());
+    _taylor_gaps = _gaps;
+    const std::optional<States> series = taylor_ends();
+    if (!series) return;
+    _taylor_gaps = gaps_of(*series);
+    found.taylor_closure = largest(_taylor_gaps);
+    found.apart = 0.0;
+    for (std::size_t m = 0; m < ends.size(); ++m) found.apart = std::max(found.apart, distance(ends[m], (*series)[m]));
+  }
+
+  // NaN where the orbit is so unstable that the integration leaves the region where the system is defined.
+  [[nodiscard]] double single_shot() const {
+    try {
+      return distance(integrate(_system, _states.front(), _loop->period, _options.tolerance), _states.back());
+    } catch (const core::NumericalError&) {
+      return unknown;
+    }
+  }
+
+  void conserved(Certificate& found) const {
+    const auto count = static_cast<int>(_system.structure().conserved.size());
+    for (int k = 0; k < count; ++k) {
+      double& drift = k == 0 ? found.energy_drift : found.other_drift;
+      const double start = _system.conserved(k, _states.front());
+      drift = std::isnan(drift) ? 0.0 : drift;
+      for (const State& state : _states) drift = std::max(drift, std::abs(_system.conserved(k, state) - start));
+    }
+    if (count == 0) return;
+    State gradient(_states.front().size());
+    for (const State& state : _states) {
+      _system.conserved_gradient(0, state, gradient);
+      found.steepness = std::max(found.steepness, norm(gradient));
+    }
+  }
+
+  /// |a - b|, angles modulo whole turns.
+  [[nodiscard]] double reduced_distance(const State& a, const State& b) const {
+    State difference = a;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      difference[i] -= b[i];
+      if (_system.structure().is_angle(i)) difference[i] = std::remainder(difference[i], 2.0 * std::numbers::pi);
+    }
+    return norm(difference);
+  }
+
+  /// Where the element takes the instant m: z at the result is g z(t_m).
+  [[nodiscard]] std::size_t image_of(const loop::SymmetryElement& element, int m) const {
+    const int shift = element.shift_numerator * (_segments / element.shift_denominator);
+    const int image = (element.reversing ? shift - m : shift + m) % _segments;
+    return static_cast<std::size_t>(image < 0 ? image + _segments : image);
+  }
+
+  [[nodiscard]] double symmetry_defect() const {
+    double largest = 0.0;
+    for (const loop::SymmetryElement& element : _group.elements())
+      for (int m = 0; m < _segments; ++m) {
+        const Eigen::VectorXd image =
+            element.map.matrix * vector_of(_states[static_cast<std::size_t>(m)]) + element.map.offset;
+        largest = std::max(
+            largest, reduced_distance(_states[image_of(element, m)], State(image.data(), image.data() + image.size())));
+      }
+    return largest;
+  }
+
+  [[nodiscard]] double recurrence() const {
+    double reach = 0.0;
+    for (const State& state : _states) reach = std::max(reach, reduced_distance(state, _states.front()));
+    double least = std::numeric_limits<double>::infinity();
+    for (const int prime : primes) {
+      const double later = _loop->period / prime;
+      double gap = reduced_distance(loop::state_at(*_loop, later), _states.front());
+      if (gap < near_return * reach)
+        for (int m = 1; m < _segments; ++m)
+          gap = std::max(gap, reduced_distance(loop::state_at(*_loop, _loop->period * m / _segments + later),
+                                               _states[static_cast<std::size_t>(m)]));
+      least = std::min(least, gap);
+    }
+    return least;
+  }
+
+  /// The part of a correction that has the isotropy: gaps have it but for rounding, which may be let grow by much where
+  /// another family is near.
+  void project(std::vector<Eigen::VectorXd>& states) const {
+    std::vector<Eigen::VectorXd> sums(states.size(), Eigen::VectorXd::Zero(_system.dimension()));
+    for (const loop::SymmetryElement& element : _group.elements())
+      for (int m = 0; m < _segments; ++m)
+        sums[image_of(element, m)] += element.map.matrix * states[static_cast<std::size_t>(m)];
+    for (std::size_t m = 0; m < states.size(); ++m) states[m] = sums[m] / static_cast<double>(_group.elements().size());
+  }
+
+  void linearized(Certificate& found) const {
+    std::vector<Eigen::MatrixXd> matrices;
+    const Eigen::Index d = _system.dimension();
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    for (const State& entries : transitions(_system, starts(), step(), transition_tolerance))
+      matrices.emplace_back(Eigen::Map<const RowMajor>(entries.data(), d, d));
+    newton(matrices, found);
+    multipliers(matrices, found);
+  }
+
+  void newton(const std::vector<Eigen::MatrixXd>& matrices, Certificate& found) const {
+    const int rank = _system.dimension() - static_cast<int>(_system.structure().conserved.size());
+    const NewtonSystem system(matrices, _fields, rank);
+    NewtonSystem::Step first = system.solve(_gaps);
+    NewtonSystem::Step other = system.solve(_taylor_gaps);
+    project(first.states);
+    project(other.states);
+    double integrators = 0.0;
+    for (std::size_t m = 0; m < first.states.size(); ++m)
+      integrators = std::max(integrators, (first.states[m] - other.states[m]).norm());
+    States moved = starts();
+    for (std::size_t m = 0; m < moved.size(); ++m)
+      for (std::size_t i = 0; i < moved[m].size(); ++i) moved[m][i] += first.states[m](static_cast<Eigen::Index>(i));
+    const double moves = largest(first.states);
+    found.distance = std::numeric_limits<double>::infinity();
+    found.contraction = found.distance;
+    try {
+      const States ends = integrate_together(_system, moved, step() + first.period / _segments, _options.tolerance);
+      moved.push_back(moved.front());
+      for (std::size_t i = 0; i < moved.back().size(); ++i)
+        moved.back()[i] += 2.0 * std::numbers::pi * _loop->winding[i];
+      std::vector<Eigen::VectorXd> gaps;
+      for (std::size_t m = 0; m < ends.size(); ++m) gaps.emplace_back(vector_of(moved[m + 1]) - vector_of(ends[m]));
+      NewtonSystem::Step second = system.solve(gaps);
+      project(second.states);
+      found.contraction = moves > 0.0 ? largest(second.states) / moves : 0.0;
+      found.distance = moves + largest(second.states) + integrators;
+    } catch (const core::NumericalError&) {  // the step has left the region where the system is defined
+    }
+  }
+
+  /// From the flow on the energy's tangent space across the orbit, for a single pair.
+  void multipliers(const std::vector<Eigen::MatrixXd>& matrices, Certificate& found) const {
+    const systems::Structure& structure = _system.structure();
+    if (!structure.symplectic) return;
+    double log_volume = 0.0;
+    for (const Eigen::MatrixXd& matrix : matrices)
+      log_volume += std::log(std::abs(Eigen::PartialPivLU<Eigen::MatrixXd>(matrix).determinant()));
+    found.pairing = std::abs(std::expm1(log_volume));
+    if (structure.pairs() != 1 || structure.conserved.size() != 1) return;
+    const Eigen::Index d = _system.dimension();
+    std::vector<Eigen::MatrixXd> bases;
+    State gradient(static_cast<std::size_t>(d));
+    for (int m = 0; m < _segments; ++m) {
+      _system.conserved_gradient(0, _states[static_cast<std::size_t>(m)], gradient);
+      Eigen::MatrixXd normals(d, 2);
+      normals << _fields[static_cast<std::size_t>(m)], vector_of(gradient);
+      const Eigen::MatrixXd all =
+          Eigen::HouseholderQR<Eigen::MatrixXd>(normals).householderQ() * Eigen::MatrixXd::Identity(d, d);
+      bases.emplace_back(all.rightCols(d - 2));
+    }
+    Eigen::MatrixXd product = Eigen::MatrixXd::Identity(d - 2, d - 2);
+    for (std::size_t m = 0; m < matrices.size(); ++m)
+      product = (bases[(m + 1) % matrices.size()].transpose() * matrices[m] * bases[m] * product).eval();
+    found.index = product.trace();
+  }
+
+  const systems::System& _system;
+  loop::Isotropy _isotropy;
+  loop::SymmetryGroup _group;
+  Options _options;
+  int _segments = 1;
+  std::optional<taylor::ManyFlows> _taylor;
+  const loop::Loop* _loop = nullptr;
+  States _states;                        // M + 1
+  std::vector<Eigen::VectorXd> _fields;  // at these
+  std::vector<Eigen::VectorXd> _gaps;    // M
+  std::vector<Eigen::VectorXd> _taylor_gaps;
+};
+
+Certifier::Certifier(const systems::System& system, const loop::Isotropy& isotropy, const Options& options)
+    : _parts(std::make_unique<Parts>(system, isotropy, options)) {}
+
+Certifier::~Certifier() = default;
+Certifier::Certifier(Certifier&&) noexcept = default;
+
+Certificate Certifier::operator()(const loop::Loop& loop) { return _parts->at_its_parameters(loop); }
+
+Certificate certify(const systems::System& system, const loop::Loop& loop, const loop::Isotropy& isotropy,
+                    const Options& options) {
+  return Certifier(system, isotropy, options)(loop);
 }
 
 }  // namespace orbweaver::certificate

@@ -11,12 +11,12 @@
 #include "collocation_metric.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/grid/time_map_fit.hpp"
-#include "orbweaver/loss/linearization.hpp"
 #include "regrid.hpp"
 
 namespace orbweaver::continuation {
 
 using equations::Collocation;
+using equations::Preconditioner;
 
 namespace {
 
@@ -48,6 +48,12 @@ constexpr double guarded_density = 1e-6;
 constexpr double shows_truncation = 10.0;
 /// Keeps quotients by the amplitude finite.
 constexpr double least_amplitude = 1e-300;
+/// Where the field is finite, and what the correction made of it is not.
+constexpr const char* beyond_numbers = "the correction met numbers that are not finite";
+/// Unknowns up to which the Jacobian itself is factored, where the box scheme fails.
+constexpr int exact_unknowns = 2048;
+
+bool is_affordable(const Collocation& equations) { return equations.size() <= exact_unknowns; }
 
 }  // namespace
 
@@ -81,9 +87,15 @@ std::optional<Resolution> CollocationProblem::next_resolution(int largest) const
   return Resolution{cells, resolution().time_map};
 }
 
+/// The Jacobian itself only as far as it can be afforded.
+Preconditioner CollocationProblem::preconditioner_of(const Collocation& equations) {
+  const Preconditioner wanted = state().preconditioner;
+  return wanted == Preconditioner::exact && !is_affordable(equations) ? Preconditioner::fitted_box : wanted;
+}
+
 std::shared_ptr<Collocation> CollocationProblem::equations_on(const Resolution& resolution) {
   auto e = std::make_shared<Collocation>(_system, _domain, _centre, _winding, resolution.size, resolution.time_map);
-  e->fit_cells(state().fits_cells);
+  e->precondition_by(preconditioner_of(*e));
   return e;
 }
 
@@ -220,7 +232,7 @@ equations::AndersonSolver::Options CollocationProblem::solver_options() {
 
 Trial CollocationProblem::solve(Prediction prediction, const std::vector<double>& conditions) {
   Collocation& e = equations();
-  e.fit_cells(state().fits_cells);
+  e.precondition_by(preconditioner_of(e));
   e.set_conditions(conditions, prediction.values);
   Trial trial;
   trial.order = prediction.order;
@@ -242,30 +254,63 @@ Trial CollocationProblem::solve(Prediction prediction, const std::vector<double>
       state().factor_conditions = conditions;
     }
     if (!result.converged) {
+      if (result.finite) note_what_is_open(trial, last_change);
       state().factor_point.clear();
       trial.reason = result.finite ? fmt::format("no convergence in {} iterations, the last change {:.2g}",
                                                  result.iterations, result.last_change)
-                                   : not_finite_at(trial.values, predicted);
+                                   : not_finite_at(trial.values, predicted, beyond_numbers);
     }
   } catch (const core::NumericalError& error) {
     state().factor_point.clear();
     trial.converged = false;
-    trial.reason = error.what();
+    trial.reason = not_finite_at(trial.values, predicted, error.what());
   }
   if (trial.converged) judge(trial);
-  if (trial.converged && (!trial.is_orbit || trial.at_rounding) && resolved(trial))
-    sharpen(trial, last_change, conditions);
+  if (trial.converged && may_be_sharper(trial)) sharpen(trial, last_change, conditions);
+  if (state().preconditioner == Preconditioner::exact && !is_affordable(e) && (!trial.converged || trial.unsolved)) {
+    trial.converged = false;
+    trial.under_resolved = true;  // once the cells resolve the fast motion they precondition it
+  }
   return trial;
+}
+
+/// Where the linearised equations are singular to rounding a solve goes astray among points at all of which they hold.
+void CollocationProblem::note_what_is_open(Trial& trial, double last_change) {
+  if (!(trial.values[scalars_at()] > 0.0)) return;
+  const Collocation::Quality quality = equations().quality(trial.values.data());
+  if (quality.asked < rounding_floor(trial, quality)) trial.known_to = last_change;
+}
+
+/// Harmonics that the solver has left wrong say nothing of the resolution: the equations must hold first.
+bool CollocationProblem::may_be_sharper(Trial& trial) {
+  return trial.unsolved || ((!trial.is_orbit || trial.at_rounding) && resolved(trial));
 }
 
 /// Solves on where the loss is above its threshold and harmonics would not help: the solver's own tolerance foresees a
 /// field whose Jacobian is of order 1, and its look for stagnation a preconditioner that resolves the fastest motion.
+/// Where not even patience helps, the linear systems are solved as they are.
 void CollocationProblem::sharpen(Trial& trial, double last_change, const std::vector<double>& conditions) {
+  Collocation& e = equations();
   equations::AndersonSolver::Options options = solver_options();
-  options.tolerance = sharpened * trial.threshold / trial.loss_rms * std::max(last_change, options.tolerance);
+  const double excess = trial.unsolved ? trial.asked_rms : trial.loss_rms;
+  options.tolerance = sharpened * trial.threshold / excess * std::max(last_change, options.tolerance);
   options.rounding = std::max(good_enough * options.tolerance, rounding_of_nodes());
   options.stagnation = 0.0;
   options.fresh_iterations = patience;
+  (void)sharpen_with(options, conditions, trial);
+  const bool failed = trial.unsolved || (!trial.is_orbit && resolved(trial));
+  if (!failed || !is_affordable(e) || state().preconditioner == Preconditioner::exact) return;
+  e.precondition_by(Preconditioner::exact);
+  const bool better = sharpen_with(solver_options(), conditions, trial);
+  if (better && trial.is_orbit)
+    state().preconditioner = Preconditioner::exact;
+  else
+    state().factor_point.clear();
+}
+
+/// False where the trial is no better than it was.
+bool CollocationProblem::sharpen_with(const equations::AndersonSolver::Options& options,
+                                      const std::vector<double>& conditions, Trial& trial) {
   Trial other = trial;
   try {
     auto result = _solver.solve(equations(), other.values, false, options);
@@ -274,11 +319,14 @@ void CollocationProblem::sharpen(Trial& trial, double last_change, const std::ve
     other.iterations += result.iterations;
   } catch (const core::NumericalError&) {
     state().factor_point.clear();
-    return;
+    return false;
   }
-  other.is_orbit = other.at_rounding = other.truncated = false;
+  other.is_orbit = other.at_rounding = other.truncated = other.unsolved = other.to_rounding = false;
   judge(other);
-  if (other.converged && other.loss_rms < trial.loss_rms) trial = std::move(other);
+  const bool better = trial.unsolved ? other.asked_rms < trial.asked_rms : other.loss_rms < trial.loss_rms;
+  if (!other.converged || !better) return false;
+  trial = std::move(other);
+  return true;
 }
 
 /// Accepts by the loss over the whole loop.
@@ -286,21 +334,25 @@ void CollocationProblem::judge(Trial& trial) {
   Collocation& e = equations();
   const Collocation::Quality quality = e.quality(trial.values.data());
   trial.loss_rms = quality.loss_rms;
+  trial.asked_rms = quality.asked;
   trial.amplitude = quality.amplitude;
   trial.size = quality.size;
   double centre = 0.0;
   for (const double c : e.centre()) centre += c * c;
   trial.threshold = corrector::acceptance_threshold(_options.corrector.tolerance, quality.speed_rms, std::sqrt(centre),
                                                     e.field_jacobian_rms());
+  const double floor = rounding_floor(trial, quality);
+  trial.unsolved = quality.asked > std::max(trial.threshold, floor);
+  trial.to_rounding = quality.unasked < floor;
   if (!(trial.values[static_cast<std::size_t>(e.period_at())] > 0.0)) {
     trial.converged = false;
     trial.reason = "the period is not positive";
   } else if (!std::isfinite(trial.loss_rms)) {
     trial.converged = false;
-    trial.reason = not_finite_at(trial.values, trial.values);
+    trial.reason = not_finite_at(trial.values, trial.values, beyond_numbers);
   } else if (trial.loss_rms < trial.threshold) {
     trial.is_orbit = true;
-  } else if (trial.loss_rms < rounding_floor(trial, quality)) {
+  } else if (trial.loss_rms < floor) {
     trial.is_orbit = trial.at_rounding = true;  // unless truncation explains the loss: `resolved`
   } else {
     trial.truncated = quality.unasked > shows_truncation * quality.asked;
@@ -317,21 +369,24 @@ double CollocationProblem::rounding_floor(const Trial& trial, const Collocation:
                   nodal_rounding * quality.size * e.field_jacobian_rms());
 }
 
-/// The sentence that the loss has for a field that is not finite.
-std::string CollocationProblem::not_finite_at(const std::vector<double>& values, const std::vector<double>& predicted) {
+/// The sentence that the loss has for a field that is not finite, there or at what was predicted; `otherwise` where it
+/// is.
+std::string CollocationProblem::not_finite_at(const std::vector<double>& values, const std::vector<double>& predicted,
+                                              const std::string& otherwise) {
+  const Collocation& e = equations();
   for (const std::vector<double>* point : {&predicted, &values}) {
-    loop::Loop there = equations().to_loop(point->data());
+    std::vector<double> there = *point;
     // The field does not depend on T, which a correction that fails may have taken below 0.
-    if (!(there.period > 0.0)) there.period = predicted[scalars_at()];
-    const auto finite = [](double v) { return std::isfinite(v); };
-    if (!finite(there.period) || !std::all_of(there.modes.begin(), there.modes.end(), finite)) continue;
+    double& period = there[scalars_at()];
+    if (!(period > 0.0) || !std::isfinite(period)) period = predicted[scalars_at()];
+    if (!std::all_of(there.begin(), there.end(), [](double v) { return std::isfinite(v); })) continue;
     try {
-      const loss::Linearization probe(_system, there, loss::Linearization::Order::jacobian);
+      e.check_field(there.data());
     } catch (const core::NotFiniteError& error) {
       return error.what();
     }
   }
-  return "the correction met numbers that are not finite";
+  return otherwise;
 }
 
 /// At a small amplitude the period is known to eps / amplitude only: it must not decide how far a step went.
@@ -343,6 +398,8 @@ double CollocationProblem::period_unit(double period) { return period / std::min
 bool CollocationProblem::resolved(Trial& trial) {
   trial.loop = equations().to_loop(trial.values.data());
   const double last = loop::tail(trial.loop);
+  // Beside a fast motion rounding is magnified in the harmonics near it, and the residual does not see them.
+  if (trial.to_rounding) return true;
   if (last > tail_limit(trial.amplitude, trial.size, _options) || trial.truncated) return false;
   // A tail of the size of the modes' own rounding says nothing of the resolution.
   if (last <= mode_rounding * trial.size) return true;

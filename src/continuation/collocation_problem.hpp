@@ -25,6 +25,7 @@ class CollocationProblem final : public PointProblem {
   [[nodiscard]] std::optional<Resolution> coarser(const Trial& accepted, const loop::Loop& loop, bool may_fit) override;
   Transfer resolve(const Resolution& to) override;
   void state_replaced() override { _equations.reset(); }
+  [[nodiscard]] bool can_fit_cells() const override { return true; }
 
   [[nodiscard]] std::vector<double> from_loop(const loop::Loop& loop) override;
   [[nodiscard]] std::vector<double> from_change(const loop::Loop& change) override;
@@ -53,10 +54,16 @@ class CollocationProblem final : public PointProblem {
   [[nodiscard]] equations::AndersonSolver::Options solver_options();
   [[nodiscard]] double bounded_amplitude();
   [[nodiscard]] double rounding_of_nodes();
+  void note_what_is_open(Trial& trial, double last_change);
+  [[nodiscard]] bool may_be_sharper(Trial& trial);
+  [[nodiscard]] bool sharpen_with(const equations::AndersonSolver::Options& options,
+                                  const std::vector<double>& conditions, Trial& trial);
+  [[nodiscard]] equations::Preconditioner preconditioner_of(const equations::Collocation& equations);
   void sharpen(Trial& trial, double last_change, const std::vector<double>& conditions);
   void judge(Trial& trial);
   [[nodiscard]] double rounding_floor(const Trial& trial, const equations::Collocation::Quality& quality);
-  [[nodiscard]] std::string not_finite_at(const std::vector<double>& values, const std::vector<double>& predicted);
+  [[nodiscard]] std::string not_finite_at(const std::vector<double>& values, const std::vector<double>& predicted,
+                                          const std::string& otherwise);
   [[nodiscard]] double period_unit(double period);
   [[nodiscard]] std::optional<Resolution> remapped(const Trial& of, const std::vector<double>& settled);
 

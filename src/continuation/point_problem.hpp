@@ -17,6 +17,8 @@ struct Trial {
   bool converged = false;       ///< the problem's equations are solved
   bool under_resolved = false;  ///< they are not, and more harmonics may help
   bool is_orbit = false;        ///< converged, and the loss over the whole loop is under its threshold
+  bool unsolved = false;        ///< the loss where the equations ask is above its threshold and rounding
+  bool to_rounding = false;     ///< the loss between the places where the equations ask is no more than rounding leaves
   bool truncated = false;       ///< its equations hold where they ask, and the loop does not obey them in between
   bool at_rounding = false;     ///< an orbit, though rounding keeps its loss above the threshold
   std::string reason;           ///< where it is no orbit
@@ -24,7 +26,11 @@ struct Trial {
   int order = 0;  ///< of the prediction
   int iterations = 0;
   double prediction_error = 0.0;  ///< of a coordinate, radians
+  /// The last change of its solve, where the equations hold to rounding although the changes shrink no more: rounding
+  /// leaves its place open by so much.
+  double known_to = 0.0;
   double loss_rms = 0.0;
+  double asked_rms = 0.0;  ///< the same where the equations ask
   double threshold = 0.0;
   double amplitude = 0.0;  ///< rms distance from its mean, winding left out
   double size = 0.0;       ///< rms size, winding left out
@@ -61,6 +67,8 @@ class PointProblem {
   virtual Transfer resolve(const Resolution& to) = 0;
   /// After a change of the state from outside.
   virtual void state_replaced() {}
+  /// Whether cells are preconditioned in another way where the state's `preconditioner` is the fitted box.
+  [[nodiscard]] virtual bool can_fit_cells() const { return false; }
 
   [[nodiscard]] virtual std::vector<double> from_loop(const loop::Loop& loop) = 0;
   /// The change of a loop (without winding) as a change of a point; scalars stay.

@@ -11,7 +11,9 @@ namespace orbweaver::continuation {
 
 namespace {
 
-/// Harmonics of density to try; many serve loops that go several times around.
+/// Harmonics of density to try; many serve loops that go several times around. Where the fewer need no less than the
+/// present map, the more are not tried: on the earth-moon families and the pendulum's, of 375 times, they then needed
+/// less in 6, by 3 to 9 %, which does not pay.
 constexpr int density_harmonics[] = {16, 32};
 /// Rates far from all guards to try, in parts of 2 pi/T. Larger ones spend harmonics where the orbit is slow.
 constexpr double base_rates[] = {0.03, 0.3, 1.0};

@@ -76,7 +76,8 @@ std::optional<Orbit> Tracer::first_orbit() {
   _problem->resolve(_problem->resolution_for(std::max(_start.base.cutoff, _options.cutoff_from), _start.base.time_map,
                                              _options.cutoff_to));
   while (true) {
-    _frontier.problem.amplitude = amplitude;
+    // Beside an orbit everything is measured by the orbit, however near the first one of the family lies.
+    _frontier.problem.amplitude = std::max(amplitude, loop::rms_amplitude(_start.base));
     const std::vector<double> base = _problem->from_loop(_start.base);
     Prediction prediction{base, _problem->from_change(loop::perturbation(_start.base, direction)), 1};
     for (std::size_t n = 0; n < direction.scalars.size(); ++n)
@@ -100,8 +101,12 @@ std::optional<Orbit> Tracer::first_orbit() {
       return accept(trial);
     }
     _frontier.problem.factor_point.clear();
-    _frontier.problem.fits_cells = !_frontier.problem.fits_cells;  // both ways at each amplitude
-    if (_frontier.problem.fits_cells) continue;
+    if (_problem->can_fit_cells()) {
+      using equations::Preconditioner;  // both kinds of cells at each amplitude
+      Preconditioner& cells = _frontier.problem.preconditioner;
+      cells = cells == Preconditioner::box ? Preconditioner::fitted_box : Preconditioner::box;
+      if (cells == Preconditioner::fitted_box) continue;
+    }
     amplitude *= 0.5;
     if (amplitude < least_start * _options.start_amplitude)
       return end(EndReason::failure, fmt::format("no orbit near the start: {}", trial.reason));
@@ -185,7 +190,8 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
   const double least =
       std::min(_options.smallest_step * (1.0 + amplitude) * std::min(1.0, amplitude), least_of_longest * at_most);
   _stepper.begin();
-  double length = std::min(std::max(length_to_try(), least), at_most);
+  const double longest = std::min(std::max(length_to_try(), least), at_most);
+  double length = longest;
   for (int halved = 0;; ++halved) {
     if (halved >= polynomial_attempts) _stepper.use_tangent();
     Trial trial = _stepper.step(length);
@@ -212,11 +218,33 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
     }
     _frontier.problem.factor_point.clear();
     length *= 0.5;
-    if (!(length >= least))
-      return end(EndReason::failure, fmt::format("the corrector fails at T = {:.6g} even with step {:.1e}: {}",
-                                                 here().period * _system->scales().time, length,
-                                                 jumped ? "it leaves the family" : trial.reason));
+    if (!(length >= least) && jumped && trial.converged && resolve_twice()) {
+      length = longest;
+      halved = -1;
+      continue;
+    }
+    if (!(length >= least)) {
+      std::string detail =
+          fmt::format("the corrector fails at T = {:.6g} even with step {:.1e}: {}",
+                      here().period * _system->scales().time, length, jumped ? "it leaves the family" : trial.reason);
+      if (!(trial.known_to > length)) return end(EndReason::failure, std::move(detail));
+      return end(EndReason::undecided,
+                 fmt::format("rounding leaves orbits open by {:.1e}; {}", trial.known_to, std::move(detail)));
+    }
   }
+}
+
+/// Twice as finely from here on. Beside a resonance the cells' own error in the phase, which the preconditioner has,
+/// may be larger than what an index is from 2: the equations are solved along all directions but the one that tells the
+/// family from its neighbours, and the shortest step turns. The tail shows nothing of it.
+bool Tracer::resolve_twice() {
+  const int before = _problem->resolution().size;
+  std::optional<Resolution> finer;
+  while (_problem->resolution().size < 2 * before && (finer = _problem->next_resolution(_options.cutoff_to)))
+    (void)_stepper.resolve(*finer);
+  if (_problem->resolution().size == before) return false;
+  _frontier.problem.least_size = _problem->resolution().size;
+  return true;
 }
 
 double Tracer::length_to_try() {
@@ -310,7 +338,8 @@ Orbit Tracer::accept(const Trial& trial) {
   }
   Orbit accepted = _frontier.orbit;
   const bool may_fit = accepted.step % refit_every == 0;
-  if (const std::optional<Resolution> coarser = _problem->coarser(trial, here(), may_fit)) _stepper.resolve(*coarser);
+  const std::optional<Resolution> coarser = _problem->coarser(trial, here(), may_fit);
+  if (coarser && coarser->size >= _frontier.problem.least_size) _stepper.resolve(*coarser);
   return accepted;
 }
 

@@ -46,6 +46,7 @@ class Tracer {
   std::optional<Orbit> next_on_family();
   /// With a step of at most this length.
   std::optional<Orbit> next_orbit(double at_most);
+  [[nodiscard]] bool resolve_twice();
   [[nodiscard]] double length_to_try();
   std::optional<Orbit> accept_within_limits(const Trial& trial, double length, Ending& refused);
   std::optional<Orbit> accept_within_guards(Trial trial, double length, Ending& refused);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "orbweaver/core/interruption.hpp"
 #include "orbweaver/equations/loop_equations.hpp"
 #include "orbweaver/equations/loop_solver.hpp"
 
@@ -32,10 +33,11 @@ NewtonKrylovRun run_newton_krylov(const systems::System& system, const loop::Loo
   run.system = {std::shared_ptr<const systems::System>(), &system};
   core::Team* const team = core::worth_dividing(options.team, system.dimension());
   equations::LoopSolver inner(unknowns.size() + equations::LoopEquations::unfoldings(unknowns, image, slice),
-                              "corrector_inner_", team);
+                              "corrector_inner_");
   double last_loss = std::numeric_limits<double>::infinity();
   int without_progress = 0;
   while (run.stop == Stop::none) {
+    core::interruption_point();
     equations::LoopEquations equations(*run.system, run.loop, unknowns, image, slice, team);
     const double threshold = acceptance_threshold(run.loop, equations.linearization(), options.tolerance);
     without_progress = equations.loss() < least_progress * last_loss ? 0 : without_progress + 1;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "orbweaver/core/interruption.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loss/assembled.hpp"
 #include "orbweaver/loss/dense.hpp"
@@ -25,6 +26,7 @@ bool Objective::defined_at(const Eigen::VectorXd& x) const {
 }
 
 const loss::Linearization& Objective::at(const Eigen::VectorXd& x) {
+  core::interruption_point();
   if (!_linearization || _point.size() != x.size() || _point != x) {
     _linearization.reset();
     _linearization = std::make_unique<loss::Linearization>(*system_at(x), loop_at(x), _order, _unknowns.scalars);

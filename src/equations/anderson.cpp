@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "orbweaver/core/interruption.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::equations {
@@ -89,6 +90,7 @@ AndersonSolver::Result AndersonSolver::solve(PreconditionedEquations& equations,
   int since_factor = 0;
   double recent[watched] = {};  // the last sizes, a ring
   for (;; ++since_factor) {
+    core::interruption_point();
     equations.residual(u.data(), _change.data());
     equations.precondition(_change.data());
     ++result.iterations;

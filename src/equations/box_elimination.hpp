@@ -9,8 +9,12 @@
 #include "box_scheme.hpp"
 #include "condensed_box.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/interruption.hpp"
 
 namespace orbweaver::equations {
+
+/// Some tenths of a millisecond of an elimination.
+inline constexpr int cells_between_questions = 256;
 
 /// The elimination, the same for both storages.
 template <class Scalar, int Packets>
@@ -280,6 +284,7 @@ class BoxElimination final : public BoxScheme, private BoxBlocks<Scalar, Packets
     load_blocks(m, 0, _first.data(), _next.data());
     for (int p = 0; p < _borders; ++p) load(m.columns, m.column_stride, p, &_border[at(p * n())]);
     for (int j = 1; j < _length; ++j) {
+      if (j % cells_between_questions == 0) core::interruption_point();
       const Step s = step(j);
       load_blocks(m, j, _here.data(), _ahead.data());
       _reduction.run(_next.data(), _here.data(), s.invert, s.keep);

@@ -9,10 +9,12 @@
 #include <utility>
 
 #include "box_scheme.hpp"
+#include "dense_factor.hpp"
 #include "fitted_cells.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/equations/anderson.hpp"
+#include "orbweaver/loss/linearization.hpp"
 
 namespace orbweaver::equations {
 
@@ -82,6 +84,7 @@ Collocation::~Collocation() = default;
 
 void Collocation::precondition(double* r) const {
   const core::LogEvent event(core::Event::precondition);
+  if (_exact) return _exact->solve(r);
   core::require(_box != nullptr, "collocation points are preconditioned before their matrices are factored");
   _box->solve(r);
 }
@@ -163,8 +166,37 @@ void Collocation::residual(const double* u, double* r) const {
   }
 }
 
+void Collocation::check_field(const double* u) const {
+  const systems::System& system = system_at(u);
+  const double period = u[period_at()];
+  std::vector<double> f;
+  std::vector<double> jacobian;
+  const auto check = [&](const std::vector<double>& values, const char* what, const std::vector<double>& z,
+                         std::size_t count, double first) {
+    const auto bad = std::find_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); });
+    if (bad == values.end()) return;
+    const std::size_t j = static_cast<std::size_t>(bad - values.begin()) % count;
+    std::vector<double> state;
+    for (std::size_t i = 0; i < at(dimension()); ++i) state.push_back(z[i * count + j]);
+    const double s = (static_cast<double>(j) + first) * _grid.spacing();
+    throw loss::not_finite(system, what, *bad, period * _map.phase(s) / two_pi, period, state);
+  };
+  const auto m = at(cells());
+  midpoint_states(u);
+  f.resize(at(dimension()) * m);
+  jacobian.resize(at(dimension()) * f.size());
+  system.field_jacobian(m, _z.data(), f.data(), jacobian.data());
+  check(f, "vector field", _z, m, 0.5);
+  check(jacobian, "Jacobian", _z, m, 0.5);
+  node_states(u);
+  f.resize(at(dimension()) * (m + 1));
+  system.field(m + 1, _nodal.data(), f.data());
+  check(f, "vector field", _nodal, m + 1, 0.0);
+}
+
 void Collocation::factor(const double* u) {
   const core::LogEvent event(core::Event::factor);
+  _exact.reset();
   const int m = cells();
   const int d = dimension();
   const int stride = _grid.stride();
@@ -195,13 +227,22 @@ void Collocation::factor(const double* u) {
         _columns[at((p * d + i) * stride + j)] = -c * _gradient[at(i * m + j)];
       }
   }
-  const std::vector<double> fitted = _fits_cells ? fitted_cells(_blocks.data(), d, m, 1.0) : std::vector<double>{};
+  if (_preconditioner == Preconditioner::exact) return factor_jacobian();
+  const std::vector<double> fitted =
+      _preconditioner == Preconditioner::fitted_box ? fitted_cells(_blocks.data(), d, m, 1.0) : std::vector<double>{};
+  factor_box(fitted.empty() ? _blocks.data() : fitted.data());
+}
+
+void Collocation::factor_box(const double* blocks) {
+  const int m = cells();
+  const int d = dimension();
+  const int stride = _grid.stride();
   BoxScheme::Matrices matrices;
   matrices.cells = m;
   matrices.count = m;
   matrices.column_stride = stride;
   matrices.stride = stride;
-  matrices.blocks = fitted.empty() ? _blocks.data() : fitted.data();
+  matrices.blocks = blocks;
   matrices.columns = _columns.data();
   matrices.borders = borders();
   matrices.left = _ends.left;
@@ -216,6 +257,15 @@ void Collocation::factor(const double* u) {
   matrices.corner = corner.data();
   if (!_box) _box = BoxScheme::of_dimension(dimension(), BoxScheme::Storage::lanes);
   _box->factor(matrices);
+}
+
+void Collocation::factor_jacobian() {
+  std::vector<int> entries;  // without what fills the strides
+  for (int i = 0; i < dimension(); ++i)
+    for (int j = 0; j <= cells(); ++j) entries.push_back(i * _grid.stride() + j);
+  for (int q = 0; q < borders(); ++q) entries.push_back(period_at() + q);
+  _exact = std::make_unique<DenseFactor>(size(), std::move(entries),
+                                         [this](const double* v, double* r) { apply_jacobian(v, r); });
 }
 
 void Collocation::apply_jacobian(const double* v, double* r) const {
@@ -239,6 +289,16 @@ void Collocation::apply_jacobian(const double* v, double* r) const {
   const Eigen::Map<const Eigen::VectorXd> perturbation(v, size());
   for (int q = 0; q < borders(); ++q)
     r[period_at() + q] = Eigen::Map<const Eigen::VectorXd>(_weights.data() + q * size(), size()).dot(perturbation);
+}
+
+/// z at the nodes into _nodal, without gaps, and its derivative by s into _slope, without winding.
+void Collocation::node_states(const double* u) const {
+  const int count = cells() + 1;
+  const int stride = _grid.stride();
+  _grid.at_nodes(u, _nodal.data(), _slope.data());
+  for (int i = 0; i < dimension(); ++i)
+    for (int j = 0; j < count; ++j)
+      _nodal[at(i * count + j)] = _nodal[at(i * stride + j)] + _centre[at(i)] + _winding[at(i)] * j * _grid.spacing();
 }
 
 Collocation::Quality Collocation::quality(const double* u) const {
@@ -280,11 +340,8 @@ Collocation::Quality Collocation::quality(const double* u) const {
     size += square + (2.0 * mean + _centre[at(i)]) * _centre[at(i)];
   }
   // The loop between the points where it was solved.
-  _grid.at_nodes(u, _nodal.data(), _slope.data());
+  node_states(u);
   const int count = m + 1;
-  for (int i = 0; i < d; ++i)
-    for (int j = 0; j < count; ++j)
-      _nodal[at(i * count + j)] = _nodal[at(i * stride + j)] + _centre[at(i)] + _winding[at(i)] * j * _grid.spacing();
   std::vector<double>& f = _node_field;
   f.resize(at(d * count));
   system.field(at(count), _nodal.data(), f.data());

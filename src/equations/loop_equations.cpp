@@ -8,6 +8,7 @@
 #include "box_scheme.hpp"
 #include "fitted_cells.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/interruption.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/loop/curve/system_at.hpp"
 #include "orbweaver/loss/dense.hpp"
@@ -160,6 +161,7 @@ Eigen::VectorXd LoopEquations::residual() const {
 
 // P w J u: the derivative among the modes, where harmonics do not mix, the rest on the grid of the loss.
 void LoopEquations::apply(const In& x, Out out) const {
+  core::interruption_point();
   const int cutoff = _linearization.cutoff();
   const int dimension = _linearization.dimension();
   const auto d = static_cast<std::size_t>(dimension);

@@ -69,9 +69,9 @@ Linearization::Linearization(const systems::System& family, const loop::Loop& lo
       const core::LogEvent field(core::Event::field);
       system.field_jacobian(n, _z.data(), f.data(), _a.data());
     }
-    check_finite(system, _a, "Jacobian");
+    check_finite(system, loop, _a, "Jacobian");
   }
-  check_finite(system, f, "vector field");
+  check_finite(system, loop, f, "vector field");
   _r.resize(d * n);
   for (std::size_t m = 0; m < d * n; ++m) _r[m] = _rate * _slope[m] - f[m];
   double sum = 0.0;
@@ -81,7 +81,7 @@ Linearization::Linearization(const systems::System& family, const loop::Loop& lo
   if (order == Order::second) {
     _s.resize(d * d * n);
     system.second_derivatives(n, _z.data(), _r.data(), _s.data());
-    check_finite(system, _s, "second derivative");
+    check_finite(system, loop, _s, "second derivative");
   }
   if (order == Order::residual) return;
   for (const Scalar& scalar : scalars) {
@@ -91,7 +91,7 @@ Linearization::Linearization(const systems::System& family, const loop::Loop& lo
       system.parameter_derivatives(scalar.parameter, n, _z.data(), column.data());
     else
       system.conserved_gradients(scalar.quantity, n, _z.data(), column.data());
-    check_finite(system, column, "derivative by a scalar");
+    check_finite(system, loop, column, "derivative by a scalar");
     _columns.emplace_back(scalar, std::move(column));
   }
 }
@@ -110,19 +110,27 @@ void Linearization::for_each_column(const Unknowns& unknowns, const Use& use) co
       use(static_cast<std::size_t>(unknowns.subspace.size()) + n, column(unknowns.scalars[n]));
 }
 
-void Linearization::check_finite(const systems::System& system, std::span<const double> values,
+void Linearization::check_finite(const systems::System& system, const loop::Loop& loop, std::span<const double> values,
                                  const char* what) const {
   const auto bad = std::find_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); });
   if (bad == values.end()) return;
   const auto n = static_cast<std::size_t>(_nodes);
   const std::size_t node = static_cast<std::size_t>(bad - values.begin()) % n;
   std::vector<double> state(static_cast<std::size_t>(_dimension));
-  for (std::size_t i = 0; i < state.size(); ++i) state[i] = _z[i * n + node] * system.scales().coordinate(i);
-  const double period = _period * system.scales().time;
-  throw core::NotFiniteError(fmt::format(
+  for (std::size_t i = 0; i < state.size(); ++i) state[i] = _z[i * n + node];
+  const double turns = loop.time_map.phase(2.0 * std::numbers::pi * static_cast<double>(node) / _nodes);
+  throw not_finite(system, what, *bad, _period * turns / (2.0 * std::numbers::pi), _period, state);
+}
+
+core::NotFiniteError not_finite(const systems::System& system, std::string_view what, double value, double t,
+                                double period, std::span<const double> state) {
+  std::vector<double> in_units(state.begin(), state.end());
+  for (std::size_t i = 0; i < in_units.size(); ++i) in_units[i] *= system.scales().coordinate(i);
+  const double time = system.scales().time;
+  return core::NotFiniteError(fmt::format(
       "the {} of {} is not finite ({}) at t = {:.6g} of a loop with T = {:.6g}, state ({:.6g}); the loop left the "
       "region where the system is defined: start from another guess or take smaller steps",
-      what, system.info().name, *bad, period * static_cast<double>(node) / _nodes, period, fmt::join(state, ", ")));
+      what, system.info().name, value, t * time, period * time, fmt::join(in_units, ", ")));
 }
 
 void Linearization::require_order(Order order) const {

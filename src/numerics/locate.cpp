@@ -8,6 +8,7 @@
 #include <boost/math/tools/toms748_solve.hpp>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/interruption.hpp"
 
 namespace orbweaver::numerics {
 
@@ -25,6 +26,7 @@ struct Counted {
   int evaluations = 0;
 
   double operator()(double position) {
+    core::interruption_point();
     ++evaluations;
     const double value = function(position);
     if (std::isnan(value)) throw NoValue{};

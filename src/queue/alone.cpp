@@ -48,9 +48,16 @@ void Alone::do_next() {
   _unshown_rows = 0;
   _told_to_stop = false;
   _stopped_at.clear();
+  _flushed = false;
+  _flushed_state = task->state;
   _times.begin();
   _watchdog.began(_key);
-  TaskOutcome outcome = execute_guarded(_executor, *task, *this);
+  auto [outcome, given_up] = execute_guarded(_executor, *task, *this, [this] { return asked_to_give_up(); });
+  if (given_up) {
+    _executor.take_back_rows(_flushed);
+    _told_to_stop = true;
+    _stopped_at = _flushed_state;
+  }
   _load.busy_seconds += _times.seconds();
   log_task(*task, outcome, _times.seconds(), _times.silence());
   ++_load.tasks;
@@ -59,6 +66,11 @@ void Alone::do_next() {
   outcome.stopped = _told_to_stop;
   outcome.state = std::move(_stopped_at);
   if (_error.empty()) _ledger.settle(std::move(outcome), overdue);
+}
+
+bool Alone::asked_to_give_up() {
+  _ledger.tick();  // the time may be over
+  return !_told_to_stop && (stop_requested() || _watchdog.overdue());
 }
 
 bool Alone::report(const Progress& progress, const StateSource& state) {
@@ -94,7 +106,8 @@ void Alone::note(const Progress& progress) {
 
 void Alone::flush() {
   const int number = _flushes++;
-  if (_ledger.counts().running > 0) _ledger.set_state(_key, _state != nullptr ? (*_state)() : std::string());
+  const std::string state = _state != nullptr ? (*_state)() : std::string();
+  if (_ledger.counts().running > 0) _ledger.set_state(_key, state);
   _ledger.flushing(number);
   _schedule.begun();
   _watchdog.pause();
@@ -103,6 +116,8 @@ void Alone::flush() {
   _times.flushed(watch.seconds());
   _watchdog.resume();
   if (!error.empty()) throw core::EnvironmentError(flush_failed_text(number, {{0, error}}, 1));
+  _flushed = true;
+  _flushed_state = state;
   _ledger.flushed(number);
   _schedule.flushed();
 }

@@ -22,6 +22,7 @@ class Alone final : public TaskContext {
  private:
   void do_all();
   void do_next();
+  [[nodiscard]] bool asked_to_give_up();
   void note(const Progress& progress);
   void flush();
 
@@ -36,6 +37,8 @@ class Alone final : public TaskContext {
   Watchdog _watchdog;
   bool _told_to_stop = false;           // the running task
   std::string _stopped_at;              // its state then
+  bool _flushed = false;                // since the running task began
+  std::string _flushed_state;           // of the running task at the last flush, or when it began
   const StateSource* _state = nullptr;  // inside report()
   std::string _error;                   // met inside report(), which must not throw
   int _flushes = 0;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "orbweaver/core/interruption.hpp"
 #include "orbweaver/core/log/log.hpp"
 
 namespace orbweaver::queue {
@@ -17,17 +18,23 @@ std::string current_exception_text() {
   }
 }
 
-TaskOutcome execute_guarded(Executor& executor, const Task& task, TaskContext& context) {
-  TaskOutcome outcome;
+Execution execute_guarded(Executor& executor, const Task& task, TaskContext& context,
+                          const std::function<bool()>& asked) {
+  Execution execution;
+  TaskOutcome& outcome = execution.outcome;
   try {
+    const core::InterruptionScope scope(asked);
     outcome = executor.execute(task, context);
+  } catch (const core::Interrupted&) {
+    outcome = {};
+    execution.given_up = true;
   } catch (...) {
     outcome.failed = true;
     outcome.reason = current_exception_text();
   }
   outcome.key = task.key;
   if (outcome.failed && outcome.reason.empty()) outcome.reason = "the executor gave no reason";
-  return outcome;
+  return execution;
 }
 
 std::string unresponsive_text(const std::string& key, int rank, double task_seconds) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <exception>
+#include <functional>
 #include <string>
 
 #include "orbweaver/queue/executor.hpp"
@@ -11,8 +12,14 @@ namespace orbweaver::queue {
 /// The text of the exception being handled; call inside a catch block. Never empty.
 [[nodiscard]] std::string current_exception_text();
 
-/// The executor's outcome with its key filled in; a thrown exception becomes a failed outcome.
-[[nodiscard]] TaskOutcome execute_guarded(Executor& executor, const Task& task, TaskContext& context);
+struct Execution {
+  TaskOutcome outcome;    ///< with its key filled in
+  bool given_up = false;  ///< within a step; the outcome is empty
+};
+
+/// What the executor comes to; an exception becomes a failed outcome. `asked`: whether to give it up within a step.
+[[nodiscard]] Execution execute_guarded(Executor& executor, const Task& task, TaskContext& context,
+                                        const std::function<bool()>& asked);
 
 /// What a program says before it ends because a task neither ends nor reports.
 [[nodiscard]] std::string unresponsive_text(const std::string& key, int rank, double task_seconds);

@@ -72,8 +72,15 @@ void Worker::do_task() {
   _executing = true;
   _told_to_stop = _overdue = false;
   _stopped_at.clear();
+  _flushed = false;
+  _flushed_state = _task->state;
   _times.begin();
-  TaskOutcome outcome = execute_guarded(_executor, *_task, *this);
+  auto [outcome, given_up] = execute_guarded(_executor, *_task, *this, [this] { return asked_to_give_up(); });
+  if (given_up) {
+    _executor.take_back_rows(_flushed);
+    _told_to_stop = true;
+    _stopped_at = _flushed_state;
+  }
   _load.busy_seconds += _times.seconds();
   log_task(*_task, outcome, _times.seconds(), _times.silence());
   ++_load.tasks;
@@ -82,6 +89,26 @@ void Worker::do_task() {
   _executing = false;
   _task.reset();
   if (!_shutdown && _trouble.empty()) _channel.send(0, Outcome{std::move(outcome), std::exchange(_uncounted_rows, 0)});
+  if (_waiting_flush && !_shutdown && _trouble.empty()) stand_still(*std::exchange(_waiting_flush, std::nullopt));
+}
+
+/// Within a step: a flush waits for its end.
+bool Worker::asked_to_give_up() {
+  try {
+    pass_on_stop();
+    while (!_shutdown && _trouble.empty()) {
+      const auto received = _channel.poll();
+      if (!received) break;
+      const Message message = received->open();
+      if (const auto* request = std::get_if<FlushRequest>(&message))
+        _waiting_flush = request->number;
+      else
+        take(message);
+    }
+  } catch (...) {
+    _trouble = current_exception_text();
+  }
+  return !_told_to_stop && (_stopping || _overdue || _shutdown || !_trouble.empty());
 }
 
 bool Worker::report(const Progress& progress, const StateSource& state_source) {
@@ -90,6 +117,7 @@ bool Worker::report(const Progress& progress, const StateSource& state_source) {
   try {
     pass_on_stop();
     if (!_shutdown && _trouble.empty()) tell(progress);
+    if (_waiting_flush && !_shutdown) stand_still(*std::exchange(_waiting_flush, std::nullopt));
     while (!_shutdown && _trouble.empty()) {
       const auto received = _channel.poll();
       if (!received) break;
@@ -196,7 +224,8 @@ void Worker::take(const Message& message) {
 
 void Worker::stand_still(int number) {
   const Stopwatch watch;
-  _channel.send(0, FlushReady{number, std::exchange(_uncounted_rows, 0), state()});
+  const std::string here = state();
+  _channel.send(0, FlushReady{number, std::exchange(_uncounted_rows, 0), here});
   bool go = false;
   while (!go && !_shutdown) {
     const Message message = wait();
@@ -211,7 +240,11 @@ void Worker::stand_still(int number) {
                       "broken",
                       tag_name(static_cast<int>(tag_of(message))), number));
   }
-  if (go) flush(number);
+  if (go) {
+    flush(number);
+    _flushed = true;
+    _flushed_state = here;
+  }
   _times.flushed(watch.seconds());
 }
 

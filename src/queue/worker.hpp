@@ -22,6 +22,7 @@ class Worker final : public TaskContext {
  private:
   void work();
   void do_task();
+  [[nodiscard]] bool asked_to_give_up();
   void tell(const Progress& progress);
   void pass_on_stop();
   void tell_to_stop();
@@ -47,6 +48,9 @@ class Worker final : public TaskContext {
   bool _overdue = false;                // rank 0 has ended the running task
   bool _told_to_stop = false;           // the running task
   std::string _stopped_at;              // its state then
+  bool _flushed = false;                // since the running task began
+  std::string _flushed_state;           // of the running task at the last flush, or when it began
+  std::optional<int> _waiting_flush;    // asked for within a step
   const StateSource* _state = nullptr;  // inside report()
   std::string _trouble;                 // met inside report(), which must not throw
   std::optional<Shutdown> _shutdown;

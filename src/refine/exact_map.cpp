@@ -1,4 +1,4 @@
-#include "exact_map.hpp"
+#include "orbweaver/refine/exact_map.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "exact_map.hpp"
+#include "orbweaver/refine/exact_map.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/systems/formulas.hpp"

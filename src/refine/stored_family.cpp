@@ -1,6 +1,7 @@
 #include "orbweaver/refine/stored_family.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -135,6 +136,22 @@ StoredFamily::Place StoredFamily::with(const HeldValue& value, std::optional<int
   place.first_step = step_of(n);
   place.last_step = known[n] == wanted ? place.first_step : step_of(n + 1);
   return place;
+}
+
+StoredFamily::Named StoredFamily::named_orbit(const std::string& text, std::optional<int> after) const {
+  using Quantity = HeldValue::Quantity;
+  if (text.starts_with("T=") || text.starts_with("E=")) {
+    const HeldValue held{text.front() == 'T' ? Quantity::period : Quantity::energy, text.substr(2)};
+    static_cast<void>(numerics::extended_of(held.decimal));
+    return {with(held, after), held};
+  }
+  int step = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), step);
+  if (error != std::errc() || end != text.data() + text.size())
+    throw core::InputError(fmt::format("expected a step of {}, T=PERIOD or E=ENERGY, got `{}`", _name, text));
+  Place place = at_step(step);
+  const Quantity quantity = better_held(place.guess);
+  return {std::move(place), {quantity, stored(quantity, step)}};
 }
 
 StoredFamily::Place StoredFamily::at_arclength(double arclength) const {

@@ -1,8 +1,11 @@
 #include "json_text.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
+
+#include "orbweaver/core/text.hpp"
 
 namespace orbweaver::report {
 
@@ -10,13 +13,18 @@ std::string json_number(double value) { return std::isfinite(value) ? fmt::forma
 
 std::string json_text(const std::string& text) {
   std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\')
-      quoted += std::string("\\") + c;
-    else if (static_cast<unsigned char>(c) < 0x20)
-      quoted += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = core::character_length(text, at);
+    const std::string character = text.substr(at, std::max<std::size_t>(length, 1));
+    if (length == 0)
+      quoted += "\\ufffd";  // no character: the one that Unicode has in place of such
+    else if (character == "\"" || character == "\\")
+      quoted += "\\" + character;
+    else if (core::is_control(character))
+      quoted += fmt::format("\\u{:04x}", static_cast<unsigned char>(character.back()));  // below U+0100: its last byte
     else
-      quoted += c;
+      quoted += character;
+    at += character.size();
   }
   return quoted + '"';
 }

@@ -7,6 +7,7 @@
 #include "show_families.hpp"
 #include "show_findings.hpp"
 #include "show_values.hpp"
+#include "show_verdicts.hpp"
 
 namespace orbweaver::report {
 
@@ -33,6 +34,8 @@ void print_summary(std::ostream& out, const archive::Archive& atlas) {
   out << fmt::format("crossings    {}\n", atlas.crossings().rows());
   out << fmt::format("sections     {}\n", atlas.sections().rows());
   out << fmt::format("findings     {}\n", atlas.findings().rows());
+  if (const std::string verdicts = verdicts_text(atlas, 0, atlas.orbits().rows()); !verdicts.empty())
+    out << fmt::format("certificates {}\n", verdicts);
   out << fmt::format("modes        {} values ({:.1f} MB)\n", atlas.mode_values(), static_cast<double>(bytes) / 1e6);
   out << fmt::format("period       {}\n", whole_range("period"));
   out << fmt::format("energy       {}\n", whole_range("energy"));

@@ -8,6 +8,7 @@
 #include "orbweaver/survey/tree/family_end.hpp"
 #include "show_crossings.hpp"
 #include "show_stability.hpp"
+#include "show_verdicts.hpp"
 #include "text_grid.hpp"
 
 namespace orbweaver::report {
@@ -16,6 +17,9 @@ namespace {
 
 constexpr std::size_t longest_name = 36;
 constexpr std::size_t longest_reason = 250;
+constexpr std::size_t deepest_indentation = 12;  // levels; a survey follows 16 at most, and a third of a name is left
+
+std::size_t indentation(std::size_t depth) { return 2 * std::min(depth, deepest_indentation); }
 
 struct Node {
   std::size_t family;
@@ -28,19 +32,26 @@ class Tree {
     for (std::size_t row = 0; row < parents.size(); ++row)
       if (parents[row] >= 0) _children[static_cast<std::size_t>(parents[row])].push_back(row);
     for (std::size_t row = 0; row < parents.size(); ++row)
-      if (parents[row] < 0) list(row, 0);
+      if (parents[row] < 0) list_from(row);
     // Parents that go round in a circle: not a tree, but nothing is hidden.
-    for (std::size_t row = 0; row < parents.size(); ++row) list(row, 0);
+    for (std::size_t row = 0; row < parents.size(); ++row) list_from(row);
   }
 
   [[nodiscard]] const std::vector<Node>& nodes() const { return _nodes; }
 
  private:
-  void list(std::size_t row, std::size_t depth) {
-    if (_is_listed[row]) return;
-    _is_listed[row] = true;
-    _nodes.push_back({row, depth});
-    for (const std::size_t child : _children[row]) list(child, depth + 1);
+  void list_from(std::size_t root) {
+    std::vector<Node> waiting{{root, 0}};
+    while (!waiting.empty()) {
+      const Node node = waiting.back();
+      waiting.pop_back();
+      if (_is_listed[node.family]) continue;
+      _is_listed[node.family] = true;
+      _nodes.push_back(node);
+      const std::vector<std::size_t>& children = _children[node.family];
+      for (auto child = children.rbegin(); child != children.rend(); ++child)
+        waiting.push_back({*child, node.depth + 1});
+    }
   }
 
   std::vector<std::vector<std::size_t>> _children;
@@ -70,7 +81,8 @@ std::string end_text(const archive::Archive& atlas, std::size_t family) {
 
 std::string details(const archive::Archive& atlas, std::size_t family) {
   std::string text;
-  for (const std::string& part : {atlas.families().texts("isotropy")[family], stability_text(atlas, family)})
+  for (const std::string& part :
+       {atlas.families().texts("isotropy")[family], stability_text(atlas, family), doubts_text(atlas, family)})
     if (!part.empty()) text += part + "; ";
   return text + end_text(atlas, family);
 }
@@ -97,7 +109,7 @@ void print_families(std::ostream& out, const archive::Archive& atlas) {
   const Tree tree(atlas.families().integers("parent"));
   std::vector<std::string> names, born, orbits, periods, energies;
   for (const auto& [family, depth] : tree.nodes()) {
-    names.push_back(cut(std::string(2 * depth, ' ') + atlas.families().texts("name")[family], longest_name));
+    names.push_back(cut(std::string(indentation(depth), ' ') + atlas.families().texts("name")[family], longest_name));
     born.push_back(born_text(atlas, family));
     orbits.push_back(std::to_string(atlas.families().integers("orbit_count")[family]));
     periods.push_back(range_of(atlas, "period", family));
@@ -114,7 +126,8 @@ void print_families(std::ostream& out, const archive::Archive& atlas) {
   for (std::size_t i = 0; i < tree.nodes().size(); ++i) {
     const auto& [family, depth] = tree.nodes()[i];
     out << lines[i + 1] << '\n';
-    for (const std::string& line : wrap(details(atlas, family), line_width, 2 * depth + 4)) out << line << '\n';
+    for (const std::string& line : wrap(details(atlas, family), line_width, indentation(depth) + 4))
+      out << line << '\n';
   }
 }
 

@@ -17,9 +17,10 @@ constexpr std::size_t most_findings = 20;
 
 std::string line_of(const survey::FamilySummary& f, std::size_t width) {
   const std::string name = std::string(2 * static_cast<std::size_t>(f.depth), ' ') + f.name;
+  const std::string end = f.doubts.empty() ? f.end_reason : fmt::format("{}; {}", f.end_reason, f.doubts);
   if (f.orbits == 0) return fmt::format("{:<{}}  {:>6}  {:>22}  {:>26}  {}\n", name, width, 0, "-", "-", f.end_reason);
   return fmt::format("{:<{}}  {:>6}  {:>9.6f} .. {:>9.6f}  {:>11.8f} .. {:>11.8f}  {}\n", name, width, f.orbits,
-                     f.period_from, f.period_to, f.energy_from, f.energy_to, f.end_reason);
+                     f.period_from, f.period_to, f.energy_from, f.energy_to, end);
 }
 
 /// What does not add up, and how much the limits cut; failed tasks have lines of their own.

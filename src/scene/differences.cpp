@@ -10,9 +10,9 @@
 
 #include <fmt/format.h>
 
+#include "document.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
-#include "source.hpp"
 #include "system_section.hpp"
 #include "units.hpp"
 
@@ -50,6 +50,16 @@ std::string angle_with_unit(double angle) {
   return text.ends_with("rad") ? text : text + "deg";
 }
 
+std::string name_of(Certificate certificate) {
+  switch (certificate) {
+    case Certificate::automatic: return "automatic";
+    case Certificate::none: return "none";
+    case Certificate::closure: return "closure";
+    case Certificate::full: break;
+  }
+  return "full";
+}
+
 template <class Items, class Text>
 std::string list_text(const Items& items, const Text& text) {
   std::string list;
@@ -71,6 +81,7 @@ class Values {
     add("survey.subharmonics", scene.survey.subharmonics);
     add("survey.spectrum", scene.survey.spectrum == Spectrum::all ? "all" : "events");
     add("survey.team_size", scene.survey.team_size);
+    add("compute.certificate", name_of(scene.compute.certificate));
     add_limits(scene.limits);
     add("events.periods", list_text(scene.events.periods, text_of));
     add("events.energies", list_text(scene.events.energies, text_of));

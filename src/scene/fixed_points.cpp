@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <optional>
 #include <set>
 
 #include <fmt/format.h>
@@ -14,8 +16,9 @@ namespace orbweaver::scene {
 
 namespace {
 
-constexpr double most_grid_points = 1e6;  // Newton's method from each on one rank; not measured
-constexpr double same_angle = 1e-9;       // radians: two spellings of one angle in degrees differ by rounding
+constexpr double most_grid_points = 1e6;         // Newton's method from each on one rank; not measured
+constexpr std::size_t most_named_points = 1000;  // each is held against all others
+constexpr double same_angle = 1e-9;              // radians: two spellings of one angle in degrees differ by rounding
 
 struct Examples {
   std::string_view grid;
@@ -51,6 +54,23 @@ void check_size(const Field& field, std::size_t size, const systems::System& sys
                fmt::format("{}", size), "leave trailing coordinates out to have them 0");
 }
 
+/// The first place whose value stands at an earlier one too.
+std::optional<std::size_t> repeated(const std::vector<double>& values, bool angle) {
+  const auto folded = [&](std::size_t i) {
+    return angle ? std::remainder(values[i], 2 * std::numbers::pi) : values[i];
+  };
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return folded(i) < folded(j); });
+  std::optional<std::size_t> first;
+  for (std::size_t n = 0; n < order.size(); ++n) {
+    const auto [earlier, later] = std::minmax(order[n], order[(n + 1) % order.size()]);  // angles close the circle
+    if (earlier != later && same_value(values[earlier], values[later], angle))
+      first = std::min(first.value_or(later), later);
+  }
+  return first;
+}
+
 void read_grid(const Field& field, const systems::System& system, FixedPoints& points) {
   const std::vector<Field> coordinates = field.list(examples(system).grid);
   check_size(field, coordinates.size(), system);
@@ -58,14 +78,11 @@ void read_grid(const Field& field, const systems::System& system, FixedPoints& p
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     const bool angle = system.structure().is_angle(i);
     std::vector<double> values;
-    for (const Field& item : coordinates[i].list(angle ? "[0, 180]" : "[0]")) {
-      const double value = read_value(item, angle);
-      const auto same = [&](double other) { return same_value(value, other, angle); };
-      if (std::any_of(values.begin(), values.end(), same))
-        item.fail("a value that the list does not hold yet",
-                  item.got() + (angle ? " again (angles count modulo 360)" : " again"), "remove one");
-      values.push_back(value);
-    }
+    const std::vector<Field> items = coordinates[i].list(angle ? "[0, 180]" : "[0]");
+    for (const Field& item : items) values.push_back(read_value(item, angle));
+    if (const auto again = repeated(values, angle))
+      items[*again].fail("a value that the list does not hold yet",
+                         items[*again].got() + (angle ? " again (angles count modulo 360)" : " again"), "remove one");
     if (values.empty()) coordinates[i].fail("at least one value", "an empty list", "for example [0]");
     count *= static_cast<double>(values.size());
     points.grid.push_back(std::move(values));
@@ -85,7 +102,11 @@ std::vector<double> read_point(const Field& key, const systems::System& system) 
 
 void read_names(const Field& field, const systems::System& system, FixedPoints& points) {
   std::set<std::string> used;
-  for (const Field::Entry& entry : field.entries(examples(system).names, true)) {
+  const std::vector<Field::Entry> entries = field.entries(examples(system).names, true);
+  if (entries.size() > most_named_points)
+    field.fail(fmt::format("names for at most {} fixed points", most_named_points), fmt::format("{}", entries.size()),
+               "name fewer");
+  for (const Field::Entry& entry : entries) {
     FixedPoints::Names named{.point = read_point(entry.key, system), .names = {}};
     for (const FixedPoints::Names& other : points.names)
       if (same_point(system, named.point, other.point))
@@ -111,10 +132,11 @@ void read_letters(const Field& field, FixedPoints& points) {
   std::vector<std::string> families;
   for (const FixedPoints::Names& named : points.names)
     families.insert(families.end(), named.names.begin(), named.names.end());
+  const std::set<std::string> known(families.begin(), families.end());
   std::set<std::string> used;
   for (const Field::Entry& entry : field.entries("letters: {In-Phase: I}")) {
     const std::string family = entry.key.path().substr(field.path().size() + 1);
-    if (std::find(families.begin(), families.end(), family) == families.end()) {
+    if (!known.contains(family)) {
       const std::string near = nearest(family, families);
       entry.key.fail(
           families.empty() ? "a family of `names`, which lists none" : "a family of `names`: " + alternatives(families),

@@ -1,9 +1,11 @@
 #include "overrides.hpp"
 
+#include <algorithm>
 #include <sstream>
 
 #include <fmt/format.h>
 
+#include "document.hpp"
 #include "orbweaver/core/error.hpp"
 
 namespace orbweaver::scene {
@@ -21,10 +23,10 @@ YAML::Node with_value(const YAML::Node& node, const std::vector<std::string>& ke
                       const Override& change) {
   if (depth == keys.size()) return change.value;
   if (!node.IsMap() && !node.IsNull()) {
-    throw core::InputError(fmt::format("--set {}: expected a map at `{}`, got {}; set the whole value instead",
-                                       change.words,
-                                       fmt::join(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(depth), "."),
-                                       node.IsSequence() ? "a list" : fmt::format("`{}`", node.Scalar())));
+    throw core::InputError(fmt::format(
+        "--set {}: expected a map at `{}`, got {}; set the whole value instead", change.words,
+        quoted(fmt::format("{}", fmt::join(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(depth), "."))),
+        node.IsSequence() ? "a list" : fmt::format("`{}`", quoted(node.Scalar()))));
   }
   YAML::Node changed(YAML::NodeType::Map);
   bool found = false;
@@ -40,16 +42,35 @@ YAML::Node with_value(const YAML::Node& node, const std::vector<std::string>& ke
   return changed;
 }
 
-}  // namespace
-
-Override parse_override(const std::string& words) {
-  const std::size_t equals = words.find('=');
-  const std::string path = words.substr(0, equals);
+Override parse_override(const std::string& given) {
+  const std::string words = quoted(given);
+  const std::size_t equals = given.find('=');
+  const std::string path = given.substr(0, equals);
   const bool hollow = path.empty() || path.front() == '.' || path.back() == '.' || path.find("..") != std::string::npos;
   if (equals == std::string::npos || hollow)
     throw core::InputError(
         fmt::format("--set {}: expected KEY=VALUE, got `{}`; for example --set limits.period=30", words, words));
-  return {path, parse_document(words.substr(equals + 1), fmt::format("--set {}", words), false), words};
+  if (static_cast<std::size_t>(std::count(path.begin(), path.end(), '.')) >= most_levels)
+    throw core::InputError(
+        fmt::format("--set {}: expected at most {} keys joined by dots, got more", words, most_levels));
+  require_text(path, fmt::format("--set {}", words), false);
+  return {path, parse_document(given.substr(equals + 1), fmt::format("--set {}", words), false), words};
+}
+
+}  // namespace
+
+std::vector<Override> parse_overrides(const std::vector<std::string>& overrides) {
+  // Each makes a tree of its own of the scene's nodes.
+  constexpr std::size_t most_overrides = 200;
+  if (overrides.size() > most_overrides)
+    throw core::InputError(fmt::format("--set: expected at most {} overrides, got {}; write them into the scene",
+                                       most_overrides, overrides.size()));
+  std::size_t bytes = 0;
+  for (const std::string& words : overrides) bytes += words.size();
+  require_scene_size(bytes, "--set");
+  std::vector<Override> changes;
+  for (const std::string& words : overrides) changes.push_back(parse_override(words));
+  return changes;
 }
 
 YAML::Node apply_overrides(const YAML::Node& root, const std::vector<Override>& overrides) {

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "orbweaver/core/text.hpp"
 #include "suggest.hpp"
 #include "units.hpp"
 
@@ -18,20 +20,18 @@ constexpr std::size_t longest_text = 64;
 
 bool is_quoted(const YAML::Node& node) { return node.Tag() == "!"; }
 
-std::string shorten(std::string text) {
-  text = printable(std::move(text));
-  return text.size() <= 40 ? text : text.substr(0, 37) + "...";
-}
+std::string shorten(const std::string& text) { return core::shortened(core::printable(text), 40); }
 
 std::string written(const YAML::Node& node) {
   if (node.IsScalar()) return is_quoted(node) ? fmt::format("\"{}\"", shorten(node.Scalar())) : shorten(node.Scalar());
   if (!node.IsSequence()) return node.IsMap() ? "{...}" : "~";
   std::string text = "[";
-  for (std::size_t i = 0; i < node.size(); ++i) {
+  constexpr std::size_t most_written = 40;  // values; no more of them fit
+  for (std::size_t i = 0; i < std::min(node.size(), most_written); ++i) {
     if (i > 0) text += ", ";
     text += node[i].IsScalar() ? shorten(node[i].Scalar()) : "...";
   }
-  return shorten(text + "]");
+  return core::shortened(text + "]", 40);
 }
 
 /// What to do about a key that is not known. YAML takes `period:30` for a key, not for a key with a value.
@@ -103,9 +103,7 @@ std::string Field::text(std::string_view example) const {
   };
   if (!_node.IsScalar() || (!is_quoted(_node) && !plain_scalar())) refuse("text");
   const std::string& value = _node.Scalar();
-  const bool printable =
-      std::all_of(value.begin(), value.end(), [](char c) { return static_cast<unsigned char>(c) >= ' '; });
-  if (value.empty() || value.size() > longest_text || !printable)
+  if (value.empty() || value.size() > longest_text || core::printable(value) != value)
     refuse(fmt::format("one line of text with 1 to {} characters", longest_text));
   return value;
 }
@@ -184,9 +182,10 @@ std::pair<double, double> Field::range(const NumberRule& rule) const {
 
 std::vector<double> Field::numbers(const NumberRule& rule) const {
   std::vector<double> values;
+  std::set<double> known;
   for (const Field& item : list("[1, 2]")) {
     values.push_back(item.number(rule));
-    if (std::find(values.begin(), values.end() - 1, values.back()) != values.end() - 1)
+    if (!known.insert(values.back()).second)
       item.fail("a value that the list does not hold yet", item.got() + " again", "remove one");
   }
   return values;
@@ -195,6 +194,7 @@ std::vector<double> Field::numbers(const NumberRule& rule) const {
 std::vector<Field::Entry> Field::entries(std::string_view example, bool complex_keys) const {
   if (!_node.IsMap()) fail("a map", got(), fmt::format("for example `{}`", example));
   std::vector<Entry> result;
+  std::set<std::string> known;
   for (const auto& pair : _node) {
     const int key_line = line_of(pair.first);
     const std::string name = pair.first.IsScalar() ? pair.first.Scalar() : written(pair.first);
@@ -203,9 +203,7 @@ std::vector<Field::Entry> Field::entries(std::string_view example, bool complex_
     if (!(complex_keys ? pair.first.IsSequence() : pair.first.IsScalar()))
       entry.key.fail(complex_keys ? "a list as key" : "text as key", entry.key.got(),
                      fmt::format("for example `{}`", example));
-    const bool twice =
-        std::any_of(result.begin(), result.end(), [&](const Entry& e) { return e.key.path() == entry.key.path(); });
-    if (twice) entry.key.fail("a key once", "it again", "remove one of the two");
+    if (!complex_keys && !known.insert(name).second) entry.key.fail("a key once", "it again", "remove one of the two");
     result.push_back(std::move(entry));
   }
   return result;

@@ -67,7 +67,7 @@ class Field {
   [[nodiscard]] std::vector<double> numbers(const NumberRule& rule) const;
 
   struct Entry;
-  /// The pairs of a map in their order; duplicate keys are refused. Keys may be text or, with `complex_keys`, lists.
+  /// The pairs of a map in their order; text as key is there once, lists (with `complex_keys`) may be there again.
   [[nodiscard]] std::vector<Entry> entries(std::string_view example, bool complex_keys = false) const;
 
  private:

@@ -1,10 +1,11 @@
 #include "orbweaver/scene/scene.hpp"
 
 #include <fstream>
-#include <sstream>
+#include <system_error>
 
 #include <fmt/format.h>
 
+#include "document.hpp"
 #include "fixed_points.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/system.hpp"
@@ -33,8 +34,9 @@ void read_starts(const Field& field, const systems::System& system, Scene& scene
 }
 
 Scene read_scene(const Field& root) {
-  const Keys keys(root, {"name", "system", "starts", "continuation", "survey", "limits", "events", "section", "output"},
-                  smallest_scene);
+  const Keys keys(
+      root, {"name", "system", "starts", "continuation", "survey", "compute", "limits", "events", "section", "output"},
+      smallest_scene);
   Scene scene;
   read_system(require_key(keys, root, "system", "system: {name: double_pendulum}"), scene.system);
   read_family_scalars(keys.find("continuation"), scene.system);
@@ -45,6 +47,7 @@ Scene read_scene(const Field& root) {
   read_starts(require_key(keys, root, "starts", "starts: {fixed_points: {grid: [[0, 180], [0, 180]]}}"), system, scene);
   if (const auto field = keys.find("continuation")) read_continuation(*field, system, scene.continuation);
   if (const auto field = keys.find("survey")) read_survey(*field, scene.survey);
+  if (const auto field = keys.find("compute")) read_compute(*field, scene.compute);
   if (const auto field = keys.find("limits")) read_limits(*field, system, scene.limits);
   if (const auto field = keys.find("events")) read_events(*field, scene.events);
   if (const auto field = keys.find("section")) read_section(*field, system, scene.section);
@@ -58,45 +61,48 @@ std::string emit(const YAML::Node& root) {
   return std::string(emitter.c_str()) + "\n";
 }
 
+std::string_view kind_of(std::filesystem::file_type type) {
+  switch (type) {
+    case std::filesystem::file_type::directory: return "a folder";
+    case std::filesystem::file_type::fifo: return "a pipe";
+    case std::filesystem::file_type::socket: return "a socket";
+    case std::filesystem::file_type::block:
+    case std::filesystem::file_type::character: return "a device";
+    default: return "none";
+  }
+}
+
+// No more than a byte beyond what a scene may have, which parse_document refuses.
 std::string read_file(const std::filesystem::path& file) {
-  std::error_code ignored;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || !std::filesystem::is_regular_file(file, ignored))
+  std::error_code code;
+  const std::filesystem::file_type type = std::filesystem::status(file, code).type();
+  std::ifstream stream;
+  if (type == std::filesystem::file_type::regular) stream.open(file, std::ios::binary);  // to open a pipe may wait
+  if (!stream.is_open())
     throw core::InputError(fmt::format("{}: expected a scene file that can be read, got {}; check the path",
-                                       file.string(),
-                                       std::filesystem::is_directory(file, ignored) ? "a folder" : "none"));
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
+                                       quoted(file.string()), kind_of(type)));
+  require_scene_size(std::filesystem::file_size(file, code), quoted(file.string()));
+  std::string text(longest_scene + 1, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  return text;
 }
 
 }  // namespace
 
-constexpr std::size_t longest_scene = 60000;
-
 Scene parse(const std::string& text, const std::string& origin, const std::vector<std::string>& overrides) {
-  std::vector<Override> changes;
-  for (const std::string& words : overrides) changes.push_back(parse_override(words));
-  if (text.find('\0') != std::string::npos)
-    throw core::InputError(
-        fmt::format("{}: expected a scene, text in UTF-8, got a file with zero bytes; give the scene, not an archive "
-                    "or a program, and save it as UTF-8",
-                    origin));
-  const YAML::Node document = parse_document(text, origin, true);
-  const Source source(origin, std::move(changes));
+  const std::string place = quoted(origin);
+  const Source source(place, parse_overrides(overrides));
+  const YAML::Node document = parse_document(text, place, true);
   if (!document.IsMap()) {
     const std::string came = document.IsNull() ? "an empty document" : Field(source, document, "", 1).got();
     throw core::InputError(
-        fmt::format("{}:1: expected a scene, a map, got {}; for example {}", origin, came, smallest_scene));
+        fmt::format("{}:1: expected a scene, a map, got {}; for example {}", place, came, smallest_scene));
   }
   const YAML::Node root = apply_overrides(document, source.overrides());
   Scene scene = read_scene(Field(source, root, "", 1));
   scene.text = overrides.empty() ? text : emit(root);
-  if (scene.text.size() > longest_scene)
-    throw core::InputError(
-        fmt::format("{}: a scene of {} bytes does not fit into the archive, which keeps its text: expected at most {}; "
-                    "shorten its comments",
-                    origin, scene.text.size(), longest_scene));
+  require_scene_size(scene.text.size(), place);
   return scene;
 }
 

@@ -119,6 +119,17 @@ void read_survey(const Field& field, Survey& survey) {
     survey.team_size = team->integer({.lower = 1, .upper = 1000000, .example = "1"});
 }
 
+void read_compute(const Field& field, Compute& compute) {
+  const Keys keys(field, {"certificate"}, "compute: {certificate: full}");
+  if (const auto certificate = keys.find("certificate")) {
+    const std::string level = certificate->choice({"automatic", "none", "closure", "full"});
+    compute.certificate = level == "automatic" ? Certificate::automatic
+                          : level == "none"    ? Certificate::none
+                          : level == "closure" ? Certificate::closure
+                                               : Certificate::full;
+  }
+}
+
 namespace {
 
 void read_guards(const Field& field, const systems::System& system, std::map<std::string, double>& guards) {

@@ -17,6 +17,7 @@ void read_continuation(const Field& field, const systems::System& system, Contin
 void read_family_scalars(const std::optional<Field>& field, SystemChoice& choice);
 void read_states(const Field& field, const systems::System& system, std::vector<StateStart>& states);
 void read_survey(const Field& field, Survey& survey);
+void read_compute(const Field& field, Compute& compute);
 void read_limits(const Field& field, const systems::System& system, Limits& limits);
 void read_events(const Field& field, Events& events);
 void read_section(const Field& field, const systems::System& system, Section& section);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/text.hpp"
 
 namespace orbweaver::scene {
 
@@ -18,10 +19,9 @@ bool is_inside(std::string_view path, std::string_view outer) {
 
 }  // namespace
 
-std::string printable(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < ' ') c = ' ';
-  return text;
+std::string quoted(const std::string& text) {
+  constexpr std::size_t most_quoted = 120;
+  return core::shortened(core::printable(text), most_quoted);
 }
 
 Source::Source(std::string origin, std::vector<Override> overrides)
@@ -38,28 +38,8 @@ std::string Source::place(std::string_view path, int line) const {
 }
 
 void Source::fail(std::string_view path, int line, const std::string& problem) const {
-  const std::string subject = path.empty() ? "scene" : printable(std::string(path));
+  const std::string subject = path.empty() ? "scene" : quoted(std::string(path));
   throw core::InputError(fmt::format("{}: {}: {}", place(path, line), subject, problem));
-}
-
-YAML::Node parse_document(const std::string& text, const std::string& place, bool lines) {
-  std::vector<YAML::Node> documents;
-  try {
-    documents = YAML::LoadAll(text);
-  } catch (const YAML::Exception& error) {
-    const std::string where = lines && !error.mark.is_null() ? fmt::format("{}:{}", place, error.mark.line + 1) : place;
-    throw core::InputError(
-        fmt::format("{}: expected YAML, got a syntax error ({}); check brackets, colons and indentation, which takes "
-                    "spaces and no tabs",
-                    where, printable(error.msg)));
-  }
-  if (documents.size() > 1) {
-    const YAML::Mark mark = documents[1].Mark();
-    const std::string where = lines && !mark.is_null() ? fmt::format("{}:{}", place, mark.line + 1) : place;
-    throw core::InputError(fmt::format(
-        "{}: expected one YAML document, got {}; keep one and remove the `---` between them", where, documents.size()));
-  }
-  return documents.empty() ? YAML::Node(YAML::NodeType::Null) : documents.front();
 }
 
 }  // namespace orbweaver::scene

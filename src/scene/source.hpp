@@ -12,7 +12,7 @@ namespace orbweaver::scene {
 struct Override {
   std::string path;  ///< keys joined by dots
   YAML::Node value;
-  std::string words;  ///< as given, for messages
+  std::string words;  ///< as messages quote it
 };
 
 /// Where the values of a scene come from, so that a message can point there.
@@ -34,11 +34,7 @@ class Source {
   std::vector<Override> _overrides;
 };
 
-/// The text with control characters replaced by blanks, for messages that quote what came.
-[[nodiscard]] std::string printable(std::string text);
-
-/// Parses exactly one YAML document. Throws core::InputError on a syntax error ("place:line: ..." with `lines`, else
-/// "place: ..."), and on more than one document; returns a null node for an empty one.
-[[nodiscard]] YAML::Node parse_document(const std::string& text, const std::string& place, bool lines);
+/// What a message quotes of it: escaped, at most 120 bytes (the end of a path and of an override says little more).
+[[nodiscard]] std::string quoted(const std::string& text);
 
 }  // namespace orbweaver::scene

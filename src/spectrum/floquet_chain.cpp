@@ -9,6 +9,7 @@
 
 #include "matrix_table.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/interruption.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
 
@@ -89,6 +90,7 @@ void integrate(VariationalStep& stepper, const Chain& chain, std::span<const Eig
   std::vector<double> starts(static_cast<std::size_t>(d) * lanes);
   double lengths[lanes];
   for (std::size_t first = 0; first < nodes.size(); first += lanes) {
+    core::interruption_point();
     const std::size_t used = std::min(lanes, nodes.size() - first);
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       const Eigen::Index node = nodes[first + std::min(lane, used - 1)];

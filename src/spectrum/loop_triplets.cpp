@@ -166,6 +166,11 @@ void append_column(Eigen::MatrixXd& matrix, const Eigen::VectorXd& column) {
   matrix.col(matrix.cols() - 1) = column;
 }
 
+/// Inverse iterations on a triplet, and what each may leave of its residuals to be followed by another. Beside kernels
+/// at 1e-14 each was seen to leave 0.2 to 0.4 (m2 = 16/9 m1).
+constexpr int most_cleanings = 12;
+constexpr double cleaned = 0.7;
+
 // Looks for `count` more triplets beside those found, and adds at least one.
 void search(Inverse& inverse, std::vector<Triplet>& found, int count, double tolerance) {
   const std::size_t before = found.size();
@@ -176,9 +181,13 @@ void search(Inverse& inverse, std::vector<Triplet>& found, int count, double tol
   for (Triplet& t : largest_of(inverse, count, tolerance)) {
     // Tiny values leave the solves little but their own vectors, and Lanczos vectors mix: inverse iteration cleans
     // them.
-    if (std::max(t.residual, t.left_residual) > share_of_value * t.value) {
+    // Where one is found already, the next search finds the others better than these do.
+    const int cleanings = found.size() == before ? most_cleanings : 1;
+    for (int n = 0; n < cleanings && std::max(t.residual, t.left_residual) > share_of_value * t.value; ++n) {
+      const double before_cleaning = std::max(t.residual, t.left_residual);
       const Eigen::VectorXd right = inverse.apply(inverse.apply_transposed(t.right).normalized()).normalized();
       t = triplet_of(inverse.equations, right, inverse.apply_transposed(right));
+      if (good(t) || !(std::max(t.residual, t.left_residual) < cleaned * before_cleaning)) break;
     }
     if (!good(t)) {
       failure = fmt::format("the next one ({:.3e}) has the residuals {:.1e} and {:.1e}, more than {:.1e}", t.value,
@@ -211,7 +220,7 @@ SingularTriplets smallest_singular_triplets(const equations::LoopEquations& equa
   const int free = equations.slice().free();
   core::require(options.count >= 1 && options.count <= free, "between one and all singular triplets can be asked for");
   Inverse inverse{equations,
-                  equations::LoopSolver(equations.size(), "spectrum_inner_", equations.team()),
+                  equations::LoopSolver(equations.size(), "spectrum_inner_"),
                   {options.inner_tolerance, 1.0},
                   Eigen::MatrixXd(unknowns, 0),
                   Eigen::MatrixXd(rows, 0)};

@@ -31,7 +31,9 @@ Vector<D> reflector(const Vector<D>& vector, Eigen::Index begin) {
   return v / v.norm();
 }
 
-[[noreturn]] void refuse_standstill() {
+[[noreturn]] void refuse_field(double length) {
+  if (!std::isfinite(length))
+    throw core::NotFiniteError("Floquet multipliers: the field is not finite at a state of the loop");
   throw core::NumericalError(
       "Floquet multipliers: expected an orbit that moves, but the field vanishes at a state of "
       "the loop; it has collapsed onto an equilibrium");
@@ -42,7 +44,7 @@ template <int D, int C>
 Eigen::Matrix<double, D, rest(D, C)> basis_at(const Chain& chain, Eigen::Index m) {
   const Eigen::Index d = chain.dimension();
   Vector<D> taken = chain.fields.col(m).normalized();
-  if (!(taken.squaredNorm() > 0.5)) refuse_standstill();
+  if (!(taken.squaredNorm() > 0.5)) refuse_field(chain.fields.col(m).norm());
   Vector<D> reflectors[C];
   reflectors[0] = reflector<D>(taken, 0);
   if constexpr (C == 2) {
@@ -89,7 +91,8 @@ Eigen::Matrix<double, 8, Eigen::Dynamic> bases_of_four(const Chain& chain) {
     Lanes4 gradient;
     for (Eigen::Index lane = 0; lane < width; ++lane) {
       const Eigen::Index m = std::min(begin + lane, nodes - 1);
-      if (!(chain.fields.col(m).squaredNorm() > 0.0)) refuse_standstill();
+      const double length = chain.fields.col(m).norm();
+      if (!(length > 0.0)) refuse_field(length);
       for (std::size_t i = 0; i < 4; ++i) {
         field[i].packed[lane] = chain.fields(static_cast<Eigen::Index>(i), m);
         gradient[i].packed[lane] = chain.gradients(static_cast<Eigen::Index>(i), m);

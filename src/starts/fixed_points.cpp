@@ -10,6 +10,7 @@
 #include <Eigen/Dense>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/interruption.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::starts {
@@ -116,6 +117,7 @@ std::vector<std::vector<double>> find_fixed_points(const systems::System& system
   std::vector<Eigen::VectorXd> found;
   std::vector<std::vector<double>> passed_over;
   for (std::size_t n = 0; n < starts; ++n) {
+    core::interruption_point();
     Eigen::VectorXd z = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(d));
     std::size_t rest = n;
     for (std::size_t i = 0; i < grid.size(); ++i) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
@@ -17,17 +18,76 @@ namespace {
 /// the equilibrium. No detuning above the second is near.
 constexpr double margin = 5.0;
 constexpr double largest_detuning = 0.05;
+/// Families start no nearer to the equilibrium to be apart: the terms that decide, r^2, are there 400 times the loss's
+/// tolerance (1e-10).
+constexpr double least_apart = 2e-4;
+/// Where periods are nearly in ratio 1:3 families that are born at r may turn at some 10 r (with m2 = 1.7778 m1
+/// the double pendulum's at 7 r) and come back. What is not told at the least amplitude starts beyond such turns.
+constexpr double beyond_turns = 40.0;
 /// Oscillations of nearly one period whose vectors nearly agree are not taken together: their combinations would be
 /// too few radians apart for a search. Least singular value of the vectors side by side; 1: orthogonal.
 constexpr double least_angle = 0.3;
 /// Of energies of vectors of unit length, relative to the largest: differences are good to 1e-6.
 constexpr double no_energy = 1e-4;
 
-bool share(const Oscillation& slow, const Oscillation& fast, int harmonic, double amplitude) {
+/// How much of its period `slow` differs from `harmonic` times the other's, less than rounding tells: 0.
+double detuning(const Oscillation& slow, const Oscillation& fast, int harmonic) {
   const double gap = std::abs(slow.period - harmonic * fast.period);
-  const double near = std::min(largest_detuning, margin * (harmonic == 2 ? amplitude : amplitude * amplitude));
-  return gap <= std::max(near * slow.period, slow.period_error + harmonic * fast.period_error);
+  return gap <= slow.period_error + harmonic * fast.period_error ? 0.0 : gap / slow.period;
 }
+
+/// The length in the kernel below which orbits tell a detuning.
+double told_below(double detuning, int harmonic) {
+  if (detuning > largest_detuning) return std::numeric_limits<double>::infinity();
+  return harmonic == 2 ? detuning / margin : std::sqrt(detuning / margin);
+}
+
+/// Which oscillations share a period, and how far out what that leaves is to start.
+class Neighbours {
+ public:
+  Neighbours(const std::vector<Oscillation>& all, double amplitude)
+      : _all(all),
+        _amplitude(amplitude),
+        _apart_below(all.size(), std::numeric_limits<double>::infinity()),
+        _together_from(all.size(), 0.0) {}
+
+  bool share(std::size_t slow, std::size_t fast, int harmonic) {
+    const double away = detuning(_all[slow], _all[fast], harmonic);
+    const double told = told_below(away, harmonic);
+    if (told >= _amplitude) return false;
+    // At 1:2 what is born does not turn and come back. At 1:1 it is born where an index is (2 pi r^2)^2 from 2, which
+    // rounding hides at small amplitudes.
+    const bool may_turn = harmonic == 3;
+    if (may_turn && told >= least_apart) {
+      for (const std::size_t n : {slow, fast}) _apart_below[n] = std::min(_apart_below[n], told);
+      return false;
+    }
+    if (may_turn && away > 0.0) _together_from[slow] = beyond_turns * least_apart;
+    return true;
+  }
+
+  /// Of vectors that nearly agree, where energies have both signs: the equilibrium is about to lose its stability (a
+  /// Krein collision), and orbits of length r move both frequencies by the root of detuning^2 + r^2.
+  void about_to_collide(std::size_t slow, std::size_t fast) {
+    const double away = detuning(_all[slow], _all[fast], 1);
+    if (away > largest_detuning) return;
+    for (const std::size_t n : {slow, fast})
+      _apart_below[n] = std::min(_apart_below[n], std::max(away / margin, least_apart));
+  }
+
+  void set(SharedPeriod& shared) const {
+    for (const SharedPeriod::Member& member : shared.members) {
+      if (member.harmonic == 1) shared.apart_below = std::min(shared.apart_below, _apart_below[member.oscillation]);
+      shared.together_from = std::max(shared.together_from, _together_from[member.oscillation]);
+    }
+  }
+
+ private:
+  const std::vector<Oscillation>& _all;
+  double _amplitude;
+  std::vector<double> _apart_below;    // as SharedPeriod, one an oscillation
+  std::vector<double> _together_from;  // the same
+};
 
 Eigen::MatrixXcd side_by_side(const Eigen::MatrixXcd& a, const Eigen::MatrixXcd& b) {
   Eigen::MatrixXcd both(a.rows(), a.cols() + b.cols());
@@ -73,10 +133,17 @@ std::vector<SharedPeriod> shared_periods(const systems::System& system, std::spa
   core::require(static_cast<int>(point.size()) == system.dimension(), "a fixed point of another dimension");
   std::vector<SharedPeriod> out;
   const std::vector<Oscillation>& all = modes.oscillations;
+  Neighbours neighbours(all, amplitude);
   for (std::size_t n = 0; n < all.size(); ++n) {
-    if (!out.empty() && share(all[n - 1], all[n], 1, amplitude)) {
+    if (!out.empty()) {
       SharedPeriod& last = out.back();
-      if (Eigen::MatrixXcd both = joined(last.kernel, all[n].kernel); both.size() > 0) {
+      Eigen::MatrixXcd both = joined(last.kernel, all[n].kernel);
+      if (both.size() == 0) {
+        SharedPeriod side;
+        side.kernel = side_by_side(last.kernel, all[n].kernel);
+        side.harmonics.assign(static_cast<std::size_t>(side.kernel.cols()), 1);
+        if (!have_one_sign(system, point, side)) neighbours.about_to_collide(n - 1, n);
+      } else if (neighbours.share(n - 1, n, 1)) {
         last.kernel = std::move(both);
         last.residual = std::max(last.residual, all[n].residual);
         last.members.push_back({n, 1});
@@ -87,10 +154,10 @@ std::vector<SharedPeriod> shared_periods(const systems::System& system, std::spa
   }
   for (SharedPeriod& shared : out) {
     shared.harmonics.assign(static_cast<std::size_t>(shared.kernel.cols()), 1);
-    const Oscillation& slow = all[shared.members.front().oscillation];
+    const std::size_t slow = shared.members.front().oscillation;
     for (int harmonic = 2; harmonic <= strongest_harmonic; ++harmonic)
       for (std::size_t n = 0; n < all.size(); ++n) {
-        if (!share(slow, all[n], harmonic, amplitude)) continue;
+        if (!neighbours.share(slow, n, harmonic)) continue;
         const bool first = shared.members.back().harmonic != harmonic;
         Eigen::MatrixXcd others(shared.kernel.rows(), 0);
         if (!first)
@@ -106,6 +173,7 @@ std::vector<SharedPeriod> shared_periods(const systems::System& system, std::spa
       }
     shared.is_definite = have_one_sign(system, point, shared);
   }
+  for (SharedPeriod& shared : out) neighbours.set(shared);
   return out;
 }
 

@@ -12,6 +12,7 @@
 
 #include "constant_loop_hessian.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/interruption.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
 
 namespace orbweaver::starts {
@@ -114,6 +115,7 @@ class Sweep {
     // One sample beyond each end, so that a dip at an end is seen; only roots within the range count.
     const int first = range.period_from > range.step ? -1 : 0;
     for (int n = first; n <= last + 1; ++n) {
+      core::interruption_point();
       const double period = range.period_from + n * range.step;
       const ConstantLoopHessian::Smallest smallest = _hessian.smallest(period);
       _samples.push_back({{period, smallest.eigenvalue}, smallest.harmonic});
@@ -143,6 +145,7 @@ class Sweep {
     mode.period = shared.period;
     mode.grid_period = seen;
     mode.residual = shared.residual;
+    mode.apart_below = shared.apart_below;
     mode.direction = direction_of(with_standard_phase(structure, shared.kernel.col(0)), cutoff);
     mode.grid_direction = direction_of(with_standard_phase(structure, _hessian.first_harmonic(seen)), cutoff);
     mode.isotropy = isotropy_of(structure, _result.fixed_point, mode.period, mode.direction, cutoff);

@@ -74,6 +74,26 @@ void replace_dataset(hid_t file, const char* name, hid_t type, const std::vector
       check_h5(H5Dcreate2(file, name, type, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), name), H5Dclose);
 }
 
+// Every column of the table claims `rows` rows, which take no room in the file until they are written.
+void claim_rows(hid_t file, const std::string& table, hsize_t rows) {
+  const H5Handle group(check_h5(H5Gopen2(file, table.c_str(), H5P_DEFAULT), table), H5Gclose);
+  std::vector<std::string> names;
+  const auto add = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
+    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+    return 0;
+  };
+  check_h5(H5Literate(group.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, add, &names), "H5Literate");
+  for (const std::string& name : names) {
+    const H5Handle column(check_h5(H5Dopen2(group.get(), name.c_str(), H5P_DEFAULT), name), H5Dclose);
+    const H5Handle type(H5Dget_type(column.get()), H5Tclose);
+    const H5Handle space(H5Dget_space(column.get()), H5Sclose);
+    std::vector<hsize_t> extents(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space.get())));
+    H5Sget_simple_extent_dims(space.get(), extents.data(), nullptr);
+    extents[0] = rows;
+    replace_dataset(group.get(), name.c_str(), type.get(), extents);
+  }
+}
+
 void set_integer(hid_t file, const char* name, hsize_t row, std::int64_t value) {
   const H5Handle dataset(check_h5(H5Dopen2(file, name, H5P_DEFAULT), name), H5Dclose);
   const H5Handle place(H5Dget_space(dataset.get()), H5Sclose);
@@ -100,6 +120,23 @@ TEST_F(BadFiles, OlderFilesHaveNoScales) {
   }
   EXPECT_THAT(altered([](hid_t file) { delete_attributes(file, {"scales"}); }),
               HasSubstr("lacks the attribute 'scales'"));
+}
+
+TEST_F(BadFiles, NoMoreIsReadThanTheFileHolds) {
+  constexpr hsize_t forged = hsize_t{1} << 28;
+  for (const std::string table : {"families", "orbits", "crossings", "sections", "findings"})
+    EXPECT_THAT(altered([&](hid_t file) { claim_rows(file, table, forged); }),
+                AllOf(HasSubstr("altered.h5' has a dataset /" + table), HasSubstr("more than the file's")))
+        << table;
+  EXPECT_THAT(altered([](hid_t file) { replace_dataset(file, "modes", H5T_NATIVE_DOUBLE, {forged}); }),
+              HasSubstr("has a dataset /modes of shape (268435456) with values of 8 bytes, more than the file's"));
+  EXPECT_THAT(altered([](hid_t file) {
+                const H5Handle wide(H5Tcopy(H5T_C_S1), H5Tclose);
+                check_h5(H5Tset_size(wide.get(), forged), "H5Tset_size");
+                claim_rows(file, "findings", 1);
+                replace_dataset(file, "findings/text", wide.get(), {1});
+              }),
+              HasSubstr("has a dataset /findings/text of shape (1) with values of 268435456 bytes"));
 }
 
 TEST_F(BadFiles, AbsentAndForeignFilesAreNamed) {

@@ -91,17 +91,7 @@ TEST_F(Checksums, ValuesAreSummedAsDocumented) {
 TEST_F(Checksums, AnUnchangedArchiveHoldsAndAnOlderOneCarriesNone) {
   EXPECT_EQ(read_whole(atlas), "");
   EXPECT_TRUE(Archive(atlas).has_checksums());
-  {
-    const H5Handle file(check_h5(H5Fopen(atlas.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "H5Fopen"), H5Fclose);
-    for (const char* name : {"families", "orbits", "crossings", "sections", "findings"})
-      check_h5(H5Ldelete(file.get(), fmt::format("{}/checksum", name).c_str(), H5P_DEFAULT), name);
-    for (const char* name : {"orbits/modes_checksum", "orbits/time_map_checksum"})
-      check_h5(H5Ldelete(file.get(), name, H5P_DEFAULT), name);
-    check_h5(H5Adelete(file.get(), "checksum"), "checksum");
-    const H5Handle minor(check_h5(H5Aopen(file.get(), "format_minor", H5P_DEFAULT), "format_minor"), H5Aclose);
-    const std::int64_t before = 1;
-    check_h5(H5Awrite(minor.get(), H5T_NATIVE_INT64, &before), "format_minor");
-  }
+  test::remove_checksums(atlas);
   EXPECT_EQ(read_whole(atlas), "");
   EXPECT_FALSE(Archive(atlas).has_checksums());
   EXPECT_THAT(Archive(atlas).orbits().integers("checksum"), ::testing::Each(-1));

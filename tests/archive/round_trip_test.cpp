@@ -55,6 +55,8 @@ void expect_row(const Archive& atlas, std::size_t row, const OrbitRecord& orbit)
   expect_equal(orbits.reals("single_shot")[row], orbit.single_shot);
   expect_equal(orbits.reals("energy_drift")[row], orbit.energy_drift);
   expect_equal(orbits.reals("tail")[row], orbit.tail);
+  EXPECT_EQ(orbits.integers("verdict")[row], orbit.verdict);
+  expect_equal(orbits.reals("orbit_distance")[row], orbit.orbit_distance);
   expect_vector(slice(orbits.reals("stability"), row, stability), orbit.stability);
   expect_vector(slice(orbits.reals("fundamental_stability"), row, stability), orbit.fundamental_stability);
   expect_vector(slice(orbits.reals("state"), row, 2), orbit.state);

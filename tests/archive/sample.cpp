@@ -212,4 +212,16 @@ std::filesystem::path fresh_folder(const std::string& name, MPI_Comm comm) {
   return folder;
 }
 
+void remove_checksums(const std::filesystem::path& atlas) {
+  const H5Handle file(check_h5(H5Fopen(atlas.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "H5Fopen"), H5Fclose);
+  for (const char* name : {"families", "orbits", "crossings", "sections", "findings"})
+    check_h5(H5Ldelete(file.get(), fmt::format("{}/checksum", name).c_str(), H5P_DEFAULT), name);
+  for (const char* name : {"orbits/modes_checksum", "orbits/time_map_checksum"})
+    check_h5(H5Ldelete(file.get(), name, H5P_DEFAULT), name);
+  check_h5(H5Adelete(file.get(), "checksum"), "checksum");
+  const H5Handle minor(check_h5(H5Aopen(file.get(), "format_minor", H5P_DEFAULT), "format_minor"), H5Aclose);
+  const std::int64_t before = 1;
+  check_h5(H5Awrite(minor.get(), H5T_NATIVE_INT64, &before), "format_minor");
+}
+
 }  // namespace orbweaver::test

@@ -33,6 +33,9 @@ std::filesystem::path write_sample_atlas(const std::filesystem::path& folder, co
 /// Name -> extents, type and raw bytes of every dataset of an HDF5 file.
 std::map<std::string, std::string> dataset_bytes(const std::filesystem::path& path);
 
+/// Makes the archive one of format_minor 1, which had no checksums.
+void remove_checksums(const std::filesystem::path& atlas);
+
 /// An empty folder of this name, in the working folder that CTest gave the test, or among the temporary files where it
 /// was started by hand. Collective over `comm`.
 std::filesystem::path fresh_folder(const std::string& name, MPI_Comm comm = MPI_COMM_SELF);

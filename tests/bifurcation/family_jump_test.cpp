@@ -217,4 +217,26 @@ TEST(Jumps, ASenseOfRotationThatChangesUnseenIsOne) {
   EXPECT_FALSE(bifurcation::passes_one_unseen(elliptic(1.5, std::nan("")), elliptic(1.9, -0.4)));
 }
 
+// Orbits of which neighbours go around by so many degrees.
+TEST(FamilyJump, AnAngleThatChangesByMoreThanAQuarterOfATurnIsNotTrusted) {
+  const auto rotating = [](double degrees) {
+    spectrum::Stability out;
+    const double angle = degrees * std::numbers::pi / 180.0;
+    out.fundamental = {2.0 * std::cos(angle)};
+    out.fundamental_error = {1e-10};
+    out.twist = std::sin(angle);
+    return out;
+  };
+  EXPECT_FALSE(bifurcation::rotates_too_far(rotating(200), rotating(280)));
+  EXPECT_FALSE(bifurcation::rotates_too_far(rotating(280), rotating(200)));
+  EXPECT_FALSE(bifurcation::rotates_too_far(rotating(170), rotating(210)));
+  EXPECT_TRUE(bifurcation::rotates_too_far(rotating(200), rotating(353)));
+  // l2 = 1000, In-Phase from T = 226.7 to 236.2: past 2 and past -2, so that the sense of turning is the same.
+  EXPECT_TRUE(bifurcation::rotates_too_far(rotating(-6.5), rotating(229)));
+  EXPECT_FALSE(bifurcation::passes_one_unseen(rotating(-6.5), rotating(229)));
+  spectrum::Stability hyperbolic = rotating(0);
+  hyperbolic.fundamental = {3.0};
+  EXPECT_FALSE(bifurcation::rotates_too_far(rotating(200), hyperbolic));
+}
+
 }  // namespace

@@ -175,6 +175,27 @@ TEST(TestFunctions, TorusIsForComplexPairs) {
   EXPECT_FALSE(is_event(torus, three, stability_of({4.0, 0.25, 0.3}, 1e-9), false));
 }
 
+TEST(TestFunctions, TorusKeepsItsValueBesideLargeMultipliers) {
+  const TestFunction torus{Kind::torus, {}};
+  const auto two = test::structure_of(3, false, false);
+  const auto value = [&](Complex a, Complex b, double error) {
+    return evaluate(torus, two, stability_of({a, b}, error));
+  };
+  for (const double size : {1e140, 1e160, 1e300}) {
+    const Reading pair = value(std::polar(size, 1.2), std::polar(size, -1.2), 1e-9 * size);
+    EXPECT_NEAR(pair.value, 1.0, 1e-14) << size;
+    EXPECT_GT(pair.error, 3.9e-9) << size;
+    EXPECT_LT(pair.error, 4.1e-9) << size;
+    EXPECT_EQ(value(size, -size, 1e-9).value, -1.0) << size;
+    EXPECT_EQ(value(std::polar(size, 1.2), std::polar(size, -1.2), 2.0 * size).sign(), 0) << size;
+  }
+  // On both sides of where the numbers become relative ones.
+  const double below = value(1e74, 1e75, 1e66).error;
+  const double beyond = value(1e76, 1e77, 1e68).error;
+  EXPECT_NEAR(below, 2.2e-8, 1e-13);
+  EXPECT_NEAR(beyond, below, 1e-13);
+}
+
 TEST(TestFunctions, MultiplierOfTheEnergyIsLeftOut) {
   const auto system = test::structure_of(4, true, false);
   for (const TestFunction& function : test_functions(system, 1, 4)) {
@@ -200,6 +221,14 @@ TEST(Decided, IsAnIndexWhoseErrorIsSmallWhereItMayPassSomething) {
   EXPECT_FALSE(are_decided(stability_of({{-2.5, 0.0}}, 1e-3)));
   EXPECT_TRUE(are_decided(stability_of({{1e8, 0.0}}, 1e-3)));
   EXPECT_FALSE(are_decided(stability_of({{1e8, 0.0}, {0.1, 0.0}}, 1e-3)));
+}
+
+TEST(Isolated, IsAnOrbitWhoseIndicesDifferFromTwoByMoreThanTheirErrors) {
+  EXPECT_TRUE(is_isolated(stability_of({{2.1, 0.0}}, 1e-3)));
+  EXPECT_FALSE(is_isolated(stability_of({{2.005, 0.0}}, 1e-3)));  // the bound is good to a factor of ten
+  EXPECT_FALSE(is_isolated(stability_of({{1.0, 0.0}}, 18.0)));
+  EXPECT_FALSE(is_isolated(stability_of({{-1.0, 0.0}, {2.0, 0.0}}, 1e-9)));
+  EXPECT_TRUE(is_isolated(stability_of({{-2.0, 0.0}}, 1e-9)));
 }
 
 }  // namespace

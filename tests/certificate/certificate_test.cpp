@@ -60,10 +60,9 @@ TEST(Certificate, IsThatOfTheOrbitUnderAnyTimeMap) {
 
 TEST(Closures, AgreeWhetherTheLoopIsAnOrbitOrNot) {
   for (const double period : {2.0 * pi / omega, 3.0}) {
-    const Closures both = closures(*oscillator(), oscillation(period));
-    EXPECT_NEAR(both.runge_kutta, certify(*oscillator(), oscillation(period)).closure, 1e-16);
-    EXPECT_NEAR(both.taylor, both.runge_kutta, 1e-13);
-    EXPECT_LT(both.apart, 1e-13);
+    const Certificate found = certify(*oscillator(), oscillation(period));
+    EXPECT_NEAR(found.taylor_closure, found.closure, 1e-13);
+    EXPECT_LT(found.apart, 1e-13);
   }
 }
 
@@ -76,14 +75,14 @@ TEST(Closures, SayHowFarTheIntegratorsAreApart) {
   loop.sine(1, 2) = -1.0;
   Options options;
   options.segments = 4;
-  const Closures fine = closures(*system, loop, options);
+  const Certificate fine = certify(*system, loop, {}, options);
   EXPECT_LT(fine.apart, 1e-11);
-  EXPECT_GT(fine.taylor, 0.1);
+  EXPECT_GT(fine.taylor_closure, 0.1);
   options.tolerance = 1e-6;
-  const Closures coarse = closures(*system, loop, options);
-  EXPECT_EQ(coarse.taylor, fine.taylor);
+  const Certificate coarse = certify(*system, loop, {}, options);
+  EXPECT_EQ(coarse.taylor_closure, fine.taylor_closure);
   EXPECT_GT(coarse.apart, 1e-9);
-  EXPECT_GE(coarse.apart, std::abs(coarse.taylor - coarse.runge_kutta));
+  EXPECT_GE(coarse.apart, std::abs(coarse.taylor_closure - coarse.closure));
 }
 
 TEST(Closures, AreThoseOfTheSystemInItsScales) {
@@ -91,21 +90,50 @@ TEST(Closures, AreThoseOfTheSystemInItsScales) {
   systems::Scales scales{2.0, {1.0, 1.0, 0.25, 0.25}, {8.0}, {}};
   const std::vector<double> hanging{0.3, -0.2, 0.1, 0.0};
   const loop::Loop loop = loop::constant_loop(hanging, 3.0, 3);
-  const Closures told = closures(*systems::scaled(plain, scales), loop);
-  EXPECT_GT(told.taylor, 0.01);
+  const Certificate told = certify(*systems::scaled(plain, scales), loop);
+  EXPECT_GT(told.taylor_closure, 0.01);
   EXPECT_LT(told.apart, 1e-12);
 }
 
-TEST(Closures, NeedFormulas) {
+TEST(Closures, OfTaylorSeriesNeedFormulas) {
   const loop::Loop still = loop::constant_loop(std::vector<double>{1.0}, 1.0, 3);
-  EXPECT_THAT([&] { static_cast<void>(closures(Decay(1.0), still)); },
-              ThrowsMessage<core::MisuseError>(HasSubstr("formulas")));
+  const Certificate found = certify(Decay(1.0), still);
+  EXPECT_GT(found.closure, 0.01);
+  EXPECT_TRUE(std::isnan(found.taylor_closure));
+  EXPECT_TRUE(std::isnan(found.apart));
+}
+
+TEST(Certificate, OfNoLevelSaysNothing) {
+  const Certificate found = certify(*oscillator(), oscillation(3.0), {}, {.level = Level::none});
+  EXPECT_TRUE(std::isnan(found.closure));
+  EXPECT_TRUE(std::isnan(found.energy_drift));
+}
+
+// q = cos s + a cos 3 s with a period of its first harmonic: an orbit at a distance of 3 a omega or so.
+TEST(Certificate, EstimatesTheDistanceToTheOrbit) {
+  for (const double a : {1e-3, 1e-6}) {
+    loop::Loop loop = oscillation(2.0 * pi / omega);
+    loop.cosine(3, 0) = a;
+    const Certificate found = certify(*oscillator(), loop, {}, {.level = Level::full});
+    EXPECT_GT(found.distance, 0.5 * a);
+    EXPECT_LT(found.distance, 4.0 * a);
+    EXPECT_LT(found.contraction, 1e-3);
+    EXPECT_LT(found.pairing, 1e-9);
+  }
+}
+
+TEST(Certificate, FindsAnOrbitGoneAroundSeveralTimes) {
+  EXPECT_GT(certify(*oscillator(), oscillation(2.0 * pi / omega)).recurrence, 0.1);
+  for (const int times : {2, 3, 5, 6}) {
+    const loop::Loop around = loop::repeated(oscillation(2.0 * pi / omega), times);
+    EXPECT_LT(certify(*oscillator(), around).recurrence, 1e-12) << times;
+  }
 }
 
 TEST(Certificate, MeasuresHowFarALoopIsFromAnOrbit) {
   constexpr double period = 2.0 * pi / omega * 1.01;
   constexpr int segments = 8;
-  const Certificate certificate = certify(*oscillator(), oscillation(period), {.segments = segments});
+  const Certificate certificate = certify(*oscillator(), oscillation(period), {}, {.segments = segments});
   double expected = 0.0;
   for (int m = 0; m < segments; ++m)
     expected =
@@ -120,13 +148,13 @@ TEST(Certificate, SeesAnErrorAnywhereOnTheLoop) {
   loop::Loop loop = oscillation(2.0 * pi / omega);
   loop = loop::with_cutoff(loop, 4);
   loop.sine(4, 0) = 1e-6;
-  EXPECT_LT(certify(*oscillator(), loop, {.segments = 4}).closure, 1e-12);
+  EXPECT_LT(certify(*oscillator(), loop, {}, {.segments = 4}).closure, 1e-12);
   const double carried_on = 1e-6 * std::hypot(std::cos(pi / 8.0), omega * std::sin(pi / 8.0));
-  EXPECT_NEAR(certify(*oscillator(), loop, {.segments = 16}).closure, carried_on, 1e-12);
+  EXPECT_NEAR(certify(*oscillator(), loop, {}, {.segments = 16}).closure, carried_on, 1e-12);
 }
 
 TEST(Certificate, OneSegmentIsASingleShot) {
-  const Certificate certificate = certify(*oscillator(), oscillation(3.0), {.segments = 1});
+  const Certificate certificate = certify(*oscillator(), oscillation(3.0), {}, {.segments = 1});
   EXPECT_EQ(certificate.closure, certificate.single_shot);
 }
 
@@ -134,7 +162,7 @@ TEST(Certificate, MeasuresEnergyAlongTheLoop) {
   loop::Loop loop = oscillation(2.0 * pi / omega);
   loop.sine(1, 1) *= 1.001;
   const double expected = 0.5 * omega * omega * (1.001 * 1.001 - 1.0);
-  EXPECT_NEAR(certify(*oscillator(), loop, {.segments = 8}).energy_drift, expected, 1e-15);
+  EXPECT_NEAR(certify(*oscillator(), loop, {}, {.segments = 8}).energy_drift, expected, 1e-15);
 }
 
 TEST(Certificate, AnglesMayTurnOver) {
@@ -164,7 +192,7 @@ TEST(Certificate, FailureNamesTheSegmentAndTheTime) {
   const std::vector<double> mean{1.0};
   loop::Loop loop = loop::constant_loop(mean, 4.0, 1);
   loop.cosine(1, 0) = 0.5;  // z = 1.5, 1, 0.5, 1 at the quarters
-  EXPECT_THAT(([&] { (void)certify(Decay(0.1, 0.49), loop, {.segments = 4}); }),
+  EXPECT_THAT(([&] { (void)certify(Decay(0.1, 0.49), loop, {}, {.segments = 4}); }),
               ThrowsMessage<core::NumericalError>(AllOf(HasSubstr("segment 3 of 4"), HasSubstr("period 4 (from t = 2)"),
                                                         HasSubstr("stopped at t = 0.2"))));
 }
@@ -172,7 +200,7 @@ TEST(Certificate, FailureNamesTheSegmentAndTheTime) {
 TEST(Certificate, MisuseIsRefused) {
   EXPECT_THAT(([] { (void)certify(Decay(1.0), oscillation(1.0)); }),
               ThrowsMessage<core::MisuseError>(HasSubstr("same dimension")));
-  EXPECT_THAT(([] { (void)certify(*oscillator(), oscillation(1.0), {.segments = 0}); }),
+  EXPECT_THAT(([] { (void)certify(*oscillator(), oscillation(1.0), {}, {.segments = 0}); }),
               ThrowsMessage<core::MisuseError>(HasSubstr("at least one segment")));
   loop::Loop broken = oscillation(1.0);
   broken.cosine(1, 0) = std::nan("");

@@ -117,6 +117,35 @@ TEST(Integrate, StepLimitIsReportedWithTheTimeReached) {
                                                         HasSubstr("over a time of 1000000000000"), HasSubstr("t = "))));
 }
 
+TEST(Integrate, StatesTogetherEndWhereEachEnds) {
+  const auto system = systems::make_system("double_pendulum");
+  std::vector<std::vector<double>> states;
+  for (int n = 0; n < 7; ++n) states.push_back({0.3 * n, 0.1, -0.2 * n, 0.5});
+  const auto ends = integrate_together(*system, states, 2.0, 1e-13);
+  for (std::size_t n = 0; n < states.size(); ++n) {
+    const auto alone = integrate(*system, states[n], 2.0, 1e-13);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(ends[n][i], alone[i], 1e-11) << n;
+  }
+}
+
+TEST(Integrate, TransitionsAreTheDerivativesOfTheFlow) {
+  const auto system = systems::make_system("double_pendulum");
+  const std::vector<std::vector<double>> states{{1.2, 0.1, -0.2, 0.5}, {0.1, 0.0, 0.3, 0.0}, {2.0, 1.0, 0.0, 0.0}};
+  const auto matrices = transitions(*system, states, 1.5, 1e-12);
+  constexpr double h = 1e-5;
+  for (std::size_t n = 0; n < states.size(); ++n)
+    for (std::size_t c = 0; c < 4; ++c) {
+      auto plus = states[n];
+      auto minus = states[n];
+      plus[c] += h;
+      minus[c] -= h;
+      plus = integrate(*system, plus, 1.5, 1e-13);
+      minus = integrate(*system, minus, 1.5, 1e-13);
+      for (std::size_t i = 0; i < 4; ++i)
+        EXPECT_NEAR(matrices[n][i * 4 + c], (plus[i] - minus[i]) / (2.0 * h), 1e-7 * (1.0 + std::abs(plus[i] / h) * h));
+    }
+}
+
 TEST(Integrate, MisuseIsRefused) {
   const auto system = systems::make_system("harmonic_oscillator");
   const double infinity = std::numeric_limits<double>::infinity();

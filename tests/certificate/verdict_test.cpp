@@ -36,7 +36,6 @@ TEST(Verdict, ContradictsWhereTheGrowthDoesNotExplainTheClosure) {
   EXPECT_EQ(found.verdict, Verdict::closure_contradicts);
   EXPECT_EQ(found.found, 1e-3);
   EXPECT_LT(found.allowed, 1e-7);
-  EXPECT_EQ(found.period, 10.0);
   EXPECT_EQ(verdict(1e-3, 1e-11, 2.0, 1e-6), Verdict::says_nothing) << "its residual explains it";
 }
 
@@ -44,6 +43,64 @@ TEST(Verdict, ContradictsWhereTheEnergyChanges) {
   EXPECT_EQ(verdict(1e-11, 1e-6, 1e251), Verdict::drift_contradicts) << "the loop itself: multipliers do not matter";
   EXPECT_EQ(verdict(1e-11, 1e-6, 2.0, 1e-9), Verdict::holds);
   EXPECT_EQ(verdict(1e-11, std::numeric_limits<double>::quiet_NaN(), 2.0), Verdict::holds) << "nothing is conserved";
+}
+
+/// Of an orbit that all is well with, at the level `full`.
+Certificate whole() {
+  Certificate certificate;
+  certificate.closure = certificate.taylor_closure = certificate.single_shot = 1e-12;
+  certificate.apart = certificate.energy_drift = certificate.symmetry_defect = 1e-13;
+  certificate.beside_flow = 1e-12;
+  certificate.recurrence = 0.3;
+  certificate.tail = 1e-12;
+  certificate.reach = 2.0;
+  certificate.steepness = 3.0;
+  certificate.distance = 1e-11;
+  certificate.contraction = 0.1;
+  certificate.pairing = 1e-11;
+  certificate.index = 2.5;
+  return certificate;
+}
+
+TEST(Verdict, NamesEachDefect) {
+  const Evidence evidence{10.0, 1e-12, 1.0, 2.5, 2.5, 1e-10};
+  EXPECT_EQ(judge(whole(), evidence).verdict, Verdict::holds);
+  const auto with = [&](double Certificate::*member, double value) {
+    Certificate certificate = whole();
+    certificate.*member = value;
+    return judge(certificate, evidence).verdict;
+  };
+  EXPECT_EQ(with(&Certificate::other_drift, 1e-6), Verdict::drift_contradicts);
+  EXPECT_EQ(with(&Certificate::taylor_closure, 1e-6), Verdict::wrong_period) << "what is beside the flow is explained";
+  EXPECT_EQ(with(&Certificate::apart, 1e-6), Verdict::integrators_differ);
+  EXPECT_EQ(with(&Certificate::single_shot, 1e-4), Verdict::return_contradicts);
+  EXPECT_EQ(with(&Certificate::symmetry_defect, 1e-7), Verdict::not_symmetric);
+  EXPECT_EQ(with(&Certificate::recurrence, 1e-11), Verdict::not_minimal);
+  EXPECT_EQ(with(&Certificate::tail, 1e-3), Verdict::truncated);
+  EXPECT_EQ(with(&Certificate::pairing, 1e-5), Verdict::unpaired);
+  EXPECT_EQ(with(&Certificate::index, 2.5001), Verdict::other_multipliers);
+  EXPECT_EQ(with(&Certificate::distance, 1e-3), Verdict::no_orbit_near);
+  EXPECT_EQ(with(&Certificate::contraction, 0.9), Verdict::holds) << "two steps of rounding";
+  Certificate aimless = whole();
+  aimless.contraction = 0.9;
+  aimless.distance = 1e-5;
+  EXPECT_EQ(judge(aimless, evidence).verdict, Verdict::no_orbit_near);
+}
+
+// The multipliers let nothing be integrated, but Newton's method follows the orbit from segment to segment.
+TEST(Verdict, OfAnUnstableOrbitIsNewtons) {
+  Certificate certificate = whole();
+  certificate.closure = certificate.taylor_closure = certificate.beside_flow = certificate.single_shot = 1e-3;
+  certificate.index = 1e12;
+  const Evidence evidence{10.0, 1e-12, 1.0, 1e12, 1e12, 1.0};
+  EXPECT_EQ(judge(certificate, evidence).verdict, Verdict::holds);
+  certificate.distance = unknown;
+  EXPECT_EQ(judge(certificate, evidence).verdict, Verdict::says_nothing);
+}
+
+TEST(Verdict, EachHasAName) {
+  for (int n = 0; n <= static_cast<int>(last_of(Verdict{})); ++n)
+    EXPECT_NE(name_of(static_cast<Verdict>(n)), "unknown") << n;
 }
 
 TEST(Verdict, TheCertificateSaysHowFarAndHowSteep) {

@@ -4,6 +4,8 @@
 #include <numbers>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,6 +14,7 @@
 #include "corrector/oscillator.hpp"
 #include "orbweaver/core/error.hpp"
 #include "point_problem.hpp"
+#include "support/delegating_system.hpp"
 
 namespace orbweaver::continuation {
 namespace {
@@ -160,6 +163,33 @@ TEST(Ends, FailureAtTheVeryStart) {
   EXPECT_THAT(trace.ending.text(), HasSubstr("not finite"));
 }
 
+/// Keeps the states at which an oscillator's field is asked for, of many at once.
+class Recorder final : public test::DelegatingSystem {
+ public:
+  using DelegatingSystem::DelegatingSystem;
+  void field(std::size_t nodes, const double* z, double* f) const override {
+    asked.emplace_back(z, z + 2 * nodes);
+    DelegatingSystem::field(nodes, z, f);
+  }
+  void field_jacobian(std::size_t nodes, const double* z, double* f, double* jacobian) const override {
+    asked.emplace_back(z, z + 2 * nodes);
+    DelegatingSystem::field_jacobian(nodes, z, f, jacobian);
+  }
+
+  mutable std::vector<std::vector<double>> asked;
+};
+
+TEST(Ends, NoWholeLoopIsTriedTwiceAtTheVeryStart) {
+  const auto walled = std::make_shared<const Recorder>(std::make_shared<const test::Oscillator>(0.0, -1.0));
+  Options options;
+  options.corrector.method = corrector::Method::newton_krylov;
+  const test::Trace trace = test::trace_of(walled, circles(*walled), options);
+  EXPECT_THAT(trace.ending.text(), HasSubstr("no orbit near the start"));
+  const std::set<std::vector<double>> different(walled->asked.begin(), walled->asked.end());
+  EXPECT_GT(different.size(), 3U);
+  EXPECT_EQ(walled->asked.size(), different.size());
+}
+
 /// q' = p, p' = -q - stiffness q^3: the period depends on the amplitude. The field is NaN where |p| > wall.
 class Spring final : public test::StatedSystem {
  public:
@@ -219,6 +249,46 @@ TEST(Ends, NotFiniteWhereThePeriodIsLost) {
   EXPECT_FALSE(first.trial.converged);
   EXPECT_LT(first.period, 0.0);
   EXPECT_THAT(first.trial.reason, HasSubstr("the vector field of test_spring is not finite"));
+}
+
+/// The pendulum whose field is NaN where the outer angle is between two values.
+class Strip final : public test::DelegatingSystem {
+ public:
+  Strip(double from, double to) : DelegatingSystem(test::pendulum()), _from(from), _to(to) {}
+  void field(std::size_t nodes, const double* z, double* f) const override {
+    DelegatingSystem::field(nodes, z, f);
+    spoil(nodes, z, f);
+  }
+  void field_jacobian(std::size_t nodes, const double* z, double* f, double* jacobian) const override {
+    DelegatingSystem::field_jacobian(nodes, z, f, jacobian);
+    spoil(nodes, z, f);
+  }
+
+ private:
+  void spoil(std::size_t nodes, const double* z, double* f) const {
+    for (std::size_t j = 0; j < nodes; ++j)
+      if (std::abs(z[nodes + j]) > _from && std::abs(z[nodes + j]) < _to)
+        f[2 * nodes + j] = std::numeric_limits<double>::quiet_NaN();
+  }
+  double _from;
+  double _to;
+};
+
+// By collocation the field is asked for in the middles of cells, which may be the only places in a narrow strip; and
+// where all of a loop is in it, the preconditioner cannot be built.
+TEST(Ends, NotFiniteSaysAtWhichStateByEveryMethod) {
+  for (const auto& [from, to] : {std::pair(0.05, 0.06), std::pair(0.05, 10.0)}) {
+    Options options{.step_limit = 40};
+    options.start_amplitude = 0.3;
+    for (const auto method : {corrector::Method::collocation, corrector::Method::newton_krylov}) {
+      options.corrector.method = method;
+      const test::Trace trace =
+          test::trace_of(std::make_shared<const Strip>(from, to), test::start_of(test::in_phase()), options);
+      EXPECT_TRUE(trace.ending.failed());
+      EXPECT_THAT(trace.ending.text(), HasSubstr("the vector field of double_pendulum is not finite (nan) at t = "));
+      EXPECT_THAT(trace.ending.text(), HasSubstr("state ("));
+    }
+  }
 }
 
 TEST(Ends, DivergenceSaysHowFar) {

@@ -112,6 +112,24 @@ TEST_F(Team, AMemberThatLeavesAloneIsMetWhereverTheOthersAre) {
   EXPECT_TRUE(team.fallen_apart());
 }
 
+TEST_F(Team, AMemberThatLeavesIsMetByThoseWhoWaitForTheLeader) {
+  if (team.size() == 1) return;
+  for (const int leaver : {0, last}) {
+    team.begin();
+    const std::string text = thrown_by([&] {
+      std::string bytes = "go on";
+      if (team.rank() == leaver)
+        team.end("thrown before the answer", 0);
+      else
+        team.broadcast(bytes);
+    });
+    EXPECT_THAT(text, HasSubstr("T member " + std::to_string(leaver)));
+    EXPECT_THAT(text, HasSubstr("thrown before the answer"));
+  }
+  team.begin();
+  expect_whole();
+}
+
 TEST_F(Team, ANumericalErrorOfAMemberThatIsElsewhereIsNoneOfAll) {
   if (team.size() == 1) return;
   const std::string text = thrown_by([&] {

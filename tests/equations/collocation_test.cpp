@@ -98,6 +98,29 @@ TEST_P(Equations, PreconditionerSolvesWhatDoesNotDependOnTheStates) {
   for (std::size_t n = 0; n < u.size(); ++n) EXPECT_NEAR(r[n], v[n], 1e-10) << n;
 }
 
+TEST_P(Equations, TheDerivativeItselfIsItsOwnPreconditioner) {
+  const std::vector<double> u = point_of(sample());
+  set_random_conditions(u);
+  equations.precondition_by(Preconditioner::exact);
+  equations.factor(u.data());
+  std::vector<double> v = test::random_values(u.size(), 11);
+  for (int i = 0; i < equations.dimension(); ++i)  // what fills the strides is no unknown
+    for (int j = equations.cells() + 1; j < equations.grid().stride(); ++j)
+      v[static_cast<std::size_t>(i * equations.grid().stride() + j)] = 0.0;
+  std::vector<double> r(u.size());
+  equations.apply_jacobian(v.data(), r.data());
+  equations.precondition(r.data());
+  for (std::size_t n = 0; n < u.size(); ++n) EXPECT_NEAR(r[n], v[n], 1e-9) << n;
+  // The box scheme again from the next factor on.
+  equations.precondition_by(Preconditioner::box);
+  equations.factor(u.data());
+  equations.apply_jacobian(v.data(), r.data());
+  equations.precondition(r.data());
+  double apart = 0.0;
+  for (std::size_t n = 0; n < u.size(); ++n) apart = std::max(apart, std::abs(r[n] - v[n]));
+  EXPECT_GT(apart, 1e-3);
+}
+
 // A chain of any number of particles: no dimension is left out.
 TEST(Collocation, AppliesToAnyDimension) {
   for (const int particles : {1, 4, 5, 7}) {

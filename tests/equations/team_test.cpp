@@ -96,9 +96,9 @@ TEST_F(WithTeam, EliminatesAStretchAMember) {
   for (const bool transposed : {false, true}) EXPECT_LT(problem.residual(*box, transposed), 1e-14);
 }
 
-TEST_F(WithTeam, SolvesOnTheTeamsCommunicatorGiveTheSolution) {
+TEST_F(WithTeam, SolvesGiveTheSolution) {
   LoopSolver by_one(alone.equations.size(), "alone_");
-  LoopSolver by_all(shared.equations.size(), "shared_", &team);
+  LoopSolver by_all(shared.equations.size(), "shared_");
   const Eigen::VectorXd right = alone.vector(0.7);
   const Eigen::VectorXd x = by_all.solve(shared.equations, right, accuracy);
   EXPECT_LT(difference(x, by_one.solve(alone.equations, right, accuracy)), 1e-8);
@@ -111,17 +111,11 @@ TEST_F(WithTeam, SolvesOnTheTeamsCommunicatorGiveTheSolution) {
 }
 
 TEST_F(WithTeam, MembersHaveTheSameBits) {
-  LoopSolver solver(shared.equations.size(), "shared_", &team);
+  LoopSolver solver(shared.equations.size(), "shared_");
   const Eigen::VectorXd x = solver.solve(shared.equations, shared.vector(0.1), accuracy);
   team.compare("solutions", core::digest_of({reinterpret_cast<const char*>(x.data()), sizeof(double) * x.size()}));
   const Eigen::VectorXd again = solver.solve(shared.equations, shared.vector(0.1), accuracy);
   EXPECT_EQ(x, again);
-}
-
-TEST_F(WithTeam, ASolveWhoseEquationsAreOthersIsRefused) {
-  if (team.size() == 1) return;
-  LoopSolver solver(shared.equations.size(), "shared_", &team);
-  EXPECT_THROW((void)solver.solve(alone.equations, shared.vector(0.1), accuracy), core::MisuseError);
 }
 
 }  // namespace

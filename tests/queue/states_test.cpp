@@ -1,8 +1,11 @@
+#include <chrono>
 #include <map>
 #include <stdexcept>
+#include <thread>
 
 #include <gmock/gmock.h>
 
+#include "orbweaver/core/interruption.hpp"
 #include "orbweaver/queue/stop.hpp"
 #include "queue/synthetic.hpp"
 
@@ -23,14 +26,21 @@ class Steps : public queue::Executor, public queue::Flusher, public queue::Obser
   explicit Steps(const Communicator& comm) : _comm(comm) {}
 
   TaskOutcome execute(const Task& t, TaskContext& context) override {
+    _before = _held.size();
     int step = t.state.empty() ? 0 : std::stoi(t.state);
     if (step > 0) ++_gone_on;
     while (step < steps_each) {
       sleep_us(hash(t.key, static_cast<std::uint64_t>(step)) % 300);
       _held.emplace_back(t.key, step++);
+      if (_hangs && step == steps_each / 2) hang();
       if (!context.report({step, 1, {}}, [&] { return std::to_string(step); })) break;
     }
     return {};
+  }
+
+  void take_back_rows(bool flushed) override {
+    _held.resize(flushed ? 0 : _before);
+    ++_given_up;
   }
 
   void flush(int) override {
@@ -54,6 +64,9 @@ class Steps : public queue::Executor, public queue::Flusher, public queue::Obser
     _dies_at = flush;
     _flushed = 0;
   }
+  /// Every task stays in the middle of one of its steps, with a row that was not reported.
+  void hang_in_the_middle(bool hangs) { _hangs = hangs; }
+  [[nodiscard]] std::int64_t given_up() const { return sum(_comm, _given_up); }
   void forget_rows_in_hand() { _held.clear(); }
   [[nodiscard]] const std::vector<Task>& unfinished() const { return _unfinished; }
   [[nodiscard]] std::int64_t gone_on() const { return sum(_comm, _gone_on); }
@@ -71,7 +84,16 @@ class Steps : public queue::Executor, public queue::Flusher, public queue::Obser
   }
 
  private:
+  static void hang() {
+    const auto began = std::chrono::steady_clock::now();
+    while (std::chrono::steady_clock::now() - began < std::chrono::seconds(20)) orbweaver::core::interruption_point();
+    ADD_FAILURE() << "nobody has asked for the end of this step";
+  }
+
   const Communicator& _comm;
+  std::size_t _before = 0;
+  bool _hangs = false;
+  std::int64_t _given_up = 0;
   std::vector<std::pair<std::string, int>> _held;
   std::map<std::pair<std::string, int>, int> _written;
   std::vector<Task> _snapshot;
@@ -87,6 +109,36 @@ queue::Options often() {
   options.flush_rows = 60;
   options.progress_seconds = 0.001;
   return options;
+}
+
+TEST(States, AStopWithinAStepGoesOnFromTheLastFlush) {
+  const Communicator comm;
+  Steps steps(comm);
+  constexpr int count = 30;
+  std::vector<Task> remaining = tasks(count);
+  queue::Options options = often();
+  options.flush_rows = 5;  // tasks are flushed before the middle
+  for (const int victim : {0, comm.size() - 1}) {
+    steps.die_at(-1);
+    steps.hang_in_the_middle(true);
+    const auto began = std::chrono::steady_clock::now();
+    std::thread stopper([&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(300));
+      if (comm.rank() == victim) queue::request_stop();
+    });
+    const auto summary = queue::run(comm, options, remaining, steps, steps, steps);
+    stopper.join();
+    queue::clear_stop();
+    EXPECT_TRUE(summary.stopped_early);
+    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(), 3.0);
+    remaining = steps.unfinished();
+  }
+  EXPECT_GE(steps.given_up(), 2);
+  steps.die_at(-1);
+  steps.hang_in_the_middle(false);
+  EXPECT_FALSE(queue::run(comm, options, remaining, steps, steps, steps).stopped_early);
+  EXPECT_GT(steps.gone_on(), 0) << "some task must have gone on from a state";
+  steps.expect_each_once(count);
 }
 
 TEST(States, ARunThatEndsBetweenFlushesGoesOnFromTheLastOne) {

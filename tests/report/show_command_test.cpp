@@ -2,10 +2,13 @@
 
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <fstream>
 #include <sstream>
 
 #include "archive/sample.hpp"
+#include "orbweaver/core/text.hpp"
 #include "orbweaver/report/show.hpp"
 
 namespace {
@@ -63,6 +66,26 @@ TEST_F(ShowCommand, WrongInputExitsWithTwo) {
   const Outcome missing = run_show("none.h5 families");
   EXPECT_EQ(missing.status, 2);
   EXPECT_THAT(missing.out, HasSubstr("'none.h5' does not exist"));
+}
+
+// As an archive from elsewhere, without checksums, may have them: the writer refuses bytes that are not UTF-8.
+TEST_F(ShowCommand, StoredNamesAreEscaped) {
+  const auto header = test::sample_header();
+  archive::Records records = test::sample_records(header);
+  records.families[0].name = "Odd\x1b[31m\xC2\x9B@@";
+  const std::filesystem::path odd = test::write_sample_atlas(test::fresh_folder("odd"), header, records);
+  test::remove_checksums(odd);
+  std::string bytes = (std::ostringstream() << std::ifstream(odd, std::ios::binary).rdbuf()).str();
+  for (std::size_t at = bytes.find("@@"); at != std::string::npos; at = bytes.find("@@", at))
+    bytes[at] = bytes[at + 1] = '\xFF';
+  std::ofstream(odd, std::ios::binary) << bytes;
+  for (const std::string arguments : {"", " families", " families --csv", " families --json", " crossings"}) {
+    const Outcome outcome = run_show(odd.string() + arguments);
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_THAT(outcome.out, HasSubstr(arguments.ends_with("json") ? "Odd\\u001b[31m\\u009b\\ufffd\\ufffd"
+                                                                   : "Odd\\x1b[31m\\xc2\\x9b\\xff\\xff"));
+    EXPECT_EQ(core::printable_lines(outcome.out), outcome.out) << "nothing is left to be escaped";
+  }
 }
 
 TEST_F(ShowCommand, AFullOutputIsAnEnvironmentFailure) {

@@ -55,11 +55,12 @@ TEST(Show, OrbitsAsCsvSpreadTheirVectorsAndKeepEveryDigit) {
   EXPECT_EQ(lines[0],
             "family,step,arclength,period,energy,action,parameter,cutoff,loss_rms,off_branch_eigenvalue,stability_0,"
             "fundamental_stability_0,stability_error,state_θ1,state_w1,closure,single_shot,energy_drift,tail,"
-            "modes_begin,modes_count,time_map_begin,time_map_count,winding_n1");
+            "modes_begin,modes_count,time_map_begin,time_map_count,winding_n1,verdict,taylor_closure,"
+            "integrators_apart,other_drift,symmetry_defect,recurrence,orbit_distance,contraction,pairing,index_gap");
   EXPECT_EQ(
       lines[1],
       "0,0,0,3.125,0.10000000000000001,0.28125,nan,2,9.9999999999999994e-12,nan,9,9.5,nan,900,-900.015625,nan,nan,"
-      "nan,0.0087890625,0,10,0,5,0");
+      "nan,0.0087890625,0,10,0,5,0,-1,nan,nan,nan,nan,nan,nan,nan,nan,nan");
 }
 
 TEST(Show, OrbitsAsJson) {
@@ -76,7 +77,10 @@ TEST(Show, OrbitsAsJson) {
       "\"stability\": [[10, -10.015625]], \"fundamental_stability\": [[null, null]], \"stability_error\": null, "
       "\"state\": [1000, -1000.015625], \"closure\": null, \"single_shot\": null, \"energy_drift\": null, "
       "\"tail\": 0.009765625, \"modes_begin\": 10, \"modes_count\": 14, \"time_map_begin\": 5, "
-      "\"time_map_count\": 0, \"winding\": [0]},");
+      "\"time_map_count\": 0, \"winding\": [0], \"verdict\": -1, \"taylor_closure\": null, "
+      "\"integrators_apart\": null, \"other_drift\": null, \"symmetry_defect\": null, \"recurrence\": null, "
+      "\"orbit_distance\": null, "
+      "\"contraction\": null, \"pairing\": null, \"index_gap\": null},");
 }
 
 TEST(Show, TextsAreEscapedInJson) {
@@ -202,6 +206,24 @@ TEST(Show, ChildrenStandBehindTheirParentWhateverTheOrderOfKeys) {
   const Archive circle(test::write_sample_atlas(test::fresh_folder("circle"), header, records));
   EXPECT_THAT(family_column(circle),
               ElementsAre("family", "other side", "one", "  child", "    grandchild", "  second child"));
+}
+
+TEST(Show, ALongChainOfParentsTakesALineEach) {
+  const Header header = test::sample_header();
+  constexpr int length = 20000;  // lines of 2 n columns would be 400 MB
+  Records records;
+  for (int n = 0; n < length; ++n) {
+    FamilyRecord family;
+    family.key = fmt::format("{:06}", n);
+    family.name = fmt::format("f{}", n);
+    if (n > 0) family.parent_key = fmt::format("{:06}", n - 1);
+    family.end_reason.assign(1, '-');
+    records.families.push_back(family);
+  }
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("chain"), header, records));
+  const std::string text = shown(atlas, "families", TextFormat::readable);
+  EXPECT_LT(text.size(), std::size_t{length} * 200);
+  EXPECT_THAT(text, HasSubstr("\n                        f19999 "));
 }
 
 // The one family of five orbits with T = 1 ... 5, these stabilities, and this error bound.

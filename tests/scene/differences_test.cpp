@@ -59,6 +59,7 @@ const std::map<std::string, Case> cases{
     {"survey.subharmonics", {"4", "5"}},
     {"survey.spectrum", {"events", "all"}},
     {"survey.team_size", {"1", "2", Change::free}},
+    {"compute.certificate", {"automatic", "full"}},
     {"limits.period", {"30.0", "31", Change::widened}},
     {"limits.energy", {"[-.inf, .inf]", "[-10, .inf]", Change::narrowed}},
     {"limits.guards", {"", ""}},  // none in a system without guards: tested below
@@ -81,9 +82,10 @@ std::vector<std::string> keys_under(const std::string& path) {
     static_cast<void>(with({prefix + "qqqqqqqqqqqqqqqqqqqq=1"}));
   } catch (const orbweaver::core::InputError& error) {
     const std::string text = error.what();
-    const std::string lead = "unknown key, expected one of ";
+    std::string lead = "unknown key, expected ";
     const std::size_t begin = text.find(lead);
     if (begin == std::string::npos) return {};
+    if (const std::string several = lead + "one of "; text.find(several) == begin) lead = several;
     std::string names = text.substr(begin + lead.size(), text.find(", got") - begin - lead.size());
     if (const std::size_t last = names.find(" or "); last != std::string::npos) names.replace(last, 4, ", ");
     std::vector<std::string> keys;

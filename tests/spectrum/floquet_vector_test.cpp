@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "pendulum_loops.hpp"
 
@@ -26,16 +27,23 @@ Modes modes_of(double m) {
   return {std::sqrt(1.0 / (1.0 + root)), std::sqrt((1.0 + m) * (1.0 + root)), std::sqrt(1.0 + 1.0 / m)};
 }
 
-int needed(double m, double share, int most = 4096) {
+/// `half`: from half the period and the loop's symmetry.
+int needed(double m, double share, int most = 4096, bool half = false) {
   const auto system = systems::make_system("double_pendulum", {{"m2", m}});
   const Modes modes = modes_of(m);
   const test::PendulumMode slow{"slow", {0, 0, 0, 0}, modes.slow, modes.ratio};
   const loop::Loop loop = test::linear_loop(slow, 1e-4, 3);
   spectrum::FloquetVectorOptions options;
-  options.angle = std::remainder(modes.fast * slow.period(), 2.0 * std::numbers::pi);
+  const double pi = std::numbers::pi;
+  // S^-1 of the half period's transition matrix: S = -1.
+  options.angle = half ? std::remainder(modes.fast * slow.period() / 2.0 + pi, 2.0 * pi)
+                       : std::remainder(modes.fast * slow.period(), 2.0 * pi);
+  options.order = half ? 2 : 1;
   options.share = share;
   options.most = most;
-  return spectrum::floquet_vector_cutoff(*system, loop, {}, options);
+  const loop::Isotropy isotropy =
+      half ? loop::find_isotropy(system->structure(), loop, loop::symmetry_tolerance) : loop::Isotropy{};
+  return spectrum::floquet_vector_cutoff(*system, loop, isotropy, options);
 }
 
 TEST(FloquetVector, NeedsTheRatioOfTheFrequencies) {
@@ -45,6 +53,13 @@ TEST(FloquetVector, NeedsTheRatioOfTheFrequencies) {
     // cos(fast t) has one harmonic; the angle is known modulo a turn, and v has one more than the series.
     const double ratio = modes.fast / modes.slow;
     EXPECT_NEAR(needed(m, 1e-3), ratio, 2.5);
+  }
+}
+
+TEST(FloquetVector, IsContinuedByTheSymmetry) {
+  for (const double m : {30.0, 1000.0}) {
+    const Modes modes = modes_of(m);
+    EXPECT_NEAR(needed(m, 1e-3, 4096, true), modes.fast / modes.slow, 2.5) << m;
   }
 }
 

@@ -1,5 +1,6 @@
 #include "orbweaver/starts/shared_periods.hpp"
 
+#include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -59,11 +60,31 @@ TEST(SharedPeriods, NearlyToWhatTheAmplitudeTells) {
     EXPECT_EQ(harmonics_of(ratio(2, sign * 0.06)), (Harmonics{1}));
     EXPECT_EQ(harmonics_of(ratio(2, sign * 0.06), 1.0), (Harmonics{1})) << "0.05 at most";
     EXPECT_EQ(harmonics_of(ratio(2, sign * 0.04), 1e-3), (Harmonics{1}));
-    EXPECT_EQ(harmonics_of(ratio(3, sign * 4e-4)), (Harmonics{1, 3}));
+    EXPECT_EQ(harmonics_of(ratio(3, sign * 1e-7)), (Harmonics{1, 3}));
     EXPECT_EQ(harmonics_of(ratio(3, sign * 6e-4)), (Harmonics{1}));
     EXPECT_EQ(harmonics_of(ratio(1, sign * 4e-4)), (Harmonics{1, 1}));
     EXPECT_EQ(harmonics_of(ratio(1, sign * 6e-4)), (Harmonics{1}));
   }
+}
+
+// Detunings that orbits of the amplitude 0.01 do not tell, nearer ones do: 5 r^2.
+TEST(SharedPeriods, ApartAtASmallerAmplitude) {
+  for (const double detuning : {1e-6, -1e-4, 4e-4}) {
+    const std::vector<SharedPeriod> shared = of_stiffness({1.0, std::pow(3.0 / (1.0 + detuning), 2)});
+    ASSERT_EQ(shared.size(), 2U) << detuning;
+    for (const SharedPeriod& each : shared) {
+      EXPECT_TRUE(each.is_simple());
+      EXPECT_NEAR(each.apart_below, std::sqrt(std::abs(detuning) / 5.0), 1e-3 * each.apart_below);
+      EXPECT_EQ(each.together_from, 0.0);
+    }
+  }
+}
+
+TEST(SharedPeriods, TogetherBeyondWhereFamiliesTurn) {
+  EXPECT_NEAR(of_stiffness({1.0, std::pow(3.0 / (1.0 + 1e-7), 2)})[0].together_from, 8e-3, 1e-15);
+  EXPECT_EQ(of_stiffness({1.0, 9.0})[0].together_from, 0.0) << "exactly";
+  EXPECT_EQ(of_stiffness({1.0, std::pow(2.0 / (1.0 + 1e-4), 2)})[0].together_from, 0.0) << "no turns";
+  EXPECT_TRUE(std::isinf(of_stiffness({1.0, 9.0})[0].apart_below));
 }
 
 // With a small second mass both frequencies are nearly one, and both oscillations nearly those of the second angle.
@@ -73,6 +94,23 @@ TEST(SharedPeriods, NotOfVectorsThatNearlyAgree) {
   const LinearModes modes = linear_modes(*system, rest);
   ASSERT_LT(modes.oscillations[0].period / modes.oscillations[1].period, 1.0 + 2e-4);
   EXPECT_EQ(shared_periods(*system, rest, modes, amplitude).size(), 2U);
+}
+
+// L4's two oscillations just below Routh's mass ratio, of opposite energies, and a light pendulum's two, of one sign.
+TEST(SharedPeriods, ApartWhereTheyAreAboutToCollide) {
+  const double mu = 0.03852;
+  const auto system = systems::make_system("pcr3bp", {{"mu", mu}});
+  const std::vector<double> l4{0.5 - mu, std::sqrt(0.75), 0.0, 0.0};
+  const LinearModes modes = linear_modes(*system, l4);
+  const std::vector<SharedPeriod> shared = shared_periods(*system, l4, modes, amplitude);
+  ASSERT_EQ(shared.size(), 2U);
+  const double detuning = 1.0 - modes.oscillations[1].period / modes.oscillations[0].period;
+  ASSERT_LT(detuning, 0.01);
+  for (const SharedPeriod& each : shared) EXPECT_NEAR(each.apart_below, detuning / 5.0, 1e-9);
+  const auto light = systems::make_system("double_pendulum", {{"m2", 1e-6}});
+  const std::vector<double> rest(4, 0.0);
+  for (const SharedPeriod& each : shared_periods(*light, rest, linear_modes(*light, rest), amplitude))
+    EXPECT_TRUE(std::isinf(each.apart_below));
 }
 
 TEST(SharedPeriods, SignsOfTheEnergy) {

@@ -118,6 +118,8 @@ TEST(Startable, ASurveyThereNeedsResume) {
   EXPECT_THAT(refusal(DirectoryStatus::finished_with_failures), HasSubstr("a finished survey"));
   EXPECT_THAT(refusal(DirectoryStatus::unfinished),
               AllOf(HasSubstr("an unfinished survey"), HasSubstr("--resume to go on with it")));
+  EXPECT_THAT(refusal(DirectoryStatus::finished_within_narrower_limits),
+              AllOf(HasSubstr("a finished survey with narrower limits"), HasSubstr("--resume to go on with it")));
   EXPECT_NO_THROW(survey::require_startable(DirectoryStatus::finished, "some/folder", true));
   EXPECT_NO_THROW(survey::require_startable(DirectoryStatus::finished_with_failures, "some/folder", true));
   EXPECT_NO_THROW(survey::require_startable(DirectoryStatus::unfinished, "some/folder", true));

@@ -1,5 +1,7 @@
 #include "tasks/payload/keys.hpp"
 
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "orbweaver/core/error.hpp"
@@ -33,6 +35,28 @@ TEST(Keys, LieOnWhatTheyBeginWithToASlash) {
   EXPECT_FALSE(lies_on("0000.0001", "0000.0001")) << "itself";
   EXPECT_FALSE(lies_on("0000.0001+/003.q4.j1", "0000.0001")) << "another side";
   EXPECT_FALSE(lies_on("0000.0002/003.q4.j1", "0000.0001"));
+}
+
+TEST(Keys, SortAsTheirNumbersDo) {
+  std::string last;
+  for (const int number : {0, 9, 10, 999, 1000, 1001, 9999, 10000, 123456}) {
+    const std::string key = event_key("0000.0001", number, "fold");
+    EXPECT_LT(last, key);
+    EXPECT_EQ(event_number(key, "0000.0001"), number);
+    EXPECT_EQ(branch_of(key), "0000.0001");
+    last = key;
+  }
+  last.clear();
+  for (const int number : {0, 9999, 10000, 123456}) {
+    const std::string key = base_key(number, number);
+    EXPECT_LT(last, key);
+    EXPECT_LT(key, base_key(number, number + 1));
+    EXPECT_EQ(equilibrium_index(key), number);
+    EXPECT_TRUE(key.starts_with(equilibrium_key(number) + "."));
+    EXPECT_LT(base_key(number, number) + "/003.fold", base_key(number, number + 1));
+    last = key;
+  }
+  EXPECT_EQ(base_key(2, 1), "0002.0001");
 }
 
 TEST(Keys, WithoutANumberAreRefused) {

@@ -63,4 +63,16 @@ TEST(Ratios, WhatRoundingHidesIsUndecided) {
   EXPECT_EQ(count_of(summary, survey::Severity::undecided), 1U);
 }
 
+// So much faster that no grid of the slow motion resolves it: linear systems are solved as they are. At T = 10.12 the
+// box scheme, beside a motion that its cells do not resolve, no longer gives orbits.
+TEST(Ratios, AFamilyIsFollowedBesideAMotionThatItsCellsDoNotResolve) {
+  const core::Communicator comm;
+  const survey::Summary summary =
+      test::run(comm, scene_with({"system.parameters.m2=1e6", "limits.period=10.4", "limits.families=1"}), "slow");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  ASSERT_EQ(summary.families.size(), 1U);
+  EXPECT_EQ(summary.families.front().period_to, 10.4);
+}
+
 }  // namespace

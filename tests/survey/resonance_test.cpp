@@ -105,6 +105,54 @@ TEST(Resonance, WhatRoundingDoesNotTellIsUndecided) {
                                       Field(&survey::FindingSummary::severity, survey::Severity::undecided))));
 }
 
+/// The pendulum's families at rest, and what leaves them, for a mass of the second bob.
+survey::Summary pendulum(double m2, std::vector<std::string> overrides = {}) {
+  for (const std::string& given :
+       {fmt::format("system.parameters.m2={:.17g}", m2), std::string("starts.fixed_points.grid=[[0], [0]]"),
+        std::string("starts.fixed_points.names={[0, 0]: [In-Phase, Out-Phase]}"), std::string("survey.depth=1"),
+        std::string("limits.period=10")})
+    overrides.insert(overrides.begin(), given);
+  return test::run(core::Communicator(),
+                   scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/double_pendulum.yaml", overrides), "pendulum");
+}
+
+void expect_adds_up(const survey::Summary& summary, double m2) {
+  EXPECT_EQ(summary.failures, 0U) << m2;
+  for (const survey::FindingSummary& line : summary.findings)
+    EXPECT_EQ(line.severity, survey::Severity::cut) << m2 << line.text;
+}
+
+// Just above 16/9 the slow family turns in energy (at an amplitude of 0.02 for 1.7778) and comes back to the fast one
+// gone around three times; further out another is born there. Both are told only by orbits nearer to the equilibrium
+// than that, and at the turn singular values are small because the amplitude is.
+TEST(Resonance, NearOneToThreeThePendulumsFamiliesStartApart) {
+  expect_adds_up(pendulum(1.77779), 1.77779);
+  for (const double m2 : {1.7778, 1.7779}) {
+    const survey::Summary summary = pendulum(m2, {"survey.subharmonics=3"});
+    expect_adds_up(summary, m2);
+    const test::Atlas atlas(summary.atlas);
+    const std::vector<std::string> names = atlas.families().texts("name");
+    ASSERT_GE(names.size(), 3U) << m2;
+    EXPECT_EQ(names[0], "In-Phase");
+    EXPECT_EQ(names[1], "Out-Phase");
+    EXPECT_THAT(atlas.families().texts("end_reason")[0], HasSubstr("joined Out-Phase")) << m2;
+    const std::vector<double> energies = atlas.column("energy", "In-Phase");
+    const auto turn = std::max_element(energies.begin(), energies.end());
+    EXPECT_TRUE(turn != energies.begin() && turn + 1 != energies.end()) << m2;
+  }
+}
+
+// Beside two singular values at 1e-14 the next ones take several inverse iterations: without them a location failed.
+TEST(Resonance, KernelsOfThePendulumAtOneToThreeAreFound) {
+  const survey::Summary summary = pendulum(16.0 / 9.0, {"limits.period=30"});
+  EXPECT_EQ(summary.failures, 0U);
+}
+
+// At 1:2 the mirror leaves four slow families so nearly one that the corrector slips from each to the next.
+TEST(Resonance, NearOneToTwoThePendulumsFamiliesMeetWhereTheyCross) {
+  for (const double m2 : {0.556875, 0.5619375, 0.5625, 0.562505625}) expect_adds_up(pendulum(m2), m2);
+}
+
 TEST(Resonance, AlongASlowOscillationOfTheOtherSignNoneIsFollowed) {
   const core::Communicator comm;
   const double mu = 0.024293897142052323;  // frequencies at L4 in the ratio 2

@@ -1,6 +1,10 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include <sys/resource.h>
 
 #include "orbweaver/core/error.hpp"
 #include "state/branch_state.hpp"
@@ -52,6 +56,29 @@ TYPED_TEST(Travellers, ComeBackWithAllBits) {
   EXPECT_NE(test::text_of(sent), test::text_of(TypeParam{}));
   EXPECT_EQ(test::text_of(from_payload<TypeParam>(to_payload(sent))), test::text_of(sent));
   EXPECT_EQ(test::text_of(from_payload<TypeParam>(to_payload(TypeParam{}))), test::text_of(TypeParam{}));
+}
+
+double peak_mib() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+// A size of 2^28 at every place where one may stand.
+TYPED_TEST(Travellers, TakeNoMoreMemoryThanThereAreBytes) {
+  const std::string bytes = to_payload(test::filled<TypeParam>());
+  const double before = peak_mib();
+  const std::uint64_t forged = std::uint64_t{1} << 28;
+  for (std::size_t at = 0; at + sizeof forged <= bytes.size(); ++at) {
+    std::string changed = bytes;
+    std::memcpy(changed.data() + at, &forged, sizeof forged);
+    try {
+      (void)from_payload<TypeParam>(changed);
+    } catch (const core::EnvironmentError&) {
+      // As it should be; where a number stood the value is another one.
+    }
+  }
+  EXPECT_LT(peak_mib() - before, 100.0);
 }
 
 TYPED_TEST(Travellers, AreRefusedWithOtherMembers) {

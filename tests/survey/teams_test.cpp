@@ -172,6 +172,46 @@ TEST(Teams, FollowTheLeadersAnswersToReports) {
   EXPECT_EQ(member.states, 1);
 }
 
+TEST(Teams, AStateThatOneMemberCannotGiveFailsTheTaskForAll) {
+  class Stateless final : public queue::Executor {
+   public:
+    explicit Stateless(bool fails) : _fails(fails) {}
+    queue::TaskOutcome execute(const queue::Task&, queue::TaskContext& context) override {
+      for (int step = 1; context.report({step, 0, {}}, [this] { return state(); });) ++step;
+      return {};
+    }
+
+   private:
+    [[nodiscard]] std::string state() const {
+      if (_fails) throw std::runtime_error("no memory for the state");
+      return "state";
+    }
+    bool _fails;
+  };
+  const core::Communicator comm;
+  for (const bool leaders_fail : {true, false}) {
+    survey::Teams teams(comm, team_size(comm));
+    if (teams.team() == nullptr) continue;
+    archive::Records rows;
+    Stateless member(leaders_fail ? is_leader(comm) : is_last(comm));
+    if (teams.follows()) {
+      EXPECT_EQ(survey::follow(*teams.team(), member, rows).failures, 1U);
+      continue;
+    }
+    survey::TeamExecutor leader(teams.team(), member);
+    StoppingRun run;
+    try {
+      (void)leader.execute({"key", 0, "steps", "payload"}, run);
+      ADD_FAILURE() << "a task came through without its state";
+    } catch (const std::exception& error) {
+      EXPECT_THAT(error.what(), HasSubstr("no memory for the state"));
+    }
+    survey::Summary summary;
+    summary.failures = 1;
+    survey::dismiss(teams.team(), summary);
+  }
+}
+
 TEST(Teams, SurveyAsOneRankDoes) {
   const core::Communicator comm;
   const survey::Summary alone = run(comm, chain_scene(1), "alone", chain());
@@ -237,6 +277,11 @@ scene::Scene strong_scene(const core::Communicator& comm) {
   return chain_scene(team_size(comm), {"starts.sweep.period=[3.5, 6.3]"});
 }
 
+/// Coupled so weakly that many small steps come before anything throws.
+scene::Scene far_out_scene(const core::Communicator& comm) {
+  return chain_scene(team_size(comm), {"continuation.start=0.05", "limits.steps=60"});
+}
+
 TEST(Teams, AFollowerThatThrowsFailsTheTaskForAll) {
   const core::Communicator comm;
   int calls = 0;
@@ -259,6 +304,18 @@ TEST(Teams, ALeaderThatThrowsFailsTheTaskForAll) {
   expect_most_failed(comm, summary, "no memory on this rank");
 }
 
+TEST(Teams, ALeaderThatThrowsBetweenTwoExchangesLeavesNobodyWaiting) {
+  const core::Communicator comm;
+  int calls = 0;
+  const auto spoil = [&](double&) {
+    if (is_leader(comm) && ++calls % 1499 == 0) throw std::runtime_error("no memory on this rank");
+  };
+  const auto summary = run(comm, far_out_scene(comm), "leader_throws_between", std::make_shared<SpoiltChain>(spoil));
+  EXPECT_GE(summary.failures, 3U);
+  if (!comm.is_root()) return;
+  EXPECT_THAT(summary.failed_tasks, Each(HasSubstr("no memory on this rank")));
+}
+
 TEST(Teams, MembersWhoseNumbersDifferAreNoticed) {
   const core::Communicator comm;
   const auto spoil = [&](double& f) {
@@ -272,13 +329,17 @@ TEST(Teams, AFieldThatIsNotFiniteIsTheTasksFailureAndNotTheTeams) {
   const core::Communicator comm;
   const auto spoil = [&](double& f) { f = std::nan(""); };
   const auto system = std::make_shared<SpoiltChain>(spoil);
-  const auto alone = run(comm, chain_scene(1, {"limits.steps=100"}), "nan_alone", system);
-  const auto shared = run(comm, chain_scene(team_size(comm), {"limits.steps=100"}), "nan_shared", system);
-  EXPECT_EQ(shared.failures, 4U);
-  EXPECT_EQ(shared.failures, alone.failures);
-  if (!comm.is_root()) return;
-  EXPECT_THAT(shared.failed_tasks, Each(AllOf(HasSubstr("not finite"), Not(HasSubstr("team")))));
-  EXPECT_EQ(shared.orbits, alone.orbits);
+  for (const std::string corrector : {"newton-krylov", "collocation"}) {
+    const std::vector<std::string> changes{"limits.steps=100", "continuation.corrector=" + corrector};
+    const auto alone = run(comm, chain_scene(1, changes), "nan_alone_" + corrector, system);
+    const auto shared = run(comm, chain_scene(team_size(comm), changes), "nan_shared_" + corrector, system);
+    EXPECT_EQ(shared.failures, 4U);
+    EXPECT_EQ(shared.failures, alone.failures);
+    if (!comm.is_root()) continue;
+    EXPECT_THAT(shared.failed_tasks, Each(AllOf(HasSubstr("the vector field of"), HasSubstr("not finite"),
+                                                HasSubstr("state ("), Not(HasSubstr("team")))));
+    EXPECT_EQ(shared.orbits, alone.orbits);
+  }
 }
 
 TEST(Teams, AreDismissedWithTheErrorOfTheSurvey) {

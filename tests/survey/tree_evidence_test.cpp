@@ -87,6 +87,37 @@ TEST_F(Evidence, AnArrivalAlongNoDirectionNamesTheCrossingsThere) {
   EXPECT_THAT(found.ends[1].nearby, IsEmpty());
 }
 
+TEST_F(Evidence, AnArrivalAtAnotherOrbitOfThatPeriodAndEnergyNamesNoCrossing) {
+  Place elsewhere = q;
+  elsewhere.arclength = 2.6;
+  const auto nearby_of = [&](double ahead) {
+    Ended stray = arrived(work_from(p, 0), 16, elsewhere, 0);
+    BranchOutcome outcome = unpack_branch_outcome(stray.outcome.payload);
+    outcome.arrival.front().energy = q.energy();
+    outcome.arrival.front().ahead = ahead;
+    stray.outcome.payload = pack(outcome);
+    const std::vector<int> first = evidence({base(), located(p), located(q), stray}).ends[1].nearby;
+    EXPECT_EQ(evidence({base(), located(p), stray, located(q)}).ends[1].nearby, first) << "whichever comes first";
+    return first;
+  };
+  EXPECT_THAT(nearby_of(0.02), IsEmpty());  // it is 0.2 from the crossing's orbit
+  EXPECT_THAT(nearby_of(0.2), ElementsAre(1));
+}
+
+TEST_F(Evidence, EventsThatRoundingHidesAreTold) {
+  Ended hidden = not_located(p, "");
+  hidden.outcome.failed = false;
+  LocateOutcome outcome = unpack_locate_outcome(hidden.outcome.payload);
+  outcome.undecided = true;
+  outcome.remark = "no zero";
+  hidden.outcome.payload = pack(outcome);
+  const TreeEvidence found = evidence({base(), hidden});
+  EXPECT_TRUE(found.failures.empty());
+  ASSERT_EQ(found.undecided.size(), 1U);
+  EXPECT_EQ(found.undecided[0].family, "0000.0000");
+  EXPECT_EQ(found.undecided[0].reason, "locate " + p.key + ": no zero");
+}
+
 TEST_F(Evidence, FailedLocationsBelongToTheirFamilies) {
   const TreeEvidence found = evidence({base(), not_located(p, "no root")});
   ASSERT_EQ(found.failures.size(), 1U);

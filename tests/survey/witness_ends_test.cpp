@@ -107,6 +107,22 @@ TEST_F(WitnessOf, EndsByLimits) {
   EXPECT_EQ(rows[0].family, row_named("StD"));
 }
 
+TEST_F(WitnessOf, EndsAndEventsThatRoundingHides) {
+  if (world->is_root()) {
+    EndEvidence& end = add_end("StD");
+    end.met = false;
+    end.end->reason = continuation::EndReason::undecided;
+    end.end->detail = "an index is 2 to rounding";
+    input.tree.undecided.push_back({key_named("LoD"), "locate: no zero"});
+  }
+  const std::vector<Found> rows = found();
+  if (!world->is_root()) return;
+  ASSERT_THAT(rows, ElementsAre(finding("undecided", "undecided-event"), finding("undecided", "undecided-end")));
+  EXPECT_EQ(rows[0].family, row_named("LoD"));
+  EXPECT_EQ(rows[1].family, row_named("StD"));
+  EXPECT_THAT(rows[1].text, HasSubstr("an index is 2 to rounding"));
+}
+
 TEST_F(WitnessOf, EndsAtEquilibria) {
   if (world->is_root()) {
     input.equilibria = {{0.0, 0.0, 0.0, 0.0}};

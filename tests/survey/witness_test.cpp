@@ -60,6 +60,38 @@ TEST_F(WitnessOf, AnEquilibriumsFamilyWithoutOrbitsLeavesItsIndexOpen) {
   EXPECT_THAT(rows, IsSupersetOf({finding("undecided", "equilibrium-families"), finding("undecided", "continuum")}));
 }
 
+TEST_F(WitnessOf, BaseFamiliesLeadBackToTheirEquilibrium) {
+  const auto said_of = [&](double period, const std::vector<double>& point) {
+    input = {};
+    input.equilibria = {point};
+    input.oscillations.emplace_back();
+    for (const char* name : {"Straight", "Curved", "Loop"})
+      if (atlas) input.oscillations.back().push_back({row_named(name), period});
+    return found();
+  };
+  const double period = 2.0 * std::numbers::pi;
+  const std::vector<double> centre{0.0, 0.0, 0.0, 0.0};
+  const std::vector<Found> right = said_of(period, centre);
+  const std::vector<Found> another_oscillation = said_of(1.05 * period, centre);
+  const std::vector<Found> another_equilibrium = said_of(period, {0.0, 1.0, 0.0, 0.0});
+  if (!world->is_root()) return;
+  EXPECT_THAT(right, IsEmpty());
+  const auto wrong = finding("contradiction", "base-birth");
+  EXPECT_THAT(another_oscillation, ElementsAre(wrong, wrong, wrong));
+  EXPECT_THAT(another_equilibrium, ElementsAre(wrong, wrong, wrong));
+  EXPECT_NEAR(another_oscillation[0].deviation, 0.05 / 1.05, 0.01);
+}
+
+TEST_F(WitnessOf, FamiliesThatShareAPeriodAreCountedInstead) {
+  input.equilibria = {{0.0, 0.0, 0.0, 0.0}};
+  input.oscillations.emplace_back();
+  if (atlas) input.oscillations.back() = {{row_named("Straight"), 1.0}};
+  input.kernels = {{kernel_of_centre()}};
+  const std::vector<Found> rows = found();
+  if (!world->is_root()) return;
+  EXPECT_THAT(rows, IsEmpty());
+}
+
 TEST_F(WitnessOf, ACurveStoredTwice) {
   if (world->is_root()) {
     const auto orbits = orbits_of(key_named("Curved"));

@@ -63,7 +63,6 @@ BranchOutcome sample_branch_outcome() {
           {continuation::EndReason::period_limit, "T = 30"},
           {{8.5, -1.5, sample_loop()}},
           2,
-          {{{certificate::Verdict::says_nothing, 65.0, 1e-4, 29.0, 1e251}, 3}},
           {"a remark"},
           5e-13,
           period_limited,
@@ -95,14 +94,9 @@ TEST(Payload, AnotherKindIsRefusedByName) {
 }
 
 TEST(Payload, AnotherVersionIsRefused) {
-  std::ostringstream stream;
-  {
-    boost::archive::binary_oarchive archive(stream);
-    const std::string name = SweepWork::payload_name;
-    const int version = SweepWork::wire_version + 1;
-    archive << name << version;
-  }
-  const std::string text = environment_error_of([&] { (void)unpack_sweep_work(stream.str()); });
+  const PayloadType other{SweepWork::payload_name, SweepWork::wire_version + 1, 0};
+  const std::string bytes = write_payload(other, [](auto&) {});
+  const std::string text = environment_error_of([&] { (void)unpack_sweep_work(bytes); });
   EXPECT_THAT(text, HasSubstr("got a sweep work of version 2"));
 }
 

@@ -45,6 +45,9 @@ damage() {
     newer_version)
       put '\0143' 8 out/segments/checkpoint
       ;;
+    link_to_itself) ln -sf checkpoint out/segments/checkpoint ;;
+    folder) rm out/segments/checkpoint && mkdir out/segments/checkpoint ;;
+    newer_previous) cut_short out/segments/checkpoint && put '\0143' 8 out/segments/checkpoint.previous ;;
     other_scene | narrower) ;;
     *) fail "unknown case $case" ;;
   esac
@@ -62,6 +65,9 @@ case $case in
   exchanged_segments) status=2 says=("segment-000001.h5" "nothing was changed" "from a copy") ;;
   no_checksum_holds) status=2 says=("checkpoint: its checksum is wrong" "checkpoint.previous: its checksum is wrong" "nothing was changed") ;;
   newer_version) status=2 says=("its version is 99" "use the newer") ;;
+  link_to_itself) says=("$fallback" "segments/checkpoint: it cannot be looked at") ;;
+  folder) says=("$fallback" "segments/checkpoint: it is not a regular file" "is now out/segments/checkpoint.folder") ;;
+  newer_previous) status=2 says=("checkpoint.previous: its version is 99" "use the newer") ;;
   other_scene)
     status=2 options=(--set system.parameters.g=1.5)
     says=("holds a survey of another scene: system.parameters.g was 1 and is 1.5" "give another folder with -o")

@@ -30,6 +30,7 @@ fill() {
       ROW) words+=(0) ;;
       N) words+=(20) ;;
       FILE.txt) words+=(DIR/refined.txt) ;;
+      PROOFS.h5) words+=(DIR/proofs.h5) ;;
       *) words+=("$word") ;;
     esac
   done

@@ -45,7 +45,8 @@ rm -rf "$folder/stopped"
 half=$((lasted / 2))
 survey stopped 2 --walltime "0:$((half / 1000)).$(printf '%03d' $((half % 1000)))"
 expect_stopped $? "--walltime"
-mpirun -n 2 "$program" consolidate "$folder/stopped" >> "$folder/log" 2>&1 || fail "consolidate failed"
+mpirun -n 2 "$program" consolidate "$folder/stopped" >> "$folder/log" 2>&1
+[ $? = 4 ] || fail "consolidate must end as the survey that it is of"
 "$program" show "$folder/stopped/atlas.h5" families >> "$folder/log" || fail "the archive of a part cannot be shown"
 survey stopped 2 --resume || fail "--walltime: the resumed run failed"
 expect_same stopped

@@ -13,6 +13,8 @@ for narrow in "limits.period=17" "survey.depth=0" "survey.depth=1 limits.period=
   for limit in $narrow; do words+=(--set "$limit"); done
   survey widened$n 2 "${words[@]}" || fail "$narrow: the narrow run failed"
   "$compare" "$folder/whole/atlas.h5" "$folder/widened$n/atlas.h5" > /dev/null 2>&1 && fail "$narrow: cuts nothing off"
+  survey widened$n 2 && fail "$narrow: begun without --resume"
+  [ "$n" != 1 ] || grep -q "holds a finished survey with narrower limits" "$folder/log" || fail "$narrow: told otherwise"
   survey widened$n 3 --resume || fail "$narrow: the resume with wider limits failed"
   expect_same widened$n
   survey widened$n 2 --resume || fail "$narrow: a finished survey was not accepted"

@@ -116,6 +116,34 @@ TEST(Flow, ReadsConstantsExactly) {
   EXPECT_LT(numerics::log10_abs(energy - Extended(1) / 6), -49.0);
 }
 
+TEST(ManyFlows, EndWhereEachFlowEnds) {
+  for (const char* name : {"double_pendulum", "henon_heiles"}) {
+    const systems::Formulas formulas = formulas_of(name);
+    Flow<double> one(formulas, formulas.values, {});
+    ManyFlows many(formulas);
+    for (const double time : {5.0, -0.3}) {
+      std::vector<std::vector<double>> states;
+      for (int n = 0; n < 7; ++n) states.push_back({0.02 * n, 0.1, -0.03 * n, 0.2});  // no full register at the end
+      std::vector<std::vector<double>> ends = states;
+      many.advance(ends, time);
+      for (std::size_t n = 0; n < states.size(); ++n) {
+        one.advance(states[n], time);
+        for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(ends[n][i], states[n][i], 1e-13) << name << n;
+        std::vector<std::vector<double>> alone{
+            {0.02 * static_cast<double>(n), 0.1, -0.03 * static_cast<double>(n), 0.2}};
+        many.advance(alone, time);
+        EXPECT_EQ(alone.front(), ends[n]) << "beside no other states";
+      }
+    }
+  }
+}
+
+TEST(ManyFlows, SayWhereThereIsNoSolution) {
+  ManyFlows many(formulas_of("pcr3bp", {{"mu", 0.5}}));
+  std::vector<std::vector<double>> falls{{0.0, 1.0, 0.0, 0.0}, {0.5 + 1e-3, 0.0, 0.0, 0.0}};
+  EXPECT_THROW(many.advance(falls, 1.0), core::NumericalError);
+}
+
 TEST(Flow, SaysWhereThereIsNoSolution) {
   const systems::Formulas formulas = formulas_of("pcr3bp", {{"mu", 0.5}});
   Flow<double> flow(formulas, formulas.values, {});

@@ -25,11 +25,16 @@ struct KnownStability {
 /// nearer to the index 2 than to -2. Along one family it would have had to pass 2 twice on the way.
 [[nodiscard]] bool passes_one_unseen(const spectrum::Stability& from, const spectrum::Stability& to);
 
+/// True if the angles by which neighbours of two elliptic orbits go around in a fundamental period differ by more than
+/// a quarter of a turn: what was passed on the way cannot be told. A step 1.6 times as long as one that was accepted
+/// turns by less than three quarters while the angle changes less than twice as fast, and is seen.
+[[nodiscard]] bool rotates_too_far(const spectrum::Stability& from, const spectrum::Stability& to);
+
 /// True if a step along a family that passes 2 only at folds has gone over to another one: an index has passed 2, and
-/// the energy does not turn on the way. Also where that cannot be told, which a shorter step may change: the directions
-/// of the family at the two orbits cannot be had, or one turns too far from the chord
-/// (`least_cosine` of the options). On other families of a symplectic system: an index has passed 2, and no orbit
-/// between the two has it.
+/// the energy does not turn on the way. Also where that cannot be told, which a shorter step may change: neighbours of
+/// the two orbits go around by angles too far apart (`rotates_too_far`), the directions of the family at the two orbits
+/// cannot be had, or one turns too far from the chord (`least_cosine` of the options). On other families of a
+/// symplectic system: an index has passed 2, and no orbit between the two has it.
 [[nodiscard]] bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
                               const continuation::Options& options, const KnownStability& from,
                               const KnownStability& to);

@@ -69,8 +69,10 @@ class SymmetryWatch {
   [[nodiscard]] Eigen::MatrixXcd broken_part(const SymmetryGain& gain, const systems::AffineMap& inverse,
                                              const SampledOrbit& orbit, double shift) const;
   [[nodiscard]] Products compare(const SymmetryGain& gain, const SampledOrbit& a, const SampledOrbit& b) const;
+  /// Two orbits, and what a candidate needed of them beyond their first samples, for those after it.
+  struct Resolved;
   /// The same with as many harmonics as the broken parts ask for; the phase of a reversor moves along.
-  [[nodiscard]] Products compare_resolved(SymmetryGain& gain, const SampledOrbit& a, const SampledOrbit& b) const;
+  [[nodiscard]] Products compare_resolved(SymmetryGain& gain, Resolved& orbits) const;
   [[nodiscard]] std::size_t generated_with(const SymmetryGain& gain) const;
 
   systems::Structure _system;

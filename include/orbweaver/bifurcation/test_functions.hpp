@@ -71,6 +71,10 @@ struct TestFunction {
 /// it gains in a period is known no better, and no crossing could be located by it.
 [[nodiscard]] bool are_decided(const spectrum::Stability& stability);
 
+/// False where an index of the fundamental map is 2 to within its error: the linearised equations of the orbit are
+/// singular to rounding, and orbits beside it are not told from it.
+[[nodiscard]] bool is_isolated(const spectrum::Stability& stability);
+
 /// Whether a zero of the function, located at an orbit with this stability, is what the function is for. No continuous
 /// function can tell: krein vanishes as well where two pairs meet off the unit circle (k_i = k_j outside [-2, 2]) and,
 /// touching zero (`tangency`), where two pairs pass one another; torus where mu_i mu_j = 1 with both real.

@@ -1,40 +1,76 @@
 #pragma once
 
+#include <limits>
+#include <memory>
+
 #include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::certificate {
 
+/// How much is asked of a certificate.
+enum class Level {
+  none,     ///< nothing
+  closure,  ///< integrations of the field, and what the loop says by itself
+  full,     ///< transition matrices as well: distance to the true orbit, multipliers
+};
+[[nodiscard]] constexpr Level last_of(Level) { return Level::full; }
+
 struct Options {
-  int segments = 32;         ///< equal parts of the period, each integrated from the loop's own state
+  Level level = Level::closure;
+  int segments = 32;  ///< equal parts of the period, at least; as many more as the isotropy's time shifts ask for
   double tolerance = 1e-13;  ///< of the integrator (integrate.hpp)
 };
 
+/// What was not computed.
+inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
 /// What an independent integrator says of one loop. Distances are Euclidean in the coordinates of phase space; an angle
-/// that turns n times is expected to have grown by 2 pi n after a period.
+/// that turns n times is expected to have grown by 2 pi n after a period. NaN: not computed, or not for such a system.
 struct Certificate {
-  double closure = 0.0;  ///< largest |z(t_m+1) - Phi(z(t_m))| over the segments, z being the loop
-  double single_shot =
-      0.0;  ///< |z(T) - Phi_T(z(0))|: once around without help; grows with the largest multiplier; NaN if that fails
-  double energy_drift = 0.0;  ///< largest |H(z(t_m)) - H(z(0))|; NaN for a system that conserves no energy
-  double reach = 0.0;         ///< largest |z(t_m)|
-  double steepness = 0.0;     ///< largest |dH/dz(z(t_m))|; 0 for a system that conserves no energy
+  double closure = unknown;         ///< largest |z(t_m+1) - Phi(z(t_m))| over the segments, z being the loop
+  double taylor_closure = unknown;  ///< the same by Taylor series (taylor/flow.hpp), which share the field only
+  double apart = unknown;           ///< the largest distance of the two integrators' ends: what either may be wrong by
+  double beside_flow = unknown;  ///< the closure but for what a wrong period explains: gaps along the field, all alike
+  /// |z(T) - Phi_T(z(0))|: once around without help; grows with the largest multiplier; NaN if that fails.
+  double single_shot = unknown;
+  double energy_drift = unknown;     ///< largest |H(z(t_m)) - H(z(0))|
+  double other_drift = unknown;      ///< the same of the other conserved quantities, each in its scale
+  double symmetry_defect = unknown;  ///< largest |z(t_m) - g z(t_m)| over the isotropy's elements g
+  double recurrence = unknown;       ///< least distance from an orbit gone around m times, m prime
+  double tail = unknown;             ///< loop::tail
+  double reach = 0.0;                ///< largest |z(t_m)|
+  double steepness = 0.0;            ///< largest |dH/dz(z(t_m))|; 0 for a system that conserves no energy
+
+  // Level::full
+  double distance = unknown;     ///< to the true orbit, by two steps of Newton's method for the states at t_m and T
+  double contraction = unknown;  ///< the second step in parts of the first: an orbit is near where that is well below 1
+  double pairing = unknown;      ///< |mu_1 mu_2 ... - 1| of all nontrivial multipliers, symplectic systems
+  double index = unknown;        ///< mu + 1/mu of a single pair
 };
 
-/// Integrates the loop's own states and compares. Deterministic; knows no residual, loss or Jacobian.
-/// Throws core::MisuseError if the loop is not valid or not of the system's dimension, `segments` < 1 or the tolerance
-/// is out of range; core::NumericalError if an integration fails, saying in which segment and at what time.
-[[nodiscard]] Certificate certify(const systems::System& system, const loop::Loop& loop, const Options& options = {});
+/// Checks the loops of one family, one after the other.
+class Certifier {
+ public:
+  /// `isotropy`: what the family claims. Throws core::MisuseError if `segments` < 1 or the tolerance is out of range.
+  Certifier(const systems::System& system, const loop::Isotropy& isotropy, const Options& options = {});
+  ~Certifier();
+  Certifier(Certifier&&) noexcept;
 
-/// The largest gap |z(t_m+1) - Phi(z(t_m))| over the segments by each of two integrators that have nothing in common
-/// but the field: Runge and Kutta's of `integrate.hpp`, and Taylor series (taylor/flow.hpp).
-struct Closures {
-  double runge_kutta = 0.0;
-  double taylor = 0.0;
-  double apart = 0.0;  ///< the largest distance of their ends: what either may be wrong by
+  /// Integrates the loop's own states and compares. Deterministic; knows no residual, loss or Hessian. A system that
+  /// does not give its formulas has no Taylor series.
+  /// Throws core::MisuseError if the loop is not valid or not of the system's dimension; core::NumericalError if an
+  /// integration of a segment fails, saying in which and at what time.
+  [[nodiscard]] Certificate operator()(const loop::Loop& loop);
+
+ private:
+  class Parts;
+  std::unique_ptr<Parts> _parts;
 };
 
-/// Throws what certify does, and core::MisuseError for a system that does not give its formulas.
-[[nodiscard]] Closures closures(const systems::System& system, const loop::Loop& loop, const Options& options = {});
+/// The same for one loop.
+[[nodiscard]] Certificate certify(const systems::System& system, const loop::Loop& loop,
+                                  const loop::Isotropy& isotropy = {}, const Options& options = {});
 
 }  // namespace orbweaver::certificate

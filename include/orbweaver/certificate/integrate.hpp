@@ -21,4 +21,16 @@ namespace orbweaver::certificate {
 [[nodiscard]] std::vector<double> integrate(const systems::System& system, std::vector<double> state, double time,
                                             double tolerance);
 
+/// The same for several states over one time, with common steps: as many at a time as a vector register holds, which
+/// the field is evaluated at together. Each ends where `integrate` would take it, within the tolerance.
+[[nodiscard]] std::vector<std::vector<double>> integrate_together(const systems::System& system,
+                                                                  const std::vector<std::vector<double>>& states,
+                                                                  double time, double tolerance);
+
+/// dPhi_time/dz at each state (dimension x dimension, row after row), by the same method on dY/dt = df/dz Y, the error
+/// of whose steps is kept below `tolerance` (1 + |Y|) as well.
+[[nodiscard]] std::vector<std::vector<double>> transitions(const systems::System& system,
+                                                           const std::vector<std::vector<double>>& states, double time,
+                                                           double tolerance);
+
 }  // namespace orbweaver::certificate

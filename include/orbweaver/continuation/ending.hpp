@@ -21,6 +21,7 @@ enum class EndReason {
   fixed_point,        ///< the amplitude shrank to nothing
   closed_loop,        ///< back at the first orbit
   stopped,            ///< the observer asked for it
+  undecided,          ///< the corrector failed where rounding does not tell an orbit from its neighbours
   failure,            ///< the corrector failed at the smallest step
 };
 

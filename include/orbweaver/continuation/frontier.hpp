@@ -4,6 +4,7 @@
 
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/core/serialization.hpp"
+#include "orbweaver/equations/preconditioner.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/loop/curve/time_map.hpp"
@@ -41,13 +42,14 @@ struct ProblemState {
   double held_energy = 0.0;  ///< of all orbits, where the family holds the energy
   std::vector<double> factor_point;       ///< where the preconditioner was built; empty = to be built anew
   std::vector<double> factor_conditions;  ///< and under which conditions
-  bool fits_cells = false;  ///< the preconditioner follows turns of the linearised flow over a cell: where no first
-                            ///< orbit is found without, beside a fast motion
+  equations::Preconditioner preconditioner = equations::Preconditioner::box;  ///< of collocation: the cheapest that did
+  int least_size = 0;  ///< of a resolution: a step failed at half of it that the harmonics did not explain
 
-  static constexpr int wire_version = 3;
+  static constexpr int wire_version = 4;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, resolution, amplitude, held_energy, factor_point, factor_conditions, fits_cells);
+    core::serialize_members(archive, resolution, amplitude, held_energy, factor_point, factor_conditions,
+                            preconditioner, least_size);
   }
 };
 

@@ -1,8 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <concepts>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <type_traits>
+#include <vector>
 
 namespace orbweaver::core {
 
@@ -37,7 +42,37 @@ concept Visits = requires(Archive& archive, T& member) {
 /// Throws EnvironmentError: `number` is no value of an enum whose last one is `last`.
 [[noreturn]] void refuse_enum(int number, int last);
 
-/// One member: an enum as an int that is checked, an optional one behind a flag, others as the archive does it.
+/// Bytes by which a text or a list of numbers grows while it is read, so that a forged size takes no more memory than
+/// there are bytes behind it.
+inline constexpr std::size_t growth_bytes = 1 << 16;
+
+template <class Archive, class T>
+void serialize_member(Archive& archive, std::optional<T>& member);
+template <class Archive, class T>
+void serialize_member(Archive& archive, std::vector<T>& member);
+template <class Archive>
+void serialize_member(Archive& archive, std::string& member);
+
+/// The values of a text or a list of numbers behind their number.
+template <class Archive, class Values>
+void serialize_values(Archive& archive, Values& values) {
+  using Value = typename Values::value_type;
+  std::uint64_t size = values.size();
+  archive& size;
+  if constexpr (Archive::is_loading::value) {
+    values.clear();
+    while (values.size() < size) {
+      const std::size_t begin = values.size();
+      values.resize(begin + std::min<std::uint64_t>(size - begin, growth_bytes / sizeof(Value)));
+      archive.load_binary(values.data() + begin, (values.size() - begin) * sizeof(Value));
+    }
+  } else if (size > 0) {
+    archive.save_binary(values.data(), values.size() * sizeof(Value));
+  }
+}
+
+/// One member: an enum as an int that is checked, an optional one behind a flag, a text or list behind its size,
+/// others as the archive does it.
 template <class Archive, class T>
 void serialize_member(Archive& archive, T& member) {
   if constexpr (Visits<Archive, T>) {
@@ -66,6 +101,33 @@ void serialize_member(Archive& archive, std::optional<T>& member) {
     }
     if (present) serialize_member(archive, *member);
   }
+}
+
+template <class Archive, class T>
+void serialize_member(Archive& archive, std::vector<T>& member) {
+  if constexpr (Visits<Archive, std::vector<T>>) {
+    archive.visit(member);
+  } else if constexpr (std::is_arithmetic_v<T>) {
+    static_assert(!std::is_same_v<T, bool>, "a vector of bool has no values that lie in memory");
+    serialize_values(archive, member);
+  } else {
+    std::uint64_t size = member.size();
+    archive& size;
+    if constexpr (Archive::is_loading::value) {
+      member.clear();
+      for (std::uint64_t n = 0; n < size; ++n) serialize_member(archive, member.emplace_back());
+    } else {
+      for (T& element : member) serialize_member(archive, element);
+    }
+  }
+}
+
+template <class Archive>
+void serialize_member(Archive& archive, std::string& member) {
+  if constexpr (Visits<Archive, std::string>)
+    archive.visit(member);
+  else
+    serialize_values(archive, member);
 }
 
 template <class Archive, class... Members>

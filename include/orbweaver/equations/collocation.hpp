@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "orbweaver/equations/preconditioned_equations.hpp"
+#include "orbweaver/equations/preconditioner.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/loop/grid/staggered_grid.hpp"
 #include "orbweaver/loss/unknowns.hpp"
@@ -13,8 +14,9 @@
 namespace orbweaver::equations {
 
 class BoxScheme;
+class DenseFactor;
 
-/// The bordered equations of an orbit on a fundamental domain, and their box preconditioner (docs/mathematics.md,
+/// The bordered equations of an orbit on a fundamental domain, and their preconditioner (docs/mathematics.md,
 /// "Collocation on the fundamental domain"):
 ///
 ///   y_(j+1) - y_j + n h - c_j (f(z_j; p) + sum_k mu_k grad H_k(z_j)) = 0 at the midpoints, c_j = h T density / (2 pi),
@@ -63,10 +65,11 @@ class Collocation final : public PreconditionedEquations {
   void residual(const double* u, double* r) const override;
   /// Builds the preconditioner at `u` under the present conditions.
   void factor(const double* u) override;
-  /// From the next factor on: whether the preconditioner follows turns of the linearised flow over a cell, which helps
-  /// beside a fast motion. Otherwise, and at first, it is the plain box scheme, which does better beside a narrow gap
-  /// between families (mu = 0.001, 13 turns).
-  void fit_cells(bool fits) { _fits_cells = fits; }
+  /// Throws NotFiniteError where the field or its Jacobian at `u` is not finite where these equations or their quality
+  /// ask for them.
+  void check_field(const double* u) const;
+  /// From the next factor on; at first it is the plain box scheme.
+  void precondition_by(Preconditioner preconditioner) { _preconditioner = preconditioner; }
   void precondition(double* r) const override;
   /// The derivative of `residual` where the preconditioner was built, applied to a perturbation of the point.
   void apply_jacobian(const double* v, double* r) const;
@@ -102,6 +105,9 @@ class Collocation final : public PreconditionedEquations {
 
  private:
   void midpoint_states(const double* u) const;
+  void node_states(const double* u) const;
+  void factor_box(const double* blocks);
+  void factor_jacobian();
   /// The system with the parameters of `u`.
   [[nodiscard]] const systems::System& system_at(const double* u) const;
   /// df/ds at the midpoints for a scalar s other than T, into _gradient.
@@ -121,10 +127,11 @@ class Collocation final : public PreconditionedEquations {
   std::vector<double> _weights;
   std::vector<double> _reference;
   std::unique_ptr<BoxScheme> _box;
+  std::unique_ptr<DenseFactor> _exact;  // in place of it
+  Preconditioner _preconditioner = Preconditioner::box;
   double _jacobian_rms = 0.0;
   mutable std::shared_ptr<const systems::System> _moved;  // with the parameters of the last point, where any moves
   mutable std::vector<double> _z, _f, _gradient, _blocks, _columns, _nodal, _slope, _node_field, _difference;
-  bool _fits_cells = false;
 };
 
 /// The direction of the family through the orbit `u`: the solution of the linearised equations that the first condition

@@ -49,7 +49,6 @@ class LoopEquations {
   [[nodiscard]] const loss::Unknowns& unknowns() const { return _unknowns; }
   [[nodiscard]] const loop::Subspace& image() const { return _image; }
   [[nodiscard]] const loss::Slice& slice() const { return _slice; }
-  [[nodiscard]] core::Team* team() const { return _team; }
 
   /// Projected residual, zeros for the conditions (they hold exactly along the iteration).
   [[nodiscard]] Eigen::VectorXd residual() const;

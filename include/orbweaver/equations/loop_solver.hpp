@@ -9,8 +9,8 @@
 namespace orbweaver::equations {
 
 /// GMRES on loop equations of one size, preconditioned from the right by their box scheme (which must be factored).
-/// Overridable under an options prefix. With a team it runs on the team's communicator, rows distributed, and is
-/// collective over it; the equations must have the same team. Right-hand sides and solutions are whole.
+/// Overridable under an options prefix. With equations of a team, solves are collective over it: each member iterates
+/// by itself on the same numbers, and what they exchange is the equations' alone (core::Team).
 class LoopSolver {
  public:
   /// Relative residuals: asked for, and still accepted where rounding stops GMRES earlier.
@@ -19,7 +19,7 @@ class LoopSolver {
     double accepted = 1e-5;
   };
 
-  LoopSolver(int size, const char* options_prefix, core::Team* team = nullptr);
+  LoopSolver(int size, const char* options_prefix);
   ~LoopSolver();
   LoopSolver(const LoopSolver&) = delete;
   LoopSolver& operator=(const LoopSolver&) = delete;

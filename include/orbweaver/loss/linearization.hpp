@@ -2,8 +2,10 @@
 
 #include <cstddef>
 #include <span>
+#include <string_view>
 #include <vector>
 
+#include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
 #include "orbweaver/loss/unknowns.hpp"
@@ -16,6 +18,10 @@ enum class Curvature {
   gauss_newton,  ///< 2 J'J: exact at an orbit
   full,          ///< 2 (J'J + sum R d2R): exact everywhere
 };
+
+/// What is thrown where `what` of a system is not finite (`value`) at the time t of a loop: names the place in units.
+[[nodiscard]] core::NotFiniteError not_finite(const systems::System& system, std::string_view what, double value,
+                                              double t, double period, std::span<const double> state);
 
 /// The loss of one loop and its derivatives, kept as nodal values on N equidistant points
 /// (docs/mathematics.md, "Loss"; paper, section II A and B):
@@ -76,7 +82,8 @@ class Linearization {
   [[nodiscard]] std::size_t offset(int i) const {
     return static_cast<std::size_t>(i) * static_cast<std::size_t>(_nodes);
   }
-  void check_finite(const systems::System& system, std::span<const double> values, const char* what) const;
+  void check_finite(const systems::System& system, const loop::Loop& loop, std::span<const double> values,
+                    const char* what) const;
   [[nodiscard]] std::vector<double> perturbation(const Unknowns& unknowns, std::span<const double> v) const;
   [[nodiscard]] std::vector<double> project_adjoint(const Unknowns& unknowns, const std::vector<double>& with_slope,
                                                     const std::vector<double>& with_value) const;

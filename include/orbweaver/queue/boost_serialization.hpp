@@ -1,11 +1,7 @@
 #pragma once
 
-#include <vector>
-
 #include <boost/serialization/level.hpp>
-#include <boost/serialization/string.hpp>
 #include <boost/serialization/tracking.hpp>
-#include <boost/serialization/vector.hpp>
 
 #include "orbweaver/core/serialization.hpp"
 
@@ -23,21 +19,7 @@ struct implementation_level_impl<const T> {
 };
 
 template <orbweaver::core::Serialized T>
-struct implementation_level_impl<const std::vector<T>> {
-  using tag = mpl::integral_c_tag;
-  using type = mpl::int_<object_serializable>;
-  static constexpr int value = type::value;
-};
-
-template <orbweaver::core::Serialized T>
 struct tracking_level_impl<const T> {
-  using tag = mpl::integral_c_tag;
-  using type = mpl::int_<track_never>;
-  static constexpr int value = type::value;
-};
-
-template <orbweaver::core::Serialized T>
-struct tracking_level_impl<const std::vector<T>> {
   using tag = mpl::integral_c_tag;
   using type = mpl::int_<track_never>;
   static constexpr int value = type::value;

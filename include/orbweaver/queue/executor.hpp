@@ -33,6 +33,11 @@ class Executor {
   /// Called on any rank that computes, one task at a time; goes on from `task.state` if there is one. Whatever it
   /// throws becomes a failed outcome with the exception's text as its reason, and the run goes on.
   virtual TaskOutcome execute(const Task& task, TaskContext& context) = 0;
+
+  /// Called after `execute` was given up within a step (core::interruption_point), which a stop may do: rows that it
+  /// has put where the Flusher finds them are to be taken back, those since the last flush (`flushed`), or since it
+  /// began. The task goes on from its state at that time.
+  virtual void take_back_rows(bool /*flushed*/) {}
 };
 
 }  // namespace orbweaver::queue

@@ -15,7 +15,7 @@ namespace orbweaver::queue {
 /// Version of who sends what and when (docs/protocol.md); ranks of different versions do not work together.
 inline constexpr std::uint32_t protocol_version = 3;
 /// Version of the envelope and of how the messages are laid out in it.
-inline constexpr std::uint32_t message_format_version = 2;
+inline constexpr std::uint32_t message_format_version = 3;
 
 /// All MPI tags of the queue; the tag is also the type in the envelope.
 enum class Tag : int {

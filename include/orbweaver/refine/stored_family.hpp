@@ -34,6 +34,13 @@ class StoredFamily {
   /// The place with this period or energy, the first one behind the step `after` if that is given. Throws InputError
   /// where the family has none there, or has several and no step is given, naming them.
   [[nodiscard]] Place with(const HeldValue& value, std::optional<int> after) const;
+  /// The orbit that a person names: "T=9" or "E=-0.5", meant exactly, or a step, which is held by what isolates it
+  /// better, as it is stored. Throws InputError for another text, and as `with` and `at_step`.
+  struct Named {
+    Place place;
+    HeldValue held;
+  };
+  [[nodiscard]] Named named_orbit(const std::string& text, std::optional<int> after) const;
   /// Polynomials through the orbits beside it. Throws InputError for a family of less than two orbits.
   [[nodiscard]] Place at_arclength(double arclength) const;
 

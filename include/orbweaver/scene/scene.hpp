@@ -72,6 +72,18 @@ struct Continuation {
 
 enum class Spectrum { all, events };
 
+/// How much is asked of the certificate of each orbit (docs/mathematics.md, "Certificates").
+enum class Certificate {
+  automatic,  ///< `closure`, within the branch that finds the orbit
+  none,
+  closure,  ///< as the last one, by tasks of the queue when all branches have ended
+  full,
+};
+
+struct Compute {
+  Certificate certificate = Certificate::automatic;
+};
+
 struct Survey {
   int depth = 0;         ///< generations of branches below the base families
   int subharmonics = 4;  ///< branches that close after up to this many periods
@@ -116,6 +128,7 @@ struct Scene {
   std::vector<StateStart> states;
   Continuation continuation;
   Survey survey;
+  Compute compute;
   Limits limits;
   Events events;
   Section section;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,10 @@ struct SharedPeriod {
   /// The energy of all combinations has one sign to second order: its level sets are spheres. False where the system
   /// conserves nothing.
   bool is_definite = false;
+  /// Length in the kernel (in scales) up to which nearly shared periods are apart: its families start no further out.
+  double apart_below = std::numeric_limits<double>::infinity();
+  /// Length in the kernel at which its families start at least: those nearer to the equilibrium are not told apart.
+  double together_from = 0.0;
 
   /// One oscillation, which shares its period with no other.
   [[nodiscard]] bool is_simple() const { return kernel.cols() == 1; }
@@ -38,9 +43,10 @@ struct SharedPeriod {
 /// is there (docs/mathematics.md, "Resonances").
 inline constexpr int strongest_harmonic = 3;
 
-/// Each oscillation is of harmonic 1 in exactly one of them, longest period first. Those that share their period nearly
-/// do so to what orbits of this amplitude r (in scales) do not tell from it: in parts of it 5 r (k = 2) or 5 r^2
-/// (k = 1, 3), and 0.05 at most. Throws MisuseError for a point of another dimension.
+/// Each oscillation is of harmonic 1 in exactly one of them, longest period first. Orbits of length r in the kernel (in
+/// scales) do not tell a detuning from none that is, in parts of the period, below 5 r (k = 2) or 5 r^2 (k = 1, 3), and
+/// 0.05 at most. Those that are told at `amplitude`, or at a smaller one down to 2e-4, are apart (`apart_below`), the
+/// others share a period. Throws MisuseError for a point of another dimension.
 [[nodiscard]] std::vector<SharedPeriod> shared_periods(const systems::System& system, std::span<const double> point,
                                                        const LinearModes& modes, double amplitude);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -49,6 +50,8 @@ struct NormalMode {
   loop::Tangent direction;       ///< of a loop with cutoff `SweepOptions::cutoff`, |dz(s = 0)| = 1 (`still_at_start`)
   loop::Tangent grid_direction;  ///< the same from the eigenvector at `grid_period`
   loop::Isotropy isotropy;       ///< of the small oscillations
+  /// As SharedPeriod: the family's first orbit has this length in the kernel at most.
+  double apart_below = std::numeric_limits<double>::infinity();
 };
 
 /// Several oscillations that share a period: which of their combinations families start along, the linear problem does

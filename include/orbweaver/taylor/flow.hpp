@@ -4,10 +4,14 @@
 #include <memory>
 #include <vector>
 
+#include "orbweaver/ad/lanes.hpp"
 #include "orbweaver/numerics/extended.hpp"
 #include "orbweaver/systems/formulas.hpp"
 
 namespace orbweaver::taylor {
+
+template <class Real>
+class Series;
 
 struct FlowOptions {
   /// The last term that a step keeps is below 10^-digits of the scales.
@@ -45,18 +49,39 @@ class Flow {
   [[nodiscard]] long steps() const { return _steps; }
 
  private:
-  class Series;
-  void run(Series& series, std::vector<Real>& state, std::vector<Real>& transitions, const Real& time);
-  [[nodiscard]] double log_norm(Series& series, int k, std::size_t from, std::size_t to) const;
-  [[nodiscard]] double step_size(Series& series, std::size_t size) const;
+  void run(Series<Real>& series, std::vector<Real>& state, std::vector<Real>& transitions, const Real& time);
+  [[nodiscard]] double log_norm(Series<Real>& series, int k, std::size_t from, std::size_t to) const;
+  [[nodiscard]] double step_size(Series<Real>& series, std::size_t size) const;
 
   systems::Formulas _formulas;
   std::vector<Real> _parameters;
   FlowOptions _options;
   std::vector<double> _log_scales;
-  std::unique_ptr<Series> _state;
-  std::unique_ptr<Series> _variational;
+  std::unique_ptr<Series<Real>> _state;
+  std::unique_ptr<Series<Real>> _variational;
   long _steps = 0;
+};
+
+/// The same in double for many states over one time, as many at once as a vector register holds, each with steps of its
+/// own: a result does not depend on the other states. Some four times as fast as one after the other.
+class ManyFlows {
+ public:
+  /// With the formulas' own parameter values.
+  explicit ManyFlows(const systems::Formulas& formulas, const FlowOptions& options = {});
+  ~ManyFlows();
+  ManyFlows(ManyFlows&&) noexcept;
+
+  /// Takes each state (d numbers) to where it is after `time`. Throws what Flow::advance does; the states are then
+  /// lost.
+  void advance(std::vector<std::vector<double>>& states, double time);
+
+ private:
+  [[nodiscard]] double step_size(std::size_t lane) const;
+
+  FlowOptions _options;
+  std::size_t _dimension;
+  std::vector<double> _scales;
+  std::unique_ptr<Series<ad::Lanes>> _series;
 };
 
 extern template class Flow<double>;

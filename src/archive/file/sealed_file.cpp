@@ -44,6 +44,10 @@ std::uint32_t checksum(std::string_view head, std::string_view bytes) {
 }
 
 std::string contents_of(const std::filesystem::path& path) {
+  std::error_code code;
+  const auto type = std::filesystem::status(path, code).type();
+  if (type != std::filesystem::file_type::regular && type != std::filesystem::file_type::not_found)
+    refuse(path, code ? fmt::format("it cannot be looked at ({})", code.message()) : "it is not a regular file");
   std::ifstream file(path, std::ios::binary);
   if (!file) refuse(path, "it is not there, or cannot be opened");
   std::ostringstream all;
@@ -95,9 +99,12 @@ std::string read_sealed(const std::filesystem::path& path, const Seal& seal) {
   const auto version = number_at<std::uint32_t>(all, mark_bytes);
   if (version > seal.version)
     throw core::NewerVersionError(
-        fmt::format("{}: its version is {}, and this Orbweaver reads up to {}; nothing was changed: use the newer "
+        fmt::format("{}: its version is {}, and this Orbweaver reads version {}; nothing was changed: use the newer "
                     "Orbweaver that wrote it",
                     path.string(), version, seal.version));
+  if (version < seal.version)
+    refuse(path, fmt::format("its version is {}, and this Orbweaver reads version {}: use the Orbweaver that wrote it",
+                             version, seal.version));
   const auto length = number_at<std::uint64_t>(all, mark_bytes + 4);
   if (length != all.size() - head_bytes)
     refuse(path, fmt::format("it should hold {} bytes and holds {}: it is torn", length, all.size() - head_bytes));

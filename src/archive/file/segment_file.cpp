@@ -33,7 +33,7 @@ void SegmentFile::check_values() const {
 
 void SegmentFile::check_rows(const TableSpec& spec, std::uint64_t rows) const {
   if (!_file.has_checksums()) return;
-  const std::vector<std::size_t> changed = changed_rows(_file.read_table(spec, rows));
+  const std::vector<std::size_t> changed = changed_rows(_file.read_table(spec, rows), _file.minor());
   _file.expect(changed.empty(), changed.empty() ? "" : changed_row(spec.name, changed.front()));
 }
 

@@ -71,6 +71,7 @@ void SerialFile::open() {
   const auto status = std::filesystem::status(_path, code);
   expect(std::filesystem::exists(status), "does not exist");
   expect(!std::filesystem::is_directory(status), fmt::format("is a folder; {} was expected", _kind->noun));
+  expect(std::filesystem::is_regular_file(status), fmt::format("is not a regular file; {} was expected", _kind->noun));
   expect(H5Fis_hdf5(_path.c_str()) > 0,
          fmt::format("is not an HDF5 file, or was cut short, or may not be read; {} was expected", _kind->noun));
   const H5Handle access(check_h5(H5Pcreate(H5P_FILE_ACCESS), "H5Pcreate"), H5Pclose);
@@ -78,6 +79,7 @@ void SerialFile::open() {
   const hid_t file = H5Fopen(_path.c_str(), H5F_ACC_RDONLY, access.get());
   if (file < 0) expect(false, fmt::format("is damaged or was cut short (HDF5 says: {})", h5_error_text()));
   _file = {file, H5Fclose};
+  _bytes = std::filesystem::file_size(_path);
 }
 
 void SerialFile::read_header() {
@@ -151,6 +153,7 @@ std::vector<std::string> SerialFile::text_attribute(const char* name) const {
   const H5Handle space(check_h5<core::InputError>(H5Aget_space(found.get()), "H5Aget_space"), H5Sclose);
   const std::size_t width = H5Tget_size(type.get());
   const auto count = static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space.get())));
+  expect_room(fmt::format("attribute '{}'", name), {count}, width);
   std::string block(count * width + 1, '\0');
   check_h5<core::InputError>(H5Aread(found.get(), type.get(), block.data()),
                              fmt::format("'{}': attribute '{}'", _path.string(), name));
@@ -160,8 +163,9 @@ std::vector<std::string> SerialFile::text_attribute(const char* name) const {
 std::vector<double> SerialFile::real_attribute(const char* name) const {
   const H5Handle found = attribute(name, H5T_FLOAT);
   const H5Handle space(check_h5<core::InputError>(H5Aget_space(found.get()), "H5Aget_space"), H5Sclose);
-  std::vector<double> values(
-      static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space.get()))));
+  const auto count = static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space.get())));
+  expect_room(fmt::format("attribute '{}'", name), {count}, 1);
+  std::vector<double> values(count);
   if (!values.empty())
     check_h5<core::InputError>(H5Aread(found.get(), H5T_NATIVE_DOUBLE, values.data()),
                                fmt::format("'{}': attribute '{}'", _path.string(), name));
@@ -197,6 +201,15 @@ void SerialFile::expect_type(const std::string& name, ColumnSpec& spec) {
   expect(H5Tget_class(type.get()) == class_of(spec.type) && !is_variable,
          fmt::format("has a dataset /{} of another type; {} were expected", name, name_of(spec.type)));
   if (spec.type == ColumnType::text) spec.text_width = H5Tget_size(type.get());
+  expect_room(fmt::format("dataset /{}", name), extents(dataset(name)), H5Tget_size(type.get()));
+}
+
+void SerialFile::expect_room(const std::string& name, const std::vector<hsize_t>& extents, std::size_t bytes) const {
+  std::uint64_t values = _bytes / std::max<std::size_t>(bytes, 1);
+  for (const hsize_t extent : extents) values /= std::max<hsize_t>(extent, 1);
+  expect(values > 0 || std::find(extents.begin(), extents.end(), hsize_t{0}) != extents.end(),
+         fmt::format("has a {} of shape {} with values of {} bytes, more than the file's {}", name, shape_text(extents),
+                     bytes, _bytes));
 }
 
 std::string SerialFile::change_in_header() const {

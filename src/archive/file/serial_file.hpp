@@ -31,6 +31,8 @@ class SerialFile {
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return _path; }
   [[nodiscard]] const Header& header() const noexcept { return _header; }
 
+  /// Its format_minor.
+  [[nodiscard]] std::int64_t minor() const noexcept { return _minor; }
   /// Whether its rows carry checksums: those of older versions do not.
   [[nodiscard]] bool has_checksums() const noexcept { return _minor >= checksums_since; }
   /// What is wrong with the root attributes, for `expect`; empty: they give their checksum, or there is none.
@@ -64,6 +66,8 @@ class SerialFile {
   const H5Handle& dataset(const std::string& name);
   [[nodiscard]] std::vector<hsize_t> extents(const H5Handle& dataset) const;
   void expect_type(const std::string& name, ColumnSpec& spec);
+  /// Throws InputError where values of `bytes` bytes would take more than the file has: a forged extent.
+  void expect_room(const std::string& name, const std::vector<hsize_t>& extents, std::size_t bytes) const;
   void read_rows(const std::string& name, hid_t memory_type, std::uint64_t first, const std::vector<hsize_t>& counts,
                  void* data) const;
 
@@ -71,6 +75,7 @@ class SerialFile {
   const FileKind* _kind;
   Header _header;
   std::int64_t _minor = 0;
+  std::uint64_t _bytes = 0;  // of the file
   H5Handle _file;
   std::map<std::string, H5Handle> _datasets;
 };

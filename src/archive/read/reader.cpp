@@ -29,7 +29,7 @@ Archive::Archive(const std::filesystem::path& path, ChangedRows changed)
   if (_file->has_checksums()) {
     if (std::string text = _file->change_in_header(); !text.empty()) _changed.push_back({"", 0, std::move(text)});
     for (const Table* table : {&_families, &_orbits, &_crossings, &_sections, &_findings})
-      for (const std::size_t row : archive::changed_rows(*table))
+      for (const std::size_t row : archive::changed_rows(*table, _file->minor()))
         _changed.push_back({table->name(), row, changed_row(table->name(), row)});
   }
   // An index that was changed is named by itself.
@@ -45,6 +45,8 @@ Archive::~Archive() = default;
 const std::filesystem::path& Archive::path() const noexcept { return _file->path(); }
 
 const Header& Archive::header() const noexcept { return _file->header(); }
+
+std::int64_t Archive::format_minor() const noexcept { return _file->minor(); }
 
 bool Archive::has_checksums() const noexcept { return _file->has_checksums(); }
 

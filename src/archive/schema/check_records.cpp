@@ -8,6 +8,7 @@
 
 #include "orbweaver/archive/schema/schema.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/text.hpp"
 
 namespace orbweaver::archive {
 
@@ -26,32 +27,12 @@ void expect(bool condition, const std::string& record, const std::string& proble
   if (!condition) refuse(record, problem);
 }
 
-// Length of the UTF-8 sequence that `lead` starts, 0 if it starts none.
-std::size_t sequence_length(unsigned char lead) {
-  if (lead < 0x80) return 1;
-  if (lead >= 0xC2 && lead < 0xE0) return 2;
-  if (lead >= 0xE0 && lead < 0xF0) return 3;
-  if (lead >= 0xF0 && lead < 0xF5) return 4;
-  return 0;
-}
-
-bool is_utf8(const std::string& text) {
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = sequence_length(static_cast<unsigned char>(text[at]));
-    if (length == 0 || at + length > text.size()) return false;
-    for (std::size_t i = 1; i < length; ++i)
-      if ((static_cast<unsigned char>(text[at + i]) & 0xC0) != 0x80) return false;
-    at += length;
-  }
-  return true;
-}
-
 void check_text(const std::string& record, const char* member, const std::string& text,
                 std::size_t longest = longest_text) {
   expect(text.size() <= longest, record,
          fmt::format("{} has {} bytes; at most {} are stored", member, text.size(), longest));
   expect(text.find('\0') == std::string::npos, record, fmt::format("{} contains a zero byte", member));
-  expect(is_utf8(text), record, fmt::format("{} is not valid UTF-8", member));
+  expect(core::first_untextual(text) == std::string::npos, record, fmt::format("{} is not valid UTF-8", member));
 }
 
 void check_key(const std::string& record, const std::string& key) {

@@ -51,9 +51,38 @@ const ColumnDefinitions<OrbitRecord>& orbit_columns() {
       {"time_map_begin", row_number},
       {"time_map_count", row_number},
       {"winding", &OrbitRecord::winding, RowShape::winding},
+      {"verdict", &OrbitRecord::verdict, RowShape::one, certificates_since},
+      {"taylor_closure", &OrbitRecord::taylor_closure, RowShape::one, certificates_since},
+      {"integrators_apart", &OrbitRecord::integrators_apart, RowShape::one, certificates_since},
+      {"other_drift", &OrbitRecord::other_drift, RowShape::one, certificates_since},
+      {"symmetry_defect", &OrbitRecord::symmetry_defect, RowShape::one, certificates_since},
+      {"recurrence", &OrbitRecord::recurrence, RowShape::one, certificates_since},
+      {"orbit_distance", &OrbitRecord::orbit_distance, RowShape::one, certificates_since},
+      {"contraction", &OrbitRecord::contraction, RowShape::one, certificates_since},
+      {"pairing", &OrbitRecord::pairing, RowShape::one, certificates_since},
+      {"index_gap", &OrbitRecord::index_gap, RowShape::one, certificates_since},
       {"modes_checksum", checksum},
       {"time_map_checksum", checksum},
       {"checksum", checksum},
+  };
+  return columns;
+}
+
+const ColumnDefinitions<CertificateRecord>& certificate_columns() {
+  static const ColumnDefinitions<CertificateRecord> columns{
+      {"verdict", &CertificateRecord::verdict},
+      {"closure", &CertificateRecord::closure},
+      {"single_shot", &CertificateRecord::single_shot},
+      {"energy_drift", &CertificateRecord::energy_drift},
+      {"taylor_closure", &CertificateRecord::taylor_closure},
+      {"integrators_apart", &CertificateRecord::integrators_apart},
+      {"other_drift", &CertificateRecord::other_drift},
+      {"symmetry_defect", &CertificateRecord::symmetry_defect},
+      {"recurrence", &CertificateRecord::recurrence},
+      {"orbit_distance", &CertificateRecord::orbit_distance},
+      {"contraction", &CertificateRecord::contraction},
+      {"pairing", &CertificateRecord::pairing},
+      {"index_gap", &CertificateRecord::index_gap},
   };
   return columns;
 }

@@ -31,6 +31,7 @@ struct ColumnDefinition {
   const char* name;
   Member member = RowNumber{};
   RowShape shape = RowShape::one;
+  int since = 0;  ///< ColumnSpec
 };
 
 template <class Record>
@@ -38,6 +39,8 @@ using ColumnDefinitions = std::vector<ColumnDefinition<Record>>;
 
 [[nodiscard]] const ColumnDefinitions<FamilyRecord>& family_columns();
 [[nodiscard]] const ColumnDefinitions<OrbitRecord>& orbit_columns();
+/// Those of /orbits that a certificate fills.
+[[nodiscard]] const ColumnDefinitions<CertificateRecord>& certificate_columns();
 [[nodiscard]] const ColumnDefinitions<CrossingRecord>& crossing_columns();
 [[nodiscard]] const ColumnDefinitions<SectionRecord>& section_columns();
 [[nodiscard]] const ColumnDefinitions<FindingRecord>& finding_columns();

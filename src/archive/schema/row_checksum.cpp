@@ -42,9 +42,9 @@ class Bytes {
   std::string _bytes;
 };
 
-void add_row(const Table& table, std::size_t row, Bytes& bytes) {
+void add_row(const Table& table, std::size_t row, std::int64_t minor, Bytes& bytes) {
   for (const Column& column : table.columns()) {
-    if (column.spec.name == name_of_sum) continue;
+    if (column.spec.name == name_of_sum || column.spec.since > minor) continue;
     const std::size_t width = column.spec.width();
     std::visit(
         [&](const auto& values) {
@@ -54,13 +54,13 @@ void add_row(const Table& table, std::size_t row, Bytes& bytes) {
   }
 }
 
-std::vector<std::int64_t> checksums_of(const Table& table, std::uint64_t first) {
+std::vector<std::int64_t> checksums_of(const Table& table, std::uint64_t first, std::int64_t minor) {
   std::vector<std::int64_t> sums(table.rows());
   Bytes bytes;
   for (std::size_t row = 0; row < sums.size(); ++row) {
     bytes.clear();
     bytes.add(first + row);
-    add_row(table, row, bytes);
+    add_row(table, row, minor, bytes);
     sums[row] = bytes.checksum();
   }
   return sums;
@@ -93,10 +93,12 @@ std::int64_t header_checksum(const std::string& format, std::int64_t minor, cons
   return bytes.checksum();
 }
 
-void set_checksums(Table& table, std::uint64_t first) { table.integers(name_of_sum) = checksums_of(table, first); }
+void set_checksums(Table& table, std::uint64_t first) {
+  table.integers(name_of_sum) = checksums_of(table, first, format_minor);
+}
 
-std::vector<std::size_t> changed_rows(const Table& table) {
-  const std::vector<std::int64_t> found = checksums_of(table, 0);
+std::vector<std::size_t> changed_rows(const Table& table, std::int64_t minor) {
+  const std::vector<std::int64_t> found = checksums_of(table, 0, minor);
   const std::vector<std::int64_t>& stored = table.integers(name_of_sum);
   std::vector<std::size_t> changed;
   for (std::size_t row = 0; row < found.size(); ++row)

@@ -23,8 +23,8 @@ namespace orbweaver::archive {
 /// with their length before them.
 void set_checksums(Table& table, std::uint64_t first);
 
-/// The rows of a whole table that do not give their checksum.
-[[nodiscard]] std::vector<std::size_t> changed_rows(const Table& table);
+/// The rows of a whole table, from a file of this format_minor, that do not give their checksum.
+[[nodiscard]] std::vector<std::size_t> changed_rows(const Table& table, std::int64_t minor);
 
 /// "has a changed row 17 of /orbits: ...", and the same of the row's part of a flat dataset.
 [[nodiscard]] std::string changed_row(const std::string& table, std::size_t row);

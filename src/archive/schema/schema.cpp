@@ -30,7 +30,7 @@ ColumnSpec spec_of(const ColumnDefinition<Record>& column, const Header& header)
   if (std::holds_alternative<CrossingKind Record::*>(member)) type = ColumnType::text;
   if (std::holds_alternative<double Record::*>(member)) type = ColumnType::real;
   if (std::holds_alternative<std::vector<double> Record::*>(member)) type = ColumnType::real;
-  const int since = std::holds_alternative<Checksum>(member) ? checksums_since : 0;
+  const int since = std::holds_alternative<Checksum>(member) ? checksums_since : column.since;
   return {column.name, type, extents_of(column.shape, header), 0, since};
 }
 

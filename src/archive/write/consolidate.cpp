@@ -9,6 +9,7 @@
 #include "read/row_reader.hpp"
 #include "root_tables.hpp"
 #include "schema/check_records.hpp"
+#include "schema/columns.hpp"
 #include "schema/row_checksum.hpp"
 
 namespace orbweaver::archive {
@@ -24,6 +25,7 @@ struct Order {
   std::string output;
   Header header;
   Selection selection;
+  std::vector<CertificateRecord> certificates;
   std::uint64_t block_values = 0;
 };
 
@@ -45,6 +47,7 @@ Order share_order(MPI_Comm comm, Order order) {
   order.selection.earlier_scenes = core::agreed(comm, std::move(order.selection.earlier_scenes));
   order.selection.steps = core::gather_rows(comm, order.selection.steps);  // only rank 0 has any
   order.selection.voided = core::gather_rows(comm, order.selection.voided);
+  order.certificates = core::gather_rows(comm, order.certificates);
   order.output = texts[0];
   header.orbweaver_version = texts[1];
   header.scene = texts[2];
@@ -188,6 +191,9 @@ void write_orbits(MPI_Comm comm, ParallelFile& file, const Order& order, const N
           check_values(run, *source, block, "time_map", maps);
         }
       });
+      if (!order.certificates.empty())
+        fill_columns(block, certificate_columns(),
+                     [&](std::size_t row) -> const CertificateRecord& { return order.certificates[mine.begin + row]; });
       set_checksums(block, mine.begin);
     });
     file.write_table(block, mine.begin);
@@ -237,11 +243,13 @@ bool consolidate(MPI_Comm comm, const std::vector<std::filesystem::path>& segmen
   check_input(comm, header, tables, segments.size());
   Order given;
   if (is_root) {
-    given = {{}, output.string(), header, selection_of(tables), options.block_values};
+    given = {{}, output.string(), header, selection_of(tables), tables.certificates, options.block_values};
     for (const auto& path : segments) given.segments.push_back(path.string());
   }
   const Order order = share_order(comm, std::move(given));
   const Numbering numbering = number_rows(comm, order.segments, order.header, order.selection);
+  core::require(order.certificates.empty() || order.certificates.size() == numbering.orbits.size(),
+                "an atlas takes a certificate for each of its orbits, or none");
   RootTables root;
   core::collectively(comm, [&] {
     root = make_root_tables(order.header, is_root ? tables : Records{},

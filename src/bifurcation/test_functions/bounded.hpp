@@ -23,6 +23,18 @@ inline Bounded product(const Bounded& a, const Bounded& b) {
   return {a.value * b.value, std::abs(a.value) * b.error + std::abs(b.value) * a.error + a.error * b.error};
 }
 
+/// (a b - 1)/(1 + |a b|), also where a b is beyond double precision: there with relative numbers, 1/|a b| for 1.
+inline Bounded scaled_product(const Bounded& a, const Bounded& b) {
+  constexpr double huge = 1e150;
+  const double size_a = std::abs(a.value);
+  const double size_b = std::abs(b.value);
+  if (size_a * size_b < huge) return scaled(product(a, b), 1.0, 1.0);
+  const double one = 1.0 / size_a / size_b;
+  const double error = a.error / size_a + b.error / size_b + a.error / size_a * (b.error / size_b);
+  const std::complex<double> direction = (a.value / size_a) * (b.value / size_b);
+  return {(direction - one) / (one + 1.0), 2.0 * error / std::max(one, one + 1.0 - error)};
+}
+
 template <class Factor>
 std::vector<Bounded> over_pairs(const std::vector<Bounded>& indices, const Factor& factor) {
   std::vector<Bounded> factors;

@@ -14,7 +14,7 @@ class Torus final : public Rule {
   }
   [[nodiscard]] std::vector<Bounded> factors(const systems::Structure& /*system*/, const Sector& /*sector*/,
                                              const std::vector<Bounded>& indices) const override {
-    return over_pairs(indices, [](const Bounded& a, const Bounded& b) { return scaled(product(a, b), 1.0, 1.0); });
+    return over_pairs(indices, scaled_product);
   }
   [[nodiscard]] bool is_event(const std::vector<Bounded>& indices, const std::vector<Bounded>& factors,
                               bool /*tangency*/) const override {

@@ -7,6 +7,8 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "orbweaver/core/text.hpp"
+
 namespace orbweaver::core {
 
 namespace {
@@ -48,9 +50,11 @@ void write_line(std::FILE* stream, std::string_view line) noexcept {
 }
 
 bool logs_debug() { return logger().should_log(spdlog::level::debug); }
-void log_debug(std::string_view message) { logger().debug(message); }
-void log_info(std::string_view message) { logger().info(message); }
-void log_warning(std::string_view message) { logger().warn(message); }
-void log_error(std::string_view message) { logger().error(message); }
+void log_debug(std::string_view message) {
+  if (logs_debug()) logger().debug(printable_lines(message));
+}
+void log_info(std::string_view message) { logger().info(printable_lines(message)); }
+void log_warning(std::string_view message) { logger().warn(printable_lines(message)); }
+void log_error(std::string_view message) { logger().error(printable_lines(message)); }
 
 }  // namespace orbweaver::core

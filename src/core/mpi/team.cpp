@@ -19,14 +19,6 @@ struct Team::Problem {
   bool is_alike = false;  ///< fine if all have it
 };
 
-/// What a member says when it meets the others.
-struct Team::Word {
-  std::uint64_t step;
-  std::uint64_t place;
-  std::uint64_t digest;
-  std::uint64_t kind;
-};
-
 namespace {
 
 constexpr std::size_t words = 4;
@@ -53,7 +45,7 @@ std::uint64_t digest_of(std::string_view bytes) {
   return digest;
 }
 
-Team::Team(MPI_Comm comm) : _comm(comm) {}
+Team::Team(MPI_Comm comm) : _comm(comm), _words(static_cast<std::size_t>(size())) {}
 
 void Team::begin() {
   _fallen_apart.reset();
@@ -71,12 +63,18 @@ Team::Problem Team::attempt(const std::function<void()>& work) {
   return {std::move(failure)};
 }
 
-void Team::meet(std::string_view place, std::uint64_t digest, const Problem& problem) {
+void Team::meet(std::string_view place, std::uint64_t digest, const Problem& problem, Waiting waiting) {
   if (_fallen_apart) throw TeamError(*_fallen_apart);
   const std::uint64_t kind = problem.is_alike ? alike_word : static_cast<std::uint64_t>(problem.failure.kind);
   const Word mine{++_step, digest_of(place), digest, kind};
-  std::vector<Word> all(static_cast<std::size_t>(size()));
-  check_mpi(MPI_Allgather(&mine, words, MPI_UINT64_T, all.data(), words, MPI_UINT64_T, comm()), "MPI_Allgather");
+  std::vector<Word>& all = _words;
+  MPI_Request request = MPI_REQUEST_NULL;
+  check_mpi(MPI_Iallgather(&mine, words, MPI_UINT64_T, all.data(), words, MPI_UINT64_T, comm(), &request),
+            "MPI_Iallgather");
+  if (waiting == Waiting::asleep)
+    wait_asleep(request);
+  else
+    check_mpi(MPI_Wait(&request, MPI_STATUS_IGNORE), "MPI_Wait");
   int speaker = -1;  // the first with a problem
   bool together = true;
   bool alike = true;
@@ -87,7 +85,8 @@ void Team::meet(std::string_view place, std::uint64_t digest, const Problem& pro
     alike = alike && word.kind == alike_word;
   }
   if (together && (speaker < 0 || alike)) return;
-  std::string text;
+  // Whatever is thrown from here on, nobody meets this member again before the next task, unless all throw the same.
+  std::string& text = _fallen_apart.emplace();
   if (speaker >= 0) {
     char buffer[1024] = {};
     problem.failure.text.copy(buffer, sizeof buffer - 1);
@@ -95,7 +94,11 @@ void Team::meet(std::string_view place, std::uint64_t digest, const Problem& pro
     text = buffer;
     const auto speakers = static_cast<FailureKind>(all[static_cast<std::size_t>(speaker)].kind);
     const bool is_numerical = speakers == FailureKind::not_finite || speakers == FailureKind::numerical;
-    if (together && is_numerical) raise({speakers, text, {}});
+    if (together && is_numerical) {
+      const Failure all_have{speakers, text, {}};
+      _fallen_apart.reset();
+      raise(all_have);
+    }
     text = fmt::format("member {} of a team of {} failed: {}", speaker, size(), text);
   } else {
     text = fmt::format(
@@ -103,22 +106,24 @@ void Team::meet(std::string_view place, std::uint64_t digest, const Problem& pro
         "CPUs of one type?",
         size(), all[0].step);
   }
-  _fallen_apart = text;
   throw TeamError(text);
 }
 
 void Team::divide(std::string_view place, int count, int width, double* values,
                   const std::function<void(int, int)>& work) {
   const Part mine = part_of(rank(), count);
-  meet(place, static_cast<std::uint64_t>(count), attempt([&] { work(mine.begin, mine.end); }));
-  if (size() == 1) return;
   std::vector<int> counts;
   std::vector<int> starts;
-  for (int m = 0; m < size(); ++m) {
-    const Part part = part_of(m, count);
-    counts.push_back(part.end - part.begin);
-    starts.push_back(part.begin);
-  }
+  const auto prepare = [&] {
+    for (int m = 0; m < size(); ++m) {
+      const Part part = part_of(m, count);
+      counts.push_back(part.end - part.begin);
+      starts.push_back(part.begin);
+    }
+    work(mine.begin, mine.end);
+  };
+  meet(place, static_cast<std::uint64_t>(count), attempt(prepare));
+  if (size() == 1) return;
   MPI_Datatype thing = MPI_DATATYPE_NULL;
   check_mpi(MPI_Type_contiguous(width, MPI_DOUBLE, &thing), "MPI_Type_contiguous");
   check_mpi(MPI_Type_commit(&thing), "MPI_Type_commit");
@@ -139,13 +144,13 @@ void Team::end(const std::optional<std::string>& error, std::uint64_t digest) {
 }
 
 void Team::broadcast(std::string& bytes) {
+  const Problem problem =
+      attempt([&] { require(bytes.size() <= INT_MAX, "bytes for a team are more than MPI can send"); });
+  meet("the leader's bytes", 0, problem, Waiting::asleep);
   auto length = static_cast<std::uint64_t>(bytes.size());
-  MPI_Request request = MPI_REQUEST_NULL;
-  check_mpi(MPI_Ibcast(&length, 1, MPI_UINT64_T, 0, comm(), &request), "MPI_Ibcast");
-  wait_asleep(request);
-  require(length <= INT_MAX, "bytes for a team are more than MPI can send");
-  bytes.resize(length);
-  check_mpi(MPI_Bcast(bytes.data(), static_cast<int>(length), MPI_CHAR, 0, comm()), "MPI_Bcast");
+  detail::broadcast_bytes(comm(), &length, sizeof length, 0);
+  together("room for the leader's bytes", [&] { bytes.resize(length); });
+  detail::broadcast_bytes(comm(), bytes.data(), length, 0);
 }
 
 }  // namespace orbweaver::core

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -68,7 +69,14 @@ void measure(const Setting& setting, const Take& take) {
     const loop::Loop orbit = branch.frontier().orbit.loop;
     const loop::Tangent tangent = branch.frontier().tangent;
     prices.add("stability", orbit, [&] { static_cast<void>(spectrum::floquet(system, orbit, isotropy)); });
-    prices.add("certificate", orbit, [&] { static_cast<void>(certificate::certify(system, orbit)); });
+    for (const auto& [name, level] : {std::pair{"certificate none", certificate::Level::none},
+                                      std::pair{"certificate closure", certificate::Level::closure},
+                                      std::pair{"certificate full", certificate::Level::full}}) {
+      certificate::Options options;
+      options.level = level;
+      certificate::Certifier certifier(system, isotropy, options);
+      prices.add(name, orbit, [&] { static_cast<void>(certifier(orbit)); });
+    }
     prices.add("off-branch eigenvalue", orbit,
                [&] { static_cast<void>(continuation::off_branch_eigenvalue(system, orbit, isotropy, tangent)); });
   }

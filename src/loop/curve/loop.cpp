@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <numbers>
 
+#include "orbweaver/ad/lanes.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
@@ -73,11 +74,18 @@ std::vector<double> state_at(const Loop& loop, double time) {
   const auto d = static_cast<std::size_t>(loop.dimension);
   std::vector<double> z(d);
   for (std::size_t i = 0; i < d; ++i) z[i] = loop.winding[i] * (two_pi * whole + s) + loop.modes[i];
-  for (int k = loop.cutoff; k >= 1; --k) {
-    const double c = s == 0.0 ? 1.0 : std::cos(k * s);  // energies are taken at s = 0, at every orbit
-    const double sn = s == 0.0 ? 0.0 : std::sin(k * s);
-    for (int i = 0; i < loop.dimension; ++i)
-      z[static_cast<std::size_t>(i)] += loop.cosine(k, i) * c + loop.sine(k, i) * sn;
+  constexpr int width = static_cast<int>(ad::Lanes::width);
+  double angles[width];
+  double cosines[width];
+  double sines[width];
+  for (int top = loop.cutoff; top >= 1; top -= width) {
+    for (int n = 0; n < width; ++n) angles[n] = (top - n) * s;
+    const ad::Lanes packed = ad::Lanes::load(angles);
+    ad::cos(packed).store(cosines);
+    ad::sin(packed).store(sines);
+    for (int n = 0; n < std::min(width, top); ++n)
+      for (int i = 0; i < loop.dimension; ++i)
+        z[static_cast<std::size_t>(i)] += loop.cosine(top - n, i) * cosines[n] + loop.sine(top - n, i) * sines[n];
   }
   return z;
 }

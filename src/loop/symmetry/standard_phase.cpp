@@ -9,6 +9,7 @@
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
+#include "orbweaver/loop/symmetry/shift_search.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
 
 namespace orbweaver::loop {
@@ -87,6 +88,16 @@ Loop in_standard_phase(const systems::Structure& system, const Loop& loop, const
   if (loop.winding[static_cast<std::size_t>(coordinate)] == 0.0)
     return parameter_shifted(loop, turns_of_maximum(loop, coordinate));
   return time_shifted(loop, turns_of_maximum(resolved_in_time(loop), coordinate));
+}
+
+Loop at_first_reversor(const systems::Structure& system, const Loop& loop, double tolerance) {
+  for (const systems::Symmetry& reversor : system.reversors) {
+    const Loop image = transformed(loop, reversor.map, true, 0.0);
+    const std::vector<ShiftMinimum> minima = shift_minima(image, loop, system.angles);
+    if (!minima.empty() && minima.front().square < tolerance * tolerance)
+      return time_shifted(loop, -0.5 * minima.front().shift);
+  }
+  return loop;
 }
 
 }  // namespace orbweaver::loop

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "certify_orbits.hpp"
 #include "orbweaver/archive/file/folder_lock.hpp"
 #include "orbweaver/archive/write/consolidate.hpp"
 #include "orbweaver/core/error.hpp"
@@ -13,6 +14,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "state/branch_state.hpp"
 #include "state/resume.hpp"
+#include "tasks/certified.hpp"
 #include "version.hpp"
 #include "witness/placement.hpp"
 #include "witness/witness.hpp"
@@ -138,7 +140,12 @@ void write_archive(const core::Communicator& comm, const scene::Scene& scene,
       std::vector<double>& point = known.equilibria.emplace_back(unpack_sweep_work(ended.first.payload).point);
       for (std::size_t i = 0; i < point.size(); ++i) point[i] *= system->scales().coordinate(i);
       std::vector<KernelRecord>& kernels = known.kernels.emplace_back();
-      if (!ended.second.failed) kernels = unpack_sweep_outcome(ended.second.payload).kernels;
+      std::vector<Oscillation>& oscillations = known.oscillations.emplace_back();
+      if (ended.second.failed) continue;
+      const SweepOutcome outcome = unpack_sweep_outcome(ended.second.payload);
+      kernels = outcome.kernels;
+      for (const FoundMode& mode : outcome.modes)
+        oscillations.push_back({mode.place, mode.period * system->scales().time});
     }
     for (const archive::FamilyRecord& family : tables.families) known.family_keys.push_back(family.key);
     std::sort(known.family_keys.begin(), known.family_keys.end());
@@ -149,12 +156,32 @@ void write_archive(const core::Communicator& comm, const scene::Scene& scene,
     summary.failures = core::agreed(comm.get(), static_cast<unsigned long>(summary.failed_tasks.size()));
     return;
   }
+  // What tasks of their own certify: the orbits of an atlas that is not published. A stopped survey's are not.
+  if (!is_certified_by_branches(scene) && certificate_level(scene) != certificate::Level::none &&
+      !core::agreed(comm.get(), summary.stopped_early)) {
+    bool stopped = false;
+    const archive::Witness certify = [&](const std::filesystem::path& atlas) {
+      auto certificates = certificates_of(comm, atlas);
+      stopped = !certificates;
+      if (certificates) tables.certificates = std::move(*certificates);
+      return std::optional<std::vector<archive::FindingRecord>>();
+    };
+    (void)archive::consolidate(comm.get(), segments, summary.atlas, header, tables, {}, certify);
+    if (stopped) {
+      summary.archived = false;
+      summary.stopped_early = true;
+      return;
+    }
+  }
   const archive::Witness witness = [&](const std::filesystem::path& atlas) {
     auto testimony = testify(comm, atlas, scene, system, std::move(known));
     std::optional<std::vector<archive::FindingRecord>> records;
     if (!testimony) return records;
     summary.failures = testimony->wrong;
     summary.findings = std::move(testimony->summaries);
+    for (FamilySummary& family : summary.families)
+      if (const auto doubts = testimony->doubts.find(family.key); doubts != testimony->doubts.end())
+        family.doubts = doubts->second;
     records = std::move(testimony->records);
     return records;
   };

@@ -15,6 +15,7 @@
 #include "display.hpp"
 #include "orbweaver/archive/file/folder_lock.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/interruption.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/core/petsc/check.hpp"
@@ -100,7 +101,11 @@ class Run {
   /// Finds where the survey stands; every survey that has begun has a checkpoint.
   void begin(bool resume) {
     // On every rank, so that a wrong model is the same error everywhere; a resumed one may have changed since.
-    std::vector<queue::Task> sweeps = sweep_tasks(_scaled.scene(), *_system);
+    std::vector<queue::Task> sweeps;
+    {
+      const core::InterruptionScope nothing_lost(queue::stop_requested);
+      sweeps = sweep_tasks(_scaled.scene(), *_system);
+    }
     core::on_root(_comm.get(), [&] {
       make_folder(_folder);
       _lock = archive::FolderLock(_folder);
@@ -130,7 +135,11 @@ class Run {
 
   /// A survey writes its first checkpoint before anything else.
   void expect_nothing(bool resume) const {
-    if (std::filesystem::exists(checkpoint_path(_folder)) || std::filesystem::exists(previous_checkpoint_path(_folder)))
+    const auto stands = [](const std::filesystem::path& path) {
+      std::error_code ignored;
+      return std::filesystem::symlink_status(path, ignored).type() != std::filesystem::file_type::not_found;
+    };
+    if (stands(checkpoint_path(_folder)) || stands(previous_checkpoint_path(_folder)))
       throw core::InputError(fmt::format("{} already holds a survey, and nothing was changed: --resume goes on with it",
                                          _folder.parent_path().string()));
     for (const auto& entry : std::filesystem::directory_iterator(_folder)) {
@@ -220,25 +229,38 @@ class Run {
   Clock::time_point _began = Clock::now();
 };
 
-Summary follow_survey(const ScaledScene& scaled, core::Team& team) {
+/// The part of a rank that follows a leader.
+struct Follower {
+  Follower(const ScaledScene& scaled, core::Team& team) : member(scaled.scene(), scaled.system(), rows, &team) {}
+
   archive::Records rows;
-  Executor member(scaled.scene(), scaled.system(), rows, &team);
-  return follow(team, member, rows);
-}
+  Executor member;
+};
 
 }  // namespace
 
 Summary run_survey(const core::Communicator& comm, const scene::Scene& scene,
                    const std::shared_ptr<const systems::System>& system, const std::filesystem::path& directory,
                    const RunOptions& options) {
-  const ScaledScene scaled(scene, system);
+  const ScaledScene scaled = [&] {
+    const core::InterruptionScope nothing_lost(queue::stop_requested);
+    return ScaledScene(scene, system);
+  }();
   Teams teams(comm, scene.survey.team_size);
+  std::optional<Run> run;
+  std::optional<Follower> follower;
+  core::collectively(comm.get(), [&] {  // nobody begins unless all can
+    if (teams.follows())
+      follower.emplace(scaled, *teams.team());
+    else
+      run.emplace(teams.queue(), scene, scaled, directory, options, teams.team());
+  });
   Summary summary;
-  if (teams.follows()) {
-    summary = follow_survey(scaled, *teams.team());
+  if (follower) {
+    summary = follow(*teams.team(), follower->member, follower->rows);
   } else {
     try {
-      summary = Run(teams.queue(), scene, scaled, directory, options, teams.team()).run(options.resume);
+      summary = run->run(options.resume);
     } catch (...) {
       dismiss(teams.team(), std::current_exception());
       throw;

@@ -1,6 +1,7 @@
 #include "teams.hpp"
 
 #include <exception>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,7 +10,9 @@
 #include <fmt/ranges.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/interruption.hpp"
 #include "orbweaver/core/mpi/check_mpi.hpp"
+#include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/queue/message.hpp"
 
 namespace orbweaver::survey {
@@ -49,6 +52,7 @@ enum class Order : char {
   error = 'e'
 };
 
+/// Collective, as `take` is of the followers. Throws TeamError where a member has left what all were doing.
 void give(core::Team& team, Order order, const std::string& text = {}) {
   std::string bytes = static_cast<char>(order) + text;
   team.broadcast(bytes);
@@ -103,25 +107,21 @@ class MemberContext final : public queue::TaskContext {
   archive::Records* _rows;
 };
 
-/// Throws what the member threw, or TeamError if not all came to the same end.
-queue::TaskOutcome do_together(core::Team& team, queue::Executor& member, const queue::Task& task,
-                               MemberContext& context) {
-  team.begin();
+/// Throws what the member's work threw, or TeamError if not all came to the same end.
+queue::TaskOutcome do_together(core::Team& team, const std::function<queue::TaskOutcome()>& work) {
   queue::TaskOutcome outcome;
-  std::exception_ptr thrown;
+  std::uint64_t digest = 0;
+  const core::Failure thrown = core::attempt([&] {
+    outcome = work();
+    digest = core::digest_of(queue::pack(queue::Outcome{outcome, 0}));
+  });
   std::optional<std::string> error;
-  try {
-    outcome = member.execute(task, context);
-  } catch (const std::exception& e) {
-    thrown = std::current_exception();
-    error = e.what();
-  } catch (...) {
-    thrown = std::current_exception();
-    error = "something that is not an exception was thrown";
-  }
-  if (outcome.failed) error = outcome.reason;
-  team.end(error, core::digest_of(queue::pack(queue::Outcome{outcome, 0})));
-  if (thrown) std::rethrow_exception(thrown);
+  if (thrown)
+    error = thrown.text;
+  else if (outcome.failed)
+    error = outcome.reason;
+  team.end(error, digest);
+  if (thrown) core::raise(thrown);
   // What the work has made of the team's end may say that it failed; it must not say that it came through.
   if (team.fallen_apart() && !outcome.failed) throw core::TeamError(*team.fallen_apart());
   return outcome;
@@ -146,30 +146,30 @@ Teams::Teams(const core::Communicator& comm, int team_size) {
 
 queue::TaskOutcome TeamExecutor::execute(const queue::Task& task, queue::TaskContext& context) {
   if (_team == nullptr) return _member.execute(task, context);
+  const core::InterruptionScope whole(nullptr);  // the others would wait for this one
+  _team->begin();
   give(*_team, Order::task, queue::pack(queue::Assign{task}));
   MemberContext shared(*_team, &context, nullptr);
-  return do_together(*_team, _member, task, shared);
+  return do_together(*_team, [&] { return _member.execute(task, shared); });
 }
 
 void dismiss(core::Team* team, const Summary& summary) {
-  if (team != nullptr) give(*team, Order::done, fmt::format("{} {}", summary.failures, summary.stopped_early ? 1 : 0));
+  if (team == nullptr) return;
+  team->begin();
+  give(*team, Order::done, fmt::format("{} {}", summary.failures, summary.stopped_early ? 1 : 0));
 }
 
 void dismiss(core::Team* team, const std::exception_ptr& error) {
   if (team == nullptr) return;
-  try {
-    std::rethrow_exception(error);
-  } catch (const core::InputError& e) {
-    give(*team, Order::input_error, e.what());
-  } catch (const std::exception& e) {
-    give(*team, Order::error, e.what());
-  } catch (...) {
-    give(*team, Order::error, "something that is not an exception was thrown");
-  }
+  const core::Failure failure = core::attempt([&] { std::rethrow_exception(error); });
+  const bool is_input = failure.kind == core::FailureKind::input || failure.kind == core::FailureKind::newer_version;
+  team->begin();
+  give(*team, is_input ? Order::input_error : Order::error, failure.text);
 }
 
 Summary follow(core::Team& team, queue::Executor& member, archive::Records& rows) {
   for (;;) {
+    team.begin();
     const auto [order, text] = take(team);
     if (order == Order::input_error) throw core::InputError(text);
     if (order == Order::error) throw core::EnvironmentError(text);
@@ -179,10 +179,12 @@ Summary follow(core::Team& team, queue::Executor& member, archive::Records& rows
       summary.stopped_early = text.back() == '1';
       return summary;
     }
-    const auto assign = std::get<queue::Assign>(queue::unpack(text, "from the leader of the team"));
     MemberContext context(team, nullptr, &rows);
     try {
-      (void)do_together(team, member, assign.task, context);
+      (void)do_together(team, [&] {
+        const auto assign = std::get<queue::Assign>(queue::unpack(text, "from the leader of the team"));
+        return member.execute(assign.task, context);
+      });
     } catch (...) {  // the leader tells
     }
     rows = {};

@@ -38,6 +38,7 @@ class TeamExecutor final : public queue::Executor {
   TeamExecutor(core::Team* team, queue::Executor& member) : _team(team), _member(member) {}
 
   queue::TaskOutcome execute(const queue::Task& task, queue::TaskContext& context) override;
+  void take_back_rows(bool flushed) override { _member.take_back_rows(flushed); }
 
  private:
   core::Team* _team;

@@ -13,7 +13,7 @@ namespace orbweaver::survey {
 namespace {
 
 // Counts up with every change of what the files hold, payloads and states included.
-constexpr std::uint32_t file_version = 3;
+constexpr std::uint32_t file_version = 4;
 constexpr archive::Seal checkpoint_seal{"ORBWCKP\x1a", file_version};
 constexpr archive::Seal journal_seal{"ORBWJRN\x1a", file_version};
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -46,6 +47,21 @@ bool holds_files(const std::filesystem::path& folder) {
   return false;
 }
 
+/// Throws InputError unless every row and loop of the archive is as it was written.
+void require_whole(const std::filesystem::path& atlas) {
+  try {
+    const archive::Archive archive(atlas);
+    for (std::size_t orbit = 0; orbit < archive.orbits().rows(); ++orbit) {
+      (void)archive.modes(orbit);
+      (void)archive.time_map(orbit);
+    }
+  } catch (const core::InputError& error) {
+    throw core::InputError(fmt::format(
+        "{} The survey has finished: once this archive is moved away, --resume makes it again from its segments.",
+        error.what()));
+  }
+}
+
 DirectoryStatus status_of(const Checkpoint& checkpoint, const std::filesystem::path& directory,
                           const scene::Scene& scene) {
   const scene::Scene before = scene::parse(checkpoint.scene, "the checkpoint's scene");
@@ -59,8 +75,10 @@ DirectoryStatus status_of(const Checkpoint& checkpoint, const std::filesystem::p
   const bool widened = std::any_of(differences.begin(), differences.end(), [](const scene::Difference& difference) {
     return difference.change == scene::Change::widened;
   });
-  if (checkpoint.stage != Stage::finished || widened || !std::filesystem::exists(directory / "atlas.h5"))
+  if (checkpoint.stage != Stage::finished || !std::filesystem::exists(directory / "atlas.h5"))
     return DirectoryStatus::unfinished;
+  if (widened) return DirectoryStatus::finished_within_narrower_limits;
+  require_whole(directory / "atlas.h5");
   return checkpoint.failures > 0 ? DirectoryStatus::finished_with_failures : DirectoryStatus::finished;
 }
 
@@ -83,11 +101,18 @@ DirectoryStatus status_of(const std::filesystem::path& directory, const scene::S
 
 void require_startable(DirectoryStatus status, const std::filesystem::path& directory, bool resume) {
   if (status == DirectoryStatus::none || resume) return;
-  const bool unfinished = status == DirectoryStatus::unfinished;
+  std::string_view what = "a finished survey";
+  std::string_view advice = "accept it as it is";
+  if (status == DirectoryStatus::unfinished) {
+    what = "an unfinished survey";
+    advice = "go on with it";
+  } else if (status == DirectoryStatus::finished_within_narrower_limits) {
+    what = "a finished survey with narrower limits";
+    advice = "go on with it to the wider ones";
+  }
   throw core::InputError(
-      fmt::format("{} already holds {} survey, and nothing was changed: give another folder with -o, or --resume to {}",
-                  directory.string(), unfinished ? "an unfinished" : "a finished",
-                  unfinished ? "go on with it" : "accept it as it is"));
+      fmt::format("{} already holds {}, and nothing was changed: give another folder with -o, or --resume to {}",
+                  directory.string(), what, advice));
 }
 
 }  // namespace orbweaver::survey

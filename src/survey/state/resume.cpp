@@ -2,35 +2,108 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "branch_state.hpp"
 #include "orbweaver/archive/read/check_segments.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
+#include "orbweaver/core/text.hpp"
 #include "orbweaver/scene/differences.hpp"
 #include "reopen.hpp"
+#include "tasks/payload/work.hpp"
 
 namespace orbweaver::survey {
 
 namespace {
 
-// Rank 0: the checkpoint in `path`, with its journals looked into; else why not.
+// Throws EnvironmentError unless all that a task carries can be unpacked.
+void expect_readable(const queue::Task& task) {
+  const TaskKind kind = kind_of(task);
+  if (!task.payload.empty()) switch (kind) {
+      case TaskKind::sweep: (void)unpack_sweep_work(task.payload); break;
+      case TaskKind::branch: (void)unpack_branch_work(task.payload); break;
+      case TaskKind::locate: (void)unpack_locate_work(task.payload); break;
+      case TaskKind::start: (void)unpack_start_work(task.payload); break;
+    }
+  if (kind == TaskKind::branch && !task.state.empty()) (void)unpack_branch_state(task.state);
+}
+
+void expect_readable(const EndedTask& entry) {
+  expect_readable(entry.task);
+  const std::string& outcome = entry.outcome.payload;
+  if (outcome.empty()) return;
+  switch (kind_of(entry.task)) {
+    case TaskKind::sweep: (void)unpack_sweep_outcome(outcome); break;
+    case TaskKind::locate: (void)unpack_locate_outcome(outcome); break;
+    case TaskKind::start: (void)unpack_start_outcome(outcome); break;
+    case TaskKind::branch:
+      if (const std::string before = unpack_branch_outcome(outcome).before_limit; !before.empty())
+        (void)unpack_branch_state(before);
+  }
+}
+
+// Files are found, counted on and removed by these names.
+void expect_name(const std::filesystem::path& path, const std::string& name, std::string_view before,
+                 std::string_view behind) {
+  constexpr std::size_t most_digits = 9;
+  const bool framed = name.starts_with(before) && name.ends_with(behind) && name.size() > before.size() + behind.size();
+  const std::string digits =
+      framed ? name.substr(before.size(), name.size() - before.size() - behind.size()) : std::string();
+  if (digits.empty() || digits.size() > most_digits || digits.find_first_not_of("0123456789") != std::string::npos)
+    throw core::InputError(fmt::format("{}: it lists a file `{}`, where {}NNNNNN{} was expected", path.string(),
+                                       core::printable(name), before, behind));
+}
+
+template <class Items>
+void expect_all_readable(const std::filesystem::path& path, const Items& items) {
+  try {
+    for (const auto& item : items) expect_readable(item);
+  } catch (const core::EnvironmentError& error) {
+    throw core::InputError(fmt::format("{}: {}", path.string(), error.what()));
+  }
+}
+
+// Rank 0: the checkpoint in `path`, with its journals, everything unpacked; else why not.
 std::optional<Checkpoint> readable(const std::filesystem::path& folder, const std::filesystem::path& path,
                                    std::vector<std::string>& problems) {
   try {
     Checkpoint checkpoint = read_checkpoint(path);
-    for (const JournalFile& journal : checkpoint.journals) (void)read_journal(folder, journal);
+    for (const archive::WrittenSegment& segment : checkpoint.segments)
+      expect_name(path, segment.name, "segment-", ".h5");
+    for (const JournalFile& journal : checkpoint.journals) expect_name(path, journal.name, "journal-", "");
+    expect_all_readable(path, checkpoint.unfinished);
+    expect_all_readable(path, checkpoint.left_out);
+    for (const JournalFile& journal : checkpoint.journals)
+      expect_all_readable(folder / journal.name, read_journal(folder, journal));
     return checkpoint;
   } catch (const core::NewerVersionError&) {
     throw;  // nothing is wrong with it: whoever fell back would destroy it
   } catch (const core::InputError& error) {
     problems.emplace_back(error.what());
-    return std::nullopt;
+  } catch (const std::exception& error) {
+    problems.push_back(fmt::format("{}: it cannot be read: {}", path.string(), error.what()));
   }
+  return std::nullopt;
+}
+
+// What stands in the way of a checkpoint and is none, a folder, is kept under another name.
+void clear_the_way(const std::filesystem::path& path) {
+  if (!std::filesystem::is_directory(std::filesystem::symlink_status(path))) return;
+  const std::filesystem::path aside = path.string() + ".folder";
+  std::error_code error;
+  std::filesystem::rename(path, aside, error);
+  if (error)
+    throw core::EnvironmentError(
+        fmt::format("{} is a folder, where a checkpoint should be, and cannot be renamed to {}: "
+                    "{}; move it away",
+                    path.string(), aside.string(), error.message()));
+  core::log_warning(fmt::format("{} was a folder; it is now {}", path.string(), aside.string()));
 }
 
 }  // namespace
@@ -44,6 +117,8 @@ void remove_unlisted(const std::filesystem::path& folder, const Checkpoint& chec
   list(checkpoint);
   try {
     list(read_checkpoint(previous_checkpoint_path(folder)));
+  } catch (const core::NewerVersionError&) {
+    throw;  // what it lists is not this Orbweaver's to remove
   } catch (const core::InputError&) {
     // There is none to fall back to.
   }
@@ -62,7 +137,8 @@ Found find_checkpoint(const core::Communicator& comm, const std::filesystem::pat
     std::optional<Checkpoint> candidate;
     bool there = false;
     core::on_root(comm.get(), [&] {
-      there = std::filesystem::exists(path);
+      std::error_code ignored;  // one that cannot be looked at is there
+      there = std::filesystem::symlink_status(path, ignored).type() != std::filesystem::file_type::not_found;
       if (there) candidate = readable(folder, path, problems);
     });
     any |= core::agreed(comm.get(), there);
@@ -81,6 +157,8 @@ Found find_checkpoint(const core::Communicator& comm, const std::filesystem::pat
     Found found{true, candidate ? std::move(*candidate) : Checkpoint{}};
     core::on_root(comm.get(), [&] {
       for (const std::string& problem : problems) core::log_warning(problem);
+      for (const std::filesystem::path& place : {checkpoint_path(folder), previous_checkpoint_path(folder)})
+        clear_the_way(place);
       if (path != checkpoint_path(folder)) {
         core::log_warning("going on from the checkpoint before the last one");
         std::filesystem::rename(path, checkpoint_path(folder));
@@ -93,8 +171,8 @@ Found find_checkpoint(const core::Communicator& comm, const std::filesystem::pat
   const std::string why = core::agreed(comm.get(), fmt::format("{}", fmt::join(problems, "\n  ")));
   throw core::InputError(
       fmt::format("the survey in {} cannot go on; nothing was changed:\n  {}\nbring the missing or damaged files back "
-                  "from a copy, or "
-                  "begin the survey anew in another folder",
+                  "from a copy, or begin the survey anew in another folder; the orbits in segments that are whole can "
+                  "still be read with HDF5 (docs/file_format.md)",
                   folder.parent_path().string(), why));
 }
 

@@ -5,8 +5,11 @@
 #include "crossing_outcome.hpp"
 #include "orbweaver/bifurcation/directions.hpp"
 #include "orbweaver/bifurcation/subharmonic_crossing.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
+#include "orbweaver/loop/symmetry/standard_phase.hpp"
 #include "orbweaver/numerics/lagrange.hpp"
 
 namespace orbweaver::survey {
@@ -47,7 +50,9 @@ constexpr double on_the_way = 0.7;
 /// With one more orbit the meeting's period and energy change by so much, relatively, or another is sought on what is
 /// left of the way, a few times: a tenth of the window in which crossings are compared.
 constexpr double settled = 1e-4;
-constexpr int most_on_the_way = 4;
+constexpr int most_on_the_way = 6;
+/// Where the corrector has slipped, so much of that way is left to look on. Not measured.
+constexpr double nearer = 0.5;
 /// The part is proportional to its signed part where it vanishes: its size may be so many times that, and so much more.
 /// A part that turns instead of vanishing keeps a size of about 1.
 constexpr double proportional = 2.0;
@@ -60,6 +65,15 @@ constexpr double telling = 1e-2;
 
 int multiplicity_of(const bifurcation::SymmetryGain& gain) {
   return gain.name == "1" && !gain.reversing ? gain.shift_denominator : 1;
+}
+
+/// From `near` to where the broken part vanishes, in proportion to the way on which it falls from that of `from`; where
+/// `near` is `from` itself, to that of `to`.
+double distance_ahead(const bifurcation::SymmetryWatch& watch, const bifurcation::SymmetryGain& gain,
+                      const loop::Loop& from, const loop::Loop& near, const loop::Loop& to) {
+  const double part = watch.signed_part(gain, from, near);
+  if (part < on_the_way) return std::abs(part) / (1.0 - part) * loop::mean_distance(from, near);
+  return loop::mean_distance(from, to) / (1.0 - std::min(watch.signed_part(gain, from, to), 0.0));
 }
 
 std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuation::FamilyCurve& family,
@@ -95,6 +109,10 @@ std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuat
     if (!point) break;
     const double part = watch.signed_part(gain, from.loop, point->loop);
     const double size = watch.relative_size(gain, from.loop, point->loop);
+    if (size < slipped) {  // so has `to`, and the meeting point may lie nearer
+      beyond = {before.position + nearer * (there - before.position), 0.0};
+      continue;
+    }
     if (size > proportional * std::abs(part) + still_vanishing) {
       if (n == 0) return std::nullopt;  // it turns instead of vanishing: no arrival
       break;
@@ -115,6 +133,7 @@ std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuat
   record.energy = at_zero(samples, &Sample::energy);
   record.near = sketch_of(near);
   record.multiplicity = multiplicity_of(gain);
+  record.ahead = distance_ahead(watch, gain, from.loop, near, to.loop);
   return record;
 }
 
@@ -161,7 +180,11 @@ bool locate_beneath(const std::shared_ptr<const systems::System>& system, const 
   arrival.period = met.period;
   arrival.energy = continuation::energy_of(*system, met);
   CrossingBeneath& beneath = arrival.beneath.emplace_back();
-  describe(*system, found->event, found->crossing, beneath.crossing);
+  bifurcation::Crossing crossing = found->crossing;
+  crossing.point.loop = loop::at_first_reversor(system->structure(), orbit, loop::symmetry_tolerance);
+  const loop::Isotropy isotropy =
+      loop::find_isotropy(system->structure(), crossing.point.loop, loop::symmetry_tolerance);
+  describe(*system, found->event, crossing, isotropy, beneath.crossing);
   beneath.crossing.limited_by = order_limited;
   beneath.orbit = orbit;
   return true;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "arrival.hpp"
+#include "certified.hpp"
 #include "equilibrium_end.hpp"
 #include "executor.hpp"
 #include "orbit_row.hpp"
@@ -60,6 +61,11 @@ BranchTask::BranchTask(const scene::Scene& scene, std::shared_ptr<const systems:
                                              loop::SymmetryGroup(_system->structure(), _start.isotropy).order(),
                                              scene.survey.subharmonics)) {
   _outcome.key = _work.key;
+  if (is_certified_by_branches(scene)) {
+    certificate::Options options;
+    options.level = certificate_level(scene);
+    _certifier.emplace(*_system, _start.isotropy, options);
+  }
   _may_arrive_ahead =
       _system->structure().symplectic && std::none_of(_start.isotropy.begin(), _start.isotropy.end(),
                                                       [](const loop::SymmetryElement& e) { return e.reversing; });
@@ -119,6 +125,10 @@ continuation::Ending BranchTask::follow() {
     if (!orbit) {
       continuation::Ending ending = _branch->ending().value();
       if (ending.failed() && _last && arrives_ahead()) return met();
+      if (ending.failed() && _last_stability && !bifurcation::is_isolated(*_last_stability)) {
+        ending.reason = continuation::EndReason::undecided;
+        ending.detail = "an index is 2 to rounding; " + ending.detail;
+      }
       note_limits(ending, before);
       if (ending.reason == continuation::EndReason::fixed_point) {
         const EquilibriumEnd end = equilibrium_end(_scene, *_system, _last->loop);
@@ -158,6 +168,7 @@ void BranchTask::note_limits(const continuation::Ending& ending, const continuat
     case EndReason::cutoff_limit:
     case EndReason::period_divergence:
     case EndReason::collision:
+    case EndReason::undecided:
     case EndReason::failure: return limited_by(orbit_limited, before);
     default: return;
   }
@@ -347,9 +358,8 @@ void BranchTask::store(continuation::Orbit orbit, const std::optional<spectrum::
   // The other side of a crossing: counted backwards from it.
   orbit.step = _work.lineage.side > 0 ? _outcome.orbits : -1 - _outcome.orbits;
   orbit.arclength = signed_arclength(_work.lineage, _before_first, _curve.arclength_at(orbit.arclength));
-  certificate::Judgement judgement;
-  _rows.orbits.push_back(orbit_row(*_system, _work.lineage.family, orbit, _start.isotropy, stability, judgement));
-  add(_outcome.doubtful, {judgement, 1});
+  _rows.orbits.push_back(orbit_row(*_system, _work.lineage.family, orbit, _start.isotropy, stability,
+                                   _certifier ? &*_certifier : nullptr));
   ++_outcome.orbits;
 }
 

@@ -8,6 +8,7 @@
 #include "orbweaver/bifurcation/detector.hpp"
 #include "orbweaver/bifurcation/fold_watch.hpp"
 #include "orbweaver/bifurcation/symmetry_watch.hpp"
+#include "orbweaver/certificate/certificate.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
 #include "orbweaver/queue/executor.hpp"
 #include "orbweaver/scene/scene.hpp"
@@ -64,6 +65,7 @@ class BranchTask {
   continuation::FamilyCurve _curve;
   bifurcation::SymmetryWatch _symmetry;
   std::vector<bifurcation::TestFunction> _functions;
+  std::optional<certificate::Certifier> _certifier;  // none: the branch leaves it to others
   bifurcation::Detector _detector;
   bifurcation::FoldWatch _folds;
   std::optional<continuation::Orbit> _last;

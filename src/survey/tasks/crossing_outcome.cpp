@@ -5,6 +5,7 @@
 #include "orbweaver/archive/schema/records.hpp"
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/symmetry/standard_phase.hpp"
 
 namespace orbweaver::survey {
 
@@ -35,7 +36,7 @@ bool is_in_sector(const Event& event) {
 }
 
 void describe(const systems::System& system, const Event& event, const bifurcation::Crossing& crossing,
-              LocateOutcome& outcome) {
+              const loop::Isotropy& isotropy, LocateOutcome& outcome) {
   const loop::Loop& loop = crossing.point.loop;
   const bifurcation::Sector& sector = event.function.sector;
   outcome.q = sector.q;
@@ -55,7 +56,7 @@ void describe(const systems::System& system, const Event& event, const bifurcati
   outcome.kernel_singular_value = archive::not_computed;
   outcome.next_singular_value = archive::not_computed;
   outcome.kernel_dimension = by_sector ? -1 : 0;  // not computed yet
-  outcome.state = loop::state_at(loop, 0.0);
+  outcome.state = loop::state_at(loop::in_standard_phase(system.structure(), loop, isotropy), 0.0);
 }
 
 }  // namespace orbweaver::survey

@@ -10,8 +10,9 @@ namespace orbweaver::survey {
 [[nodiscard]] bool is_in_sector(const bifurcation::Event& event);
 
 /// All of an outcome that the located event itself says: not whose it is, nor where on its family, nor what leaves
-/// there. Throws MisuseError for an event that the archive has no kind of crossings for.
+/// there. `isotropy`: of the orbit there, at its present phase. Throws MisuseError for an event that the archive has no
+/// kind of crossings for.
 void describe(const systems::System& system, const bifurcation::Event& event, const bifurcation::Crossing& crossing,
-              LocateOutcome& outcome);
+              const loop::Isotropy& isotropy, LocateOutcome& outcome);
 
 }  // namespace orbweaver::survey

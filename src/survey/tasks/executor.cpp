@@ -20,6 +20,8 @@ Executor::Executor(const scene::Scene& scene, std::shared_ptr<const systems::Sys
     : _scene(scene), _system(std::move(system)), _rows(rows), _team(team) {}
 
 queue::TaskOutcome Executor::execute(const queue::Task& task, queue::TaskContext& context) {
+  _orbits_before = _rows.orbits.size();
+  _sections_before = _rows.sections.size();
   switch (kind_of(task)) {
     case TaskKind::sweep: return sweep(unpack_sweep_work(task.payload));
     case TaskKind::branch:
@@ -28,6 +30,11 @@ queue::TaskOutcome Executor::execute(const queue::Task& task, queue::TaskContext
     case TaskKind::start: return start(_scene, _system, unpack_start_work(task.payload), _team);
   }
   throw core::MisuseError("a task of a kind that is none");
+}
+
+void Executor::take_back_rows(bool flushed) {
+  _rows.orbits.resize(flushed ? 0 : _orbits_before);
+  _rows.sections.resize(flushed ? 0 : _sections_before);
 }
 
 queue::TaskOutcome Executor::sweep(const SweepWork& work) const {

@@ -20,6 +20,7 @@ class Executor : public queue::Executor {
            core::Team* team = nullptr);
 
   queue::TaskOutcome execute(const queue::Task& task, queue::TaskContext& context) override;
+  void take_back_rows(bool flushed) override;
 
  private:
   [[nodiscard]] queue::TaskOutcome sweep(const SweepWork& work) const;
@@ -29,6 +30,8 @@ class Executor : public queue::Executor {
   std::shared_ptr<const systems::System> _system;
   archive::Records& _rows;
   core::Team* _team;
+  std::size_t _orbits_before = 0;  // of other tasks
+  std::size_t _sections_before = 0;
 };
 
 }  // namespace orbweaver::survey

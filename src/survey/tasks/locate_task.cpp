@@ -1,6 +1,8 @@
 #include "locate_task.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -8,6 +10,7 @@
 #include "arrival.hpp"
 #include "crossing_outcome.hpp"
 #include "executor.hpp"
+#include "orbit_row.hpp"
 #include "orbweaver/archive/schema/records.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/bifurcation/directions.hpp"
@@ -28,6 +31,12 @@ constexpr double in_sector = 1e-6;
 constexpr double error_bounds = 10.0;
 /// Rounding of a period at the limit, relative to it: such a family still begins on the limit.
 constexpr double at_limit = 1e-9;
+/// The slope of the energy at a fold that is located as a zero of the index, in parts of the slopes beside it: two
+/// locations to 1e-10 on a stretch of 1e-6 or more.
+constexpr double turning_slope = 1e-3;
+
+/// Values of indices on the unit circle are no further apart.
+constexpr double apart_indices = 4.0;
 
 /// The run is to stop.
 struct Interrupted {};
@@ -83,7 +92,7 @@ class Location {
         _outcome.undecided = true;
         _outcome.remark = error.what();
       } catch (const core::NumericalError& error) {  // the crossing itself is located, and stays
-        _failure = error.what();
+        fail(crossing, error.what());
       }
     queue::TaskOutcome done;
     done.failed = _failure.has_value();
@@ -98,6 +107,11 @@ class Location {
     // Only minima that come near zero, and functions that vanish for other reasons, may turn out to be nothing.
     done.failed = !_event.tangency && why.reason != bifurcation::NotLocated::Reason::no_event;
     _outcome.remark = to_text(why);
+    if (done.failed && !is_isolated(family)) {
+      done.failed = false;
+      _outcome.undecided = true;
+      _outcome.remark += "; the family's orbits there are not told from their neighbours";
+    }
     if (done.failed)
       done.reason = fmt::format("the event between arclength {:.6g} and {:.6g} was not located: {}",
                                 family.arclength_at(_work.from), family.arclength_at(_work.to), _outcome.remark);
@@ -105,8 +119,18 @@ class Location {
     return done;
   }
 
+  /// False where one of the orbits on both sides of the event is not told from its neighbours.
+  [[nodiscard]] bool is_isolated(const continuation::FamilyCurve& family) const {
+    for (const continuation::FamilyCurve::Known& known : family.known()) {
+      if (known.position != _work.from && known.position != _work.to) continue;
+      const auto stability = stability_of(*_system, known.loop, family.isotropy(), _team);
+      if (stability && !bifurcation::is_isolated(*stability)) return false;
+    }
+    return true;
+  }
+
   void describe(const bifurcation::Crossing& crossing, const continuation::FamilyCurve& family) {
-    survey::describe(*_system, _event, crossing, _outcome);
+    survey::describe(*_system, _event, crossing, family.isotropy(), _outcome);
     const double position = crossing.point.position;
     _outcome.arclength = signed_arclength(_work.lineage, _work.before_first, family.arclength_at(position));
     _outcome.arclength_unit = family.arclength_unit_at(position);
@@ -132,7 +156,8 @@ class Location {
     _outcome.kernel_dimension = kernel.dimension();
     _outcome.kernel_singular_value = kernel.largest();
     _outcome.next_singular_value = kernel.next();
-    if (kernel.dimension() == 0) return without_kernel(kernel, family);
+    if (kernel.dimension() == 0) return without_kernel(crossing, kernel, family);
+    if (sector.q == 1 && kernel.dimension() == 1 && turns_at(crossing, family)) return as_fold(kernel);
     if (!starts) return;
     report();
     int number = 0;
@@ -157,29 +182,72 @@ class Location {
     }
   }
 
-  void without_kernel(const bifurcation::Kernel& kernel, continuation::FamilyCurve& family) {
+  /// Where rounding does not tell the crossing from those of other sectors, its kernel may be any of theirs.
+  void fail(const bifurcation::Crossing& crossing, const std::string& why) {
+    const double off = std::abs(bifurcation::index_deviation(crossing.stability, _event.function.sector).value);
+    if (!(off > apart_indices)) {
+      _failure = why;
+    } else {
+      _outcome.undecided = true;
+      _outcome.remark = fmt::format("between neighbouring positions the index changes by {:.2g}: {}", off, why);
+    }
+  }
+
+  void without_kernel(const bifurcation::Crossing& crossing, const bifurcation::Kernel& kernel,
+                      continuation::FamilyCurve& family) {
     _outcome.remark = fmt::format("no flat direction besides the family's own (smallest singular value {:.2g})",
                                   kernel.singular_values.empty() ? archive::not_computed : kernel.singular_values[0]);
     if (_event.tangency) {  // a minimum that came near zero, but is none
       _outcome.kind.reset();
     } else if (_event.function.sector.q == 1 && turns(family)) {
-      _outcome.kind = moves() ? CrossingKind::fold_parameter : CrossingKind::fold_energy;
+      _outcome.kind = fold_kind();
     } else {
-      _failure = _outcome.remark;
+      fail(crossing, _outcome.remark);
     }
+  }
+
+  /// An index passes 2 where the energy turns, and nothing leaves: what is nearly flat is so for another reason, such as a
+  /// small amplitude.
+  void as_fold(const bifurcation::Kernel& kernel) {
+    _outcome.kind = fold_kind();
+    _outcome.kernel_dimension = 0;
+    _outcome.kernel_singular_value = archive::not_computed;
+    _outcome.next_singular_value = kernel.largest();
+    _outcome.remark = fmt::format("the {} turns there (smallest singular value {:.2g})", moves() ? "parameter" : "energy",
+                                  kernel.largest());
   }
 
   [[nodiscard]] bool moves() const { return !_system->family_scalars().free.empty(); }
 
-  /// In the energy, or the parameter that moves: there an index of 2 is no birth.
-  [[nodiscard]] bool turns(continuation::FamilyCurve& family) const {
+  [[nodiscard]] CrossingKind fold_kind() const {
+    return moves() ? CrossingKind::fold_parameter : CrossingKind::fold_energy;
+  }
+
+  /// Of the energy, or of the parameter that moves: where it turns an index of 2 is no birth.
+  [[nodiscard]] double slope_at(const continuation::CurvePoint& point) const {
+    return moves() ? bifurcation::parameter_slope(point) : bifurcation::energy_slope(*_system, point);
+  }
+
+  /// Slopes where the event was bracketed.
+  [[nodiscard]] std::optional<std::pair<double, double>> slopes_beside(continuation::FamilyCurve& family) const {
     const auto before = family.at(_work.from, true);
     const auto after = family.at(_work.to, true);
-    if (!before || !after) return false;
-    const auto slope = [&](const continuation::CurvePoint& point) {
-      return moves() ? bifurcation::parameter_slope(point) : bifurcation::energy_slope(*_system, point);
-    };
-    return slope(*before) * slope(*after) < 0.0;
+    if (!before || !after) return std::nullopt;
+    return std::pair{slope_at(*before), slope_at(*after)};
+  }
+
+  [[nodiscard]] bool turns(continuation::FamilyCurve& family) const {
+    const auto slopes = slopes_beside(family);
+    return slopes && slopes->first * slopes->second < 0.0;
+  }
+
+  /// At the crossing itself, not only between the orbits beside it.
+  [[nodiscard]] bool turns_at(const bifurcation::Crossing& crossing,
+                                        continuation::FamilyCurve& family) const {
+    const auto slopes = slopes_beside(family);
+    return slopes && slopes->first * slopes->second < 0.0 &&
+           std::abs(slope_at(crossing.point)) <
+               turning_slope * std::min(std::abs(slopes->first), std::abs(slopes->second));
   }
 
   void add_starts(const bifurcation::Direction& direction, const LeavingRecord& leaving) {

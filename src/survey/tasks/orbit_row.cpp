@@ -1,27 +1,12 @@
 #include "orbit_row.hpp"
 
-#include <algorithm>
-#include <complex>
-
-#include "orbweaver/certificate/certificate.hpp"
+#include "certified.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/in_units.hpp"
-#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/standard_phase.hpp"
 #include "stability_columns.hpp"
 
 namespace orbweaver::survey {
-
-namespace {
-
-double largest_modulus(const std::optional<spectrum::Stability>& stability) {
-  if (!stability) return archive::not_computed;
-  double largest = 0.0;
-  for (const std::complex<double>& value : stability->full) largest = std::max(largest, std::abs(value));
-  return largest;
-}
-
-}  // namespace
 
 std::optional<spectrum::Stability> stability_of(const systems::System& system, const loop::Loop& loop,
                                                 const loop::Isotropy& isotropy, core::Team* team) {
@@ -36,7 +21,7 @@ std::optional<spectrum::Stability> stability_of(const systems::System& system, c
 
 archive::OrbitRecord orbit_row(const systems::System& system, const std::string& family,
                                const continuation::Orbit& orbit, const loop::Isotropy& isotropy,
-                               const std::optional<spectrum::Stability>& stability, certificate::Judgement& judgement) {
+                               const std::optional<spectrum::Stability>& stability, certificate::Certifier* certifier) {
   const loop::Loop stored = loop::in_standard_phase(system.structure(), orbit.loop, isotropy);
   archive::OrbitRecord row;
   row.family_key = family;
@@ -58,12 +43,11 @@ archive::OrbitRecord orbit_row(const systems::System& system, const std::string&
   for (const int angle : system.structure().angles)
     row.winding.push_back(orbit.loop.winding[static_cast<std::size_t>(angle)]);
   set_stability(system.structure(), stability, row);
-  const certificate::Certificate certificate = certificate::certify(system, stored);
-  row.closure = certificate.closure;
-  row.single_shot = certificate.single_shot;
-  row.energy_drift = certificate.energy_drift;
-  judgement = certificate::judge(certificate,
-                                 {row.period, row.loss_rms, loop::rms_amplitude(stored), largest_modulus(stability)});
+  if (certifier != nullptr) {
+    const bool is_complex = stability && row.stability.size() != stability->full.size();
+    static_cast<archive::CertificateRecord&>(row) = record_of(
+        (*certifier)(stored), evidence_of(stored, row.loss_rms, row.stability, is_complex, row.stability_error));
+  }
   return row;
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "orbweaver/archive/schema/records.hpp"
-#include "orbweaver/certificate/verdict.hpp"
+#include "orbweaver/certificate/certificate.hpp"
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
 #include "orbweaver/systems/system.hpp"
@@ -16,11 +16,10 @@ namespace orbweaver::survey {
                                                               const loop::Isotropy& isotropy,
                                                               core::Team* team = nullptr);
 
-/// The row of an accepted orbit, with its certificate, which `judgement` then says more of; s = 0 as
-/// docs/file_format.md has it.
+/// The row of an accepted orbit, with its certificate if `certifier` is given; s = 0 as docs/file_format.md has it.
 [[nodiscard]] archive::OrbitRecord orbit_row(const systems::System& system, const std::string& family,
                                              const continuation::Orbit& orbit, const loop::Isotropy& isotropy,
                                              const std::optional<spectrum::Stability>& stability,
-                                             certificate::Judgement& judgement);
+                                             certificate::Certifier* certifier);
 
 }  // namespace orbweaver::survey

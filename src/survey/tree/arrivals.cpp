@@ -1,5 +1,6 @@
 #include "arrivals.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -22,6 +23,10 @@ constexpr double farthest_from_direction = 0.4;
 /// directions are further.
 constexpr double image_further = 0.05;
 constexpr double least_further = 1e-6;
+
+/// An orbit so many times as far from the crossing's as the branch has yet to go meets another one. Not measured; the
+/// way is straight to a few parts in a hundred.
+constexpr double beyond_ahead = 3.0;
 
 double born_period(const LocateOutcome& crossing) { return crossing.multiplicity * crossing.period; }
 
@@ -64,10 +69,21 @@ std::optional<Meeting> Arrivals::meeting(const ArrivalRecord& arrival, const Loc
   return best;
 }
 
+void Arrivals::compare(const std::string& branch, const ArrivalRecord& arrival, const LocateOutcome& crossing) {
+  if (!std::isfinite(arrival.ahead) || crossing.leaving.empty() || !within_window(arrival, crossing)) return;
+  const bool is_apart = std::all_of(crossing.leaving.begin(), crossing.leaving.end(), [&](const LeavingRecord& l) {
+    return loop::align(_system, arrival.near, l.base).distance > beyond_ahead * arrival.ahead;
+  });
+  if (is_apart) _apart.insert({branch, crossing.key});
+}
+
 std::vector<Meeting> Arrivals::add_branch(const std::string& key, ArrivalRecord arrival) {
   std::vector<Meeting> meetings;
   for_near(_crossings, arrival.period, [&](const LocateOutcome& crossing) {
-    if (std::optional<Meeting> found = meeting(arrival, crossing)) meetings.push_back(std::move(*found));
+    if (std::optional<Meeting> found = meeting(arrival, crossing))
+      meetings.push_back(std::move(*found));
+    else
+      compare(key, arrival, crossing);
   });
   const double period = arrival.period;
   _arrived.emplace(period, Arrived{key, std::move(arrival)});
@@ -79,6 +95,8 @@ std::vector<std::pair<std::string, Meeting>> Arrivals::add_crossing(const Locate
   for_near(_arrived, born_period(crossing), [&](const Arrived& branch) {
     if (std::optional<Meeting> found = meeting(branch.at, crossing))
       meetings.emplace_back(branch.key, std::move(*found));
+    else
+      compare(branch.key, branch.at, crossing);
   });
   _crossings.emplace(born_period(crossing), crossing);
   return meetings;

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,6 +28,10 @@ class Arrivals {
   std::vector<Meeting> add_branch(const std::string& key, ArrivalRecord arrival);
   /// Directions leave a crossing: branches known so far that may have come along one, by key.
   std::vector<std::pair<std::string, Meeting>> add_crossing(const LocateOutcome& crossing);
+  /// True where period and energy agree, and the orbit that the branch has arrived at is another than the crossing's.
+  [[nodiscard]] bool are_apart(const std::string& branch, const std::string& crossing) const {
+    return _apart.contains({branch, crossing});
+  }
 
  private:
   struct Arrived {
@@ -36,7 +41,10 @@ class Arrivals {
   /// The nearest direction of the crossing, if any is near.
   [[nodiscard]] std::optional<Meeting> meeting(const ArrivalRecord& arrival, const LocateOutcome& crossing) const;
 
+  void compare(const std::string& branch, const ArrivalRecord& arrival, const LocateOutcome& crossing);
+
   const systems::Structure& _system;
+  std::set<std::pair<std::string, std::string>> _apart;  // a branch, a crossing
   std::multimap<double, Arrived> _arrived;          // by the period where they meet
   std::multimap<double, LocateOutcome> _crossings;  // by the period of the born orbits
 };

@@ -13,6 +13,7 @@
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
 #include "orbweaver/systems/identities.hpp"
+#include "tasks/payload/keys.hpp"
 #include "tasks/payload/work.hpp"
 
 namespace orbweaver::survey {
@@ -150,7 +151,7 @@ std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const syst
         continue;
       known.push_back(mode);
       const std::string name = name_of_start(scene, system, found, mode, sweeps.size());
-      const std::string branch_key = fmt::format("{:04}.{:04}", found.index, mode.place);
+      const std::string branch_key = base_key(found.index, mode.place);
       BranchWork work;
       work.key = work.lineage.family = branch_key;
       work.name = name;
@@ -195,7 +196,7 @@ void gather_failed_sweeps(const systems::System& system, const SweepsEnded& swee
     if (!outcome.failed) continue;
     const SweepWork work = unpack_sweep_work(task.payload);
     archive::FamilyRecord record;
-    record.key = fmt::format("{:04}", work.index);
+    record.key = equilibrium_key(work.index);
     record.name = equilibrium_name(work.index);
     record.end_reason =
         limited(failure_text(fmt::format("the sweep at {}: {}", point_text(system, work.point), outcome.reason)));

@@ -10,7 +10,6 @@
 
 #include <fmt/format.h>
 
-#include "doubt_text.hpp"
 #include "family_names.hpp"
 #include "orbweaver/core/error.hpp"
 #include "tasks/payload/keys.hpp"
@@ -41,14 +40,6 @@ std::vector<Family> families_of(const std::vector<FamilySide>& branches) {
   return ordered;
 }
 
-std::vector<DoubtfulOrbits> doubtful_orbits_of(const Family& family) {
-  std::vector<DoubtfulOrbits> all;
-  for (const FamilySide side : family.sides)
-    if (side->second.outcome)
-      for (const DoubtfulOrbits& doubtful : side->second.outcome->doubtful) survey::add(all, doubtful);
-  return all;
-}
-
 }  // namespace
 
 void FamilyTree::add(const queue::Task& task, const queue::TaskOutcome& outcome) {
@@ -69,7 +60,10 @@ void FamilyTree::add(const queue::Task& task, const queue::TaskOutcome& outcome)
     if (outcome.failed) _failures[place_of(task.key)] = outcome.reason;
     if (outcome.payload.empty()) return;
     LocateOutcome crossing = unpack_locate_outcome(outcome.payload);
-    if (crossing.kind) add_crossing(std::move(crossing));
+    if (crossing.kind)
+      add_crossing(std::move(crossing));
+    else if (crossing.undecided)
+      _undecided[place_of(task.key)] = std::move(crossing.remark);
   }
 }
 
@@ -210,7 +204,7 @@ FamilyTree::Result FamilyTree::resolve() const {
   add_families(
       families, _crossings, rows, _units, [this](const std::string& key) { return _pruning.arrival(key); }, result);
   result.evidence =
-      evidence_of({_branches, _crossings, _failures, _pruning, kept, rows, _units,
+      evidence_of({_branches, _crossings, _failures, _undecided, _pruning, _arrivals, kept, rows, _units,
                    [this](const std::string& branch, const Lineage& lineage) { return fate_of(branch, lineage); }});
   std::unordered_set<std::string> kept_families;
   for (const Family& family : families) kept_families.insert(family.key);
@@ -227,9 +221,6 @@ FamilyTree::Result FamilyTree::resolve() const {
   if (beyond > 0)
     result.remarks.push_back(
         fmt::format("{} crossings lead to orbits beyond limits.period: nothing was started there", beyond));
-  for (const Family& family : families)
-    for (const DoubtfulOrbits& doubtful : doubtful_orbits_of(family))
-      result.remarks.push_back(fmt::format("{} ({}): {}", family.key, family.name, doubt_text(doubtful)));
   for (const FamilySide branch : kept)
     if (branch->second.outcome)
       for (const std::string& remark : branch->second.outcome->remarks)

@@ -65,6 +65,7 @@ class FamilyTree {
   Crossings _crossings;                          // without loops
   std::set<std::string> _not_begun;              // branches whose first orbit lies beyond the limits
   std::map<std::string, std::string> _failures;  // of locations: by the crossing's key
+  std::map<std::string, std::string> _undecided;  // reasons by the key of an event that rounding hides
   Arrivals _arrivals;
   Pruning _pruning;
   FamilyLimit _limit;

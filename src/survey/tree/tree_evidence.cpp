@@ -29,16 +29,20 @@ class Gatherer {
       evidence.ends.push_back(of(*branch));
       if (branch->second.failed) evidence.failures.push_back({branch->second.lineage.family, branch->second.reason});
     }
-    for (const auto& [key, reason] : _tree.failed_locations)
-      if (_kept.contains(branch_of(key)))
-        evidence.failures.push_back(
-            {_tree.branches.at(branch_of(key)).lineage.family, fmt::format("locate {}: {}", key, reason)});
+    add_locations(_tree.failed_locations, evidence.failures);
+    add_locations(_tree.undecided_events, evidence.undecided);
     for (const std::string& key : _tree.pruning.disputed())
       if (_kept.contains(key)) evidence.disputed.push_back(_tree.branches.at(key).lineage.family);
     return evidence;
   }
 
  private:
+  void add_locations(const std::map<std::string, std::string>& reasons, std::vector<FailureEvidence>& to) const {
+    for (const auto& [key, reason] : reasons)
+      if (_kept.contains(branch_of(key)))
+        to.push_back({_tree.branches.at(branch_of(key)).lineage.family, fmt::format("locate {}: {}", key, reason)});
+  }
+
   [[nodiscard]] DirectionFate fate_of(const LocateOutcome& crossing, const LeavingRecord& leaving, int side) const {
     const std::string key = branch_key(leaving, side);
     const auto branch = _tree.branches.find(key);
@@ -86,7 +90,8 @@ class Gatherer {
       return evidence;
     }
     for (const auto& [place, row] : _tree.crossing_rows)
-      if (archive::has_sector(*_tree.crossings.at(place).kind) && within_window(arrival, _tree.crossings.at(place)))
+      if (archive::has_sector(*_tree.crossings.at(place).kind) && within_window(arrival, _tree.crossings.at(place)) &&
+          !_tree.arrivals.are_apart(key, place))
         evidence.nearby.push_back(row);
     return evidence;
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "arrivals.hpp"
 #include "family.hpp"
 #include "orbweaver/systems/scales.hpp"
 #include "pruning.hpp"
@@ -46,7 +47,7 @@ struct EndEvidence {
   double energy = 0.0;
   bool joined = false;      ///< it is known along which direction of which crossing it came
   int crossing = -1;        ///< that crossing, if the tables have it
-  std::vector<int> nearby;  ///< crossings that agree in period and energy, where it is not known
+  std::vector<int> nearby;  ///< where it is not known: crossings that agree in period and energy, of orbits as near
 };
 
 struct FailureEvidence {
@@ -58,6 +59,7 @@ struct TreeEvidence {
   std::vector<CrossingEvidence> crossings;
   std::vector<EndEvidence> ends;
   std::vector<FailureEvidence> failures;
+  std::vector<FailureEvidence> undecided;  ///< events that rounding keeps from being located
   std::vector<std::string> disputed;  ///< keys of families
 };
 
@@ -66,7 +68,9 @@ struct TreeSources {
   const EndedBranches& branches;
   const Crossings& crossings;
   const std::map<std::string, std::string>& failed_locations;  ///< reasons by the crossing's key
+  const std::map<std::string, std::string>& undecided_events;  ///< the same of events that rounding hides
   const Pruning& pruning;
+  const Arrivals& arrivals;
   const std::vector<FamilySide>& kept;
   const std::map<std::string, int>& crossing_rows;  ///< indices into the tables' crossings by key
   const systems::Scales& units;                     ///< of the tasks' outcomes

@@ -86,6 +86,10 @@ class CrossingCheck {
   void run() {
     const double arclength = real("arclength");
     if (_family.orbits() < 2) return;  // one orbit has no curve
+    // Between its birth and its first orbit: there are no orbits beside it to find it from.
+    const bool before_first =
+        arclength < _family.arclengths.front() && arclength > 2.0 * _family.arclengths[0] - _family.arclengths[1];
+    if (_family.parent >= 0 && before_first) return;
     if (arclength < _family.arclengths.front() || arclength > _family.arclengths.back())
       return _claims.object("arclength", fmt::format("is {:.12g}; its family runs from {:.12g} to {:.12g}", arclength,
                                                      _family.arclengths.front(), _family.arclengths.back()));

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -19,6 +18,7 @@
 #include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loss/linearization.hpp"
+#include "tasks/certified.hpp"
 #include "tasks/orbit_row.hpp"
 #include "tasks/stability_columns.hpp"
 
@@ -47,25 +47,27 @@ constexpr double same_way_without_phase = 1e-2;
 /// Stored and computed values of one orbit.
 class OrbitCheck {
  public:
-  OrbitCheck(const VerifiedAtlas& atlas, std::size_t row, const loop::Loop& loop, Findings& findings)
+  OrbitCheck(const VerifiedAtlas& atlas, std::size_t row, const loop::Loop& loop, certificate::Certifier& certifier,
+             Findings& findings)
       : _atlas(atlas),
         _orbits(atlas.archive().orbits()),
         _system(*atlas.system()),
         _row(row),
         _family(static_cast<std::size_t>(_orbits.integers("family")[row])),
         _loop(loop),
+        _certifier(certifier),
         _findings(findings),
         _claims(findings, "orbits", static_cast<std::int64_t>(row)) {}
 
   void run() {
     _size = loop::rms_size(_loop);
     equation();
-    const certificate::Certificate found = certificate::certify(_system, _loop);
+    const certificate::Certificate found = _certifier(_loop);
     constants(found.steepness);
     shape();
     const std::optional<spectrum::Stability> stability = stability_of(_system, _loop, _atlas.isotropy(_family));
     multipliers(stability);
-    certificate(found, stability);
+    certificate(found);
   }
 
  private:
@@ -144,36 +146,58 @@ class OrbitCheck {
                          index_rounding);
   }
 
-  void certificate(const certificate::Certificate& found, const std::optional<spectrum::Stability>& stability) {
-    double growth = archive::not_computed;
-    if (stability) {
-      growth = 0.0;
-      for (const std::complex<double>& value : stability->full) growth = std::max(growth, std::abs(value));
-    }
+  /// At the level of the scene; of what is stored, since the multipliers' differences have been told.
+  void certificate(const certificate::Certificate& found) {
+    const certificate::Evidence evidence = stored_evidence(_atlas, _row, _loop);
+    const archive::CertificateRecord record = record_of(found, evidence);
     const double integration = certificate_rounding * found.reach;
-    const double unstable = std::isnan(growth) ? 1.0 : std::max(1.0, growth);
-    _claims.agree_within(certificate_factor, "closure", real("closure"), found.closure, integration);
-    if (!(real("single_shot") > found.reach && !(found.single_shot <= found.reach)))
-      _claims.agree_within(certificate_factor, "single_shot", real("single_shot"), found.single_shot,
-                           integration * unstable);
-    _claims.agree_within(certificate_factor, "energy_drift", real("energy_drift"), found.energy_drift,
-                         std::max(found.steepness * integration, energy_rounding_of(found)));
-    const certificate::Judgement judged =
-        certificate::judge(found, {_loop.period, _residual, loop::rms_amplitude(_loop), growth});
+    const double growth = std::isnan(evidence.growth) ? 1.0 : std::max(1.0, evidence.growth);
+    const auto within = [&](const char* column, double value, double negligible) {
+      _claims.agree_within(certificate_factor, column, real(column), value, negligible);
+    };
+    const std::int64_t verdict = _orbits.integers("verdict")[_row];
+    const bool has_closure = verdict >= 0 || _atlas.archive().format_minor() < archive::certificates_since;
+    if (has_closure) {
+      within("closure", record.closure, integration);
+      if (!(real("single_shot") > found.reach && !(found.single_shot <= found.reach)))
+        within("single_shot", record.single_shot, integration * growth);
+      within("energy_drift", record.energy_drift,
+             std::max(found.steepness * integration, sum_rounding * epsilon * found.steepness * found.reach));
+    }
+    if (verdict >= 0) {
+      within("taylor_closure", record.taylor_closure, integration);
+      within("integrators_apart", record.integrators_apart, integration);
+      within("other_drift", record.other_drift, integration);
+      within("symmetry_defect", record.symmetry_defect, integration);
+      _claims.agree("recurrence", real("recurrence"), record.recurrence,
+                    same_recurrence * record.recurrence + integration);
+      within("orbit_distance", record.orbit_distance, newton_rounding * integration);
+      within("contraction", record.contraction, 1.0);  // of two steps that may both be rounding
+      within("pairing", record.pairing, transition_rounding);
+      within("index_gap", record.index_gap, transition_rounding * (1.0 + std::abs(evidence.index)));
+      const auto name = [](std::int64_t number) {
+        const bool known = number <= static_cast<std::int64_t>(last_of(certificate::Verdict{}));
+        return known ? std::string(name_of(static_cast<certificate::Verdict>(number))) : std::to_string(number);
+      };
+      _claims.expect(verdict == record.verdict, "verdict",
+                     fmt::format("is '{}', found '{}'", name(verdict), name(record.verdict)));
+    } else {
+      _claims.expect(!_atlas.claims_certificates(), "verdict", "is missing, though the scene asks for certificates");
+    }
+    const certificate::Judgement judged = certificate::judge(found, evidence);
     if (judged.verdict == certificate::Verdict::says_nothing) ++_findings.uninformative;
-    _claims.expect(judged.verdict != certificate::Verdict::closure_contradicts &&
-                       judged.verdict != certificate::Verdict::drift_contradicts,
-                   "",
-                   fmt::format("its certificate contradicts it: {:.3g} off where {:.3g} is explained", judged.found,
-                               judged.allowed));
-  }
-
-  [[nodiscard]] double energy_rounding_of(const certificate::Certificate& found) const {
-    return sum_rounding * epsilon * found.steepness * found.reach;
+    _claims.expect(!is_failure(judged.verdict), "",
+                   fmt::format("its certificate contradicts it: {}, {:.3g} where {:.3g} is explained",
+                               name_of(judged.verdict), judged.found, judged.allowed));
   }
 
   /// Of the largest state: what one integration of a segment can be off by rounding.
   static constexpr double certificate_rounding = 1e-13;
+  /// Of a distance between two places of one loop.
+  static constexpr double same_recurrence = 1e-9;
+  /// Times that: what Newton's method makes of it; and of multipliers from transition matrices integrated to 1e-10.
+  static constexpr double newton_rounding = 1e3;
+  static constexpr double transition_rounding = 1e-7;
 
   const VerifiedAtlas& _atlas;
   const archive::Table& _orbits;
@@ -181,6 +205,7 @@ class OrbitCheck {
   std::size_t _row;
   std::size_t _family;
   const loop::Loop& _loop;
+  certificate::Certifier& _certifier;
   Findings& _findings;
   Claims _claims;
   double _size = 0.0;
@@ -217,6 +242,9 @@ void check_orbits(const VerifiedAtlas& atlas, std::size_t first, std::size_t end
   while (before > 0 && families[before - 1] == families[first] && (before == first || atlas.is_requested(before)))
     --before;
   std::optional<loop::Loop> last;
+  certificate::Options options;
+  options.level = atlas.certificate_level();
+  certificate::Certifier certifier(*atlas.system(), atlas.isotropy(static_cast<std::size_t>(families[first])), options);
   const auto unless_wrong = [&](std::size_t row, const auto& work) {
     try {
       work();
@@ -230,7 +258,7 @@ void check_orbits(const VerifiedAtlas& atlas, std::size_t first, std::size_t end
   for (std::size_t row = first; row < end; ++row)
     unless_wrong(row, [&] {
       const loop::Loop loop = atlas.loop(row);
-      OrbitCheck(atlas, row, loop, findings).run();
+      OrbitCheck(atlas, row, loop, certifier, findings).run();
       if (atlas.is_requested(row)) return;
       const bool same_side = (steps[before] < 0) == (steps[row] < 0);
       if (last && same_side && before < row) check_way(atlas, before, *last, row, loop, findings);

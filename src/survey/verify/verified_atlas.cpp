@@ -2,18 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <fmt/format.h>
 
 #include "orbweaver/archive/read/loop_of.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/in_units.hpp"
+#include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
+#include "orbweaver/loop/symmetry/shift_search.hpp"
 #include "orbweaver/loop/symmetry/isotropy_text.hpp"
 #include "orbweaver/survey/atlas/stored_orbits.hpp"
 #include "orbweaver/survey/run/scaled_scene.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/scaled_system.hpp"
+#include "tasks/certified.hpp"
 #include "witness/tolerance.hpp"
 
 namespace orbweaver::survey {
@@ -78,7 +82,16 @@ bool VerifiedAtlas::has_reversor(std::size_t family) const {
 loop::Loop VerifiedAtlas::begun_as(std::size_t family, const loop::Loop& loop, const loop::Loop& neighbour) const {
   const systems::Structure& system = _system->structure();
   if (has_reversor(family)) return started_as(system, loop, neighbour);
-  return loop::aligned(loop, loop::align(system, loop, neighbour));
+  // Neighbours differ by where they begin, not by a symmetry: only shifts are looked through.
+  const loop::Loop from = loop::resolved_in_time(loop);
+  const loop::Loop to = loop::resolved_in_time(neighbour);
+  const double shift = loop::shift_minima(from, to, system.angles).front().shift;
+  loop::Alignment alignment;
+  alignment.name = "1";
+  alignment.map = systems::AffineMap::identity(system.dimension);
+  alignment.shift = shift - std::floor(shift);
+  (void)loop::difference_at(from, to, system.angles, shift, &alignment.turns);
+  return loop::aligned(loop, alignment);
 }
 
 bool VerifiedAtlas::is_requested(std::size_t orbit) const {
@@ -88,6 +101,23 @@ bool VerifiedAtlas::is_requested(std::size_t orbit) const {
   const auto& events = _scene.events;
   return std::any_of(events.periods.begin(), events.periods.end(), near(_archive->orbits().reals("period")[orbit])) ||
          std::any_of(events.energies.begin(), events.energies.end(), near(_archive->orbits().reals("energy")[orbit]));
+}
+
+certificate::Level VerifiedAtlas::certificate_level() const {
+  return std::max(survey::certificate_level(_scene), certificate::Level::closure);
+}
+
+bool VerifiedAtlas::claims_certificates() const {
+  return _archive->format_minor() >= archive::certificates_since && is_certified_by_branches(_scene);
+}
+
+certificate::Evidence stored_evidence(const VerifiedAtlas& atlas, std::size_t orbit, const loop::Loop& loop) {
+  const archive::Table& orbits = atlas.archive().orbits();
+  const archive::Header& header = atlas.archive().header();
+  const std::size_t width = archive::stability_width(header);
+  return evidence_of(loop, orbits.reals("loss_rms")[orbit],
+                     std::span(orbits.reals("stability")).subspan(orbit * width, width),
+                     archive::has_complex_stability(header), orbits.reals("stability_error")[orbit]);
 }
 
 }  // namespace orbweaver::survey

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "orbweaver/archive/read/reader.hpp"
+#include "orbweaver/certificate/verdict.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/scene/scene.hpp"
@@ -31,6 +32,10 @@ class VerifiedAtlas {
   /// A loop of the family, begun as its neighbour is. Reversors fix where a family's loops begin, to half a period;
   /// others were begun where they are nearest to their neighbour, and are stored in a standard phase.
   [[nodiscard]] loop::Loop begun_as(std::size_t family, const loop::Loop& loop, const loop::Loop& neighbour) const;
+  /// Of its orbits' certificates: what the scene asks for; closures at least, which its modes alone give.
+  [[nodiscard]] certificate::Level certificate_level() const;
+  /// Whether its rows must have a verdict: a survey that stopped early has none where tasks of their own give them.
+  [[nodiscard]] bool claims_certificates() const;
   [[nodiscard]] bool has_reversor(std::size_t family) const;
   /// Whether the scene asked for this orbit: it lies between two others of its branch, apart from the steps.
   [[nodiscard]] bool is_requested(std::size_t orbit) const;
@@ -42,5 +47,9 @@ class VerifiedAtlas {
   std::unique_ptr<AtlasTree> _tree;
   std::vector<loop::Isotropy> _isotropies;
 };
+
+/// What row `orbit` says of its orbit, whose loop is `loop`.
+[[nodiscard]] certificate::Evidence stored_evidence(const VerifiedAtlas& atlas, std::size_t orbit,
+                                                    const loop::Loop& loop);
 
 }  // namespace orbweaver::survey

@@ -1,6 +1,8 @@
 #include "witness/checks.hpp"
 
+#include "witness/checks/base_births.hpp"
 #include "witness/checks/branch_counts.hpp"
+#include "witness/checks/certificates.hpp"
 #include "witness/checks/ends.hpp"
 #include "witness/checks/equilibrium_families.hpp"
 #include "witness/checks/failed_tasks.hpp"
@@ -23,8 +25,8 @@ std::vector<std::unique_ptr<Check>> list() {
 }  // namespace
 
 std::vector<std::unique_ptr<Check>> all_checks() {
-  return list<FailedTasks, StoredTwice, SharedPoints, BranchCounts, EquilibriumFamilies, Ends, MirrorImages,
-              IndexChanges>();
+  return list<FailedTasks, StoredTwice, SharedPoints, BranchCounts, EquilibriumFamilies, BaseBirths, Ends, MirrorImages,
+              IndexChanges, Certificates>();
 }
 
 }  // namespace orbweaver::survey

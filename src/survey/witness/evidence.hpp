@@ -16,16 +16,23 @@
 
 namespace orbweaver::survey {
 
+/// Where a family of small oscillations begins.
+struct Oscillation {
+  int place = 0;        ///< among all families of its equilibrium
+  double period = 0.0;  ///< in units
+};
+
 /// What the witness knows beside the atlas: of rank 0.
 struct WitnessInput {
   TreeEvidence tree;
-  std::vector<std::string> family_keys;            ///< sorted: one a row of /families
-  std::vector<int> crossing_rows;                  ///< of the tables' crossings, which `tree` counts
-  std::vector<std::vector<double>> equilibria;     ///< by the index that keys begin with
-  std::vector<std::vector<KernelRecord>> kernels;  ///< of several oscillations, by the same index
-  double time_unit = 1.0;                          ///< of the kernels' periods
-  std::vector<std::string> failures;               ///< of sweeps: they have no branch
-  std::vector<std::string> interrupted;            ///< tasks put aside, or not begun before a stop
+  std::vector<std::string> family_keys;                ///< sorted: one a row of /families
+  std::vector<int> crossing_rows;                      ///< of the tables' crossings, which `tree` counts
+  std::vector<std::vector<double>> equilibria;         ///< by the index that keys begin with
+  std::vector<std::vector<KernelRecord>> kernels;      ///< of several oscillations, by the same index
+  std::vector<std::vector<Oscillation>> oscillations;  ///< that were followed, by the same index
+  double time_unit = 1.0;                              ///< of the kernels' periods
+  std::vector<std::string> failures;                   ///< of sweeps: they have no branch
+  std::vector<std::string> interrupted;                ///< tasks put aside, or not begun before a stop
   bool stopped_early = false;
 };
 

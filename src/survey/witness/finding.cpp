@@ -42,6 +42,8 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
                        "of some families that leave the equilibrium, {} oscillations of one period, the index "
                        "is not known",
                        f.other_number);
+    case FindingKind::base_birth:
+      return "its first orbits do not lead back to its equilibrium with the period of the oscillation there";
     case FindingKind::continuum:
       return fmt::format(
           "oscillations that share a period: {} orbits were found near the equilibrium whose neighbours "
@@ -69,9 +71,17 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
     case FindingKind::index_change:
       return fmt::format("a multiplier passes exp(2 pi i {}/{}), and no crossing is listed there", f.number,
                          f.other_number);
+    case FindingKind::undecided_end:
+      return fmt::format("ends where rounding does not tell orbits from their neighbours: {}", f.detail);
+    case FindingKind::undecided_event: return f.detail;
     case FindingKind::undecided_indices:
       return fmt::format("a stability index is known to {:.2g} only: crossings are not told from rounding there",
                          f.deviation);
+    case FindingKind::failed_certificate:
+      return fmt::format("{} of {} orbits are not what they are said to be: {}", f.number, f.other_number, f.detail);
+    case FindingKind::silent_certificate:
+      return fmt::format("the certificates of {} of {} orbits say nothing: so unstable that integrating confirms none",
+                         f.number, f.other_number);
     case FindingKind::failed_task: return f.detail;
     case FindingKind::disputed_arrival:
       return "another branch arrives where this one starts, yet it is kept: arrivals contradict each other about which "
@@ -106,6 +116,7 @@ std::string_view name_of(FindingKind kind) {
     case FindingKind::beyond_limits: return "beyond-limits";
     case FindingKind::beyond_families: return "beyond-families";
     case FindingKind::equilibrium_families: return "equilibrium-families";
+    case FindingKind::base_birth: return "base-birth";
     case FindingKind::continuum: return "continuum";
     case FindingKind::unlisted_target: return "unlisted-target";
     case FindingKind::unknown_direction: return "unknown-direction";
@@ -118,7 +129,11 @@ std::string_view name_of(FindingKind kind) {
     case FindingKind::mirror_place: return "mirror-place";
     case FindingKind::mirror_end: return "mirror-end";
     case FindingKind::index_change: return "index-change";
+    case FindingKind::undecided_end: return "undecided-end";
+    case FindingKind::undecided_event: return "undecided-event";
     case FindingKind::undecided_indices: return "undecided-indices";
+    case FindingKind::failed_certificate: return "failed-certificate";
+    case FindingKind::silent_certificate: return "silent-certificate";
     case FindingKind::failed_task: return "failed-task";
     case FindingKind::disputed_arrival: return "disputed-arrival";
     case FindingKind::interrupted: return "interrupted";

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/queue/run.hpp"
@@ -64,7 +66,13 @@ class Witness {
     std::stable_sort(findings.begin(), findings.end(),
                      [](const Finding& a, const Finding& b) { return a.severity < b.severity; });
     Testimony testimony;
-    for (const Finding& finding : findings) add(_tree, finding, testimony);
+    for (const Finding& finding : findings) {
+      add(_tree, finding, testimony);
+      if (finding.kind != FindingKind::failed_certificate && finding.kind != FindingKind::silent_certificate) continue;
+      std::string& doubts = testimony.doubts[_evidence.key(finding.family)];
+      doubts += fmt::format("{}{} of {} orbits: {}", doubts.empty() ? "" : "; ", finding.number, finding.other_number,
+                            finding.detail);
+    }
     return testimony;
   }
 

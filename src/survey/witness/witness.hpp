@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -17,6 +18,7 @@ namespace orbweaver::survey {
 struct Testimony {
   std::vector<archive::FindingRecord> records;  ///< contradictions first, then failures, undecided, cut
   std::vector<FindingSummary> summaries;        ///< the same
+  std::map<std::string, std::string> doubts;    ///< by family key: how many orbits' certificates do not hold, and why
   unsigned long wrong = 0;                      ///< contradictions and failures; on all ranks
 };
 

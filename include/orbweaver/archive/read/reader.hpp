@@ -52,6 +52,8 @@ class Archive {
   [[nodiscard]] const std::vector<CrossingKind>& crossing_kinds() const noexcept { return _crossing_kinds; }
   /// Whether the rows carry checksums: not before format_minor 2.
   [[nodiscard]] bool has_checksums() const noexcept;
+  /// What the file says.
+  [[nodiscard]] std::int64_t format_minor() const noexcept;
   /// Empty unless opened with ChangedRows::listed.
   [[nodiscard]] const std::vector<ChangedRow>& changed_rows() const noexcept { return _changed; }
   /// What is wrong with the checksums of the orbit's modes and time map, if anything.

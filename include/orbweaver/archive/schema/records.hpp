@@ -28,9 +28,33 @@ struct FamilyRecord {
   int last_step = std::numeric_limits<int>::max();
 };
 
+/// What the certificate adds to a row of /orbits (docs/mathematics.md, "Certificates").
+struct CertificateRecord {
+  int verdict = -1;  ///< certificate::Verdict; -1: none was asked for
+  double closure = not_computed;
+  double single_shot = not_computed;
+  double energy_drift = not_computed;
+  double taylor_closure = not_computed;
+  double integrators_apart = not_computed;
+  double other_drift = not_computed;
+  double symmetry_defect = not_computed;
+  double recurrence = not_computed;
+  double orbit_distance = not_computed;
+  double contraction = not_computed;
+  double pairing = not_computed;
+  double index_gap = not_computed;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, verdict, closure, single_shot, energy_drift, taylor_closure, integrators_apart,
+                            other_drift, symmetry_defect, recurrence, orbit_distance, contraction, pairing, index_gap);
+  }
+};
+
 /// One row of /orbits. Columns that were not computed stay NaN. `step` orders the orbits of a family. A family that
 /// runs through the crossing it was born at has steps and arclengths below zero on one side of it.
-struct OrbitRecord {
+struct OrbitRecord : CertificateRecord {
   std::string family_key;
   int step = 0;
   double arclength = 0.0;
@@ -45,9 +69,6 @@ struct OrbitRecord {
   std::vector<double> fundamental_stability;  ///< the same
   double stability_error = not_computed;
   std::vector<double> state;  ///< dimension, at s = 0
-  double closure = not_computed;
-  double single_shot = not_computed;
-  double energy_drift = not_computed;
   double tail = not_computed;
   std::vector<double> modes;     ///< (2 cutoff + 1) x dimension
   std::vector<double> time_map;  ///< kappa, c_1, d_1, ... (loop::to_numbers); empty = identity
@@ -136,6 +157,8 @@ struct Records {
   std::vector<VoidedRows> voided;          ///< several for one family are allowed
   /// Scenes, besides the header's, for which segments may have been written: those before limits were widened.
   std::vector<std::string> earlier_scenes;
+  /// For an atlas, one a row of /orbits in its order: they stand in the place of what the segments have. Or none.
+  std::vector<CertificateRecord> certificates;
 };
 
 }  // namespace orbweaver::archive

@@ -13,10 +13,12 @@ inline constexpr const char* atlas_format = "orbweaver-atlas";
 inline constexpr const char* segment_format = "orbweaver-segment";
 inline constexpr int format_version = 1;
 /// Root attribute `format_minor`: it rises with every table, column or attribute that is added; older files of the
-/// version are read. 1: /findings, system, effects, parameters, scales. 2: checksums.
-inline constexpr int format_minor = 2;
+/// version are read. 1: /findings, system, effects, parameters, scales. 2: checksums. 3: what certificates say.
+inline constexpr int format_minor = 3;
 /// The first with checksums.
 inline constexpr int checksums_since = 2;
+/// The first with verdicts.
+inline constexpr int certificates_since = 3;
 
 enum class ColumnType { integer, real, text };
 

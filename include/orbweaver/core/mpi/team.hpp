@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <mpi.h>
 
@@ -27,13 +28,13 @@ class TeamError : public EnvironmentError {
 /// Members meet at every exchange: each says at which step of the task it is, at which place in the code, and how its
 /// part went. A member that failed alone meets the others wherever they are, so nobody is left waiting: all throw
 /// TeamError there, the team has fallen apart (`fallen_apart`), and nothing is exchanged before the next task
-/// (`begin`).
+/// (`begin`). That holds because every collective call of a team begins with this meeting: nothing else may use its
+/// communicator, no solver of a library either.
 class Team {
  public:
   /// Duplicates `comm`.
   explicit Team(MPI_Comm comm);
 
-  [[nodiscard]] MPI_Comm comm() const { return _comm.get(); }
   [[nodiscard]] int rank() const { return _comm.rank(); }
   [[nodiscard]] int size() const { return _comm.size(); }
   [[nodiscard]] bool leads() const { return _comm.is_root(); }
@@ -57,10 +58,11 @@ class Team {
   void together(std::string_view place, const std::function<void()>& work);
   /// Throws TeamError on all members unless all are at this place with the same `digest`.
   void compare(std::string_view place, std::uint64_t digest);
-  /// Gives every member the leader's bytes. Those who wait for the leader sleep meanwhile.
+  /// Gives every member the leader's bytes. Those who wait for the leader sleep meanwhile. Throws TeamError where a
+  /// member has come to another place.
   void broadcast(std::string& bytes);
 
-  /// Before a task: whatever happened in the last one is forgotten.
+  /// Before a task, and before the word that gives it: whatever happened in the last one is forgotten.
   void begin();
   /// At the end of a task, for a member that came through or failed (`error`: its text), with what has this `digest`.
   /// Throws TeamError where not all came to the same end; returns if the team has fallen apart already.
@@ -70,11 +72,20 @@ class Team {
 
  private:
   struct Problem;
-  struct Word;
+  /// What a member says when it meets the others.
+  struct Word {
+    std::uint64_t step;
+    std::uint64_t place;
+    std::uint64_t digest;
+    std::uint64_t kind;
+  };
+  enum class Waiting { awake, asleep };
+  [[nodiscard]] MPI_Comm comm() const { return _comm.get(); }
   static Problem attempt(const std::function<void()>& work);
-  void meet(std::string_view place, std::uint64_t digest, const Problem& problem);
+  void meet(std::string_view place, std::uint64_t digest, const Problem& problem, Waiting waiting = Waiting::awake);
 
   Communicator _comm;
+  std::vector<Word> _words;  ///< of all members
   std::uint64_t _step = 0;
   std::optional<std::string> _fallen_apart;
 };

@@ -14,4 +14,8 @@ namespace orbweaver::loop {
 /// less the linear part if it winds.
 [[nodiscard]] Loop in_standard_phase(const systems::Structure& system, const Loop& loop, const Isotropy& isotropy);
 
+/// The orbit with s = 0 where the first reversor that it has to `tolerance`, at any phase, has phase 0; as it is where
+/// it has none. An isotropy found there has that reversor.
+[[nodiscard]] Loop at_first_reversor(const systems::Structure& system, const Loop& loop, double tolerance);
+
 }  // namespace orbweaver::loop

@@ -25,7 +25,8 @@ struct FamilySummary {
   double energy_to = 0.0;
   std::string end_reason;
   bool failed = false;
-  int depth = 0;  ///< 0 for base families
+  int depth = 0;         ///< 0 for base families
+  std::string doubts{};  ///< "2 of 30 orbits: closure contradicts", of certificates that do not hold; else empty
 };
 
 /// One thing that does not add up, or that a limit cut (docs/file_format.md, /findings).

@@ -18,6 +18,7 @@ enum class EndKind {
   fixed_point,
   closed_loop,
   stopped,
+  undecided,
   failure,
   met,      ///< at a crossing of a family of more symmetry where nothing was followed
   joined,   ///< the family that was found from there

@@ -34,6 +34,7 @@ enum class FindingKind {
   beyond_limits,         ///< a direction along which the first orbit lies beyond limits
   beyond_families,       ///< a direction that limits.families left out
   equilibrium_families,  ///< indices of what leaves an equilibrium add up to number, not other_number
+  base_birth,            ///< does not begin at its equilibrium with the period of its oscillation
   continuum,             ///< number orbits found at an equilibrium are not isolated
   unlisted_target,       ///< ends at a crossing that the archive does not have
   unknown_direction,     ///< ends near the crossing, along none of its directions
@@ -46,7 +47,11 @@ enum class FindingKind {
   mirror_place,          ///< a crossing of its mirror image lies elsewhere
   mirror_end,            ///< its mirror image ends otherwise, or elsewhere
   index_change,          ///< the index passes exp(2 pi i number/other_number), where no crossing is listed
+  undecided_end,         ///< ends where orbits are not told from their neighbours
+  undecided_event,       ///< in `detail`: not located, where orbits are not told from their neighbours
   undecided_indices,     ///< an index is known to `deviation` only, too badly to tell what it passes
+  failed_certificate,    ///< number of other_number orbits have the verdict `detail`; the first of them
+  silent_certificate,    ///< the same: the integration says nothing of them
   failed_task,           ///< in `detail`
   disputed_arrival,      ///< arrivals contradict each other
   interrupted,           ///< put aside, or not begun before limits.time
@@ -67,7 +72,7 @@ struct Finding {
   double deviation = std::numeric_limits<double>::quiet_NaN();  ///< how far off (docs/file_format.md says in what)
   int number = 0;
   int other_number = 0;
-  std::string detail{};  ///< what a task said of its failure
+  std::string detail{};  ///< what a task said of its failure, or the verdict
 };
 
 /// The names that a text about a finding needs.

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
-#include "doubtful_orbits.hpp"
 #include "lineage.hpp"
 #include "locate_work.hpp"
 #include "orbweaver/continuation/branch.hpp"
@@ -55,11 +55,12 @@ struct ArrivalRecord {
   loop::Loop near;                         ///< an orbit of the branch shortly before
   int multiplicity = 1;                    ///< times that it goes around the orbit it meets, where that is all it gains
   std::vector<CrossingBeneath> beneath{};  ///< one, where the crossing that is met was located
+  double ahead = std::numeric_limits<double>::infinity();  ///< rms distance from `near` to the orbit met, if known
 
-  static constexpr int wire_version = 2;
+  static constexpr int wire_version = 3;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, period, energy, near, multiplicity, beneath);
+    core::serialize_members(archive, period, energy, near, multiplicity, beneath, ahead);
   }
 };
 
@@ -76,9 +77,8 @@ struct BranchOutcome {
   double last_energy = 0.0;
   int last_cutoff = 0;
   continuation::Ending end;
-  std::vector<ArrivalRecord> arrival;    ///< one or none
-  int equilibrium = -1;                  ///< at which it ended, among the survey's; -1: at none of them
-  std::vector<DoubtfulOrbits> doubtful;  ///< an entry a verdict
+  std::vector<ArrivalRecord> arrival;  ///< one or none
+  int equilibrium = -1;                ///< at which it ended, among the survey's; -1: at none of them
   std::vector<std::string> remarks;
   double tolerance_met = 0.0;  ///< the largest of the orbits', where rounding keeps one above the tolerance; else 0
   int limited_by = 0;          ///< Limit: with wider ones the branch would have gone on
@@ -88,8 +88,8 @@ struct BranchOutcome {
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, key, orbits, period_from, period_to, energy_from, energy_to, last_period,
-                            last_energy, last_cutoff, end, arrival, equilibrium, doubtful, remarks, tolerance_met,
-                            limited_by, before_limit);
+                            last_energy, last_cutoff, end, arrival, equilibrium, remarks, tolerance_met, limited_by,
+                            before_limit);
     if constexpr (Archive::is_loading::value) check_limits(limited_by);
   }
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -14,10 +15,33 @@ namespace {
 constexpr std::string_view locating = "locate ";
 constexpr std::string_view starting = "start ";
 
+/// Usual digits.
+constexpr std::size_t of_event = 3;
+constexpr std::size_t of_base = 4;
+
+/// Of a number that is not negative: letters sort after digits.
+std::string ordered(int number, std::size_t digits) {
+  const std::string text = fmt::format("{:0{}}", number, digits);
+  return text.size() == digits ? text : static_cast<char>('a' + (text.size() - digits - 1)) + text;
+}
+
+/// The number that `ordered` wrote at the beginning of `text`.
+std::optional<int> ordered_at(std::string_view text) {
+  if (!text.empty() && text.front() >= 'a' && text.front() <= 'z') text.remove_prefix(1);
+  int number = 0;
+  if (std::from_chars(text.data(), text.data() + text.size(), number).ec != std::errc{}) return std::nullopt;
+  return number;
+}
+
 }  // namespace
 
+std::string equilibrium_key(int equilibrium) { return ordered(equilibrium, of_base); }
+std::string base_key(int equilibrium, int mode) {
+  return fmt::format("{}.{}", equilibrium_key(equilibrium), ordered(mode, of_base));
+}
+
 std::string event_key(std::string_view branch, int number, std::string_view what) {
-  return fmt::format("{}/{:03}.{}", branch, number, what);
+  return fmt::format("{}/{}.{}", branch, ordered(number, of_event), what);
 }
 
 std::string branch_of(std::string_view crossing) { return std::string(crossing.substr(0, crossing.rfind('/'))); }
@@ -37,19 +61,12 @@ bool lies_on(std::string_view key, std::string_view branch) {
 }
 
 int event_number(std::string_view key, std::string_view branch) {
-  int number = 0;
-  if (lies_on(key, branch)) {
-    const char* begin = key.data() + branch.size() + 1;
-    if (std::from_chars(begin, key.data() + key.size(), number).ec == std::errc{}) return number;
-  }
+  if (lies_on(key, branch))
+    if (const std::optional<int> number = ordered_at(key.substr(branch.size() + 1))) return *number;
   throw core::EnvironmentError(fmt::format("`{}` is no key of an event of `{}`", key, branch));
 }
 
-int equilibrium_index(std::string_view key) {
-  int index = -1;
-  std::from_chars(key.data(), key.data() + key.size(), index);
-  return index;
-}
+int equilibrium_index(std::string_view key) { return ordered_at(key).value_or(-1); }
 
 std::string mode_of(std::string_view base) {
   const std::size_t point = base.find('.');

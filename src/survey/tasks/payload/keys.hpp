@@ -5,8 +5,12 @@
 
 namespace orbweaver::survey {
 
-// Keys are paths (docs/architecture.md, "Keys"): what they say is read here and nowhere else.
+// Keys are paths (docs/architecture.md, "Keys"): what they say is read here and nowhere else. They sort, byte by byte,
+// as their numbers do: one with more digits than usual has a letter before it, which stands for how many more.
 
+/// "0002" of an equilibrium, "0002.0001" of a base family that begins there: that of its mode 1.
+[[nodiscard]] std::string equilibrium_key(int equilibrium);
+[[nodiscard]] std::string base_key(int equilibrium, int mode);
 /// "0000.0001/003.q4.j1" of the branch "0000.0001": its event number 3; `what` is "q4.j1" or "fold".
 [[nodiscard]] std::string event_key(std::string_view branch, int number, std::string_view what);
 /// The branch on which the crossing lies.

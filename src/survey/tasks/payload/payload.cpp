@@ -12,13 +12,17 @@ namespace orbweaver::survey {
 
 namespace {
 
+// The head before it says more, and is read within its bytes.
+constexpr unsigned archive_flags = boost::archive::no_header | boost::archive::no_codecvt;
+
 constexpr const char* same_build =
     "all ranks, and whoever wrote the files of a survey, must be the same build of Orbweaver";
 
 void expect(const PayloadType& type, boost::archive::binary_iarchive& archive) {
   std::string name;
   int version = 0;
-  archive >> name >> version;
+  core::serialize_member(archive, name);
+  archive >> version;
   if (name != type.name || version != type.version)
     throw core::EnvironmentError(fmt::format("expected a {} of version {}, got a {} of version {}: {}", type.name,
                                              type.version, name, version, same_build));
@@ -34,9 +38,10 @@ void expect(const PayloadType& type, boost::archive::binary_iarchive& archive) {
 std::string write_payload(const PayloadType& type, const std::function<void(boost::archive::binary_oarchive&)>& write) {
   std::ostringstream stream;
   {
-    boost::archive::binary_oarchive archive(stream);
-    const std::string name = type.name;
-    archive << name << type.version << type.layout;
+    boost::archive::binary_oarchive archive(stream, archive_flags);
+    std::string name = type.name;
+    core::serialize_member(archive, name);
+    archive << type.version << type.layout;
     write(archive);
   }
   return std::move(stream).str();
@@ -46,7 +51,7 @@ void read_payload(const PayloadType& type, const std::string& bytes,
                   const std::function<void(boost::archive::binary_iarchive&)>& read) {
   try {
     std::istringstream stream(bytes);
-    boost::archive::binary_iarchive archive(stream);
+    boost::archive::binary_iarchive archive(stream, archive_flags);
     expect(type, archive);
     read(archive);
     if (stream.peek() != std::istringstream::traits_type::eof())

@@ -1,14 +1,13 @@
 #include "sweep_work.hpp"
 
-#include <fmt/format.h>
-
+#include "keys.hpp"
 #include "payload.hpp"
 #include "task_kind.hpp"
 
 namespace orbweaver::survey {
 
 queue::Task task_of(const SweepWork& work) {
-  return {fmt::format("sweep.{:04}", work.index), priority_of(TaskKind::sweep, 0), name_of(TaskKind::sweep),
+  return {"sweep." + equilibrium_key(work.index), priority_of(TaskKind::sweep, 0), name_of(TaskKind::sweep),
           pack(work)};
 }
 

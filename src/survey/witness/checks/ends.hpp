@@ -40,6 +40,7 @@ class Ends final : public Check {
       case EndReason::period_divergence:
       case EndReason::fixed_point:
       case EndReason::closed_loop:
+      case EndReason::undecided:
       case EndReason::failure: break;
     }
     return false;
@@ -62,6 +63,12 @@ class Ends final : public Check {
       return end.nearby.empty() ? met_somewhere(evidence, family, end, finding) : met_crossing(evidence, end, finding);
     }
     if (end.end->reason == continuation::EndReason::fixed_point) return at_equilibrium(evidence, family, end, finding);
+    if (end.end->reason == continuation::EndReason::undecided) {
+      finding.kind = FindingKind::undecided_end;
+      finding.severity = Severity::undecided;
+      finding.detail = end.end->detail;
+      return finding;
+    }
     if (!is_limit(end.end->reason)) return std::nullopt;
     finding.kind = FindingKind::limited_end;
     finding.severity = Severity::cut;

@@ -7,9 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "orbweaver/archive/schema/schema.hpp"
+#include "tasks/payload/keys.hpp"
 #include "tasks/payload/sweep_work.hpp"
 #include "witness/check.hpp"
 
@@ -50,7 +49,7 @@ class EquilibriumFamilies final : public Check {
 
   /// Rows of the family, or of its two sides.
   static std::vector<int> rows_of(const Evidence& evidence, std::size_t equilibrium, int place) {
-    const std::string key = fmt::format("{:04}.{:04}", equilibrium, place);
+    const std::string key = base_key(static_cast<int>(equilibrium), place);
     std::vector<int> rows;
     for (const char* side : {"", "+", "-"})
       if (const int row = evidence.row_of(key + side); row >= 0) rows.push_back(row);

@@ -4,7 +4,7 @@
 
 namespace orbweaver::survey {
 
-/// Tasks that failed or were not done, and arrivals that contradict each other.
+/// Tasks that failed, that rounding leaves undecided, or that were not done, and arrivals that contradict each other.
 class FailedTasks final : public Check {
  public:
   [[nodiscard]] std::vector<Finding> findings(const Evidence& evidence,
@@ -21,6 +21,8 @@ class FailedTasks final : public Check {
       add(FindingKind::failed_task, Severity::failure, "", failure);
     for (const FailureEvidence& failure : evidence.known.tree.failures)
       add(FindingKind::failed_task, Severity::failure, failure.family, failure.reason);
+    for (const FailureEvidence& event : evidence.known.tree.undecided)
+      add(FindingKind::undecided_event, Severity::undecided, event.family, event.reason);
     for (const std::string& family : evidence.known.tree.disputed)
       add(FindingKind::disputed_arrival, Severity::contradiction, family, "");
     for (const std::string& task : evidence.known.interrupted) add(FindingKind::interrupted, Severity::cut, "", task);

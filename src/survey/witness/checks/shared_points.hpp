@@ -36,6 +36,7 @@ class SharedPoints final : public Check {
       for (const auto& [family, place] : nearest) {
         const auto& [away, segment] = place;
         if (!std::isfinite(away) || is_known(evidence, known, family, x)) continue;
+        if (segment == 0 && is_before_birth(evidence, family, x)) continue;
         asked.push_back({crossing.family, 0, static_cast<int>(row), family, static_cast<int>(segment)});
       }
     }
@@ -125,6 +126,23 @@ class SharedPoints final : public Check {
     for (std::size_t i = 0; i < x.floor.size(); ++i) x.floor[i] = of_place * x.scale[i];
     x.floor[static_cast<std::size_t>(Invariant::action)] = of_action * x.scale_of(Invariant::action);
     return x;
+  }
+
+  // Beyond the place where the family is born, seen from its first orbit: nothing of it is there, and what loops are
+  // corrected to is the family that it was born on.
+  static bool is_before_birth(const Evidence& evidence, int family, const Invariants& x) {
+    const int row = evidence.tree.families[static_cast<std::size_t>(family)].crossing;
+    const std::vector<Invariants>& points = evidence.family(family).curve.points();
+    if (row < 0 || points.empty()) return false;
+    const TreeCrossing& birth = evidence.crossing(row);
+    double along = 0.0;
+    for (const auto& [i, at_birth] : {std::pair{Invariant::period, birth.multiplicity * birth.period},
+                                      std::pair{Invariant::energy, birth.energy}}) {
+      const double part =
+          (x.value(i) - at_birth) * (points.front().value(i) - at_birth) / (x.scale_of(i) * x.scale_of(i));
+      if (!std::isnan(part)) along += part;
+    }
+    return along < 0.0;
   }
 
   // Crossings where a family is born, ends, or that lie on it.

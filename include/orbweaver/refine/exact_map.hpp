@@ -25,7 +25,7 @@ class ExactMatrix {
   template <class Real>
   [[nodiscard]] Matrix<Real> value() const;
 
- private:
+  /// sign times numerator/denominator, its root, or the cosine of that part of a turn.
   struct Entry {
     enum class Kind { rational, root, cosine } kind = Kind::rational;
     double sign = 1.0;
@@ -33,6 +33,10 @@ class ExactMatrix {
     int denominator = 1;
     double otherwise = 0.0;  ///< denominator 0: this number
   };
+  /// Row after row.
+  [[nodiscard]] const std::vector<Entry>& entries() const { return _entries; }
+
+ private:
   static Entry recognised(double declared);
   template <class Real>
   static Real value_of(const Entry& entry);

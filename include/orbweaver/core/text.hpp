@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace orbweaver::core {
+
+/// Bytes of the character of UTF-8 that begins at `at`; 0: none does.
+[[nodiscard]] std::size_t character_length(std::string_view text, std::size_t at);
+
+/// Whether a character is a control character: U+0000 to U+001F, U+007F to U+009F.
+[[nodiscard]] bool is_control(std::string_view character);
+
+/// The first byte that belongs to no character of UTF-8 (RFC 3629: no overlong forms, no surrogates, nothing above
+/// U+10FFFF), or is zero; npos: there is none.
+[[nodiscard]] std::size_t first_untextual(std::string_view text);
+
+/// The text on one line: control characters and bytes that are not UTF-8 as `\x1b`, `\n`, `\t`
+/// or `\r`. For messages and tables that echo what was given or stored.
+[[nodiscard]] std::string printable(std::string_view text);
+
+/// The same, with the breaks between lines and the tabs left as they are: for whole messages.
+[[nodiscard]] std::string printable_lines(std::string_view text);
+
+/// The text, or as many of its first whole characters as fit into `most` bytes with `...` behind them. `text` is UTF-8.
+[[nodiscard]] std::string shortened(std::string text, std::size_t most);
+
+}  // namespace orbweaver::core

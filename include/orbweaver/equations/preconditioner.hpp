@@ -1,0 +1,13 @@
+#pragma once
+
+namespace orbweaver::equations {
+
+/// What stands for the inverse of the derivative while the equations of a fundamental domain are solved.
+enum class Preconditioner {
+  box,         ///< the box scheme: better than the next beside a narrow gap between families (mu = 0.001, 13 turns)
+  fitted_box,  ///< the same, but follows turns of the linearised flow over a cell: beside a fast motion
+  exact,       ///< the derivative itself, O(n^3) for n unknowns: beside motions that cells do not resolve
+};
+[[nodiscard]] constexpr Preconditioner last_of(Preconditioner) { return Preconditioner::exact; }
+
+}  // namespace orbweaver::equations
