@@ -120,6 +120,10 @@ double energy_slope(const systems::System& system, const continuation::CurvePoin
   return slope;
 }
 
+double level_slope(const systems::System& system, const continuation::CurvePoint& point) {
+  return system.family_scalars().free.empty() ? energy_slope(system, point) : parameter_slope(point);
+}
+
 Reading index_deviation(const spectrum::Stability& stability, const Sector& sector) {
   Reading nearest{nan, nan};
   for (std::size_t n = 0; n < stability.fundamental.size(); ++n) {

@@ -56,7 +56,7 @@ std::optional<Ending> collision_of(const Frontier& frontier, const systems::Syst
 }  // namespace
 
 double level_of(const systems::System& system, const Orbit& orbit) {
-  return system.family_scalars().free.empty() ? orbit.energy : orbit.loop.parameters.front();
+  return system.family_scalars().free.empty() ? orbit.energy : level_of(system, orbit.loop);
 }
 
 int guard_number(const systems::Structure& structure, const std::string& name) {

@@ -15,6 +15,10 @@ double energy_of(const systems::System& system, const loop::Loop& loop) {
   return loop::system_at(system, loop)->conserved(0, loop::state_at(loop, 0.0));
 }
 
+double level_of(const systems::System& system, const loop::Loop& loop) {
+  return system.family_scalars().free.empty() ? energy_of(system, loop) : loop.parameters.front();
+}
+
 double action_of(const systems::System& system, const loop::Loop& loop) {
   const std::shared_ptr<const systems::System> here = loop::system_at(system, loop);
   const loop::Samples samples = loop::samples_of(loop);

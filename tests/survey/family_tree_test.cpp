@@ -277,8 +277,8 @@ TEST_F(Families, OnALocationThatDidNotSucceedAreNotCrossings) {
 
 Ended with_energies(Ended branch, double from, double to) {
   BranchOutcome outcome = unpack_branch_outcome(branch.outcome.payload);
-  outcome.energy_from = from;
-  outcome.energy_to = to;
+  outcome.level_from = from;
+  outcome.level_to = to;
   branch.outcome.payload = pack(outcome);
   return branch;
 }
@@ -299,8 +299,8 @@ TEST_F(Families, WithTwoSidesAreOneAndOneSideMayBeLeftOut) {
   EXPECT_EQ(result.families[1].orbits, 17);
   EXPECT_EQ(result.families[1].period_from, 20.0);
   EXPECT_EQ(result.families[1].period_to, 40.0);
-  EXPECT_EQ(result.families[1].energy_from, -3.0);
-  EXPECT_EQ(result.families[1].energy_to, 2.0);
+  EXPECT_EQ(result.families[1].level_from, -3.0);
+  EXPECT_EQ(result.families[1].level_to, 2.0);
   EXPECT_EQ(result.families[1].end_reason, "forwards: period limit; backwards: energy limit");
   EXPECT_EQ(result.tables.families[1].first_step, first);
   EXPECT_EQ(result.tables.families[1].last_step, last);

@@ -72,5 +72,7 @@ struct NotLocated {
 [[nodiscard]] double period_slope(const continuation::CurvePoint& point);
 [[nodiscard]] double parameter_slope(const continuation::CurvePoint& point);
 [[nodiscard]] double energy_slope(const systems::System& system, const continuation::CurvePoint& point);
+/// Of the level (continuation::level_of): the energy, or the parameter that moves.
+[[nodiscard]] double level_slope(const systems::System& system, const continuation::CurvePoint& point);
 
 }  // namespace orbweaver::bifurcation

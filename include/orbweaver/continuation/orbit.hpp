@@ -33,6 +33,10 @@ struct Orbit {
 /// The first conserved quantity at a loop's state at s = 0; NaN for systems without one.
 [[nodiscard]] double energy_of(const systems::System& system, const loop::Loop& loop);
 
+/// What tells the orbits of one family in T apart beside T: the energy, or the parameter that moves. In the system's
+/// scales.
+[[nodiscard]] double level_of(const systems::System& system, const loop::Loop& loop);
+
 /// Action over one period: T times the mean over time of p . dq/dt, on the loss's nodes (spectrally accurate).
 [[nodiscard]] double action_of(const systems::System& system, const loop::Loop& loop);
 

@@ -124,6 +124,7 @@ void write_archive(const core::Communicator& comm, const scene::Scene& scene,
     FamilyTree::Result found = tree.resolve();
     tables = std::move(found.tables);
     summary.families = std::move(found.families);
+    summary.parameter = Units(*system).parameter_name;
     known.tree = std::move(found.evidence);
     for (std::string& failure : found.failures) summary.failed_tasks.push_back(std::move(failure));
     for (std::string& remark : found.remarks) summary.remarks.push_back(std::move(remark));
@@ -201,7 +202,7 @@ Summary archive_survey(const core::Communicator& comm, const std::filesystem::pa
   const ScaledScene scaled(scene, scene::bound_system(scene.system));
   const auto& system = scaled.system();
   core::on_root(comm.get(), [&] { scaled.expect(found.checkpoint.scales); });
-  FamilyTree tree(scaled.scene(), system->structure(), system->scales());
+  FamilyTree tree(scaled.scene(), system->structure(), Units(*system));
   SweepsEnded sweeps;
   core::on_root(comm.get(), [&] {
     const Stage stage = found.checkpoint.stage;

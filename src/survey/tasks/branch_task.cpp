@@ -145,9 +145,9 @@ continuation::Ending BranchTask::follow() {
     const double period = orbit->loop.period * units().time;
     if (!take(*orbit)) return met();
     if (on_limit) continue;
-    _stopped =
-        !_context.report({_outcome.orbits, 1, {period, orbit->energy * units().energy(), orbit->loop.cutoff * 1.0}},
-                         [&] { return pack(state_at(_branch->restart_frontier())); });
+    const double level = continuation::level_of(*_system, orbit->loop) * units().level();
+    _stopped = !_context.report({_outcome.orbits, 1, {period, level, orbit->loop.cutoff * 1.0}},
+                                [&] { return pack(state_at(_branch->restart_frontier())); });
     if (_stopped) return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", period)};
   }
 }
@@ -346,13 +346,13 @@ void BranchTask::solve_requested(const continuation::Orbit& orbit) {
 void BranchTask::store(continuation::Orbit orbit, const std::optional<spectrum::Stability>& stability) {
   const bool first = _outcome.orbits == 0;
   const double period = orbit.loop.period * units().time;
-  const double energy = orbit.energy * units().energy();
+  const double level = continuation::level_of(*_system, orbit.loop) * units().level();
   _outcome.period_from = first ? period : std::min(_outcome.period_from, period);
   _outcome.period_to = first ? period : std::max(_outcome.period_to, period);
-  _outcome.energy_from = first ? energy : std::min(_outcome.energy_from, energy);
-  _outcome.energy_to = first ? energy : std::max(_outcome.energy_to, energy);
+  _outcome.level_from = first ? level : std::min(_outcome.level_from, level);
+  _outcome.level_to = first ? level : std::max(_outcome.level_to, level);
   _outcome.last_period = period;
-  _outcome.last_energy = energy;
+  _outcome.last_level = level;
   _outcome.last_cutoff = orbit.loop.cutoff;
   _outcome.tolerance_met = std::max(_outcome.tolerance_met, orbit.tolerance_met);
   // The other side of a crossing: counted backwards from it.

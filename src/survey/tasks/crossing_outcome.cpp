@@ -43,6 +43,7 @@ void describe(const systems::System& system, const Event& event, const bifurcati
   outcome.j = sector.j;
   outcome.period = loop.period;
   outcome.energy = continuation::energy_of(system, loop);
+  if (!loop.parameters.empty()) outcome.parameter = loop.parameters.front();
   outcome.fundamental_order = crossing.stability.fundamental_order;
   const bool by_sector = is_in_sector(event);
   outcome.multiplicity = by_sector ? sector.multiplicity(outcome.fundamental_order) : 1;

@@ -225,7 +225,7 @@ class Location {
 
   /// Of the energy, or of the parameter that moves: where it turns an index of 2 is no birth.
   [[nodiscard]] double slope_at(const continuation::CurvePoint& point) const {
-    return moves() ? bifurcation::parameter_slope(point) : bifurcation::energy_slope(*_system, point);
+    return bifurcation::level_slope(*_system, point);
   }
 
   /// Slopes where the event was bracketed.

@@ -25,6 +25,8 @@ constexpr int samples_of_guess = 4 * loop::time_sample_count;
 constexpr double guess_tolerance = 1e-10;
 /// Of a guess's harmonics, relative to its size: smaller ones are left out.
 constexpr double left_out = 1e-9;
+/// Of an orbit that rests: its neighbours take more where they need them.
+constexpr int rest_cutoff = 15;
 
 /// The trajectory from a state over a period as a loop, what it misses spread evenly over it.
 loop::Loop guess_of(const systems::System& system, const SweepWork& work) {
@@ -109,6 +111,27 @@ SweepOutcome hopf_starts(const scene::Scene& scene, const systems::System& syste
     found.base.parameters = {hopf.at.parameter};
     outcome.modes.push_back(std::move(found));
   }
+  return outcome;
+}
+
+SweepOutcome drive_start(const systems::System& system, const SweepWork& work) {
+  SweepOutcome outcome;
+  outcome.index = work.index;
+  outcome.point = work.point;
+  std::vector<double> field(work.point.size());
+  system.field(1, work.point.data(), field.data());
+  FoundMode found;
+  found.period = 2.0 * std::numbers::pi / std::abs(field.back());
+  found.cutoff = rest_cutoff;
+  found.base = loop::constant_loop(work.point, found.period, found.cutoff);
+  found.base.winding.back() = std::copysign(1.0, field.back());
+  for (const std::string& name : system.family_scalars().free)
+    found.base.parameters.push_back(system.parameters().at(name) / system.parameter_scale(name));
+  found.isotropy = loop::find_isotropy(system.structure(), found.base, loop::symmetry_tolerance);
+  found.base_is_orbit = true;
+  found.direction = along_scalar(found.base, 1.0);
+  outcome.modes.push_back(std::move(found));
+  outcome.families = 1;
   return outcome;
 }
 

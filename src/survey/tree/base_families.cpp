@@ -62,8 +62,8 @@ std::string nothing_found_advice(const systems::System& system, bool left_out) {
 
 namespace {
 
-/// Families in T begin at equilibria, and those of a system that conserves nothing at Hopf points. A conservative
-/// family in a parameter has no small orbits.
+/// Families in T begin at equilibria; those of a system that conserves nothing at Hopf points, or where it rests until
+/// the drive is raised. A conservative family in a parameter has no small orbits.
 bool has_equilibrium_families(const systems::System& system) {
   return system.family_scalars().free.empty() || !system.structure().conservative();
 }
@@ -71,14 +71,15 @@ bool has_equilibrium_families(const systems::System& system) {
 /// Of an orbit that the scene gives: the states come behind the equilibria.
 std::string name_of_start(const scene::Scene& scene, const systems::System& system, const SweepOutcome& found,
                           const FoundMode& mode, std::size_t sweeps) {
-  if (mode.base_is_orbit) {
-    const std::size_t first = sweeps - scene.states.size();
-    return scene.states.at(static_cast<std::size_t>(found.index) - first).name;
-  }
+  const std::size_t first_state = sweeps - scene.states.size();
+  if (static_cast<std::size_t>(found.index) >= first_state)
+    return scene.states.at(static_cast<std::size_t>(found.index) - first_state).name;
   if (mode.base.modes.empty()) return base_family_name(scene, system, found.point, found.index, mode.place);
   const std::size_t given = names_given(scene, system, found.point);
   return static_cast<std::size_t>(mode.place) < given
              ? base_family_name(scene, system, found.point, found.index, mode.place)
+         : mode.base_is_orbit
+             ? equilibrium_name(found.index)
              : fmt::format("{}, Hopf point {}", equilibrium_name(found.index), mode.place + 1);
 }
 
@@ -111,14 +112,18 @@ std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::S
                                 : "over all oscillations";
   const std::string look = system.family_scalars().free.empty()
                                ? fmt::format("sweeping the period {} at each", range)
-                               : fmt::format("following each in {}", system.family_scalars().free.front());
+                               : fmt::format("{} each in {}", system.structure().driven ? "driving" : "following",
+                                             system.family_scalars().free.front());
   if (equilibria > 0) core::log_info(fmt::format("{} equilibria; {}", equilibria, look));
   if (equilibria < tasks.size()) core::log_info(fmt::format("{} given orbits", tasks.size() - equilibria));
   if (tasks.empty() && !has_equilibrium_families(system))
     throw core::InputError("a conservative family in a parameter starts at an orbit: give one with starts.states");
   if (tasks.empty())
     throw core::InputError(
-        "Newton's method finds no equilibrium from starts.fixed_points.grid: give start values nearer to one");
+        system.structure().driven
+            ? "nothing rests at every phase of the drive near starts.fixed_points.grid: give the drive the amplitude 0 "
+              "and let it move (continuation.free), or an orbit with starts.states"
+            : "Newton's method finds no equilibrium from starts.fixed_points.grid: give start values nearer to one");
   return tasks;
 }
 

@@ -229,7 +229,7 @@ class CrossingCheck {
     const double allowed = placed ? same_placement : same_place;
     claims.agree("period", real("period"), loop.period * units.time, allowed * real("period"));
     const double energy = continuation::energy_of(_system, loop) * units.energy();
-    const double scale = std::fmax(std::abs(energy), _crossing.energy_scale);
+    const double scale = std::fmax(std::abs(energy), _crossing.level_scale);
     claims.agree("energy", real("energy"), energy, allowed * (std::isnan(scale) ? 1.0 : scale));
     state(loop, allowed, claims);
     const std::optional<spectrum::Stability> stability = stability_of(_system, loop, _isotropy);

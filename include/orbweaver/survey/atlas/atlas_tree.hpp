@@ -42,8 +42,8 @@ struct TreeCrossing {
   int sector_q = 1;
   int fundamental_order = 1;
   double period = 0.0;
-  double energy = 0.0;
-  double energy_scale = 0.0;  ///< of the family's orbit nearest to it; NaN: no energy
+  double level = 0.0;         ///< the energy, or the parameter that moves
+  double level_scale = 0.0;   ///< of the family's orbit nearest to it; NaN: neither
   std::vector<int> children;  ///< rows of the families born there
 };
 
@@ -54,7 +54,8 @@ struct AtlasTree {
   const archive::Archive& atlas;
   std::vector<TreeFamily> families;
   std::vector<TreeCrossing> crossings;
-  std::vector<int> roots;  ///< families without a parent
+  std::vector<int> roots;     ///< families without a parent
+  bool in_parameter = false;  ///< a parameter moves along the families
 };
 
 /// "period-doubling T 8.44293"

@@ -51,7 +51,7 @@ struct CrossingBeneath {
 /// A branch has come to an orbit with more symmetry than its own: a crossing of another family, or of its own.
 struct ArrivalRecord {
   double period = 0.0;  ///< where it meets, by interpolation, or as the crossing there was located
-  double energy = 0.0;
+  double level = 0.0;                      ///< continuation::level_of
   loop::Loop near;                         ///< an orbit of the branch shortly before
   int multiplicity = 1;                    ///< times that it goes around the orbit it meets, where that is all it gains
   std::vector<CrossingBeneath> beneath{};  ///< one, where the crossing that is met was located
@@ -60,7 +60,7 @@ struct ArrivalRecord {
   static constexpr int wire_version = 3;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, period, energy, near, multiplicity, beneath, ahead);
+    core::serialize_members(archive, period, level, near, multiplicity, beneath, ahead);
   }
 };
 
@@ -71,10 +71,10 @@ struct BranchOutcome {
   /// Ranges and last values in the units of the scene.
   double period_from = 0.0;
   double period_to = 0.0;
-  double energy_from = 0.0;
-  double energy_to = 0.0;
+  double level_from = 0.0;
+  double level_to = 0.0;
   double last_period = 0.0;
-  double last_energy = 0.0;
+  double last_level = 0.0;
   int last_cutoff = 0;
   continuation::Ending end;
   std::vector<ArrivalRecord> arrival;  ///< one or none
@@ -87,8 +87,8 @@ struct BranchOutcome {
   static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, key, orbits, period_from, period_to, energy_from, energy_to, last_period,
-                            last_energy, last_cutoff, end, arrival, equilibrium, remarks, tolerance_met, limited_by,
+    core::serialize_members(archive, key, orbits, period_from, period_to, level_from, level_to, last_period,
+                            last_level, last_cutoff, end, arrival, equilibrium, remarks, tolerance_met, limited_by,
                             before_limit);
     if constexpr (Archive::is_loading::value) check_limits(limited_by);
   }

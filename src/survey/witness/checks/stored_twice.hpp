@@ -45,7 +45,7 @@ class StoredTwice final : public Check {
   static constexpr std::size_t least_hits = 2;
   /// Loops that are compared for a pair of families.
   static constexpr std::size_t compared = 5;
-  /// Of the floors of period and energy: as two computations of one orbit differ.
+  /// Of the floors of period and level: as two computations of one orbit differ.
   static constexpr double floors = 3.0;
   /// Segments beside an orbit that are its own.
   static constexpr std::size_t own_segments = 2;
@@ -62,8 +62,8 @@ class StoredTwice final : public Check {
         const Invariants& x = points[n];
         int last = -1;  // one hit a family and orbit
         for (const auto& [other, segment] :
-             evidence.index.near(x.value(Invariant::period), x.value(Invariant::energy),
-                                 floors * x.floor_of(Invariant::period), floors * x.floor_of(Invariant::energy))) {
+             evidence.index.near(x.value(Invariant::period), x.value(Invariant::level),
+                                 floors * x.floor_of(Invariant::period), floors * x.floor_of(Invariant::level))) {
           const int own = static_cast<int>(row);
           if (other == last || (other == own && is_own(evidence.tree.families[row], n, segment))) continue;
           const Pair pair = std::minmax(own, other);
@@ -118,7 +118,7 @@ class StoredTwice final : public Check {
     finding.family = pair.first;
     finding.other_family = pair.first == pair.second ? -1 : pair.second;
     finding.period = x.value(Invariant::period);
-    finding.energy = x.value(Invariant::energy);
+    finding.level = x.value(Invariant::level);
     finding.deviation = shown.reply.distance;
     finding.number = static_cast<int>(same);
     finding.other_number = static_cast<int>(answered.size());
