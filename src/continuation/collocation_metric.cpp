@@ -37,13 +37,23 @@ namespace {
 /// first orbit.
 constexpr double still = 1e-16;
 
+/// dz/ds at the nodes.
+std::vector<double> slope_at_nodes(const Collocation& e, const std::vector<double>& values) {
+  const int stride = e.grid().stride();
+  std::vector<double> y(static_cast<std::size_t>(e.dimension() * stride));
+  std::vector<double> slope(y.size());
+  e.grid().at_nodes(values.data(), y.data(), slope.data());
+  for (int i = 0; i < e.dimension(); ++i)
+    for (int j = 0; j <= e.cells(); ++j)
+      slope[static_cast<std::size_t>(i * stride + j)] += e.winding()[static_cast<std::size_t>(i)];
+  return slope;
+}
+
 /// Into `weights`, one row of `size` numbers.
 void phase_condition(const Collocation& e, const Prediction& prediction, double* weights) {
   const int stride = e.grid().stride();
   const auto size = static_cast<std::size_t>(e.size());
-  std::vector<double> z(static_cast<std::size_t>(e.dimension() * stride));
-  std::vector<double> slope(z.size());
-  e.grid().at_nodes(prediction.values.data(), z.data(), slope.data());
+  const std::vector<double> slope = slope_at_nodes(e, prediction.values);
   double square = 0.0;
   for (int i = 0; i < e.dimension(); ++i)
     for (int j = 0; j <= e.cells(); ++j) {
@@ -112,9 +122,7 @@ std::vector<double> step_conditions(const Collocation& e, const Prediction& pred
 
 void take_out_shift(const Collocation& e, Prediction& prediction, const std::vector<double>& last) {
   const int stride = e.grid().stride();
-  std::vector<double> z(static_cast<std::size_t>(e.dimension() * stride));
-  std::vector<double> slope(z.size());
-  e.grid().at_nodes(last.data(), z.data(), slope.data());
+  const std::vector<double> slope = slope_at_nodes(e, last);
   const std::vector<double>& shift = slope;  // of z instead of y: near enough to move along
   double square = 0.0;
   double moved = 0.0;

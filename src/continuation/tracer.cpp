@@ -43,6 +43,12 @@ constexpr double fixed_in_largest = 5.0;
 /// Keeps the quotient finite where z(s = 0) does not move; below any step that `fixed_in_largest` does not bound.
 constexpr double least_change = 1e-12;
 
+/// A loop that winds is not small, however little the rest of it moves.
+double extent_of(const loop::Loop& loop, double amplitude) {
+  const bool winds = std::any_of(loop.winding.begin(), loop.winding.end(), [](double n) { return n != 0.0; });
+  return winds ? std::max(1.0, amplitude) : amplitude;
+}
+
 }  // namespace
 
 Tracer::Tracer(std::shared_ptr<const systems::System> system, Start start, Options options)
@@ -77,7 +83,7 @@ std::optional<Orbit> Tracer::first_orbit() {
                                              _options.cutoff_to));
   while (true) {
     // Beside an orbit everything is measured by the orbit, however near the first one of the family lies.
-    _frontier.problem.amplitude = std::max(amplitude, loop::rms_amplitude(_start.base));
+    _frontier.problem.amplitude = extent_of(_start.base, std::max(amplitude, loop::rms_amplitude(_start.base)));
     const std::vector<double> base = _problem->from_loop(_start.base);
     Prediction prediction{base, _problem->from_change(loop::perturbation(_start.base, direction)), 1};
     for (std::size_t n = 0; n < direction.scalars.size(); ++n)
@@ -118,7 +124,7 @@ std::optional<Orbit> Tracer::base_orbit() {
   const auto held = static_cast<std::size_t>(
       std::find_if(scalars.begin(), scalars.end(), [](double v) { return v != 0.0; }) - scalars.begin());
   _frontier.problem.held_energy = energy_of(*_system, _start.base);
-  _frontier.problem.amplitude = loop::rms_amplitude(_start.base);
+  _frontier.problem.amplitude = extent_of(_start.base, loop::rms_amplitude(_start.base));
   _problem->resolve(_problem->resolution_for(std::max(_start.base.cutoff, _options.cutoff_from), _start.base.time_map,
                                              _options.cutoff_to));
   while (true) {
@@ -141,8 +147,9 @@ std::optional<Orbit> Tracer::base_orbit() {
     prediction.values = trial.values;
     std::vector<double> before = trial.values;
     const std::vector<double> direction = _problem->direction_at(trial.values, prediction);
-    const double length = std::sqrt(_problem->product(direction, std::vector<double>(direction.size(), 0.0), direction,
-                                                      std::vector<double>(direction.size(), 0.0)));
+    std::vector<double> beyond = trial.values;
+    for (std::size_t n = 0; n < beyond.size(); ++n) beyond[n] += direction[n];
+    const double length = std::sqrt(_problem->product(beyond, trial.values, beyond, trial.values));
     for (std::size_t n = 0; n < before.size(); ++n) before[n] -= _options.start_amplitude / length * direction[n];
     _frontier.points = {{std::move(before), 0.0}};
     _frontier.next_length = std::min(_options.start_amplitude, _options.largest_step);
@@ -360,7 +367,7 @@ void Tracer::keep(Orbit& orbit, double increment, double amplitude) {
     frontier.earlier_period = orbit.loop.period;
   }
   keep_guards(orbit.loop);
-  frontier.problem.amplitude = amplitude;
+  frontier.problem.amplitude = extent_of(orbit.loop, amplitude);
   frontier.farthest = std::max({frontier.farthest, std::abs(amplitude - frontier.first_amplitude),
                                 std::abs(orbit.loop.period / frontier.first.period - 1.0)});
   frontier.orbit = orbit;
