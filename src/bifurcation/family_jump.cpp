@@ -9,6 +9,7 @@
 #include "orbweaver/bifurcation/test_functions.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/numerics/locate.hpp"
 
 namespace orbweaver::bifurcation {
@@ -77,6 +78,8 @@ double angle_of(const spectrum::Stability& s) {
 
 /// Of a turn, by which it may change over a step.
 constexpr double most_rotation = 0.25;
+/// Of the amplitude: over shorter steps the sense of rotation changes by rounding, or where an index passes 2.
+constexpr double rotating_steps = 1e-3;
 
 }  // namespace
 
@@ -99,7 +102,10 @@ bool rotates_too_far(const spectrum::Stability& from, const spectrum::Stability&
 
 bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
                 const continuation::Options& options, const KnownStability& from, const KnownStability& to) {
-  if (passes_one_unseen(from.stability, to.stability) || rotates_too_far(from.stability, to.stability)) return true;
+  if (passes_one_unseen(from.stability, to.stability)) return true;
+  if (loop::mean_distance(from.orbit.loop, to.orbit.loop) > rotating_steps * loop::rms_amplitude(to.orbit.loop) &&
+      rotates_too_far(from.stability, to.stability))
+    return true;
   const TestFunction two{TestFunction::Kind::sector, {1, 0}};
   const int before = evaluate(two, system->structure(), from.stability).sign();
   const int after = evaluate(two, system->structure(), to.stability).sign();

@@ -280,12 +280,14 @@ std::vector<SymmetryGain> SymmetryWatch::all_passed(const SampledOrbit& from, co
   };
   const double rounding = correlation_rounding * (from.size * from.size + to.size * to.size) +
                           (from.left_out + to.left_out) * (from.size + to.size);
+  // A part that has become negligible has the sign it had as well as the other.
+  const double at_most = std::max(rounding, 2.0 * negligible * from.size * to.size);
   for (const auto& [symmetry, candidates] : _equivariances) {
     if (!keeps_winding(symmetry.map.matrix, 1.0, from.loop)) continue;
     const systems::AffineMap inverse = symmetry.map.inverse();
     const Correlation correlation(inverse, from, to, _system.angles);
     for (const SymmetryGain& candidate : candidates)
-      if (correlation.at(shift_of(candidate)) <= rounding) consider(candidate);
+      if (correlation.at(shift_of(candidate)) <= at_most) consider(candidate);
   }
   for (const systems::Symmetry& r : _reversors) {
     if (!keeps_winding(r.map.matrix, -1.0, from.loop)) continue;

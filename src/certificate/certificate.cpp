@@ -59,6 +59,11 @@ double largest(const std::vector<Eigen::VectorXd>& vectors) {
   return largest;
 }
 
+/// Of the orbit's reach: where it returns by no more, what an error of the energy grows to is not asked for.
+constexpr double far_return = 1e-9;
+/// Of the reach: by how much a state is displaced to see it, a hundred times what the integrator's tolerance leaves.
+constexpr double displaced = 1e-11;
+
 }  // namespace
 
 class Certifier::Parts {
@@ -95,6 +100,7 @@ class Certifier::Parts {
     found.single_shot = single_shot();
     conserved(found);
     for (const State& state : _states) found.reach = std::max(found.reach, norm(state));
+    if (found.single_shot > far_return * found.reach) found.energy_growth = energy_growth(found.reach);
     found.symmetry_defect = symmetry_defect();
     found.recurrence = recurrence();
     found.tail = loop::tail(loop);
@@ -192,6 +198,23 @@ class Certifier::Parts {
     }
   }
 
+  // By a difference: NaN where the integration leaves the region where the system is defined, or nothing is conserved.
+  [[nodiscard]] double energy_growth(double reach) const {
+    if (_system.structure().conserved.empty()) return unknown;
+    State gradient(_states.front().size());
+    _system.conserved_gradient(0, _states.front(), gradient);
+    const double length = norm(gradient);
+    if (!(length > 0.0)) return unknown;
+    State moved = _states.front();
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += displaced * reach / length * gradient[i];
+    try {
+      const State end = integrate(_system, _states.front(), _loop->period, _options.tolerance);
+      return distance(integrate(_system, moved, _loop->period, _options.tolerance), end) / (displaced * reach);
+    } catch (const core::NumericalError&) {
+      return unknown;
+    }
+  }
+
   void conserved(Certificate& found) const {
     const auto count = static_cast<int>(_system.structure().conserved.size());
     for (int k = 0; k < count; ++k) {
@@ -205,6 +228,7 @@ class Certifier::Parts {
     for (const State& state : _states) {
       _system.conserved_gradient(0, state, gradient);
       found.steepness = std::max(found.steepness, norm(gradient));
+      found.energy_size = std::max(found.energy_size, std::abs(_system.conserved(0, state)));
     }
   }
 

@@ -99,6 +99,17 @@ class Group {
             f[entry(i, c) + j] += _jacobian[(i * _dimension + l) * _nodes + j] * z[entry(l, c) + j];
   }
 
+  /// The largest state's size, or 1 where that is larger, or beside transition matrices, whose entries are.
+  [[nodiscard]] double size_of_small() const {
+    double largest = 0.0;
+    for (std::size_t j = 0; j < _nodes; ++j) {
+      double square = 0.0;
+      for (std::size_t i = 0; i < _dimension; ++i) square += _values[i * _nodes + j] * _values[i * _nodes + j];
+      largest = std::max(largest, std::sqrt(square));
+    }
+    return _with_transitions || largest == 0.0 ? 1.0 : std::min(1.0, largest);
+  }
+
   /// A first step that is right to within the factor 5 by which the controller corrects a step, at every state.
   [[nodiscard]] double first_step(const State& field, double time, double tolerance) const {
     double step = std::abs(time);
@@ -133,7 +144,8 @@ void Group::advance(double time, double tolerance) {
   rate(_values, field, 0.0);
   if (!finite || !is_finite(_values)) fail(_system, 0.0, time, "the state or the vector field there is not finite");
 
-  auto stepper = odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_fehlberg78<State>());
+  auto stepper =
+      odeint::make_controlled(size_of_small() * tolerance, tolerance, odeint::runge_kutta_fehlberg78<State>());
   double reached = 0.0;
   double step = first_step(field, time, tolerance);
   State next(_values.size());

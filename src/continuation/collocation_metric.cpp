@@ -1,10 +1,13 @@
 #include "collocation_metric.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
 #include "held_energy.hpp"
 #include "orbweaver/loop/curve/system_at.hpp"
+
+#include "orbweaver/corrector/correct.hpp"
 
 namespace orbweaver::continuation {
 
@@ -118,6 +121,12 @@ std::vector<double> step_conditions(const Collocation& e, const Prediction& pred
   if (hold != Hold::nothing) next += size;
   if (next != weights.data() + weights.size()) phase_condition(e, prediction, next);
   return weights;
+}
+
+double rounding_floor(const Collocation& e, const Collocation::Quality& quality, double period) {
+  return std::max(
+      corrector::rounding_floor(e.grid().cutoff(), period, quality.size, quality.speed_rms, e.field_jacobian_rms()),
+      nodal_rounding * quality.size * e.field_jacobian_rms());
 }
 
 void take_out_shift(const Collocation& e, Prediction& prediction, const std::vector<double>& last) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "orbweaver/equations/collocation.hpp"
@@ -16,6 +17,14 @@ namespace orbweaver::continuation {
 /// The change of a prediction orthogonal to its direction, and to the time shift where the domain has one.
 [[nodiscard]] std::vector<double> step_conditions(const equations::Collocation& equations, const Prediction& prediction,
                                                   double period_unit);
+
+/// Roundings of nodal values after a filter over the whole loop and the elimination. Not measured.
+inline constexpr double nodal_rounding = 50.0 * std::numeric_limits<double>::epsilon();
+
+/// What rounding leaves of the residual: as of a loop, but for what the elimination leaves in the nodal values, which
+/// the field's Jacobian multiplies: beside a motion a thousand times as fast that is most of it (m2 = 1e6).
+[[nodiscard]] double rounding_floor(const equations::Collocation& equations,
+                                    const equations::Collocation::Quality& quality, double period);
 
 /// Takes the time shift since `last` out of a prediction and its direction.
 void take_out_shift(const equations::Collocation& equations, Prediction& prediction, const std::vector<double>& last);

@@ -32,8 +32,6 @@ constexpr double good_enough = 0.3;
 /// and slow motions are 50 times apart the changes shrink by 0.9 each (m2 = 1000).
 constexpr double sharpened = 0.3;
 constexpr int patience = 60;
-/// Roundings of nodal values after a filter over the whole loop and the elimination. Not measured.
-constexpr double nodal_rounding = 50.0 * std::numeric_limits<double>::epsilon();
 /// Roundings of a mode, some of the transforms' own: their number was not measured.
 constexpr double mode_rounding = 4.0 * std::numeric_limits<double>::epsilon();
 /// What the harmonics that a new time map leaves out may add to the loss, in parts of its threshold: the rest is
@@ -46,23 +44,35 @@ constexpr double guarded_density = 1e-6;
 /// The residual between the places where the equations ask, in parts of that at them, from which on it is truncation's,
 /// and not the solver's or rounding's, which are alike at both. Truncation was seen at 900.
 constexpr double shows_truncation = 10.0;
+/// Of the loss of the loop that is stored, what its mean over the nodes shows at least: a third is missed beside a
+/// collision.
+constexpr double seen_by_nodes = 0.7;
 /// Keeps quotients by the amplitude finite.
 constexpr double least_amplitude = 1e-300;
 /// Where the field is finite, and what the correction made of it is not.
 constexpr const char* beyond_numbers = "the correction met numbers that are not finite";
-/// Unknowns up to which the Jacobian itself is factored, where the box scheme fails.
-constexpr int exact_unknowns = 2048;
 
-bool is_affordable(const Collocation& equations) { return equations.size() <= exact_unknowns; }
+bool is_affordable(const Collocation& equations) { return equations.size() <= equations::exact_unknowns; }
+
+/// Over the last quarter harmonics that truncation leaves fall by a hundred where they end below 1e-8 of the first:
+/// what is more than this part of those before it is rounding, of which further ones have as much.
+constexpr double fallen = 0.3;
+
+bool falls_no_further(const loop::Loop& loop, double tail) {
+  return tail > fallen * loop::tail(loop::with_cutoff(loop, loop.cutoff - loop.cutoff / 4));
+}
 
 }  // namespace
 
-std::string CollocationProblem::obstacle(const FamilyOf& family) {
+std::string CollocationProblem::obstacle(const FamilyOf& family, int largest_cutoff) {
   const loop::FundamentalDomain domain = loop::fundamental_domain(family.system.structure(), family.isotropy);
   if (!domain.expresses(family.isotropy)) return "one part of the loop, repeated, does not have all of their isotropy";
   if (!domain.is_square()) return "the ends of their fundamental domain hold more or fewer conditions than coordinates";
   if (!Collocation::applies(family.system, domain))
     return "it takes a reversor, a conserved quantity, or a parameter that moves";
+  const int coarsest = cell_counts::cutoff_of(domain, cell_counts::least);
+  if (coarsest > largest_cutoff)
+    return fmt::format("its fewest cells have K = {}, and at most {} is allowed", coarsest, largest_cutoff);
   return {};
 }
 
@@ -77,7 +87,7 @@ CollocationProblem::CollocationProblem(const FamilyOf& family, const Options& op
 
 Resolution CollocationProblem::resolution_for(int cutoff, const loop::TimeMap& map, int largest) const {
   int cells = cell_counts::at_least_for_cutoff(_domain, cutoff);
-  while (cells > 8 && cutoff_of(cells) > largest) cells = cell_counts::previous(cells);
+  while (cells > cell_counts::least && cutoff_of(cells) > largest) cells = cell_counts::previous(cells);
   return {cells, map};
 }
 
@@ -278,11 +288,12 @@ Trial CollocationProblem::solve(Prediction prediction, const std::vector<double>
 void CollocationProblem::note_what_is_open(Trial& trial, double last_change) {
   if (!(trial.values[scalars_at()] > 0.0)) return;
   const Collocation::Quality quality = equations().quality(trial.values.data());
-  if (quality.asked < rounding_floor(trial, quality)) trial.known_to = last_change;
+  if (quality.asked < rounding_floor(equations(), quality, trial.values[scalars_at()])) trial.known_to = last_change;
 }
 
 /// Harmonics that the solver has left wrong say nothing of the resolution: the equations must hold first.
 bool CollocationProblem::may_be_sharper(Trial& trial) {
+  if (trial.lost_in_rounding) return false;
   return trial.unsolved || ((!trial.is_orbit || trial.at_rounding) && resolved(trial));
 }
 
@@ -322,6 +333,7 @@ bool CollocationProblem::sharpen_with(const equations::AndersonSolver::Options& 
     return false;
   }
   other.is_orbit = other.at_rounding = other.truncated = other.unsolved = other.to_rounding = false;
+  other.lost_in_rounding = false;
   judge(other);
   const bool better = trial.unsolved ? other.asked_rms < trial.asked_rms : other.loss_rms < trial.loss_rms;
   if (!other.converged || !better) return false;
@@ -339,10 +351,13 @@ void CollocationProblem::judge(Trial& trial) {
   trial.size = quality.size;
   double centre = 0.0;
   for (const double c : e.centre()) centre += c * c;
-  trial.threshold = corrector::acceptance_threshold(_options.corrector.tolerance, quality.speed_rms, std::sqrt(centre),
-                                                    e.field_jacobian_rms());
-  const double floor = rounding_floor(trial, quality);
-  trial.unsolved = quality.asked > std::max(trial.threshold, floor);
+  const double size = std::sqrt(centre);
+  const double jacobian = e.field_jacobian_rms();
+  const double tolerance = _options.corrector.tolerance;
+  trial.threshold = corrector::acceptance_threshold(tolerance, quality.speed_rms, size, jacobian);
+  trial.tolerance_met = corrector::tolerance_met(tolerance, trial.loss_rms, quality.speed_rms, size, jacobian);
+  const double floor = rounding_floor(equations(), quality, trial.values[scalars_at()]);
+  trial.unsolved = quality.asked > std::max(trial.threshold, floor) && e.has_cells_to_fit();
   trial.to_rounding = quality.unasked < floor;
   if (!(trial.values[static_cast<std::size_t>(e.period_at())] > 0.0)) {
     trial.converged = false;
@@ -350,7 +365,7 @@ void CollocationProblem::judge(Trial& trial) {
   } else if (!std::isfinite(trial.loss_rms)) {
     trial.converged = false;
     trial.reason = not_finite_at(trial.values, trial.values, beyond_numbers);
-  } else if (trial.loss_rms < trial.threshold) {
+  } else if (trial.loss_rms < seen_by_nodes * trial.threshold) {
     trial.is_orbit = true;
   } else if (trial.loss_rms < floor) {
     trial.is_orbit = trial.at_rounding = true;  // unless truncation explains the loss: `resolved`
@@ -358,15 +373,10 @@ void CollocationProblem::judge(Trial& trial) {
     trial.truncated = quality.unasked > shows_truncation * quality.asked;
     trial.reason = fmt::format("sqrt(loss) = {:.3g} falls no further, wanted {:.3g}", trial.loss_rms, trial.threshold);
   }
-}
-
-/// As for a loop, but for what the elimination leaves in the nodal values, which the field's Jacobian multiplies:
-/// beside a motion a thousand times as fast that is most of it (m2 = 1e6).
-double CollocationProblem::rounding_floor(const Trial& trial, const Collocation::Quality& quality) {
-  const Collocation& e = equations();
-  return std::max(corrector::rounding_floor(e.grid().cutoff(), trial.values[scalars_at()], quality.size,
-                                            quality.speed_rms, e.field_jacobian_rms()),
-                  nodal_rounding * quality.size * e.field_jacobian_rms());
+  if (!trial.is_orbit || quality.speed_rms >= corrector::least_known_speed(size, jacobian)) return;
+  trial.is_orbit = trial.at_rounding = false;
+  trial.lost_in_rounding = true;
+  trial.reason = corrector::lost_in_rounding_text(quality.speed_rms, size, jacobian);
 }
 
 /// The sentence that the loss has for a field that is not finite, there or at what was predicted; `otherwise` where it
@@ -399,7 +409,7 @@ bool CollocationProblem::resolved(Trial& trial) {
   trial.loop = equations().to_loop(trial.values.data());
   const double last = loop::tail(trial.loop);
   // Beside a fast motion rounding is magnified in the harmonics near it, and the residual does not see them.
-  if (trial.to_rounding) return true;
+  if (trial.to_rounding && falls_no_further(trial.loop, last) && equations().has_cells_to_fit()) return true;
   if (last > tail_limit(trial.amplitude, trial.size, _options) || trial.truncated) return false;
   // A tail of the size of the modes' own rounding says nothing of the resolution.
   if (last <= mode_rounding * trial.size) return true;

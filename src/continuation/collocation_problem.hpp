@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "cell_counts.hpp"
 #include "orbweaver/equations/collocation.hpp"
 #include "orbweaver/equations/orbit_solver.hpp"
 #include "orbweaver/loop/symmetry/fundamental_domain.hpp"
@@ -15,7 +16,7 @@ namespace orbweaver::continuation {
 class CollocationProblem final : public PointProblem {
  public:
   /// Why this does not apply to a family, as the end of a sentence; empty where it does.
-  [[nodiscard]] static std::string obstacle(const FamilyOf& family);
+  [[nodiscard]] static std::string obstacle(const FamilyOf& family, int largest_cutoff);
   CollocationProblem(const FamilyOf& family, const Options& options, ProblemState& state);
 
   [[nodiscard]] Resolution resolution_for(int cutoff, const loop::TimeMap& map, int largest) const override;
@@ -25,7 +26,7 @@ class CollocationProblem final : public PointProblem {
   [[nodiscard]] std::optional<Resolution> coarser(const Trial& accepted, const loop::Loop& loop, bool may_fit) override;
   Transfer resolve(const Resolution& to) override;
   void state_replaced() override { _equations.reset(); }
-  [[nodiscard]] bool can_fit_cells() const override { return true; }
+  [[nodiscard]] bool can_fit_cells() override { return equations().has_cells_to_fit(); }
 
   [[nodiscard]] std::vector<double> from_loop(const loop::Loop& loop) override;
   [[nodiscard]] std::vector<double> from_change(const loop::Loop& change) override;
@@ -50,7 +51,7 @@ class CollocationProblem final : public PointProblem {
   equations::Collocation& equations();
   [[nodiscard]] std::shared_ptr<equations::Collocation> equations_on(const Resolution& resolution);
   /// The highest harmonic on a grid of `cells`.
-  [[nodiscard]] int cutoff_of(int cells) const { return (cells * _domain.copies() - 1) / 2; }
+  [[nodiscard]] int cutoff_of(int cells) const { return cell_counts::cutoff_of(_domain, cells); }
   [[nodiscard]] equations::AndersonSolver::Options solver_options();
   [[nodiscard]] double bounded_amplitude();
   [[nodiscard]] double rounding_of_nodes();
@@ -61,7 +62,6 @@ class CollocationProblem final : public PointProblem {
   [[nodiscard]] equations::Preconditioner preconditioner_of(const equations::Collocation& equations);
   void sharpen(Trial& trial, double last_change, const std::vector<double>& conditions);
   void judge(Trial& trial);
-  [[nodiscard]] double rounding_floor(const Trial& trial, const equations::Collocation::Quality& quality);
   [[nodiscard]] std::string not_finite_at(const std::vector<double>& values, const std::vector<double>& predicted,
                                           const std::string& otherwise);
   [[nodiscard]] double period_unit(double period);

@@ -234,12 +234,14 @@ Trial LoopProblem::solve(Prediction prediction, const std::vector<double>& condi
   trial.order = prediction.order;
   trial.converged = trial.is_orbit = result.converged();
   trial.at_rounding = result.at_rounding;
+  trial.lost_in_rounding = result.outcome == corrector::Outcome::lost_in_rounding;
   trial.under_resolved = result.outcome == corrector::Outcome::under_resolved;
   trial.reason = std::move(result.detail);
   trial.values = to_values(result.loop);
   trial.iterations = result.iterations;
   trial.loss_rms = result.loss_rms;
   trial.threshold = result.threshold;
+  trial.tolerance_met = result.tolerance_met;
   trial.loop = std::move(result.loop);
   if (!trial.converged) return trial;
   trial.amplitude = loop::rms_amplitude(trial.loop);

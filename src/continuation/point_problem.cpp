@@ -66,7 +66,7 @@ std::unique_ptr<PointProblem> make_point_problem(const FamilyOf& family, const O
   using corrector::Method;
   const Method method = options.corrector.method;
   if (method == Method::automatic || method == Method::collocation) {
-    const std::string obstacle = CollocationProblem::obstacle(family);
+    const std::string obstacle = CollocationProblem::obstacle(family, options.cutoff_to);
     if (obstacle.empty()) return std::make_unique<CollocationProblem>(family, options, state);
     if (method == Method::collocation)
       throw core::InputError(

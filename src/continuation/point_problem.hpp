@@ -17,11 +17,12 @@ struct Trial {
   bool converged = false;       ///< the problem's equations are solved
   bool under_resolved = false;  ///< they are not, and more harmonics may help
   bool is_orbit = false;        ///< converged, and the loss over the whole loop is under its threshold
-  bool unsolved = false;        ///< the loss where the equations ask is above its threshold and rounding
+  bool unsolved = false;        ///< beside a fast motion: the loss where the equations ask is above threshold
   bool to_rounding = false;     ///< the loss between the places where the equations ask is no more than rounding leaves
   bool truncated = false;       ///< its equations hold where they ask, and the loop does not obey them in between
   bool at_rounding = false;     ///< an orbit, though rounding keeps its loss above the threshold
-  std::string reason;           ///< where it is no orbit
+  bool lost_in_rounding = false;  ///< it would be an orbit, but its speed is not known (corrector::largest_unknown)
+  std::string reason;             ///< where it is no orbit
   std::vector<double> values;
   int order = 0;  ///< of the prediction
   int iterations = 0;
@@ -32,9 +33,10 @@ struct Trial {
   double loss_rms = 0.0;
   double asked_rms = 0.0;  ///< the same where the equations ask
   double threshold = 0.0;
-  double amplitude = 0.0;  ///< rms distance from its mean, winding left out
-  double size = 0.0;       ///< rms size, winding left out
-  loop::Loop loop;         ///< set by `PointProblem::resolved`
+  double tolerance_met = 0.0;  ///< corrector::tolerance_met
+  double amplitude = 0.0;      ///< rms distance from its mean, winding left out
+  double size = 0.0;           ///< rms size, winding left out
+  loop::Loop loop;             ///< set by `PointProblem::resolved`
 };
 
 /// What the last harmonics of a loop may weigh, by its rms distance from its mean and its rms size, without winding.
@@ -67,8 +69,9 @@ class PointProblem {
   virtual Transfer resolve(const Resolution& to) = 0;
   /// After a change of the state from outside.
   virtual void state_replaced() {}
-  /// Whether cells are preconditioned in another way where the state's `preconditioner` is the fitted box.
-  [[nodiscard]] virtual bool can_fit_cells() const { return false; }
+  /// Whether cells would have been preconditioned in another way in the last correction, had the state's
+  /// `preconditioner` been the fitted box.
+  [[nodiscard]] virtual bool can_fit_cells() { return false; }
 
   [[nodiscard]] virtual std::vector<double> from_loop(const loop::Loop& loop) = 0;
   /// The change of a loop (without winding) as a change of a point; scalars stay.

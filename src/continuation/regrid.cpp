@@ -77,7 +77,7 @@ std::optional<Resolution> general_resolution(const equations::Collocation& equat
 std::optional<Resolution> finer_resolution(const equations::Collocation& equations, const std::vector<double>& values,
                                            double tail_limit, int largest_cutoff, bool fit_pulse) {
   const loop::FundamentalDomain& domain = equations.grid().domain();
-  const auto cutoff_of = [&](int cells) { return (cells * domain.copies() - 1) / 2; };
+  const auto cutoff_of = [&](int cells) { return cell_counts::cutoff_of(domain, cells); };
   Resolution best{cell_counts::next(equations.cells()), equations.time_map()};
   const bool tail_decides = loop::tail(equations.to_loop(values.data())) > tail_limit;
   if (fit_pulse && tail_decides && domain.order <= 2 && best.time_map.coefficients.empty()) {

@@ -25,6 +25,8 @@ constexpr int refit_every = 32;
 constexpr double growth_after_first = 4.0;
 /// The first orbit's amplitude is halved down to this share: about twenty attempts.
 constexpr double least_start = 1e-6;
+/// Of the least amplitude at which a speed is known, by the linear motion: the first orbit's speed differs from that.
+constexpr double above_least_known = 2.0;
 /// A direction of which z(s = 0) has less than this share (of squared lengths) is scaled by its length instead.
 constexpr double still_at_start = 1e-16;
 /// Of a step's length where the step went over to another family: the next attempt.
@@ -77,7 +79,11 @@ std::optional<Orbit> Tracer::end(EndReason reason, std::string detail) {
 
 std::optional<Orbit> Tracer::first_orbit() {
   const loop::Tangent direction = start_direction();
-  double amplitude = _options.start_amplitude;
+  const bool is_at_rest = loop::rms_amplitude(_start.base) == 0.0;
+  const double least =
+      is_at_rest ? above_least_known * corrector::least_known_amplitude(*_system, _start.base, direction) : 0.0;
+  const double nearest = std::max(least, least_start * _options.start_amplitude);
+  double amplitude = std::max(_options.start_amplitude, least);
   _frontier.problem.held_energy = energy_of(*_system, _start.base);
   _problem->resolve(_problem->resolution_for(std::max(_start.base.cutoff, _options.cutoff_from), _start.base.time_map,
                                              _options.cutoff_to));
@@ -104,18 +110,24 @@ std::optional<Orbit> Tracer::first_orbit() {
       if (_ending) return std::nullopt;
       _frontier.next_length =
           std::min(growth_after_first * _problem->distance(trial.values, base), _options.largest_step);
-      return accept(trial);
+      const Frontier before = _frontier;
+      Orbit first = accept(trial);
+      if (_options.too_far && 0.5 * amplitude >= nearest && _options.too_far(first)) {
+        go_on_from(before);
+        amplitude *= 0.5;
+        continue;
+      }
+      if (amplitude > _options.start_amplitude) first.moved_out = amplitude / _options.start_amplitude;
+      return first;
     }
     _frontier.problem.factor_point.clear();
-    if (_problem->can_fit_cells()) {
-      using equations::Preconditioner;  // both kinds of cells at each amplitude
-      Preconditioner& cells = _frontier.problem.preconditioner;
-      cells = cells == Preconditioner::box ? Preconditioner::fitted_box : Preconditioner::box;
-      if (cells == Preconditioner::fitted_box) continue;
-    }
+    using equations::Preconditioner;  // both kinds of cells at each amplitude
+    Preconditioner& cells = _frontier.problem.preconditioner;
+    const bool both_tried = cells != Preconditioner::box || !_problem->can_fit_cells();
+    cells = both_tried ? Preconditioner::box : Preconditioner::fitted_box;
+    if (!both_tried) continue;
     amplitude *= 0.5;
-    if (amplitude < least_start * _options.start_amplitude)
-      return end(EndReason::failure, fmt::format("no orbit near the start: {}", trial.reason));
+    if (amplitude < nearest) return end(EndReason::failure, fmt::format("no orbit near the start: {}", trial.reason));
   }
 }
 
@@ -326,7 +338,7 @@ Orbit Tracer::accept(const Trial& trial) {
   orbit.energy = energy_of(*_system, trial.loop);
   orbit.action = _problem->action(trial);
   orbit.loss_rms = trial.loss_rms;
-  if (trial.at_rounding) orbit.tolerance_met = _options.corrector.tolerance * trial.loss_rms / trial.threshold;
+  orbit.tolerance_met = trial.tolerance_met;
   orbit.tail = loop::tail(orbit.loop);
   orbit.iterations = trial.iterations;
   const std::vector<double>& before = _stepper.last();

@@ -26,6 +26,7 @@ std::string_view name_of(Outcome outcome) {
     case Outcome::not_finite: return "not finite";
     case Outcome::singular: return "singular";
     case Outcome::solver_failed: return "solver failed";
+    case Outcome::lost_in_rounding: return "lost in rounding";
   }
   return "unknown";
 }
@@ -115,8 +116,35 @@ Outcome outcome_of(Stop stop, const loop::Loop& loop, double loss_rms, double th
 
 }  // namespace
 
+double state_rounding(double size, double field_jacobian) { return roundings * size * field_jacobian; }
+
+double least_known_speed(double size, double field_jacobian) {
+  return state_rounding(size, field_jacobian) / largest_unknown;
+}
+
+std::string lost_in_rounding_text(double speed, double size, double field_jacobian) {
+  return fmt::format(
+      "rounding of the state leaves {:.1e} of the speed open, {:g} is allowed: a larger amplitude is needed",
+      state_rounding(size, field_jacobian) / speed, largest_unknown);
+}
+
 double acceptance_threshold(double tolerance, double speed, double size, double field_jacobian) {
-  return std::max(tolerance * std::min(1.0, speed), roundings * size * field_jacobian);
+  return std::max(tolerance * std::min(1.0, speed), state_rounding(size, field_jacobian));
+}
+
+double tolerance_met(double tolerance, double loss_rms, double speed, double size, double field_jacobian) {
+  const double met = std::max(loss_rms, state_rounding(size, field_jacobian)) / std::min(1.0, speed);
+  return met > tolerance ? met : 0.0;
+}
+
+double least_known_amplitude(const systems::System& system, const loop::Loop& rest, const loop::Tangent& direction) {
+  const double speed = loop::rms_speed(loop::perturbation(rest, direction));
+  try {
+    const loss::Linearization at_rest(system, rest, loss::Linearization::Order::jacobian);
+    return least_known_speed(loop::rms_size(rest), rms_field_jacobian(at_rest)) / speed;
+  } catch (const core::NotFiniteError&) {
+    return 0.0;
+  }
 }
 
 double rounding_floor(int cutoff, double period, double size, double speed, double field_jacobian) {
@@ -129,11 +157,19 @@ double rounding_floor(const loop::Loop& loop, const loss::Linearization& lineari
                         residual_only ? 0.0 : rms_field_jacobian(linearization));
 }
 
-double acceptance_threshold(const loop::Loop& loop, const loss::Linearization& linearization, double tolerance) {
+namespace {
+
+double size_of_mean(const loop::Loop& loop) {
   double mean_square = 0.0;
   for (const double v : loop::mean_state(loop)) mean_square += v * v;
+  return std::sqrt(mean_square);
+}
+
+}  // namespace
+
+double acceptance_threshold(const loop::Loop& loop, const loss::Linearization& linearization, double tolerance) {
   const bool residual_only = linearization.order() == loss::Linearization::Order::residual;
-  return acceptance_threshold(tolerance, loop::rms_speed(loop), std::sqrt(mean_square),
+  return acceptance_threshold(tolerance, loop::rms_speed(loop), size_of_mean(loop),
                               residual_only ? 0.0 : rms_field_jacobian(linearization));
 }
 
@@ -146,20 +182,36 @@ bool is_at_rounding(Stop stop, const Result& result, const loss::Linearization& 
          !tail_explains(result.loop, result.loss_rms, result.threshold, options);
 }
 
-// Sets outcome and detail of a result whose loop, loss, threshold and Newton step are known.
-void judge(Result& result, Stop stop, const std::string& solver_reason, const Options& options) {
+// Sets outcome and detail of a result whose loop, loss, threshold and Newton step are known; `lin`: at the loop, or
+// near it.
+void judge(Result& result, Stop stop, const std::string& solver_reason, const loss::Linearization& lin,
+           const Options& options) {
   result.outcome = outcome_of(stop, result.loop, result.loss_rms, result.threshold, options);
   if (result.outcome != Outcome::converged) {
     result.detail = fmt::format("{} after {} iterations at sqrt(loss) = {:.3g}, wanted {:.3g}, K = {} ({})",
                                 name_of(result.outcome), result.iterations, result.loss_rms, result.threshold,
                                 result.loop.cutoff, solver_reason);
-  } else if (result.newton_step > options.step_tolerance * (1.0 + length(result.loop))) {
+    return;
+  }
+  const double speed = loop::rms_speed(result.loop);
+  const double size = size_of_mean(result.loop);
+  const double jacobian = rms_field_jacobian(lin);
+  if (speed < least_known_speed(size, jacobian)) {
+    result.outcome = Outcome::lost_in_rounding;
+    result.detail = lost_in_rounding_text(speed, size, jacobian);
+    return;
+  }
+  // The period is open by what rounding leaves of the speed.
+  const double open = state_rounding(size, jacobian) / speed * result.loop.period;
+  if (result.newton_step > std::max(options.step_tolerance * (1.0 + length(result.loop)), open)) {
     result.outcome = Outcome::stalled;
     result.detail = fmt::format(
         "sqrt(loss) = {:.3g} is under its threshold, but the Newton step is still {:.3g}: the loss is flat in "
         "more than one direction here",
         result.loss_rms, result.newton_step);
+    return;
   }
+  result.tolerance_met = tolerance_met(options.tolerance, result.loss_rms, speed, size, jacobian);
 }
 
 Result period_lost(Result result, const systems::System& system) {
@@ -193,7 +245,7 @@ Result correct_by_tao(const systems::System& system, const loop::Loop& guess, co
     result.newton_step = polished.newton_step;
     if (normal) result.flat_direction = polished.flat_direction;
   }
-  judge(result, stop, fmt::format("TAO: {}", run.tao_reason), options);
+  judge(result, stop, fmt::format("TAO: {}", run.tao_reason), lin, options);
   return result;
 }
 
@@ -214,7 +266,7 @@ Result correct_by_newton_krylov(const systems::System& system, const loop::Loop&
   const bool kept = result.loss_rms < result.threshold;
   const Stop stop = run.stop == Stop::threshold && !kept ? Stop::stagnation : run.stop;
   result.at_rounding = is_at_rounding(stop, result, lin, options);
-  judge(result, result.at_rounding ? Stop::threshold : stop, "newton-krylov", options);
+  judge(result, result.at_rounding ? Stop::threshold : stop, "newton-krylov", lin, options);
   return result;
 }
 

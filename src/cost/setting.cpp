@@ -20,14 +20,19 @@
 #include "orbweaver/survey/tasks/branch_options.hpp"
 #include "orbweaver/survey/tasks/sweep_options.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
+#include "timing.hpp"
 
 namespace orbweaver::cost {
 
 namespace {
 
-/// Where the probes lie, in parts of the family's arclength.
+/// Where the probes lie, in parts of the family's arclength, and how far before that one is looked for that can be
+/// refined: beside a collision it cannot.
 constexpr double middle = 0.5;
 constexpr double near_end = 0.9;
+constexpr double nearer_start = 0.1;
+/// Patiences that the family may take.
+constexpr double of_family = 3.0;
 constexpr std::size_t least_orbits = 4;
 /// Known orbits that a location gets along, as in a survey.
 constexpr std::size_t kept_orbits = 5;
@@ -67,13 +72,23 @@ void Setting::choose_family(const std::string& wanted) {
 }
 
 void Setting::trace() {
-  _ending = continuation::trace(system(), _start, _options, [this](const continuation::Orbit& orbit) {
-              _orbits.push_back(orbit);
-              return true;
-            }).text();
+  try {
+    run_within(of_family * patience(), [this] {
+      _ending = continuation::trace(system(), _start, _options, [this](const continuation::Orbit& orbit) {
+                  _orbits.push_back(orbit);
+                  return true;
+                }).text();
+    });
+  } catch (const GivenUp& error) {
+    _ending = error.what();
+  }
   if (_orbits.size() < least_orbits)
     throw core::InputError(
         fmt::format("{} has {} orbits, too few to measure on: {}", _family, _orbits.size(), _ending));
+  place_probes();
+}
+
+void Setting::place_probes() {
   const auto step_at = [this](double part) {
     const auto at =
         std::lower_bound(_orbits.begin(), _orbits.end(), part * _orbits.back().arclength,
@@ -81,20 +96,29 @@ void Setting::trace() {
     return std::max<std::size_t>(1, static_cast<std::size_t>(at - _orbits.begin()));
   };
   continuation::Branch branch(system(), _start, _options);
+  std::size_t last = 0;
   for (const auto& [name, part] : {std::pair("middle", middle), std::pair("end", near_end)}) {
-    const std::size_t step = step_at(part);
+    std::size_t step = step_at(part);
+    std::unique_ptr<TrueOrbit> truth;
+    for (double before = part; !truth && before > 0.0; before -= nearer_start) try {
+        const std::size_t at = step_at(before);
+        truth = std::make_unique<TrueOrbit>(_plain, *system(), _orbits[at].loop, _orbits[at - 1].loop, isotropy());
+        step = at;
+      } catch (const core::NumericalError&) {
+      }
+    if (step <= last) break;
+    last = step;
     while (branch.advance().value().step < static_cast<int>(step)) {
     }
     _probes.push_back({name, _orbits[step], branch.frontier().tangent, _orbits[step - 1].loop});
+    _truths.push_back(std::move(truth));
     if (step + 1 >= _orbits.size()) break;
-    if (_probes.size() == 1 && step_at(near_end) == step) break;
   }
-  _truths.resize(_probes.size());
 }
 
 const TrueOrbit& Setting::truth_of(const Probe& probe) const {
-  std::unique_ptr<TrueOrbit>& truth = _truths.at(static_cast<std::size_t>(&probe - _probes.data()));
-  if (!truth) truth = std::make_unique<TrueOrbit>(_plain, *system(), probe.orbit.loop, probe.neighbour, isotropy());
+  const std::unique_ptr<TrueOrbit>& truth = _truths.at(static_cast<std::size_t>(&probe - _probes.data()));
+  if (!truth) throw core::NumericalError("no orbit of the family could be refined");
   return *truth;
 }
 
@@ -132,7 +156,7 @@ std::optional<FoundEvent> Setting::first_event(const continuation::Options& opti
                          bracket.to,
                          curve.known()};
     }
-    return !found.has_value();
+    return !found.has_value() && orbit.arclength < _orbits.back().arclength;
   }));
   return found;
 }

@@ -35,7 +35,7 @@ struct FoundEvent {
 
 /// What is measured on: a scene, one of its families, two orbits of that. The family: the first one of the scene's
 /// first equilibrium that has any (or the one named), as far as the scene follows it. The orbits: those in the middle
-/// of its arclength and at nine tenths of it.
+/// of its arclength and at nine tenths of it, or the last before these that can be refined.
 class Setting {
  public:
   /// Throws as cost::measure.
@@ -45,6 +45,8 @@ class Setting {
   [[nodiscard]] bool quick() const { return _quick; }
   /// Seconds to spend on repetitions of one measurement.
   [[nodiscard]] double budget() const { return _quick ? 0.02 : 0.2; }
+  /// Seconds after which one measurement is given up; the family itself ends after three times that.
+  [[nodiscard]] double patience() const { return _quick ? 2.5 : 20.0; }
   [[nodiscard]] const scene::Scene& asked() const { return _asked; }           ///< in the units of the user
   [[nodiscard]] const scene::Scene& scene() const { return _scaled.scene(); }  ///< in the scales
   [[nodiscard]] const std::shared_ptr<const systems::System>& plain() const { return _plain; }
@@ -56,7 +58,7 @@ class Setting {
   [[nodiscard]] const std::vector<continuation::Orbit>& orbits() const { return _orbits; }
   [[nodiscard]] const std::string& ending() const { return _ending; }
   [[nodiscard]] const std::vector<Probe>& probes() const { return _probes; }
-  /// That of a probe; made when it is first asked for.
+  /// That of a probe. Throws NumericalError where there is none.
   [[nodiscard]] const TrueOrbit& truth_of(const Probe& probe) const;
   /// That of one orbit of several along a family.
   [[nodiscard]] TrueOrbit truth_beside(const loop::Loop& orbit, const loop::Loop& neighbour) const;
@@ -66,6 +68,7 @@ class Setting {
  private:
   void choose_family(const std::string& wanted);
   void trace();
+  void place_probes();
 
   const core::Communicator& _comm;
   bool _quick;
@@ -78,7 +81,7 @@ class Setting {
   std::vector<continuation::Orbit> _orbits;
   std::string _ending;
   std::vector<Probe> _probes;
-  mutable std::vector<std::unique_ptr<TrueOrbit>> _truths;  // one a probe
+  std::vector<std::unique_ptr<TrueOrbit>> _truths;  // one a probe; null where no orbit can be refined
 };
 
 }  // namespace orbweaver::cost

@@ -2,7 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <vector>
+
+#include <fmt/format.h>
+
+#include "orbweaver/core/interruption.hpp"
 
 namespace orbweaver::cost {
 
@@ -16,8 +21,20 @@ double seconds_of(const std::function<void()>& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-Timing timing_of(const std::function<void()>& work, double budget) {
-  const double first = seconds_of(work);
+void run_within(double patience, const std::function<void()>& work) {
+  if (std::isinf(patience)) return work();
+  const auto start = std::chrono::steady_clock::now();
+  const core::InterruptionScope scope(
+      [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > patience; });
+  try {
+    work();
+  } catch (const core::Interrupted&) {
+    throw GivenUp(fmt::format("given up after {:g} s", patience));
+  }
+}
+
+Timing timing_of(const std::function<void()>& work, double budget, double patience) {
+  const double first = seconds_of([&] { run_within(patience, work); });
   if (first > too_long * budget) return {first, 1};
   std::vector<double> times;
   double spent = 0.0;

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/symmetry/standard_phase.hpp"
 #include "orbweaver/numerics/extended.hpp"
 #include "orbweaver/refine/guess.hpp"
+#include "orbweaver/spectrum/floquet.hpp"
 
 namespace orbweaver::cost {
 
@@ -26,25 +28,34 @@ refine::HeldValue held_at(const systems::System& scaled, const loop::Loop& near,
   return {quantity, numerics::shortest_decimal(value)};
 }
 
-refine::RefinedOrbit refined(const refine::Guess& guess, const refine::HeldValue& held) {
-  refine::RefinedOrbit orbit = refine::refine_orbit(guess, held, least_digits);
-  const double growth = orbit.index ? numerics::log10_abs(orbit.index->value) : 0.0;
-  if (growth > 1.0) orbit = refine::refine_orbit(guess, held, least_digits + static_cast<int>(std::ceil(growth)));
-  return orbit;
+/// As many as its largest multiplier or index has before the point.
+int growth_digits(const systems::System& scaled, const loop::Loop& near, const loop::Isotropy& isotropy) {
+  double growth = 1.0;
+  for (const std::complex<double>& value : spectrum::floquet(scaled, near, isotropy).full)
+    growth = std::max(growth, std::abs(value));
+  if (!std::isfinite(growth)) throw core::NumericalError("an orbit with multipliers beyond double precision");
+  return static_cast<int>(std::ceil(std::log10(growth)));
 }
 
+}  // namespace
+
 /// Held by what picks it better, or, where that does not pick it after all, by the other.
-refine::HeldValue held_near(const refine::Guess& guess, const systems::System& scaled, const loop::Loop& near) {
+TrueOrbit::Refined TrueOrbit::refined_near(const refine::Guess& guess, const systems::System& scaled,
+                                           const loop::Loop& near, const loop::Isotropy& isotropy) {
   using Quantity = refine::HeldValue::Quantity;
+  const int digits = least_digits + growth_digits(scaled, near, isotropy);
   const Quantity better = refine::better_held(guess);
+  const Quantity other = better == Quantity::period ? Quantity::energy : Quantity::period;
   const refine::HeldValue held = held_at(scaled, near, better);
   try {
-    static_cast<void>(refine::refine_orbit(guess, held, 1));
-    return held;
+    return {held, digits, refine::refine_orbit(guess, held, digits)};
   } catch (const core::NumericalError&) {
-    return held_at(scaled, near, better == Quantity::period ? Quantity::energy : Quantity::period);
+    const refine::HeldValue instead = held_at(scaled, near, other);
+    return {instead, digits, refine::refine_orbit(guess, instead, digits)};
   }
 }
+
+namespace {
 
 std::vector<double> even_fractions() {
   std::vector<double> fractions;
@@ -59,10 +70,9 @@ TrueOrbit::TrueOrbit(const std::shared_ptr<const systems::System>& plain, const 
     : _scaled(scaled),
       _isotropy(isotropy),
       _guess(refine::guess_of(plain, scaled, near, isotropy)),
-      _held(held_near(_guess, scaled, near)),
-      _orbit(refined(_guess, _held)),
+      _refined(refined_near(_guess, scaled, near, isotropy)),
       _fractions(even_fractions()),
-      _states(in_scales(refine::states_of(_guess, _orbit, _fractions))) {
+      _states(in_scales(refine::states_of(_guess, _refined.orbit, _fractions))) {
   _neutral.resize(_states.size(), 2);
   _neutral.col(0) = velocities(_states);
   _neutral.col(1) = samples_of(neighbour) - samples_of(near);
@@ -104,13 +114,13 @@ double TrueOrbit::error_of(const loop::Loop& orbit) const {
 }
 
 double TrueOrbit::error_of(const refine::ShotOrbit& orbit) const {
-  const Eigen::VectorXd states = in_scales(refine::states_of(_guess, _orbit, orbit.fractions));
+  const Eigen::VectorXd states = in_scales(refine::states_of(_guess, _refined.orbit, orbit.fractions));
   return (in_scales(orbit.states) - states).lpNorm<Eigen::Infinity>();
 }
 
 double TrueOrbit::error_at_its_period(const refine::ShotOrbit& orbit) const {
-  const refine::RefinedOrbit truth =
-      refined(_guess, {refine::HeldValue::Quantity::period, numerics::shortest_decimal(orbit.period)});
+  const refine::RefinedOrbit truth = refine::refine_orbit(
+      _guess, {refine::HeldValue::Quantity::period, numerics::shortest_decimal(orbit.period)}, _refined.digits);
   const Eigen::VectorXd states = in_scales(refine::states_of(_guess, truth, orbit.fractions));
   const Eigen::VectorXd shift = velocities(states);
   Eigen::VectorXd off = in_scales(orbit.states) - states;

@@ -31,9 +31,16 @@ class TrueOrbit {
   [[nodiscard]] double error_at_its_period(const refine::ShotOrbit& orbit) const;
 
   [[nodiscard]] const refine::Guess& guess() const { return _guess; }
-  [[nodiscard]] const refine::HeldValue& held() const { return _held; }
+  [[nodiscard]] const refine::HeldValue& held() const { return _refined.held; }
 
  private:
+  struct Refined {
+    refine::HeldValue held;
+    int digits = 0;
+    refine::RefinedOrbit orbit;
+  };
+  [[nodiscard]] static Refined refined_near(const refine::Guess& guess, const systems::System& scaled,
+                                            const loop::Loop& near, const loop::Isotropy& isotropy);
   [[nodiscard]] Eigen::VectorXd samples_of(const loop::Loop& orbit) const;
   [[nodiscard]] Eigen::VectorXd velocities(const Eigen::VectorXd& states) const;
   [[nodiscard]] Eigen::VectorXd in_scales(const std::vector<std::vector<double>>& states) const;
@@ -41,8 +48,7 @@ class TrueOrbit {
   const systems::System& _scaled;
   loop::Isotropy _isotropy;
   refine::Guess _guess;
-  refine::HeldValue _held;
-  refine::RefinedOrbit _orbit;
+  Refined _refined;
   std::vector<double> _fractions;
   Eigen::VectorXd _states;   // at the fractions, one after the other, in the scales
   Eigen::MatrixXd _neutral;  // dz/dt and the family's direction there

@@ -98,7 +98,7 @@ AndersonSolver::Result AndersonSolver::solve(PreconditionedEquations& equations,
     const double size =
         std::max(change.head(_size - borders).lpNorm<Eigen::Infinity>(),
                  borders == 0 ? 0.0 : options.border_scale * change.tail(borders).lpNorm<Eigen::Infinity>());
-    if (result.iterations == 1) result.first_change = size;
+    if (result.iterations == 1 || !std::isfinite(result.first_change)) result.first_change = size;
     if (monitor) monitor(result.iterations - 1, size);
     if (!change.allFinite()) {
       result.finite = false;

@@ -233,6 +233,10 @@ void Collocation::factor(const double* u) {
   factor_box(fitted.empty() ? _blocks.data() : fitted.data());
 }
 
+bool Collocation::has_cells_to_fit() const {
+  return _jacobian_rms > 0.0 && !fitted_cells(_blocks.data(), dimension(), cells(), 1.0).empty();
+}
+
 void Collocation::factor_box(const double* blocks) {
   const int m = cells();
   const int d = dimension();

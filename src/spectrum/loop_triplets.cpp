@@ -185,8 +185,12 @@ void search(Inverse& inverse, std::vector<Triplet>& found, int count, double tol
     const int cleanings = found.size() == before ? most_cleanings : 1;
     for (int n = 0; n < cleanings && std::max(t.residual, t.left_residual) > share_of_value * t.value; ++n) {
       const double before_cleaning = std::max(t.residual, t.left_residual);
-      const Eigen::VectorXd right = inverse.apply(inverse.apply_transposed(t.right).normalized()).normalized();
-      t = triplet_of(inverse.equations, right, inverse.apply_transposed(right));
+      try {
+        const Eigen::VectorXd right = inverse.apply(inverse.apply_transposed(t.right).normalized()).normalized();
+        t = triplet_of(inverse.equations, right, inverse.apply_transposed(right));
+      } catch (const core::NumericalError&) {  // too singular for another solve: as clean as it gets
+        break;
+      }
       if (good(t) || !(std::max(t.residual, t.left_residual) < cleaned * before_cleaning)) break;
     }
     if (!good(t)) {

@@ -99,7 +99,13 @@ Eigen::MatrixXd diagonal_block(const Iteration& iteration, Eigen::Index begin, E
   return (iteration.frame.transpose() * iteration.next).block(begin, begin, size, size) * block;
 }
 
+double modulus(const Complex& value) {  // infinite also where it is not a number: both are beyond range
+  const double size = std::abs(value);
+  return std::isnan(size) ? std::numeric_limits<double>::infinity() : size;
+}
+
 bool before(const Complex& a, const Complex& b) {
+  if (std::isinf(modulus(a)) || std::isinf(modulus(b))) return modulus(a) > modulus(b);
   const double difference = std::abs(a) - std::abs(b);
   if (std::abs(difference) > same_modulus * (std::abs(a) + std::abs(b))) return difference > 0.0;
   if (a.imag() != b.imag()) return a.imag() > b.imag();

@@ -126,6 +126,16 @@ TEST(SymmetryWatch, SeesAnOrbitThatLiesOnTheCrossing) {
   EXPECT_EQ(test::to_text(*test::first_passed(watch, p.at(0.2), p.base)), "S@1/2");
 }
 
+// The corrector leaves of the part what the crossing lets it, on either side.
+TEST(SymmetryWatch, SeesAnOrbitThatHasSlippedOntoTheOtherFamily) {
+  for (const Pitchfork& p : {loss_of_s(), threefold()})
+    for (const double left : {1e-9, -1e-9}) {
+      const SymmetryWatch watch(p.system, p.own);
+      EXPECT_TRUE(test::first_passed(watch, p.at(0.2), p.at(left)).has_value()) << left;
+      EXPECT_FALSE(test::first_passed(watch, p.at(0.2), p.at(1e-4)).has_value());
+    }
+}
+
 // The broken part turns over without becoming small: the size at the root tells.
 TEST(SymmetryWatch, TellsATurnFromAnArrival) {
   const Pitchfork p = loss_of_s();

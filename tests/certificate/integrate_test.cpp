@@ -35,6 +35,14 @@ TEST(Integrate, ReachesTheExactOscillator) {
   for (const double time : {1e-6, 0.1, 1.0, 7.3, 20.0, -3.0}) EXPECT_LT(oscillator_error(time, 1e-13), 2e-12) << time;
 }
 
+TEST(Integrate, SmallStatesKeepTheirDigits) {
+  const auto system = systems::make_system("harmonic_oscillator", {{"omega", 1.5}});
+  for (const double size : {1e-6, 1e-12}) {
+    const auto end = integrate(*system, {size, 0.0}, 20.0, 1e-13);
+    EXPECT_NEAR(end[0] / size, std::cos(30.0), 2e-12) << size;
+  }
+}
+
 TEST(Integrate, ErrorFollowsTheTolerance) {
   // Steps grow like tolerance^(1/8), each with an error of the tolerance: a global error like tolerance^(7/8) to
   // tolerance.

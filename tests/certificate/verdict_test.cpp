@@ -45,6 +45,23 @@ TEST(Verdict, ContradictsWhereTheEnergyChanges) {
   EXPECT_EQ(verdict(1e-11, std::numeric_limits<double>::quiet_NaN(), 2.0), Verdict::holds) << "nothing is conserved";
 }
 
+// The first orbit of a family of small oscillations (double pendulum, m2 = 1.7778): its energy of order 1 is rounded.
+TEST(Verdict, OfASmallOrbitAllowsForRoundingOfItsEnergy) {
+  Certificate small = {.closure = 2e-19, .energy_drift = 5e-16, .reach = 5e-4, .steepness = 5e-4, .energy_size = 4.6};
+  const Evidence evidence{2.8, 2e-18, 5e-4, 1.0};
+  EXPECT_EQ(judge(small, evidence).verdict, Verdict::holds);
+  small.energy_drift = 1e-11;
+  EXPECT_EQ(judge(small, evidence).verdict, Verdict::drift_contradicts);
+}
+
+TEST(Verdict, ReturnsAsFarOffAsAnErrorOfTheEnergyGrows) {
+  Certificate certificate = {.closure = 1e-16, .single_shot = 1e-4, .reach = 1.0, .steepness = 1.0};
+  const Evidence evidence{2.0, 1e-14, 1.0, 1.0};
+  EXPECT_EQ(judge(certificate, evidence).verdict, Verdict::return_contradicts);
+  certificate.energy_growth = 1e9;
+  EXPECT_NE(judge(certificate, evidence).verdict, Verdict::return_contradicts);
+}
+
 /// Of an orbit that all is well with, at the level `full`.
 Certificate whole() {
   Certificate certificate;
@@ -60,6 +77,16 @@ Certificate whole() {
   certificate.pairing = 1e-11;
   certificate.index = 2.5;
   return certificate;
+}
+
+TEST(Verdict, AllowsTheRoundingOfTheEnergyItself) {
+  Certificate small{.closure = 0.0, .energy_drift = 1e-15, .reach = 1e-7, .steepness = 1e-7};
+  const Evidence evidence{10.0, 0.0, 1e-7, 2.0};
+  EXPECT_EQ(judge(small, evidence).verdict, Verdict::drift_contradicts);
+  small.energy_size = 3.0;
+  EXPECT_EQ(judge(small, evidence).verdict, Verdict::holds);
+  small.energy_drift = 1e-13;
+  EXPECT_EQ(judge(small, evidence).verdict, Verdict::drift_contradicts);
 }
 
 TEST(Verdict, NamesEachDefect) {

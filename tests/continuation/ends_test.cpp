@@ -89,6 +89,20 @@ TEST(Ends, StepLimit) {
   EXPECT_EQ(trace.last().step, 3);
 }
 
+// Collocation has K = 15 at least for orbits of four equal parts.
+TEST(Ends, NoOrbitHasMoreHarmonicsThanTheCutoffAllows) {
+  for (const int cutoff : {8, 10, 14, 15}) {
+    const test::Trace trace =
+        test::trace_of(test::in_phase(), {.cutoff_from = 8, .cutoff_to = cutoff, .start_amplitude = 1e-4});
+    EXPECT_EQ(trace.ending.reason, EndReason::cutoff_limit) << trace.ending.text();
+    ASSERT_FALSE(trace.orbits.empty()) << cutoff << ": " << trace.ending.text();
+    for (const Orbit& orbit : trace.orbits) EXPECT_LE(orbit.loop.cutoff, cutoff);
+  }
+  EXPECT_THROW(
+      (void)test::trace_of(test::in_phase(), {.corrector = {.method = corrector::Method::collocation}, .cutoff_to = 8}),
+      core::InputError);
+}
+
 TEST(Ends, CutoffLimit) {
   const test::Trace trace = test::trace_of(test::in_phase(), {.cutoff_to = 31});
   EXPECT_EQ(trace.ending.reason, EndReason::cutoff_limit);
@@ -188,6 +202,19 @@ TEST(Ends, NoWholeLoopIsTriedTwiceAtTheVeryStart) {
   const std::set<std::vector<double>> different(walled->asked.begin(), walled->asked.end());
   EXPECT_GT(different.size(), 3U);
   EXPECT_EQ(walled->asked.size(), different.size());
+}
+
+// A slow oscillation leaves nothing to fit: a second attempt would be the first again.
+TEST(Ends, NoCellIsFittedAtTheVeryStartThatNeedsNoFit) {
+  const auto walled = std::make_shared<const Recorder>(std::make_shared<const test::Oscillator>(0.0, -1.0));
+  const test::Trace trace = test::trace_of(walled, circles(*walled), {});
+  EXPECT_THAT(trace.ending.text(), HasSubstr("no orbit near the start"));
+  const std::multiset<std::vector<double>> all(walled->asked.begin(), walled->asked.end());
+  const std::set<std::vector<double>> different(walled->asked.begin(), walled->asked.end());
+  std::size_t most = 0;
+  for (const std::vector<double>& states : different) most = std::max(most, all.count(states));
+  EXPECT_GT(different.size(), 3U);
+  EXPECT_LE(most, 2U) << "by the corrector, and by the look for what is not finite";
 }
 
 /// q' = p, p' = -q - stiffness q^3: the period depends on the amplitude. The field is NaN where |p| > wall.

@@ -2,6 +2,7 @@
 #include <limits>
 #include <numbers>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "corrector/fixture.hpp"
@@ -47,6 +48,25 @@ TEST(AcceptanceThreshold, NeverBelowTheRoundingOfTheResidual) {
   EXPECT_EQ(threshold_of(*system, tiny, 1e-10, loss::Linearization::Order::residual), 1e-10 * loop::rms_speed(tiny));
   const loop::Loop small = test::linear_loop(test::down_up(), 1e-2, 8);
   EXPECT_EQ(threshold_of(*system, small, 1e-10), 1e-10 * loop::rms_speed(small));
+}
+
+// There a loop of amplitude 1e-13 has a speed that is known to a twentieth.
+TEST(AcceptanceThreshold, ALoopWhoseSpeedIsRoundingIsNoOrbit) {
+  for (const Method method : {Method::newton_krylov, Method::nls}) {
+    const test::Problem lost(test::down_up(), 1e-13, 10);
+    const Result result = lost.correct(lost.guess, {.method = method});
+    EXPECT_EQ(result.outcome, Outcome::lost_in_rounding) << name_of(method) << ": " << name_of(result.outcome);
+    EXPECT_THAT(result.detail, testing::HasSubstr("of the speed open"));
+    const test::Problem known(test::down_up(), 1e-12, 10);
+    const Result kept = known.correct(known.guess, {.method = method});
+    ASSERT_TRUE(kept.converged()) << name_of(method) << ": " << kept.detail;
+    EXPECT_GT(kept.tolerance_met, 1e-3) << "far from 1e-10";
+    EXPECT_LT(kept.tolerance_met, largest_unknown);
+    const test::Problem at_zero(test::in_phase(), 1e-13, 10);
+    const Result all = at_zero.correct(at_zero.guess, {.method = method});
+    ASSERT_TRUE(all.converged()) << name_of(method) << ": " << all.detail;
+    EXPECT_EQ(all.tolerance_met, 0.0);
+  }
 }
 
 struct Tiny {

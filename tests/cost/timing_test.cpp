@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "orbweaver/core/interruption.hpp"
+
 namespace {
 
 using namespace orbweaver;
@@ -37,6 +39,16 @@ TEST(Timing, EndsAfterSoManyRepetitions) {
   const cost::Timing timing = cost::timing_of([&] { ++runs; }, 10.0);
   EXPECT_EQ(timing.repetitions, cost::most_repetitions);
   EXPECT_EQ(runs, cost::most_repetitions + 1);
+}
+
+TEST(Timing, GivesUpWhatOutlastsItsPatience) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto endless = [] {
+    while (true) core::interruption_point();
+  };
+  EXPECT_THROW(static_cast<void>(cost::timing_of(endless, 0.02, 0.1)), cost::GivenUp);
+  EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(100));
+  EXPECT_NO_THROW(static_cast<void>(cost::timing_of([] { core::interruption_point(); }, 0.001, 10.0)));
 }
 
 }  // namespace

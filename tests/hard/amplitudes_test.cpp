@@ -73,6 +73,39 @@ TEST(Amplitudes, NearRounding) {
   }
 }
 
+// Nearer than rounding allows the first orbit is taken further out, where T is known to a hundredth; and however far
+// out, it says what tolerance it meets.
+TEST(Amplitudes, BelowRounding) {
+  for (const auto method : {corrector::Method::automatic, corrector::Method::nls})
+    for (const double amplitude : {1e-12, 1e-14, 1e-16}) {
+      continuation::Options options;
+      options.corrector.method = method;
+      options.start_amplitude = amplitude;
+      options.step_limit = 1;
+      test::HardCase row(fmt::format("Down-Up, start {:.0e}, {}", amplitude, corrector::name_of(method)),
+                         "T of the linear mode, relative");
+      const test::Trace trace = test::trace_of(test::down_up(), options);
+      ASSERT_FALSE(trace.orbits.empty()) << trace.ending.text();
+      const continuation::Orbit& orbit = trace.last();
+      row.within(std::abs(orbit.loop.period / test::down_up().period() - 1.0), corrector::largest_unknown);
+      const std::vector<double> z = loop::state_at(orbit.loop, 0.0);
+      const double reached = std::hypot(z[0], z[1] - pi);
+      EXPECT_GT(orbit.moved_out, 1.0);
+      EXPECT_NEAR(reached / amplitude, orbit.moved_out, 0.1 * orbit.moved_out);
+      EXPECT_LT(reached, 1e-11) << "no further than need be";
+      EXPECT_GT(orbit.tolerance_met, 1e-3);
+      EXPECT_LT(orbit.tolerance_met, corrector::largest_unknown);
+    }
+  continuation::Options options;
+  options.start_amplitude = 1e-16;  // about 0 nothing is lost
+  options.step_limit = 1;
+  const test::Trace trace = test::trace_of(test::in_phase(), options);
+  ASSERT_FALSE(trace.orbits.empty()) << trace.ending.text();
+  EXPECT_EQ(trace.last().moved_out, 0.0);
+  EXPECT_EQ(trace.last().tolerance_met, 0.0);
+  EXPECT_NEAR(trace.last().loop.period, test::in_phase().period(), 1e-12);
+}
+
 // 30 digits of the orbit with T = 9 that `orbweaver refine` gives; by an extrapolation method in Python (mpmath), from
 // the Lagrangian, both angles are zero at T/4 to 2e-30.
 TEST(Amplitudes, ToALargeOne) {

@@ -132,9 +132,27 @@ TEST(Floquet, TheLeastShiftIsThatOfAProduct) {
     const Stability stability = floquet(system, loop, isotropy);
     EXPECT_EQ(stability.fundamental_order, 6);
     const double phase = loop.period * std::sqrt(4.0 + 6.0 * radius * radius);
-    // Not held against the error bounds: on these circles the fundamental one is up to six times too small.
     EXPECT_NEAR(stability.full[0].real(), 2.0 * std::cos(phase), 1e-10);
     EXPECT_NEAR(stability.fundamental[0].real(), 2.0 * std::cos(phase / 6.0), 1e-11);
+  }
+}
+
+// All segments of a circle are alike, and so are their errors, whose direction is not that of their estimates.
+TEST(Floquet, BoundsHoldWhereAllSegmentsAreAlike) {
+  const RoundBowl system;
+  for (const double radius : {0.1, 0.4, 0.8, 1.3, 2.0, 3.0, 5.0}) {
+    const loop::Loop loop = RoundBowl::circle(radius);
+    const double phase = loop.period * std::sqrt(4.0 + 6.0 * radius * radius);
+    for (const loop::Isotropy& isotropy : {loop::Isotropy{}, isotropy_of(system, loop)})
+      for (const int segments : {48, 96}) {
+        spectrum::FloquetOptions options;
+        options.least_segments = segments;
+        const Stability stability = floquet(system, loop, isotropy, options);
+        const double fundamental = 2.0 * std::cos(phase / stability.fundamental_order);
+        EXPECT_LE(std::abs(stability.full[0] - 2.0 * std::cos(phase)), stability.full_error[0]) << radius;
+        EXPECT_LE(std::abs(stability.fundamental[0] - fundamental), stability.fundamental_error[0]) << radius;
+        EXPECT_LE(stability.fundamental_error[0], 1e-9) << "the bound says nothing";
+      }
   }
 }
 
@@ -151,6 +169,19 @@ TEST(Floquet, LargeAndSmallIndicesKeepTheirDigitsSideBySide) {
     expect_value(stability.full[2], stability.full_error[2], 2.0 * std::cos(2 * pi * omega), 1e-11);
     EXPECT_GT(std::abs(stability.full[0]), 1e16);
   }
+}
+
+TEST(Floquet, AnIndexBeyondRangeLeavesTheOthers) {
+  const double omega = 0.37;
+  const test::Oscillators system({1.0, -120.0 * 120.0, omega * omega, -0.04});
+  const loop::Loop loop = first_oscillation(8);
+  const Stability stability = floquet(system, loop, {});
+  ASSERT_EQ(stability.full.size(), 3u);
+  EXPECT_TRUE(std::isnan(stability.full[0].real())) << "2 cosh(240 pi) is 1e327";
+  EXPECT_TRUE(std::isnan(stability.full_error[0]));
+  EXPECT_NEAR(stability.full[1].real(), 2.0 * std::cosh(2 * pi * 0.2), stability.full_error[1]);
+  EXPECT_NEAR(stability.full[2].real(), 2.0 * std::cos(2 * pi * omega), stability.full_error[2]);
+  EXPECT_LT(stability.full_error[1] + stability.full_error[2], 1e-4) << "beside 1e327";
 }
 
 TEST(Floquet, EqualPairsOfTheHalfMapHaveIndicesOfTheirOwn) {

@@ -127,7 +127,7 @@ void expect_adds_up(const survey::Summary& summary, double m2) {
 // than that, and at the turn singular values are small because the amplitude is.
 TEST(Resonance, NearOneToThreeThePendulumsFamiliesStartApart) {
   expect_adds_up(pendulum(1.77779), 1.77779);
-  for (const double m2 : {1.7778, 1.7779}) {
+  for (const double m2 : {1.77779, 1.7778, 1.7779}) {
     const survey::Summary summary = pendulum(m2, {"survey.subharmonics=3"});
     expect_adds_up(summary, m2);
     const test::Atlas atlas(summary.atlas);
@@ -148,9 +148,11 @@ TEST(Resonance, KernelsOfThePendulumAtOneToThreeAreFound) {
   EXPECT_EQ(summary.failures, 0U);
 }
 
-// At 1:2 the mirror leaves four slow families so nearly one that the corrector slips from each to the next.
+// At 1:2 the mirror leaves four slow families so nearly one that the corrector slips from each to the next. For
+// 0.56244375 two of them leave the fourth at one place to rounding, where its index only touches -2.
 TEST(Resonance, NearOneToTwoThePendulumsFamiliesMeetWhereTheyCross) {
-  for (const double m2 : {0.556875, 0.5619375, 0.5625, 0.562505625}) expect_adds_up(pendulum(m2), m2);
+  for (const double m2 : {0.556875, 0.5619375, 0.56244375, 0.5625, 0.562505625, 0.5630625})
+    expect_adds_up(pendulum(m2), m2);
 }
 
 TEST(Resonance, AlongASlowOscillationOfTheOtherSignNoneIsFollowed) {

@@ -126,7 +126,6 @@ TEST(RestrictedProblem, CrossingsOfHigherOrderLieOnTheirFamilies) {
 // from 2, and cells that hold all its harmonics do not tell its orbits from others.
 TEST(RestrictedProblem, TheFamilyBesideTheLongOneIsFollowed) {
   const core::Communicator comm;
-  if (comm.size() == 1) GTEST_SKIP() << "a minute on two ranks";
   const scene::Scene scene =
       scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_mu_0.001.yaml",
                   {"starts.fixed_points.grid=[[0.499], [0.866]]", "starts.sweep.period=[6, 80]",

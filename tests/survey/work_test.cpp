@@ -65,6 +65,7 @@ BranchOutcome sample_branch_outcome() {
           2,
           {"a remark"},
           5e-13,
+          0.75,
           period_limited,
           "a state"};
 }

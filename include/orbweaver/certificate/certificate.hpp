@@ -41,7 +41,11 @@ struct Certificate {
   double recurrence = unknown;       ///< least distance from an orbit gone around m times, m prime
   double tail = unknown;             ///< loop::tail
   double reach = 0.0;                ///< largest |z(t_m)|
+  /// How many times farther than at its start a displacement along dH/dz is once around, where the orbit returns so far
+  /// off that it matters.
+  double energy_growth = unknown;
   double steepness = 0.0;            ///< largest |dH/dz(z(t_m))|; 0 for a system that conserves no energy
+  double energy_size = 0.0;          ///< largest |H(z(t_m))|, of which its rounding is a part
 
   // Level::full
   double distance = unknown;     ///< to the true orbit, by two steps of Newton's method for the states at t_m and T

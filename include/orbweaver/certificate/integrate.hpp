@@ -8,8 +8,8 @@ namespace orbweaver::certificate {
 
 /// Phi_time(state): the state that the system reaches from `state` (size dimension) after `time` (negative: before),
 /// by Runge-Kutta-Fehlberg 7(8) with step control (Boost.odeint). The error of a step is kept below
-/// `tolerance` (1 + |z_i| + |dz_i|) in every coordinate, dz being the change of that step. Deterministic; independent
-/// of the loop representation and of every solver.
+/// `tolerance` (min(1, |z(0)|) + |z_i| + |dz_i|) in every coordinate, dz being the change of that step. Deterministic;
+/// independent of the loop representation and of every solver.
 ///
 /// At tolerance 1e-13 this takes 0.94 (double pendulum) and 0.72 (Henon-Heiles) times the field evaluations of a
 /// Bulirsch-Stoer extrapolation for one certificate at a period of 10 with 32 segments; for one long integration 1.25

@@ -61,6 +61,9 @@ struct Options {
   /// Whether a step has gone over to another family, which nothing but the two orbits may decide. Then a shorter one is
   /// tried: families that pass one another at a distance below `prediction_error` look like one to the corrector.
   std::function<bool(const Orbit& from, const Orbit& to)> jumped{};
+  /// Whether the first orbit is so far from the start that something may lie in between, which nothing but the orbit
+  /// may decide. Then a nearer one is taken, down to 1e-6 of `start_amplitude` or as near as rounding allows.
+  std::function<bool(const Orbit& first)> too_far{};
   double smallest_jump = 1e-7;  ///< steps below this arclength are not asked: families as near as that cross
 };
 

@@ -19,14 +19,17 @@ struct Orbit {
   double tail = 0.0;
   /// Where rounding keeps sqrt(loss) above the tolerance: the tolerance that it meets; else 0.
   double tolerance_met = 0.0;
+  /// Of a branch's first orbit, where rounding hides those as near as asked for: how many times as far from the start
+  /// it was taken; else 0.
+  double moved_out = 0.0;
   int iterations = 0;
   double off_branch_eigenvalue = std::numeric_limits<double>::quiet_NaN();
 
-  static constexpr int wire_version = 2;
+  static constexpr int wire_version = 3;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, loop, step, arclength, energy, action, loss_rms, tail, tolerance_met, iterations,
-                            off_branch_eigenvalue);
+    core::serialize_members(archive, loop, step, arclength, energy, action, loss_rms, tail, tolerance_met, moved_out,
+                            iterations, off_branch_eigenvalue);
   }
 };
 

@@ -10,6 +10,7 @@
 #include "orbweaver/core/mpi/team.hpp"
 #include "orbweaver/corrector/method.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/loss/linearization.hpp"
 #include "orbweaver/loss/slice.hpp"
 #include "orbweaver/loss/unknowns.hpp"
@@ -24,9 +25,10 @@ enum class Outcome {
   stalled,         ///< no further progress, resolution is not the reason
   iteration_limit,
   period_not_positive,
-  not_finite,     ///< the field or its derivatives gave NaN or infinity
-  singular,       ///< the Hessian on the slice could not be factored
-  solver_failed,  ///< TAO gave up; `detail` has its reason
+  not_finite,        ///< the field or its derivatives gave NaN or infinity
+  singular,          ///< the Hessian on the slice could not be factored
+  solver_failed,     ///< TAO gave up; `detail` has its reason
+  lost_in_rounding,  ///< an orbit would be accepted, but its speed is not known (`largest_unknown`)
 };
 [[nodiscard]] std::string_view name_of(Outcome outcome);
 
@@ -50,11 +52,12 @@ struct Result {
   loop::Loop loop;                 ///< the best loop found,
   std::vector<double> parameters;  ///< and the values that the parameters among the unknowns have there
   int iterations = 0;
-  int inner_iterations = 0;  ///< of GMRES, over all Newton steps (newton-krylov)
-  double loss_rms = 0.0;     ///< sqrt(loss) of `loop`
-  double threshold = 0.0;    ///< what loss_rms had to go under
-  bool at_rounding = false;  ///< converged above the threshold, where rounding keeps the loss (`rounding_floor`)
-  double newton_step = 0.0;  ///< length of the last Newton step (second-order: already applied)
+  int inner_iterations = 0;    ///< of GMRES, over all Newton steps (newton-krylov)
+  double loss_rms = 0.0;       ///< sqrt(loss) of `loop`
+  double threshold = 0.0;      ///< what loss_rms had to go under
+  bool at_rounding = false;    ///< converged above the threshold, where rounding keeps the loss (`rounding_floor`)
+  double tolerance_met = 0.0;  ///< what `tolerance_met` says of it
+  double newton_step = 0.0;    ///< length of the last Newton step (second-order: already applied)
   std::optional<Eigen::VectorXd> flat_direction;  ///< of the Hessian through the slice's first condition, if asked for
 
   [[nodiscard]] bool converged() const { return outcome == Outcome::converged; }
@@ -64,13 +67,34 @@ struct Result {
 /// factor of ten or so; a loss that is all truncation is at about 1 whatever the share. Not measured.
 inline constexpr double least_explained = 1e-2;
 
+/// What the rounding of a mean state of size `size` is in the residual, through rms |df/dz| `field_jacobian`:
+/// 4 eps |z| |df/dz|. It matters for small amplitudes around a point away from 0.
+[[nodiscard]] double state_rounding(double size, double field_jacobian);
+
+/// A loop of which that rounding is a larger part of rms |dz/dt| is no orbit that is known: T is open by this part of
+/// itself at most, and a tangent or multipliers likewise. Measured around (0, pi) of the double pendulum: T is off by
+/// an eightieth of the part.
+inline constexpr double largest_unknown = 1e-2;
+/// The rms |dz/dt| at which rounding is just that part.
+[[nodiscard]] double least_known_speed(double size, double field_jacobian);
+
+/// A sentence about a loop that is slower.
+[[nodiscard]] std::string lost_in_rounding_text(double speed, double size, double field_jacobian);
+
+/// The tolerance that an accepted loop meets where rounding does not let it meet `tolerance`; else 0.
+[[nodiscard]] double tolerance_met(double tolerance, double loss_rms, double speed, double size, double field_jacobian);
+
 /// The threshold for sqrt(loss) of a loop with rms |dz/dt| `speed`, mean state of size `size` and rms |df/dz|
-/// `field_jacobian`: tolerance * min(1, speed), never below the rounding error of the residual itself,
-/// 4 eps |z| |df/dz| (which matters only for amplitudes under about 1e-5 around a point away from 0).
+/// `field_jacobian`: tolerance * min(1, speed), never below `state_rounding`.
 [[nodiscard]] double acceptance_threshold(double tolerance, double speed, double size, double field_jacobian);
 /// The same at a loop; the rounding error counts where the linearization has the field's Jacobian.
 [[nodiscard]] double acceptance_threshold(const loop::Loop& loop, const loss::Linearization& linearization,
                                           double tolerance);
+
+/// The least length at which `direction`, with unit |dz(s = 0)|, leads from the equilibrium `rest` (a constant loop) to
+/// loops of `least_known_speed`; 0 where the field there is not finite, which a correction says better.
+[[nodiscard]] double least_known_amplitude(const systems::System& system, const loop::Loop& rest,
+                                           const loop::Tangent& direction);
 
 /// What rounding may leave of sqrt(loss) of a loop with K harmonics, whatever the tolerance: that of the modes, of rms
 /// size `size`, reaches the residual multiplied by 2 pi K/T and by rms |df/dz| `field_jacobian`, that of the field by

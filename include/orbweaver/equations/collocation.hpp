@@ -70,6 +70,8 @@ class Collocation final : public PreconditionedEquations {
   void check_field(const double* u) const;
   /// From the next factor on; at first it is the plain box scheme.
   void precondition_by(Preconditioner preconditioner) { _preconditioner = preconditioner; }
+  /// Whether the fitted box differs from the plain one in any cell, as of where the preconditioner was last built.
+  [[nodiscard]] bool has_cells_to_fit() const;
   void precondition(double* r) const override;
   /// The derivative of `residual` where the preconditioner was built, applied to a perturbation of the point.
   void apply_jacobian(const double* v, double* r) const;

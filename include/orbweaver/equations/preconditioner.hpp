@@ -10,4 +10,7 @@ enum class Preconditioner {
 };
 [[nodiscard]] constexpr Preconditioner last_of(Preconditioner) { return Preconditioner::exact; }
 
+/// Unknowns up to which that is affordable: some seconds.
+inline constexpr int exact_unknowns = 2048;
+
 }  // namespace orbweaver::equations

@@ -14,7 +14,7 @@ namespace orbweaver::spectrum {
 /// How finely the variational equations are integrated.
 struct FloquetOptions {
   int least_segments = 48;   ///< Runge-Kutta steps a period, at least
-  double tolerance = 5e-10;  ///< on the bound of the relative truncation error; above it the steps are refined
+  double tolerance = 5e-10;  ///< on the relative truncation error as estimated; above it the steps are refined
   int refinements = 3;       ///< how often, by at most a half each time
   core::Team* team =
       nullptr;  ///< ranks that divide segments and probes among them, with the same bits; then collective
@@ -25,7 +25,8 @@ struct FloquetOptions {
 ///
 /// Symplectic systems: `full` and `fundamental` hold the stability indices k = mu + 1/mu, one a pair of nontrivial
 /// multipliers. Others: the multipliers themselves but for the flow's own; where energy is conserved one of them is
-/// exactly 1. Largest modulus first, then largest imaginary part.
+/// exactly 1. Largest modulus first, then largest imaginary part. What is beyond double precision's range is not a
+/// number, with its error, and the others are kept.
 ///
 /// The fundamental map of an orbit with z(t + T/p) = g z(t), p as large as its isotropy allows, is P = g^-1 M(T/p), M
 /// being the transition matrix of the linearised flow. Without such a symmetry p = 1 and P is the monodromy matrix.
@@ -53,7 +54,7 @@ struct Stability {
 ///
 /// Throws MisuseError if the loop is not valid, not of the system's dimension, or constant, or if the system conserves
 /// more than one quantity, since only one's multipliers are taken out; NotFiniteError if the field
-/// or a product is not finite.
+/// is not finite, or nothing of the fundamental map is within double precision's range.
 [[nodiscard]] Stability floquet(const systems::System& system, const loop::Loop& loop, const loop::Isotropy& isotropy,
                                 const FloquetOptions& options = {});
 

@@ -46,9 +46,14 @@ std::filesystem::path scratch_folder(const core::Communicator& comm) {
   return std::filesystem::temp_directory_path() / fmt::format("orbweaver_cost_{}", process);
 }
 
+/// Patiences that a survey may take.
+constexpr double of_survey = 3.0;
+
 void survey_with(const Setting& setting, const core::Communicator& part, int count, Table& table) {
   const std::filesystem::path folder = scratch_folder(part);
-  const scene::Scene bases = scene::parse(setting.asked().text, "the scene", {"survey.depth=0"});
+  const double most = std::min(setting.asked().limits.time, of_survey * setting.patience());
+  const scene::Scene bases =
+      scene::parse(setting.asked().text, "the scene", {"survey.depth=0", fmt::format("limits.time={}", most)});
   survey::Summary summary;
   const double seconds =
       seconds_of([&] { summary = survey::run_survey(part, bases, setting.plain(), folder, {survey::Display::none}); });
@@ -56,6 +61,8 @@ void survey_with(const Setting& setting, const core::Communicator& part, int cou
   std::error_code ignored;
   std::filesystem::remove_all(folder, ignored);
   table.rows.push_back({"survey", count, static_cast<double>(summary.orbits), seconds, {}});
+  if (summary.stopped_early)
+    table.remarks.push_back(fmt::format("the survey on {} ranks was stopped after {:g} s", count, most));
 }
 
 /// Each time with a barrier before it: members that come late would be waited for.
@@ -87,11 +94,12 @@ void team_with(const Setting& setting, const core::Communicator& part, int count
   table.rows.push_back({"stability", count, probe.orbit.loop.cutoff, stability, {}});
 }
 
-/// How many times quicker than one rank.
+/// How many times quicker than one rank; a survey by its orbits a second.
 void add_speedups(Table& table) {
   for (std::vector<Cell>& row : table.rows)
     for (const std::vector<Cell>& first : table.rows)
-      if (first[0].words == row[0].words && first[1].number == 1.0) row[4] = first[3].number / row[3].number;
+      if (first[0].words == row[0].words && first[1].number == 1.0)
+        row[4] = first[3].number / row[3].number * row[2].number / first[2].number;
 }
 
 void measure(const Setting& setting, const Take& take) {

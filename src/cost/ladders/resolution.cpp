@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -81,6 +82,7 @@ void measure(const Setting& setting, const Take& take) {
     const TrueOrbit& truth = setting.truth_of(probe);
     for (const Grid& grid : grids_for(setting, probe)) {
       std::map<std::string, Reach> reached;
+      std::set<std::string> given_up;
       int last_cells = 0;
       for (const int cutoff : cutoffs_to(grid.last, setting.quick() ? quick_rung : rung)) {
         const Directed guess = expanded(probe, grid.map, cutoff);
@@ -92,11 +94,17 @@ void measure(const Setting& setting, const Take& take) {
         };
         for (const auto& [space, isotropy] :
              {std::pair("subspace", setting.isotropy()), std::pair("whole loop", loop::Isotropy{})}) {
+          if (given_up.contains(space)) continue;
           const Correction correction(setting, guess, isotropy);
           corrector::Result result;
-          const Timing timing = timing_of(
-              [&] { result = correction.by(corrector::Method::newton_krylov, beyond_reach); }, setting.budget());
-          add(space, correction.unknowns(), timing.seconds, result.loop);
+          try {
+            const Timing timing =
+                timing_of([&] { result = correction.by(corrector::Method::newton_krylov, beyond_reach); },
+                          setting.budget(), setting.patience());
+            add(space, correction.unknowns(), timing.seconds, result.loop);
+          } catch (const GivenUp&) {
+            given_up.insert(space);
+          }
         }
         const int cells = cells_for(setting, cutoff);
         if (!obstacle.empty() || cells == last_cells) continue;

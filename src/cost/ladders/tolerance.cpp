@@ -70,7 +70,13 @@ void measure(const Setting& setting, const Take& take) {
           });
       end = continuation::name_of(ending.reason);
     };
-    const Timing timing = timing_of(run, setting.budget());
+    Timing timing;
+    try {
+      timing = timing_of(run, setting.budget(), setting.patience());
+    } catch (const GivenUp& error) {
+      timing.seconds = setting.patience();
+      end = error.what();
+    }
     if (loops.empty()) {
       table.rows.push_back({"automatic", options.corrector.tolerance, 0, {}, {}, {}, {}, end});
       continue;

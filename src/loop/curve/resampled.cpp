@@ -39,22 +39,18 @@ std::vector<double> periodic_part_at(const Loop& loop, std::span<const double> s
   return out;
 }
 
-// For each node of `target` the parameter of `source` at the same time.
-std::vector<double> matching_parameters(const TimeMap& target, int nodes, const TimeMap& source) {
-  std::vector<double> s(static_cast<std::size_t>(nodes));
-  for (std::size_t j = 0; j < s.size(); ++j)
-    s[j] = source.parameter_at(target, two_pi * static_cast<double>(j) / nodes);
-  return s;
-}
-
 }  // namespace
 
-std::vector<double> resampled(const Loop& loop, const TimeMap& target, int nodes) {
-  const std::vector<double> s = matching_parameters(target, nodes, loop.time_map);
+std::vector<double> resampled(const Loop& loop, const TimeMap& target, int nodes, int first, int stride) {
+  std::vector<double> at;
+  std::vector<double> s;
+  for (int j = first; j < nodes; j += stride) {
+    at.push_back(two_pi * static_cast<double>(j) / nodes);
+    s.push_back(loop.time_map.parameter_at(target, at.back()));
+  }
   std::vector<double> out = periodic_part_at(loop, s);
   for (std::size_t i = 0; i < loop.winding.size(); ++i)
-    for (std::size_t j = 0; j < s.size(); ++j)
-      out[i * s.size() + j] += loop.winding[i] * (s[j] - two_pi * static_cast<double>(j) / nodes);
+    for (std::size_t j = 0; j < s.size(); ++j) out[i * s.size() + j] += loop.winding[i] * (s[j] - at[j]);
   return out;
 }
 

@@ -8,6 +8,23 @@
 
 namespace orbweaver::loop {
 
+namespace {
+
+/// Each second one is there already.
+TimeSamples twice_as_many(const TimeSamples& samples, const Loop& loop) {
+  TimeSamples out = samples;
+  out.count *= 2;
+  out.states.resize(2 * samples.states.size());
+  const std::vector<double> between = resampled(loop, {}, out.count, 1, 2);
+  for (std::size_t m = 0; m < samples.states.size(); ++m) {
+    out.states[2 * m] = samples.states[m];
+    out.states[2 * m + 1] = between[m];
+  }
+  return out;
+}
+
+}  // namespace
+
 TimeSamples time_samples(const Loop& loop, int count) {
   core::require(count >= 1, "samples in time need a count of at least 1");
   return {loop.dimension, count, loop.period, loop.winding, resampled(loop, {}, count)};
@@ -28,9 +45,11 @@ Loop interpolant(const TimeSamples& samples) {
 Loop resolved_in_time(const Loop& loop, double negligible) {
   if (loop.time_map.is_identity()) return loop;
   const double allowed = std::max(negligible, 2.0 * tail(loop));
-  for (int count = time_sample_count;; count *= 2) {
-    Loop out = interpolant(time_samples(loop, count));
+  TimeSamples samples = time_samples(loop, time_sample_count);
+  for (;;) {
+    Loop out = interpolant(samples);
     if (tail(out) <= allowed || out.cutoff >= most_in_time * loop.cutoff) return out;
+    samples = twice_as_many(samples, loop);
   }
 }
 

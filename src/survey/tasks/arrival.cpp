@@ -1,6 +1,9 @@
 #include "arrival.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "crossing_outcome.hpp"
 #include "orbweaver/bifurcation/directions.hpp"
@@ -57,6 +60,10 @@ constexpr double nearer = 0.5;
 /// A part that turns instead of vanishing keeps a size of about 1.
 constexpr double proportional = 2.0;
 constexpr double still_vanishing = 0.05;
+/// How much further from proportional than the least a part may be that vanishes where that does, and the rounding of
+/// both. Near three times around an orbit other turns differed by 0.1 to 0.5, those of the orbit by 1e-6.
+constexpr double as_proportional = 10.0;
+constexpr double proportion_rounding = 1e-6;
 /// How far an orbit may be from the crossing beneath it, in parts of what of it does not repeat: within 45 degrees of
 /// the directions in which orbits leave there. Not measured.
 constexpr double beside = 1.41;
@@ -121,7 +128,7 @@ std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuat
     const double period = at_zero(samples, &Sample::period);
     const double level = at_zero(samples, &Sample::level);
     add(point->loop);
-    if (size > telling) near = point->loop;
+    if (size > telling && part > 0.0) near = point->loop;  // beyond, other families may leave than the one that came
     if (samples.size() == known_before || size < telling ||
         (std::abs(at_zero(samples, &Sample::period) - period) <= settled * period &&
          !(std::abs(at_zero(samples, &Sample::level) - level) > settled * (1.0 + std::abs(level)))))
@@ -135,6 +142,29 @@ std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuat
   record.multiplicity = multiplicity_of(gain);
   record.ahead = distance_ahead(watch, gain, from.loop, near, to.loop);
   return record;
+}
+
+/// Of several gains, those whose parts vanish on the way: there they are proportional to that of `from`. Beside an
+/// orbit of a higher symmetry the sign of a part turns for those too that come near to it.
+std::vector<bifurcation::SymmetryGain> vanishing(std::vector<bifurcation::SymmetryGain> gains,
+                                                 continuation::FamilyCurve& family,
+                                                 const bifurcation::SymmetryWatch& watch,
+                                                 const continuation::Orbit& from, const continuation::Orbit& to) {
+  if (gains.size() < 2) return gains;
+  const double beyond = std::min(watch.signed_part(gains.front(), from.loop, to.loop), 0.0);
+  const auto point = family.at(from.arclength + on_the_way / (1.0 - beyond) * (to.arclength - from.arclength));
+  if (!point) return gains;
+  std::vector<double> off;
+  for (const bifurcation::SymmetryGain& gain : gains) {
+    const double part = watch.signed_part(gain, from.loop, point->loop);
+    const double size = watch.relative_size(gain, from.loop, point->loop);
+    off.push_back(std::sqrt(std::max(0.0, size * size - part * part)));
+  }
+  const double most = as_proportional * *std::min_element(off.begin(), off.end()) + proportion_rounding;
+  std::vector<bifurcation::SymmetryGain> kept;
+  for (std::size_t n = 0; n < gains.size(); ++n)
+    if (off[n] <= most) kept.push_back(std::move(gains[n]));
+  return kept;
 }
 
 /// What of a loop (even in time) does not repeat `times` times a period: rms over time.
@@ -162,7 +192,8 @@ std::optional<ArrivalRecord> arrival_between(const systems::System& system, cont
                                              const bifurcation::SymmetryWatch::SampledOrbit& from_sampled,
                                              const continuation::Orbit& to,
                                              const bifurcation::SymmetryWatch::SampledOrbit& to_sampled) {
-  for (const bifurcation::SymmetryGain& gain : watch.all_passed(from_sampled, to_sampled))
+  for (const bifurcation::SymmetryGain& gain :
+       vanishing(watch.all_passed(from_sampled, to_sampled), family, watch, from, to))
     if (auto record = arrival_by(system, family, watch, gain, from, to)) return record;
   return std::nullopt;
 }

@@ -37,6 +37,13 @@ constexpr double zero_at_birth = 1e-6;
 /// Not measured.
 constexpr double nearly_two = 1e-4;
 
+/// Length of an oscillation's modes at which it has the indices of the linear motion to a part of 1e-10, and rounding
+/// leaves as much.
+constexpr double nearly_at_rest = 1e-5;
+/// Between an equilibrium and the first orbit a test function changes with the square of the amplitude. Of its larger
+/// modulus, but 0.1 at least: where it changes by more, the fourth power may give it zeros in pairs. Not measured.
+constexpr double largest_change = 0.1;
+
 continuation::Options options_of(const scene::Scene& scene, const BranchWork& work, core::Team* team) {
   continuation::Options options = branch_options(scene, team);
   if (work.amplitude > 0.0) options.start_amplitude = work.amplitude;
@@ -69,6 +76,7 @@ BranchTask::BranchTask(const scene::Scene& scene, std::shared_ptr<const systems:
   _may_arrive_ahead =
       _system->structure().symplectic && std::none_of(_start.isotropy.begin(), _start.isotropy.end(),
                                                       [](const loop::SymmetryElement& e) { return e.reversing; });
+  if (_work.lineage.crossing.empty()) _options.too_far = [this](const auto& first) { return is_too_far(first); };
   if (_system->structure().symplectic)
     _options.jumped = [this](const auto& from, const auto& to) { return jumped(from, to); };
   begin(state);
@@ -110,6 +118,10 @@ queue::TaskOutcome BranchTask::run() {
   if (_outcome.tolerance_met > 0.0)
     _outcome.remarks.push_back(fmt::format("the tolerance {:.2g} is below what rounding allows here: {:.2g} met",
                                            _scene.continuation.tolerance, _outcome.tolerance_met));
+  if (_outcome.moved_out > 0.0)
+    _outcome.remarks.push_back(fmt::format(
+        "a first orbit at continuation.start would be lost in rounding: it is taken {:.2g} times as far out",
+        _outcome.moved_out));
   queue::TaskOutcome done;
   done.failed = ending.failed();
   done.reason = ending.failed() ? ending.text() : "";
@@ -125,10 +137,7 @@ continuation::Ending BranchTask::follow() {
     if (!orbit) {
       continuation::Ending ending = _branch->ending().value();
       if (ending.failed() && _last && arrives_ahead()) return met();
-      if (ending.failed() && _last_stability && !bifurcation::is_isolated(*_last_stability)) {
-        ending.reason = continuation::EndReason::undecided;
-        ending.detail = "an index is 2 to rounding; " + ending.detail;
-      }
+      if (ending.failed() && _last) decide(ending);
       note_limits(ending, before);
       if (ending.reason == continuation::EndReason::fixed_point) {
         const EquilibriumEnd end = equilibrium_end(_scene, *_system, _last->loop);
@@ -150,6 +159,16 @@ continuation::Ending BranchTask::follow() {
                                 [&] { return pack(state_at(_branch->restart_frontier())); });
     if (_stopped) return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", period)};
   }
+}
+
+/// Where its last orbits are not told apart a branch may fail for no other reason.
+void BranchTask::decide(continuation::Ending& ending) const {
+  const std::vector<continuation::FamilyCurve::Known>& known = _curve.known();
+  const loop::Loop* before = known.size() > 1 ? &known[known.size() - 2].loop : nullptr;
+  const std::string why = not_told_apart(*_system, _last->loop, before, _start.isotropy, _team);
+  if (why.empty()) return;
+  ending.reason = continuation::EndReason::undecided;
+  ending.detail = why + "; " + ending.detail;
 }
 
 continuation::Ending BranchTask::met() const {
@@ -239,6 +258,31 @@ bool BranchTask::jumped(const continuation::Orbit& from, const continuation::Orb
   return _last_stability && after && bifurcation::are_decided(*_last_stability) && bifurcation::are_decided(*after) &&
          bifurcation::has_jumped(_system, _start.isotropy, branch_options(_scene, _team), {from, *_last_stability},
                                  {to, *after});
+}
+
+/// Whether, between the equilibrium and the first orbit, indices pass what the survey looks for, or may do so. Families
+/// of one resonance start at one amplitude, and what they pass among each other nearer is known.
+bool BranchTask::is_too_far(const continuation::Orbit& first) {
+  if (!_at_rest) {
+    const loop::Loop small = loop::moved(_start.base, _start.direction, nearly_at_rest / _start.direction.norm());
+    _at_rest = test_point(0.0, stability_of(*_system, small, _start.isotropy, _team));
+  }
+  const bool is_resonant = _work.amplitude > 0.0;
+  const bifurcation::TestPoint there = test_point(0.0, stability_at(first));
+  for (std::size_t f = 0; f < _functions.size(); ++f) {
+    const bifurcation::Reading& from = _at_rest->readings[f];
+    const bifurcation::Reading& to = there.readings[f];
+    if (from.sign() == 0 || to.sign() == 0 || (is_resonant && std::abs(from.value) < largest_change)) continue;
+    const double larger = std::max({std::abs(from.value), std::abs(to.value), largest_change});
+    if (from.sign() == to.sign() && std::abs(to.value - from.value) <= largest_change * larger) continue;
+    if (is_resonant)
+      _outcome.remarks.push_back(
+          fmt::format("an index changes from {:.3g} at the equilibrium to {:.3g} at the first orbit: nothing was "
+                      "looked for between",
+                      from.value, to.value));
+    return !is_resonant;
+  }
+  return false;
 }
 
 bool BranchTask::arrive(const continuation::Orbit& orbit) {
@@ -355,6 +399,7 @@ void BranchTask::store(continuation::Orbit orbit, const std::optional<spectrum::
   _outcome.last_level = level;
   _outcome.last_cutoff = orbit.loop.cutoff;
   _outcome.tolerance_met = std::max(_outcome.tolerance_met, orbit.tolerance_met);
+  _outcome.moved_out = std::max(_outcome.moved_out, orbit.moved_out);
   // The other side of a crossing: counted backwards from it.
   orbit.step = _work.lineage.side > 0 ? _outcome.orbits : -1 - _outcome.orbits;
   orbit.arclength = signed_arclength(_work.lineage, _before_first, _curve.arclength_at(orbit.arclength));

@@ -39,9 +39,11 @@ class BranchTask {
   bool take(const continuation::Orbit& orbit);
   const std::optional<spectrum::Stability>& stability_at(const continuation::Orbit& orbit);
   bool jumped(const continuation::Orbit& from, const continuation::Orbit& to);
+  [[nodiscard]] bool is_too_far(const continuation::Orbit& first);
   bool arrive(const continuation::Orbit& orbit);
   [[nodiscard]] static bool is_nearly_two(const spectrum::Stability& stability);
   bool arrives_ahead();
+  void decide(continuation::Ending& ending) const;
   [[nodiscard]] continuation::Ending met() const;
   void detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability);
   void detect_from_birth();
@@ -71,6 +73,7 @@ class BranchTask {
   bifurcation::FoldWatch _folds;
   std::optional<continuation::Orbit> _last;
   std::optional<bifurcation::SymmetryWatch::SampledOrbit> _sampled;  // of the last orbit
+  std::optional<bifurcation::TestPoint> _at_rest;                    // of an oscillation that is next to nothing
   bool _may_arrive_ahead = false;                                    // no reversor holds the direction
   std::optional<spectrum::Stability> _last_stability;                // of the last orbit
   std::vector<double> _asked;                     // modes of the orbit whose stability was asked for last,

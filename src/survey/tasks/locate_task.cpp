@@ -107,11 +107,12 @@ class Location {
     // Only minima that come near zero, and functions that vanish for other reasons, may turn out to be nothing.
     done.failed = !_event.tangency && why.reason != bifurcation::NotLocated::Reason::no_event;
     _outcome.remark = to_text(why);
-    if (done.failed && !is_isolated(family)) {
-      done.failed = false;
-      _outcome.undecided = true;
-      _outcome.remark += "; the family's orbits there are not told from their neighbours";
-    }
+    if (done.failed)
+      if (const std::string hidden = hidden_in(family); !hidden.empty()) {
+        done.failed = false;
+        _outcome.undecided = true;
+        _outcome.remark += "; " + hidden;
+      }
     if (done.failed)
       done.reason = fmt::format("the event between arclength {:.6g} and {:.6g} was not located: {}",
                                 family.arclength_at(_work.from), family.arclength_at(_work.to), _outcome.remark);
@@ -119,14 +120,16 @@ class Location {
     return done;
   }
 
-  /// False where one of the orbits on both sides of the event is not told from its neighbours.
-  [[nodiscard]] bool is_isolated(const continuation::FamilyCurve& family) const {
+  /// Why one of the orbits on both sides of the event is not told from others; empty where both are.
+  [[nodiscard]] std::string hidden_in(const continuation::FamilyCurve& family) const {
+    const loop::Loop* beside = nullptr;
+    std::string why;
     for (const continuation::FamilyCurve::Known& known : family.known()) {
       if (known.position != _work.from && known.position != _work.to) continue;
-      const auto stability = stability_of(*_system, known.loop, family.isotropy(), _team);
-      if (stability && !bifurcation::is_isolated(*stability)) return false;
+      if (why.empty()) why = not_told_apart(*_system, known.loop, beside, family.isotropy(), _team);
+      beside = &known.loop;
     }
-    return true;
+    return why;
   }
 
   void describe(const bifurcation::Crossing& crossing, const continuation::FamilyCurve& family) {
@@ -151,8 +154,9 @@ class Location {
     settings.even_in_time = starts;
     settings.most_harmonics = _scene.continuation.cutoff_to;
     settings.team = _team;
-    const bifurcation::Kernel kernel = bifurcation::kernel_of(*_system, crossing.point, isotropy, sector,
-                                                              expected_dimension(crossing.stability, sector), settings);
+    const bifurcation::Kernel kernel =
+        bifurcation::kernel_of(*_system, crossing.point, isotropy, sector,
+                               expected_dimension(crossing.stability, sector, _event.tangency), settings);
     _outcome.kernel_dimension = kernel.dimension();
     _outcome.kernel_singular_value = kernel.largest();
     _outcome.next_singular_value = kernel.next();
@@ -282,13 +286,13 @@ class Location {
 
 }  // namespace
 
-int expected_dimension(const spectrum::Stability& stability, const bifurcation::Sector& sector) {
+int expected_dimension(const spectrum::Stability& stability, const bifurcation::Sector& sector, bool touches) {
   int pairs = 0;
   for (std::size_t n = 0; n < stability.fundamental.size(); ++n) {
     const double away = std::abs(stability.fundamental[n] - sector.index());
     if (away < std::max(in_sector, error_bounds * stability.fundamental_error[n])) ++pairs;
   }
-  return std::max(1, pairs) * (sector.q <= 2 ? 1 : 2);
+  return std::max(1, pairs) * (sector.q <= 2 && !touches ? 1 : 2);
 }
 
 queue::TaskOutcome locate(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,

@@ -1,12 +1,30 @@
 #include "orbit_row.hpp"
 
+#include <cmath>
+
+#include <fmt/format.h>
+
 #include "certified.hpp"
+#include "orbweaver/bifurcation/test_functions.hpp"
+#include "orbweaver/continuation/left_open.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loop/symmetry/standard_phase.hpp"
+#include "orbweaver/loss/linearization.hpp"
 #include "stability_columns.hpp"
 
 namespace orbweaver::survey {
+
+std::string not_told_apart(const systems::System& system, const loop::Loop& orbit, const loop::Loop* neighbour,
+                           const loop::Isotropy& isotropy, core::Team* team) {
+  const std::optional<spectrum::Stability> stability = stability_of(system, orbit, isotropy, team);
+  if (stability && !bifurcation::is_isolated(*stability)) return "an index is 2 to rounding";
+  if (neighbour == nullptr) return {};
+  const double apart = continuation::arclength_between(*neighbour, orbit);
+  const double open = continuation::left_open_by_rounding(system, orbit, isotropy);
+  if (!(open > apart)) return {};
+  return fmt::format("rounding leaves an orbit open by {:.2g}, and its neighbour is {:.2g} away", open, apart);
+}
 
 std::optional<spectrum::Stability> stability_of(const systems::System& system, const loop::Loop& loop,
                                                 const loop::Isotropy& isotropy, core::Team* team) {
@@ -18,6 +36,20 @@ std::optional<spectrum::Stability> stability_of(const systems::System& system, c
     return std::nullopt;
   }
 }
+
+namespace {
+
+/// Of the loop that is stored, on the loss's grid. A branch by collocation has it from its own nodes, which between
+/// them miss up to a third beside a collision.
+double residual_of(const systems::System& system, const loop::Loop& stored, double otherwise) {
+  try {
+    return std::sqrt(loss::Linearization(system, stored, loss::Linearization::Order::residual).loss());
+  } catch (const core::NumericalError&) {  // not finite between the branch's nodes
+    return otherwise;
+  }
+}
+
+}  // namespace
 
 archive::OrbitRecord orbit_row(const systems::System& system, const std::string& family,
                                const continuation::Orbit& orbit, const loop::Isotropy& isotropy,
@@ -34,7 +66,7 @@ archive::OrbitRecord orbit_row(const systems::System& system, const std::string&
   row.action = orbit.action * units.action();
   if (!in_units.parameters.empty()) row.parameter = in_units.parameters.front();
   row.cutoff = stored.cutoff;
-  row.loss_rms = orbit.loss_rms;
+  row.loss_rms = residual_of(system, stored, orbit.loss_rms);
   row.off_branch_eigenvalue = orbit.off_branch_eigenvalue;
   row.tail = loop::tail(stored);
   row.state = loop::state_at(in_units, 0.0);

@@ -16,6 +16,11 @@ namespace orbweaver::survey {
                                                               const loop::Isotropy& isotropy,
                                                               core::Team* team = nullptr);
 
+/// Why rounding does not tell an orbit from others near it, as the beginning of a sentence; empty where it does, or
+/// where that is not known. `neighbour`: one on its family; may be null.
+[[nodiscard]] std::string not_told_apart(const systems::System& system, const loop::Loop& orbit,
+                                         const loop::Loop* neighbour, const loop::Isotropy& isotropy, core::Team* team);
+
 /// The row of an accepted orbit, with its certificate if `certifier` is given; s = 0 as docs/file_format.md has it.
 [[nodiscard]] archive::OrbitRecord orbit_row(const systems::System& system, const std::string& family,
                                              const continuation::Orbit& orbit, const loop::Isotropy& isotropy,

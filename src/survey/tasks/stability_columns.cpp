@@ -1,6 +1,6 @@
 #include "stability_columns.hpp"
 
-#include <algorithm>
+#include <cmath>
 #include <complex>
 #include <vector>
 
@@ -33,8 +33,7 @@ void set_stability(const systems::Structure& system, const std::optional<spectru
   const bool complex = archive::has_complex_stability(header);
   row.stability = columns_of(stability->full, complex);
   row.fundamental_stability = columns_of(stability->fundamental, complex);
-  if (!stability->full_error.empty())
-    row.stability_error = *std::max_element(stability->full_error.begin(), stability->full_error.end());
+  for (const double error : stability->full_error) row.stability_error = std::fmax(row.stability_error, error);
 }
 
 }  // namespace orbweaver::survey

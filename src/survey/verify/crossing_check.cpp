@@ -87,8 +87,8 @@ class CrossingCheck {
     const double arclength = real("arclength");
     if (_family.orbits() < 2) return;  // one orbit has no curve
     // Between its birth and its first orbit: there are no orbits beside it to find it from.
-    const bool before_first =
-        arclength < _family.arclengths.front() && arclength > 2.0 * _family.arclengths[0] - _family.arclengths[1];
+    const double first = _family.arclengths[0];
+    const bool before_first = arclength < first && arclength > first - steps_away * (_family.arclengths[1] - first);
     if (_family.parent >= 0 && before_first) return;
     if (arclength < _family.arclengths.front() || arclength > _family.arclengths.back())
       return _claims.object("arclength", fmt::format("is {:.12g}; its family runs from {:.12g} to {:.12g}", arclength,
@@ -354,8 +354,9 @@ class CrossingCheck {
               Claims& claims) {
     bifurcation::KernelOptions settings;
     settings.even_in_time = false;
+    const bool touches = _crossing.kernel_dimension > expected_dimension(stability, sector, false);
     const bifurcation::Kernel kernel = bifurcation::kernel_of(_system, place.point, _isotropy, sector,
-                                                              expected_dimension(stability, sector), settings);
+                                                              expected_dimension(stability, sector, touches), settings);
     claims.expect(kernel.dimension() == _crossing.kernel_dimension, "kernel_dimension",
                   fmt::format("is {}, found {}", _crossing.kernel_dimension, kernel.dimension()));
     if (kernel.dimension() > 0)

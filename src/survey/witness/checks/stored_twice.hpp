@@ -101,6 +101,17 @@ class StoredTwice final : public Check {
     });
   }
 
+  // Two ends of one curve that have run past one another: with more steps one comes to where the other begins.
+  static bool is_cut(const Evidence& evidence, const Pair& pair) {
+    return pair.first != pair.second && is_out_of_steps(evidence.family(pair.first)) &&
+           is_out_of_steps(evidence.family(pair.second));
+  }
+
+  static bool is_out_of_steps(const TreeFamily& family) {
+    return std::any_of(family.ends.begin(), family.ends.end(),
+                       [](const FamilyEnd& end) { return end.kind == EndKind::step_limit; });
+  }
+
   static void judge(const Evidence& evidence, const Pair& pair, std::span<const Answered> answered,
                     std::vector<Finding>& found) {
     const auto is_same = [](const Answered& a) { return a.reply.same; };
@@ -114,7 +125,9 @@ class StoredTwice final : public Check {
         evidence.family(shown.question.family).curve.points()[static_cast<std::size_t>(shown.question.orbit)];
     Finding finding;
     finding.kind = pair.first == pair.second ? FindingKind::retraced_curve : FindingKind::duplicate_curve;
-    finding.severity = same >= static_cast<std::ptrdiff_t>(least_hits) ? Severity::contradiction : Severity::undecided;
+    finding.severity = is_cut(evidence, pair)                            ? Severity::cut
+                       : same >= static_cast<std::ptrdiff_t>(least_hits) ? Severity::contradiction
+                                                                         : Severity::undecided;
     finding.family = pair.first;
     finding.other_family = pair.first == pair.second ? -1 : pair.second;
     finding.period = x.value(Invariant::period);
