@@ -59,7 +59,7 @@ double largest(const std::vector<Eigen::VectorXd>& vectors) {
   return largest;
 }
 
-/// Of the orbit's reach: where it returns by no more, what an error of the energy grows to is not asked for.
+/// Of the orbit's reach: where it returns by no more, what a displacement grows to is not asked for.
 constexpr double far_return = 1e-9;
 /// Of the reach: by how much a state is displaced to see it, a hundred times what the integrator's tolerance leaves.
 constexpr double displaced = 1e-11;
@@ -100,7 +100,7 @@ class Certifier::Parts {
     found.single_shot = single_shot();
     conserved(found);
     for (const State& state : _states) found.reach = std::max(found.reach, norm(state));
-    if (found.single_shot > far_return * found.reach) found.energy_growth = energy_growth(found.reach);
+    if (found.single_shot > far_return * found.reach) found.displaced_growth = displaced_growth(found.reach);
     found.symmetry_defect = symmetry_defect();
     found.recurrence = recurrence();
     found.tail = loop::tail(loop);
@@ -198,21 +198,30 @@ class Certifier::Parts {
     }
   }
 
-  // By a difference: NaN where the integration leaves the region where the system is defined, or nothing is conserved.
-  [[nodiscard]] double energy_growth(double reach) const {
-    if (_system.structure().conserved.empty()) return unknown;
-    State gradient(_states.front().size());
-    _system.conserved_gradient(0, _states.front(), gradient);
-    const double length = norm(gradient);
-    if (!(length > 0.0)) return unknown;
-    State moved = _states.front();
-    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += displaced * reach / length * gradient[i];
+  // By differences: NaN where the integration leaves the region where the system is defined.
+  [[nodiscard]] double displaced_growth(double reach) const {
+    const std::size_t d = _states.front().size();
+    States directions;
+    if (_system.structure().conserved.empty()) {
+      for (std::size_t i = 0; i < d; ++i) directions.emplace_back(d, 0.0)[i] = 1.0;
+    } else {
+      _system.conserved_gradient(0, _states.front(), directions.emplace_back(d));
+    }
+    double largest = unknown;
     try {
       const State end = integrate(_system, _states.front(), _loop->period, _options.tolerance);
-      return distance(integrate(_system, moved, _loop->period, _options.tolerance), end) / (displaced * reach);
+      for (const State& direction : directions) {
+        const double length = norm(direction);
+        if (!(length > 0.0)) continue;
+        State moved = _states.front();
+        for (std::size_t i = 0; i < d; ++i) moved[i] += displaced * reach / length * direction[i];
+        const State other = integrate(_system, std::move(moved), _loop->period, _options.tolerance);
+        largest = std::fmax(largest, distance(other, end) / (displaced * reach));
+      }
     } catch (const core::NumericalError&) {
       return unknown;
     }
+    return largest;
   }
 
   void conserved(Certificate& found) const {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "least_guard.hpp"
+#include "limit_orbit.hpp"
 #include "orbweaver/core/error.hpp"
 
 namespace orbweaver::continuation {
@@ -101,6 +102,11 @@ std::optional<Ending> end_at(const Frontier& frontier, const systems::System& sy
   return std::nullopt;
 }
 
+bool is_beyond_parameters(double value, const Options& options) {
+  return value > options.parameter_to + near_limit * (1.0 + std::abs(options.parameter_to)) ||
+         value < options.parameter_from - near_limit * (1.0 + std::abs(options.parameter_from));
+}
+
 std::optional<Ending> beyond_limits(const systems::System& system, const loop::Loop& first, double period,
                                     const Options& options) {
   const systems::Scales& units = system.scales();
@@ -113,7 +119,7 @@ std::optional<Ending> beyond_limits(const systems::System& system, const loop::L
                   fmt::format("left out: begins at E = {:.9g}, outside [{:g}, {:g}]", energy * units.energy(),
                               options.energy_from * units.energy(), options.energy_to * units.energy())};
   if (!first.parameters.empty())
-    if (const double value = first.parameters.front(); value > options.parameter_to || value < options.parameter_from) {
+    if (const double value = first.parameters.front(); is_beyond_parameters(value, options)) {
       const double unit = units.parameter(0);
       return Ending{
           EndReason::parameter_limit,

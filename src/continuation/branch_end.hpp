@@ -28,6 +28,9 @@ inline constexpr std::size_t earlier_guards = 5;
 [[nodiscard]] std::optional<Ending> beyond_limits(const systems::System& system, const loop::Loop& first, double period,
                                                   const Options& options);
 
+/// Whether the first parameter that moves is beyond the scene's limits by more than rounding.
+[[nodiscard]] bool is_beyond_parameters(double value, const Options& options);
+
 /// An end for want of harmonics, or by failure: a divergence of the period where the family has settled, a collision
 /// where it comes ever nearer to a zero of a guard.
 [[nodiscard]] Ending end_between(const Frontier& frontier, const systems::System& system, EndReason reason,

@@ -300,6 +300,11 @@ std::optional<Orbit> Tracer::accept_within_limits(const Trial& trial, double len
     constexpr int parameter = 1;  // among the scalars
     const double limit =
         scalar(trial, parameter) > _options.parameter_to ? _options.parameter_to : _options.parameter_from;
+    if (std::abs(here().parameters.front() - limit) <= near_limit * (1.0 + std::abs(limit))) {  // it began there
+      refused = {EndReason::parameter_limit, fmt::format("{} = {:.12g}", _system->family_scalars().free.front(),
+                                                         limit * _system->scales().parameter(0))};
+      return std::nullopt;
+    }
     on_limit = orbit_at_scalar(_stepper,
                                {EndReason::parameter_limit, _system->family_scalars().free.front(), limit, length, trial,
                                 _system->scales().parameter(0)},

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "branch_end.hpp"
 #include "orbweaver/continuation/branch.hpp"
 #include "point_problem.hpp"
 #include "stepper.hpp"
@@ -32,8 +33,7 @@ class Tracer {
   [[nodiscard]] bool is_beyond_parameters(const Trial& trial) {
     if (_system->family_scalars().free.empty()) return false;
     constexpr int parameter = 1;  // among the scalars
-    const double value = scalar(trial, parameter);
-    return value > _options.parameter_to || value < _options.parameter_from;
+    return continuation::is_beyond_parameters(scalar(trial, parameter), _options);
   }
   [[nodiscard]] double scalar(const Trial& trial, int number) {
     return trial.values[_problem->scalars_at() + static_cast<std::size_t>(number)];

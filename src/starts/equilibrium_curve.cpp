@@ -278,6 +278,12 @@ EquilibriumCurve follow_equilibrium(const systems::System& system, std::span<con
   out.ends = {down.end(), up.end()};
   for (const Node& node : nodes)
     out.points.push_back({curve.equilibrium(node.x), {node.direction.data(), node.direction.data() + d + 1}});
+  const std::size_t begin = down.nodes().size() - 1;
+  const auto length = [&](std::size_t from, std::size_t to) {
+    double sum = 0.0;
+    for (std::size_t n = from; n < to; ++n) sum += (nodes[n + 1].x - nodes[n].x).norm();
+    return sum;
+  };
   for (std::size_t n = 1; n < nodes.size(); ++n) {
     const Node& a = nodes[n - 1];
     const Node& b = nodes[n];
@@ -289,7 +295,11 @@ EquilibriumCurve follow_equilibrium(const systems::System& system, std::span<con
     if (hopf(a.x) * hopf(b.x) > 0.0) continue;
     const auto place = zero_between(curve, a, b, hopf);
     if (!place) continue;
-    if (auto point = curve.hopf_at(*place)) out.hopf.push_back(std::move(*point));
+    auto point = curve.hopf_at(*place);
+    if (!point) continue;
+    point->distance =
+        n > begin ? length(begin, n - 1) + (*place - a.x).norm() : length(n, begin) + (b.x - *place).norm();
+    out.hopf.push_back(std::move(*point));
   }
   return out;
 }

@@ -15,7 +15,7 @@ namespace orbweaver::systems {
 /// effect is not asked for (free ones too), and a value that is not finite or out of range; the message says what is
 /// known or allowed.
 [[nodiscard]] Bound bound_to(const ModelInfo& info, const std::map<std::string, double>& given,
-                             const std::vector<std::string>& effects, const FamilyScalars& scalars);
+                             const std::vector<std::string>& effects, const FamilyScalars& scalars = {});
 
 /// Throws core::MisuseError unless the structure fits its model: sizes, angles with names for their windings, no more
 /// conserved quantities than functions for them.

@@ -28,6 +28,7 @@ struct HopfPoint {
   Equilibrium at;
   double period = 0.0;  ///< 2 pi/|Im|
   double real_part = 0.0;
+  double distance = 0.0;    ///< from the curve's start, along the curve: in scales, by chords
   loop::Tangent direction;  ///< of the small oscillation, of a loop with the cutoff asked for, |dz(s = 0)| = 1
   loop::Isotropy isotropy;  ///< of the small oscillations
 };

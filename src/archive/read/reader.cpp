@@ -1,5 +1,8 @@
 #include "orbweaver/archive/read/reader.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "check_indices.hpp"
 #include "file/serial_file.hpp"
 #include "schema/row_checksum.hpp"
@@ -49,6 +52,12 @@ const Header& Archive::header() const noexcept { return _file->header(); }
 std::int64_t Archive::format_minor() const noexcept { return _file->minor(); }
 
 bool Archive::has_checksums() const noexcept { return _file->has_checksums(); }
+
+std::string Archive::moving_parameter() const {
+  const std::vector<double>& values = _orbits.reals("parameter");
+  if (std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); })) return "";
+  return header().scale_names.empty() ? "parameter" : header().scale_names.back();
+}
 
 std::vector<double> Archive::modes(std::size_t orbit) const {
   std::vector<double> read = values("modes", "modes", orbit);

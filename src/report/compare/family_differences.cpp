@@ -400,13 +400,13 @@ void FamilyDifferences::compare_crossings(const Pair& pair) {
     else
       add(DifferenceKind::crossing_only_in_a, pair,
           fmt::format("{} ({} = {:.9g}) is in A only", place_text(_a.crossings[index(crossing)]),
-                      _a.in_parameter ? "parameter" : "E", _a.crossings[index(crossing)].level));
+                      _a.in_parameter() ? _a.parameter : "E", _a.crossings[index(crossing)].level));
   }
   for (const int crossing : pair.b.crossings)
     if (_match.crossing_of_b[index(crossing)] < 0)
       add(DifferenceKind::crossing_only_in_b, pair,
           fmt::format("{} ({} = {:.9g}) is in B only", place_text(_b.crossings[index(crossing)]),
-                      _b.in_parameter ? "parameter" : "E", _b.crossings[index(crossing)].level));
+                      _b.in_parameter() ? _b.parameter : "E", _b.crossings[index(crossing)].level));
 }
 
 void FamilyDifferences::compare_places(const Pair& pair, int crossing_a, int crossing_b) {
@@ -427,7 +427,7 @@ void FamilyDifferences::compare_places(const Pair& pair, int crossing_a, int cro
           by, _options.tolerance);
   };
   compare_place("period", a.period, b.period, a.period);
-  compare_place(_a.in_parameter ? "parameter" : "energy", a.level, b.level, a.level_scale);
+  compare_place(_a.in_parameter() ? "parameter" : "energy", a.level, b.level, a.level_scale);
   if (a.kernel_dimension != b.kernel_dimension)
     add(DifferenceKind::crossing_kernel, pair,
         fmt::format("{}: the kernel has dimension {} in A, {} in B", place_text(a), a.kernel_dimension,

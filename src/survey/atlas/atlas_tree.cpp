@@ -74,9 +74,7 @@ std::vector<FamilyEnd> ends_of(const std::string& reason, const std::vector<std:
 }  // namespace
 
 AtlasTree::AtlasTree(const archive::Archive& archive, double tolerance) : atlas(archive) {
-  const std::vector<double>& parameters = atlas.orbits().reals("parameter");
-  in_parameter =
-      std::any_of(parameters.begin(), parameters.end(), [](double parameter) { return !std::isnan(parameter); });
+  parameter = atlas.moving_parameter();
   const archive::Table& table = atlas.families();
   families.resize(table.rows());
   for (std::size_t row = 0; row < table.rows(); ++row) {
@@ -113,8 +111,8 @@ AtlasTree::AtlasTree(const archive::Archive& archive, double tolerance) : atlas(
     crossing.sector_q = as_int(events.integers("sector_q")[row]);
     crossing.fundamental_order = as_int(events.integers("fundamental_order")[row]);
     crossing.period = events.reals("period")[row];
-    const double parameter = events.reals("parameter")[row];
-    crossing.level = std::isnan(parameter) ? events.reals("energy")[row] : parameter;
+    crossing.parameter = parameter;
+    crossing.level = events.reals(in_parameter() ? "parameter" : "energy")[row];
     TreeFamily& owner = families[static_cast<std::size_t>(crossing.family)];
     owner.crossings.push_back(static_cast<int>(row));
     const auto after =
@@ -130,7 +128,9 @@ AtlasTree::AtlasTree(const archive::Archive& archive, double tolerance) : atlas(
 }
 
 std::string place_text(const TreeCrossing& crossing) {
-  return fmt::format("{} T {:.6g}", crossing.kind, crossing.period);
+  const std::string level =
+      crossing.parameter.empty() ? "" : fmt::format(", {} {:.6g}", crossing.parameter, crossing.level);
+  return fmt::format("{} T {:.6g}{}", crossing.kind, crossing.period, level);
 }
 
 }  // namespace orbweaver::survey

@@ -10,11 +10,13 @@
 #include "orbweaver/archive/write/consolidate.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
+#include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/survey/run/scaled_scene.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "state/branch_state.hpp"
 #include "state/resume.hpp"
 #include "tasks/certified.hpp"
+#include "tasks/payload/keys.hpp"
 #include "version.hpp"
 #include "witness/placement.hpp"
 #include "witness/witness.hpp"
@@ -147,6 +149,13 @@ void write_archive(const core::Communicator& comm, const scene::Scene& scene,
       kernels = outcome.kernels;
       for (const FoundMode& mode : outcome.modes)
         oscillations.push_back({mode.place, mode.period * system->scales().time});
+      for (const FoundMode& mode : outcome.modes) {
+        if (mode.base.modes.empty() || mode.base_is_orbit) continue;
+        const loop::Loop hopf = loop::in_units(mode.base, system->scales());
+        std::vector<double>& beginning = known.beginnings[base_key(outcome.index, mode.place)];
+        beginning.assign(hopf.modes.begin(), hopf.modes.begin() + hopf.dimension);
+        beginning.push_back(hopf.parameters.front());
+      }
     }
     for (const archive::FamilyRecord& family : tables.families) known.family_keys.push_back(family.key);
     std::sort(known.family_keys.begin(), known.family_keys.end());

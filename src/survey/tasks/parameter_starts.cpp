@@ -1,5 +1,6 @@
 #include "parameter_starts.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -99,8 +100,11 @@ SweepOutcome hopf_starts(const scene::Scene& scene, const systems::System& syste
   starts::EquilibriumCurveOptions options;
   options.parameter_from = scene.limits.parameter_from;
   options.parameter_to = scene.limits.parameter_to;
-  const starts::EquilibriumCurve curve = starts::follow_equilibrium(system, work.point, options);
-  for (const starts::HopfPoint& hopf : curve.hopf) {
+  std::vector<starts::HopfPoint> points = starts::follow_equilibrium(system, work.point, options).hopf;
+  std::stable_sort(points.begin(), points.end(), [](const starts::HopfPoint& a, const starts::HopfPoint& b) {
+    return a.distance < b.distance;
+  });
+  for (const starts::HopfPoint& hopf : points) {
     FoundMode found;
     found.place = outcome.families++;
     found.period = hopf.period;
@@ -109,6 +113,7 @@ SweepOutcome hopf_starts(const scene::Scene& scene, const systems::System& syste
     found.isotropy = hopf.isotropy;
     found.base = loop::constant_loop(hopf.at.state, hopf.period, options.cutoff);
     found.base.parameters = {hopf.at.parameter};
+    found.distance = hopf.distance;
     outcome.modes.push_back(std::move(found));
   }
   return outcome;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -83,12 +84,23 @@ std::string name_of_start(const scene::Scene& scene, const systems::System& syst
              : fmt::format("{}, Hopf point {}", equilibrium_name(found.index), mode.place + 1);
 }
 
-/// Several equilibria may lie on one curve, and its Hopf points are found from each.
+/// Several equilibria may lie on one curve, and its Hopf points are found from each. They count as those of the nearest
+/// along the curve.
 bool is_same_start(const FoundMode& a, const FoundMode& b) {
   constexpr double same = 1e-8;  // Hopf points are located to 1e-12 in parts of a step
   if (a.base.modes.empty() || b.base.modes.empty() || a.base_is_orbit || b.base_is_orbit) return false;
   return std::abs(a.period - b.period) < same * a.period && loop::mean_distance(a.base, b.base) < same &&
          std::abs(a.base.parameters.front() - b.base.parameters.front()) < same;
+}
+
+bool is_of_another(const FoundMode& mode, const SweepOutcome& of, const std::vector<SweepOutcome>& sweeps) {
+  return std::any_of(sweeps.begin(), sweeps.end(), [&](const SweepOutcome& other) {
+    return other.index != of.index &&
+           std::any_of(other.modes.begin(), other.modes.end(), [&](const FoundMode& same) {
+             return is_same_start(mode, same) &&
+                    std::pair(same.distance, other.index) < std::pair(mode.distance, of.index);
+           });
+  });
 }
 
 }  // namespace
@@ -131,11 +143,10 @@ std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const syst
                                            const SweepsEnded& sweeps, Summary& summary) {
   std::vector<queue::Task> tasks;
   remark_grid(scene, system, summary);
-  std::vector<FoundMode> known;
-  for (const auto& [key, ended] : sweeps) {
-    const auto& [task, outcome] = ended;
-    if (outcome.failed) continue;  // gather_failed_sweeps
-    const SweepOutcome found = unpack_sweep_outcome(outcome.payload);
+  std::vector<SweepOutcome> all;
+  for (const auto& [key, ended] : sweeps)
+    if (!ended.second.failed) all.push_back(unpack_sweep_outcome(ended.second.payload));  // gather_failed_sweeps
+  for (const SweepOutcome& found : all) {
     check_names(scene, system, found);
     if (found.modes.empty() && found.rejected.empty() && !system.family_scalars().free.empty()) {
       summary.remarks.push_back(
@@ -152,9 +163,7 @@ std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const syst
     for (const std::string& reason : found.rejected)
       summary.remarks.push_back(fmt::format("dip passed over at {}: {}", point_text(system, found.point), reason));
     for (const FoundMode& mode : found.modes) {
-      if (std::any_of(known.begin(), known.end(), [&](const FoundMode& other) { return is_same_start(mode, other); }))
-        continue;
-      known.push_back(mode);
+      if (is_of_another(mode, found, all)) continue;
       const std::string name = name_of_start(scene, system, found, mode, sweeps.size());
       const std::string branch_key = base_key(found.index, mode.place);
       BranchWork work;

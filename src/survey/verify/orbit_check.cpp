@@ -117,7 +117,19 @@ class OrbitCheck {
     const double momentum = std::abs(action) + _loop.period * steepness * _size;
     _claims.agree("action", real("action"), action * units.action(),
                   sum_rounding * epsilon * momentum * units.action());
-    _claims.agree("parameter", real("parameter"), archive::not_computed, 0.0);
+    parameter();
+  }
+
+  /// That it moves, and within the limits; the equation says whether it is that of the orbit.
+  void parameter() {
+    if (_system.family_scalars().free.empty())
+      return _claims.agree("parameter", real("parameter"), archive::not_computed, 0.0);
+    const scene::Limits& limits = _atlas.scene().limits;
+    const double value = real("parameter");
+    const double allowed = at_limit * _system.scales().parameter(0);
+    _claims.expect(value >= limits.parameter_from - allowed && value <= limits.parameter_to + allowed, "parameter",
+                   fmt::format("is {:.12g}; limits.parameter is [{:g}, {:g}]", value, limits.parameter_from,
+                               limits.parameter_to));
   }
 
   void shape() {
@@ -202,6 +214,8 @@ class OrbitCheck {
                                name_of(judged.verdict), judged.found, judged.allowed));
   }
 
+  /// Of the parameter's scale: a family may begin so far beside a limit.
+  static constexpr double at_limit = 1e-9;
   /// Of the largest state: what one integration of a segment can be off by rounding.
   static constexpr double certificate_rounding = 1e-13;
   /// Of a distance between two places of one loop.

@@ -27,19 +27,13 @@ namespace {
 /// Relative: an orbit at a period or an energy that the scene asks for is solved for at it.
 constexpr double at_request = 1e-9;
 
-/// The scales that the columns are told in; all 1 in archives from before there were any.
-systems::Scales scales_of(const archive::Header& header, const systems::System& system) {
-  systems::Scales scales;
-  const auto dimension = static_cast<std::size_t>(system.dimension());
-  const std::size_t conserved = system.structure().conserved.size();
-  if (header.scales.empty()) return scales;
-  if (header.scales.size() != 1 + dimension + conserved)
+/// Archives from before there were scales have none.
+void require_scales(const archive::Header& header, const systems::System& system) {
+  const std::size_t wanted = 1 + static_cast<std::size_t>(system.dimension()) + system.structure().conserved.size() +
+                             system.family_scalars().free.size();
+  if (!header.scales.empty() && header.scales.size() != wanted)
     throw core::InputError(fmt::format("the archive has {} scales; its system {} asks for {}", header.scales.size(),
-                                       system.info().name, 1 + dimension + conserved));
-  scales.time = header.scales.front();
-  scales.coordinates.assign(header.scales.begin() + 1, header.scales.begin() + 1 + static_cast<long>(dimension));
-  scales.conserved.assign(header.scales.begin() + 1 + static_cast<long>(dimension), header.scales.end());
-  return scales;
+                                       system.info().name, wanted));
 }
 
 std::shared_ptr<const systems::System> system_of(const archive::Header& header, const scene::Scene& scene) {
@@ -53,6 +47,7 @@ std::shared_ptr<const systems::System> system_of(const archive::Header& header, 
         "the archive's columns are not those of the system {} that its scene names: it was written by another version, "
         "or changed",
         scene.system.name));
+  require_scales(header, *system);
   const systems::Scales scales = scales_of(header, *system);
   return scales.are_one() ? system : systems::scaled(system, scales);
 }

@@ -32,8 +32,8 @@ void add(const AtlasTree& tree, const Finding& finding, const Units& units, Test
   const std::string text = limited(text_of(finding, names_of(tree, finding, units)));
   testimony.records.push_back({std::string(name_of(finding.severity)), std::string(name_of(finding.kind)),
                                finding.family, finding.other_family, finding.crossing, finding.period,
-                               tree.in_parameter ? archive::not_computed : finding.level,
-                               tree.in_parameter ? finding.level : archive::not_computed, finding.deviation, text});
+                               tree.in_parameter() ? archive::not_computed : finding.level,
+                               tree.in_parameter() ? finding.level : archive::not_computed, finding.deviation, text});
   testimony.summaries.push_back({finding.severity, finding.kind, text});
   if (is_wrong(finding.severity)) ++testimony.wrong;
 }

@@ -130,7 +130,7 @@ struct Header {
   std::vector<std::string> effects;
   std::vector<std::string> parameter_names;
   std::vector<double> parameter_values;
-  std::vector<std::string> scale_names;  ///< time, coordinates, conserved quantities
+  std::vector<std::string> scale_names;  ///< time, coordinates, conserved quantities, parameters that move
   std::vector<double> scales;            ///< of the survey (docs/mathematics.md, "Scales")
 };
 

@@ -36,12 +36,13 @@ struct FoundMode {
   double amplitude = 0.0;     ///< |dz(s = 0)| of the first orbit; 0: the scene's
   loop::Loop base;            ///< where it is not the sweep's equilibrium: a Hopf point, or an orbit of the family
   bool base_is_orbit = false;
+  double distance = 0.0;  ///< of a Hopf point from the equilibrium, along the curve of equilibria
 
-  static constexpr int wire_version = 4;
+  static constexpr int wire_version = 5;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, period, place, direction, cutoff, isotropy, one_direction, amplitude, base,
-                            base_is_orbit);
+                            base_is_orbit, distance);
   }
 };
 

@@ -10,17 +10,19 @@
 
 namespace orbweaver::survey {
 
-/// Families at equilibria that a symmetry maps to one another are images: they have the same crossings, ends and
-/// extents, and so has what is born there.
+/// Families that begin where a symmetry maps one beginning to the other (equilibria, Hopf points) are images: they have
+/// the same crossings, ends and extents, and so has what is born there.
 class MirrorImages final : public Check {
  public:
   [[nodiscard]] std::vector<Finding> findings(const Evidence& evidence,
                                               std::span<const Answered> /*answered*/) const override {
     std::vector<Finding> found;
-    std::map<std::string, std::vector<int>> base;  // rows by the mode of the equilibrium
-    for (std::size_t row = 0; row < evidence.tree.families.size(); ++row)
-      if (evidence.tree.families[row].parent < 0)
-        base[mode_of(evidence.key(static_cast<int>(row)))].push_back(static_cast<int>(row));
+    std::map<std::string, std::vector<int>> base;  // rows by the mode of the equilibrium; of all Hopf points together
+    for (std::size_t row = 0; row < evidence.tree.families.size(); ++row) {
+      if (evidence.tree.families[row].parent >= 0) continue;
+      const std::string& key = evidence.key(static_cast<int>(row));
+      base[evidence.known.beginnings.contains(base_of(key)) ? "" : mode_of(key)].push_back(static_cast<int>(row));
+    }
     for (const auto& [mode, rows] : base)
       for (const int row : rows)
         if (const int image = image_of(evidence, row, rows); image >= 0) compare(evidence, row, image, found);
@@ -31,12 +33,12 @@ class MirrorImages final : public Check {
   /// Relative in period and level: crossings are located to an index of 1e-9.
   static constexpr double same_place = 1e-6;
 
-  // The last of the later ones whose equilibria are images that shares its first orbits' period most nearly: modes with
+  // The last of the later ones that begins at an image and shares its first orbits' period most nearly: modes with
   // two sides have two rows.
   static int image_of(const Evidence& evidence, int row, const std::vector<int>& rows) {
     int best = -1;
     for (const int other : rows) {
-      if (other <= row || !evidence.are_images(evidence.equilibrium_of(row), evidence.equilibrium_of(other))) continue;
+      if (other <= row || !evidence.begin_at_images(row, other)) continue;
       if (evidence.family(row).orbits() == 0 || evidence.family(other).orbits() == 0) continue;
       if (best < 0 || extent_apart(evidence, row, other) < extent_apart(evidence, row, best)) best = other;
     }

@@ -117,7 +117,7 @@ class SharedPoints final : public Check {
                           std::abs(point.value(Invariant::level) - crossing.level) / crossing.level_scale;
       if (!(away < nearest)) continue;
       nearest = away;
-      if (evidence.tree.in_parameter) continue;
+      if (evidence.tree.in_parameter()) continue;
       action = point.value(Invariant::action) + 0.5 * (point.value(Invariant::period) + crossing.period) *
                                                     (crossing.level - point.value(Invariant::level));
     }

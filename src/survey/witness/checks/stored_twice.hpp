@@ -12,8 +12,9 @@
 
 namespace orbweaver::survey {
 
-/// No orbit is stored in two families, nor, with its images under the system's symmetries, twice in one. Families at
-/// equilibria that are images of one another are images too, and are stored both; what descends from them as well.
+/// No orbit is stored in two families, nor, with its images under the system's symmetries, twice in one. Families that
+/// begin at images of one another (equilibria, Hopf points) are images too, and are stored both; what descends from them
+/// as well.
 class StoredTwice final : public Check {
  public:
   [[nodiscard]] std::vector<LoopQuestion> questions(const Evidence& evidence) const override {
@@ -89,15 +90,13 @@ class StoredTwice final : public Check {
     return closes && apart + own_segments >= family.orbits();
   }
 
-  // Whether they descend from equilibria that are images, and are not their own images.
+  // Whether they descend from families that begin at images of one another, and are not their own images.
   static bool are_images(const Evidence& evidence, int row, int other) {
-    const int from = evidence.equilibrium_of(row);
-    const int to = evidence.equilibrium_of(other);
-    if (!evidence.are_images(from, to)) return false;
+    if (!evidence.begin_at_images(row, other)) return false;
     const systems::Structure& structure = evidence.system->structure();
     const loop::SymmetryGroup group(structure, loop::isotropy_of(structure, evidence.family(row).isotropy));
     return std::none_of(group.elements().begin(), group.elements().end(), [&](const loop::SymmetryElement& element) {
-      return evidence.is_image_by(element.map, from, to);
+      return evidence.begins_at_image(element.map, row, other);
     });
   }
 
