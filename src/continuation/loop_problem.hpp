@@ -6,7 +6,7 @@
 
 namespace orbweaver::continuation {
 
-/// Points as whole loops in the subspace of an isotropy, by any corrector, on a team of ranks too: the modes, then T and
+/// Points as whole loops in the subspace of an isotropy, by any corrector, on a team of ranks too: the modes, then T,
 /// the parameters that move.
 /// The time map is that of the base, a resolution's size the cutoff.
 class LoopProblem final : public PointProblem {

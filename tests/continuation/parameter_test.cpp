@@ -45,7 +45,8 @@ TEST(VanDerPolFamily, HasTheKnownPeriods) {
   }
 }
 
-/// From the Hopf point of the upper right equilibrium. The family is unstable, and ends where its orbit meets the origin.
+/// From the Hopf point of the upper right equilibrium. The family is unstable, and ends where its orbit meets the
+/// origin.
 TEST(LorenzFamily, GoesFromTheHopfPointToTheHomoclinicOrbit) {
   const auto system = std::make_shared<LorenzEquations>(24.0);
   const auto curve = starts::follow_equilibrium(*system, std::vector<double>{8.0, 8.0, 23.0},

@@ -90,8 +90,8 @@ struct Frontier {
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, orbit, tangent, next_length, last_increment, first, first_level, first_amplitude,
-                            earlier_level, earlier_period, farthest, on_energy_limit, on_parameter_limit, guards, on_guard_limit,
-                            threshold, points, problem);
+                            earlier_level, earlier_period, farthest, on_energy_limit, on_parameter_limit, guards,
+                            on_guard_limit, threshold, points, problem);
   }
 };
 

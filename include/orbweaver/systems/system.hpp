@@ -57,8 +57,8 @@ class System {
   /// MisuseError unless the system can.
   virtual void parameter_derivatives(const std::string& name, std::size_t nodes, const double* z,
                                      double* derivatives) const;
-  /// The same system with other values of some parameters, in their units. They are not checked against their ranges: an iteration may
-  /// pass outside. Throws MisuseError for a parameter that it does not have, or unless the system can.
+  /// The same system with other values of some parameters, in their units, which may lie outside of their ranges: an
+  /// iteration may pass there. Throws MisuseError for a parameter that it does not have, or unless the system can.
   [[nodiscard]] virtual std::shared_ptr<const System> with_parameters(
       const std::map<std::string, double>& values) const;
 

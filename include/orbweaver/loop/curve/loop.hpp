@@ -25,8 +25,8 @@ struct Loop {
   std::vector<double>
       winding;       ///< n of each coordinate (size dimension, whole numbers; 0 but for angles that turn over)
   TimeMap time_map;  ///< phi: how s runs with time
-  /// Values of the parameters that move along the families of its system (systems::FamilyScalars), in their order; empty
-  /// where none does.
+  /// Values of the parameters that move along the families of its system (systems::FamilyScalars), in their order;
+  /// empty where none does.
   std::vector<double> parameters;
 
   [[nodiscard]] double& cosine(int k, int i) { return modes[index(k == 0 ? 0 : 2 * k - 1, i)]; }

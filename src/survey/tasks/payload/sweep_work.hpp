@@ -10,8 +10,8 @@
 
 namespace orbweaver::survey {
 
-/// Look for small oscillations around one equilibrium, or, where a parameter moves, for the Hopf points of its curve; or
-/// correct an orbit that the scene gives.
+/// Look for small oscillations around one equilibrium, or, where a parameter moves, for the Hopf points of its curve;
+/// or correct an orbit that the scene gives.
 struct SweepWork {
   static constexpr const char* payload_name = "sweep work";
   int index = 0;  ///< of the equilibrium, in sorted order; states come behind

@@ -13,8 +13,8 @@
 namespace orbweaver::survey {
 
 /// No orbit is stored in two families, nor, with its images under the system's symmetries, twice in one. Families that
-/// begin at images of one another (equilibria, Hopf points) are images too, and are stored both; what descends from them
-/// as well.
+/// begin at images of one another (equilibria, Hopf points) are images too, and are stored both; what descends from
+/// them as well.
 class StoredTwice final : public Check {
  public:
   [[nodiscard]] std::vector<LoopQuestion> questions(const Evidence& evidence) const override {
