@@ -121,7 +121,8 @@ std::vector<OffBranchTriplet> sector_triplets(const systems::System& system, con
                                               const loop::Isotropy& isotropy, const std::vector<int>& signs,
                                               const loop::Tangent& tangent, const spectrum::TripletOptions& options) {
   const bool all_kept = std::all_of(signs.begin(), signs.end(), [](int sign) { return sign > 0; });
-  const loss::Unknowns unknowns{loop::Subspace(loop.dimension, loop.cutoff, isotropy, signs), scalars_of(system, all_kept)};
+  const loss::Unknowns unknowns{loop::Subspace(loop.dimension, loop.cutoff, isotropy, signs),
+                                scalars_of(system, all_kept)};
   if (unknowns.subspace.size() == 0) return {};
   const loss::Slice slice = complement(system, unknowns, loop, tangent);
   if (slice.free() == 0) return {};
@@ -154,8 +155,7 @@ double off_branch_eigenvalue(const systems::System& system, const loop::Loop& lo
     if (equations::LoopEquations::are_square(system, whole.unknowns, whole.unknowns.subspace.image(), whole.slice))
       return matrix_free_eigenvalue(system, loop, whole);
   }
-  const loss::Linearization linearization(system, loop, loss::Linearization::Order::jacobian,
-                                          scalars_of(system, true));
+  const loss::Linearization linearization(system, loop, loss::Linearization::Order::jacobian, scalars_of(system, true));
   double smallest = std::numeric_limits<double>::infinity();
   for (const Sector& sector : sectors_of(system, loop, isotropy, tangent)) {
     const core::Handle<Mat> reduced = sector.slice.reduce_symmetric(

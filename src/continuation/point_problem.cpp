@@ -37,7 +37,8 @@ std::vector<double> PointProblem::conditions_with(const Prediction& prediction, 
 }
 
 Trial PointProblem::correct(Prediction prediction, const std::vector<double>& conditions) {
-  if (_family.family_scalars().hold != systems::FamilyScalars::Hold::energy) return solve(std::move(prediction), conditions);
+  if (_family.family_scalars().hold != systems::FamilyScalars::Hold::energy)
+    return solve(std::move(prediction), conditions);
   const std::size_t size = prediction.values.size();
   const auto rows = static_cast<Eigen::Index>(conditions.size() / size);
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

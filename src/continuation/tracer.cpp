@@ -306,8 +306,8 @@ std::optional<Orbit> Tracer::accept_within_limits(const Trial& trial, double len
       return std::nullopt;
     }
     on_limit = orbit_at_scalar(_stepper,
-                               {EndReason::parameter_limit, _system->family_scalars().free.front(), limit, length, trial,
-                                _system->scales().parameter(0)},
+                               {EndReason::parameter_limit, _system->family_scalars().free.front(), limit, length,
+                                trial, _system->scales().parameter(0)},
                                parameter);
     if (on_limit.trial) on_limit.trial->loop.parameters.front() = limit;
     _frontier.on_energy_limit = false;

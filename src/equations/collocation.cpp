@@ -40,8 +40,8 @@ int Collocation::conditions_of_families(const systems::System& system, const loo
 }
 
 bool Collocation::applies(const systems::System& system, const loop::FundamentalDomain& domain) {
-  return domain.is_square() && static_cast<int>(scalars_of_families(system, domain).size()) ==
-                                   conditions_of_families(system, domain);
+  return domain.is_square() &&
+         static_cast<int>(scalars_of_families(system, domain).size()) == conditions_of_families(system, domain);
 }
 
 Collocation::Collocation(const systems::System& system, const loop::FundamentalDomain& domain,

@@ -70,7 +70,8 @@ std::shared_ptr<const systems::System> Unknowns::moved(const systems::System& ba
 std::vector<double> Unknowns::parameters_of(const systems::System& system) const {
   std::vector<double> values;
   for (const Scalar& s : scalars)
-    if (s.kind == Scalar::Kind::parameter) values.push_back(system.parameters().at(s.parameter) / system.parameter_scale(s.parameter));
+    if (s.kind == Scalar::Kind::parameter)
+      values.push_back(system.parameters().at(s.parameter) / system.parameter_scale(s.parameter));
   return values;
 }
 

@@ -48,10 +48,9 @@ std::vector<std::string> born_at(const archive::Archive& atlas) {
 std::string crossing_text(const archive::Archive& atlas, std::size_t crossing) {
   const archive::Table& crossings = atlas.crossings();
   const std::string parameter = atlas.moving_parameter();
-  return fmt::format("{} T {:.6g}{}", crossings.texts("kind")[crossing], crossings.reals("period")[crossing],
-                     parameter.empty()
-                         ? ""
-                         : fmt::format(", {} {:.6g}", parameter, crossings.reals("parameter")[crossing]));
+  return fmt::format(
+      "{} T {:.6g}{}", crossings.texts("kind")[crossing], crossings.reals("period")[crossing],
+      parameter.empty() ? "" : fmt::format(", {} {:.6g}", parameter, crossings.reals("parameter")[crossing]));
 }
 
 void print_crossings(std::ostream& out, const archive::Archive& atlas) {

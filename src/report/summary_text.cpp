@@ -47,9 +47,8 @@ std::string to_text(const survey::Summary& summary) {
   std::size_t width = 6;
   for (const survey::FamilySummary& f : summary.families)
     width = std::max(width, f.name.size() + 2 * static_cast<std::size_t>(f.depth));
-  std::string text =
-      fmt::format("{:<{}}  {:>6}  {:>22}  {:>26}  {}\n", "family", width, "orbits", "period",
-                  summary.parameter.empty() ? "energy" : summary.parameter, "ended by");
+  std::string text = fmt::format("{:<{}}  {:>6}  {:>22}  {:>26}  {}\n", "family", width, "orbits", "period",
+                                 summary.parameter.empty() ? "energy" : summary.parameter, "ended by");
   const std::size_t listed = std::min(summary.families.size(), most_listed);
   for (std::size_t n = 0; n < listed; ++n) text += line_of(summary.families[n], width);
   if (listed < summary.families.size())

@@ -270,10 +270,10 @@ SingularTriplets smallest_singular_triplets(const systems::System& system, const
   }
   const loss::Linearization linearization(system, loop, loss::Linearization::Order::jacobian, unknowns.scalars);
   if (unknowns.size() > most_dense)
-    throw core::NumericalError(
-        fmt::format("singular triplets over {} unknowns by dense matrices: at most {} are affordable, and the matrix-free "
-                    "way needs as many equations",
-                    unknowns.size(), most_dense));
+    throw core::NumericalError(fmt::format(
+        "singular triplets over {} unknowns by dense matrices: at most {} are affordable, and the matrix-free "
+        "way needs as many equations",
+        unknowns.size(), most_dense));
   SingularTriplets out =
       smallest_singular_triplets(slice.reduce_columns(loss::assemble_jacobian(linearization, unknowns)), options.count);
   Eigen::MatrixXd right(unknowns.size(), options.count);

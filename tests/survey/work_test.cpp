@@ -50,8 +50,14 @@ SweepOutcome sample_sweep_outcome() {
           12.0};
 }
 BranchWork sample_branch_work() {
-  return {"0001.0002/003.q4.j1/0-", "Naïve", sample_lineage(), sample_loop(), {{0.25, -0.5}, {1e-300}},
-          sample_isotropy(),        0.125,   true};
+  return {"0001.0002/003.q4.j1/0-",
+          "Naïve",
+          sample_lineage(),
+          sample_loop(),
+          {{0.25, -0.5}, {1e-300}},
+          sample_isotropy(),
+          0.125,
+          true};
 }
 BranchOutcome sample_branch_outcome() {
   return {"0001.0000",

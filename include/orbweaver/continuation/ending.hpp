@@ -9,10 +9,10 @@ namespace orbweaver::continuation {
 
 /// Why a branch ended (docs/mathematics.md, "Ends").
 enum class EndReason {
-  period_limit,  ///< the scene's limit; the last orbit has exactly that period
-  energy_limit,  ///< the scene's limit; the last orbit has exactly that energy
+  period_limit,     ///< the scene's limit; the last orbit has exactly that period
+  energy_limit,     ///< the scene's limit; the last orbit has exactly that energy
   parameter_limit,  ///< the scene's limit; the last orbit has exactly that value of the parameter that moves
-  guard_limit,   ///< the scene's limit; the smallest value of a guard over the last orbit is exactly that
+  guard_limit,      ///< the scene's limit; the smallest value of a guard over the last orbit is exactly that
   step_limit,
   cutoff_limit,       ///< the next orbit needs more harmonics than the scene allows
   period_divergence,  ///< T grows without bound while the energy (or what moves instead) settles, and double

@@ -75,7 +75,7 @@ struct Frontier {
   loop::Loop first;             ///< loop of orbit 0
   double first_level = 0.0;     ///< the energy of orbit 0, or what moves instead (`level_of`)
   double first_amplitude = 0.0;
-  double earlier_level = 0.0;   ///< that when the period was about a tenth smaller
+  double earlier_level = 0.0;  ///< that when the period was about a tenth smaller
   double earlier_period = 0.0;
   double farthest = 0.0;           ///< largest change of amplitude or relative change of T from orbit 0 so far
   bool on_energy_limit = false;    ///< `orbit` is the last one, at the scene's energy limit,

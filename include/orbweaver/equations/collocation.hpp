@@ -32,8 +32,7 @@ class Collocation final : public PreconditionedEquations {
                                                                      const loop::FundamentalDomain& domain);
   /// Conditions that pick one orbit: the place along the family, what the family holds, and the phase where no reversor
   /// fixes it.
-  [[nodiscard]] static int conditions_of_families(const systems::System& system,
-                                                  const loop::FundamentalDomain& domain);
+  [[nodiscard]] static int conditions_of_families(const systems::System& system, const loop::FundamentalDomain& domain);
   /// True where there are as many of both, and of end conditions as coordinates. Any dimension: nothing
   /// of this is divided by a team, and need not be. Five orbits of a chain of oscillators take one rank 0.8, 1.2, 12
   /// and 66 ms (d = 8, 16, 32, 64); as loops they take one rank 5.6, 16, 80 and 471 ms, and a team of two 5.5, 15, 58

@@ -21,8 +21,8 @@ std::string line_of(const FamilyState& f, const std::string& level) {
   if (f.orbits == 0 && !f.running) return fmt::format("{:<10} {:>5} orbits  {}", f.name, f.orbits, f.end);
   const double seconds = std::chrono::duration<double>(f.changed - f.began).count();
   const std::string rate = seconds > 0.0 ? fmt::format("{:.1f} orbits/s", static_cast<double>(f.orbits) / seconds) : "";
-  return fmt::format("{:<10} {:>5} orbits  T {:<8.4f} {} {:<10.6f} K {:<4} {}", f.name, f.orbits, f.period, level, f.level,
-                     f.cutoff, f.running ? rate : f.end);
+  return fmt::format("{:<10} {:>5} orbits  T {:<8.4f} {} {:<10.6f} K {:<4} {}", f.name, f.orbits, f.period, level,
+                     f.level, f.cutoff, f.running ? rate : f.end);
 }
 
 }  // namespace
@@ -87,7 +87,8 @@ void ProgressDisplay::redraw() {
   int lines = 0;
   int running = 0;
   const auto add = [&](const FamilyState& f) {
-    text += fmt::format("{}{}", lines++ == 0 ? "" : "\n", line_of(f, _units.level_name()).substr(0, narrowest_terminal));
+    text +=
+        fmt::format("{}{}", lines++ == 0 ? "" : "\n", line_of(f, _units.level_name()).substr(0, narrowest_terminal));
   };
   for (const auto& [key, family] : _families)
     if (!family.running) add(family);

@@ -217,8 +217,8 @@ class Location {
     _outcome.kernel_dimension = 0;
     _outcome.kernel_singular_value = archive::not_computed;
     _outcome.next_singular_value = kernel.largest();
-    _outcome.remark = fmt::format("the {} turns there (smallest singular value {:.2g})", moves() ? "parameter" : "energy",
-                                  kernel.largest());
+    _outcome.remark = fmt::format("the {} turns there (smallest singular value {:.2g})",
+                                  moves() ? "parameter" : "energy", kernel.largest());
   }
 
   [[nodiscard]] bool moves() const { return !_system->family_scalars().free.empty(); }
@@ -246,8 +246,7 @@ class Location {
   }
 
   /// At the crossing itself, not only between the orbits beside it.
-  [[nodiscard]] bool turns_at(const bifurcation::Crossing& crossing,
-                                        continuation::FamilyCurve& family) const {
+  [[nodiscard]] bool turns_at(const bifurcation::Crossing& crossing, continuation::FamilyCurve& family) const {
     const auto slopes = slopes_beside(family);
     return slopes && slopes->first * slopes->second < 0.0 &&
            std::abs(slope_at(crossing.point)) <

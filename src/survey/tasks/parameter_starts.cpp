@@ -101,9 +101,8 @@ SweepOutcome hopf_starts(const scene::Scene& scene, const systems::System& syste
   options.parameter_from = scene.limits.parameter_from;
   options.parameter_to = scene.limits.parameter_to;
   std::vector<starts::HopfPoint> points = starts::follow_equilibrium(system, work.point, options).hopf;
-  std::stable_sort(points.begin(), points.end(), [](const starts::HopfPoint& a, const starts::HopfPoint& b) {
-    return a.distance < b.distance;
-  });
+  std::stable_sort(points.begin(), points.end(),
+                   [](const starts::HopfPoint& a, const starts::HopfPoint& b) { return a.distance < b.distance; });
   for (const starts::HopfPoint& hopf : points) {
     FoundMode found;
     found.place = outcome.families++;

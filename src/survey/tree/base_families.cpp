@@ -79,9 +79,8 @@ std::string name_of_start(const scene::Scene& scene, const systems::System& syst
   const std::size_t given = names_given(scene, system, found.point);
   return static_cast<std::size_t>(mode.place) < given
              ? base_family_name(scene, system, found.point, found.index, mode.place)
-         : mode.base_is_orbit
-             ? equilibrium_name(found.index)
-             : fmt::format("{}, Hopf point {}", equilibrium_name(found.index), mode.place + 1);
+         : mode.base_is_orbit ? equilibrium_name(found.index)
+                              : fmt::format("{}, Hopf point {}", equilibrium_name(found.index), mode.place + 1);
 }
 
 /// Several equilibria may lie on one curve, and its Hopf points are found from each. They count as those of the nearest
@@ -95,8 +94,7 @@ bool is_same_start(const FoundMode& a, const FoundMode& b) {
 
 bool is_of_another(const FoundMode& mode, const SweepOutcome& of, const std::vector<SweepOutcome>& sweeps) {
   return std::any_of(sweeps.begin(), sweeps.end(), [&](const SweepOutcome& other) {
-    return other.index != of.index &&
-           std::any_of(other.modes.begin(), other.modes.end(), [&](const FoundMode& same) {
+    return other.index != of.index && std::any_of(other.modes.begin(), other.modes.end(), [&](const FoundMode& same) {
              return is_same_start(mode, same) &&
                     std::pair(same.distance, other.index) < std::pair(mode.distance, of.index);
            });

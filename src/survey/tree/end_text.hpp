@@ -16,7 +16,6 @@ namespace orbweaver::survey {
 /// "failure (WHY)", of a branch without an outcome.
 [[nodiscard]] std::string failure_text(const std::string& why);
 /// "joined NAME at T = 24 (crossing at T = 8, 3 times around)".
-[[nodiscard]] std::string joined_text(const std::string& name, const LocateOutcome& crossing,
-                                      const Units& units = {});
+[[nodiscard]] std::string joined_text(const std::string& name, const LocateOutcome& crossing, const Units& units = {});
 
 }  // namespace orbweaver::survey

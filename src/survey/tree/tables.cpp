@@ -74,8 +74,8 @@ void add_orbits(const BranchOutcome& branch, FamilySummary& summary) {
 
 }  // namespace
 
-std::map<std::string, int> add_crossings(const std::vector<const LocateOutcome*>& crossings,
-                                         const Units& units, TreeTables& tables) {
+std::map<std::string, int> add_crossings(const std::vector<const LocateOutcome*>& crossings, const Units& units,
+                                         TreeTables& tables) {
   std::map<std::string, int> rows;
   FoldsOnce folds;
   for (const LocateOutcome* crossing : crossings) {

@@ -73,7 +73,7 @@ struct TreeSources {
   const Arrivals& arrivals;
   const std::vector<FamilySide>& kept;
   const std::map<std::string, int>& crossing_rows;  ///< indices into the tables' crossings by key
-  const Units& units;                     ///< of the tasks' outcomes
+  const Units& units;                               ///< of the tasks' outcomes
   std::function<DirectionFate(const std::string& branch, const Lineage& lineage)> fate_of_unknown;
 };
 [[nodiscard]] TreeEvidence evidence_of(const TreeSources& tree);

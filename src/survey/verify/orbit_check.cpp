@@ -127,9 +127,9 @@ class OrbitCheck {
     const scene::Limits& limits = _atlas.scene().limits;
     const double value = real("parameter");
     const double allowed = at_limit * _system.scales().parameter(0);
-    _claims.expect(value >= limits.parameter_from - allowed && value <= limits.parameter_to + allowed, "parameter",
-                   fmt::format("is {:.12g}; limits.parameter is [{:g}, {:g}]", value, limits.parameter_from,
-                               limits.parameter_to));
+    _claims.expect(
+        value >= limits.parameter_from - allowed && value <= limits.parameter_to + allowed, "parameter",
+        fmt::format("is {:.12g}; limits.parameter is [{:g}, {:g}]", value, limits.parameter_from, limits.parameter_to));
   }
 
   void shape() {

@@ -80,9 +80,8 @@ bool Evidence::begins_at_image(const systems::AffineMap& map, int row, int other
 bool Evidence::begin_at_images(int row, int other) const {
   if (begins_at_image(systems::AffineMap::identity(system->dimension()), row, other)) return false;
   const loop::SymmetryGroup group = loop::SymmetryGroup::of_space(system->structure());
-  return std::any_of(group.elements().begin(), group.elements().end(), [&](const loop::SymmetryElement& element) {
-    return begins_at_image(element.map, row, other);
-  });
+  return std::any_of(group.elements().begin(), group.elements().end(),
+                     [&](const loop::SymmetryElement& element) { return begins_at_image(element.map, row, other); });
 }
 
 }  // namespace orbweaver::survey

@@ -25,7 +25,8 @@ std::vector<Placement> placements(const std::filesystem::path& atlas, const std:
     const loop::Loop& orbit = one.arrival->beneath.front().orbit;
     const double action = continuation::action_of(*system, orbit) * units.action();
     const double period = orbit.period * units.time;
-    const PlaceOfOrbit place{period, continuation::level_of(*system, orbit) * units.level(), action, std::abs(action) / period};
+    const PlaceOfOrbit place{period, continuation::level_of(*system, orbit) * units.level(), action,
+                             std::abs(action) / period};
     std::optional<Placement> best;
     for (const auto& [row, segment] : passing(tree, index, place)) {
       const std::string& key = family_keys[static_cast<std::size_t>(row)];

@@ -9,8 +9,8 @@ namespace orbweaver::survey {
 /// Numbers of an orbit that neither a symmetry of the system nor a time shift changes. The level is the energy, or the
 /// parameter where one moves along the families; beside it the energy counts as another number.
 enum class Invariant : std::size_t { period, level, action, energy, trace };
-inline constexpr std::array all_invariants{Invariant::period, Invariant::level, Invariant::action,
-                                           Invariant::energy, Invariant::trace};
+inline constexpr std::array all_invariants{Invariant::period, Invariant::level, Invariant::action, Invariant::energy,
+                                           Invariant::trace};
 
 /// Of one orbit; NaN: not known. `trace`: asinh of half the sum of the stability values, so that it is smooth along a
 /// family and unstable orbits do not drown the others.

@@ -68,7 +68,7 @@ struct Finding {
   int other_family = -1;
   int crossing = -1;
   double period = std::numeric_limits<double>::quiet_NaN();
-  double level = std::numeric_limits<double>::quiet_NaN();  ///< energy, or the parameter that moves
+  double level = std::numeric_limits<double>::quiet_NaN();      ///< energy, or the parameter that moves
   double deviation = std::numeric_limits<double>::quiet_NaN();  ///< how far off (docs/file_format.md says in what)
   int number = 0;
   int other_number = 0;

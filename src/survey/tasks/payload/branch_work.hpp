@@ -51,7 +51,7 @@ struct CrossingBeneath {
 /// A branch has come to an orbit with more symmetry than its own: a crossing of another family, or of its own.
 struct ArrivalRecord {
   double period = 0.0;  ///< where it meets, by interpolation, or as the crossing there was located
-  double level = 0.0;                      ///< continuation::level_of
+  double level = 0.0;   ///< continuation::level_of
   loop::Loop near;                         ///< an orbit of the branch shortly before
   int multiplicity = 1;                    ///< times that it goes around the orbit it meets, where that is all it gains
   std::vector<CrossingBeneath> beneath{};  ///< one, where the crossing that is met was located
@@ -88,9 +88,9 @@ struct BranchOutcome {
   static constexpr int wire_version = 4;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, key, orbits, period_from, period_to, level_from, level_to, last_period,
-                            last_level, last_cutoff, end, arrival, equilibrium, remarks, tolerance_met, moved_out,
-                            limited_by, before_limit);
+    core::serialize_members(archive, key, orbits, period_from, period_to, level_from, level_to, last_period, last_level,
+                            last_cutoff, end, arrival, equilibrium, remarks, tolerance_met, moved_out, limited_by,
+                            before_limit);
     if constexpr (Archive::is_loading::value) check_limits(limited_by);
   }
 };

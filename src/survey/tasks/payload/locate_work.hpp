@@ -90,9 +90,9 @@ struct LocateOutcome {
   static constexpr int wire_version = 3;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, key, lineage, arclength, arclength_unit, period, energy, parameter, kind, multiplicity,
-                            kernel_dimension, residual, kernel_singular_value, next_singular_value, test_value, state,
-                            q, j, fundamental_order, leaving, undecided, remark, limited_by);
+    core::serialize_members(archive, key, lineage, arclength, arclength_unit, period, energy, parameter, kind,
+                            multiplicity, kernel_dimension, residual, kernel_singular_value, next_singular_value,
+                            test_value, state, q, j, fundamental_order, leaving, undecided, remark, limited_by);
     if constexpr (Archive::is_loading::value) check_limits(limited_by);
   }
 };

@@ -137,8 +137,8 @@ class SharedPoints final : public Check {
     if (row < 0 || points.empty()) return false;
     const TreeCrossing& birth = evidence.crossing(row);
     double along = 0.0;
-    for (const auto& [i, at_birth] : {std::pair{Invariant::period, birth.multiplicity * birth.period},
-                                      std::pair{Invariant::level, birth.level}}) {
+    for (const auto& [i, at_birth] :
+         {std::pair{Invariant::period, birth.multiplicity * birth.period}, std::pair{Invariant::level, birth.level}}) {
       const double part =
           (x.value(i) - at_birth) * (points.front().value(i) - at_birth) / (x.scale_of(i) * x.scale_of(i));
       if (!std::isnan(part)) along += part;
