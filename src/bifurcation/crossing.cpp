@@ -124,11 +124,18 @@ double level_slope(const systems::System& system, const continuation::CurvePoint
   return system.family_scalars().free.empty() ? energy_slope(system, point) : parameter_slope(point);
 }
 
-Reading index_deviation(const spectrum::Stability& stability, const Sector& sector) {
+Reading index_deviation(const systems::Structure& system, const spectrum::Stability& stability, const Sector& sector) {
   Reading nearest{nan, nan};
-  for (std::size_t n = 0; n < stability.fundamental.size(); ++n) {
-    const double deviation = stability.fundamental[n].real() - sector.index();
-    if (n == 0 || std::abs(deviation) < std::abs(nearest.value)) nearest = {deviation, stability.fundamental_error[n]};
+  double least = std::numeric_limits<double>::infinity();
+  const double value = sector.value(system.symplectic);
+  // Where energy is conserved without pairs the last one is the energy's own.
+  const std::size_t count = stability.fundamental.size() - (system.conservative() && !system.symplectic ? 1 : 0);
+  for (std::size_t n = 0; n < count; ++n) {
+    const double deviation = stability.fundamental[n].real() - value;
+    const double away = system.symplectic ? std::abs(deviation) : std::abs(stability.fundamental[n] - value);
+    if (n > 0 && !(away < least)) continue;
+    least = away;
+    nearest = {deviation, stability.fundamental_error[n]};
   }
   return nearest;
 }

@@ -36,11 +36,23 @@ constexpr int grown_cutoff = 4;
 /// Such a family ends once rounding, which a passage magnifies, lets its orbits be known this many times worse than the
 /// tolerance asks: nearer ones take ever more harmonics to resolve noise (docs/performance.md).
 constexpr double worse_than_asked = 1e5;
+/// What a parameter may change by rounding, in parts of its scale + its value, and a period, in parts of itself.
+constexpr double unmoved = 1e-9;
 
 bool collides(const Frontier& frontier, const GuardTrace& guard) {
   return guard.earlier.size() == earlier_guards && guard.least < near_guard * guard.fallen_from &&
          guard.least < (1.0 - guard_loss) * guard.earlier.front() &&
          frontier.orbit.loop.cutoff >= grown_cutoff * frontier.first.cutoff;
+}
+
+/// Orbits of one parameter value and one period, as a system has that conserves something there.
+bool stays(const Frontier& frontier) {
+  const loop::Loop& first = frontier.first;
+  const loop::Loop& last = frontier.orbit.loop;
+  return !first.parameters.empty() &&
+         std::abs(last.parameters.front() - first.parameters.front()) <
+             unmoved * (1.0 + std::abs(first.parameters.front())) &&
+         std::abs(last.period - first.period) < unmoved * first.period;
 }
 
 std::optional<Ending> collision_of(const Frontier& frontier, const systems::System& system, const std::string& detail) {
@@ -90,6 +102,12 @@ std::optional<Ending> end_at(const Frontier& frontier, const systems::System& sy
   if (frontier.threshold > worse_than_asked * options.corrector.tolerance)
     if (auto collision = collision_of(frontier, system, fmt::format("rounding leaves {:.1e}", orbit.loss_rms)))
       return collision;
+  if (stays(frontier))
+    return Ending{EndReason::undecided,
+                  fmt::format("T and {} stay at {:.9g} and {:.9g}: its orbits are not isolated; another start "
+                              "(starts.states) may lead away",
+                              system.family_scalars().free.front(), period,
+                              orbit.loop.parameters.front() * units.parameter(0))};
   const double amplitude = frontier.problem.amplitude;
   if (amplitude < vanishing_amplitude * std::min(frontier.first_amplitude, options.start_amplitude))
     return Ending{EndReason::fixed_point, fmt::format("T = {:.9g}, amplitude {:.2e}", period, amplitude)};

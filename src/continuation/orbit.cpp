@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/curve/system_at.hpp"
@@ -33,6 +34,7 @@ double action_of(const systems::System& system, const loop::Loop& loop) {
 }
 
 double arclength_between(const loop::Loop& from, const loop::Loop& to) {
+  core::require(from.parameters.size() == to.parameters.size(), "a distance between loops of different families");
   double parameters = 0.0;
   for (std::size_t n = 0; n < from.parameters.size(); ++n)
     parameters = std::hypot(parameters, to.parameters[n] - from.parameters[n]);

@@ -64,8 +64,10 @@ struct NotLocated {
                                              const Event& event, double from, double to, NotLocated& why,
                                              double tolerance = 1e-11);
 
-/// The multiplier pair that is nearest to the sector: k - 2 cos(2 pi j/q), with its error bound.
-[[nodiscard]] Reading index_deviation(const spectrum::Stability& stability, const Sector& sector);
+/// The multiplier pair that is nearest to the sector: k - 2 cos(2 pi j/q), with its error bound; of a system that is
+/// not symplectic the nontrivial multiplier, mu - cos(2 pi j/q).
+[[nodiscard]] Reading index_deviation(const systems::Structure& system, const spectrum::Stability& stability,
+                                      const Sector& sector);
 
 /// dT/ds, dE/ds and dp/ds of the family at a point, s being the length in modes and scalars, p the first parameter that
 /// moves.

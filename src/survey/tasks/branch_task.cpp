@@ -149,7 +149,8 @@ continuation::Ending BranchTask::follow() {
     // The branch ends with an orbit on a limit, which it would not have under a wider one: no state may hold it.
     const continuation::Frontier& there = _branch->restart_frontier();
     const bool on_limit =
-        orbit->loop.period >= _options.period_limit || there.on_energy_limit || there.on_guard_limit >= 0;
+        orbit->loop.period >= _options.period_limit || there.on_energy_limit || there.on_parameter_limit ||
+        there.on_guard_limit >= 0;
     if (on_limit) limited_by(orbit_limited, before);
     const double period = orbit->loop.period * units().time;
     if (!take(*orbit)) return met();
@@ -182,6 +183,7 @@ void BranchTask::note_limits(const continuation::Ending& ending, const continuat
     case EndReason::step_limit: return limited_by(step_limited, before);
     case EndReason::period_limit:
     case EndReason::energy_limit:
+    case EndReason::parameter_limit:
     case EndReason::guard_limit:
     // On the way to an orbit on a limit, perhaps.
     case EndReason::cutoff_limit:
@@ -224,7 +226,8 @@ bool BranchTask::take(const continuation::Orbit& orbit) {
   const std::optional<spectrum::Stability>& stability = stability_at(orbit);
   detect(orbit, stability);
   if (_last) solve_requested(orbit);
-  store(orbit, stability);
+  const bool is_other_sides = _work.base_is_orbit && _work.lineage.side < 0 && !_last;
+  if (!is_other_sides) store(orbit, stability);
   _last = orbit;
   _last_stability = stability;
   return !(stability && is_nearly_two(*stability) && arrives_ahead());

@@ -51,8 +51,8 @@ void describe(const systems::System& system, const Event& event, const bifurcati
   outcome.residual = crossing.reading.value;
   outcome.test_value = archive::not_computed;
   if (by_sector) {  // the index itself, and how far it is from the sector's
-    outcome.residual = bifurcation::index_deviation(crossing.stability, sector).value;
-    outcome.test_value = sector.index() + outcome.residual;
+    outcome.residual = bifurcation::index_deviation(system.structure(), crossing.stability, sector).value;
+    outcome.test_value = sector.value(system.structure().symplectic) + outcome.residual;
   }
   outcome.kernel_singular_value = archive::not_computed;
   outcome.next_singular_value = archive::not_computed;

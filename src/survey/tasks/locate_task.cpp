@@ -156,7 +156,8 @@ class Location {
     settings.team = _team;
     const bifurcation::Kernel kernel =
         bifurcation::kernel_of(*_system, crossing.point, isotropy, sector,
-                               expected_dimension(crossing.stability, sector, _event.tangency), settings);
+                               expected_dimension(_system->structure(), crossing.stability, sector, _event.tangency),
+                               settings);
     _outcome.kernel_dimension = kernel.dimension();
     _outcome.kernel_singular_value = kernel.largest();
     _outcome.next_singular_value = kernel.next();
@@ -188,7 +189,8 @@ class Location {
 
   /// Where rounding does not tell the crossing from those of other sectors, its kernel may be any of theirs.
   void fail(const bifurcation::Crossing& crossing, const std::string& why) {
-    const double off = std::abs(bifurcation::index_deviation(crossing.stability, _event.function.sector).value);
+    const double off = std::abs(
+        bifurcation::index_deviation(_system->structure(), crossing.stability, _event.function.sector).value);
     if (!(off > apart_indices)) {
       _failure = why;
     } else {
@@ -285,10 +287,12 @@ class Location {
 
 }  // namespace
 
-int expected_dimension(const spectrum::Stability& stability, const bifurcation::Sector& sector, bool touches) {
+int expected_dimension(const systems::Structure& system, const spectrum::Stability& stability,
+                       const bifurcation::Sector& sector, bool touches) {
   int pairs = 0;
-  for (std::size_t n = 0; n < stability.fundamental.size(); ++n) {
-    const double away = std::abs(stability.fundamental[n] - sector.index());
+  const std::size_t count = stability.fundamental.size() - (system.conservative() && !system.symplectic ? 1 : 0);
+  for (std::size_t n = 0; n < count; ++n) {
+    const double away = std::abs(stability.fundamental[n] - sector.value(system.symplectic));
     if (away < std::max(in_sector, error_bounds * stability.fundamental_error[n])) ++pairs;
   }
   return std::max(1, pairs) * (sector.q <= 2 && !touches ? 1 : 2);

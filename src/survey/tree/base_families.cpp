@@ -176,6 +176,15 @@ std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const syst
         tasks.push_back(task_of(work));
         continue;
       }
+      if (mode.base_is_orbit) {  // two sides of one family
+        work.key = branch_key + "+";
+        tasks.push_back(task_of(work));
+        work.key = branch_key + "-";
+        work.lineage.side = -1;
+        work.direction *= -1.0;
+        tasks.push_back(task_of(work));
+        continue;
+      }
       work.key = work.lineage.family = branch_key + "+";
       tasks.push_back(task_of(work));
       work.key = work.lineage.family = branch_key + "-";

@@ -337,9 +337,9 @@ class CrossingCheck {
   void sector(const Place& place, const std::optional<spectrum::Stability>& stability, bool placed, Claims& claims) {
     const bifurcation::Sector sector{_crossing.sector_q, _crossing.sector_j};
     if (!stability) return claims.object("test_value", "the multipliers there cannot be computed");
-    const bifurcation::Reading found = bifurcation::index_deviation(*stability, sector);
+    const bifurcation::Reading found = bifurcation::index_deviation(_system.structure(), *stability, sector);
     const double allowed = found.error + (placed ? same_placement : index_rounding);
-    claims.agree("test_value", real("test_value"), sector.index() + found.value, allowed);
+    claims.agree("test_value", real("test_value"), sector.value(_system.structure().symplectic) + found.value, allowed);
     claims.agree("residual", real("residual"), found.value, allowed);
     claims.below("sector_q", std::abs(found.value), allowed + located * rate(sector, place),
                  "the index there, from its sector's,");
@@ -352,14 +352,15 @@ class CrossingCheck {
     const double length = place.before + place.after;
     double rate = 1.0;
     const std::size_t width = archive::stability_width(_atlas.archive().header());
+    const std::size_t parts = archive::has_complex_stability(_atlas.archive().header()) ? 2 : 1;
     const auto& values = _atlas.archive().orbits().reals("fundamental_stability");
     const auto after = std::upper_bound(_family.arclengths.begin(), _family.arclengths.end(), real("arclength"));
     if (after == _family.arclengths.begin() || after == _family.arclengths.end() || width == 0) return rate;
     const std::size_t next = _family.first_orbit + static_cast<std::size_t>(after - _family.arclengths.begin());
     for (const std::size_t row : {next - 1, next}) {
       double nearest = std::numeric_limits<double>::infinity();
-      for (std::size_t i = 0; i < width; ++i)
-        nearest = std::min(nearest, std::abs(values[row * width + i] - sector.index()));
+      for (std::size_t i = 0; i < width; i += parts)
+        nearest = std::min(nearest, std::abs(values[row * width + i] - sector.value(_system.structure().symplectic)));
       if (std::isfinite(nearest)) rate = std::max(rate, 2.0 * nearest / length);
     }
     return rate;
@@ -369,9 +370,10 @@ class CrossingCheck {
               Claims& claims) {
     bifurcation::KernelOptions settings;
     settings.even_in_time = false;
-    const bool touches = _crossing.kernel_dimension > expected_dimension(stability, sector, false);
-    const bifurcation::Kernel kernel = bifurcation::kernel_of(_system, place.point, _isotropy, sector,
-                                                              expected_dimension(stability, sector, touches), settings);
+    const bool touches = _crossing.kernel_dimension > expected_dimension(_system.structure(), stability, sector, false);
+    const int expected = expected_dimension(_system.structure(), stability, sector, touches);
+    const bifurcation::Kernel kernel =
+        bifurcation::kernel_of(_system, place.point, _isotropy, sector, expected, settings);
     claims.expect(kernel.dimension() == _crossing.kernel_dimension, "kernel_dimension",
                   fmt::format("is {}, found {}", _crossing.kernel_dimension, kernel.dimension()));
     if (kernel.dimension() > 0)

@@ -85,7 +85,7 @@ loop::Loop VerifiedAtlas::begun_as(std::size_t family, const loop::Loop& loop, c
   alignment.name = "1";
   alignment.map = systems::AffineMap::identity(system.dimension);
   alignment.shift = shift - std::floor(shift);
-  (void)loop::difference_at(from, to, system.angles, shift, &alignment.turns);
+  (void)loop::difference_at(from, to, system.angles, alignment.shift, &alignment.turns);
   return loop::aligned(loop, alignment);
 }
 
