@@ -103,11 +103,11 @@ std::optional<Ending> end_at(const Frontier& frontier, const systems::System& sy
     if (auto collision = collision_of(frontier, system, fmt::format("rounding leaves {:.1e}", orbit.loss_rms)))
       return collision;
   if (stays(frontier))
-    return Ending{EndReason::undecided,
-                  fmt::format("T and {} stay at {:.9g} and {:.9g}: its orbits are not isolated; another start "
-                              "(starts.states) may lead away",
-                              system.family_scalars().free.front(), period,
-                              orbit.loop.parameters.front() * units.parameter(0))};
+    return Ending{
+        EndReason::undecided,
+        fmt::format("T and {} stay at {:.9g} and {:.9g}: its orbits are not isolated; another start "
+                    "(starts.states) may lead away",
+                    system.family_scalars().free.front(), period, orbit.loop.parameters.front() * units.parameter(0))};
   const double amplitude = frontier.problem.amplitude;
   if (amplitude < vanishing_amplitude * std::min(frontier.first_amplitude, options.start_amplitude))
     return Ending{EndReason::fixed_point, fmt::format("T = {:.9g}, amplitude {:.2e}", period, amplitude)};

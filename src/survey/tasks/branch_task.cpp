@@ -148,9 +148,8 @@ continuation::Ending BranchTask::follow() {
     }
     // The branch ends with an orbit on a limit, which it would not have under a wider one: no state may hold it.
     const continuation::Frontier& there = _branch->restart_frontier();
-    const bool on_limit =
-        orbit->loop.period >= _options.period_limit || there.on_energy_limit || there.on_parameter_limit ||
-        there.on_guard_limit >= 0;
+    const bool on_limit = orbit->loop.period >= _options.period_limit || there.on_energy_limit ||
+                          there.on_parameter_limit || there.on_guard_limit >= 0;
     if (on_limit) limited_by(orbit_limited, before);
     const double period = orbit->loop.period * units().time;
     if (!take(*orbit)) return met();

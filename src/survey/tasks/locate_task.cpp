@@ -154,10 +154,9 @@ class Location {
     settings.even_in_time = starts;
     settings.most_harmonics = _scene.continuation.cutoff_to;
     settings.team = _team;
-    const bifurcation::Kernel kernel =
-        bifurcation::kernel_of(*_system, crossing.point, isotropy, sector,
-                               expected_dimension(_system->structure(), crossing.stability, sector, _event.tangency),
-                               settings);
+    const bifurcation::Kernel kernel = bifurcation::kernel_of(
+        *_system, crossing.point, isotropy, sector,
+        expected_dimension(_system->structure(), crossing.stability, sector, _event.tangency), settings);
     _outcome.kernel_dimension = kernel.dimension();
     _outcome.kernel_singular_value = kernel.largest();
     _outcome.next_singular_value = kernel.next();
@@ -189,8 +188,8 @@ class Location {
 
   /// Where rounding does not tell the crossing from those of other sectors, its kernel may be any of theirs.
   void fail(const bifurcation::Crossing& crossing, const std::string& why) {
-    const double off = std::abs(
-        bifurcation::index_deviation(_system->structure(), crossing.stability, _event.function.sector).value);
+    const double off =
+        std::abs(bifurcation::index_deviation(_system->structure(), crossing.stability, _event.function.sector).value);
     if (!(off > apart_indices)) {
       _failure = why;
     } else {

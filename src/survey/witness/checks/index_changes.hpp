@@ -183,8 +183,7 @@ class IndexChanges final : public Check {
     finding.level = x.value(Invariant::level);
     finding.number = sector.j;
     finding.other_number = sector.q;
-    finding.deviation =
-        stability.fundamental.front().real() - sector.value(evidence.system->structure().symplectic);
+    finding.deviation = stability.fundamental.front().real() - sector.value(evidence.system->structure().symplectic);
     return finding;
   }
 
