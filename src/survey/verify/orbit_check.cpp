@@ -45,6 +45,8 @@ constexpr double certificate_factor = 16.0;
 /// of the restricted problem.
 constexpr double same_way = 1e-9;
 constexpr double same_way_without_phase = 3e-4;
+/// The same of families in a parameter: by 3.1e-4 at most in the responses of Duffing's oscillator.
+constexpr double same_way_in_parameter = 1e-3;
 /// Of the way: smaller harmonics change its length by the square of that part.
 constexpr double seen_in_way = 1e-4;
 
@@ -252,7 +254,8 @@ void check_way(const VerifiedAtlas& atlas, std::size_t from, const loop::Loop& a
   const bool has_phase = atlas.has_reversor(family);
   const double rounding = sum_rounding * epsilon * (std::abs(arclengths[from]) + std::abs(arclengths[to]));
   const double step = std::abs(arclengths[to] - arclengths[from]);
-  const double allowed = (has_phase ? same_way : same_way_without_phase) * step + rounding;
+  const double of_step = has_phase ? same_way : a.parameters.empty() ? same_way_without_phase : same_way_in_parameter;
+  const double allowed = of_step * step + rounding;
   double found;
   if (has_phase) {
     found = end(a, b);
