@@ -129,7 +129,7 @@ TEST(Show, FindingsALineEach) {
             "contradiction  index-change           2.5e-01  In-Phase: a multiplier passes\n"
             "cut            limited-end                  -  ID1: ends\n");
   EXPECT_THAT(lines_of(shown(atlas, "findings", TextFormat::csv))[1],
-              "contradiction,index-change,0,-1,-1,2,-1,0.25,"
+              "contradiction,index-change,0,-1,-1,2,-1,nan,0.25,"
               "In-Phase: a multiplier passes");
 }
 

@@ -1,7 +1,6 @@
 #include "orbweaver/archive/read/reader.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "check_indices.hpp"
 #include "file/serial_file.hpp"
@@ -54,9 +53,10 @@ std::int64_t Archive::format_minor() const noexcept { return _file->minor(); }
 bool Archive::has_checksums() const noexcept { return _file->has_checksums(); }
 
 std::string Archive::moving_parameter() const {
-  const std::vector<double>& values = _orbits.reals("parameter");
-  if (std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); })) return "";
-  return header().scale_names.empty() ? "parameter" : header().scale_names.back();
+  const std::vector<std::string>& scales = header().scale_names;  // it is the last of them
+  const std::vector<std::string>& parameters = header().parameter_names;
+  if (scales.size() <= 1 + header().state_names.size()) return "";
+  return std::find(parameters.begin(), parameters.end(), scales.back()) == parameters.end() ? "" : scales.back();
 }
 
 std::vector<double> Archive::modes(std::size_t orbit) const {

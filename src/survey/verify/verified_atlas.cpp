@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -66,7 +67,13 @@ VerifiedAtlas::VerifiedAtlas(archive::Archive&& open)
 }
 
 loop::Loop VerifiedAtlas::loop(std::size_t orbit) const {
-  return loop::in_scales(archive::loop_of(*_archive, orbit, _system->structure().angles), _system->scales());
+  loop::Loop found = archive::loop_of(*_archive, orbit, _system->structure().angles);
+  const bool moves = !_system->family_scalars().free.empty();
+  if (moves && found.parameters.empty())
+    throw core::InputError(fmt::format("{}: row {} of /orbits: `parameter` is not a number, though families move in it",
+                                       _archive->path().string(), orbit));
+  if (!moves) found.parameters.clear();  // which the checks of the columns object to
+  return loop::in_scales(std::move(found), _system->scales());
 }
 
 bool VerifiedAtlas::has_reversor(std::size_t family) const {
