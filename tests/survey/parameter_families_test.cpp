@@ -2,14 +2,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
+#include <functional>
 #include <numbers>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include "orbweaver/survey/verify/verify.hpp"
 #include "survey/atlas.hpp"
+#include "survey/atlas_records.hpp"
 
 namespace {
 
@@ -28,11 +34,8 @@ TEST(ParameterFamilies, VanDerPolHasTheKnownPeriods) {
   const test::Atlas atlas(summary.atlas);
   const std::vector<double> mu = atlas.column("parameter", "Cycle");
   const std::vector<double> period = atlas.column("period", "Cycle");
-  const std::vector<double> step = [&] {
-    const auto& steps = atlas.orbits().integers("step");
-    return std::vector<double>(steps.begin(), steps.end());
-  }();
-  const auto start = static_cast<std::size_t>(std::find(step.begin(), step.end(), 0.0) - step.begin());
+  const auto& steps = atlas.orbits().integers("step");
+  const auto start = static_cast<std::size_t>(std::find(steps.begin(), steps.end(), 0) - steps.begin());
   ASSERT_LT(start, mu.size());
   EXPECT_GT(start, 0U) << "it runs to both sides";
   EXPECT_EQ(mu[start], 1.0);
@@ -141,6 +144,40 @@ TEST(ParameterFamilies, DuffingFoldsWhereTrajectoriesJump) {
   EXPECT_LT(late_amplitude(states[0], frequencies[0] + beside), weak);
   EXPECT_LT(late_amplitude(states[1], frequencies[1] + beside), weak);
   EXPECT_GT(late_amplitude(states[1], frequencies[1] - beside), strong);
+}
+
+/// Duffing's response, and copies of it with changed numbers and checksums that match them.
+TEST(ParameterFamilies, ChangedNumbersAreFound) {
+  constexpr double part = 1e-8;
+  const core::Communicator comm;
+  const survey::Summary summary = test::run(comm, scene_of("duffing.yaml"), "response");
+  const test::Atlas atlas(summary.atlas);
+  const archive::Records records = test::complete_records_of(atlas);
+  const auto named = [&](const archive::Records& changed) {
+    const auto folder = test::fresh_folder(fmt::format("changed{}", comm.size()), comm.get());
+    if (comm.is_root()) test::write_sample_atlas(folder, atlas.header(), changed);
+    MPI_Barrier(comm.get());
+    std::set<std::string> rows;
+    for (const survey::Objection& objection : survey::verify(comm, folder / "atlas.h5").objections)
+      rows.insert(fmt::format("{} {}", objection.table, objection.row));
+    return rows;
+  };
+  EXPECT_TRUE(named(records).empty()) << fmt::format("{}", fmt::join(named(records), "; "));
+  const std::vector<std::pair<std::string, std::function<void(archive::Records&)>>> changes{
+      {"orbits 5", [](auto& r) { r.orbits[5].parameter *= 1.0 + part; }},
+      {"orbits 12", [](auto& r) { r.orbits[12].period *= 1.0 + part; }},
+      {"orbits 20", [](auto& r) { r.orbits[20].modes[r.orbits[20].modes.size() / 3] += part; }},
+      {"orbits 30", [](auto& r) { r.orbits[30].stability[0] += part; }},
+      {"orbits 40", [](auto& r) { r.orbits[40].parameter = archive::not_computed; }},
+      {"crossings 0", [](auto& r) { r.crossings[0].parameter *= 1.0 + part; }},
+      {"crossings 1", [](auto& r) { r.crossings[1].period *= 1.0 + part; }},
+  };
+  archive::Records changed = records;
+  for (const auto& [place, change] : changes) change(changed);
+  const std::set<std::string> found = named(changed);
+  if (!comm.is_root()) return;
+  for (const auto& [place, change] : changes)
+    EXPECT_TRUE(found.contains(place)) << place << "; found were " << fmt::format("{}", fmt::join(found, "; "));
 }
 
 }  // namespace
