@@ -65,7 +65,8 @@ inline archive::Records records_of(const Atlas& atlas) {
     orbit.energy = orbits.reals("energy")[row];
     orbit.action = orbits.reals("action")[row];
     orbit.parameter = orbits.reals("parameter")[row];
-    orbit.winding = row_of(atlas, "winding", row, atlas.header().winding_names.size());
+    if (const std::size_t angles = atlas.header().winding_names.size(); angles > 0)
+      orbit.winding = row_of(atlas, "winding", row, angles);
     orbit.cutoff = static_cast<int>(orbits.integers("cutoff")[row]);
     orbit.loss_rms = orbits.reals("loss_rms")[row];
     const std::size_t width = archive::stability_width(atlas.header());
