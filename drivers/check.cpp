@@ -260,13 +260,6 @@ void print_outputs(const scene::Scene& scene, const systems::System& system) {
        {"flush", fmt::format("every {} s or {} orbits", scene.output.flush_seconds, scene.output.flush_orbits)}});
 }
 
-void print_not_built(const scene::Scene& scene) {
-  const std::vector<std::string> sentences = scene::not_built_yet(scene);
-  if (sentences.empty()) return;
-  fmt::print("\nNot built yet:\n");
-  for (const std::string& sentence : sentences) fmt::print("  - {}\n", sentence);
-}
-
 int check(const SceneOptions& options, const Invocation& invocation) {
   if (!invocation.petsc_options.empty())
     throw core::InputError(
@@ -286,7 +279,6 @@ int check(const SceneOptions& options, const Invocation& invocation) {
   print_limits(scene, system.structure());
   print_events(scene);
   print_outputs(scene, system);
-  print_not_built(scene);
   print_result("");  // throws if what was printed cannot be written
   return 0;
 }

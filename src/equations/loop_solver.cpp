@@ -107,7 +107,8 @@ Eigen::VectorXd LoopSolver::run(const LoopEquations& equations, const Eigen::Vec
   core::check(KSPGetResidualNorm(k.ksp.get(), &residual), "KSPGetResidualNorm");
   _iterations += static_cast<int>(iterations);
   Eigen::VectorXd x = loss::to_eigen(k.solution.get());
-  if (!x.allFinite() || !(residual <= accuracy.accepted * right_side.norm() + zero))
+  const double accepted = accuracy.accepted * right_side.norm() + accuracy.of_solution * x.norm() + zero;
+  if (!x.allFinite() || !(residual <= accepted))
     throw core::NumericalError(
         "GMRES on the loop equations does not converge: the orbit is near a point where they are singular");
   return x;

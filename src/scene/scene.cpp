@@ -110,15 +110,4 @@ Scene load(const std::filesystem::path& file, const std::vector<std::string>& ov
   return parse(read_file(file), file.string(), overrides);
 }
 
-std::vector<std::string> not_built_yet(const Scene& scene) {
-  std::vector<std::string> sentences;
-  const auto say = [&](bool asked, const std::string& sentence) {
-    if (asked) sentences.push_back(sentence);
-  };
-  say(!scene.section.coordinate.empty(),
-      fmt::format("section: crossings of the Poincare section {} = {:g} are not computed yet.",
-                  scene.section.coordinate, scene.section.value));
-  return sentences;
-}
-
 }  // namespace orbweaver::scene

@@ -228,7 +228,7 @@ SingularTriplets smallest_singular_triplets(const equations::LoopEquations& equa
   core::require(options.count >= 1 && options.count <= free, "between one and all singular triplets can be asked for");
   Inverse inverse{equations,
                   equations::LoopSolver(equations.size(), "spectrum_inner_"),
-                  {options.inner_tolerance, 1.0},
+                  {options.inner_tolerance, 1.0, share_of_rate * equations.linearization().rate()},
                   Eigen::MatrixXd(unknowns, 0),
                   Eigen::MatrixXd(rows, 0)};
 

@@ -6,6 +6,7 @@
 
 #include "continuation/families.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/equations/loop_solver.hpp"
 #include "orbweaver/loss/assembled.hpp"
 #include "orbweaver/spectrum/eigenpairs.hpp"
 #include "orbweaver/spectrum/loop_triplets.hpp"
@@ -143,6 +144,35 @@ TEST(LoopTriplets, KeepFiveDigitsOfATinyValueThatEigenvaluesOfHLose) {
       near.slice.reduce_symmetric(loss::assemble_hessian(linearization, near.unknowns, loss::Curvature::gauss_newton));
   const double squared = 2.0 * free.values[0] * free.values[0];
   EXPECT_GT(std::abs(smallest_eigenpairs(h, {.count = 1}).values[0] - squared), 0.01 * squared);
+}
+
+// The residual's rounding grows with the solution, which beside a kernel is 1e10 times the right side and more: GMRES
+// meets no share of the right side there, and its solution is the null vector all the same.
+TEST(LoopTriplets, SolvesBesideAFlatDirectionAreJudgedByTheirSolution) {
+  const std::string flat = flat_sector();
+  ASSERT_EQ(flat.size(), 2u) << flat;
+  const double out_of_reach = 1e-30;
+  for (const std::string& sector : {flat, std::string("--")}) {
+    const Problem problem(in_phase_at(crossing), sector);
+    const loop::Subspace image = problem.unknowns.subspace.image();
+    equations::LoopEquations equations(*problem.system, problem.loop, problem.unknowns, image, problem.slice);
+    equations.factor(*problem.system, problem.loop);
+    equations::LoopSolver solver(equations.size(), "test_");
+    Eigen::VectorXd b(equations.size());
+    for (Eigen::Index n = 0; n < b.size(); ++n) b(n) = std::cos(1.0 + 2.0 * static_cast<double>(n));
+    const double share = 1e-9 * equations.linearization().rate();
+    EXPECT_THROW((void)solver.solve(equations, b, {1e-7, out_of_reach}), core::NumericalError) << sector;
+    if (sector != flat) {
+      EXPECT_THROW((void)solver.solve(equations, b, {1e-7, out_of_reach, share}), core::NumericalError) << sector;
+      continue;
+    }
+    const Eigen::VectorXd x = solver.solve(equations, b, {1e-7, out_of_reach, share}).normalized();
+    Eigen::VectorXd ax(x.size());
+    equations.apply(x, ax);
+    EXPECT_LT(ax.norm(), 2.0 * share);
+    const Eigen::VectorXd v = problem.dense(1).right.col(0);
+    EXPECT_NEAR(std::abs(v.dot(x.head(v.size()))), 1.0, 1e-8);
+  }
 }
 
 // Where the smallest value is 0 to rounding, solves hold nothing but its vector: the next one must come out all the

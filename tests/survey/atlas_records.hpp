@@ -105,6 +105,13 @@ inline archive::Records complete_records_of(const Atlas& atlas) {
     orbit.tail = atlas.orbits().reals("tail")[row];
     orbit.off_branch_eigenvalue = atlas.orbits().reals("off_branch_eigenvalue")[row];
   }
+  const archive::Table& sections = atlas.sections();
+  for (std::size_t row = 0; row < sections.rows(); ++row) {
+    const archive::OrbitRecord& orbit = records.orbits[static_cast<std::size_t>(sections.integers("orbit")[row])];
+    const auto first = sections.reals("state").begin() + static_cast<std::ptrdiff_t>(row * d);
+    records.sections.push_back(
+        {orbit.family_key, orbit.step, sections.reals("time")[row], {first, first + static_cast<std::ptrdiff_t>(d)}});
+  }
   for (std::size_t row = 0; row < records.families.size(); ++row) {
     records.families[row].end_family_key = key_of(atlas.families().integers("end_family")[row]);
     records.families[row].end_crossing = static_cast<int>(atlas.families().integers("end_crossing")[row]);

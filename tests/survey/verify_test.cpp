@@ -46,7 +46,8 @@ class VerifyOf : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     world = std::make_unique<core::Communicator>();
-    const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/henon_heiles.yaml", {});
+    const scene::Scene scene =
+        scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/henon_heiles.yaml", {"section={coordinate: y, value: 0.05}"});
     whole = test::run(*world, scene, "verify").atlas;
     const test::Atlas atlas(whole);
     header = atlas.header();
@@ -93,11 +94,14 @@ TEST_F(VerifyOf, TheSurveyItselfHolds) {
     EXPECT_TRUE(found.has_checksums);
     EXPECT_TRUE(found.is_computed);
     EXPECT_EQ(found.orbits, static_cast<std::int64_t>(records.orbits.size()));
+    EXPECT_EQ(found.sections, static_cast<std::int64_t>(records.sections.size()));
+    EXPECT_GT(found.sections, 2 * found.orbits);
     std::set<std::string> columns;
     for (const survey::Margin& margin : found.margins) columns.insert(margin.column);
-    for (const char* column : {"orbits/loss_rms", "orbits/arclength", "orbits/energy", "orbits/action", "orbits/state",
-                               "orbits/stability", "orbits/fundamental_stability", "orbits/closure", "orbits/dW/dE",
-                               "crossings/period", "crossings/energy", "crossings/test_value", "crossings/state"})
+    for (const char* column :
+         {"orbits/loss_rms", "orbits/arclength", "orbits/energy", "orbits/action", "orbits/state", "orbits/stability",
+          "orbits/fundamental_stability", "orbits/closure", "orbits/dW/dE", "crossings/period", "crossings/energy",
+          "crossings/test_value", "crossings/state", "sections/time", "sections/state"})
       EXPECT_TRUE(columns.contains(column)) << column;
   }
 }
@@ -211,6 +215,25 @@ TEST_F(VerifyOf, NumbersOfCrossingsChangedByAPartInABillionAreFound) {
   for (std::size_t row = 0; row < changes.size(); ++row)
     EXPECT_TRUE(named(found).contains(fmt::format("crossings {}", row))) << changes[row].first << "; found were:\n"
                                                                          << text_of(found);
+}
+
+TEST_F(VerifyOf, PointsOfTheSectionThatWereMovedOrLeftOutAreFound) {
+  ASSERT_GE(records.sections.size(), 30U);
+  archive::Records changed = records;
+  changed.sections[5].time *= 1.0 + promised;
+  changed.sections[11].state[2] += 2.0 * promised;
+  // Of the orbit that the rows from 20 on belong to, one is gone.
+  const std::string family = changed.sections[20].family_key;
+  const int step = changed.sections[20].step;
+  changed.sections.erase(changed.sections.begin() + 20);
+  const Verification found = verified(changed);
+  if (!world->is_root()) return;
+  EXPECT_TRUE(named(found).contains("sections 5")) << text_of(found);
+  EXPECT_TRUE(named(found).contains("sections 11")) << text_of(found);
+  const auto orbit = std::find_if(records.orbits.begin(), records.orbits.end(), [&](const archive::OrbitRecord& row) {
+    return row.family_key == family && row.step == step;
+  });
+  EXPECT_TRUE(named(found).contains(fmt::format("orbits {}", orbit - records.orbits.begin()))) << text_of(found);
 }
 
 /// A family's first orbit lies up to three steps from its birth, where its crossings are not found from orbits beside

@@ -13,10 +13,13 @@ namespace orbweaver::equations {
 /// by itself on the same numbers, and what they exchange is the equations' alone (core::Team).
 class LoopSolver {
  public:
-  /// Relative residuals: asked for, and still accepted where rounding stops GMRES earlier.
+  /// Residuals relative to the right side: asked for, and still accepted where rounding stops GMRES earlier. Beside a
+  /// kernel at rounding the solution is so large that its own rounding exceeds the right side: a residual is accepted
+  /// as well that is no more than `of_solution` (a rate) times the solution, which inverse iterations ask for.
   struct Accuracy {
     double wanted = 1e-8;
     double accepted = 1e-5;
+    double of_solution = 0.0;
   };
 
   LoopSolver(int size, const char* options_prefix);

@@ -144,7 +144,4 @@ struct Scene {
 [[nodiscard]] Scene parse(const std::string& text, const std::string& origin,
                           const std::vector<std::string>& overrides = {});
 
-/// What the scene asks for that this version does not compute yet, one sentence each (empty: everything is built).
-[[nodiscard]] std::vector<std::string> not_built_yet(const Scene& scene);
-
 }  // namespace orbweaver::scene

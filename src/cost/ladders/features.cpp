@@ -14,6 +14,7 @@
 #include "orbweaver/continuation/family_curve.hpp"
 #include "orbweaver/continuation/off_branch.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/passages.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
 #include "timing.hpp"
 
@@ -128,6 +129,10 @@ void measure(const Setting& setting, const Take& take) {
       if (level == certificate::Level::closure && once > 0.0) most_closure = std::max(most_closure, seconds / once);
       if (level == certificate::Level::full) most_full = std::max(most_full, seconds / (here[n] + stability));
     }
+    // Through the mean of the first coordinate, which every orbit that moves in it passes.
+    prices.add("section", orbit, [&] {
+      static_cast<void>(loop::passages(orbit, 0, orbit.cosine(0, 0), system.structure().is_angle(0)));
+    });
     prices.add("off-branch eigenvalue", orbit,
                [&] { static_cast<void>(continuation::off_branch_eigenvalue(system, orbit, isotropy, tangent)); });
   }
@@ -150,7 +155,6 @@ void measure(const Setting& setting, const Take& take) {
     table.rows.push_back({"location", {}, {}, {}, {}, "no multiplier passes a root of unity on this family"});
     table.rows.push_back({"kernel", {}, {}, {}, {}, "no crossing"});
   }
-  table.rows.push_back({"section", {}, {}, {}, {}, "crossings of a section are not computed yet"});
   table.remarks.emplace_back(fmt::format(
       "an orbit of this branch takes {:.3g} ms, `orbits`: the price in them; `orbit`: one of those up to there",
       1e3 * an_orbit));
@@ -164,7 +168,7 @@ void measure(const Setting& setting, const Take& take) {
 
 }  // namespace
 
-const Ladder features_ladder{"features", "the price of stability, certificate, off-branch eigenvalue, location, kernel",
-                             measure};
+const Ladder features_ladder{
+    "features", "the price of stability, certificate, off-branch eigenvalue, location, kernel, section", measure};
 
 }  // namespace orbweaver::cost

@@ -15,8 +15,10 @@
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/bifurcation/family_jump.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/symmetry/standard_phase.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "requested.hpp"
+#include "section_rows.hpp"
 #include "tasks/payload/keys.hpp"
 
 namespace orbweaver::survey {
@@ -405,8 +407,11 @@ void BranchTask::store(continuation::Orbit orbit, const std::optional<spectrum::
   // The other side of a crossing: counted backwards from it.
   orbit.step = _work.lineage.side > 0 ? _outcome.orbits : -1 - _outcome.orbits;
   orbit.arclength = signed_arclength(_work.lineage, _before_first, _curve.arclength_at(orbit.arclength));
-  _rows.orbits.push_back(orbit_row(*_system, _work.lineage.family, orbit, _start.isotropy, stability,
-                                   _certifier ? &*_certifier : nullptr));
+  const loop::Loop stored = loop::in_standard_phase(_system->structure(), orbit.loop, _start.isotropy);
+  _rows.orbits.push_back(
+      orbit_row(*_system, _work.lineage.family, orbit, stored, stability, _certifier ? &*_certifier : nullptr));
+  for (archive::SectionRecord& row : section_rows(_scene.section, *_system, stored, _work.lineage.family, orbit.step))
+    _rows.sections.push_back(std::move(row));
   ++_outcome.orbits;
 }
 

@@ -9,7 +9,6 @@
 #include "orbweaver/continuation/left_open.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/in_units.hpp"
-#include "orbweaver/loop/symmetry/standard_phase.hpp"
 #include "orbweaver/loss/linearization.hpp"
 #include "stability_columns.hpp"
 
@@ -52,9 +51,8 @@ double residual_of(const systems::System& system, const loop::Loop& stored, doub
 }  // namespace
 
 archive::OrbitRecord orbit_row(const systems::System& system, const std::string& family,
-                               const continuation::Orbit& orbit, const loop::Isotropy& isotropy,
+                               const continuation::Orbit& orbit, const loop::Loop& stored,
                                const std::optional<spectrum::Stability>& stability, certificate::Certifier* certifier) {
-  const loop::Loop stored = loop::in_standard_phase(system.structure(), orbit.loop, isotropy);
   archive::OrbitRecord row;
   row.family_key = family;
   row.step = orbit.step;

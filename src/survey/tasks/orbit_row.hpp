@@ -21,9 +21,10 @@ namespace orbweaver::survey {
 [[nodiscard]] std::string not_told_apart(const systems::System& system, const loop::Loop& orbit,
                                          const loop::Loop* neighbour, const loop::Isotropy& isotropy, core::Team* team);
 
-/// The row of an accepted orbit, with its certificate if `certifier` is given; s = 0 as docs/file_format.md has it.
+/// The row of an accepted orbit, with its certificate if `certifier` is given. `stored`: its loop in standard phase
+/// (loop::in_standard_phase).
 [[nodiscard]] archive::OrbitRecord orbit_row(const systems::System& system, const std::string& family,
-                                             const continuation::Orbit& orbit, const loop::Isotropy& isotropy,
+                                             const continuation::Orbit& orbit, const loop::Loop& stored,
                                              const std::optional<spectrum::Stability>& stability,
                                              certificate::Certifier* certifier);
 

@@ -12,8 +12,9 @@
 #include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
-#include "orbweaver/loop/symmetry/shift_search.hpp"
 #include "orbweaver/loop/symmetry/isotropy_text.hpp"
+#include "orbweaver/loop/symmetry/shift_search.hpp"
+#include "orbweaver/scene/in_scales.hpp"
 #include "orbweaver/survey/atlas/stored_orbits.hpp"
 #include "orbweaver/survey/run/scaled_scene.hpp"
 #include "orbweaver/systems/registry.hpp"
@@ -103,6 +104,11 @@ bool VerifiedAtlas::is_requested(std::size_t orbit) const {
   const auto& events = _scene.events;
   return std::any_of(events.periods.begin(), events.periods.end(), near(_archive->orbits().reals("period")[orbit])) ||
          std::any_of(events.energies.begin(), events.energies.end(), near(_archive->orbits().reals("energy")[orbit]));
+}
+
+scene::Section VerifiedAtlas::section() const {
+  if (_archive->format_minor() < archive::sections_since) return {};
+  return scene::in_scales(_scene, *_system, _system->scales()).section;
 }
 
 certificate::Level VerifiedAtlas::certificate_level() const {

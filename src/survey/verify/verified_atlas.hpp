@@ -24,6 +24,8 @@ class VerifiedAtlas {
   [[nodiscard]] const archive::Archive& archive() const { return *_archive; }
   [[nodiscard]] const AtlasTree& tree() const { return *_tree; }
   [[nodiscard]] const scene::Scene& scene() const { return _scene; }
+  /// In the system's scales. No section, with an empty coordinate, too where the archive is older than its rows.
+  [[nodiscard]] scene::Section section() const;
   [[nodiscard]] const std::shared_ptr<const systems::System>& system() const { return _system; }
   [[nodiscard]] const loop::Isotropy& isotropy(std::size_t family) const { return _isotropies[family]; }
 

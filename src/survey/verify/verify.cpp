@@ -58,7 +58,8 @@ std::vector<queue::Task> tasks_of(const VerifiedAtlas& atlas) {
     add_blocks(What::orbits, first, first + static_cast<std::int64_t>(family.orbits()), orbits_a_task, tasks);
   }
   add_blocks(What::crossings, 0, static_cast<std::int64_t>(atlas.archive().crossings().rows()), 1, tasks);
-  add_blocks(What::sections, 0, static_cast<std::int64_t>(atlas.archive().sections().rows()), sections_a_task, tasks);
+  if (!atlas.section().coordinate.empty())
+    add_blocks(What::sections, 0, static_cast<std::int64_t>(atlas.archive().orbits().rows()), sections_a_task, tasks);
   return tasks;
 }
 

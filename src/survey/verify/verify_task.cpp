@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "tasks/payload/payload.hpp"
+#include "tasks/section_rows.hpp"
 #include "verify/crossing_check.hpp"
 #include "verify/orbit_check.hpp"
 
@@ -70,18 +72,33 @@ void VerifyExecutor::check_checksums(const VerifyWork& work, Findings& findings)
   }
 }
 
+/// What the section has of orbits [first, end).
 void VerifyExecutor::check_sections(const VerifyWork& work, Findings& findings) {
   const archive::Table& table = atlas().archive().sections();
+  const std::vector<std::int64_t>& orbits = table.integers("orbit");
+  const systems::System& system = *atlas().system();
   const std::size_t d = atlas().archive().header().state_names.size();
-  for (std::int64_t at = work.first; at < work.end; ++at) {
-    const auto row = static_cast<std::size_t>(at);
-    Claims claims(findings, "sections", at);
-    const loop::Loop loop = atlas().loop(static_cast<std::size_t>(table.integers("orbit")[row]));
-    const std::vector<double> state = loop::state_at(loop, table.reals("time")[row] / atlas().system()->scales().time);
-    for (std::size_t i = 0; i < d; ++i) {
-      const double unit = atlas().system()->scales().coordinate(i);
-      claims.agree("state", table.reals("state")[row * d + i], state[i] * unit,
-                   same_point * (unit + std::abs(state[i] * unit)));
+  const scene::Section section = atlas().section();
+  for (std::int64_t orbit = work.first; orbit < work.end; ++orbit) {
+    const auto [begin, end] = std::equal_range(orbits.begin(), orbits.end(), orbit);
+    const loop::Loop loop = atlas().loop(static_cast<std::size_t>(orbit));
+    const std::vector<double> times = section_times(section, system, loop);
+    Claims(findings, "orbits", orbit)
+        .expect(static_cast<std::size_t>(end - begin) == times.size(), "sections",
+                fmt::format("has {} rows of this orbit, which passes {} = {:.9g} {} times", end - begin,
+                            section.coordinate, atlas().scene().section.value, times.size()));
+    const double size = loop::rms_size(loop);
+    for (auto row = static_cast<std::size_t>(begin - orbits.begin());
+         row < static_cast<std::size_t>(end - orbits.begin()); ++row) {
+      Claims claims(findings, "sections", static_cast<std::int64_t>(row));
+      const std::vector<double> state = loop::state_at(loop, table.reals("time")[row] / system.scales().time);
+      claims.below("time", section_distance(section, system, state), same_point * (1.0 + size),
+                   "the distance from the section at that time");
+      for (std::size_t i = 0; i < d; ++i) {
+        const double unit = system.scales().coordinate(i);
+        claims.agree("state", table.reals("state")[row * d + i], state[i] * unit,
+                     same_point * (unit + std::abs(state[i] * unit)));
+      }
     }
   }
 }
