@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -16,9 +17,11 @@
 #include "orbweaver/scene/in_scales.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/starts/natural_scales.hpp"
+#include "orbweaver/systems/field_cost.hpp"
 #include "orbweaver/systems/identities.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
+#include "structure_text.hpp"
 
 namespace orbweaver::drivers {
 
@@ -41,14 +44,13 @@ std::string value_text(const systems::System& system, std::size_t coordinate, do
   return system.structure().is_angle(coordinate) ? in_degrees(value) : fmt::format("{:.6g}", value);
 }
 
-std::string parameter_text(const systems::System& system, const std::string& name, double value) {
+std::string value_of_parameter(const systems::System& system, const std::string& name, double value) {
   std::vector<systems::Parameter> known = system.info().parameters;
   for (const systems::Effect& effect : system.info().effects)
     known.insert(known.end(), effect.parameters.begin(), effect.parameters.end());
   const auto found =
       std::find_if(known.begin(), known.end(), [&](const systems::Parameter& p) { return p.name == name; });
-  if (found == known.end()) return fmt::format("{} = {}", name, value);
-  return fmt::format("{} = {}{} ({})", name, value, found->unit == "1" ? "" : " " + found->unit, found->meaning);
+  return found == known.end() ? fmt::format("{} = {}", name, value) : parameter_text(*found, value);
 }
 
 std::string scales_text(const scene::Scene& scene, const systems::System& system) {
@@ -74,11 +76,49 @@ void print_system(const scene::Scene& scene, const systems::System& system) {
     coordinates.push_back(system.info().state_names[i] + (system.structure().is_angle(i) ? " (angle)" : ""));
   Lines lines{{"coordinates", fmt::format("{}", fmt::join(coordinates, ", "))}};
   for (const auto& [name, value] : system.parameters())
-    lines.emplace_back(lines.size() == 1 ? "parameters" : "", parameter_text(system, name, value));
+    lines.emplace_back(lines.size() == 1 ? "parameters" : "", value_of_parameter(system, name, value));
   const auto& effects = scene.system.effects;
   lines.emplace_back("effects", effects.empty() ? "none" : fmt::format("{}", fmt::join(effects, ", ")));
   lines.emplace_back("scales", scales_text(scene, system));
   print_group(fmt::format("System: {} ({})", system.info().title, system.info().name), lines);
+}
+
+/// Equilibria of the system or, since nothing driven stands still, of the ideal one, with the phase 0.
+std::vector<std::vector<double>> resting_points(const scene::Scene& scene, const systems::System& system) {
+  if (!system.structure().driven) return starts::find_fixed_points(system, scene.fixed_points.grid);
+  std::map<std::string, double> parameters;
+  for (const systems::Parameter& parameter : system.info().parameters)
+    parameters[parameter.name] = system.parameters().at(parameter.name);
+  const auto ideal = systems::make_system(scene.system.name, parameters);
+  std::vector<std::vector<double>> grid = scene.fixed_points.grid;
+  if (grid.size() > static_cast<std::size_t>(ideal->dimension()))
+    grid.resize(static_cast<std::size_t>(ideal->dimension()));
+  std::vector<std::vector<double>> points = starts::find_fixed_points(*ideal, grid);
+  for (std::vector<double>& point : points) point.push_back(0.0);
+  return points;
+}
+
+/// Of the system's field beside the ideal one's.
+std::string price_text(const scene::Scene& scene, const systems::System& system, std::vector<double> point) {
+  const systems::FieldCost cost = systems::field_cost(system, point);
+  const auto ideal = systems::make_system(scene.system.name);
+  point.resize(static_cast<std::size_t>(ideal->dimension()));
+  const systems::FieldCost least = systems::field_cost(*ideal, point);
+  return fmt::format("field {:.2g} ns a node, with its Jacobian {:.2g}; the ideal system {:.2g} and {:.2g}", cost.field,
+                     cost.field_and_jacobian, least.field, least.field_and_jacobian);
+}
+
+void print_simulated(const scene::Scene& scene, const systems::System& system,
+                     const std::vector<std::vector<double>>& points) {
+  Lines lines{{"terms", system.info().meaning}};
+  for (const systems::Effect& effect : system.info().effects)
+    if (std::count(scene.system.effects.begin(), scene.system.effects.end(), effect.name) > 0)
+      lines.emplace_back("", fmt::format("{}: {}", effect.name, effect.meaning));
+  lines.emplace_back("dimension", fmt::format("{} coordinates", system.dimension()));
+  const Lines holds = structure_lines(system.info(), system.structure());
+  lines.insert(lines.end(), holds.begin(), holds.end());
+  if (!points.empty()) lines.emplace_back("price", price_text(scene, system, points.front()));
+  print_group("Simulated", lines);
 }
 
 std::string name_list(const scene::FixedPoints& points, const std::vector<std::string>& names) {
@@ -111,8 +151,9 @@ void print_starts(const scene::Scene& scene, const systems::System& system) {
     axes.push_back(fmt::format("{} = {}", system.info().state_names[i], fmt::join(texts, ", ")));
     count *= values.size();
   }
-  Lines lines{{"equilibria", fmt::format("Newton's method from {} point{}: {}", count, count == 1 ? "" : "s",
-                                         fmt::join(axes, "; "))}};
+  Lines lines{{"equilibria", system.structure().driven ? std::string("none: the phase of the drive never stands still")
+                                                       : fmt::format("Newton's method from {} point{}: {}", count,
+                                                                     count == 1 ? "" : "s", fmt::join(axes, "; "))}};
   for (const scene::FixedPoints::Names& named : points.names) {
     std::vector<std::string> texts;
     for (std::size_t i = 0; i < named.point.size(); ++i) texts.push_back(value_text(system, i, named.point[i]));
@@ -226,31 +267,25 @@ void print_outputs(const scene::Scene& scene, const systems::System& system) {
        {"flush", fmt::format("every {} s or {} orbits", scene.output.flush_seconds, scene.output.flush_orbits)}});
 }
 
-void print_not_built(const scene::Scene& scene) {
-  const std::vector<std::string> sentences = scene::not_built_yet(scene);
-  if (sentences.empty()) return;
-  fmt::print("\nNot built yet:\n");
-  for (const std::string& sentence : sentences) fmt::print("  - {}\n", sentence);
-}
-
 int check(const SceneOptions& options, const Invocation& invocation) {
   if (!invocation.petsc_options.empty())
     throw core::InputError(
         fmt::format("check: expected no PETSc options, got `{}`; it follows no family, so drop `--` and what follows",
                     fmt::join(invocation.petsc_options, " ")));
   const scene::Scene scene = options.load();
-  const auto bound = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  const auto bound = scene::bound_system(scene.system);
   const systems::System& system = *bound;
-  systems::require_identities(system, starts::find_fixed_points(system, scene.fixed_points.grid));
+  const std::vector<std::vector<double>> points = resting_points(scene, system);
+  systems::require_identities(system, points);
   fmt::print("{}: a valid scene, \"{}\"\n", core::printable(options.file.string()), scene.name);
   print_system(scene, system);
+  print_simulated(scene, system, points);
   print_starts(scene, system);
   print_continuation(scene, system);
   print_survey(scene);
   print_limits(scene, system.structure());
   print_events(scene);
   print_outputs(scene, system);
-  print_not_built(scene);
   print_result("");  // throws if what was printed cannot be written
   return 0;
 }

@@ -33,6 +33,7 @@ Command make_refine_command(CLI::App& program);
 Command make_show_command(CLI::App& program);
 Command make_survey_command(CLI::App& program);
 Command make_sweep_command(CLI::App& program);
+Command make_systems_command(CLI::App& program);
 Command make_verify_command(CLI::App& program);
 
 }  // namespace orbweaver::drivers

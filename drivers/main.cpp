@@ -26,6 +26,7 @@ std::vector<Command> add_commands(CLI::App& program) {
       make_check_command(program),  make_compare_command(program), make_consolidate_command(program),
       make_cost_command(program),   make_page_command(program),    make_refine_command(program),
       make_show_command(program),   make_survey_command(program),  make_sweep_command(program),
+      make_systems_command(program),
       make_verify_command(program),
   };
 }

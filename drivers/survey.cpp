@@ -72,10 +72,7 @@ int survey_on(const core::Communicator& comm, const Options& options) {
                                failed ? ", with failures (orbweaver show says which)" : ""));
     return static_cast<int>(failed ? core::ExitStatus::goal_missed : core::ExitStatus::done);
   }
-  if (comm.is_root())
-    for (const std::string& sentence : scene::not_built_yet(scene))
-      core::log_warning(fmt::format("not built yet: {}", sentence));
-  const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  const auto system = scene::bound_system(scene.system);
   const survey::Summary summary =
       alike_on_all_ranks(comm, [&] { return survey::run_survey(comm, scene, system, options.directory, run_options); });
   agree(comm, [&] {

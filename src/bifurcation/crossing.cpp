@@ -8,6 +8,7 @@
 
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/system_at.hpp"
 #include "orbweaver/numerics/locate.hpp"
 
 namespace orbweaver::bifurcation {
@@ -19,6 +20,11 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 /// An extremum nearer than this share to an end of the interval is the end's: Brent's method stops there where the
 /// function has none within.
 constexpr double off_ends = 1e-3;
+
+double slope(const systems::System& system, Event::Kind kind, const continuation::CurvePoint& point) {
+  if (kind == Event::Kind::fold_period) return period_slope(point);
+  return kind == Event::Kind::fold_energy ? energy_slope(system, point) : parameter_slope(point);
+}
 
 class EventFunction {
  public:
@@ -49,10 +55,8 @@ class EventFunction {
     }
     if (_event.kind == Event::Kind::test_function)
       out.reading = evaluate(_event.function, _system.structure(), out.stability);
-    else if (_event.kind == Event::Kind::fold_period)
-      out.reading = {period_slope(out.point), 0.0};
     else
-      out.reading = {energy_slope(_system, out.point), 0.0};
+      out.reading = {slope(_system, _event.kind, out.point), 0.0};
     if (std::isnan(out.reading.value))
       return without_value(NotLocated::Reason::no_value, position, out.point.loop.period);
     return out;
@@ -84,6 +88,7 @@ std::optional<numerics::Located> extremum(const systems::System& system, continu
   const auto quantity = [&](double position) {
     const std::optional<continuation::CurvePoint> point = family.at(position);
     if (!point) return nan;
+    if (event.kind == Event::Kind::fold_parameter) return point->loop.parameters.front();
     return event.kind == Event::Kind::fold_period ? point->loop.period : continuation::energy_of(system, point->loop);
   };
   const double ends = 0.5 * (quantity(from) + quantity(to));
@@ -100,21 +105,37 @@ std::optional<numerics::Located> extremum(const systems::System& system, continu
 
 double period_slope(const continuation::CurvePoint& point) { return point.tangent.period(); }
 
+double parameter_slope(const continuation::CurvePoint& point) {
+  core::require(point.tangent.scalars.size() > 1, "a parameter folds where one moves");
+  return point.tangent.scalars[1];
+}
+
 double energy_slope(const systems::System& system, const continuation::CurvePoint& point) {
   const std::vector<double> state = loop::state_at(point.loop, 0.0);
   const std::vector<double> change = loop::state_at(loop::perturbation(point.loop, point.tangent), 0.0);
   std::vector<double> gradient(state.size());
-  system.conserved_gradient(0, state, gradient);
+  loop::system_at(system, point.loop)->conserved_gradient(0, state, gradient);
   double slope = 0.0;
   for (std::size_t i = 0; i < state.size(); ++i) slope += gradient[i] * change[i];
   return slope;
 }
 
-Reading index_deviation(const spectrum::Stability& stability, const Sector& sector) {
+double level_slope(const systems::System& system, const continuation::CurvePoint& point) {
+  return system.family_scalars().free.empty() ? energy_slope(system, point) : parameter_slope(point);
+}
+
+Reading index_deviation(const systems::Structure& system, const spectrum::Stability& stability, const Sector& sector) {
   Reading nearest{nan, nan};
-  for (std::size_t n = 0; n < stability.fundamental.size(); ++n) {
-    const double deviation = stability.fundamental[n].real() - sector.index();
-    if (n == 0 || std::abs(deviation) < std::abs(nearest.value)) nearest = {deviation, stability.fundamental_error[n]};
+  double least = std::numeric_limits<double>::infinity();
+  const double value = sector.value(system.symplectic);
+  // Where energy is conserved without pairs the last one is the energy's own.
+  const std::size_t count = stability.fundamental.size() - (system.conservative() && !system.symplectic ? 1 : 0);
+  for (std::size_t n = 0; n < count; ++n) {
+    const double deviation = stability.fundamental[n].real() - value;
+    const double away = system.symplectic ? std::abs(deviation) : std::abs(stability.fundamental[n] - value);
+    if (n > 0 && !(away < least)) continue;
+    least = away;
+    nearest = {deviation, stability.fundamental_error[n]};
   }
   return nearest;
 }

@@ -120,7 +120,7 @@ bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop
   if (!start || !end) return true;
   for (const continuation::CurvePoint* point : {&*start, &*end})
     if (along_chord(*point, start->loop, end->loop) < options.least_cosine) return true;
-  return energy_slope(*system, *start) * energy_slope(*system, *end) > 0.0;
+  return level_slope(*system, *start) * level_slope(*system, *end) > 0.0;
 }
 
 }  // namespace orbweaver::bifurcation

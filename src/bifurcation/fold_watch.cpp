@@ -9,7 +9,7 @@ namespace orbweaver::bifurcation {
 
 namespace {
 
-/// Changes of T and E below this, relative to the largest modulus so far, are the corrector's tolerance.
+/// Changes of T, E and parameters below this, relative to the largest modulus so far, are the corrector's tolerance.
 constexpr double visible = 1e-10;
 
 /// True if the quantity has turned since `turn.before`.
@@ -36,10 +36,11 @@ void take(FoldWatch::Turn& turn, double position, double value, Fold::Quantity q
 
 }  // namespace
 
-std::vector<Fold> FoldWatch::advance(double at, double period_there, double energy_there) {
+std::vector<Fold> FoldWatch::advance(double at, double period_there, double energy_there, double parameter_there) {
   std::vector<Fold> folds;
   take(period, at, period_there, Fold::Quantity::period, folds);
   take(energy, at, energy_there, Fold::Quantity::energy, folds);
+  take(parameter, at, parameter_there, Fold::Quantity::parameter, folds);
   return folds;
 }
 

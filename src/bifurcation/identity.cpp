@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -182,11 +183,15 @@ Comparison compare(const systems::System& system, Chord chord, const loop::Loop&
 
 bool may_lie_between(const Orbit& a, const Orbit& b, const Orbit& x, double widening) {
   const double period = x.loop.period;
+  const auto parameter = [](const Orbit& orbit) {
+    return orbit.loop.parameters.empty() ? std::numeric_limits<double>::quiet_NaN() : orbit.loop.parameters.front();
+  };
   const auto between = [](double first, double second, double value, double margin) {
     return std::isnan(value) || std::isnan(first) || std::isnan(second) || is_between(first, second, value, margin);
   };
   return between(a.loop.period, b.loop.period, period, widening * period) &&
          between(a.energy, b.energy, x.energy, widening * std::abs(x.action) / period) &&
+         between(parameter(a), parameter(b), parameter(x), widening * std::abs(parameter(x))) &&
          between(a.action, b.action, x.action, widening * std::abs(x.action));
 }
 
@@ -201,7 +206,7 @@ Comparison same_family(const systems::System& system, const Orbit& a, const Orbi
   }
   if (!may_lie_between(a, b, primitive, options.widening)) {
     Comparison out;
-    out.detail = "period, energy or action out of range";
+    out.detail = "period, energy, parameter or action out of range";
     return out;
   }
   return compare(system, Chord(system, a, b, isotropy, options), primitive.loop, options);

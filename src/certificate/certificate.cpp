@@ -15,6 +15,7 @@
 #include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/loop/curve/system_at.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/taylor/flow.hpp"
@@ -58,7 +59,7 @@ double largest(const std::vector<Eigen::VectorXd>& vectors) {
   return largest;
 }
 
-/// Of the orbit's reach: where it returns by no more, what an error of the energy grows to is not asked for.
+/// Of the orbit's reach: where it returns by no more, what a displacement grows to is not asked for.
 constexpr double far_return = 1e-9;
 /// Of the reach: by how much a state is displaced to see it, a hundred times what the integrator's tolerance leaves.
 constexpr double displaced = 1e-11;
@@ -68,7 +69,7 @@ constexpr double displaced = 1e-11;
 class Certifier::Parts {
  public:
   Parts(const systems::System& system, const loop::Isotropy& isotropy, const Options& options)
-      : _system(system), _group(system.structure(), isotropy), _options(options) {
+      : _system(system), _isotropy(isotropy), _group(system.structure(), isotropy), _options(options) {
     core::require(options.segments >= 1, "a certificate needs at least one segment");
     int shifts = 1;
     for (const loop::SymmetryElement& element : _group.elements()) shifts = std::lcm(shifts, element.shift_denominator);
@@ -82,6 +83,12 @@ class Certifier::Parts {
       flow.digits = taylor_digits;
       _taylor.emplace(formulas->formulas(), flow);
     }
+  }
+
+  Certificate at_its_parameters(const loop::Loop& loop) {
+    const std::shared_ptr<const systems::System> here = loop::system_at(_system, loop);
+    if (here.get() == &_system) return certify(loop);
+    return Parts(*here, _isotropy, _options).certify(loop);
   }
 
   Certificate certify(const loop::Loop& loop) {
@@ -206,26 +213,52 @@ class Certifier::Parts {
     for (std::size_t m = 0; m < ends.size(); ++m) found.apart = std::max(found.apart, distance(ends[m], (*series)[m]));
   }
 
-  // NaN where the orbit is so unstable that the integration leaves the region where the system is defined. The
-  // displaced state goes along in the register of the orbit's own.
+  // Closure once around, and how much an error grows on the way. NaN where the orbit is so unstable that the integration
+  // leaves the region where the system is defined. A state displaced in the energy goes along in the register of the
+  // orbit's own.
   void once_around(Certificate& found) const {
     States starts{_states.front()};
     if (!_system.structure().conserved.empty()) {
       State gradient(_states.front().size());
       _system.conserved_gradient(0, _states.front(), gradient);
-      const double length = norm(gradient);
-      State moved = _states.front();
-      for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += displaced * found.reach / length * gradient[i];
-      if (length > 0.0) starts.push_back(std::move(moved));
+      if (norm(gradient) > 0.0) starts.push_back(displaced_along(gradient, found.reach));
     }
     for (; !starts.empty(); starts.pop_back()) try {
         const States ends = integrate_together(_system, starts, _loop->period, _options.tolerance);
         found.single_shot = distance(ends.front(), _states.back());
-        if (ends.size() > 1 && found.single_shot > far_return * found.reach)
-          found.energy_growth = distance(ends[1], ends[0]) / (displaced * found.reach);
+        if (!(found.single_shot > far_return * found.reach)) return;
+        if (ends.size() > 1)
+          found.displaced_growth = distance(ends[1], ends[0]) / (displaced * found.reach);
+        else if (_system.structure().conserved.empty())
+          found.displaced_growth = growth_in_all_directions(ends.front(), found.reach);
         return;
       } catch (const core::NumericalError&) {  // the displaced one may have left, and the orbit's own not
       }
+  }
+
+  [[nodiscard]] State displaced_along(const State& direction, double reach) const {
+    State moved = _states.front();
+    const double step = displaced * reach / norm(direction);
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += step * direction[i];
+    return moved;
+  }
+
+  // NaN where one of them leaves.
+  [[nodiscard]] double growth_in_all_directions(const State& end, double reach) const {
+    States starts;
+    for (std::size_t i = 0; i < end.size(); ++i) {
+      State direction(end.size(), 0.0);
+      direction[i] = 1.0;
+      starts.push_back(displaced_along(direction, reach));
+    }
+    double largest = unknown;
+    try {
+      for (const State& other : integrate_together(_system, starts, _loop->period, _options.tolerance))
+        largest = std::fmax(largest, distance(other, end) / (displaced * reach));
+    } catch (const core::NumericalError&) {
+      return unknown;
+    }
+    return largest;
   }
 
   void conserved(Certificate& found) const {
@@ -385,6 +418,7 @@ class Certifier::Parts {
   };
 
   const systems::System& _system;
+  loop::Isotropy _isotropy;
   loop::SymmetryGroup _group;
   Options _options;
   int _segments = 1;
@@ -403,7 +437,7 @@ Certifier::Certifier(const systems::System& system, const loop::Isotropy& isotro
 Certifier::~Certifier() = default;
 Certifier::Certifier(Certifier&&) noexcept = default;
 
-Certificate Certifier::operator()(const loop::Loop& loop) { return _parts->certify(loop); }
+Certificate Certifier::operator()(const loop::Loop& loop) { return _parts->at_its_parameters(loop); }
 
 Certificate certify(const systems::System& system, const loop::Loop& loop, const loop::Isotropy& isotropy,
                     const Options& options) {

@@ -53,7 +53,7 @@ Judgement judge(const Certificate& c, const Evidence& evidence) {
   const double growth =
       std::isnan(evidence.growth) ? std::numeric_limits<double>::infinity() : std::max(1.0, evidence.growth);
   const double explained = unexplained * error;
-  const double resolved = informative * evidence.amplitude;
+  const double resolved = std::max(informative * evidence.amplitude, evidence.winds ? explained : 0.0);
 
   const double grown = explained * growth;
   const double closure = std::fmax(c.closure, c.taylor_closure);
@@ -64,8 +64,9 @@ Judgement judge(const Certificate& c, const Evidence& evidence) {
   if (c.other_drift > explained) return {Verdict::drift_contradicts, c.other_drift, explained};
 
   if (c.apart > grown) return {Verdict::integrators_differ, c.apart, grown};
-  // An error of the energy is one of the period too, however stable the orbit is.
-  const double shear = std::fmax(evidence.period * c.steepness * c.steepness, c.energy_growth);
+  // An error of the energy is one of the period too, however stable the orbit is; and an error may grow on the way that
+  // the multipliers, once around, do not show.
+  const double shear = std::fmax(evidence.period * c.steepness * c.steepness, c.displaced_growth);
   const double returned = explained * (growth + shear);
   if (c.single_shot > returned) return {Verdict::return_contradicts, c.single_shot, returned};
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "least_guard.hpp"
+#include "limit_orbit.hpp"
 #include "orbweaver/core/error.hpp"
 
 namespace orbweaver::continuation {
@@ -35,11 +36,23 @@ constexpr int grown_cutoff = 4;
 /// Such a family ends once rounding, which a passage magnifies, lets its orbits be known this many times worse than the
 /// tolerance asks: nearer ones take ever more harmonics to resolve noise (docs/performance.md).
 constexpr double worse_than_asked = 1e5;
+/// What a parameter may change by rounding, in parts of its scale + its value, and a period, in parts of itself.
+constexpr double unmoved = 1e-9;
 
 bool collides(const Frontier& frontier, const GuardTrace& guard) {
   return guard.earlier.size() == earlier_guards && guard.least < near_guard * guard.fallen_from &&
          guard.least < (1.0 - guard_loss) * guard.earlier.front() &&
          frontier.orbit.loop.cutoff >= grown_cutoff * frontier.first.cutoff;
+}
+
+/// Orbits of one parameter value and one period, as a system has that conserves something there.
+bool stays(const Frontier& frontier) {
+  const loop::Loop& first = frontier.first;
+  const loop::Loop& last = frontier.orbit.loop;
+  return !first.parameters.empty() &&
+         std::abs(last.parameters.front() - first.parameters.front()) <
+             unmoved * (1.0 + std::abs(first.parameters.front())) &&
+         std::abs(last.period - first.period) < unmoved * first.period;
 }
 
 std::optional<Ending> collision_of(const Frontier& frontier, const systems::System& system, const std::string& detail) {
@@ -54,6 +67,10 @@ std::optional<Ending> collision_of(const Frontier& frontier, const systems::Syst
 }
 
 }  // namespace
+
+double level_of(const systems::System& system, const Orbit& orbit) {
+  return system.family_scalars().free.empty() ? orbit.energy : level_of(system, orbit.loop);
+}
 
 int guard_number(const systems::Structure& structure, const std::string& name) {
   const std::vector<systems::Guard>& guards = structure.guards;
@@ -72,6 +89,9 @@ std::optional<Ending> end_at(const Frontier& frontier, const systems::System& sy
     return Ending{EndReason::guard_limit,
                   fmt::format("{} = {:.12g}", structure.guards[guard].name, frontier.guards[guard].least)};
   }
+  if (frontier.on_parameter_limit)
+    return Ending{EndReason::parameter_limit, fmt::format("{} = {:.12g}", system.family_scalars().free.front(),
+                                                          orbit.loop.parameters.front() * units.parameter(0))};
   if (frontier.on_energy_limit)
     return Ending{EndReason::energy_limit, fmt::format("E = {:.12g}", orbit.energy * units.energy())};
   if (orbit.loop.period >= options.period_limit)
@@ -82,6 +102,12 @@ std::optional<Ending> end_at(const Frontier& frontier, const systems::System& sy
   if (frontier.threshold > worse_than_asked * options.corrector.tolerance)
     if (auto collision = collision_of(frontier, system, fmt::format("rounding leaves {:.1e}", orbit.loss_rms)))
       return collision;
+  if (stays(frontier))
+    return Ending{
+        EndReason::undecided,
+        fmt::format("T and {} stay at {:.9g} and {:.9g}: its orbits are not isolated; another start "
+                    "(starts.states) may lead away",
+                    system.family_scalars().free.front(), period, orbit.loop.parameters.front() * units.parameter(0))};
   const double amplitude = frontier.problem.amplitude;
   if (amplitude < vanishing_amplitude * std::min(frontier.first_amplitude, options.start_amplitude))
     return Ending{EndReason::fixed_point, fmt::format("T = {:.9g}, amplitude {:.2e}", period, amplitude)};
@@ -92,6 +118,11 @@ std::optional<Ending> end_at(const Frontier& frontier, const systems::System& sy
       std::abs(amplitude - frontier.first_amplitude) < near && arclength_between(frontier.first, orbit.loop) < near)
     return Ending{EndReason::closed_loop, fmt::format("T = {:.9g}, length {:.6g}", period, orbit.arclength)};
   return std::nullopt;
+}
+
+bool is_beyond_parameters(double value, const Options& options) {
+  return value > options.parameter_to + near_limit * (1.0 + std::abs(options.parameter_to)) ||
+         value < options.parameter_from - near_limit * (1.0 + std::abs(options.parameter_from));
 }
 
 std::optional<Ending> beyond_limits(const systems::System& system, const loop::Loop& first, double period,
@@ -105,6 +136,14 @@ std::optional<Ending> beyond_limits(const systems::System& system, const loop::L
     return Ending{EndReason::energy_limit,
                   fmt::format("left out: begins at E = {:.9g}, outside [{:g}, {:g}]", energy * units.energy(),
                               options.energy_from * units.energy(), options.energy_to * units.energy())};
+  if (!first.parameters.empty())
+    if (const double value = first.parameters.front(); is_beyond_parameters(value, options)) {
+      const double unit = units.parameter(0);
+      return Ending{
+          EndReason::parameter_limit,
+          fmt::format("left out: begins at {} = {:.9g}, outside [{:g}, {:g}]", system.family_scalars().free.front(),
+                      value * unit, options.parameter_from * unit, options.parameter_to * unit)};
+    }
   for (const auto& [name, limit] : options.guard_limits)
     if (const double least = least_guard(system, guard_number(system.structure(), name), first); least < limit)
       return Ending{EndReason::guard_limit,
@@ -114,24 +153,28 @@ std::optional<Ending> beyond_limits(const systems::System& system, const loop::L
 
 namespace {
 
-bool period_diverges(const Frontier& frontier) {
+bool period_diverges(const Frontier& frontier, const systems::System& system) {
   const Orbit& orbit = frontier.orbit;
   if (orbit.loop.modes.empty() || orbit.loop.period < grown_period * frontier.first.period) return false;
-  const double range = std::abs(orbit.energy - frontier.first_energy);
-  return std::abs(orbit.energy - frontier.earlier_energy) < settled_energy * range;
+  const double level = level_of(system, orbit);
+  return std::abs(level - frontier.earlier_level) < settled_energy * std::abs(level - frontier.first_level);
 }
 
 }  // namespace
 
 Ending end_between(const Frontier& frontier, const systems::System& system, EndReason reason, std::string detail) {
   const systems::Scales& units = system.scales();
-  if (!period_diverges(frontier)) {
+  if (!period_diverges(frontier, system)) {
     if (std::optional<Ending> collision = collision_of(frontier, system, detail)) return *std::move(collision);
     return {reason, std::move(detail)};
   }
   return {EndReason::period_divergence,
-          fmt::format("T = {:.6g}, E = {:.12g}; {}", frontier.orbit.loop.period * units.time,
-                      frontier.orbit.energy * units.energy(), detail)};
+          system.family_scalars().free.empty()
+              ? fmt::format("T = {:.6g}, E = {:.12g}; {}", frontier.orbit.loop.period * units.time,
+                            frontier.orbit.energy * units.energy(), detail)
+              : fmt::format("T = {:.6g}, {} = {:.12g}; {}", frontier.orbit.loop.period * units.time,
+                            system.family_scalars().free.front(),
+                            frontier.orbit.loop.parameters.front() * units.parameter(0), detail)};
 }
 
 }  // namespace orbweaver::continuation

@@ -9,6 +9,9 @@
 /// texts tell in the units of the scene.
 namespace orbweaver::continuation {
 
+/// What a family that runs into a divergence of its period settles in: the energy, or the parameter that moves.
+[[nodiscard]] double level_of(const systems::System& system, const Orbit& orbit);
+
 /// Growth of T over which the energy is compared where the period may diverge: a tenth, which near a saddle multiplies
 /// the distance from the connecting orbit by exp(-rate T/10). Not measured; it decides only how an end is called.
 inline constexpr double period_window = 1.1;
@@ -24,6 +27,9 @@ inline constexpr std::size_t earlier_guards = 5;
 /// The end where the first orbit lies beyond the scene's limits already; none if it does not.
 [[nodiscard]] std::optional<Ending> beyond_limits(const systems::System& system, const loop::Loop& first, double period,
                                                   const Options& options);
+
+/// Whether the first parameter that moves is beyond the scene's limits by more than rounding.
+[[nodiscard]] bool is_beyond_parameters(double value, const Options& options);
 
 /// An end for want of harmonics, or by failure: a divergence of the period where the family has settled, a collision
 /// where it comes ever nearer to a zero of a guard.

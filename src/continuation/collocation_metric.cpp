@@ -2,12 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+
+#include "held_energy.hpp"
+#include "orbweaver/loop/curve/system_at.hpp"
 
 #include "orbweaver/corrector/correct.hpp"
 
 namespace orbweaver::continuation {
 
 using equations::Collocation;
+
+namespace {
+
+/// Those that move along the family: behind T.
+std::size_t parameters_of(const Collocation& e) { return e.system().family_scalars().free.size(); }
+
+}  // namespace
 
 double step_product(const Collocation& e, const std::vector<double>& a, const std::vector<double>& b,
                     const std::vector<double>& c, const std::vector<double>& d, double period_unit) {
@@ -18,7 +29,9 @@ double step_product(const Collocation& e, const std::vector<double>& a, const st
       sum += e.node_weights()[static_cast<std::size_t>(j)] * (a[n] - b[n]) * (c[n] - d[n]);
     }
   const auto at_period = static_cast<std::size_t>(e.period_at());
-  return sum + (a[at_period] - b[at_period]) * (c[at_period] - d[at_period]) / (period_unit * period_unit);
+  sum += (a[at_period] - b[at_period]) * (c[at_period] - d[at_period]) / (period_unit * period_unit);
+  for (std::size_t p = at_period + 1; p <= at_period + parameters_of(e); ++p) sum += (a[p] - b[p]) * (c[p] - d[p]);
+  return sum;
 }
 
 namespace {
@@ -27,20 +40,55 @@ namespace {
 /// first orbit.
 constexpr double still = 1e-16;
 
-void phase_condition(const Collocation& e, const Prediction& prediction, std::vector<double>& weights) {
+/// dz/ds at the nodes.
+std::vector<double> slope_at_nodes(const Collocation& e, const std::vector<double>& values) {
+  const int stride = e.grid().stride();
+  std::vector<double> y(static_cast<std::size_t>(e.dimension() * stride));
+  std::vector<double> slope(y.size());
+  e.grid().at_nodes(values.data(), y.data(), slope.data());
+  for (int i = 0; i < e.dimension(); ++i)
+    for (int j = 0; j <= e.cells(); ++j)
+      slope[static_cast<std::size_t>(i * stride + j)] += e.winding()[static_cast<std::size_t>(i)];
+  return slope;
+}
+
+/// Into `weights`, one row of `size` numbers.
+void phase_condition(const Collocation& e, const Prediction& prediction, double* weights) {
   const int stride = e.grid().stride();
   const auto size = static_cast<std::size_t>(e.size());
-  std::vector<double> z(static_cast<std::size_t>(e.dimension() * stride));
-  std::vector<double> slope(z.size());
-  e.grid().at_nodes(prediction.values.data(), z.data(), slope.data());
+  const std::vector<double> slope = slope_at_nodes(e, prediction.values);
   double square = 0.0;
   for (int i = 0; i < e.dimension(); ++i)
     for (int j = 0; j <= e.cells(); ++j) {
       const auto n = static_cast<std::size_t>(i * stride + j);
-      weights[size + n] = e.node_weights()[static_cast<std::size_t>(j)] * slope[n];
-      square += weights[size + n] * slope[n];
+      weights[n] = e.node_weights()[static_cast<std::size_t>(j)] * slope[n];
+      square += weights[n] * slope[n];
     }
-  for (std::size_t n = size; n < 2 * size; ++n) weights[n] /= std::sqrt(square);
+  for (std::size_t n = 0; n < size; ++n) weights[n] /= std::sqrt(square);
+}
+
+/// The derivative of the energy's mean over the nodes: near enough to correct by (PointProblem::correct).
+void energy_condition(const Collocation& e, const Prediction& prediction, double* weights) {
+  const loop::Loop loop = e.to_loop(prediction.values.data());
+  const std::shared_ptr<const systems::System> system = loop::system_at(e.system(), loop);
+  const int stride = e.grid().stride();
+  const std::size_t nodes = static_cast<std::size_t>(e.cells()) + 1;
+  const auto d = static_cast<std::size_t>(e.dimension());
+  std::vector<double> z(d * static_cast<std::size_t>(stride));
+  std::vector<double> slope(z.size());
+  e.grid().at_nodes(prediction.values.data(), z.data(), slope.data());
+  std::vector<double> state(d);
+  std::vector<double> gradient(d);
+  for (std::size_t j = 0; j < nodes; ++j) {
+    for (std::size_t i = 0; i < d; ++i)
+      state[i] = z[i * static_cast<std::size_t>(stride) + j] + e.centre()[i] +
+                 e.winding()[i] * static_cast<double>(j) * e.grid().spacing();
+    system->conserved_gradient(0, state, gradient);
+    for (std::size_t i = 0; i < d; ++i)
+      weights[i * static_cast<std::size_t>(stride) + j] = e.node_weights()[j] * gradient[i];
+  }
+  for (std::size_t n = 0; n < loop.parameters.size(); ++n)
+    weights[static_cast<std::size_t>(e.period_at()) + 1 + n] = energy_by_parameter(e.system(), loop, n);
 }
 
 }  // namespace
@@ -60,8 +108,18 @@ std::vector<double> step_conditions(const Collocation& e, const Prediction& pred
   const auto at_period = static_cast<std::size_t>(e.period_at());
   weights[at_period] = prediction.tangent[at_period] / (period_unit * period_unit);
   square += weights[at_period] * prediction.tangent[at_period];
+  for (std::size_t p = at_period + 1; p <= at_period + parameters_of(e); ++p) {
+    weights[p] = prediction.tangent[p];
+    square += weights[p] * weights[p];
+  }
   for (std::size_t n = 0; n < size; ++n) weights[n] /= std::sqrt(square);
-  if (e.borders() > 1) phase_condition(e, prediction, weights);
+  double* next = weights.data() + size;
+  using Hold = systems::FamilyScalars::Hold;
+  const Hold hold = e.system().family_scalars().hold;
+  if (hold == Hold::energy) energy_condition(e, prediction, next);
+  if (hold == Hold::period) next[at_period] = 1.0;
+  if (hold != Hold::nothing) next += size;
+  if (next != weights.data() + weights.size()) phase_condition(e, prediction, next);
   return weights;
 }
 
@@ -73,9 +131,7 @@ double rounding_floor(const Collocation& e, const Collocation::Quality& quality,
 
 void take_out_shift(const Collocation& e, Prediction& prediction, const std::vector<double>& last) {
   const int stride = e.grid().stride();
-  std::vector<double> z(static_cast<std::size_t>(e.dimension() * stride));
-  std::vector<double> slope(z.size());
-  e.grid().at_nodes(last.data(), z.data(), slope.data());
+  const std::vector<double> slope = slope_at_nodes(e, last);
   const std::vector<double>& shift = slope;  // of z instead of y: near enough to move along
   double square = 0.0;
   double moved = 0.0;

@@ -68,7 +68,8 @@ std::string CollocationProblem::obstacle(const FamilyOf& family, int largest_cut
   const loop::FundamentalDomain domain = loop::fundamental_domain(family.system.structure(), family.isotropy);
   if (!domain.expresses(family.isotropy)) return "one part of the loop, repeated, does not have all of their isotropy";
   if (!domain.is_square()) return "the ends of their fundamental domain hold more or fewer conditions than coordinates";
-  if (!Collocation::applies(family.system, domain)) return "it takes a reversor or a conserved quantity";
+  if (!Collocation::applies(family.system, domain))
+    return "it takes a reversor, a conserved quantity, or a parameter that moves";
   const int coarsest = cell_counts::cutoff_of(domain, cell_counts::least);
   if (coarsest > largest_cutoff)
     return fmt::format("its fewest cells have K = {}, and at most {} is allowed", coarsest, largest_cutoff);
@@ -76,7 +77,7 @@ std::string CollocationProblem::obstacle(const FamilyOf& family, int largest_cut
 }
 
 CollocationProblem::CollocationProblem(const FamilyOf& family, const Options& options, ProblemState& state)
-    : PointProblem(state),
+    : PointProblem(family.system, state),
       _system(family.system),
       _domain(loop::fundamental_domain(family.system.structure(), family.isotropy)),
       _isotropy(family.isotropy),
@@ -161,7 +162,8 @@ loop::Tangent CollocationProblem::tangent_of(const std::vector<double>& directio
   out.modes.resize((2 * static_cast<std::size_t>(grid->cutoff()) + 1) * static_cast<std::size_t>(own.dimension()));
   grid->to_modes(values.data(), out.modes.data());
   out = loop::with_cutoff(std::move(out), at.cutoff, at.dimension);
-  out.scalars = {values[values.size() - static_cast<std::size_t>(own.borders())]};
+  const auto scalars = values.end() - own.borders();
+  out.scalars.assign(scalars, scalars + 1 + static_cast<std::ptrdiff_t>(_system.family_scalars().free.size()));
   out.normalize();
   return out;
 }
@@ -198,9 +200,14 @@ std::vector<double> CollocationProblem::conditions_at(const Prediction& predicti
 
 void CollocationProblem::settle(Prediction& prediction, const std::vector<double>& last) {
   const Collocation& e = equations();
-  if (e.borders() < 2) return;
-  const auto unfolding = static_cast<std::size_t>(e.period_at() + 1);
-  prediction.values[unfolding] = prediction.tangent[unfolding] = 0.0;
+  if (_system.family_scalars().hold == systems::FamilyScalars::Hold::period) {
+    prediction.values[scalars_at()] = last[scalars_at()];
+    prediction.tangent[scalars_at()] = 0.0;
+  }
+  if (_domain.reversor) return;
+  for (std::size_t p = 0; p < e.scalars().size(); ++p)
+    if (e.scalars()[p].kind == loss::Scalar::Kind::unfolding)
+      prediction.values[scalars_at() + p] = prediction.tangent[scalars_at() + p] = 0.0;
   take_out_shift(e, prediction, last);
 }
 
@@ -233,7 +240,7 @@ equations::AndersonSolver::Options CollocationProblem::solver_options() {
   return solver;
 }
 
-Trial CollocationProblem::correct(Prediction prediction, const std::vector<double>& conditions) {
+Trial CollocationProblem::solve(Prediction prediction, const std::vector<double>& conditions) {
   Collocation& e = equations();
   e.precondition_by(preconditioner_of(e));
   e.set_conditions(conditions, prediction.values);

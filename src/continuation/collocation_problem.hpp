@@ -42,7 +42,7 @@ class CollocationProblem final : public PointProblem {
 
   void settle(Prediction& prediction, const std::vector<double>& last) override;
   [[nodiscard]] std::vector<double> conditions_at(const Prediction& prediction) override;
-  [[nodiscard]] Trial correct(Prediction prediction, const std::vector<double>& conditions) override;
+  [[nodiscard]] Trial solve(Prediction prediction, const std::vector<double>& conditions) override;
   [[nodiscard]] bool resolved(Trial& trial) override;
   [[nodiscard]] std::vector<double> direction_at(const std::vector<double>& orbit, const Prediction& near) override;
 

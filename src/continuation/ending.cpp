@@ -8,6 +8,7 @@ std::string_view name_of(EndReason reason) {
   switch (reason) {
     case EndReason::period_limit: return "period limit";
     case EndReason::energy_limit: return "energy limit";
+    case EndReason::parameter_limit: return "parameter limit";
     case EndReason::guard_limit: return "guard limit";
     case EndReason::step_limit: return "step limit";
     case EndReason::cutoff_limit: return "cutoff limit";

@@ -7,6 +7,7 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/loop/curve/system_at.hpp"
 #include "orbweaver/numerics/locate.hpp"
 
 namespace orbweaver::continuation {
@@ -45,7 +46,9 @@ std::vector<double> guard_at(const systems::System& system, int guard, const loo
   return values;
 }
 
-double least_guard(const systems::System& system, int guard, const loop::Loop& loop) {
+double least_guard(const systems::System& family, int guard, const loop::Loop& loop) {
+  const std::shared_ptr<const systems::System> here = loop::system_at(family, loop);
+  const systems::System& system = *here;
   const std::vector<double> values = guard_at(system, guard, loop::samples_of(loop));
   const std::size_t nodes = values.size();
   double least = *std::min_element(values.begin(), values.end());

@@ -18,8 +18,6 @@ namespace {
 constexpr double position_width = 1e-14;
 /// An orbit whose quantity is so near to a limit, in parts of the size + |limit|, lies on it.
 constexpr double on_limit = 1e-13;
-/// The same where rounding lets none come nearer, in parts of 1 + |limit|.
-constexpr double near_limit = 1e-10;
 
 OnLimit failure(const Passed& passed, std::string_view why) {
   return {std::nullopt,

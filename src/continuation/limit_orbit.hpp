@@ -8,6 +8,10 @@
 
 namespace orbweaver::continuation {
 
+/// An orbit whose quantity is so near to a limit, in parts of 1 + |limit|, lies on it where rounding lets none come
+/// nearer.
+inline constexpr double near_limit = 1e-10;
+
 /// The orbit of a branch on a limit, or why there is none.
 struct OnLimit {
   std::optional<Trial> trial;  ///< with its loop

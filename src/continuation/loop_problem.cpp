@@ -4,16 +4,14 @@
 #include <cmath>
 #include <span>
 
+#include "held_energy.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/loop/curve/system_at.hpp"
 #include "orbweaver/loss/slice.hpp"
 
 namespace orbweaver::continuation {
 
 namespace {
-
-loop::Tangent as_tangent(std::span<const double> change) {
-  return {{change.begin(), change.end() - 1}, {change.back()}};
-}
 
 /// Of the bound on the tail, for a smaller cutoff: at the bound itself cutoffs would come and go. The next smaller
 /// one has 0.7 to 0.8 of the harmonics. Not measured.
@@ -27,7 +25,11 @@ std::vector<double> as_change(loop::Tangent tangent) {
 }  // namespace
 
 LoopProblem::LoopProblem(const FamilyOf& family, const Options& options, ProblemState& state)
-    : PointProblem(state), _system(family.system), _base(family.base), _isotropy(family.isotropy), _options(options) {}
+    : PointProblem(family.system, state),
+      _system(family.system),
+      _base(family.base),
+      _isotropy(family.isotropy),
+      _options(options) {}
 
 Resolution LoopProblem::resolution_for(int cutoff, const loop::TimeMap& map, int largest) const {
   return {std::min(loop::allowed_cutoff_at_least(cutoff), largest), map};
@@ -56,7 +58,7 @@ std::optional<Resolution> LoopProblem::coarser(const Trial& accepted, const loop
 PointProblem::Transfer LoopProblem::resolve(const Resolution& to) {
   state().resolution = to;
   const std::size_t modes = scalars_at();
-  const std::size_t scalars = 1;
+  const std::size_t scalars = this->scalars();
   return [=](const std::vector<double>& values) {
     std::vector<double> out(values.begin(), values.end() - static_cast<std::ptrdiff_t>(scalars));
     out.resize(modes, 0.0);
@@ -73,15 +75,23 @@ loop::Loop LoopProblem::to_loop(const std::vector<double>& values) const {
   loop::Loop loop = _base;
   loop.cutoff = resolution().size;
   loop.time_map = resolution().time_map;
-  loop.modes.assign(values.begin(), values.end() - 1);
-  loop.period = values.back();
+  const auto modes = values.end() - static_cast<std::ptrdiff_t>(scalars());
+  loop.modes.assign(values.begin(), modes);
+  loop.period = *modes;
+  loop.parameters.assign(modes + 1, values.end());
   return loop;
 }
 
 std::vector<double> LoopProblem::to_values(const loop::Loop& loop) const {
   std::vector<double> values = loop.modes;
   values.push_back(loop.period);
+  values.insert(values.end(), loop.parameters.begin(), loop.parameters.end());
   return values;
+}
+
+loop::Tangent LoopProblem::as_tangent(std::span<const double> change) const {
+  const auto modes = change.end() - static_cast<std::ptrdiff_t>(scalars());
+  return {{change.begin(), modes}, {modes, change.end()}};
 }
 
 std::vector<double> LoopProblem::from_loop(const loop::Loop& loop) {
@@ -90,7 +100,7 @@ std::vector<double> LoopProblem::from_loop(const loop::Loop& loop) {
 
 std::vector<double> LoopProblem::from_change(const loop::Loop& change) {
   std::vector<double> values = from_loop(change);
-  values.back() = 0.0;
+  std::fill(values.begin() + static_cast<std::ptrdiff_t>(scalars_at()), values.end(), 0.0);
   return values;
 }
 
@@ -108,8 +118,11 @@ double LoopProblem::product(const std::vector<double>& a, const std::vector<doub
     sum += mean * (a[n] - b[n]) * (c[n] - d[n]);
   }
   // At a small amplitude the period is known to eps / amplitude only: it must not decide how far a step went.
-  const double unit = b.back() / std::min(1.0, state().amplitude);
-  return sum + (a.back() - b.back()) * (c.back() - d.back()) / (unit * unit);
+  const std::size_t period = scalars_at();
+  const double unit = b[period] / std::min(1.0, state().amplitude);
+  sum += (a[period] - b[period]) * (c[period] - d[period]) / (unit * unit);
+  for (std::size_t n = period + 1; n < a.size(); ++n) sum += (a[n] - b[n]) * (c[n] - d[n]);
+  return sum;
 }
 
 double LoopProblem::condition_product(const std::vector<double>& a, const std::vector<double>& b,
@@ -136,9 +149,12 @@ bool LoopProblem::inverted(const Trial& trial, const std::vector<double>& last) 
 double LoopProblem::action(const Trial& trial) { return action_of(_system, trial.loop); }
 
 const loss::Unknowns& LoopProblem::unknowns() {
-  if (!_unknowns || _unknowns->subspace.cutoff() != resolution().size)
+  if (!_unknowns || _unknowns->subspace.cutoff() != resolution().size) {
+    std::vector<loss::Scalar> scalars{loss::Scalar::period()};
+    for (const std::string& name : _system.family_scalars().free) scalars.push_back(loss::Scalar::of_parameter(name));
     _unknowns.emplace(
-        loss::Unknowns{loop::Subspace(_base.dimension, resolution().size, _isotropy), {loss::Scalar::period()}});
+        loss::Unknowns{loop::Subspace(_base.dimension, resolution().size, _isotropy), std::move(scalars)});
+  }
   return *_unknowns;
 }
 
@@ -148,6 +164,10 @@ std::vector<double> LoopProblem::time_shift(const std::vector<double>& values) {
 }
 
 void LoopProblem::settle(Prediction& prediction, const std::vector<double>& last) {
+  if (_system.family_scalars().hold == systems::FamilyScalars::Hold::period) {
+    prediction.values[scalars_at()] = last[scalars_at()];
+    prediction.tangent[scalars_at()] = 0.0;
+  }
   const std::vector<double> shift = time_shift(last);
   if (shift.empty()) return;
   double moved = 0.0;
@@ -167,13 +187,36 @@ std::vector<double> LoopProblem::conditions_at(const Prediction& prediction) {
   double square = 0.0;
   for (const double v : conditions) square += v * v;
   for (double& v : conditions) v /= std::sqrt(square);
+  const std::vector<double> held = held_condition(prediction);
+  conditions.insert(conditions.end(), held.begin(), held.end());
   const std::vector<double> shift = time_shift(prediction.values);
   conditions.insert(conditions.end(), shift.begin(), shift.end());
   return conditions;
 }
 
+std::vector<double> LoopProblem::held_condition(const Prediction& prediction) {
+  using Hold = systems::FamilyScalars::Hold;
+  const Hold hold = _system.family_scalars().hold;
+  if (hold == Hold::nothing) return {};
+  std::vector<double> row(prediction.values.size(), 0.0);
+  if (hold == Hold::period) {
+    row[scalars_at()] = 1.0;
+    return row;
+  }
+  // The derivative of the energy at s = 0, where it is taken, by every mode.
+  const loop::Loop loop = to_loop(prediction.values);
+  const auto d = static_cast<std::size_t>(loop.dimension);
+  std::vector<double> gradient(d);
+  loop::system_at(_system, loop)->conserved_gradient(0, loop::state_at(loop, 0.0), gradient);
+  for (std::size_t k = 0; k <= static_cast<std::size_t>(loop.cutoff); ++k)
+    for (std::size_t i = 0; i < d; ++i) row[(k == 0 ? 0 : 2 * k - 1) * d + i] = gradient[i];
+  for (std::size_t n = 0; n < loop.parameters.size(); ++n)
+    row[scalars_at() + 1 + n] = energy_by_parameter(_system, loop, n);
+  return row;
+}
+
 Eigen::MatrixXd LoopProblem::columns(const std::vector<double>& conditions) {
-  const std::size_t row = scalars_at() + 1;
+  const std::size_t row = scalars_at() + scalars();
   Eigen::MatrixXd out(unknowns().size(), static_cast<Eigen::Index>(conditions.size() / row));
   for (Eigen::Index q = 0; q < out.cols(); ++q) {
     const std::vector<double> column =
@@ -183,7 +226,7 @@ Eigen::MatrixXd LoopProblem::columns(const std::vector<double>& conditions) {
   return out;
 }
 
-Trial LoopProblem::correct(Prediction prediction, const std::vector<double>& conditions) {
+Trial LoopProblem::solve(Prediction prediction, const std::vector<double>& conditions) {
   const loop::Loop guess = to_loop(prediction.values);
   corrector::Result result = corrector::correct(
       _system, guess, unknowns(), loss::Slice(unknowns().size(), columns(conditions)), _options.corrector);

@@ -6,7 +6,8 @@
 
 namespace orbweaver::continuation {
 
-/// Points as whole loops in the subspace of an isotropy, by any corrector, on a team of ranks too: the modes, then T.
+/// Points as whole loops in the subspace of an isotropy, by any corrector, on a team of ranks too: the modes, then T,
+/// the parameters that move.
 /// The time map is that of the base, a resolution's size the cutoff.
 class LoopProblem final : public PointProblem {
  public:
@@ -35,16 +36,21 @@ class LoopProblem final : public PointProblem {
 
   void settle(Prediction& prediction, const std::vector<double>& last) override;
   [[nodiscard]] std::vector<double> conditions_at(const Prediction& prediction) override;
-  [[nodiscard]] Trial correct(Prediction prediction, const std::vector<double>& conditions) override;
+  [[nodiscard]] Trial solve(Prediction prediction, const std::vector<double>& conditions) override;
   [[nodiscard]] bool resolved(Trial& trial) override;
   [[nodiscard]] std::vector<double> direction_at(const std::vector<double>& orbit, const Prediction& near) override;
 
  private:
+  /// T and the parameters that move.
+  [[nodiscard]] std::size_t scalars() const { return 1 + _system.family_scalars().free.size(); }
+  [[nodiscard]] loop::Tangent as_tangent(std::span<const double> change) const;
   [[nodiscard]] loop::Loop to_loop(const std::vector<double>& values) const;
   [[nodiscard]] std::vector<double> to_values(const loop::Loop& loop) const;
   [[nodiscard]] const loss::Unknowns& unknowns();
   /// Rows of conditions on points as columns of conditions on the unknowns.
   [[nodiscard]] Eigen::MatrixXd columns(const std::vector<double>& conditions);
+  /// The condition of what the family holds, as a row; empty where it holds nothing.
+  [[nodiscard]] std::vector<double> held_condition(const Prediction& prediction);
   /// The unit time shift of a point that the symmetries leave free; empty where there is none.
   [[nodiscard]] std::vector<double> time_shift(const std::vector<double>& values);
 

@@ -4,30 +4,41 @@
 #include <limits>
 #include <vector>
 
+#include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/loop/curve/system_at.hpp"
 
 namespace orbweaver::continuation {
 
 double energy_of(const systems::System& system, const loop::Loop& loop) {
   if (!system.structure().conservative()) return std::numeric_limits<double>::quiet_NaN();
-  return system.conserved(0, loop::state_at(loop, 0.0));
+  return loop::system_at(system, loop)->conserved(0, loop::state_at(loop, 0.0));
+}
+
+double level_of(const systems::System& system, const loop::Loop& loop) {
+  return system.family_scalars().free.empty() ? energy_of(system, loop) : loop.parameters.front();
 }
 
 double action_of(const systems::System& system, const loop::Loop& loop) {
+  const std::shared_ptr<const systems::System> here = loop::system_at(system, loop);
   const loop::Samples samples = loop::samples_of(loop);
   const auto n = static_cast<std::size_t>(samples.nodes);
   std::vector<double> state(static_cast<std::size_t>(loop.dimension));
   double sum = 0.0;
   for (std::size_t j = 0; j < n; ++j) {
     for (std::size_t i = 0; i < state.size(); ++i) state[i] = samples.states[i * n + j];
-    sum += samples.weights[j] * system.action_density(state);
+    sum += samples.weights[j] * here->action_density(state);
   }
   return loop.period * sum;
 }
 
 double arclength_between(const loop::Loop& from, const loop::Loop& to) {
-  return std::hypot(loop::mean_distance(from, to), (to.period - from.period) / from.period);
+  core::require(from.parameters.size() == to.parameters.size(), "a distance between loops of different families");
+  double parameters = 0.0;
+  for (std::size_t n = 0; n < from.parameters.size(); ++n)
+    parameters = std::hypot(parameters, to.parameters[n] - from.parameters[n]);
+  return std::hypot(loop::mean_distance(from, to), (to.period - from.period) / from.period, parameters);
 }
 
 double arclength_in_units(const systems::System& system, const loop::Loop& from, const loop::Loop& to) {

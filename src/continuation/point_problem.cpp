@@ -1,7 +1,11 @@
 #include "point_problem.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
+
+#include <Eigen/Dense>
 
 #include <fmt/format.h>
 
@@ -10,6 +14,14 @@
 #include "orbweaver/core/error.hpp"
 
 namespace orbweaver::continuation {
+
+namespace {
+
+/// Newton's steps on the energy that a family holds, and the error that they may leave, in parts of 1 + |E|.
+constexpr int most_for_energy = 6;
+constexpr double energy_rounding = 1e-14;
+
+}  // namespace
 
 double tail_limit(double amplitude, double size, const Options& options) {
   // Every harmonic carries rounding of the size of the loop: no cutoff takes a tail below that.
@@ -22,6 +34,33 @@ std::vector<double> PointProblem::conditions_with(const Prediction& prediction, 
   std::fill_n(conditions.begin(), prediction.values.size(), 0.0);
   conditions[scalars_at() + static_cast<std::size_t>(held_scalar)] = 1.0;
   return conditions;
+}
+
+Trial PointProblem::correct(Prediction prediction, const std::vector<double>& conditions) {
+  if (_family.family_scalars().hold != systems::FamilyScalars::Hold::energy)
+    return solve(std::move(prediction), conditions);
+  const std::size_t size = prediction.values.size();
+  const auto rows = static_cast<Eigen::Index>(conditions.size() / size);
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::Map<const RowMajor> matrix(conditions.data(), rows, static_cast<Eigen::Index>(size));
+  constexpr Eigen::Index hold = 1;
+  Trial trial = solve(prediction, conditions);
+  for (int n = 0; n < most_for_energy && trial.converged; ++n) {
+    static_cast<void>(resolved(trial));
+    const double off = energy_of(_family, trial.loop) - _state.held_energy;
+    if (std::abs(off) <= energy_rounding * (1.0 + std::abs(_state.held_energy))) break;
+    // The shift that the other conditions do not see.
+    const Eigen::VectorXd factors =
+        (matrix * matrix.transpose()).ldlt().solve(-off * Eigen::VectorXd::Unit(rows, hold));
+    const Eigen::VectorXd shift = matrix.transpose() * factors;
+    Prediction next{trial.values, prediction.tangent, trial.order};
+    for (std::size_t k = 0; k < size; ++k) next.values[k] += shift(static_cast<Eigen::Index>(k));
+    Trial other = solve(std::move(next), conditions);
+    other.iterations += trial.iterations;
+    other.prediction_error = trial.prediction_error;
+    trial = std::move(other);
+  }
+  return trial;
 }
 
 std::unique_ptr<PointProblem> make_point_problem(const FamilyOf& family, const Options& options, ProblemState& state) {

@@ -100,15 +100,16 @@ class PointProblem {
   [[nodiscard]] virtual double action(const Trial& trial) = 0;
 
   /// Takes out of a prediction and its direction what is no step along the family: the time shift since `last` (a
-  /// phase that drifts from orbit to orbit would be extrapolated, and use up the steps) and unfoldings, which are 0 at
-  /// an orbit.
+  /// phase that drifts from orbit to orbit would be extrapolated, and use up the steps), a period that is held, and
+  /// unfoldings, which are 0 at an orbit.
   virtual void settle(Prediction& prediction, const std::vector<double>& last) = 0;
-  /// The conditions to correct a prediction under, one row of the size of a point each, the change orthogonal to the
-  /// branch first, then to the time shift where the symmetries do not hold the phase.
+  /// The conditions to correct a prediction under, one row of the size of a point each: the change orthogonal to the
+  /// branch first, then what the family holds, then the time shift where the symmetries do not hold the phase.
   [[nodiscard]] virtual std::vector<double> conditions_at(const Prediction& prediction) = 0;
   /// The same with the scalar of this number held instead of the place along the branch.
   [[nodiscard]] std::vector<double> conditions_with(const Prediction& prediction, int held_scalar);
-  [[nodiscard]] virtual Trial correct(Prediction prediction, const std::vector<double>& conditions) = 0;
+  /// The point that solves the equations under these conditions, and has the energy that the family holds, if it does.
+  [[nodiscard]] Trial correct(Prediction prediction, const std::vector<double>& conditions);
   /// False where a converged trial needs more harmonics. Sets `trial.loop`.
   [[nodiscard]] virtual bool resolved(Trial& trial) = 0;
   /// The family's direction at an orbit, on the side of `near.tangent`, which it is where the linear system is
@@ -116,10 +117,12 @@ class PointProblem {
   [[nodiscard]] virtual std::vector<double> direction_at(const std::vector<double>& orbit, const Prediction& near) = 0;
 
  protected:
-  explicit PointProblem(ProblemState& state) : _state(state) {}
+  PointProblem(const systems::System& system, ProblemState& state) : _family(system), _state(state) {}
+  [[nodiscard]] virtual Trial solve(Prediction prediction, const std::vector<double>& conditions) = 0;
   [[nodiscard]] ProblemState& state() { return _state; }
 
  private:
+  const systems::System& _family;
   ProblemState& _state;
 };
 

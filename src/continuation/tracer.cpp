@@ -45,6 +45,12 @@ constexpr double fixed_in_largest = 5.0;
 /// Keeps the quotient finite where z(s = 0) does not move; below any step that `fixed_in_largest` does not bound.
 constexpr double least_change = 1e-12;
 
+/// A loop that winds is not small, however little the rest of it moves.
+double extent_of(const loop::Loop& loop, double amplitude) {
+  const bool winds = std::any_of(loop.winding.begin(), loop.winding.end(), [](double n) { return n != 0.0; });
+  return winds ? std::max(1.0, amplitude) : amplitude;
+}
+
 }  // namespace
 
 Tracer::Tracer(std::shared_ptr<const systems::System> system, Start start, Options options)
@@ -61,7 +67,7 @@ void Tracer::go_on_from(Frontier frontier) {
 
 std::optional<Orbit> Tracer::advance() {
   if (_ending) return std::nullopt;
-  if (!begun()) return first_orbit();
+  if (!begun()) return _start.base_is_orbit ? base_orbit() : first_orbit();
   _ending = end_at(_frontier, *_system, _options);
   return _ending ? std::nullopt : next_on_family();
 }
@@ -78,14 +84,16 @@ std::optional<Orbit> Tracer::first_orbit() {
       is_at_rest ? above_least_known * corrector::least_known_amplitude(*_system, _start.base, direction) : 0.0;
   const double nearest = std::max(least, least_start * _options.start_amplitude);
   double amplitude = std::max(_options.start_amplitude, least);
+  _frontier.problem.held_energy = energy_of(*_system, _start.base);
   _problem->resolve(_problem->resolution_for(std::max(_start.base.cutoff, _options.cutoff_from), _start.base.time_map,
                                              _options.cutoff_to));
   while (true) {
     // Beside an orbit everything is measured by the orbit, however near the first one of the family lies.
-    _frontier.problem.amplitude = std::max(amplitude, loop::rms_amplitude(_start.base));
+    _frontier.problem.amplitude = extent_of(_start.base, std::max(amplitude, loop::rms_amplitude(_start.base)));
     const std::vector<double> base = _problem->from_loop(_start.base);
     Prediction prediction{base, _problem->from_change(loop::perturbation(_start.base, direction)), 1};
-    prediction.tangent[_problem->scalars_at()] += direction.period();
+    for (std::size_t n = 0; n < direction.scalars.size(); ++n)
+      prediction.tangent[_problem->scalars_at() + n] += direction.scalars[n];
     for (std::size_t n = 0; n < base.size(); ++n) prediction.values[n] += amplitude * prediction.tangent[n];
     const std::vector<double> conditions = _problem->conditions_at(prediction);
     Trial trial = _problem->correct(std::move(prediction), conditions);
@@ -123,12 +131,52 @@ std::optional<Orbit> Tracer::first_orbit() {
   }
 }
 
+std::optional<Orbit> Tracer::base_orbit() {
+  const std::vector<double>& scalars = _start.direction.scalars;
+  const auto held = static_cast<std::size_t>(
+      std::find_if(scalars.begin(), scalars.end(), [](double v) { return v != 0.0; }) - scalars.begin());
+  _frontier.problem.held_energy = energy_of(*_system, _start.base);
+  _frontier.problem.amplitude = extent_of(_start.base, loop::rms_amplitude(_start.base));
+  _problem->resolve(_problem->resolution_for(std::max(_start.base.cutoff, _options.cutoff_from), _start.base.time_map,
+                                             _options.cutoff_to));
+  while (true) {
+    const std::vector<double> base = _problem->from_loop(_start.base);
+    Prediction prediction{base, std::vector<double>(base.size(), 0.0), 1};
+    prediction.tangent[_problem->scalars_at() + held] = scalars[held];
+    const std::vector<double> conditions = _problem->conditions_with(prediction, static_cast<int>(held));
+    Trial trial = _problem->correct(prediction, conditions);
+    if (_stepper.needs_more_harmonics(trial)) {
+      const std::optional<Resolution> finer = _problem->next_resolution(_options.cutoff_to);
+      if (!finer)
+        return end(EndReason::cutoff_limit, fmt::format("the first orbit needs more than K = {}", _options.cutoff_to));
+      _problem->resolve(*finer);
+      continue;
+    }
+    if (!trial.is_orbit) return end(EndReason::failure, fmt::format("no orbit near the start: {}", trial.reason));
+    _ending = beyond_limits(*_system, trial.loop, scalar(trial, 0), _options);
+    if (_ending) return std::nullopt;
+    // The family's direction stands for an orbit before this one.
+    prediction.values = trial.values;
+    std::vector<double> before = trial.values;
+    const std::vector<double> direction = _problem->direction_at(trial.values, prediction);
+    std::vector<double> beyond = trial.values;
+    for (std::size_t n = 0; n < beyond.size(); ++n) beyond[n] += direction[n];
+    const double length = std::sqrt(_problem->product(beyond, trial.values, beyond, trial.values));
+    for (std::size_t n = 0; n < before.size(); ++n) before[n] -= _options.start_amplitude / length * direction[n];
+    _frontier.points = {{std::move(before), 0.0}};
+    _frontier.next_length = std::min(_options.start_amplitude, _options.largest_step);
+    return accept(trial);
+  }
+}
+
 /// The start's direction with unit |dz(s = 0)| (or unit length of its modes where z(s = 0) does not move).
 loop::Tangent Tracer::start_direction() const {
   double square = 0.0;
   for (const double v : loop::state_at(loop::perturbation(_start.base, _start.direction), 0.0)) square += v * v;
   double length = 0.0;
   for (const double v : _start.direction.modes) length += v * v;
+  if (length == 0.0)  // along a parameter
+    for (const double v : _start.direction.scalars) length += v * v;
   const double unit = square > still_at_start * length ? std::sqrt(square) : std::sqrt(length);
   loop::Tangent direction = _start.direction;
   for (std::vector<double>* numbers : {&direction.modes, &direction.scalars})
@@ -184,7 +232,7 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
       // The step may have gone over to another family, on which there is no such orbit.
       if (!refused.failed() || 0.5 * length < least) return end(refused.reason, std::move(refused.detail));
       trial.reason = std::move(refused.detail);
-      _frontier.on_energy_limit = false;
+      _frontier.on_energy_limit = _frontier.on_parameter_limit = false;
       _frontier.on_guard_limit = -1;
     }
     _frontier.problem.factor_point.clear();
@@ -232,7 +280,8 @@ std::optional<Orbit> Tracer::accept_within_limits(const Trial& trial, double len
   const double value = energy_of(*_system, trial.loop);
   const bool is_late = scalar(trial, period) > _options.period_limit;
   const bool is_outside = is_beyond_energies(value);
-  if (!is_late && !is_outside) return accept_within_guards(trial, length, refused);
+  const bool is_beside = is_beyond_parameters(trial);
+  if (!is_late && !is_outside && !is_beside) return accept_within_guards(trial, length, refused);
   OnLimit on_limit;
   if (is_late) {
     on_limit = orbit_at_scalar(
@@ -245,6 +294,24 @@ std::optional<Orbit> Tracer::accept_within_limits(const Trial& trial, double len
         orbit_at_value(_stepper, {EndReason::energy_limit, "E", limit, length, trial, _system->scales().energy()},
                        _frontier.orbit.energy, [this](const Trial& other) { return energy_of(*_system, other.loop); });
     _frontier.on_energy_limit = on_limit.trial.has_value();
+  }
+  const bool others = is_late || is_outside;
+  if (is_beside && (!others || (on_limit.trial && is_beyond_parameters(*on_limit.trial)))) {
+    constexpr int parameter = 1;  // among the scalars
+    const double limit =
+        scalar(trial, parameter) > _options.parameter_to ? _options.parameter_to : _options.parameter_from;
+    if (std::abs(here().parameters.front() - limit) <= near_limit * (1.0 + std::abs(limit))) {  // it began there
+      refused = {EndReason::parameter_limit, fmt::format("{} = {:.12g}", _system->family_scalars().free.front(),
+                                                         limit * _system->scales().parameter(0))};
+      return std::nullopt;
+    }
+    on_limit = orbit_at_scalar(_stepper,
+                               {EndReason::parameter_limit, _system->family_scalars().free.front(), limit, length,
+                                trial, _system->scales().parameter(0)},
+                               parameter);
+    if (on_limit.trial) on_limit.trial->loop.parameters.front() = limit;
+    _frontier.on_energy_limit = false;
+    _frontier.on_parameter_limit = on_limit.trial.has_value();
   }
   if (on_limit.trial) return accept_within_guards(std::move(*on_limit.trial), length, refused);
   refused = std::move(on_limit.ending);
@@ -264,7 +331,7 @@ std::optional<Orbit> Tracer::accept_within_guards(Trial trial, double length, En
       return std::nullopt;
     }
     trial = std::move(*on_limit.trial);
-    _frontier.on_energy_limit = false;
+    _frontier.on_energy_limit = _frontier.on_parameter_limit = false;
     _frontier.on_guard_limit = guard;
   }
   return accept(trial);
@@ -307,17 +374,17 @@ void Tracer::keep(Orbit& orbit, double increment, double amplitude) {
     orbit.step = frontier.orbit.step + 1;
     orbit.arclength = frontier.orbit.arclength + increment;
     if (orbit.loop.period > period_window * frontier.earlier_period) {
-      frontier.earlier_energy = frontier.orbit.energy;
+      frontier.earlier_level = level_of(*_system, frontier.orbit);
       frontier.earlier_period = here().period;
     }
   } else {
     frontier.first = orbit.loop;
     frontier.first_amplitude = amplitude;
-    frontier.first_energy = frontier.earlier_energy = orbit.energy;
+    frontier.first_level = frontier.earlier_level = level_of(*_system, orbit);
     frontier.earlier_period = orbit.loop.period;
   }
   keep_guards(orbit.loop);
-  frontier.problem.amplitude = amplitude;
+  frontier.problem.amplitude = extent_of(orbit.loop, amplitude);
   frontier.farthest = std::max({frontier.farthest, std::abs(amplitude - frontier.first_amplitude),
                                 std::abs(orbit.loop.period / frontier.first.period - 1.0)});
   frontier.orbit = orbit;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "branch_end.hpp"
 #include "orbweaver/continuation/branch.hpp"
 #include "point_problem.hpp"
 #include "stepper.hpp"
@@ -29,11 +30,18 @@ class Tracer {
   [[nodiscard]] bool is_beyond_energies(double value) const {
     return value > _options.energy_to || value < _options.energy_from;
   }
+  [[nodiscard]] bool is_beyond_parameters(const Trial& trial) {
+    if (_system->family_scalars().free.empty()) return false;
+    constexpr int parameter = 1;  // among the scalars
+    return continuation::is_beyond_parameters(scalar(trial, parameter), _options);
+  }
   [[nodiscard]] double scalar(const Trial& trial, int number) {
     return trial.values[_problem->scalars_at() + static_cast<std::size_t>(number)];
   }
 
   std::optional<Orbit> first_orbit();
+  /// The start's base itself, corrected with one scalar held.
+  std::optional<Orbit> base_orbit();
   [[nodiscard]] loop::Tangent start_direction() const;
   std::optional<Orbit> next_on_family();
   /// With a step of at most this length.

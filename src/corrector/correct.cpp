@@ -10,6 +10,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/loop/curve/system_at.hpp"
 #include "orbweaver/spectrum/sliced_hessian.hpp"
 #include "tao_solver.hpp"
 
@@ -297,9 +298,11 @@ Result dispatch(const systems::System& system, const loop::Loop& guess, const lo
 
 }  // namespace
 
-Result correct(const systems::System& system, const loop::Loop& guess, const loss::Unknowns& unknowns,
+Result correct(const systems::System& family, const loop::Loop& guess, const loss::Unknowns& unknowns,
                const loss::Slice& slice, const Options& options, const std::optional<Eigen::VectorXd>& normal) {
   const core::LogStage stage(core::Stage::corrector);
+  const std::shared_ptr<const systems::System> here = loop::system_at(family, guess);
+  const systems::System& system = *here;
   core::require(slice.unknowns() == unknowns.size(), "the slice belongs to other unknowns");
   Result result;
   result.loop = guess;

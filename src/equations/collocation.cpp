@@ -26,14 +26,22 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
-std::vector<loss::Scalar> Collocation::conservative(const loop::FundamentalDomain& domain) {
-  if (domain.reversor) return {loss::Scalar::period()};
-  return {loss::Scalar::period(), loss::Scalar::unfolding()};
+std::vector<loss::Scalar> Collocation::scalars_of_families(const systems::System& system,
+                                                           const loop::FundamentalDomain& domain) {
+  std::vector<loss::Scalar> scalars{loss::Scalar::period()};
+  for (const std::string& name : system.family_scalars().free) scalars.push_back(loss::Scalar::of_parameter(name));
+  if (system.structure().conservative() && !domain.reversor) scalars.push_back(loss::Scalar::unfolding());
+  return scalars;
+}
+
+int Collocation::conditions_of_families(const systems::System& system, const loop::FundamentalDomain& domain) {
+  const int holds = system.family_scalars().hold == systems::FamilyScalars::Hold::nothing ? 0 : 1;
+  return 1 + holds + (domain.reversor ? 0 : 1);
 }
 
 bool Collocation::applies(const systems::System& system, const loop::FundamentalDomain& domain) {
-  if (!domain.is_square()) return false;
-  return domain.reversor.has_value() || system.structure().conservative();
+  return domain.is_square() &&
+         static_cast<int>(scalars_of_families(system, domain).size()) == conditions_of_families(system, domain);
 }
 
 Collocation::Collocation(const systems::System& system, const loop::FundamentalDomain& domain,
@@ -44,7 +52,7 @@ Collocation::Collocation(const systems::System& system, const loop::FundamentalD
       _map(map),
       _centre(std::move(centre)),
       _winding(std::move(winding)),
-      _scalars(scalars.empty() ? conservative(domain) : std::move(scalars)),
+      _scalars(scalars.empty() ? scalars_of_families(system, domain) : std::move(scalars)),
       _keeps_mean(domain.coordinates_with_mean()),
       _ends(domain.ends()) {
   core::require(cells % BoxScheme::lanes == 0, "the cells of a domain must fill the lanes of the box scheme");
@@ -93,7 +101,10 @@ bool Collocation::keeps_mean(int coordinate) const { return _keeps_mean[at(coord
 const systems::System& Collocation::system_at(const double* u) const {
   std::map<std::string, double> values;
   for (int p = 1; p < borders(); ++p)
-    if (_scalars[at(p)].kind == loss::Scalar::Kind::parameter) values[_scalars[at(p)].parameter] = u[period_at() + p];
+    if (_scalars[at(p)].kind == loss::Scalar::Kind::parameter) {
+      const std::string& name = _scalars[at(p)].parameter;
+      values[name] = u[period_at() + p] * _system.parameter_scale(name);
+    }
   if (values.empty()) return _system;
   _moved = _system.with_parameters(values);
   return *_moved;
@@ -436,6 +447,8 @@ loop::Loop Collocation::to_loop(const double* u) const {
   out.modes.resize((2 * at(out.cutoff) + 1) * at(out.dimension));
   _grid.to_modes(u, out.modes.data());
   for (std::size_t i = 0; i < at(out.dimension); ++i) out.modes[i] += _centre[i];
+  for (std::size_t n = 0; n < _system.family_scalars().free.size(); ++n)
+    out.parameters.push_back(u[period_at() + 1 + static_cast<int>(n)]);
   return out;
 }
 
@@ -445,10 +458,16 @@ void Collocation::from_loop(const loop::Loop& loop, double* u) const {
   for (std::size_t i = 0; i < at(dimension()); ++i) modes[i] -= _centre[i];
   _grid.from_modes(loop.cutoff, modes.data(), u);
   u[period_at()] = loop.period;
-  for (int p = 1; p < borders(); ++p)
-    u[period_at() + p] = _scalars[at(p)].kind == loss::Scalar::Kind::parameter
-                             ? _system.parameters().at(_scalars[at(p)].parameter)
-                             : 0.0;
+  for (int p = 1; p < borders(); ++p) {
+    double& value = u[period_at() + p];
+    const std::string& name = _scalars[at(p)].parameter;
+    if (_scalars[at(p)].kind != loss::Scalar::Kind::parameter)
+      value = 0.0;
+    else if (at(p) <= loop.parameters.size())
+      value = loop.parameters[at(p - 1)];
+    else
+      value = _system.parameters().at(name) / _system.parameter_scale(name);
+  }
 }
 
 namespace {

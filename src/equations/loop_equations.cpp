@@ -10,6 +10,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/interruption.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/loop/curve/system_at.hpp"
 #include "orbweaver/loss/dense.hpp"
 
 namespace orbweaver::equations {
@@ -120,10 +121,11 @@ LoopEquations::LoopEquations(const systems::System& system, const loop::Loop& lo
   add_derivative(loop.modes, d, 1.0, _slope_modes);
   if (columns() == 0) return;
   _columns.resize(image.size(), columns());
+  const std::shared_ptr<const systems::System> here = loop::system_at(system, loop);
   const std::vector<double> z = states_at(_linearization.grid(), loop, 0.0);
   for (Eigen::Index c = 0; c < columns(); ++c) {
     const std::size_t first = _unknowns.has_period() ? 1 : 0;
-    _nodal = derivatives_by(system, _scalars[first + static_cast<std::size_t>(c)], z);
+    _nodal = derivatives_by(*here, _scalars[first + static_cast<std::size_t>(c)], z);
     weigh();
     project_nodal(_columns.col(c));
   }
@@ -238,8 +240,10 @@ void LoopEquations::project_rows_transposed(const In& y, Out rows) const {
     rows(static_cast<Eigen::Index>(m)) *= std::sqrt(_linearization.density()[m % n] * nodes);
 }
 
-void LoopEquations::factor(const systems::System& system, const loop::Loop& loop) {
+void LoopEquations::factor(const systems::System& family, const loop::Loop& loop) {
   const core::LogEvent event(core::Event::factor);
+  const std::shared_ptr<const systems::System> here = loop::system_at(family, loop);
+  const systems::System& system = *here;
   const int nodes = 2 * loop.cutoff + 1;
   const loop::FourierGrid& grid = loop::FourierGrid::of_size(nodes);
   const core::Team::Part mine = cells_of(_team, nodes);

@@ -10,6 +10,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/loop/curve/system_at.hpp"
 
 namespace orbweaver::loss {
 
@@ -22,7 +23,7 @@ int valid_nodes_for(const loop::Loop& loop) {
 
 }  // namespace
 
-Linearization::Linearization(const systems::System& system, const loop::Loop& loop, Order order,
+Linearization::Linearization(const systems::System& family, const loop::Loop& loop, Order order,
                              std::span<const Scalar> scalars)
     : _nodes(valid_nodes_for(loop)),
       _dimension(loop.dimension),
@@ -35,7 +36,9 @@ Linearization::Linearization(const systems::System& system, const loop::Loop& lo
       _density(loop::densities(loop.time_map, _nodes)),
       _scale(_density.size()) {
   const core::LogEvent event(order == Order::residual ? core::Event::residual : core::Event::jacobian);
-  core::require(system.dimension() == loop.dimension, "the loop's dimension is not the system's");
+  core::require(family.dimension() == loop.dimension, "the loop's dimension is not the system's");
+  const std::shared_ptr<const systems::System> here = loop::system_at(family, loop);
+  const systems::System& system = *here;
   const auto n = static_cast<std::size_t>(_nodes);
   const auto d = static_cast<std::size_t>(_dimension);
   for (std::size_t j = 0; j < n; ++j) {

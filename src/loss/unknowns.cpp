@@ -48,6 +48,10 @@ loop::Loop Unknowns::moved(const loop::Loop& base, std::span<const double> u) co
   loop::Loop out = base;
   subspace.add_to(in_subspace(*this, u), out.modes);
   if (has_period()) out.period += u[static_cast<std::size_t>(subspace.size())];
+  std::size_t parameter = 0;
+  for (std::size_t n = 0; n < scalars.size(); ++n)
+    if (scalars[n].kind == Scalar::Kind::parameter && parameter < out.parameters.size())
+      out.parameters[parameter++] += u[static_cast<std::size_t>(subspace.size()) + n];
   return out;
 }
 
@@ -58,14 +62,16 @@ std::shared_ptr<const systems::System> Unknowns::moved(const systems::System& ba
   for (std::size_t n = 0; n < scalars.size(); ++n)
     if (scalars[n].kind == Scalar::Kind::parameter)
       values[scalars[n].parameter] =
-          base.parameters().at(scalars[n].parameter) + u[static_cast<std::size_t>(subspace.size()) + n];
+          base.parameters().at(scalars[n].parameter) +
+          base.parameter_scale(scalars[n].parameter) * u[static_cast<std::size_t>(subspace.size()) + n];
   return base.with_parameters(values);
 }
 
 std::vector<double> Unknowns::parameters_of(const systems::System& system) const {
   std::vector<double> values;
   for (const Scalar& s : scalars)
-    if (s.kind == Scalar::Kind::parameter) values.push_back(system.parameters().at(s.parameter));
+    if (s.kind == Scalar::Kind::parameter)
+      values.push_back(system.parameters().at(s.parameter) / system.parameter_scale(s.parameter));
   return values;
 }
 
@@ -77,6 +83,13 @@ std::vector<double> Unknowns::difference(const loop::Loop& from, const loop::Loo
   std::vector<double> u(static_cast<std::size_t>(size()), 0.0);
   subspace.project(modes, std::span(u).first(static_cast<std::size_t>(subspace.size())));
   if (has_period()) u[static_cast<std::size_t>(subspace.size())] = to.period - from.period;
+  core::require(from.parameters.size() == to.parameters.size(), "the loops are of systems that move other parameters");
+  std::size_t parameter = 0;
+  for (std::size_t n = 0; n < scalars.size(); ++n)
+    if (scalars[n].kind == Scalar::Kind::parameter && parameter < to.parameters.size()) {
+      u[static_cast<std::size_t>(subspace.size()) + n] = to.parameters[parameter] - from.parameters[parameter];
+      ++parameter;
+    }
   return u;
 }
 

@@ -6,6 +6,7 @@
 #include "show_crossings.hpp"
 #include "show_families.hpp"
 #include "show_findings.hpp"
+#include "show_level.hpp"
 #include "show_values.hpp"
 #include "show_verdicts.hpp"
 
@@ -38,7 +39,8 @@ void print_summary(std::ostream& out, const archive::Archive& atlas) {
     out << fmt::format("certificates {}\n", verdicts);
   out << fmt::format("modes        {} values ({:.1f} MB)\n", atlas.mode_values(), static_cast<double>(bytes) / 1e6);
   out << fmt::format("period       {}\n", whole_range("period"));
-  out << fmt::format("energy       {}\n", whole_range("energy"));
+  const Level level = level_of(atlas);
+  out << fmt::format("{:<12} {}\n", level.title, whole_range(level.column));
   if (atlas.families().rows() == 0) return;
   out << '\n';
   print_families(out, atlas);

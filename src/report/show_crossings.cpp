@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "show_level.hpp"
 #include "text_grid.hpp"
 
 namespace orbweaver::report {
@@ -45,8 +46,11 @@ std::vector<std::string> born_at(const archive::Archive& atlas) {
 }  // namespace
 
 std::string crossing_text(const archive::Archive& atlas, std::size_t crossing) {
-  return fmt::format("{} T {:.6g}", atlas.crossings().texts("kind")[crossing],
-                     atlas.crossings().reals("period")[crossing]);
+  const archive::Table& crossings = atlas.crossings();
+  const std::string parameter = atlas.moving_parameter();
+  return fmt::format(
+      "{} T {:.6g}{}", crossings.texts("kind")[crossing], crossings.reals("period")[crossing],
+      parameter.empty() ? "" : fmt::format(", {} {:.6g}", parameter, crossings.reals("parameter")[crossing]));
 }
 
 void print_crossings(std::ostream& out, const archive::Archive& atlas) {
@@ -54,7 +58,8 @@ void print_crossings(std::ostream& out, const archive::Archive& atlas) {
   TextGrid grid;
   grid.add_column("family", families_of(atlas), false);
   grid.add_column("period", cells_of(crossings.reals("period"), "{:.10g}"));
-  grid.add_column("energy", cells_of(crossings.reals("energy"), "{:.10g}"));
+  const Level level = level_of(atlas);
+  grid.add_column(level.title, cells_of(crossings.reals(level.column), "{:.10g}"));
   grid.add_column("kind", crossings.texts("kind"), false);
   grid.add_column("m", cells_of(crossings.integers("multiplicity")));
   grid.add_column("q", cells_of(crossings.integers("sector_q")));

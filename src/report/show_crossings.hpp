@@ -11,7 +11,7 @@ namespace orbweaver::report {
 /// The crossings, with names of families in place of indices.
 void print_crossings(std::ostream& out, const archive::Archive& atlas);
 
-/// "period-doubling T 8.44293": row `crossing` of /crossings.
+/// "period-doubling T 8.44293", "fold-parameter T 5.23599, drive_amplitude 0.4": row `crossing` of /crossings.
 [[nodiscard]] std::string crossing_text(const archive::Archive& atlas, std::size_t crossing);
 
 }  // namespace orbweaver::report

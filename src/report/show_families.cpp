@@ -7,6 +7,7 @@
 
 #include "orbweaver/survey/tree/family_end.hpp"
 #include "show_crossings.hpp"
+#include "show_level.hpp"
 #include "show_stability.hpp"
 #include "show_verdicts.hpp"
 #include "text_grid.hpp"
@@ -107,20 +108,21 @@ std::string range_text(const std::vector<double>& values, std::size_t first, std
 
 void print_families(std::ostream& out, const archive::Archive& atlas) {
   const Tree tree(atlas.families().integers("parent"));
-  std::vector<std::string> names, born, orbits, periods, energies;
+  std::vector<std::string> names, born, orbits, periods, levels;
+  const Level level = level_of(atlas);
   for (const auto& [family, depth] : tree.nodes()) {
     names.push_back(cut(std::string(indentation(depth), ' ') + atlas.families().texts("name")[family], longest_name));
     born.push_back(born_text(atlas, family));
     orbits.push_back(std::to_string(atlas.families().integers("orbit_count")[family]));
     periods.push_back(range_of(atlas, "period", family));
-    energies.push_back(range_of(atlas, "energy", family));
+    levels.push_back(range_of(atlas, level.column, family));
   }
   TextGrid grid;
   grid.add_column("family", std::move(names), false);
   grid.add_column("born at", std::move(born), false);
   grid.add_column("orbits", std::move(orbits));
   grid.add_column("period", std::move(periods));
-  grid.add_column("energy", std::move(energies));
+  grid.add_column(level.title, std::move(levels));
   const std::vector<std::string> lines = grid.lines();
   out << lines.front() << '\n';
   for (std::size_t i = 0; i < tree.nodes().size(); ++i) {

@@ -20,7 +20,7 @@ std::string line_of(const survey::FamilySummary& f, std::size_t width) {
   const std::string end = f.doubts.empty() ? f.end_reason : fmt::format("{}; {}", f.end_reason, f.doubts);
   if (f.orbits == 0) return fmt::format("{:<{}}  {:>6}  {:>22}  {:>26}  {}\n", name, width, 0, "-", "-", f.end_reason);
   return fmt::format("{:<{}}  {:>6}  {:>9.6f} .. {:>9.6f}  {:>11.8f} .. {:>11.8f}  {}\n", name, width, f.orbits,
-                     f.period_from, f.period_to, f.energy_from, f.energy_to, end);
+                     f.period_from, f.period_to, f.level_from, f.level_to, end);
 }
 
 /// What does not add up, and how much the limits cut; failed tasks have lines of their own.
@@ -47,8 +47,8 @@ std::string to_text(const survey::Summary& summary) {
   std::size_t width = 6;
   for (const survey::FamilySummary& f : summary.families)
     width = std::max(width, f.name.size() + 2 * static_cast<std::size_t>(f.depth));
-  std::string text =
-      fmt::format("{:<{}}  {:>6}  {:>22}  {:>26}  {}\n", "family", width, "orbits", "period", "energy", "ended by");
+  std::string text = fmt::format("{:<{}}  {:>6}  {:>22}  {:>26}  {}\n", "family", width, "orbits", "period",
+                                 summary.parameter.empty() ? "energy" : summary.parameter, "ended by");
   const std::size_t listed = std::min(summary.families.size(), most_listed);
   for (std::size_t n = 0; n < listed; ++n) text += line_of(summary.families[n], width);
   if (listed < summary.families.size())

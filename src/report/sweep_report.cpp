@@ -72,8 +72,7 @@ bool have_one_range(const std::vector<EquilibriumReport>& reports) {
 }  // namespace
 
 std::vector<EquilibriumReport> sweep_report(const scene::Scene& scene) {
-  const survey::ScaledScene scaled(
-      scene, systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects));
+  const survey::ScaledScene scaled(scene, scene::bound_system(scene.system));
   const std::shared_ptr<const systems::System>& system = scaled.system();
   const double time = system->scales().time;
   std::vector<EquilibriumReport> reports;

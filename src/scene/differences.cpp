@@ -72,12 +72,12 @@ std::string range_text(double from, double to) { return list_text(std::array{fro
 // All keys of a scene with their values, the ones it does not give included.
 class Values {
  public:
-  explicit Values(const Scene& scene)
-      : _system(systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects)) {
+  explicit Values(const Scene& scene) : _system(bound_system(scene.system)) {
     add("name", scene.name);
     add_system(scene.system);
     add_starts(scene);
     add_continuation(scene.continuation);
+    add_moving(scene.system.moving);
     add_limit("survey.depth", LimitKey::depth, scene.survey.depth);
     add("survey.subharmonics", scene.survey.subharmonics);
     add("survey.spectrum", scene.survey.spectrum == Spectrum::all ? "all" : "events");
@@ -149,6 +149,16 @@ class Values {
     const Sweep& sweep = scene.sweep;
     add("starts.sweep.period", sweep.period ? range_text(sweep.period->from, sweep.period->to) : "auto");
     add("starts.sweep.step", sweep.step ? text_of(*sweep.step) : "auto");
+    add("starts.states", list_text(scene.states, [&](const StateStart& start) {
+          return fmt::format("{{state: {}, period: {}, name: {}}}", point_text(start.state), text_of(start.period),
+                             start.name);
+        }));
+  }
+
+  void add_moving(const systems::FamilyScalars& moving) {
+    using Hold = systems::FamilyScalars::Hold;
+    add("continuation.free", moving.free.empty() ? "" : moving.free.front());
+    add("continuation.hold", moving.hold == Hold::nothing ? "" : moving.hold == Hold::energy ? "energy" : "period");
   }
 
   void add_continuation(const Continuation& continuation) {
@@ -170,6 +180,8 @@ class Values {
   void add_limits(const Limits& limits) {
     add_limit("limits.period", LimitKey::period, limits.period);
     add_limits("limits.energy", LimitKey::energy, limits.energy_from, limits.energy_to);
+    // No limit to widen: equilibria are followed within it, and with them their Hopf points.
+    add_range("limits.parameter", limits.parameter_from, limits.parameter_to);
     for (const std::string& name : _system->structure().guard_names()) add_guard(name, limits.guards);
     add_limit("limits.families", LimitKey::families, limits.families);
     add_limit("limits.steps", LimitKey::steps, limits.steps);

@@ -18,6 +18,8 @@ systems::Scales scales_of(const Scene& scene, const systems::System& system, con
   const std::vector<std::string>& quantities = system.structure().conserved;
   for (std::size_t k = 0; k < quantities.size(); ++k)
     scales.conserved.push_back(value(quantities[k], natural.conserved.empty() ? 1.0 : natural.conserved[k]));
+  const std::vector<std::string>& free = system.family_scalars().free;
+  for (std::size_t n = 0; n < free.size(); ++n) scales.parameters.push_back(value(free[n], natural.parameter(n)));
   return scales;
 }
 
@@ -40,6 +42,12 @@ Scene in_scales(Scene scene, const systems::System& system, const systems::Scale
     if (scene.continuation.start_is_given) scene.continuation.start_amplitude /= largest;
   }
   scene.limits.period /= scales.time;
+  scene.limits.parameter_from /= scales.parameter(0);
+  scene.limits.parameter_to /= scales.parameter(0);
+  for (StateStart& start : scene.states) {
+    for (std::size_t i = 0; i < start.state.size(); ++i) start.state[i] /= scales.coordinate(i);
+    start.period /= scales.time;
+  }
   scene.limits.energy_from /= scales.energy();
   scene.limits.energy_to /= scales.energy();
   for (double& period : scene.events.periods) period /= scales.time;

@@ -8,7 +8,6 @@
 #include "document.hpp"
 #include "fixed_points.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "overrides.hpp"
 #include "reader.hpp"
@@ -28,9 +27,10 @@ Field require_key(const Keys& keys, const Field& root, const std::string& key, s
 }
 
 void read_starts(const Field& field, const systems::System& system, Scene& scene) {
-  const Keys keys(field, {"fixed_points", "sweep"}, "starts: {fixed_points: {grid: [[0, 180], [0, 180]]}}");
+  const Keys keys(field, {"fixed_points", "sweep", "states"}, "starts: {fixed_points: {grid: [[0, 180], [0, 180]]}}");
   if (const auto points = keys.find("fixed_points")) read_fixed_points(*points, system, scene.fixed_points);
   if (const auto sweep = keys.find("sweep")) read_sweep(*sweep, scene.sweep);
+  if (const auto states = keys.find("states")) read_states(*states, system, scene.states);
 }
 
 Scene read_scene(const Field& root) {
@@ -39,7 +39,8 @@ Scene read_scene(const Field& root) {
       smallest_scene);
   Scene scene;
   read_system(require_key(keys, root, "system", "system: {name: double_pendulum}"), scene.system);
-  const auto bound = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  read_family_scalars(keys.find("continuation"), scene.system);
+  const auto bound = bound_system(scene.system);
   const systems::System& system = *bound;
   scene.name = scene.system.name;
   if (const auto name = keys.find("name")) scene.name = name->text("double-pendulum");
@@ -110,17 +111,6 @@ Scene parse(const std::string& text, const std::string& origin, const std::vecto
 
 Scene load(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   return parse(read_file(file), file.string(), overrides);
-}
-
-std::vector<std::string> not_built_yet(const Scene& scene) {
-  std::vector<std::string> sentences;
-  const auto say = [&](bool asked, const std::string& sentence) {
-    if (asked) sentences.push_back(sentence);
-  };
-  const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
-  say(!system->structure().conservative(),
-      "system: continuation of systems without a conserved energy is not built yet.");
-  return sentences;
 }
 
 }  // namespace orbweaver::scene

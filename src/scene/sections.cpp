@@ -4,7 +4,10 @@
 #include <tuple>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "orbweaver/systems/registry.hpp"
+#include "system_section.hpp"
 #include "units.hpp"
 
 namespace orbweaver::scene {
@@ -28,7 +31,8 @@ void read_sweep(const Field& field, Sweep& sweep) {
 
 void read_continuation(const Field& field, const systems::System& system, Continuation& continuation) {
   const bool angles = system.structure().has_angles();
-  const Keys keys(field, {"step", "start", "tolerance", "cutoff", "corrector"}, "continuation: {step: adaptive}");
+  const Keys keys(field, {"step", "start", "tolerance", "cutoff", "corrector", "free", "hold"},
+                  "continuation: {step: adaptive}");
   if (const auto step = keys.find("step"); step && step->plain_scalar() != "adaptive")
     continuation.fixed_step = step->length(angles, "`adaptive` or ");
   if (const auto start = keys.find("start"); start && start->plain_scalar() != "auto") {
@@ -48,6 +52,60 @@ void read_continuation(const Field& field, const systems::System& system, Contin
   if (const auto corrector = keys.find("corrector"))
     continuation.corrector = corrector->choice(
         {"automatic", "collocation", "newton-krylov", "brgn", "nls", "ntr", "lmvm", "rprop", "rprop-extrapolated"});
+}
+
+namespace {
+
+std::vector<std::string> names_of(const std::vector<systems::Parameter>& parameters) {
+  std::vector<std::string> names;
+  for (const systems::Parameter& parameter : parameters) names.push_back(parameter.name);
+  return names;
+}
+
+}  // namespace
+
+void read_family_scalars(const std::optional<Field>& field, SystemChoice& choice) {
+  using Hold = systems::FamilyScalars::Hold;
+  const bool conservative = bound_system(choice)->structure().conservative();
+  const std::vector<std::string> names = names_of(known_parameters(systems::model_info(choice.name), choice));
+  std::optional<Field> free;
+  std::optional<Field> hold;
+  if (field) {
+    const Keys keys(*field, {"step", "start", "tolerance", "cutoff", "corrector", "free", "hold"},
+                    "continuation: {free: m2, hold: energy}");
+    free = keys.find("free");
+    hold = keys.find("hold");
+  }
+  if (free) choice.moving.free = {free->choice(names)};
+  if (hold && (!free || !conservative))
+    hold->fail(free ? "no such key, as the system conserves nothing" : "no such key without `free`", hold->got(),
+               "leave it out");
+  if (free && conservative)
+    choice.moving.hold = hold && hold->choice({"energy", "period"}) == "period" ? Hold::period : Hold::energy;
+}
+
+void read_states(const Field& field, const systems::System& system, std::vector<StateStart>& states) {
+  constexpr std::string_view example = "[{state: [0.1, 0], period: 6.3, name: Eight}]";
+  const auto d = static_cast<std::size_t>(system.dimension());
+  for (const Field& entry : field.list(example)) {
+    const Keys keys(entry, {"state", "period", "name"}, example);
+    StateStart start;
+    const auto state = keys.find("state");
+    const auto period = keys.find("period");
+    if (!state || !period) entry.fail("a `state` and a `period`", entry.got(), fmt::format("for example {}", example));
+    const std::vector<Field> numbers = state->list("[0.1, 0]");
+    if (numbers.size() != d)
+      state->fail(fmt::format("{} numbers, for {}", d, fmt::join(system.info().state_names, ", ")), state->got(),
+                  "give every coordinate at t = 0");
+    for (std::size_t i = 0; i < d; ++i) {
+      const double value = numbers[i].number({.example = "0.1"});
+      start.state.push_back(system.structure().is_angle(i) ? radians(value) : value);
+    }
+    start.period = period->number({.lower = 0, .lower_open = true, .example = "6.3"});
+    start.name = fmt::format("State {}", states.size() + 1);
+    if (const auto name = keys.find("name")) start.name = name->text("Eight");
+    states.push_back(std::move(start));
+  }
 }
 
 void read_survey(const Field& field, Survey& survey) {
@@ -88,12 +146,18 @@ void read_guards(const Field& field, const systems::System& system, std::map<std
 }  // namespace
 
 void read_limits(const Field& field, const systems::System& system, Limits& limits) {
-  const Keys keys(field, {"period", "energy", "guards", "families", "steps", "time", "task_time"},
+  const Keys keys(field, {"period", "energy", "parameter", "guards", "families", "steps", "time", "task_time"},
                   "limits: {period: 30}");
   if (const auto period = keys.find("period"))
     limits.period = period->number({.lower = 0, .lower_open = true, .infinite = true, .example = "30"});
   if (const auto energy = keys.find("energy"))
     std::tie(limits.energy_from, limits.energy_to) = energy->range({.infinite = true, .example = "[-.inf, .inf]"});
+  if (const auto parameter = keys.find("parameter")) {
+    if (system.family_scalars().free.empty())
+      parameter->fail("no such key, as no parameter moves", parameter->got(),
+                      "name one with `continuation: {free: ...}`");
+    std::tie(limits.parameter_from, limits.parameter_to) = parameter->range({.infinite = true, .example = "[0, 0.5]"});
+  }
   if (const auto guards = keys.find("guards")) read_guards(*guards, system, limits.guards);
   if (const auto families = keys.find("families")) limits.families = families->integer({.lower = 1, .example = "1000"});
   if (const auto steps = keys.find("steps")) limits.steps = steps->integer({.lower = 1, .example = "5000"});

@@ -15,7 +15,7 @@ namespace {
 // The layer `systems` knows what is allowed; the scene knows where it was asked for.
 void ask_system(const Field& field, const SystemChoice& choice) {
   try {
-    static_cast<void>(systems::make_system(choice.name, choice.parameters, choice.effects));
+    static_cast<void>(bound_system(choice));
   } catch (const core::InputError& error) {
     field.fail(error.what());
   }
@@ -27,18 +27,28 @@ void read_effects(const Field& field, SystemChoice& choice) {
   for (const Field& item : field.list("[]")) {
     if (known.empty())
       item.fail(fmt::format("no effects, for the system {} has none", choice.name), item.got(), "remove it");
-    choice.effects.push_back(item.choice(known));
-    ask_system(item, choice);
+    const std::string effect = item.choice(known);
+    if (std::count(choice.effects.begin(), choice.effects.end(), effect) > 0)
+      item.fail("each effect once", item.got() + " again", "remove one");
+    choice.effects.push_back(effect);
   }
+  ask_system(field, choice);  // whether it is compiled with all of them together
 }
 
-/// The effect that brings the parameter, where the scene does not ask for it.
-void refuse_without_effect(const Keys& keys, const systems::Effect& effect) {
-  for (const systems::Parameter& parameter : effect.parameters)
-    if (const auto value = keys.find(parameter.name))
-      value->fail("a parameter of the system or of an effect asked for",
-                  fmt::format("one of the effect `{}`, which is not", effect.name),
-                  fmt::format("add `effects: [{}]`, or remove it", effect.name));
+bool holds(const std::vector<systems::Parameter>& parameters, const std::string& name) {
+  return std::any_of(parameters.begin(), parameters.end(),
+                     [&](const systems::Parameter& parameter) { return parameter.name == name; });
+}
+
+/// Says which effect brings a parameter of the map `field` that is not known, since the scene does not ask for it.
+void refuse_without_effect(const Field& field, const systems::ModelInfo& info,
+                           const std::vector<systems::Parameter>& known, std::string_view example) {
+  for (const Field::Entry& entry : field.entries(example))
+    for (const systems::Effect& effect : info.effects)
+      if (const std::string name = entry.key.key(); holds(effect.parameters, name) && !holds(known, name))
+        entry.value.fail("a parameter of the system or of an effect asked for",
+                         fmt::format("one of the effect `{}`, which is not", effect.name),
+                         fmt::format("add `effects: [{}]`, or remove it", effect.name));
 }
 
 bool is_asked_for(const SystemChoice& choice, const systems::Effect& effect) {
@@ -47,28 +57,32 @@ bool is_asked_for(const SystemChoice& choice, const systems::Effect& effect) {
 
 }  // namespace
 
+std::shared_ptr<const systems::System> bound_system(const SystemChoice& choice) {
+  return systems::make_system(choice.name, choice.parameters, choice.effects, choice.moving);
+}
+
 std::vector<systems::Parameter> known_parameters(const systems::ModelInfo& info, const SystemChoice& choice) {
   std::vector<systems::Parameter> known = info.parameters;
   for (const systems::Effect& effect : info.effects)
-    if (is_asked_for(choice, effect)) known.insert(known.end(), effect.parameters.begin(), effect.parameters.end());
+    if (is_asked_for(choice, effect))
+      for (const systems::Parameter& parameter : effect.parameters)
+        if (!holds(known, parameter.name)) known.push_back(parameter);
   return known;
 }
 
 void read_parameters(const Field& field, const systems::ModelInfo& info, SystemChoice& choice) {
   const std::vector<systems::Parameter> known = known_parameters(info, choice);
+  constexpr std::string_view example = "parameters: {m1: 1}";
+  refuse_without_effect(field, info, known, example);
   std::vector<std::string> names;
-  for (const systems::Parameter& parameter : info.parameters) names.push_back(parameter.name);
-  for (const systems::Effect& effect : info.effects)
-    for (const systems::Parameter& parameter : effect.parameters) names.push_back(parameter.name);
-  const Keys keys(field, names, "parameters: {m1: 1}");
-  for (const systems::Effect& effect : info.effects)
-    if (!is_asked_for(choice, effect)) refuse_without_effect(keys, effect);
+  for (const systems::Parameter& parameter : known) names.push_back(parameter.name);
+  const Keys keys(field, names, example);
   for (const systems::Parameter& parameter : known) {
     const auto value = keys.find(parameter.name);
     if (!value) continue;
-    const std::string example = fmt::format("{}", parameter.standard);
+    const std::string standard = fmt::format("{}", parameter.standard);
     choice.parameters[parameter.name] = value->number(
-        {.lower = parameter.lower, .upper = parameter.upper, .lower_open = parameter.lower_open, .example = example});
+        {.lower = parameter.lower, .upper = parameter.upper, .lower_open = parameter.lower_open, .example = standard});
     ask_system(*value, choice);
   }
 }
@@ -78,7 +92,7 @@ namespace {
 // One number each, > 0, for time, coordinates that are no angles, and conserved quantities.
 void read_scales(const Field& field, SystemChoice& choice) {
   if (field.plain_scalar() == "auto") return;
-  const auto system = systems::make_system(choice.name, choice.parameters, choice.effects);
+  const auto system = bound_system(choice);
   const systems::Structure& structure = system->structure();
   const std::vector<std::string>& coordinates = system->info().state_names;
   const std::vector<std::string> names = scale_names(*system);
@@ -108,7 +122,8 @@ void read_scales(const Field& field, SystemChoice& choice) {
 
 std::vector<std::string> scale_names(const systems::System& system) {
   std::vector<std::string> names{"time"};
-  for (const std::vector<std::string>* more : {&system.info().state_names, &system.structure().conserved})
+  for (const std::vector<std::string>* more :
+       {&system.info().state_names, &system.structure().conserved, &system.family_scalars().free})
     names.insert(names.end(), more->begin(), more->end());
   return names;
 }

@@ -14,6 +14,7 @@
 #include "orbit_correction.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/loop/curve/system_at.hpp"
 #include "orbweaver/numerics/quad.hpp"
 #include "orbweaver/numerics/random.hpp"
 #include "orbweaver/systems/quad_system.hpp"
@@ -282,11 +283,13 @@ Integrated integrated(const systems::System& system, const loop::Loop& loop, con
 
 }  // namespace
 
-Stability floquet(const systems::System& system, const loop::Loop& loop, const loop::Isotropy& isotropy,
+Stability floquet(const systems::System& family, const loop::Loop& loop, const loop::Isotropy& isotropy,
                   const FloquetOptions& options) {
   const core::LogStage stage(core::Stage::spectrum);
   const core::LogEvent event(core::Event::multipliers);
   loop::validate(loop);
+  const std::shared_ptr<const systems::System> here = loop::system_at(family, loop);
+  const systems::System& system = *here;
   core::require(loop.dimension == system.dimension(), "Floquet multipliers: the loop is not of the system's dimension");
   core::require(moves(loop), "Floquet multipliers need an orbit that moves; this loop is constant");
   const systems::Structure& structure = system.structure();

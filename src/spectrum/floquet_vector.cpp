@@ -11,6 +11,7 @@
 #include "matrix_table.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/loop/curve/system_at.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
@@ -119,9 +120,11 @@ int highest_harmonic(const Eigen::MatrixXcd& periodic, double share) {
 
 }  // namespace
 
-int floquet_vector_cutoff(const systems::System& system, const loop::Loop& loop, const loop::Isotropy& isotropy,
+int floquet_vector_cutoff(const systems::System& family, const loop::Loop& loop, const loop::Isotropy& isotropy,
                           const FloquetVectorOptions& options) {
   const core::LogStage stage(core::Stage::spectrum);
+  const std::shared_ptr<const systems::System> here = loop::system_at(family, loop);
+  const systems::System& system = *here;
   const FundamentalGroup group = fundamental_group(system, loop, isotropy);
   core::require(options.count >= 1, "at least one solution of the linearised flow can be asked for");
   core::require(options.order % group.order == 0, "the order of a sector's fundamental map does not fit the loop's");

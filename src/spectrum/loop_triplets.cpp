@@ -27,6 +27,9 @@ namespace {
 constexpr double share_of_value = 3e-4;
 constexpr double share_of_rate = 1e-6;
 
+// Unknowns of a dense matrix: with its rows, twice as many, and the factors of both decompositions some 0.7 GB.
+constexpr int most_dense = 4000;
+
 // Krylov vectors: convergence is looked at once they are all there, and half of them are kept at a restart.
 int basis_size(int count) { return 2 * count + 4; }
 
@@ -265,7 +268,12 @@ SingularTriplets smallest_singular_triplets(const systems::System& system, const
     equations.factor(system, loop);
     return smallest_singular_triplets(equations, options);
   }
-  const loss::Linearization linearization(system, loop, loss::Linearization::Order::jacobian);
+  const loss::Linearization linearization(system, loop, loss::Linearization::Order::jacobian, unknowns.scalars);
+  if (unknowns.size() > most_dense)
+    throw core::NumericalError(fmt::format(
+        "singular triplets over {} unknowns by dense matrices: at most {} are affordable, and the matrix-free "
+        "way needs as many equations",
+        unknowns.size(), most_dense));
   SingularTriplets out =
       smallest_singular_triplets(slice.reduce_columns(loss::assemble_jacobian(linearization, unknowns)), options.count);
   Eigen::MatrixXd right(unknowns.size(), options.count);
@@ -281,7 +289,7 @@ SingularTriplets smallest_singular_triplets(const systems::System& system, const
 Eigenpairs smallest_eigenpairs(const systems::System& system, const loop::Loop& loop, const loss::Unknowns& unknowns,
                                const loss::Slice& slice, const TripletOptions& options) {
   const SingularTriplets triplets = smallest_singular_triplets(system, loop, unknowns, slice, options);
-  const loss::Linearization linearization(system, loop, loss::Linearization::Order::jacobian);
+  const loss::Linearization linearization(system, loop, loss::Linearization::Order::jacobian, unknowns.scalars);
   Eigenpairs out;
   out.vectors = triplets.right;
   for (Eigen::Index n = 0; n < out.vectors.cols(); ++n) {

@@ -34,13 +34,25 @@ void reduce_angles(const systems::System& system, Eigen::VectorXd& z) {
   }
 }
 
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// The phase of a drive turns whatever the rest does: it is held where it is.
+void hold_phase(const systems::System& system, Eigen::VectorXd& f, RowMajor& a) {
+  if (!system.structure().driven) return;
+  const Eigen::Index last = f.size() - 1;
+  f(last) = 0.0;
+  a.row(last).setZero();
+  a.col(last).setZero();
+}
+
 std::optional<Eigen::VectorXd> newton(const systems::System& system, Eigen::VectorXd z) {
   const Eigen::Index d = z.size();
   Eigen::VectorXd f(d);
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> a(d, d);
+  RowMajor a(d, d);
   for (int iteration = 0; iteration < most_steps; ++iteration) {
     system.field_jacobian(1, z.data(), f.data(), a.data());
     if (!f.allFinite() || !a.allFinite()) return std::nullopt;
+    hold_phase(system, f, a);
     Eigen::VectorXd step = a.completeOrthogonalDecomposition().solve(f);
     if (step.norm() > longest_step) step *= longest_step / step.norm();
     z -= step;
@@ -48,8 +60,25 @@ std::optional<Eigen::VectorXd> newton(const systems::System& system, Eigen::Vect
     if (step.norm() < settled * (1.0 + z.norm())) break;
   }
   system.field(1, z.data(), f.data());
+  hold_phase(system, f, a);
   if (!(f.norm() < vanishing_field * (1.0 + a.norm()))) return std::nullopt;
   return z;
+}
+
+/// With the drive at zero the rest does not depend on its phase.
+bool rests_at_all_phases(const systems::System& system, Eigen::VectorXd z) {
+  if (!system.structure().driven) return true;
+  constexpr int phases = 8;  // of a drive with a few harmonics
+  const Eigen::Index d = z.size();
+  Eigen::VectorXd f(d);
+  RowMajor a(d, d);
+  for (int n = 0; n < phases; ++n) {
+    z(d - 1) = two_pi * n / phases;
+    system.field_jacobian(1, z.data(), f.data(), a.data());
+    hold_phase(system, f, a);
+    if (!(f.norm() < vanishing_field * (1.0 + a.norm()))) return false;
+  }
+  return true;
 }
 
 bool is_finite_at(const systems::System& system, const Eigen::VectorXd& z) {
@@ -131,7 +160,7 @@ std::vector<std::vector<double>> find_fixed_points(const systems::System& system
       continue;
     }
     std::optional<Eigen::VectorXd> point = newton(system, std::move(z));
-    if (!point) continue;
+    if (!point || !rests_at_all_phases(system, *point)) continue;
     const bool known =
         std::any_of(found.begin(), found.end(), [&](const Eigen::VectorXd& w) { return is_same(w, *point); });
     if (!known) found.push_back(*point);

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "orbweaver/systems/family_scalars.hpp"
+
 namespace orbweaver::systems {
 
 /// What a model is made from: a value for every parameter, and the effects asked for, all checked. Values are numbers,
@@ -13,6 +15,7 @@ template <class P>
 struct BoundTo {
   std::map<std::string, P> parameters;
   std::vector<std::string> effects;
+  FamilyScalars scalars{};
 
   [[nodiscard]] const P& operator[](const std::string& parameter) const { return parameters.at(parameter); }
   [[nodiscard]] bool has(const std::string& effect) const {

@@ -73,6 +73,7 @@ void check(const Structure& structure, const ModelInfo& info, int dimension, int
   for (const int i : structure.angles)
     core::require(i >= 0 && i < dimension && !info.winding_names[static_cast<std::size_t>(i)].empty(),
                   "an angle is a coordinate whose winding number has a name");
+  core::require(!structure.driven || structure.is_angle(d - 1), "a drive's phase is the last coordinate and an angle");
   std::set<std::string> names{identity_name};
   for (const auto* symmetries : {&structure.equivariances, &structure.reversors})
     for (const Symmetry& s : *symmetries) {
@@ -98,9 +99,9 @@ std::string range_text(const Parameter& parameter) {
 }
 
 Bound bound_to(const ModelInfo& info, const std::map<std::string, double>& given,
-               const std::vector<std::string>& effects) {
+               const std::vector<std::string>& effects, const FamilyScalars& scalars) {
   const std::vector<Parameter> allowed = allowed_parameters(info, effects);
-  Bound bound{{}, effects};
+  Bound bound{{}, effects, scalars};
   for (const Parameter& parameter : allowed) bound.parameters[parameter.name] = parameter.standard;
   for (const auto& [name, value] : given) {
     const Parameter* parameter = find_named(allowed, name);
@@ -108,6 +109,8 @@ Bound bound_to(const ModelInfo& info, const std::map<std::string, double>& given
     check_value(info, *parameter, value);
     bound.parameters[name] = value;
   }
+  for (const std::string& name : scalars.free)
+    if (find_named(allowed, name) == nullptr) refuse_parameter(info, allowed, name);
   return bound;
 }
 

@@ -12,9 +12,10 @@ namespace orbweaver::systems {
 
 /// The effects asked for, and every parameter of the system and of them by name: what was given, and the standard
 /// values for the rest. Throws core::InputError on an unknown or repeated effect, an unknown parameter, one whose
-/// effect is not asked for, and a value that is not finite or out of range; the message says what is known or allowed.
+/// effect is not asked for (free ones too), and a value that is not finite or out of range; the message says what is
+/// known or allowed.
 [[nodiscard]] Bound bound_to(const ModelInfo& info, const std::map<std::string, double>& given,
-                             const std::vector<std::string>& effects);
+                             const std::vector<std::string>& effects, const FamilyScalars& scalars = {});
 
 /// Throws core::MisuseError unless the structure fits its model: sizes, angles with names for their windings, no more
 /// conserved quantities than functions for them.

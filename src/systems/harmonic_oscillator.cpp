@@ -42,6 +42,7 @@ ModelInfo HarmonicOscillator::info() {
   ModelInfo info;
   info.name = "harmonic_oscillator";
   info.title = "Harmonic oscillator";
+  info.meaning = "a mass of 1 on a linear spring";
   info.state_names = {"q", "p"};
   info.winding_names = {"", ""};
   info.parameters = {{"omega", 1.0, 0.0, std::numeric_limits<double>::infinity(), true, "rad/s", "angular frequency"}};

@@ -58,6 +58,7 @@ ModelInfo HenonHeiles::info() {
   ModelInfo info;
   info.name = "henon_heiles";
   info.title = "Henon-Heiles system";
+  info.meaning = "a star in the plane of a galaxy, in a potential with the symmetries of a triangle";
   info.state_names = {"x", "y", "px", "py"};
   info.winding_names = {"", "", "", ""};
   return info;

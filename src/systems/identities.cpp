@@ -76,6 +76,11 @@ class Identities {
     for (const Symmetry& r : structure.reversors)
       add_map(r.map, fmt::format("f({0} z) = -{0} f(z)", r.name),
               fmt::format("{} of {} z and z", energy_name(), r.name), -1.0);
+    if (structure.driven)
+      add("the phase of the drive turns steadily", [&](const Sample& at) {
+        const Eigen::Index phase = at.f.size() - 1;
+        return relative(std::abs(at.f(phase) - _typical(phase)), _typical(phase));
+      });
     for (const int angle : structure.angles) {
       AffineMap turn = AffineMap::identity(structure.dimension);
       turn.offset(angle) = two_pi;

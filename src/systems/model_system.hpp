@@ -24,6 +24,7 @@ namespace orbweaver::systems {
 ///   static constexpr int quantities;                          // functions that can be conserved
 ///   static ModelInfo info();
 ///   static Structure structure(const Bound& bound);           // what holds with these parameters and effects
+///   static std::vector<EffectRules> effects();                // composed into it (effects/composition.hpp), if any
 ///   template <class P> class With;                            // the model with parameters of type P
 /// and With<P>, P being double or (to differentiate by a parameter, in quadruple precision, and in formulas) the scalar
 /// S of the field, has
@@ -45,6 +46,7 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
   [[nodiscard]] const ModelInfo& info() const override { return Registered<Model>::info(); }
   [[nodiscard]] const Structure& structure() const override { return _structure; }
   [[nodiscard]] const std::map<std::string, double>& parameters() const override { return _bound.parameters; }
+  [[nodiscard]] const FamilyScalars& family_scalars() const override { return _bound.scalars; }
 
   void field(std::size_t nodes, const double* z, double* f) const override {
     for_each_group(nodes, [=, this](std::size_t j, std::size_t count) {
@@ -75,7 +77,7 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
                  numerics::QuadMatrix& jacobian) const override {
     using S = ad::First<Model::dimension, numerics::Quad>;
     core::require(z.size() == Model::dimension, "a state of another dimension");
-    BoundTo<S> bound{{}, _bound.effects};
+    BoundTo<S> bound{{}, _bound.effects, {}};
     for (const auto& [name, value] : _bound.parameters) bound.parameters.emplace(name, S(value));
     const typename Model::template With<S> model(bound);
     const auto whole = [&model](const S* state, S* value) { model.field(state, value); };
@@ -96,7 +98,7 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
     ad::Recording recording;
     Formulas formulas;
     formulas.dimension = Model::dimension;
-    BoundTo<First> bound{{}, _bound.effects};
+    BoundTo<First> bound{{}, _bound.effects, {}};
     for (const auto& [name, value] : _bound.parameters) {
       First parameter(0.0);
       parameter.value = recording.parameter(static_cast<int>(formulas.parameters.size()));
@@ -133,7 +135,7 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
                              double* derivatives) const override {
     using S = ad::First<1, ad::Lanes>;
     core::require(_bound.parameters.contains(name), "a field is differentiated by a parameter that it has");
-    BoundTo<S> bound{{}, _bound.effects};
+    BoundTo<S> bound{{}, _bound.effects, {}};
     for (const auto& [other, value] : _bound.parameters)
       bound.parameters.emplace(other, other == name ? S::variable(ad::Lanes(value), 0) : S(value));
     const typename Model::template With<S> model(bound);
@@ -262,6 +264,17 @@ template <class Model>
 const ModelInfo& Registered<Model>::info() {
   static const ModelInfo info = Model::info();
   return info;
+}
+
+template <class Model>
+const std::vector<std::string>& Registered<Model>::effects() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> found;
+    if constexpr (requires { Model::effects(); })
+      for (const auto& effect : Model::effects()) found.push_back(effect.info().name);
+    return found;
+  }();
+  return names;
 }
 
 template <class Model>

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "bound.hpp"
 #include "orbweaver/systems/system.hpp"
@@ -12,6 +14,8 @@ namespace orbweaver::systems {
 template <class Model>
 struct Registered {
   static const ModelInfo& info();
+  /// Names of the effects that it has.
+  static const std::vector<std::string>& effects();
   static std::shared_ptr<const System> make(const Bound& bound);
 };
 

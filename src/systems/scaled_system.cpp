@@ -39,6 +39,7 @@ class ScaledSystem : public System {
   [[nodiscard]] const Structure& structure() const override { return _structure; }
   [[nodiscard]] const std::map<std::string, double>& parameters() const override { return _system->parameters(); }
   [[nodiscard]] const Scales& scales() const override { return _scales; }
+  [[nodiscard]] const FamilyScalars& family_scalars() const override { return _system->family_scalars(); }
 
   void field(std::size_t nodes, const double* z, double* f) const override {
     _system->field(nodes, in_units(nodes, z), f);
@@ -69,6 +70,7 @@ class ScaledSystem : public System {
                              double* derivatives) const override {
     _system->parameter_derivatives(name, nodes, in_units(nodes, z), derivatives);
     multiply(nodes, derivatives, _rate);
+    for (std::size_t i = 0; i < size(); ++i) multiply(nodes, derivatives + i * nodes, parameter_scale(name));
   }
 
   [[nodiscard]] std::shared_ptr<const System> with_parameters(
@@ -195,11 +197,14 @@ void check(const System& system, const Scales& scales) {
   const auto d = static_cast<std::size_t>(system.dimension());
   core::require(system.scales().are_one(), "a system is scaled once");
   core::require(scales.coordinates.empty() || scales.coordinates.size() == d, "one scale a coordinate");
+  core::require(scales.parameters.empty() || scales.parameters.size() == system.family_scalars().free.size(),
+                "one scale a parameter that moves");
   core::require(scales.conserved.empty() || scales.conserved.size() == system.structure().conserved.size(),
                 "one scale a conserved quantity");
   const auto is_scale = [](double scale) { return std::isfinite(scale) && scale > 0.0; };
   core::require(is_scale(scales.time) && std::all_of(scales.coordinates.begin(), scales.coordinates.end(), is_scale) &&
-                    std::all_of(scales.conserved.begin(), scales.conserved.end(), is_scale),
+                    std::all_of(scales.conserved.begin(), scales.conserved.end(), is_scale) &&
+                    std::all_of(scales.parameters.begin(), scales.parameters.end(), is_scale),
                 "scales are positive");
   const std::vector<std::size_t> first = mixed_coordinates(system.structure());
   for (std::size_t i = 0; i < d; ++i) {

@@ -1,5 +1,7 @@
 #include "orbweaver/systems/system.hpp"
 
+#include <algorithm>
+
 #include "orbweaver/core/error.hpp"
 
 namespace orbweaver::systems {
@@ -13,6 +15,17 @@ std::vector<std::string> System::winding_names() const {
 const Scales& System::scales() const {
   static const Scales units;
   return units;
+}
+
+const FamilyScalars& System::family_scalars() const {
+  static const FamilyScalars only_period;
+  return only_period;
+}
+
+double System::parameter_scale(const std::string& name) const {
+  const std::vector<std::string>& free = family_scalars().free;
+  const auto found = std::find(free.begin(), free.end(), name);
+  return found == free.end() ? 1.0 : scales().parameter(static_cast<std::size_t>(found - free.begin()));
 }
 
 void System::parameter_derivatives(const std::string&, std::size_t, const double*, double*) const {

@@ -34,8 +34,8 @@ TEST_F(Findings, AreSaidOfTheWholeFileAndStandInIt) {
     seen = Archive(path).orbits().rows();
     if (!world.is_root()) return std::vector<FindingRecord>{};
     return std::vector<FindingRecord>{
-        {"contradiction", "duplicate-curve", 2, 4, -1, 5.5, -1.25, 1e-9, "the same orbits – twice"},
-        {"cut", "limited-end", 1, -1, 0, not_computed, not_computed, not_computed, "a limit"}};
+        {"contradiction", "duplicate-curve", 2, 4, -1, 5.5, -1.25, 0.75, 1e-9, "the same orbits – twice"},
+        {"cut", "limited-end", 1, -1, 0, not_computed, not_computed, not_computed, not_computed, "a limit"}};
   };
   EXPECT_TRUE(write(witness));
   EXPECT_EQ(seen, records.orbits.size()) << "on every rank";
@@ -49,6 +49,7 @@ TEST_F(Findings, AreSaidOfTheWholeFileAndStandInIt) {
   EXPECT_THAT(findings.integers("crossing"), ElementsAre(-1, 0));
   EXPECT_EQ(findings.reals("period")[0], 5.5);
   EXPECT_EQ(findings.reals("energy")[0], -1.25);
+  EXPECT_EQ(findings.reals("parameter")[0], 0.75);
   EXPECT_EQ(findings.reals("deviation")[0], 1e-9);
   EXPECT_EQ(atlas.orbits().rows(), records.orbits.size());
 }

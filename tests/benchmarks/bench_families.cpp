@@ -122,8 +122,8 @@ void run(const Settings& s) {
   const double begin = cpu_microseconds();
   benchmarks::FamilyStart from = benchmarks::start_of(s.family);
   if (s.scaled)  // the same bits, told in scales
-    from.system =
-        systems::scaled(systems::make_system("double_pendulum", {{"g", 16.0}}), {0.25, {1.0, 1.0, 4.0, 4.0}, {16.0}});
+    from.system = systems::scaled(systems::make_system("double_pendulum", {{"g", 16.0}}),
+                                  {0.25, {1.0, 1.0, 4.0, 4.0}, {16.0}, {}});
   const double start = cpu_microseconds() - begin;
   if (s.aim > 0) {
     fmt::print("longest={:.6g}\n", step_for(from, s));

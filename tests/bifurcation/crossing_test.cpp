@@ -46,7 +46,8 @@ void expect_crossing(const test::PendulumMode& mode, const Expected& expected) {
                                          curve.known().back().position, why);
   ASSERT_TRUE(found) << to_text(why);
   EXPECT_NEAR(found->point.loop.period, expected.period, 1e-9);
-  const bifurcation::Reading deviation = bifurcation::index_deviation(found->stability, expected.sector);
+  const bifurcation::Reading deviation =
+      bifurcation::index_deviation(test::pendulum()->structure(), found->stability, expected.sector);
   EXPECT_LE(std::abs(deviation.value), std::max(1e-9, deviation.error));
   const bifurcation::Kernel kernel = bifurcation::kernel_of(*test::pendulum(), found->point, curve.isotropy(),
                                                             expected.sector, expected.sector.q <= 2 ? 1 : 2);

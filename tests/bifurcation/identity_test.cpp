@@ -117,7 +117,8 @@ TEST(Identity, TellsFamiliesOfOnePeriodApart) {
   const auto& orbits = test::family_to_twelve(test::in_phase()).orbits;
   const std::size_t n = orbits.size() / 2;
   const loop::Loop other = test::orbit_at(test::family_to_twelve(test::out_phase()), orbits[n].loop.period).loop;
-  EXPECT_EQ(compare(orbits[n - 1], orbits[n + 1], isotropy(), other).detail, "period, energy or action out of range");
+  EXPECT_EQ(compare(orbits[n - 1], orbits[n + 1], isotropy(), other).detail,
+            "period, energy, parameter or action out of range");
   const Comparison by_loops = compare_loops(orbits[n - 1], orbits[n + 1], isotropy(), other);
   EXPECT_FALSE(by_loops.same);
   EXPECT_GT(by_loops.distance, 0.1);

@@ -83,9 +83,9 @@ TEST(Certificate, MeasuresHowAnErrorOfTheEnergyGrows) {
     loop::Loop longer = loop;
     longer.period += 1e-8;  // an orbit that returns to rounding is not asked
     const Certificate found = certify(ShearedRotator(shear), longer);
-    EXPECT_NEAR(found.energy_growth / std::hypot(1.0, 2.0 * pi * shear), 1.0, 0.02) << shear;
+    EXPECT_NEAR(found.displaced_growth / std::hypot(1.0, 2.0 * pi * shear), 1.0, 0.02) << shear;
   }
-  EXPECT_TRUE(std::isnan(certify(ShearedRotator(0.0), loop).energy_growth)) << "it returns to rounding";
+  EXPECT_TRUE(std::isnan(certify(ShearedRotator(0.0), loop).displaced_growth)) << "it returns to rounding";
 }
 
 TEST(Certificate, IsThatOfTheOrbitUnderAnyTimeMap) {
@@ -128,7 +128,7 @@ TEST(Closures, SayHowFarTheIntegratorsAreApart) {
 
 TEST(Closures, AreThoseOfTheSystemInItsScales) {
   const auto plain = systems::make_system("double_pendulum");
-  systems::Scales scales{2.0, {1.0, 1.0, 0.25, 0.25}, {8.0}};
+  systems::Scales scales{2.0, {1.0, 1.0, 0.25, 0.25}, {8.0}, {}};
   const std::vector<double> hanging{0.3, -0.2, 0.1, 0.0};
   const loop::Loop loop = loop::constant_loop(hanging, 3.0, 3);
   const Certificate told = certify(*systems::scaled(plain, scales), loop);

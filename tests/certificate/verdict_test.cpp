@@ -54,11 +54,20 @@ TEST(Verdict, OfASmallOrbitAllowsForRoundingOfItsEnergy) {
   EXPECT_EQ(judge(small, evidence).verdict, Verdict::drift_contradicts);
 }
 
-TEST(Verdict, ReturnsAsFarOffAsAnErrorOfTheEnergyGrows) {
+// Duffing's equilibrium with the drive at zero, of which only the phase of the drive moves.
+TEST(Verdict, OfARestWhilePhasesWindHolds) {
+  const Certificate rest{.closure = 9e-16, .recurrence = 1.0, .tail = 2e-18, .reach = 6.3};
+  Evidence evidence{5.2, 1e-17, 1e-17, 0.9};
+  EXPECT_EQ(judge(rest, evidence).verdict, Verdict::truncated);
+  evidence.winds = true;
+  EXPECT_EQ(judge(rest, evidence).verdict, Verdict::holds);
+}
+
+TEST(Verdict, ReturnsAsFarOffAsADisplacementGrows) {
   Certificate certificate = {.closure = 1e-16, .single_shot = 1e-4, .reach = 1.0, .steepness = 1.0};
   const Evidence evidence{2.0, 1e-14, 1.0, 1.0};
   EXPECT_EQ(judge(certificate, evidence).verdict, Verdict::return_contradicts);
-  certificate.energy_growth = 1e9;
+  certificate.displaced_growth = 1e9;
   EXPECT_NE(judge(certificate, evidence).verdict, Verdict::return_contradicts);
 }
 

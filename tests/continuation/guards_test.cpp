@@ -200,9 +200,9 @@ TEST(Collisions, EndFamiliesWhereRoundingDoes) {
 Frontier near_a_body() {
   Frontier frontier;
   frontier.orbit.loop = loop::constant_loop(std::vector<double>{1.0, 0.0, 0.0, 0.0}, 7.0, 400);
-  frontier.orbit.energy = frontier.earlier_energy = -1.4;
+  frontier.orbit.energy = frontier.earlier_level = -1.4;
   frontier.first = loop::constant_loop(std::vector<double>{1.0, 0.0, 0.0, 0.0}, 6.0, 10);
-  frontier.first_energy = -1.5;
+  frontier.first_level = -1.5;
   frontier.guards = {{1.0, 1.0, {1.0, 1.0, 1.0, 1.0, 1.0}}, {0.01, 1.0, {0.02, 0.018, 0.016, 0.014, 0.012}}};
   return frontier;
 }

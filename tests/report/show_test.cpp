@@ -119,8 +119,8 @@ TEST(Show, FindingsALineEach) {
   test::write_sample_atlas(folder, header, test::sample_records(header));
   const auto witness = [](const std::filesystem::path&) {
     return std::optional(std::vector<FindingRecord>{
-        {"contradiction", "index-change", 0, -1, -1, 2.0, -1.0, 0.25, "In-Phase: a multiplier passes"},
-        {"cut", "limited-end", 1, -1, -1, not_computed, not_computed, not_computed, "ID1: ends"}});
+        {"contradiction", "index-change", 0, -1, -1, 2.0, -1.0, not_computed, 0.25, "In-Phase: a multiplier passes"},
+        {"cut", "limited-end", 1, -1, -1, not_computed, not_computed, not_computed, not_computed, "ID1: ends"}});
   };
   archive::consolidate(MPI_COMM_SELF, {folder / "segment.h5"}, folder / "said.h5", header,
                        test::tables_of(test::sample_records(header)), {}, witness);
@@ -129,7 +129,7 @@ TEST(Show, FindingsALineEach) {
             "contradiction  index-change           2.5e-01  In-Phase: a multiplier passes\n"
             "cut            limited-end                  -  ID1: ends\n");
   EXPECT_THAT(lines_of(shown(atlas, "findings", TextFormat::csv))[1],
-              "contradiction,index-change,0,-1,-1,2,-1,0.25,"
+              "contradiction,index-change,0,-1,-1,2,-1,nan,0.25,"
               "In-Phase: a multiplier passes");
 }
 

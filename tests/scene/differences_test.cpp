@@ -38,7 +38,7 @@ const std::map<std::string, Case> cases{
     {"system.parameters.l1", {"1", "0.5"}},
     {"system.parameters.l2", {"1", "0.5"}},
     {"system.parameters.g", {"1", "9.81"}},
-    {"system.effects", {"[]", ""}},  // no system has one yet
+    {"system.effects", {"[]", ""}},  // brings parameters: tested below
     {"system.scales.time", {"auto", "2"}},
     {"system.scales.th1", {"auto", ""}},  // 1, as of every angle
     {"system.scales.th2", {"auto", ""}},
@@ -50,11 +50,15 @@ const std::map<std::string, Case> cases{
     {"starts.fixed_points.letters", {"{}", ""}},  // none without names
     {"starts.sweep.period", {"auto", "[1, 13]"}},
     {"starts.sweep.step", {"auto", "0.02"}},
+    {"starts.states", {"[]", "[{state: [10, 0, 0.5, 0], period: 6.3, name: Eight}]"}},
     {"continuation.step", {"adaptive", "0.5deg"}},
     {"continuation.start", {"0.5deg", "0.4deg"}},
     {"continuation.tolerance", {"1e-10", "1e-12"}},
     {"continuation.cutoff", {"[8, 4096]", "[8, 2048]"}},
     {"continuation.corrector", {"automatic", "brgn"}},
+    {"continuation.free", {"", ""}},  // brings a scale, and the other two their meaning: tested below
+    {"continuation.hold", {"", ""}},
+    {"limits.parameter", {"", ""}},
     {"survey.depth", {"0", "1", Change::widened}},
     {"survey.subharmonics", {"4", "5"}},
     {"survey.spectrum", {"events", "all"}},
@@ -133,6 +137,36 @@ TEST(Differences, EachKeyIsFoundAloneAndNamed) {
     if (key.starts_with("starts.fixed_points")) continue;  // completed to all coordinates
     EXPECT_EQ(found[0].now, values.other);
   }
+}
+
+TEST(Differences, OfFamiliesInAParameterAreFound) {
+  const auto keys = [](const std::vector<std::string>& before, const std::vector<std::string>& now) {
+    std::vector<std::string> found;
+    for (const auto& difference : differences(with(before), with(now))) {
+      found.push_back(difference.key);
+      EXPECT_EQ(difference.change, Change::other) << difference.key;
+    }
+    return found;
+  };
+  const std::string free = "continuation.free=m2";
+  EXPECT_THAT(keys({}, {free}),
+              testing::UnorderedElementsAre("continuation.free", "continuation.hold", "system.scales.m2"));
+  EXPECT_THAT(keys({free}, {free, "continuation.hold=period"}), testing::ElementsAre("continuation.hold"));
+  EXPECT_THAT(keys({free}, {free, "limits.parameter=[0.5, 2]"}), testing::ElementsAre("limits.parameter"));
+  EXPECT_THAT(keys({free, "limits.parameter=[0.5, 2]"}, {free, "limits.parameter=[0.5, 3]"}),
+              testing::ElementsAre("limits.parameter"));
+}
+
+TEST(Differences, EffectsBringTheirParameters) {
+  const auto keys = [](const std::vector<std::string>& before, const std::vector<std::string>& now) {
+    std::vector<std::string> found;
+    for (const auto& difference : differences(with(before), with(now))) found.push_back(difference.key);
+    return found;
+  };
+  EXPECT_THAT(keys({}, {"system.effects=[rod_inertia]"}),
+              testing::UnorderedElementsAre("system.effects", "system.parameters.rod1", "system.parameters.rod2"));
+  EXPECT_THAT(keys({"system.effects=[rod_inertia]"}, {"system.effects=[rod_inertia]", "system.parameters={rod1: 2}"}),
+              testing::ElementsAre("system.parameters.rod1"));
 }
 
 TEST(Differences, DefaultsAreFilledIn) {

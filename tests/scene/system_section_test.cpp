@@ -16,13 +16,16 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-/// No registered system has effects.
+/// Two drives share their frequency.
 systems::ModelInfo damped_pendulum() {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   systems::ModelInfo info;
   info.name = "damped_pendulum";
   info.parameters = {{"l", 1.0, 0.0, infinity, true, "m", "length"}};
-  info.effects = {{"friction", "drag at the pivot", {{"c", 0.1, 0.0, 2.0, false, "1/s", "damping rate"}}}};
+  const systems::Parameter frequency{"w", 1.0, 0.0, infinity, true, "rad/s", "frequency"};
+  info.effects = {{"friction", "drag at the pivot", {{"c", 0.1, 0.0, 2.0, false, "1/s", "damping rate"}}},
+                  {"shaking", "the pivot shaken", {frequency}},
+                  {"torque", "a motor", {frequency}}};
   return info;
 }
 
@@ -31,6 +34,17 @@ void read(const std::string& text) {
   SystemChoice choice;
   read_parameters(Field(source, parse_document(text, "scene.yaml", true), "system.parameters", 1), damped_pendulum(),
                   choice);
+}
+
+TEST(SystemSection, AParameterOfTwoEffectsComesWithEither) {
+  const Source source("scene.yaml", {});
+  const Field field(source, parse_document("{w: 2}", "scene.yaml", true), "system.parameters", 1);
+  SystemChoice choice;
+  choice.effects = {"torque"};
+  EXPECT_THAT(known_parameters(damped_pendulum(), choice), testing::SizeIs(2));
+  choice.effects = {"shaking", "torque"};
+  EXPECT_THAT(known_parameters(damped_pendulum(), choice), testing::SizeIs(2));
+  EXPECT_THAT([] { read("{w: 2}"); }, ThrowsMessage<core::InputError>(HasSubstr("one of the effect `shaking`")));
 }
 
 TEST(SystemSection, AParameterWithoutItsEffectIsSaidToBeOne) {

@@ -81,7 +81,7 @@ TEST(FixedPoints, MirrorImagesDoNotChangePlaces) {
     const auto system = systems::make_system(scene.system.name, scene.system.parameters);
     for (const double speed : {1.0, 0.5, 0.25, 0.125})
       for (const double y : {1.0, 0.5, 0.25}) {
-        const systems::Scales scales{2.0, {1.0, y, speed, 2.0 * speed}, {}};
+        const systems::Scales scales{2.0, {1.0, y, speed, 2.0 * speed}, {}, {}};
         const scene::Scene told = scene::in_scales(scene, *system, scales);
         const auto points = find_fixed_points(*systems::scaled(system, scales), told.fixed_points.grid);
         ASSERT_EQ(points.size(), 5u);

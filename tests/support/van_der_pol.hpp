@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "orbweaver/systems/system.hpp"
 #include "support/stated_system.hpp"
@@ -12,7 +13,10 @@ namespace orbweaver::test {
 /// x' = y, y' = mu (1 - x^2) y - x: one limit cycle for each mu > 0, and nothing that is conserved.
 class VanDerPol final : public StatedSystem {
  public:
-  explicit VanDerPol(double mu) : StatedSystem(structure_of(2), "van_der_pol"), _mu(mu), _parameters{{"mu", mu}} {}
+  explicit VanDerPol(double mu, systems::FamilyScalars kind = {})
+      : StatedSystem(structure_of(2), "van_der_pol"), _mu(mu), _parameters{{"mu", mu}}, _kind(std::move(kind)) {}
+
+  [[nodiscard]] const systems::FamilyScalars& family_scalars() const override { return _kind; }
 
   [[nodiscard]] const std::map<std::string, double>& parameters() const override { return _parameters; }
 
@@ -59,6 +63,7 @@ class VanDerPol final : public StatedSystem {
  private:
   double _mu;
   std::map<std::string, double> _parameters;
+  systems::FamilyScalars _kind;
 };
 
 }  // namespace orbweaver::test

@@ -18,7 +18,7 @@ namespace orbweaver::test {
 
 inline survey::Summary run(const core::Communicator& comm, const scene::Scene& scene, const std::string& name) {
   const auto folder = fresh_folder(name + std::to_string(comm.size()), comm.get());
-  const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  const auto system = scene::bound_system(scene.system);
   return survey::run_survey(comm, scene, system, folder, {});
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/archive/schema/records.hpp"
+#include "orbweaver/archive/schema/schema.hpp"
 #include "survey/atlas.hpp"
 
 namespace orbweaver::test {
@@ -44,6 +45,7 @@ inline archive::Records records_of(const Atlas& atlas) {
     crossing.arclength = crossings.reals("arclength")[row];
     crossing.period = crossings.reals("period")[row];
     crossing.energy = crossings.reals("energy")[row];
+    crossing.parameter = crossings.reals("parameter")[row];
     crossing.kind = atlas.crossing_kinds()[row];
     crossing.multiplicity = static_cast<int>(crossings.integers("multiplicity")[row]);
     crossing.kernel_dimension = static_cast<int>(crossings.integers("kernel_dimension")[row]);
@@ -62,15 +64,57 @@ inline archive::Records records_of(const Atlas& atlas) {
     orbit.period = orbits.reals("period")[row];
     orbit.energy = orbits.reals("energy")[row];
     orbit.action = orbits.reals("action")[row];
+    orbit.parameter = orbits.reals("parameter")[row];
+    if (const std::size_t angles = atlas.header().winding_names.size(); angles > 0)
+      orbit.winding = row_of(atlas, "winding", row, angles);
     orbit.cutoff = static_cast<int>(orbits.integers("cutoff")[row]);
     orbit.loss_rms = orbits.reals("loss_rms")[row];
-    orbit.stability = row_of(atlas, "stability", row, 1);
-    orbit.fundamental_stability = row_of(atlas, "fundamental_stability", row, 1);
+    const std::size_t width = archive::stability_width(atlas.header());
+    orbit.stability = row_of(atlas, "stability", row, width);
+    orbit.fundamental_stability = row_of(atlas, "fundamental_stability", row, width);
     orbit.stability_error = orbits.reals("stability_error")[row];
     orbit.state = row_of(atlas, "state", row, atlas.header().state_names.size());
     orbit.modes = atlas.modes(row);
     orbit.time_map = atlas.time_map(row);
     records.orbits.push_back(orbit);
+  }
+  return records;
+}
+
+/// The same with all that `verify` looks at.
+inline archive::Records complete_records_of(const Atlas& atlas) {
+  archive::Records records = records_of(atlas);
+  const std::size_t d = atlas.header().state_names.size();
+  for (std::size_t row = 0; row < records.crossings.size(); ++row) {
+    archive::CrossingRecord& crossing = records.crossings[row];
+    for (std::size_t i = 0; i < d; ++i) crossing.state[i] = atlas.crossings().reals("state")[row * d + i];
+    crossing.residual = atlas.crossings().reals("residual")[row];
+    crossing.test_value = atlas.crossings().reals("test_value")[row];
+    crossing.kernel_residual = atlas.crossings().reals("kernel_residual")[row];
+  }
+  for (std::size_t row = 0; row < records.orbits.size(); ++row) {
+    archive::OrbitRecord& orbit = records.orbits[row];
+    orbit.closure = atlas.orbits().reals("closure")[row];
+    orbit.single_shot = atlas.orbits().reals("single_shot")[row];
+    orbit.energy_drift = atlas.orbits().reals("energy_drift")[row];
+    orbit.verdict = static_cast<int>(atlas.orbits().integers("verdict")[row]);
+    orbit.taylor_closure = atlas.orbits().reals("taylor_closure")[row];
+    orbit.integrators_apart = atlas.orbits().reals("integrators_apart")[row];
+    orbit.symmetry_defect = atlas.orbits().reals("symmetry_defect")[row];
+    orbit.recurrence = atlas.orbits().reals("recurrence")[row];
+    orbit.tail = atlas.orbits().reals("tail")[row];
+    orbit.off_branch_eigenvalue = atlas.orbits().reals("off_branch_eigenvalue")[row];
+  }
+  const archive::Table& sections = atlas.sections();
+  for (std::size_t row = 0; row < sections.rows(); ++row) {
+    const archive::OrbitRecord& orbit = records.orbits[static_cast<std::size_t>(sections.integers("orbit")[row])];
+    const auto first = sections.reals("state").begin() + static_cast<std::ptrdiff_t>(row * d);
+    records.sections.push_back(
+        {orbit.family_key, orbit.step, sections.reals("time")[row], {first, first + static_cast<std::ptrdiff_t>(d)}});
+  }
+  for (std::size_t row = 0; row < records.families.size(); ++row) {
+    records.families[row].end_family_key = key_of(atlas.families().integers("end_family")[row]);
+    records.families[row].end_crossing = static_cast<int>(atlas.families().integers("end_crossing")[row]);
   }
   return records;
 }

@@ -150,7 +150,7 @@ TEST_F(Families, ThatArriveElsewhereDropNothing) {
   elsewhere.arclength = 2.6;  // period and energy nearly as at Q, but another orbit
   std::vector<Ended> events{ended(base_work(), EndReason::period_limit, 5, 12), located(p), located(q)};
   BranchOutcome outcome = unpack_branch_outcome(arrived(work_from(p, 0), 16, elsewhere, 0).outcome.payload);
-  outcome.arrival.front().energy = q.energy();
+  outcome.arrival.front().level = q.energy();
   Ended stray = ended(work_from(p, 0), EndReason::closed_loop, 16, 18);
   stray.outcome.payload = pack(outcome);
   events.push_back(stray);
@@ -166,7 +166,7 @@ TEST_F(Families, ThatArriveOutsideTheWindowDropNothing) {
     Ended stray = arrived(work_from(p, 0), 16, q, 0);
     BranchOutcome outcome = unpack_branch_outcome(stray.outcome.payload);
     outcome.arrival.front().period = period;
-    outcome.arrival.front().energy = energy;
+    outcome.arrival.front().level = energy;
     stray.outcome.payload = pack(outcome);
     return names(resolve({ended(base_work(), EndReason::period_limit, 5, 12), located(p), located(q), stray,
                           ended(work_from(q, 0), EndReason::period_limit, 18, 20)}));
@@ -277,8 +277,8 @@ TEST_F(Families, OnALocationThatDidNotSucceedAreNotCrossings) {
 
 Ended with_energies(Ended branch, double from, double to) {
   BranchOutcome outcome = unpack_branch_outcome(branch.outcome.payload);
-  outcome.energy_from = from;
-  outcome.energy_to = to;
+  outcome.level_from = from;
+  outcome.level_to = to;
   branch.outcome.payload = pack(outcome);
   return branch;
 }
@@ -299,8 +299,8 @@ TEST_F(Families, WithTwoSidesAreOneAndOneSideMayBeLeftOut) {
   EXPECT_EQ(result.families[1].orbits, 17);
   EXPECT_EQ(result.families[1].period_from, 20.0);
   EXPECT_EQ(result.families[1].period_to, 40.0);
-  EXPECT_EQ(result.families[1].energy_from, -3.0);
-  EXPECT_EQ(result.families[1].energy_to, 2.0);
+  EXPECT_EQ(result.families[1].level_from, -3.0);
+  EXPECT_EQ(result.families[1].level_to, 2.0);
   EXPECT_EQ(result.families[1].end_reason, "forwards: period limit; backwards: energy limit");
   EXPECT_EQ(result.tables.families[1].first_step, first);
   EXPECT_EQ(result.tables.families[1].last_step, last);

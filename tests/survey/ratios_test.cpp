@@ -49,7 +49,7 @@ TEST(Ratios, AFamilyTurnsAtAResonanceItMeets) {
   EXPECT_EQ(summary.failures, 0U);
   EXPECT_EQ(count_of(summary, survey::Severity::contradiction), 0U);
   ASSERT_EQ(summary.families.size(), 1U);
-  EXPECT_GT(summary.families.front().energy_to, -0.9) << "it has gone straight on";
+  EXPECT_GT(summary.families.front().level_to, -0.9) << "it has gone straight on";
 }
 
 // Two thousand times as fast: an index is not known well enough to tell what it passes.

@@ -135,10 +135,10 @@ TEST(RunSurvey, SummaryArchiveAndFolderAgree) {
     EXPECT_EQ(family.period_from, periods[first]);
     EXPECT_EQ(family.period_to, periods[last]);
     EXPECT_EQ(family.period_to, 9.0);
-    EXPECT_EQ(family.energy_from, energies[first]);
-    EXPECT_EQ(family.energy_to, energies[last]);
+    EXPECT_EQ(family.level_from, energies[first]);
+    EXPECT_EQ(family.level_to, energies[last]);
   }
-  EXPECT_NEAR(summary.families[0].energy_to, -0.764030789928, 1e-11);  // in-phase at T = 9
+  EXPECT_NEAR(summary.families[0].level_to, -0.764030789928, 1e-11);  // in-phase at T = 9
   const auto last = static_cast<std::size_t>(summary.families[0].orbits) - 1;
   EXPECT_NEAR(atlas.orbits().reals("state")[4 * last], 1.360312422366, 1e-11);
 }

@@ -47,7 +47,7 @@ void expect_same(const Pair& pair) {
     EXPECT_EQ(found.isotropy, family.isotropy);
     EXPECT_EQ(found.depth, family.depth);
     EXPECT_NEAR(found.period_to, family.period_to, 1e-7);
-    EXPECT_NEAR(found.energy_to, family.energy_to, 1e-7);
+    EXPECT_NEAR(found.level_to, family.level_to, 1e-7);
   }
   const Atlas here(pair.here.atlas);
   const Atlas there(pair.there.atlas);

@@ -74,14 +74,14 @@ TEST_F(Evidence, AnArrivalAlongNoDirectionNamesTheCrossingsThere) {
   elsewhere.arclength = 2.6;  // period and energy nearly as at q, but another orbit
   Ended stray = arrived(work_from(p, 0), 16, elsewhere, 0);
   BranchOutcome outcome = unpack_branch_outcome(stray.outcome.payload);
-  outcome.arrival.front().energy = q.energy();
+  outcome.arrival.front().level = q.energy();
   stray.outcome.payload = pack(outcome);
   TreeEvidence found = evidence({base(), located(p), located(q), stray});
   ASSERT_EQ(found.ends.size(), 2U);
   EXPECT_TRUE(found.ends[1].met);
   EXPECT_FALSE(found.ends[1].joined);
   EXPECT_THAT(found.ends[1].nearby, ElementsAre(1));
-  EXPECT_EQ(found.ends[1].energy, q.energy());
+  EXPECT_EQ(found.ends[1].level, q.energy());
 
   found = evidence({base(), located(p), stray});
   EXPECT_THAT(found.ends[1].nearby, IsEmpty());
@@ -93,7 +93,7 @@ TEST_F(Evidence, AnArrivalAtAnotherOrbitOfThatPeriodAndEnergyNamesNoCrossing) {
   const auto nearby_of = [&](double ahead) {
     Ended stray = arrived(work_from(p, 0), 16, elsewhere, 0);
     BranchOutcome outcome = unpack_branch_outcome(stray.outcome.payload);
-    outcome.arrival.front().energy = q.energy();
+    outcome.arrival.front().level = q.energy();
     outcome.arrival.front().ahead = ahead;
     stray.outcome.payload = pack(outcome);
     const std::vector<int> first = evidence({base(), located(p), located(q), stray}).ends[1].nearby;

@@ -51,48 +51,9 @@ class VerifyOf : public ::testing::Test {
     whole = test::run(*world, scene, "verify").atlas;
     const test::Atlas atlas(whole);
     header = atlas.header();
-    records = test::records_of(atlas);
-    for (std::size_t row = 0; row < records.crossings.size(); ++row) complete(atlas, row);
-    for (std::size_t row = 0; row < records.orbits.size(); ++row) complete_orbit(atlas, row);
-    complete_sections(atlas);
-    for (std::size_t row = 0; row < records.families.size(); ++row) {
-      records.families[row].end_family_key = test::key_of(atlas.families().integers("end_family")[row]);
-      records.families[row].end_crossing = static_cast<int>(atlas.families().integers("end_crossing")[row]);
-    }
+    records = test::complete_records_of(atlas);
   }
   static void TearDownTestSuite() { world.reset(); }
-
-  static void complete(const test::Atlas& atlas, std::size_t row) {
-    archive::CrossingRecord& crossing = records.crossings[row];
-    const std::size_t d = header.state_names.size();
-    for (std::size_t i = 0; i < d; ++i) crossing.state[i] = atlas.crossings().reals("state")[row * d + i];
-    crossing.residual = atlas.crossings().reals("residual")[row];
-    crossing.test_value = atlas.crossings().reals("test_value")[row];
-    crossing.kernel_residual = atlas.crossings().reals("kernel_residual")[row];
-  }
-  static void complete_sections(const test::Atlas& atlas) {
-    const archive::Table& table = atlas.sections();
-    const std::size_t d = header.state_names.size();
-    for (std::size_t row = 0; row < table.rows(); ++row) {
-      const archive::OrbitRecord& orbit = records.orbits[static_cast<std::size_t>(table.integers("orbit")[row])];
-      const auto first = table.reals("state").begin() + static_cast<std::ptrdiff_t>(row * d);
-      records.sections.push_back(
-          {orbit.family_key, orbit.step, table.reals("time")[row], {first, first + static_cast<std::ptrdiff_t>(d)}});
-    }
-  }
-  static void complete_orbit(const test::Atlas& atlas, std::size_t row) {
-    archive::OrbitRecord& orbit = records.orbits[row];
-    orbit.closure = atlas.orbits().reals("closure")[row];
-    orbit.single_shot = atlas.orbits().reals("single_shot")[row];
-    orbit.energy_drift = atlas.orbits().reals("energy_drift")[row];
-    orbit.verdict = static_cast<int>(atlas.orbits().integers("verdict")[row]);
-    orbit.taylor_closure = atlas.orbits().reals("taylor_closure")[row];
-    orbit.integrators_apart = atlas.orbits().reals("integrators_apart")[row];
-    orbit.symmetry_defect = atlas.orbits().reals("symmetry_defect")[row];
-    orbit.recurrence = atlas.orbits().reals("recurrence")[row];
-    orbit.tail = atlas.orbits().reals("tail")[row];
-    orbit.off_branch_eigenvalue = atlas.orbits().reals("off_branch_eigenvalue")[row];
-  }
 
   /// Verifies `changed`, written with its own checksums.
   static Verification verified(const archive::Records& changed) {

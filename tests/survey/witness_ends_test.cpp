@@ -84,7 +84,7 @@ TEST_F(WitnessOf, EndsWhereNoCrossingIsKnown) {
       EndEvidence& end = add_end("Straight");
       end.family = key;
       end.period = std::max(1, times) * straight[8].period;
-      end.energy = straight[8].energy + (times == 0 ? 0.01 : 0.0);
+      end.level = straight[8].energy + (times == 0 ? 0.01 : 0.0);
     }
   }
   const std::vector<Found> rows = found();

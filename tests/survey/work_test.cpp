@@ -21,7 +21,7 @@ const systems::Structure& pendulum() { return test::structure_of("double_pendulu
 
 loop::Isotropy sample_isotropy() { return {{"S", false, {}, 1, 2}, {"R", true, {}, 0, 1}}; }
 Lineage sample_lineage() { return {"0001.0002/003.q4.j1/0", "0001.0002/003.q4.j1", 1, 2, -1}; }
-loop::Loop sample_loop() { return {2, 1, 3.5, {1.0, 2.0, 3.0, 4.0, 5.0, 6.0}, {0.0, 1.0}, {2.5, {}}}; }
+loop::Loop sample_loop() { return {2, 1, 3.5, {1.0, 2.0, 3.0, 4.0, 5.0, 6.0}, {0.0, 1.0}, {2.5, {}}, {0.75}}; }
 
 FoundMode sample_mode() {
   FoundMode mode;
@@ -32,6 +32,9 @@ FoundMode sample_mode() {
   mode.isotropy = sample_isotropy();
   mode.one_direction = false;
   mode.amplitude = 0.0625;
+  mode.base = sample_loop();
+  mode.base_is_orbit = true;
+  mode.distance = 0.375;
   return mode;
 }
 
@@ -47,8 +50,14 @@ SweepOutcome sample_sweep_outcome() {
           12.0};
 }
 BranchWork sample_branch_work() {
-  return {"0001.0002/003.q4.j1/0-", "Naïve", sample_lineage(), sample_loop(), {{0.25, -0.5}, {1e-300}},
-          sample_isotropy(),        0.125};
+  return {"0001.0002/003.q4.j1/0-",
+          "Naïve",
+          sample_lineage(),
+          sample_loop(),
+          {{0.25, -0.5}, {1e-300}},
+          sample_isotropy(),
+          0.125,
+          true};
 }
 BranchOutcome sample_branch_outcome() {
   return {"0001.0000",
@@ -90,7 +99,7 @@ TEST(Payload, EqualWorkHasEqualBytes) { EXPECT_EQ(pack(sample_branch_work()), pa
 
 TEST(Payload, AnotherKindIsRefusedByName) {
   const std::string text = environment_error_of([] { (void)unpack_branch_work(pack(sample_sweep_outcome())); });
-  EXPECT_THAT(text, AllOf(HasSubstr("expected a branch work of version 1"),
+  EXPECT_THAT(text, AllOf(HasSubstr("expected a branch work of version 2"),
                           HasSubstr("got a sweep outcome of version 3"), HasSubstr("same build")));
 }
 
@@ -98,7 +107,7 @@ TEST(Payload, AnotherVersionIsRefused) {
   const PayloadType other{SweepWork::payload_name, SweepWork::wire_version + 1, 0};
   const std::string bytes = write_payload(other, [](auto&) {});
   const std::string text = environment_error_of([&] { (void)unpack_sweep_work(bytes); });
-  EXPECT_THAT(text, HasSubstr("got a sweep work of version 2"));
+  EXPECT_THAT(text, HasSubstr("got a sweep work of version 3"));
 }
 
 TEST(Payload, TornAtAnyByteIsRefused) {

@@ -9,6 +9,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/scaled_system.hpp"
 #include "orbweaver/systems/system.hpp"
+#include "systems/samples.hpp"
 
 namespace orbweaver::systems {
 namespace {
@@ -53,19 +54,22 @@ void expect_formulas_of(const System& system, const std::vector<double>& z, cons
   }
 }
 
-const std::vector<double> state{0.31, -0.42, 0.57, 0.23};
+const std::vector<double> state{0.31, -0.42, 0.57, 0.23, 0.77};
 
 TEST(Formulas, AreThoseOfTheSystem) {
-  for (const std::string& name : system_names()) {
-    const auto system = make_system(name);
-    expect_formulas_of(*system, {state.begin(), state.begin() + system->dimension()}, name);
+  for (const Built& built : all_built()) {
+    const auto system = built.with();
+    expect_formulas_of(*system, {state.begin(), state.begin() + system->dimension()}, built.title());
   }
-  expect_formulas_of(*make_system("double_pendulum", {{"m2", 0.3}, {"l1", 0.7}, {"g", 9.81}}), state, "other values");
+  expect_formulas_of(*make_system("double_pendulum", {{"m2", 0.3}, {"l1", 0.7}, {"g", 9.81}}),
+                     {state.begin(), state.begin() + 4}, "other values");
 }
 
 TEST(Formulas, AreToldInTheScales) {
-  const Scales scales{0.7, {1.0, 1.0, 0.3, 4.0}, {2.5}};
-  expect_formulas_of(*scaled(make_system("double_pendulum"), scales), state, "scaled");
+  const Scales scales{0.7, {1.0, 1.0, 0.3, 4.0}, {2.5}, {}};
+  expect_formulas_of(*scaled(make_system("double_pendulum"), scales), {state.begin(), state.begin() + 4}, "scaled");
+  const auto driven = make_system("double_pendulum", {{"pivot_direction", 90.0}}, {"pivot_drive"});
+  expect_formulas_of(*scaled(driven, {0.7, {1.0, 1.0, 0.3, 4.0, 1.0}, {}, {}}), state, "scaled, driven");
 }
 
 TEST(Formulas, NameTheParameters) {

@@ -10,6 +10,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
+#include "systems/samples.hpp"
 
 namespace orbweaver::systems {
 namespace {
@@ -20,7 +21,7 @@ using testing::ThrowsMessage;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// No registered system has effects yet; the checks are those of every system that will.
+/// A model with ranges of every kind.
 ModelInfo driven_pendulum() {
   ModelInfo info;
   info.name = "driven_pendulum";
@@ -44,12 +45,17 @@ TEST(Registry, KnowsItsSystemsByTheirNames) {
 }
 
 TEST(Registry, WhatSystemsSayIsConsistent) {
-  for (const std::string& name : system_names()) {
-    SCOPED_TRACE(name);
-    const ModelInfo& info = model_info(name);
-    const auto system = make_system(name);
+  for (const Built& built : all_built()) {
+    SCOPED_TRACE(built.title());
+    const auto system = built.with();
+    const ModelInfo& info = system->info();
     const Structure& structure = system->structure();
     EXPECT_FALSE(info.title.empty());
+    EXPECT_FALSE(info.meaning.empty());
+    for (const Effect& effect : info.effects) {
+      EXPECT_FALSE(effect.meaning.empty());
+      EXPECT_FALSE(effect.parameters.empty());
+    }
     EXPECT_GT(structure.dimension, 0);
     EXPECT_EQ(std::set<std::string>(info.state_names.begin(), info.state_names.end()).size(), info.state_names.size());
     EXPECT_EQ(info.state_names.size(), static_cast<std::size_t>(structure.dimension));
@@ -74,8 +80,8 @@ TEST(Registry, WhatSystemsSayIsConsistent) {
 }
 
 TEST(Registry, EquivariancesFormAGroupWithTheIdentity) {
-  for (const std::string& name : system_names()) {
-    const auto system = make_system(name);
+  for (const Built& built : all_built()) {
+    const auto system = built.with();
     const Structure& structure = system->structure();
     std::vector<AffineMap> group{AffineMap::identity(structure.dimension)};
     for (const Symmetry& s : structure.equivariances) group.push_back(s.map);
@@ -84,7 +90,7 @@ TEST(Registry, EquivariancesFormAGroupWithTheIdentity) {
         const auto matches = std::count_if(group.begin(), group.end(), [&](const AffineMap& member) {
           return member.is_same(a * b, structure.angles);
         });
-        EXPECT_EQ(matches, 1) << name;
+        EXPECT_EQ(matches, 1) << built.title();
       }
   }
 }
@@ -135,10 +141,30 @@ TEST(Registry, UnknownParameterIsRefused) {
 
 TEST(Registry, UnknownEffectIsRefused) {
   EXPECT_THAT(([] { (void)make_system("double_pendulum", {}, {"friction"}); }),
-              ThrowsMessage<core::InputError>(
-                  AllOf(HasSubstr("double_pendulum"), HasSubstr("'friction'"), HasSubstr("its effects are: none"))));
+              ThrowsMessage<core::InputError>(AllOf(
+                  HasSubstr("double_pendulum"), HasSubstr("'friction'"),
+                  HasSubstr("its effects are: rod_inertia, torsion_springs, damping, pivot_drive, joint_torque"))));
+  EXPECT_THAT([] { (void)make_system("lorenz", {}, {"drive"}); },
+              ThrowsMessage<core::InputError>(HasSubstr("its effects are: none")));
   EXPECT_THAT(([] { (void)bound_to(driven_pendulum(), {}, {"frction"}); }),
               ThrowsMessage<core::InputError>(AllOf(HasSubstr("'frction'"), HasSubstr("friction, drive"))));
+}
+
+TEST(Registry, CombinationsThatAreNotCompiledAreRefused) {
+  EXPECT_THAT(([] {
+                (void)make_system("double_pendulum", {}, {"torsion_springs", "damping"});
+              }),
+              ThrowsMessage<core::InputError>(AllOf(HasSubstr("[torsion_springs, damping] together"),
+                                                    HasSubstr("[none], [rod_inertia], [torsion_springs]"),
+                                                    HasSubstr("[damping, pivot_drive]"))));
+}
+
+TEST(Registry, EffectsComeInAnyOrder) {
+  const auto one = make_system("duffing", {}, {"drive", "damping"});
+  const auto other = make_system("duffing", {}, {"damping", "drive"});
+  EXPECT_EQ(&one->info(), &other->info());
+  EXPECT_EQ(one->info().title, "Duffing oscillator with damping, drive");
+  EXPECT_EQ(one->info().state_names, (std::vector<std::string>{"x", "v", "phase"}));
 }
 
 TEST(Registry, ValuesOutOfRangeAreRefused) {

@@ -1,21 +1,55 @@
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::systems {
 
-/// Every parameter drawn between half and twice its standard value (all systems so far allow that).
-inline std::map<std::string, double> random_parameters(const ModelInfo& info, std::mt19937& generator) {
+/// A system with some of its effects, as the registry has it.
+struct Built {
+  std::string name;
+  std::vector<std::string> effects;
+
+  [[nodiscard]] std::shared_ptr<const System> with(const std::map<std::string, double>& parameters = {}) const {
+    return make_system(name, parameters, effects);
+  }
+  /// "double_pendulum", "double_pendulum_with_damping_pivot_drive".
+  [[nodiscard]] std::string title() const {
+    std::string text = name;
+    for (const std::string& effect : effects) text += (text == name ? "_with_" : "_") + effect;
+    return text;
+  }
+};
+
+/// All that is compiled.
+inline std::vector<Built> all_built() {
+  std::vector<Built> all;
+  for (const std::string& name : system_names())
+    for (const std::vector<std::string>& effects : built_effects(name)) all.push_back({name, effects});
+  return all;
+}
+
+/// Every parameter drawn between half and twice its standard value, those with the standard value 0 beside it (all
+/// systems so far allow that).
+inline std::map<std::string, double> random_parameters(const ModelInfo& info, std::mt19937& generator,
+                                                       const std::vector<std::string>& effects = {}) {
   std::uniform_real_distribution<double> factor(0.5, 2.0);
   std::map<std::string, double> parameters;
-  for (const Parameter& parameter : info.parameters)
-    parameters[parameter.name] = parameter.standard * factor(generator);
+  const auto draw = [&](const std::vector<Parameter>& list) {
+    for (const Parameter& parameter : list)
+      parameters[parameter.name] =
+          parameter.standard == 0.0 ? factor(generator) - 0.25 : parameter.standard * factor(generator);
+  };
+  draw(info.parameters);
+  for (const Effect& effect : info.effects)
+    if (std::count(effects.begin(), effects.end(), effect.name) > 0) draw(effect.parameters);
   return parameters;
 }
 

@@ -19,7 +19,7 @@ using testing::ElementsAreArray;
 /// scales that undo this.
 const std::map<std::string, double> other_units{
     {"m1", 0x1p-5}, {"m2", 0x1p-5}, {"l1", 4.0}, {"l2", 4.0}, {"g", 0x1p-4}};
-const Scales undone{8.0, {1.0, 1.0, 0.125, 0.125}, {0x1p-5 * 16.0 / 64.0}};
+const Scales undone{8.0, {1.0, 1.0, 0.125, 0.125}, {0x1p-5 * 16.0 / 64.0}, {}};
 
 struct BothPendulums {
   std::shared_ptr<const System> plain = make_system("double_pendulum");
@@ -82,24 +82,41 @@ TEST(ScaledSystem, MovesParametersInTheSystemsUnits) {
 TEST(ScaledSystem, IsTheSystemWhereScalesAreOne) {
   const auto plain = make_system("double_pendulum");
   EXPECT_EQ(scaled(plain, {}), plain);
-  EXPECT_EQ(scaled(plain, {1.0, {1.0, 1.0, 1.0, 1.0}, {1.0}}), plain);
+  EXPECT_EQ(scaled(plain, {1.0, {1.0, 1.0, 1.0, 1.0}, {1.0}, {}}), plain);
   EXPECT_TRUE(plain->scales().are_one());
 }
 
 TEST(ScaledSystem, KeepsGuardsInTheSystemsUnits) {
-  const auto spring = scaled(make_system("swinging_spring"), {2.0, {0.5, 0.5, 0.25, 0.25}, {0.25}});
+  const auto spring = scaled(make_system("swinging_spring"), {2.0, {0.5, 0.5, 0.25, 0.25}, {0.25}, {}});
   EXPECT_EQ(spring->guard(0, std::vector<double>{6.0, 8.0, 0.0, 0.0}), 5.0);
+}
+
+TEST(ScaledSystem, APhaseHasTheScaleOne) {
+  const auto plain = make_system("swinging_spring", {{"drive_direction", 90.0}}, {"drive"});
+  EXPECT_THROW(static_cast<void>(scaled(plain, {2.0, {1.0, 1.0, 1.0, 1.0, 2.0}, {}, {}})), core::MisuseError);
+  const auto told = scaled(plain, {2.0, {0.5, 0.5, 0.25, 0.25, 1.0}, {}, {}});
+  const auto offset = told->structure().equivariances.front().map.offset;
+  EXPECT_EQ(offset(4), plain->structure().equivariances.front().map.offset(4));
+  EXPECT_NE(offset(4), 0.0);
+  const std::vector<double> state{0.6, -2.4, 0.7, 0.9, 0.4};
+  const std::vector<double> in_units{0.3, -1.2, 0.175, 0.225, 0.4};
+  std::vector<double> f(5), g(5);
+  plain->field(1, in_units.data(), f.data());
+  told->field(1, state.data(), g.data());
+  const std::vector<double> rates{4.0, 4.0, 8.0, 8.0, 2.0};
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(g[i], rates[i] * f[i]);
 }
 
 TEST(ScaledSystem, RefusesScalesThatMeanNothing) {
   const auto pendulum = make_system("double_pendulum");
-  EXPECT_THROW(static_cast<void>(scaled(pendulum, {1.0, {2.0, 1.0, 1.0, 1.0}, {1.0}})), core::MisuseError);  // an angle
-  EXPECT_THROW(static_cast<void>(scaled(pendulum, {1.0, {1.0, 1.0}, {}})), core::MisuseError);
-  EXPECT_THROW(static_cast<void>(scaled(pendulum, {0.0, {}, {}})), core::MisuseError);
-  EXPECT_THROW(static_cast<void>(scaled(pendulum, {1.0, {}, {1.0, 1.0}})), core::MisuseError);
+  const Scales of_an_angle{1.0, {2.0, 1.0, 1.0, 1.0}, {1.0}, {}};
+  EXPECT_THROW(static_cast<void>(scaled(pendulum, of_an_angle)), core::MisuseError);
+  EXPECT_THROW(static_cast<void>(scaled(pendulum, {1.0, {1.0, 1.0}, {}, {}})), core::MisuseError);
+  EXPECT_THROW(static_cast<void>(scaled(pendulum, {0.0, {}, {}, {}})), core::MisuseError);
+  EXPECT_THROW(static_cast<void>(scaled(pendulum, {1.0, {}, {1.0, 1.0}, {}})), core::MisuseError);
   EXPECT_THROW(static_cast<void>(scaled(scaled(pendulum, undone), undone)), core::MisuseError);
   const auto star = make_system("henon_heiles");  // turns mix x with y
-  EXPECT_THROW(static_cast<void>(scaled(star, {1.0, {1.0, 2.0, 1.0, 1.0}, {}})), core::MisuseError);
+  EXPECT_THROW(static_cast<void>(scaled(star, {1.0, {1.0, 2.0, 1.0, 1.0}, {}, {}})), core::MisuseError);
   EXPECT_THAT(mixed_coordinates(star->structure()), ElementsAre(0, 0, 2, 2));
   EXPECT_THAT(mixed_coordinates(pendulum->structure()), ElementsAre(0, 1, 2, 3));
 }

@@ -113,6 +113,7 @@ TEST(Structure, DependsOnParameterValues) {
   EXPECT_EQ(equal->structure().conserved, (Names{"energy", "angular momentum"}));
   EXPECT_EQ(names_of(equal->structure().equivariances), (Names{"S", "X"}));
   EXPECT_EQ(unequal->info().name, equal->info().name);
+  EXPECT_TRUE(Registered<Springs>::effects().empty());  // none is composed into it
 }
 
 TEST(Structure, DependsOnEffects) {

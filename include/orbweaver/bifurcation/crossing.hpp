@@ -13,10 +13,10 @@
 
 namespace orbweaver::bifurcation {
 
-/// What is to be located: a zero of a test function, or an extremum of the period or the energy.
+/// What is to be located: a zero of a test function, or an extremum of the period, the energy or the parameter.
 struct Event {
-  enum class Kind { test_function, fold_period, fold_energy };
-  [[nodiscard]] friend constexpr Kind last_of(Kind) { return Kind::fold_energy; }
+  enum class Kind { test_function, fold_period, fold_energy, fold_parameter };
+  [[nodiscard]] friend constexpr Kind last_of(Kind) { return Kind::fold_parameter; }
   Kind kind = Kind::test_function;
   TestFunction function{};  ///< of Kind::test_function
   bool tangency = false;    ///< the function only touches zero
@@ -32,7 +32,7 @@ struct Event {
 struct Crossing {
   continuation::CurvePoint point;  ///< the orbit there, with the family's direction
   spectrum::Stability stability;
-  Reading reading{};   ///< of the test function, or of the slope of the period or the energy along the family
+  Reading reading{};   ///< of the test function, or of the slope of what folds along the family
   double width = 0.0;  ///< of the interval of positions that is left around it
 };
 
@@ -64,11 +64,17 @@ struct NotLocated {
                                              const Event& event, double from, double to, NotLocated& why,
                                              double tolerance = 1e-11);
 
-/// The multiplier pair that is nearest to the sector: k - 2 cos(2 pi j/q), with its error bound.
-[[nodiscard]] Reading index_deviation(const spectrum::Stability& stability, const Sector& sector);
+/// The multiplier pair that is nearest to the sector: k - 2 cos(2 pi j/q), with its error bound; of a system that is
+/// not symplectic the nontrivial multiplier, mu - cos(2 pi j/q).
+[[nodiscard]] Reading index_deviation(const systems::Structure& system, const spectrum::Stability& stability,
+                                      const Sector& sector);
 
-/// dT/ds and dE/ds of the family at a point, s being the length in modes and period.
+/// dT/ds, dE/ds and dp/ds of the family at a point, s being the length in modes and scalars, p the first parameter that
+/// moves.
 [[nodiscard]] double period_slope(const continuation::CurvePoint& point);
+[[nodiscard]] double parameter_slope(const continuation::CurvePoint& point);
 [[nodiscard]] double energy_slope(const systems::System& system, const continuation::CurvePoint& point);
+/// Of the level (continuation::level_of): the energy, or the parameter that moves.
+[[nodiscard]] double level_slope(const systems::System& system, const continuation::CurvePoint& point);
 
 }  // namespace orbweaver::bifurcation

@@ -7,9 +7,9 @@
 
 namespace orbweaver::bifurcation {
 
-/// An extremum of the period or the energy along a family, between two positions.
+/// An extremum of the period, the energy or the parameter that moves along a family, between two positions.
 struct Fold {
-  enum class Quantity { period, energy } quantity;
+  enum class Quantity { period, energy, parameter } quantity;
   double from;
   double to;
 };
@@ -20,7 +20,8 @@ class FoldWatch {
   /// The folds that this orbit shows, between it and up to two earlier ones that differ by more than rounding:
   /// differences count above 1e-10 times the largest modulus so far. Quantities that are NaN are passed over. Throws
   /// MisuseError unless positions increase.
-  [[nodiscard]] std::vector<Fold> advance(double position, double period, double energy);
+  [[nodiscard]] std::vector<Fold> advance(double position, double period, double energy,
+                                          double parameter = std::numeric_limits<double>::quiet_NaN());
 
   /// One quantity's last two orbits that differ.
   struct Turn {
@@ -39,11 +40,12 @@ class FoldWatch {
 
   Turn period;  ///< plain state, for checkpoints
   Turn energy;
+  Turn parameter;
 
-  static constexpr int wire_version = 1;
+  static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, period, energy);
+    core::serialize_members(archive, period, energy, parameter);
   }
 };
 

@@ -13,6 +13,9 @@ struct Sector {
 
   /// The stability index mu + 1/mu of the sector: 2 cos(2 pi j/q).
   [[nodiscard]] double index() const;
+  /// Of the stability values (spectrum::Stability): that index, or the real part of the multiplier where values are
+  /// multipliers.
+  [[nodiscard]] double value(bool symplectic) const { return symplectic ? index() : 0.5 * index(); }
   /// m: orbits born in this sector close after m periods of theirs, m = q / gcd(q, p) with p the fundamental map's
   /// order.
   [[nodiscard]] int multiplicity(int fundamental_order) const;

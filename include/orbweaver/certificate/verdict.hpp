@@ -38,6 +38,7 @@ struct Evidence {
   double growth = 0.0;           ///< the largest modulus of its multipliers or indices; NaN: not known
   double index = unknown;        ///< of a single pair
   double index_error = unknown;  ///< the bound on its error
+  bool winds = false;            ///< an angle turns over: an orbit however little the rest of it moves
 };
 
 /// A certificate in the light of the evidence (docs/mathematics.md, "Certificates").

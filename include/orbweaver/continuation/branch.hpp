@@ -51,6 +51,9 @@ struct Options {
   double period_limit = std::numeric_limits<double>::infinity();
   double energy_from = -std::numeric_limits<double>::infinity();
   double energy_to = std::numeric_limits<double>::infinity();
+  double parameter_from =
+      -std::numeric_limits<double>::infinity();  ///< of the first parameter that moves, in its scale
+  double parameter_to = std::numeric_limits<double>::infinity();
   /// Least values of the system's guards, by name: Branch throws MisuseError for one that it does not have.
   std::map<std::string, double> guard_limits{};
   int step_limit = 5000;             ///< orbits of the branch
@@ -70,6 +73,9 @@ struct Start {
   loop::Loop base;
   loop::Tangent direction;  ///< of any length > 0
   loop::Isotropy isotropy;
+  /// `base` is (nearly) an orbit of the family and its first one, with the scalar held along which `direction` points:
+  /// its modes are 0.
+  bool base_is_orbit = false;
 };
 
 class Tracer;

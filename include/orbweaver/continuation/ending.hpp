@@ -9,12 +9,14 @@ namespace orbweaver::continuation {
 
 /// Why a branch ended (docs/mathematics.md, "Ends").
 enum class EndReason {
-  period_limit,  ///< the scene's limit; the last orbit has exactly that period
-  energy_limit,  ///< the scene's limit; the last orbit has exactly that energy
-  guard_limit,   ///< the scene's limit; the smallest value of a guard over the last orbit is exactly that
+  period_limit,     ///< the scene's limit; the last orbit has exactly that period
+  energy_limit,     ///< the scene's limit; the last orbit has exactly that energy
+  parameter_limit,  ///< the scene's limit; the last orbit has exactly that value of the parameter that moves
+  guard_limit,      ///< the scene's limit; the smallest value of a guard over the last orbit is exactly that
   step_limit,
   cutoff_limit,       ///< the next orbit needs more harmonics than the scene allows
-  period_divergence,  ///< T grows without bound at settled energy, and double precision or the cutoff ends it
+  period_divergence,  ///< T grows without bound while the energy (or what moves instead) settles, and double
+                      ///< precision or the cutoff ends it
   collision,          ///< the smallest value of a guard fell to nothing, and double precision or the cutoff ends it
   fixed_point,        ///< the amplitude shrank to nothing
   closed_loop,        ///< back at the first orbit

@@ -38,17 +38,18 @@ struct TracePoint {
 /// What a point problem keeps from one correction to the next.
 struct ProblemState {
   Resolution resolution;
-  double amplitude = 0.0;  ///< rms distance of the last orbit from its mean: small loops are solved in proportion
+  double amplitude = 0.0;    ///< rms distance of the last orbit from its mean: small loops are solved in proportion
+  double held_energy = 0.0;  ///< of all orbits, where the family holds the energy
   std::vector<double> factor_point;       ///< where the preconditioner was built; empty = to be built anew
   std::vector<double> factor_conditions;  ///< and under which conditions
   equations::Preconditioner preconditioner = equations::Preconditioner::box;  ///< of collocation: the cheapest that did
   int least_size = 0;  ///< of a resolution: a step failed at half of it that the harmonics did not explain
 
-  static constexpr int wire_version = 3;
+  static constexpr int wire_version = 4;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, resolution, amplitude, factor_point, factor_conditions, preconditioner,
-                            least_size);
+    core::serialize_members(archive, resolution, amplitude, held_energy, factor_point, factor_conditions,
+                            preconditioner, least_size);
   }
 };
 
@@ -72,24 +73,25 @@ struct Frontier {
   double next_length = 0.0;  ///< step to try next, in the problem's own length
   double last_increment = 0.0;  ///< arclength of the last step
   loop::Loop first;             ///< loop of orbit 0
-  double first_energy = 0.0;
+  double first_level = 0.0;     ///< the energy of orbit 0, or what moves instead (`level_of`)
   double first_amplitude = 0.0;
-  double earlier_energy = 0.0;  ///< energy when the period was about a tenth smaller
+  double earlier_level = 0.0;  ///< that when the period was about a tenth smaller
   double earlier_period = 0.0;
   double farthest = 0.0;           ///< largest change of amplitude or relative change of T from orbit 0 so far
-  bool on_energy_limit = false;    ///< `orbit` is the last one, at the scene's energy limit
+  bool on_energy_limit = false;    ///< `orbit` is the last one, at the scene's energy limit,
+  bool on_parameter_limit = false;  ///< or at that of the parameter
   std::vector<GuardTrace> guards;  ///< one a guard of the structure
   int on_guard_limit = -1;         ///< the guard at whose limit `orbit` is the last one
   double threshold = 0.0;          ///< under which sqrt(loss) of `orbit` was accepted
   std::vector<TracePoint> points;  ///< the last ones, oldest first; the start itself is the very first
   ProblemState problem;
 
-  static constexpr int wire_version = 2;
+  static constexpr int wire_version = 3;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, orbit, tangent, next_length, last_increment, first, first_energy, first_amplitude,
-                            earlier_energy, earlier_period, farthest, on_energy_limit, guards, on_guard_limit,
-                            threshold, points, problem);
+    core::serialize_members(archive, orbit, tangent, next_length, last_increment, first, first_level, first_amplitude,
+                            earlier_level, earlier_period, farthest, on_energy_limit, on_parameter_limit, guards,
+                            on_guard_limit, threshold, points, problem);
   }
 };
 

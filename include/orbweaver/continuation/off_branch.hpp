@@ -20,9 +20,10 @@ struct OffBranchTriplet {
 
 /// The `options.count` smallest within one sector of an isotropy, smallest first: perturbations of the loop that keep
 /// or flip the sign under each of its generators as `signs` says (+1 kept, -1 broken), which must be involutions (none:
-/// all perturbations), and with all kept changes of the period; the time shift and the family's own direction excluded.
-/// In the loop's own coefficients (those under its time map). Empty where the sector holds nothing else. Matrix-free
-/// where that is faster. Throws what spectrum::smallest_singular_triplets does.
+/// all perturbations), and with all kept changes of the period and of the parameters that move, as far as the family
+/// does not hold them; the time shift and the family's own direction excluded. In the loop's own coefficients (those
+/// under its time map). Empty where the sector holds nothing else. Matrix-free where that is faster. Throws what
+/// spectrum::smallest_singular_triplets does.
 [[nodiscard]] std::vector<OffBranchTriplet> sector_triplets(const systems::System& system, const loop::Loop& loop,
                                                             const loop::Isotropy& isotropy,
                                                             const std::vector<int>& signs, const loop::Tangent& tangent,

@@ -36,10 +36,14 @@ struct Orbit {
 /// The first conserved quantity at a loop's state at s = 0; NaN for systems without one.
 [[nodiscard]] double energy_of(const systems::System& system, const loop::Loop& loop);
 
+/// What tells the orbits of one family in T apart beside T: the energy, or the parameter that moves. In the system's
+/// scales.
+[[nodiscard]] double level_of(const systems::System& system, const loop::Loop& loop);
+
 /// Action over one period: T times the mean over time of p . dq/dt, on the loss's nodes (spectrally accurate).
 [[nodiscard]] double action_of(const systems::System& system, const loop::Loop& loop);
 
-/// sqrt(mean |dz|^2 + (dT/T)^2) between neighbours.
+/// sqrt(mean |dz|^2 + (dT/T)^2 + |dp|^2) between neighbours, p being the parameters that move.
 [[nodiscard]] double arclength_between(const loop::Loop& from, const loop::Loop& to);
 /// The same in the units of the scene, for loops told in the system's scales: the archive's arclength.
 [[nodiscard]] double arclength_in_units(const systems::System& system, const loop::Loop& from, const loop::Loop& to);

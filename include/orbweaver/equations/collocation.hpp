@@ -26,16 +26,21 @@ class DenseFactor;
 /// orbit). There is a border, and a condition, for each.
 class Collocation final : public PreconditionedEquations {
  public:
-  /// The scalars of a conservative family: T, and an unfolding of the energy where no reversor fixes the phase.
-  [[nodiscard]] static std::vector<loss::Scalar> conservative(const loop::FundamentalDomain& domain);
-  /// True where domain, system and the scalars of a conservative family give a square problem. Any dimension: nothing
+  /// The scalars of the system's families: T, the parameters that move along them, and an unfolding of the energy where
+  /// there is one and no reversor fixes the phase.
+  [[nodiscard]] static std::vector<loss::Scalar> scalars_of_families(const systems::System& system,
+                                                                     const loop::FundamentalDomain& domain);
+  /// Conditions that pick one orbit: the place along the family, what the family holds, and the phase where no reversor
+  /// fixes it.
+  [[nodiscard]] static int conditions_of_families(const systems::System& system, const loop::FundamentalDomain& domain);
+  /// True where there are as many of both, and of end conditions as coordinates. Any dimension: nothing
   /// of this is divided by a team, and need not be. Five orbits of a chain of oscillators take one rank 0.8, 1.2, 12
   /// and 66 ms (d = 8, 16, 32, 64); as loops they take one rank 5.6, 16, 80 and 471 ms, and a team of two 5.5, 15, 58
   /// and 316 ms.
   [[nodiscard]] static bool applies(const systems::System& system, const loop::FundamentalDomain& domain);
 
   /// `centre`: a point that the symmetries of the domain map to itself, to which y is relative; `winding` as in Loop;
-  /// `scalars` begin with T, and without any are those of a conservative family.
+  /// `scalars` begin with T, then those that loops carry, and without any are those of the system's families.
   Collocation(const systems::System& system, const loop::FundamentalDomain& domain, std::vector<double> centre,
               std::vector<double> winding, int cells, const loop::TimeMap& map, std::vector<loss::Scalar> scalars = {});
   ~Collocation() override;

@@ -41,15 +41,16 @@ struct Unknowns {
   [[nodiscard]] bool has_parameters() const;
   /// Throws MisuseError for scalars in another order, or twice.
   void validate() const;
-  /// base + u; the period of the result may be anything finite, also <= 0 (the loss refuses that).
+  /// base + u, with the parameters that the loop carries (those that move along its families come first among the
+  /// scalars); the period of the result may be anything finite, also <= 0 (the loss refuses that).
   [[nodiscard]] loop::Loop moved(const loop::Loop& base, std::span<const double> u) const;
   /// The system with its parameters moved by u. Where none moves it is `base` itself, which must outlive the result.
   [[nodiscard]] std::shared_ptr<const systems::System> moved(const systems::System& base,
                                                              std::span<const double> u) const;
-  /// The values that the system has for the parameters among the scalars, in their order.
+  /// The values that the system has for the parameters among the scalars, in their order and scales.
   [[nodiscard]] std::vector<double> parameters_of(const systems::System& system) const;
   /// The orthogonal projection of `to` - `from` onto the unknowns (same cutoff as the subspace, same time map);
-  /// parameters and unfoldings do not differ.
+  /// unfoldings do not differ, nor do parameters that the loops do not carry.
   [[nodiscard]] std::vector<double> difference(const loop::Loop& from, const loop::Loop& to) const;
   /// The orthogonal projection of a tangent onto the unknowns, and the tangent that a vector of unknowns is. An
   /// unfolding is no part of it.

@@ -3,10 +3,13 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::scene {
 
@@ -16,7 +19,11 @@ struct SystemChoice {
   std::vector<std::string> effects;
   /// Scales that the scene gives, by name: time, a coordinate, a conserved quantity. The others are found (`auto`).
   std::map<std::string, double> scales;
+  systems::FamilyScalars moving;  ///< what moves along its families (continuation.free, continuation.hold)
 };
+
+/// The system with its parameters, effects and kind of families, in their units.
+[[nodiscard]] std::shared_ptr<const systems::System> bound_system(const SystemChoice& choice);
 
 /// Where the search for equilibria starts, and what the user calls the families found there.
 struct FixedPoints {
@@ -28,6 +35,13 @@ struct FixedPoints {
   };
   std::vector<Names> names;
   std::map<std::string, std::string> letters;  ///< family name -> letter for its branches
+};
+
+/// An orbit that is known: its state at t = 0 and its period, near enough for Newton's method.
+struct StateStart {
+  std::vector<double> state;  ///< angles in radians
+  double period = 0.0;
+  std::string name;
 };
 
 /// At which periods small oscillations are looked for, and how finely the picture of their eigenvalue is drawn.
@@ -83,6 +97,8 @@ struct Limits {
   double period = 30.0;
   double energy_from = -std::numeric_limits<double>::infinity();
   double energy_to = std::numeric_limits<double>::infinity();
+  double parameter_from = -std::numeric_limits<double>::infinity();  ///< of the parameter that moves
+  double parameter_to = std::numeric_limits<double>::infinity();
   std::map<std::string, double> guards;  ///< least values of the system's guards, by name; one left out has no limit
   int families = 1000;
   int steps = 5000;
@@ -111,6 +127,7 @@ struct Scene {
   SystemChoice system;
   FixedPoints fixed_points;
   Sweep sweep;
+  std::vector<StateStart> states;
   Continuation continuation;
   Survey survey;
   Compute compute;
@@ -128,8 +145,5 @@ struct Scene {
 /// The same for a text; `origin` stands in messages where a file name would.
 [[nodiscard]] Scene parse(const std::string& text, const std::string& origin,
                           const std::vector<std::string>& overrides = {});
-
-/// What the scene asks for that this version does not compute yet, one sentence each (empty: everything is built).
-[[nodiscard]] std::vector<std::string> not_built_yet(const Scene& scene);
 
 }  // namespace orbweaver::scene

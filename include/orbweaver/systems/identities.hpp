@@ -19,6 +19,7 @@ struct IdentityError {
 ///   equivariances          f(S z) = S' f(z)
 ///   reversors              f(R z) = -R' f(z)
 ///   angles                 f(z + 2 pi e_i) = f(z)
+///   a drive                f_phase is the same everywhere
 ///   the energy             H(S z) = H(z), H(R z) = H(z), H(z + 2 pi e_i) = H(z): images of an orbit have its energy
 /// Fields are compared coordinate by coordinate, relative to the larger of the coordinate's field there and its median
 /// over the states, energies likewise: so the errors do not depend on units. States where the field is not finite are

@@ -19,7 +19,7 @@ struct Parameter {
 /// Something a scene may add to the ideal system (friction, a drive, ...), with the parameters it brings.
 struct Effect {
   std::string name;
-  std::string meaning;
+  std::string meaning;  ///< its terms in words, one phrase
   std::vector<Parameter> parameters;
 };
 
@@ -27,6 +27,7 @@ struct Effect {
 struct ModelInfo {
   std::string name;                        ///< as in a scene: "double_pendulum"
   std::string title;                       ///< as a person would write it
+  std::string meaning;                     ///< what moves under what, in one phrase
   std::vector<std::string> state_names;    ///< one a coordinate
   std::vector<std::string> winding_names;  ///< one a coordinate: of its winding number; "" where it is never an angle
   std::vector<Parameter> parameters;

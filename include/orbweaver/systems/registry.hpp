@@ -16,10 +16,15 @@ namespace orbweaver::systems {
 /// What may be asked of the system `name`. Throws core::InputError naming the known ones.
 [[nodiscard]] const ModelInfo& model_info(const std::string& name);
 
-/// Binds parameters and effects. Throws core::InputError on an unknown system, parameter or effect, or a value out of
-/// range, saying what is known or allowed.
+/// The combinations of its effects that the system `name` is compiled with, the empty one first.
+[[nodiscard]] std::vector<std::vector<std::string>> built_effects(const std::string& name);
+
+/// Binds parameters and effects, in any order of the effects. Throws core::InputError on an unknown system, parameter
+/// or effect, an effect named twice, effects that are not compiled together, or a value out of range, saying what is
+/// known or allowed; the same for the parameters that move along families.
 [[nodiscard]] std::shared_ptr<const System> make_system(const std::string& name,
                                                         const std::map<std::string, double>& parameters = {},
-                                                        const std::vector<std::string>& effects = {});
+                                                        const std::vector<std::string>& effects = {},
+                                                        const FamilyScalars& scalars = {});
 
 }  // namespace orbweaver::systems

@@ -21,6 +21,15 @@ struct Guard {
   std::string body;  ///< what is met where it is zero: "the smaller body"
 };
 
+/// What families of periodic orbits a system has, by what it conserves and what acts on it.
+enum class FamilyKind {
+  none,             ///< damped and not driven: motions come to rest
+  conservative,     ///< one family through each orbit, along which a conserved quantity moves
+  dissipative,      ///< isolated orbits, families in a parameter
+  driven_damped,    ///< the same, with periods that are multiples of the drive's
+  driven_undamped,  ///< the same, with multipliers in pairs
+};
+
 /// What holds for a system with its parameter values and effects. Everything that other layers do depends on this and
 /// on the field alone.
 struct Structure {
@@ -30,7 +39,11 @@ struct Structure {
   std::vector<Guard> guards;            ///< their values are System's
   std::vector<Symmetry> equivariances;  ///< S with f(S z) = S' f(z) (S': its matrix), identity excluded
   std::vector<Symmetry> reversors;  ///< R with f(R z) = -R' f(z), in the order in which they are preferred for s = 0
-  bool symplectic = false;          ///< multipliers come in pairs mu, 1/mu
+  /// Multipliers come in pairs mu, 1/mu; in an odd dimension, that of a driven system, all but the trivial one.
+  bool symplectic = false;
+  bool driven = false;       ///< the last coordinate is the phase of a drive, an angle that turns steadily
+  bool dissipative = false;  ///< volumes of the space of states are not kept
+  bool decays = false;       ///< its energy only falls: no motion but rest is periodic
 
   [[nodiscard]] bool is_angle(std::size_t coordinate) const {
     return std::find(angles.begin(), angles.end(), static_cast<int>(coordinate)) != angles.end();
@@ -43,7 +56,13 @@ struct Structure {
   [[nodiscard]] bool has_angles() const { return !angles.empty(); }
   [[nodiscard]] bool conservative() const { return !conserved.empty(); }
   /// Number of nontrivial stability indices of an orbit (pairs of multipliers).
-  [[nodiscard]] int pairs() const { return symplectic ? dimension / 2 - 1 : dimension - 1; }
+  [[nodiscard]] int pairs() const { return symplectic ? (dimension - 1) / 2 : dimension - 1; }
+  [[nodiscard]] FamilyKind family_kind() const {
+    if (conservative()) return FamilyKind::conservative;
+    if (decays) return FamilyKind::none;
+    if (driven) return dissipative ? FamilyKind::driven_damped : FamilyKind::driven_undamped;
+    return FamilyKind::dissipative;
+  }
 };
 
 }  // namespace orbweaver::systems

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "orbweaver/systems/family_scalars.hpp"
 #include "orbweaver/systems/model_info.hpp"
 #include "orbweaver/systems/scales.hpp"
 #include "orbweaver/systems/structure.hpp"
@@ -35,7 +36,11 @@ class System {
   /// The units in which its states, times and conserved quantities are told: 1 unless it is a scaled one
   /// (systems/scaled_system.hpp).
   [[nodiscard]] virtual const Scales& scales() const;
+  /// What moves along its families. Loops of such a system carry the values (loop::Loop::parameters).
+  [[nodiscard]] virtual const FamilyScalars& family_scalars() const;
   [[nodiscard]] int dimension() const { return structure().dimension; }
+  /// Of a parameter: that of its scales where it moves along families, else 1.
+  [[nodiscard]] double parameter_scale(const std::string& name) const;
   /// One an angle of the structure.
   [[nodiscard]] std::vector<std::string> winding_names() const;
 
@@ -48,12 +53,12 @@ class System {
   virtual void second_derivatives(std::size_t nodes, const double* z, const double* weights,
                                   double* contracted) const = 0;
 
-  /// df/dp for the parameter `name` at each node; `derivatives`: dimension x nodes. Throws MisuseError unless the
-  /// system can.
+  /// df/dp for the parameter `name` at each node, p being told in its scale; `derivatives`: dimension x nodes. Throws
+  /// MisuseError unless the system can.
   virtual void parameter_derivatives(const std::string& name, std::size_t nodes, const double* z,
                                      double* derivatives) const;
-  /// The same system with other values of some parameters. They are not checked against their ranges: an iteration may
-  /// pass outside. Throws MisuseError for a parameter that it does not have, or unless the system can.
+  /// The same system with other values of some parameters, in their units, which may lie outside of their ranges: an
+  /// iteration may pass there. Throws MisuseError for a parameter that it does not have, or unless the system can.
   [[nodiscard]] virtual std::shared_ptr<const System> with_parameters(
       const std::map<std::string, double>& values) const;
 

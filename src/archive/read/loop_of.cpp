@@ -1,5 +1,7 @@
 #include "orbweaver/archive/read/loop_of.hpp"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
@@ -19,6 +21,8 @@ loop::Loop loop_of(const Archive& atlas, std::size_t orbit, const std::vector<in
   loop.winding.assign(header.state_names.size(), 0.0);
   for (std::size_t n = 0; n < angles.size(); ++n)
     loop.winding.at(static_cast<std::size_t>(angles[n])) = atlas.orbits().reals("winding")[orbit * angles.size() + n];
+  if (const double parameter = atlas.orbits().reals("parameter")[orbit]; !std::isnan(parameter))
+    loop.parameters = {parameter};
   try {
     loop.time_map = loop::time_map_of(atlas.time_map(orbit));
     loop::validate(loop);

@@ -1,5 +1,7 @@
 #include "orbweaver/archive/read/reader.hpp"
 
+#include <algorithm>
+
 #include "check_indices.hpp"
 #include "file/serial_file.hpp"
 #include "schema/row_checksum.hpp"
@@ -49,6 +51,13 @@ const Header& Archive::header() const noexcept { return _file->header(); }
 std::int64_t Archive::format_minor() const noexcept { return _file->minor(); }
 
 bool Archive::has_checksums() const noexcept { return _file->has_checksums(); }
+
+std::string Archive::moving_parameter() const {
+  const std::vector<std::string>& scales = header().scale_names;  // it is the last of them
+  const std::vector<std::string>& parameters = header().parameter_names;
+  if (scales.size() <= 1 + header().state_names.size()) return "";
+  return std::find(parameters.begin(), parameters.end(), scales.back()) == parameters.end() ? "" : scales.back();
+}
 
 std::vector<double> Archive::modes(std::size_t orbit) const {
   std::vector<double> read = values("modes", "modes", orbit);

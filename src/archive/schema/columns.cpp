@@ -93,6 +93,7 @@ const ColumnDefinitions<CrossingRecord>& crossing_columns() {
       {"arclength", &CrossingRecord::arclength},
       {"period", &CrossingRecord::period},
       {"energy", &CrossingRecord::energy},
+      {"parameter", &CrossingRecord::parameter, RowShape::one, parameters_since},
       {"kind", &CrossingRecord::kind},
       {"multiplicity", &CrossingRecord::multiplicity},
       {"kernel_dimension", &CrossingRecord::kernel_dimension},
@@ -120,11 +121,17 @@ const ColumnDefinitions<SectionRecord>& section_columns() {
 
 const ColumnDefinitions<FindingRecord>& finding_columns() {
   static const ColumnDefinitions<FindingRecord> columns{
-      {"severity", &FindingRecord::severity}, {"kind", &FindingRecord::kind},
-      {"family", &FindingRecord::family},     {"other_family", &FindingRecord::other_family},
-      {"crossing", &FindingRecord::crossing}, {"period", &FindingRecord::period},
-      {"energy", &FindingRecord::energy},     {"deviation", &FindingRecord::deviation},
-      {"text", &FindingRecord::text},         {"checksum", checksum},
+      {"severity", &FindingRecord::severity},
+      {"kind", &FindingRecord::kind},
+      {"family", &FindingRecord::family},
+      {"other_family", &FindingRecord::other_family},
+      {"crossing", &FindingRecord::crossing},
+      {"period", &FindingRecord::period},
+      {"energy", &FindingRecord::energy},
+      {"parameter", &FindingRecord::parameter, RowShape::one, parameters_since},
+      {"deviation", &FindingRecord::deviation},
+      {"text", &FindingRecord::text},
+      {"checksum", checksum},
   };
   return columns;
 }

@@ -9,6 +9,7 @@ std::string_view name_of(CrossingKind kind) {
     case CrossingKind::subharmonic: return "subharmonic";
     case CrossingKind::fold_energy: return "fold-energy";
     case CrossingKind::fold_period: return "fold-period";
+    case CrossingKind::fold_parameter: return "fold-parameter";
     case CrossingKind::torus: return "torus";
     case CrossingKind::krein: return "krein";
     case CrossingKind::unknown: return "unknown";
@@ -27,6 +28,8 @@ bool has_sector(CrossingKind kind) {
          kind == CrossingKind::subharmonic;
 }
 
-bool is_fold(CrossingKind kind) { return kind == CrossingKind::fold_energy || kind == CrossingKind::fold_period; }
+bool is_fold(CrossingKind kind) {
+  return kind == CrossingKind::fold_energy || kind == CrossingKind::fold_period || kind == CrossingKind::fold_parameter;
+}
 
 }  // namespace orbweaver::archive

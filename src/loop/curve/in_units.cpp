@@ -7,6 +7,7 @@ Loop in_units(Loop loop, const systems::Scales& scales) {
   loop.period *= scales.time;
   const auto d = static_cast<std::size_t>(loop.dimension);
   for (std::size_t n = 0; n < loop.modes.size(); ++n) loop.modes[n] *= scales.coordinate(n % d);
+  for (std::size_t n = 0; n < loop.parameters.size(); ++n) loop.parameters[n] *= scales.parameter(n);
   return loop;
 }
 
@@ -15,6 +16,7 @@ Loop in_scales(Loop loop, const systems::Scales& scales) {
   loop.period /= scales.time;
   const auto d = static_cast<std::size_t>(loop.dimension);
   for (std::size_t n = 0; n < loop.modes.size(); ++n) loop.modes[n] /= scales.coordinate(n % d);
+  for (std::size_t n = 0; n < loop.parameters.size(); ++n) loop.parameters[n] /= scales.parameter(n);
   return loop;
 }
 

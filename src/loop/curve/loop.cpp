@@ -51,6 +51,8 @@ void validate(const Loop& loop) {
                 "a loop needs a winding number a coordinate");
   core::require(std::all_of(loop.modes.begin(), loop.modes.end(), [](double v) { return std::isfinite(v); }),
                 "a loop's modes must be finite");
+  core::require(std::all_of(loop.parameters.begin(), loop.parameters.end(), [](double v) { return std::isfinite(v); }),
+                "a loop's parameters must be finite");
   const TimeMap& map = loop.time_map;
   core::require(
       map.kappa > 0.0 && std::isfinite(map.kappa) && map.coefficients.size() % 2 == 0 &&

@@ -56,6 +56,8 @@ Loop moved(Loop base, const Tangent& tangent, double step) {
   core::require(base.modes.size() == tangent.modes.size(), "a loop moves along a tangent of its own cutoff");
   for (std::size_t n = 0; n < base.modes.size(); ++n) base.modes[n] += step * tangent.modes[n];
   base.period += step * tangent.period();
+  for (std::size_t n = 0; n < base.parameters.size() && n + 1 < tangent.scalars.size(); ++n)
+    base.parameters[n] += step * tangent.scalars[n + 1];
   return base;
 }
 

@@ -48,6 +48,7 @@ Loop resolved_in_time(const Loop& loop, double negligible) {
   TimeSamples samples = time_samples(loop, time_sample_count);
   for (;;) {
     Loop out = interpolant(samples);
+    out.parameters = loop.parameters;
     if (tail(out) <= allowed || out.cutoff >= most_in_time * loop.cutoff) return out;
     samples = twice_as_many(samples, loop);
   }

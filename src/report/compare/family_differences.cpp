@@ -30,8 +30,8 @@ std::size_t index(int row) { return static_cast<std::size_t>(row); }
 
 std::string orbit_text(const TreeFamily& family, std::size_t orbit) {
   const Invariants& x = family.curve.points()[orbit];
-  if (std::isnan(x.value(Invariant::energy))) return fmt::format("T = {:.12g}", x.value(Invariant::period));
-  return fmt::format("T = {:.12g}, E = {:.12g}", x.value(Invariant::period), x.value(Invariant::energy));
+  if (std::isnan(x.value(Invariant::level))) return fmt::format("T = {:.12g}", x.value(Invariant::period));
+  return fmt::format("T = {:.12g}, E = {:.12g}", x.value(Invariant::period), x.value(Invariant::level));
 }
 
 // Orbits at the beginning and at the end of a family that have no place on the other's curve.
@@ -93,8 +93,8 @@ double relative_distance(const Invariants& x, const Invariants& y, Invariant i) 
 double distance(const TreeFamily& a, const FamilyEnd& x, const TreeFamily& b, const FamilyEnd& y) {
   const Invariants& one = a.curve.points()[x.orbit];
   const Invariants& other = b.curve.points()[y.orbit];
-  const double in_energy = relative_distance(one, other, Invariant::energy);
-  return relative_distance(one, other, Invariant::period) + (std::isnan(in_energy) ? 0.0 : in_energy);
+  const double in_level = relative_distance(one, other, Invariant::level);
+  return relative_distance(one, other, Invariant::period) + (std::isnan(in_level) ? 0.0 : in_level);
 }
 
 }  // namespace
@@ -375,7 +375,7 @@ void FamilyDifferences::compare_ends(const Pair& pair) {
             by, allowed);
     };
     at_limit(survey::EndKind::period_limit, Invariant::period);
-    at_limit(survey::EndKind::energy_limit, Invariant::energy);
+    at_limit(survey::EndKind::energy_limit, Invariant::level);
   }
   if (turned) return;  // the columns hold one of the two
   const auto other_of = [](const std::vector<int>& match, int row) { return row < 0 ? -1 : match[index(row)]; };
@@ -399,14 +399,14 @@ void FamilyDifferences::compare_crossings(const Pair& pair) {
       compare_places(pair, crossing, other);
     else
       add(DifferenceKind::crossing_only_in_a, pair,
-          fmt::format("{} (E = {:.9g}) is in A only", place_text(_a.crossings[index(crossing)]),
-                      _a.crossings[index(crossing)].energy));
+          fmt::format("{} ({} = {:.9g}) is in A only", place_text(_a.crossings[index(crossing)]),
+                      _a.in_parameter() ? _a.parameter : "E", _a.crossings[index(crossing)].level));
   }
   for (const int crossing : pair.b.crossings)
     if (_match.crossing_of_b[index(crossing)] < 0)
       add(DifferenceKind::crossing_only_in_b, pair,
-          fmt::format("{} (E = {:.9g}) is in B only", place_text(_b.crossings[index(crossing)]),
-                      _b.crossings[index(crossing)].energy));
+          fmt::format("{} ({} = {:.9g}) is in B only", place_text(_b.crossings[index(crossing)]),
+                      _b.in_parameter() ? _b.parameter : "E", _b.crossings[index(crossing)].level));
 }
 
 void FamilyDifferences::compare_places(const Pair& pair, int crossing_a, int crossing_b) {
@@ -427,7 +427,7 @@ void FamilyDifferences::compare_places(const Pair& pair, int crossing_a, int cro
           by, _options.tolerance);
   };
   compare_place("period", a.period, b.period, a.period);
-  compare_place("energy", a.energy, b.energy, a.energy_scale);
+  compare_place(_a.in_parameter() ? "parameter" : "energy", a.level, b.level, a.level_scale);
   if (a.kernel_dimension != b.kernel_dimension)
     add(DifferenceKind::crossing_kernel, pair,
         fmt::format("{}: the kernel has dimension {} in A, {} in B", place_text(a), a.kernel_dimension,

@@ -36,7 +36,7 @@ std::size_t index(int row) { return static_cast<std::size_t>(row); }
 // Orbits beyond the ends of the other family say nothing; those are the ones at the ends whose period and energy lie
 // outside.
 bool is_in_range(const InvariantCurve& curve, const Invariants& x) {
-  for (const Invariant i : {Invariant::period, Invariant::energy}) {
+  for (const Invariant i : {Invariant::period, Invariant::level}) {
     double from = x.value(i), to = x.value(i);
     bool first = true;
     for (const Invariants& point : curve.points()) {
@@ -157,8 +157,8 @@ class Matcher {
 
   // Relative distance in period and energy.
   [[nodiscard]] static double distance(const TreeCrossing& x, const TreeCrossing& y) {
-    const double in_energy = std::abs(x.energy - y.energy) / x.energy_scale;
-    return std::fmax(std::abs(x.period / y.period - 1.0), std::isnan(in_energy) ? 0.0 : in_energy);
+    const double in_level = std::abs(x.level - y.level) / x.level_scale;
+    return std::fmax(std::abs(x.period / y.period - 1.0), std::isnan(in_level) ? 0.0 : in_level);
   }
 
   void match_crossings(const TreeFamily& a, const TreeFamily& b) {

@@ -36,10 +36,12 @@ Invariants invariants_of(const archive::Archive& atlas, std::size_t row, double 
   const double sum = stability_sum(atlas, row);
   const double error = orbits.reals("stability_error")[row];
   const bool is_stability_known = !(error > largest_stability_error);
+  const bool moves = !std::isnan(parameter);
   const double mean = std::isnan(action) || action == 0.0 ? std::abs(energy) : std::abs(action) / period;
   Invariants x;
-  x.values = {period, energy, action, parameter, is_stability_known ? std::asinh(0.5 * sum) : archive::not_computed};
-  x.scale = {period, mean, std::abs(action), std::abs(parameter), 1.0};
+  x.values = {period, moves ? parameter : energy, action, moves ? energy : archive::not_computed,
+              is_stability_known ? std::asinh(0.5 * sum) : archive::not_computed};
+  x.scale = {period, moves ? std::abs(parameter) : mean, std::abs(action), mean, 1.0};
   for (std::size_t i = 0; i < x.floor.size(); ++i)
     x.floor[i] = tolerance * x.scale[i] + rounding * std::abs(x.values[i]);
   // d asinh(k/2) = dk / sqrt(4 + k^2)
@@ -48,14 +50,15 @@ Invariants invariants_of(const archive::Archive& atlas, std::size_t row, double 
   return x;
 }
 
-// Action/period passes 0 where the action does: energies then count in what they change from orbit to orbit.
-void widen_energy_scales(std::vector<Invariants>& points, double tolerance) {
-  constexpr auto energy = static_cast<std::size_t>(Invariant::energy);
+// Action/period passes 0 where the action does, and a parameter may: levels then count in what they change from orbit
+// to orbit.
+void widen_level_scales(std::vector<Invariants>& points, double tolerance) {
+  constexpr auto level = static_cast<std::size_t>(Invariant::level);
   for (std::size_t n = 0; n < points.size(); ++n)
     for (const std::size_t beside : {n > 0 ? n - 1 : n, n + 1 < points.size() ? n + 1 : n}) {
-      const double change = std::abs(points[n].values[energy] - points[beside].values[energy]);
-      points[n].scale[energy] = std::fmax(points[n].scale[energy], change);
-      points[n].floor[energy] = std::fmax(points[n].floor[energy], tolerance * change);
+      const double change = std::abs(points[n].values[level] - points[beside].values[level]);
+      points[n].scale[level] = std::fmax(points[n].scale[level], change);
+      points[n].floor[level] = std::fmax(points[n].floor[level], tolerance * change);
     }
 }
 
@@ -71,6 +74,7 @@ std::vector<FamilyEnd> ends_of(const std::string& reason, const std::vector<std:
 }  // namespace
 
 AtlasTree::AtlasTree(const archive::Archive& archive, double tolerance) : atlas(archive) {
+  parameter = atlas.moving_parameter();
   const archive::Table& table = atlas.families();
   families.resize(table.rows());
   for (std::size_t row = 0; row < table.rows(); ++row) {
@@ -90,7 +94,7 @@ AtlasTree::AtlasTree(const archive::Archive& archive, double tolerance) : atlas(
       points.push_back(invariants_of(atlas, i, tolerance));
       family.arclengths.push_back(atlas.orbits().reals("arclength")[i]);
     }
-    widen_energy_scales(points, tolerance);
+    widen_level_scales(points, tolerance);
     family.curve = InvariantCurve(std::move(points));
     family.ends = ends_of(table.texts("end_reason")[row], atlas.orbits().integers("step"), family.first_orbit, count);
     if (family.parent < 0) roots.push_back(static_cast<int>(row));
@@ -107,7 +111,8 @@ AtlasTree::AtlasTree(const archive::Archive& archive, double tolerance) : atlas(
     crossing.sector_q = as_int(events.integers("sector_q")[row]);
     crossing.fundamental_order = as_int(events.integers("fundamental_order")[row]);
     crossing.period = events.reals("period")[row];
-    crossing.energy = events.reals("energy")[row];
+    crossing.parameter = parameter;
+    crossing.level = events.reals(in_parameter() ? "parameter" : "energy")[row];
     TreeFamily& owner = families[static_cast<std::size_t>(crossing.family)];
     owner.crossings.push_back(static_cast<int>(row));
     const auto after =
@@ -115,7 +120,7 @@ AtlasTree::AtlasTree(const archive::Archive& archive, double tolerance) : atlas(
     if (owner.orbits() == 0) continue;
     const auto nearest =
         std::min<std::size_t>(static_cast<std::size_t>(after - owner.arclengths.begin()), owner.orbits() - 1);
-    crossing.energy_scale = owner.curve.points()[nearest].scale_of(Invariant::energy);
+    crossing.level_scale = owner.curve.points()[nearest].scale_of(Invariant::level);
   }
   for (std::size_t row = 0; row < families.size(); ++row)
     if (families[row].crossing >= 0)
@@ -123,7 +128,9 @@ AtlasTree::AtlasTree(const archive::Archive& archive, double tolerance) : atlas(
 }
 
 std::string place_text(const TreeCrossing& crossing) {
-  return fmt::format("{} T {:.6g}", crossing.kind, crossing.period);
+  const std::string level =
+      crossing.parameter.empty() ? "" : fmt::format(", {} {:.6g}", crossing.parameter, crossing.level);
+  return fmt::format("{} T {:.6g}{}", crossing.kind, crossing.period, level);
 }
 
 }  // namespace orbweaver::survey

@@ -12,7 +12,7 @@ namespace orbweaver::survey {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr std::array<Invariant, 3> variables{Invariant::period, Invariant::energy, Invariant::parameter};
+constexpr std::array<Invariant, 3> variables{Invariant::period, Invariant::level, Invariant::energy};
 /// Nodes on either side of a segment: degree five is the highest that noise of 1e-10 does not spoil at uneven
 /// distances.
 constexpr std::size_t widest = 3;
@@ -192,9 +192,9 @@ std::vector<CurveFit> fit_all(const InvariantCurve& curve, const std::vector<Inv
 const char* name_of(Invariant invariant) {
   switch (invariant) {
     case Invariant::period: return "period";
-    case Invariant::energy: return "energy";
+    case Invariant::level: return "energy or parameter";
     case Invariant::action: return "action";
-    case Invariant::parameter: return "parameter";
+    case Invariant::energy: return "energy";
     case Invariant::trace: return "stability";
   }
   return "unknown";

@@ -10,16 +10,20 @@
 namespace orbweaver::survey {
 
 std::shared_ptr<const systems::System> system_of(const scene::Scene& scene) {
-  return systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  return scene::bound_system(scene.system);
 }
 
 systems::Scales scales_of(const archive::Header& header, const systems::System& system) {
   systems::Scales scales;
   const auto coordinates = static_cast<std::ptrdiff_t>(system.dimension());
-  if (header.scales.size() != 1 + system.info().state_names.size() + system.structure().conserved.size()) return scales;
+  const auto conserved = static_cast<std::ptrdiff_t>(system.structure().conserved.size());
+  const std::size_t free = system.family_scalars().free.size();
+  if (header.scales.size() != static_cast<std::size_t>(1 + coordinates + conserved) + free) return scales;
   scales.time = header.scales.front();
   scales.coordinates.assign(header.scales.begin() + 1, header.scales.begin() + 1 + coordinates);
-  scales.conserved.assign(header.scales.begin() + 1 + coordinates, header.scales.end());
+  const auto quantities = header.scales.begin() + 1 + coordinates;
+  scales.conserved.assign(quantities, quantities + conserved);
+  scales.parameters.assign(quantities + conserved, header.scales.end());
   return scales;
 }
 

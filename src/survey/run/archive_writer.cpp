@@ -10,11 +10,13 @@
 #include "orbweaver/archive/write/consolidate.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
+#include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/survey/run/scaled_scene.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "state/branch_state.hpp"
 #include "state/resume.hpp"
 #include "tasks/certified.hpp"
+#include "tasks/payload/keys.hpp"
 #include "version.hpp"
 #include "witness/placement.hpp"
 #include "witness/witness.hpp"
@@ -62,6 +64,10 @@ archive::Header header_of(const scene::Scene& scene, const systems::System& syst
   for (std::size_t k = 0; k < system.structure().conserved.size(); ++k) {
     header.scale_names.push_back(system.structure().conserved[k]);
     header.scales.push_back(scales.conserved.empty() ? 1.0 : scales.conserved[k]);
+  }
+  for (std::size_t n = 0; n < system.family_scalars().free.size(); ++n) {
+    header.scale_names.push_back(system.family_scalars().free[n]);
+    header.scales.push_back(scales.parameter(n));
   }
   return header;
 }
@@ -120,6 +126,7 @@ void write_archive(const core::Communicator& comm, const scene::Scene& scene,
     FamilyTree::Result found = tree.resolve();
     tables = std::move(found.tables);
     summary.families = std::move(found.families);
+    summary.parameter = Units(*system).parameter_name;
     known.tree = std::move(found.evidence);
     for (std::string& failure : found.failures) summary.failed_tasks.push_back(std::move(failure));
     for (std::string& remark : found.remarks) summary.remarks.push_back(std::move(remark));
@@ -142,6 +149,13 @@ void write_archive(const core::Communicator& comm, const scene::Scene& scene,
       kernels = outcome.kernels;
       for (const FoundMode& mode : outcome.modes)
         oscillations.push_back({mode.place, mode.period * system->scales().time});
+      for (const FoundMode& mode : outcome.modes) {
+        if (mode.base.modes.empty() || mode.base_is_orbit) continue;
+        const loop::Loop hopf = loop::in_units(mode.base, system->scales());
+        std::vector<double>& beginning = known.beginnings[base_key(outcome.index, mode.place)];
+        beginning.assign(hopf.modes.begin(), hopf.modes.begin() + hopf.dimension);
+        beginning.push_back(hopf.parameters.front());
+      }
     }
     for (const archive::FamilyRecord& family : tables.families) known.family_keys.push_back(family.key);
     std::sort(known.family_keys.begin(), known.family_keys.end());
@@ -194,11 +208,10 @@ Summary archive_survey(const core::Communicator& comm, const std::filesystem::pa
   if (!found.found) throw core::InputError(fmt::format("{} holds no survey with a checkpoint", directory.string()));
   const std::string text = core::agreed(comm.get(), found.checkpoint.scene);
   const scene::Scene scene = scene::parse(text, "the checkpoint's scene");
-  const ScaledScene scaled(scene,
-                           systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects));
+  const ScaledScene scaled(scene, scene::bound_system(scene.system));
   const auto& system = scaled.system();
   core::on_root(comm.get(), [&] { scaled.expect(found.checkpoint.scales); });
-  FamilyTree tree(scaled.scene(), system->structure(), system->scales());
+  FamilyTree tree(scaled.scene(), system->structure(), Units(*system));
   SweepsEnded sweeps;
   core::on_root(comm.get(), [&] {
     const Stage stage = found.checkpoint.stage;

@@ -17,12 +17,12 @@ constexpr std::size_t narrowest_terminal = 79;  // a line that wraps would spoil
 constexpr int most_live_lines = 16;
 constexpr auto time_between_lines = std::chrono::seconds(5);
 
-std::string line_of(const FamilyState& f) {
+std::string line_of(const FamilyState& f, const std::string& level) {
   if (f.orbits == 0 && !f.running) return fmt::format("{:<10} {:>5} orbits  {}", f.name, f.orbits, f.end);
   const double seconds = std::chrono::duration<double>(f.changed - f.began).count();
   const std::string rate = seconds > 0.0 ? fmt::format("{:.1f} orbits/s", static_cast<double>(f.orbits) / seconds) : "";
-  return fmt::format("{:<10} {:>5} orbits  T {:<8.4f} E {:<10.6f} K {:<4} {}", f.name, f.orbits, f.period, f.energy,
-                     f.cutoff, f.running ? rate : f.end);
+  return fmt::format("{:<10} {:>5} orbits  T {:<8.4f} {} {:<10.6f} K {:<4} {}", f.name, f.orbits, f.period, level,
+                     f.level, f.cutoff, f.running ? rate : f.end);
 }
 
 }  // namespace
@@ -37,7 +37,7 @@ void ProgressDisplay::progress(const queue::Task& task, const queue::Progress& p
   FamilyState& f = _families[task.key];
   f.orbits = progress.step;
   f.period = progress.values[0];
-  f.energy = progress.values[1];
+  f.level = progress.values[1];
   f.cutoff = static_cast<int>(progress.values[2]);
   f.changed = Clock::now();
 }
@@ -52,7 +52,7 @@ void ProgressDisplay::ended(const queue::Task& task, const queue::TaskOutcome& o
     const BranchOutcome branch = unpack_branch_outcome(outcome.payload);
     f.orbits = branch.orbits;
     f.period = branch.last_period;
-    f.energy = branch.last_energy;
+    f.level = branch.last_level;
     f.cutoff = branch.last_cutoff;
     f.end = end_text(branch, _units);
   }
@@ -78,7 +78,7 @@ void ProgressDisplay::tick(const queue::TaskCounts&) {
 
 void ProgressDisplay::print_line(FamilyState& family) {
   family.printed = family.orbits;
-  core::write_line(stderr, line_of(family));
+  core::write_line(stderr, line_of(family, _units.level_name()));
 }
 
 // Lines of running families at the bottom, redrawn in place; what has ended stays above them.
@@ -87,7 +87,8 @@ void ProgressDisplay::redraw() {
   int lines = 0;
   int running = 0;
   const auto add = [&](const FamilyState& f) {
-    text += fmt::format("{}{}", lines++ == 0 ? "" : "\n", line_of(f).substr(0, narrowest_terminal));
+    text +=
+        fmt::format("{}{}", lines++ == 0 ? "" : "\n", line_of(f, _units.level_name()).substr(0, narrowest_terminal));
   };
   for (const auto& [key, family] : _families)
     if (!family.running) add(family);

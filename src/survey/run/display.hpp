@@ -7,6 +7,7 @@
 
 #include "orbweaver/queue/observer.hpp"
 #include "orbweaver/survey/run/survey.hpp"
+#include "tasks/units.hpp"
 
 namespace orbweaver::survey {
 
@@ -15,7 +16,7 @@ struct FamilyState {
   std::string name;
   long orbits = 0;
   double period = 0.0;
-  double energy = 0.0;
+  double level = 0.0;  // energy or parameter
   int cutoff = 0;
   bool running = true;
   long printed = 0;  // orbits at the last plain line
@@ -28,7 +29,7 @@ struct FamilyState {
 class ProgressDisplay : public queue::Observer {
  public:
   /// `units` are those of the outcomes' numbers.
-  explicit ProgressDisplay(Display style, systems::Scales units = {}) : _style(style), _units(std::move(units)) {}
+  explicit ProgressDisplay(Display style, Units units = {}) : _style(style), _units(std::move(units)) {}
 
   void started(const queue::Task& task, int rank) override;
   void progress(const queue::Task& task, const queue::Progress& progress, int rank) override;
@@ -42,7 +43,7 @@ class ProgressDisplay : public queue::Observer {
   void print_line(FamilyState& family);
 
   Display _style;
-  systems::Scales _units;
+  Units _units;
   std::map<std::string, FamilyState> _families;
   int _drawn = 0;
   std::chrono::steady_clock::time_point _last = std::chrono::steady_clock::now();

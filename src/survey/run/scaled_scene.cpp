@@ -1,5 +1,8 @@
 #include "orbweaver/survey/run/scaled_scene.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -22,11 +25,40 @@ void require_one_quantity(const systems::System& system) {
                     system.info().name, fmt::join(conserved, ", ")));
 }
 
+/// The power of two at or below the largest of its value and its finite limits; 1 where all are 0.
+double scale_of_parameter(double value, const scene::Limits& limits) {
+  double largest = std::abs(value);
+  for (const double limit : {limits.parameter_from, limits.parameter_to})
+    if (std::isfinite(limit)) largest = std::max(largest, std::abs(limit));
+  return largest > 0.0 ? std::exp2(std::floor(std::log2(largest))) : 1.0;
+}
+
+/// Systems whose structure says neither, as a test's may, are let through: their surveys find no family and say so.
+void require_families(const systems::System& system) {
+  const systems::Structure& structure = system.structure();
+  if (structure.decays)
+    throw core::InputError(fmt::format(
+        "expected a system that has families of periodic orbits, got {}: damped and without a drive, all its motions "
+        "come to rest; add an effect that drives it, or leave out the damping (orbweaver systems lists the effects)",
+        system.info().title));
+  if ((structure.dissipative || structure.driven) && system.family_scalars().free.empty()) {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : system.parameters()) names.push_back(name);
+    throw core::InputError(fmt::format(
+        "expected `continuation: {{free: ...}}`, the parameter that moves along the families of {}, which conserves "
+        "nothing: one of {}",
+        system.info().title, fmt::join(names, ", ")));
+  }
+}
+
 std::shared_ptr<const systems::System> in_own_scales(const scene::Scene& scene,
                                                      const std::shared_ptr<const systems::System>& system) {
   require_one_quantity(*system);
-  return systems::scaled(system,
-                         scene::scales_of(scene, *system, starts::natural_scales(*system, scene.fixed_points.grid)));
+  require_families(*system);
+  systems::Scales natural = starts::natural_scales(*system, scene.fixed_points.grid);
+  for (const std::string& name : system->family_scalars().free)
+    natural.parameters.push_back(scale_of_parameter(system->parameters().at(name), scene.limits));
+  return systems::scaled(system, scene::scales_of(scene, *system, natural));
 }
 
 }  // namespace

@@ -74,9 +74,9 @@ class Run {
         _header(header_of(scene, *_system)),
         _member(scaled.scene(), _system, _rows, team),
         _executor(team, _member),
-        _display(options.display, _system->scales()),
+        _display(options.display, Units(*_system)),
         _time(scene.limits.time, options.walltime),
-        _tree(scaled.scene(), _system->structure(), _system->scales()) {
+        _tree(scaled.scene(), _system->structure(), Units(*_system)) {
     _queue_options.flush_seconds = scene.output.flush_seconds;
     _queue_options.flush_rows = scene.output.flush_orbits;
     if (std::isfinite(scene.limits.task_time)) _queue_options.task_seconds = scene.limits.task_time;

@@ -22,7 +22,7 @@ namespace {
 struct Sample {
   double part = 0.0;  // of what breaks the symmetry, relative to the first orbit's
   double period = 0.0;
-  double energy = 0.0;
+  double level = 0.0;
 };
 
 /// A place of the branch, and the signed part there.
@@ -89,7 +89,7 @@ std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuat
   std::vector<Sample> samples;
   const auto add = [&](const loop::Loop& loop) {
     if (watch.relative_size(gain, from.loop, loop) < slipped) return;
-    samples.push_back({watch.signed_part(gain, from.loop, loop), loop.period, continuation::energy_of(system, loop)});
+    samples.push_back({watch.signed_part(gain, from.loop, loop), loop.period, continuation::level_of(system, loop)});
   };
   // Orbits before the meeting point and, if the branch went on along the images, one beyond. At the point itself the
   // two families cannot be told apart, so that nothing is solved for there. Backwards from `from`, as long as the part
@@ -126,18 +126,18 @@ std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuat
     }
     const std::size_t known_before = samples.size();
     const double period = at_zero(samples, &Sample::period);
-    const double energy = at_zero(samples, &Sample::energy);
+    const double level = at_zero(samples, &Sample::level);
     add(point->loop);
     if (size > telling && part > 0.0) near = point->loop;  // beyond, other families may leave than the one that came
     if (samples.size() == known_before || size < telling ||
         (std::abs(at_zero(samples, &Sample::period) - period) <= settled * period &&
-         !(std::abs(at_zero(samples, &Sample::energy) - energy) > settled * (1.0 + std::abs(energy)))))
+         !(std::abs(at_zero(samples, &Sample::level) - level) > settled * (1.0 + std::abs(level)))))
       break;
     (part > 0.0 ? before : beyond) = {there, part};
   }
   ArrivalRecord record;
   record.period = at_zero(samples, &Sample::period);
-  record.energy = at_zero(samples, &Sample::energy);
+  record.level = at_zero(samples, &Sample::level);
   record.near = sketch_of(near);
   record.multiplicity = multiplicity_of(gain);
   record.ahead = distance_ahead(watch, gain, from.loop, near, to.loop);
@@ -209,7 +209,7 @@ bool locate_beneath(const std::shared_ptr<const systems::System>& system, const 
   const double distance = loop::align(system->structure(), even, met).distance;
   if (distance > beside * not_repeated(even, arrival.multiplicity)) return false;
   arrival.period = met.period;
-  arrival.energy = continuation::energy_of(*system, met);
+  arrival.level = continuation::level_of(*system, met);
   CrossingBeneath& beneath = arrival.beneath.emplace_back();
   bifurcation::Crossing crossing = found->crossing;
   crossing.point.loop = loop::at_first_reversor(system->structure(), orbit, loop::symmetry_tolerance);

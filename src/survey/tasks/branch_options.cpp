@@ -16,6 +16,8 @@ continuation::Options branch_options(const scene::Scene& scene, core::Team* team
   options.period_limit = scene.limits.period;
   options.energy_from = scene.limits.energy_from;
   options.energy_to = scene.limits.energy_to;
+  options.parameter_from = scene.limits.parameter_from;
+  options.parameter_to = scene.limits.parameter_to;
   options.guard_limits = scene.limits.guards;
   options.step_limit = scene.limits.steps;
   options.off_branch_spectrum = scene.survey.spectrum == scene::Spectrum::all;

@@ -157,15 +157,15 @@ continuation::Ending BranchTask::follow() {
     }
     // The branch ends with an orbit on a limit, which it would not have under a wider one: no state may hold it.
     const continuation::Frontier& there = _branch->restart_frontier();
-    const bool on_limit =
-        orbit->loop.period >= _options.period_limit || there.on_energy_limit || there.on_guard_limit >= 0;
+    const bool on_limit = orbit->loop.period >= _options.period_limit || there.on_energy_limit ||
+                          there.on_parameter_limit || there.on_guard_limit >= 0;
     if (on_limit) limited_by(orbit_limited, before);
     const double period = orbit->loop.period * units().time;
     if (!take(*orbit)) return met();
     if (on_limit) continue;
-    _stopped =
-        !_context.report({_outcome.orbits, 1, {period, orbit->energy * units().energy(), orbit->loop.cutoff * 1.0}},
-                         [&] { return pack(state_at(_branch->restart_frontier())); });
+    const double level = continuation::level_of(*_system, orbit->loop) * units().level();
+    _stopped = !_context.report({_outcome.orbits, 1, {period, level, orbit->loop.cutoff * 1.0}},
+                                [&] { return pack(state_at(_branch->restart_frontier())); });
     if (_stopped) return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", period)};
   }
 }
@@ -191,6 +191,7 @@ void BranchTask::note_limits(const continuation::Ending& ending, const continuat
     case EndReason::step_limit: return limited_by(step_limited, before);
     case EndReason::period_limit:
     case EndReason::energy_limit:
+    case EndReason::parameter_limit:
     case EndReason::guard_limit:
     // On the way to an orbit on a limit, perhaps.
     case EndReason::cutoff_limit:
@@ -233,7 +234,8 @@ bool BranchTask::take(const continuation::Orbit& orbit) {
   const std::optional<spectrum::Stability>& stability = stability_at(orbit);
   detect(orbit, stability);
   if (_last) solve_requested(orbit);
-  store(orbit, stability);
+  const bool is_other_sides = _work.base_is_orbit && _work.lineage.side < 0 && !_last;
+  if (!is_other_sides) store(orbit, stability);
   _last = orbit;
   _last_stability = stability;
   return !(stability && is_nearly_two(*stability) && arrives_ahead());
@@ -335,9 +337,19 @@ void BranchTask::detect(const continuation::Orbit& orbit, const std::optional<sp
   const auto probing = [this](double position) { return probe(position); };
   for (const bifurcation::Bracket& b : _detector.advance(test_point(orbit.arclength, stability), probing))
     add_event({Kind::test_function, _functions[b.function], b.tangency}, b.from, b.to, _curve.known());
-  for (const bifurcation::Fold& fold : _folds.advance(orbit.arclength, orbit.loop.period, orbit.energy))
-    add_event({fold.quantity == bifurcation::Fold::Quantity::period ? Kind::fold_period : Kind::fold_energy, {}, false},
-              fold.from, fold.to, _curve.known());
+  // Where a parameter moves only it folds; T and the energy have extrema that say nothing.
+  using Quantity = bifurcation::Fold::Quantity;
+  const bool moves = !orbit.loop.parameters.empty();
+  const std::vector<bifurcation::Fold> folds =
+      moves
+          ? _folds.advance(orbit.arclength, archive::not_computed, archive::not_computed, orbit.loop.parameters.front())
+          : _folds.advance(orbit.arclength, orbit.loop.period, orbit.energy);
+  for (const bifurcation::Fold& fold : folds) {
+    const Kind kind = fold.quantity == Quantity::period   ? Kind::fold_period
+                      : fold.quantity == Quantity::energy ? Kind::fold_energy
+                                                          : Kind::fold_parameter;
+    add_event({kind, {}, false}, fold.from, fold.to, _curve.known());
+  }
 }
 
 /// The first orbit may lie so far out that an index has passed the values of other sectors on the way from the crossing
@@ -394,13 +406,13 @@ void BranchTask::solve_requested(const continuation::Orbit& orbit) {
 void BranchTask::store(continuation::Orbit orbit, const std::optional<spectrum::Stability>& stability) {
   const bool first = _outcome.orbits == 0;
   const double period = orbit.loop.period * units().time;
-  const double energy = orbit.energy * units().energy();
+  const double level = continuation::level_of(*_system, orbit.loop) * units().level();
   _outcome.period_from = first ? period : std::min(_outcome.period_from, period);
   _outcome.period_to = first ? period : std::max(_outcome.period_to, period);
-  _outcome.energy_from = first ? energy : std::min(_outcome.energy_from, energy);
-  _outcome.energy_to = first ? energy : std::max(_outcome.energy_to, energy);
+  _outcome.level_from = first ? level : std::min(_outcome.level_from, level);
+  _outcome.level_to = first ? level : std::max(_outcome.level_to, level);
   _outcome.last_period = period;
-  _outcome.last_energy = energy;
+  _outcome.last_level = level;
   _outcome.last_cutoff = orbit.loop.cutoff;
   _outcome.tolerance_met = std::max(_outcome.tolerance_met, orbit.tolerance_met);
   _outcome.moved_out = std::max(_outcome.moved_out, orbit.moved_out);

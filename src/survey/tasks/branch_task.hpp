@@ -14,6 +14,7 @@
 #include "orbweaver/scene/scene.hpp"
 #include "state/branch_state.hpp"
 #include "tasks/payload/work.hpp"
+#include "tasks/units.hpp"
 
 namespace orbweaver::survey {
 
@@ -28,7 +29,7 @@ class BranchTask {
   [[nodiscard]] queue::TaskOutcome run();
 
  private:
-  [[nodiscard]] const systems::Scales& units() const { return _system->scales(); }
+  [[nodiscard]] Units units() const { return Units(*_system); }
   void begin(const std::string& state);
   [[nodiscard]] continuation::Ending follow();
   [[nodiscard]] BranchState state_at(const continuation::Frontier& frontier) const;

@@ -24,6 +24,7 @@ bool is_certified_by_branches(const scene::Scene& scene) {
 certificate::Evidence evidence_of(const loop::Loop& loop, double residual, std::span<const double> stability,
                                   bool is_complex, double stability_error) {
   certificate::Evidence evidence{loop.period, residual, loop::rms_amplitude(loop), archive::not_computed};
+  evidence.winds = std::any_of(loop.winding.begin(), loop.winding.end(), [](double n) { return n != 0.0; });
   const std::size_t parts = is_complex ? 2 : 1;
   for (std::size_t n = 0; n + parts <= stability.size(); n += parts)
     evidence.growth =

@@ -17,6 +17,7 @@ using bifurcation::Event;
 CrossingKind kind_of(const Event& event, int multiplicity) {
   if (event.kind == Event::Kind::fold_period) return CrossingKind::fold_period;
   if (event.kind == Event::Kind::fold_energy) return CrossingKind::fold_energy;
+  if (event.kind == Event::Kind::fold_parameter) return CrossingKind::fold_parameter;
   if (!bifurcation::has_sector(event.function.kind)) {
     const std::string_view name = bifurcation::name_of(event.function.kind);
     const CrossingKind kind = archive::crossing_kind_of(name);
@@ -42,6 +43,7 @@ void describe(const systems::System& system, const Event& event, const bifurcati
   outcome.j = sector.j;
   outcome.period = loop.period;
   outcome.energy = continuation::energy_of(system, loop);
+  if (!loop.parameters.empty()) outcome.parameter = loop.parameters.front();
   outcome.fundamental_order = crossing.stability.fundamental_order;
   const bool by_sector = is_in_sector(event);
   outcome.multiplicity = by_sector ? sector.multiplicity(outcome.fundamental_order) : 1;
@@ -49,8 +51,8 @@ void describe(const systems::System& system, const Event& event, const bifurcati
   outcome.residual = crossing.reading.value;
   outcome.test_value = archive::not_computed;
   if (by_sector) {  // the index itself, and how far it is from the sector's
-    outcome.residual = bifurcation::index_deviation(crossing.stability, sector).value;
-    outcome.test_value = sector.index() + outcome.residual;
+    outcome.residual = bifurcation::index_deviation(system.structure(), crossing.stability, sector).value;
+    outcome.test_value = sector.value(system.structure().symplectic) + outcome.residual;
   }
   outcome.kernel_singular_value = archive::not_computed;
   outcome.next_singular_value = archive::not_computed;

@@ -10,6 +10,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/starts/sweep.hpp"
 #include "orbweaver/survey/tasks/sweep_options.hpp"
+#include "parameter_starts.hpp"
 #include "start_task.hpp"
 
 namespace orbweaver::survey {
@@ -37,6 +38,19 @@ void Executor::take_back_rows(bool flushed) {
 }
 
 queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
+  queue::TaskOutcome done;
+  if (work.period > 0.0)
+    done.payload = pack(state_start(_scene, _system, work, _team));
+  else if (_system->family_scalars().free.empty())
+    done.payload = pack(small_oscillations(work));
+  else if (_system->structure().driven)
+    done.payload = pack(drive_start(*_system, work));
+  else if (!_system->structure().conservative())
+    done.payload = pack(hopf_starts(_scene, *_system, work));
+  return done;
+}
+
+SweepOutcome Executor::small_oscillations(const SweepWork& work) const {
   const starts::SweepOptions options = sweep_options(_scene, *_system, work.point);
   const starts::SweepResult result = starts::sweep(*_system, work.point, options);
   SweepOutcome outcome;
@@ -72,9 +86,7 @@ queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
   for (const auto* dips : {&result.rejected, &all.without_family})
     for (const starts::RejectedDip& dip : *dips)
       outcome.rejected.push_back(fmt::format("T = {:.9g}: {}", dip.period * _system->scales().time, dip.reason));
-  queue::TaskOutcome done;
-  done.payload = pack(outcome);
-  return done;
+  return outcome;
 }
 
 }  // namespace orbweaver::survey

@@ -24,6 +24,7 @@ class Executor : public queue::Executor {
 
  private:
   [[nodiscard]] queue::TaskOutcome sweep(const SweepWork& work) const;
+  [[nodiscard]] SweepOutcome small_oscillations(const SweepWork& work) const;
 
   const scene::Scene& _scene;
   std::shared_ptr<const systems::System> _system;

@@ -154,14 +154,14 @@ class Location {
     settings.even_in_time = starts;
     settings.most_harmonics = _scene.continuation.cutoff_to;
     settings.team = _team;
-    const bifurcation::Kernel kernel =
-        bifurcation::kernel_of(*_system, crossing.point, isotropy, sector,
-                               expected_dimension(crossing.stability, sector, _event.tangency), settings);
+    const bifurcation::Kernel kernel = bifurcation::kernel_of(
+        *_system, crossing.point, isotropy, sector,
+        expected_dimension(_system->structure(), crossing.stability, sector, _event.tangency), settings);
     _outcome.kernel_dimension = kernel.dimension();
     _outcome.kernel_singular_value = kernel.largest();
     _outcome.next_singular_value = kernel.next();
     if (kernel.dimension() == 0) return without_kernel(crossing, kernel, family);
-    if (sector.q == 1 && kernel.dimension() == 1 && turns_in_energy_at(crossing, family)) return as_fold(kernel);
+    if (sector.q == 1 && kernel.dimension() == 1 && turns_at(crossing, family)) return as_fold(kernel);
     if (!starts) return;
     report();
     int number = 0;
@@ -188,7 +188,8 @@ class Location {
 
   /// Where rounding does not tell the crossing from those of other sectors, its kernel may be any of theirs.
   void fail(const bifurcation::Crossing& crossing, const std::string& why) {
-    const double off = std::abs(bifurcation::index_deviation(crossing.stability, _event.function.sector).value);
+    const double off =
+        std::abs(bifurcation::index_deviation(_system->structure(), crossing.stability, _event.function.sector).value);
     if (!(off > apart_indices)) {
       _failure = why;
     } else {
@@ -203,42 +204,53 @@ class Location {
                                   kernel.singular_values.empty() ? archive::not_computed : kernel.singular_values[0]);
     if (_event.tangency) {  // a minimum that came near zero, but is none
       _outcome.kind.reset();
-    } else if (_event.function.sector.q == 1 && turns_in_energy(family)) {
-      _outcome.kind = CrossingKind::fold_energy;
+    } else if (_event.function.sector.q == 1 && turns(family)) {
+      _outcome.kind = fold_kind();
     } else {
       fail(crossing, _outcome.remark);
     }
   }
 
-  /// An index passes 2 with the energy, and nothing leaves: what is nearly flat is so for another reason, such as a
-  /// small amplitude.
+  /// An index passes 2 where the energy turns, and nothing leaves: what is nearly flat is so for another reason, such as
+  /// a small amplitude.
   void as_fold(const bifurcation::Kernel& kernel) {
-    _outcome.kind = CrossingKind::fold_energy;
+    _outcome.kind = fold_kind();
     _outcome.kernel_dimension = 0;
     _outcome.kernel_singular_value = archive::not_computed;
     _outcome.next_singular_value = kernel.largest();
-    _outcome.remark = fmt::format("the energy turns there (smallest singular value {:.2g})", kernel.largest());
+    _outcome.remark = fmt::format("the {} turns there (smallest singular value {:.2g})",
+                                  moves() ? "parameter" : "energy", kernel.largest());
   }
 
-  /// Slopes of the energy where the event was bracketed.
+  [[nodiscard]] bool moves() const { return !_system->family_scalars().free.empty(); }
+
+  [[nodiscard]] CrossingKind fold_kind() const {
+    return moves() ? CrossingKind::fold_parameter : CrossingKind::fold_energy;
+  }
+
+  /// Of the energy, or of the parameter that moves: where it turns an index of 2 is no birth.
+  [[nodiscard]] double slope_at(const continuation::CurvePoint& point) const {
+    return bifurcation::level_slope(*_system, point);
+  }
+
+  /// Slopes where the event was bracketed.
   [[nodiscard]] std::optional<std::pair<double, double>> slopes_beside(continuation::FamilyCurve& family) const {
     const auto before = family.at(_work.from, true);
     const auto after = family.at(_work.to, true);
     if (!before || !after) return std::nullopt;
-    return std::pair{bifurcation::energy_slope(*_system, *before), bifurcation::energy_slope(*_system, *after)};
+    return std::pair{slope_at(*before), slope_at(*after)};
   }
 
-  [[nodiscard]] bool turns_in_energy(continuation::FamilyCurve& family) const {
+  [[nodiscard]] bool turns(continuation::FamilyCurve& family) const {
     const auto slopes = slopes_beside(family);
     return slopes && slopes->first * slopes->second < 0.0;
   }
 
   /// At the crossing itself, not only between the orbits beside it.
-  [[nodiscard]] bool turns_in_energy_at(const bifurcation::Crossing& crossing,
-                                        continuation::FamilyCurve& family) const {
+  [[nodiscard]] bool turns_at(const bifurcation::Crossing& crossing, continuation::FamilyCurve& family) const {
     const auto slopes = slopes_beside(family);
     return slopes && slopes->first * slopes->second < 0.0 &&
-           std::abs(bifurcation::energy_slope(*_system, crossing.point)) <
+           std::abs(slope_at(crossing.point)) <
                turning_slope * std::min(std::abs(slopes->first), std::abs(slopes->second));
   }
 
@@ -274,10 +286,12 @@ class Location {
 
 }  // namespace
 
-int expected_dimension(const spectrum::Stability& stability, const bifurcation::Sector& sector, bool touches) {
+int expected_dimension(const systems::Structure& system, const spectrum::Stability& stability,
+                       const bifurcation::Sector& sector, bool touches) {
   int pairs = 0;
-  for (std::size_t n = 0; n < stability.fundamental.size(); ++n) {
-    const double away = std::abs(stability.fundamental[n] - sector.index());
+  const std::size_t count = stability.fundamental.size() - (system.conservative() && !system.symplectic ? 1 : 0);
+  for (std::size_t n = 0; n < count; ++n) {
+    const double away = std::abs(stability.fundamental[n] - sector.value(system.symplectic));
     if (away < std::max(in_sector, error_bounds * stability.fundamental_error[n])) ++pairs;
   }
   return std::max(1, pairs) * (sector.q <= 2 && !touches ? 1 : 2);

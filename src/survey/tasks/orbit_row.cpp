@@ -62,6 +62,7 @@ archive::OrbitRecord orbit_row(const systems::System& system, const std::string&
   row.period = in_units.period;
   row.energy = orbit.energy * units.energy();
   row.action = orbit.action * units.action();
+  if (!in_units.parameters.empty()) row.parameter = in_units.parameters.front();
   row.cutoff = stored.cutoff;
   row.loss_rms = residual_of(system, stored, orbit.loss_rms);
   row.off_branch_eigenvalue = orbit.off_branch_eigenvalue;

@@ -41,7 +41,7 @@ void for_near(const Map& by_period, double period, const Found& found) {
 
 bool within_window(const ArrivalRecord& arrival, const LocateOutcome& crossing) {
   return std::abs(arrival.period / born_period(crossing) - 1.0) <= arrival_window &&
-         !(std::abs(arrival.energy - crossing.energy) > arrival_window * (1.0 + std::abs(crossing.energy)));
+         !(std::abs(arrival.level - crossing.level()) > arrival_window * (1.0 + std::abs(crossing.level())));
 }
 
 std::optional<Meeting> Arrivals::meeting(const ArrivalRecord& arrival, const LocateOutcome& crossing) const {

@@ -1,11 +1,16 @@
 #include "base_families.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "end_text.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
 #include "orbweaver/systems/identities.hpp"
@@ -48,28 +53,87 @@ void remark_grid(const scene::Scene& scene, const systems::System& system, Summa
 /// What to do where a survey has found no family at all.
 std::string nothing_found_advice(const systems::System& system, bool left_out) {
   if (left_out) return "all their periods lie outside starts.sweep.period: make it wider, or `auto`";
-  if (!system.structure().conservative())
-    return "the system conserves nothing, and families of periodic orbits need a conserved quantity: leave out the "
-           "effects that take it away";
+  if (!system.family_scalars().free.empty())
+    return "no curve of equilibria has a Hopf point within limits.parameter: widen it, or give an orbit with "
+           "starts.states";
   return "none of the equilibria has small oscillations: let starts.fixed_points.grid lead to others";
+}
+
+}  // namespace
+
+namespace {
+
+/// Families in T begin at equilibria; those of a system that conserves nothing at Hopf points, or where it rests until
+/// the drive is raised. A conservative family in a parameter has no small orbits.
+bool has_equilibrium_families(const systems::System& system) {
+  return system.family_scalars().free.empty() || !system.structure().conservative();
+}
+
+/// Of an orbit that the scene gives: the states come behind the equilibria.
+std::string name_of_start(const scene::Scene& scene, const systems::System& system, const SweepOutcome& found,
+                          const FoundMode& mode, std::size_t sweeps) {
+  const std::size_t first_state = sweeps - scene.states.size();
+  if (static_cast<std::size_t>(found.index) >= first_state)
+    return scene.states.at(static_cast<std::size_t>(found.index) - first_state).name;
+  if (mode.base.modes.empty()) return base_family_name(scene, system, found.point, found.index, mode.place);
+  const std::size_t given = names_given(scene, system, found.point);
+  return static_cast<std::size_t>(mode.place) < given
+             ? base_family_name(scene, system, found.point, found.index, mode.place)
+         : mode.base_is_orbit ? equilibrium_name(found.index)
+                              : fmt::format("{}, Hopf point {}", equilibrium_name(found.index), mode.place + 1);
+}
+
+/// Several equilibria may lie on one curve, and its Hopf points are found from each. They count as those of the nearest
+/// along the curve.
+bool is_same_start(const FoundMode& a, const FoundMode& b) {
+  constexpr double same = 1e-8;  // Hopf points are located to 1e-12 in parts of a step
+  if (a.base.modes.empty() || b.base.modes.empty() || a.base_is_orbit || b.base_is_orbit) return false;
+  return std::abs(a.period - b.period) < same * a.period && loop::mean_distance(a.base, b.base) < same &&
+         std::abs(a.base.parameters.front() - b.base.parameters.front()) < same;
+}
+
+bool is_of_another(const FoundMode& mode, const SweepOutcome& of, const std::vector<SweepOutcome>& sweeps) {
+  return std::any_of(sweeps.begin(), sweeps.end(), [&](const SweepOutcome& other) {
+    return other.index != of.index && std::any_of(other.modes.begin(), other.modes.end(), [&](const FoundMode& same) {
+             return is_same_start(mode, same) &&
+                    std::pair(same.distance, other.index) < std::pair(mode.distance, of.index);
+           });
+  });
 }
 
 }  // namespace
 
 std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::System& system) {
   std::vector<queue::Task> tasks;
-  const std::vector<std::vector<double>> points = starts::find_fixed_points(system, scene.fixed_points.grid);
-  systems::require_identities(system, points);
-  for (const std::vector<double>& point : points)
-    tasks.push_back(task_of(SweepWork{static_cast<int>(tasks.size()), point}));
+  std::vector<std::vector<double>> points;
+  if (!scene.fixed_points.grid.empty()) points = starts::find_fixed_points(system, scene.fixed_points.grid);
+  std::vector<std::vector<double>> known = points;
+  for (const scene::StateStart& start : scene.states) known.push_back(start.state);
+  systems::require_identities(system, known);
+  if (has_equilibrium_families(system))
+    for (const std::vector<double>& point : points)
+      tasks.push_back(task_of(SweepWork{static_cast<int>(tasks.size()), point, 0.0}));
+  const std::size_t equilibria = tasks.size();
+  for (const scene::StateStart& start : scene.states)
+    tasks.push_back(task_of(SweepWork{static_cast<int>(tasks.size()), start.state, start.period}));
   const std::string range = scene.sweep.period
                                 ? fmt::format("from {:g} to {:g}", scene.sweep.period->from * system.scales().time,
                                               scene.sweep.period->to * system.scales().time)
                                 : "over all oscillations";
-  core::log_info(fmt::format("{} equilibria; sweeping the period {} at each", tasks.size(), range));
+  const std::string look = system.family_scalars().free.empty()
+                               ? fmt::format("sweeping the period {} at each", range)
+                               : fmt::format("{} each in {}", system.structure().driven ? "driving" : "following",
+                                             system.family_scalars().free.front());
+  if (equilibria > 0) core::log_info(fmt::format("{} equilibria; {}", equilibria, look));
+  if (equilibria < tasks.size()) core::log_info(fmt::format("{} given orbits", tasks.size() - equilibria));
+  if (tasks.empty() && !has_equilibrium_families(system))
+    throw core::InputError("a conservative family in a parameter starts at an orbit: give one with starts.states");
   if (tasks.empty())
     throw core::InputError(
-        "Newton's method finds no equilibrium from starts.fixed_points.grid: give start values nearer to one");
+        system.structure().driven
+            ? "nothing rests at every phase of the drive near starts.fixed_points.grid: give the drive the amplitude 0 "
+              "and let it move (continuation.free), or an orbit with starts.states"
+            : "Newton's method finds no equilibrium from starts.fixed_points.grid: give start values nearer to one");
   return tasks;
 }
 
@@ -77,12 +141,15 @@ std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const syst
                                            const SweepsEnded& sweeps, Summary& summary) {
   std::vector<queue::Task> tasks;
   remark_grid(scene, system, summary);
-  for (const auto& [key, ended] : sweeps) {
-    const auto& [task, outcome] = ended;
-    if (outcome.failed) continue;  // gather_failed_sweeps
-    const SweepOutcome found = unpack_sweep_outcome(outcome.payload);
+  std::vector<SweepOutcome> all;
+  for (const auto& [key, ended] : sweeps)
+    if (!ended.second.failed) all.push_back(unpack_sweep_outcome(ended.second.payload));  // gather_failed_sweeps
+  for (const SweepOutcome& found : all) {
     check_names(scene, system, found);
-    if (found.modes.empty() && found.rejected.empty()) {
+    if (found.modes.empty() && found.rejected.empty() && !system.family_scalars().free.empty()) {
+      summary.remarks.push_back(
+          fmt::format("no Hopf point on the curve of equilibria through {}", point_text(system, found.point)));
+    } else if (found.modes.empty() && found.rejected.empty()) {
       const std::string range = scene.sweep.period
                                     ? fmt::format(" for T in [{:g}, {:g}]", found.period_from * system.scales().time,
                                                   found.period_to * system.scales().time)
@@ -94,7 +161,8 @@ std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const syst
     for (const std::string& reason : found.rejected)
       summary.remarks.push_back(fmt::format("dip passed over at {}: {}", point_text(system, found.point), reason));
     for (const FoundMode& mode : found.modes) {
-      const std::string name = base_family_name(scene, system, found.point, found.index, mode.place);
+      if (is_of_another(mode, found, all)) continue;
+      const std::string name = name_of_start(scene, system, found, mode, sweeps.size());
       const std::string branch_key = base_key(found.index, mode.place);
       BranchWork work;
       work.key = work.lineage.family = branch_key;
@@ -102,8 +170,18 @@ std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const syst
       work.direction = mode.direction;
       work.isotropy = mode.isotropy;
       work.amplitude = mode.amplitude;
-      work.base = loop::constant_loop(found.point, mode.period, mode.cutoff);
+      work.base = mode.base.modes.empty() ? loop::constant_loop(found.point, mode.period, mode.cutoff) : mode.base;
+      work.base_is_orbit = mode.base_is_orbit;
       if (mode.one_direction) {
+        tasks.push_back(task_of(work));
+        continue;
+      }
+      if (mode.base_is_orbit) {  // two sides of one family
+        work.key = branch_key + "+";
+        tasks.push_back(task_of(work));
+        work.key = branch_key + "-";
+        work.lineage.side = -1;
+        work.direction *= -1.0;
         tasks.push_back(task_of(work));
         continue;
       }

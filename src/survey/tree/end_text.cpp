@@ -7,15 +7,15 @@
 
 namespace orbweaver::survey {
 
-std::string end_text(const BranchOutcome& outcome, const systems::Scales& units) {
+std::string end_text(const BranchOutcome& outcome, const Units& units) {
   if (outcome.arrival.empty() || outcome.end.failed()) return outcome.end.text();
   const ArrivalRecord& arrival = outcome.arrival.front();
   const double period = arrival.period * units.time;
-  const double energy = arrival.energy * units.energy();
-  std::string where = fmt::format("T = {:.9g}, E = {:.9g}", period, energy);
+  const double level = arrival.level * units.level();
+  std::string where = fmt::format("T = {:.9g}, {} = {:.9g}", period, units.level_name(), level);
   if (!arrival.beneath.empty())
-    where = fmt::format("T = {:.12g}, E = {:.12g}, {} times around T = {:.12g}", period, energy, arrival.multiplicity,
-                        period / arrival.multiplicity);
+    where = fmt::format("T = {:.12g}, {} = {:.12g}, {} times around T = {:.12g}", period, units.level_name(), level,
+                        arrival.multiplicity, period / arrival.multiplicity);
   return fmt::format("{} ({})", name_of(EndKind::met), where);
 }
 
@@ -23,7 +23,7 @@ std::string failure_text(const std::string& why) {
   return continuation::Ending{continuation::EndReason::failure, why}.text();
 }
 
-std::string joined_text(const std::string& name, const LocateOutcome& crossing, const systems::Scales& units) {
+std::string joined_text(const std::string& name, const LocateOutcome& crossing, const Units& units) {
   const double period = crossing.period * units.time;
   return fmt::format("{} {} at T = {:.12g} (crossing at T = {:.12g}, {} times around)", name_of(EndKind::joined), name,
                      crossing.multiplicity * period, period, crossing.multiplicity);

@@ -13,6 +13,7 @@
 #include "orbweaver/systems/structure.hpp"
 #include "pruning.hpp"
 #include "tables.hpp"
+#include "tasks/units.hpp"
 
 namespace orbweaver::survey {
 
@@ -26,7 +27,7 @@ namespace orbweaver::survey {
 class FamilyTree {
  public:
   /// Tasks and scene are told in `units`, the tables are not.
-  FamilyTree(const scene::Scene& scene, const systems::Structure& system, systems::Scales units = {})
+  FamilyTree(const scene::Scene& scene, const systems::Structure& system, Units units = {})
       : _scene(scene), _system(system), _units(std::move(units)), _arrivals(system), _limit(scene.limits.families) {}
 
   /// A task has ended: done, failed or stopped. Throws MisuseError if its branch or crossing had before.
@@ -60,7 +61,7 @@ class FamilyTree {
 
   const scene::Scene& _scene;
   const systems::Structure& _system;
-  systems::Scales _units;
+  Units _units;
   EndedBranches _branches;
   Crossings _crossings;                          // without loops
   std::set<std::string> _not_begun;              // branches whose first orbit lies beyond the limits

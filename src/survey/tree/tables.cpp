@@ -41,12 +41,13 @@ class FoldsOnce {
   std::map<std::pair<std::string, archive::CrossingKind>, std::set<double>> _places;  // arclengths by family and kind
 };
 
-archive::CrossingRecord row_of(const LocateOutcome& crossing, const systems::Scales& units) {
+archive::CrossingRecord row_of(const LocateOutcome& crossing, const Units& units) {
   archive::CrossingRecord row;
   row.family_key = crossing.lineage.family;
   row.arclength = crossing.arclength;
   row.period = crossing.period * units.time;
   row.energy = crossing.energy * units.energy();
+  if (units.in_parameter()) row.parameter = crossing.parameter * units.parameter(0);
   row.kind = *crossing.kind;
   row.multiplicity = crossing.multiplicity;
   row.kernel_dimension = crossing.kernel_dimension;
@@ -67,14 +68,14 @@ void add_orbits(const BranchOutcome& branch, FamilySummary& summary) {
   summary.orbits += branch.orbits;
   summary.period_from = first ? branch.period_from : std::min(summary.period_from, branch.period_from);
   summary.period_to = first ? branch.period_to : std::max(summary.period_to, branch.period_to);
-  summary.energy_from = first ? branch.energy_from : std::min(summary.energy_from, branch.energy_from);
-  summary.energy_to = first ? branch.energy_to : std::max(summary.energy_to, branch.energy_to);
+  summary.level_from = first ? branch.level_from : std::min(summary.level_from, branch.level_from);
+  summary.level_to = first ? branch.level_to : std::max(summary.level_to, branch.level_to);
 }
 
 }  // namespace
 
-std::map<std::string, int> add_crossings(const std::vector<const LocateOutcome*>& crossings,
-                                         const systems::Scales& units, TreeTables& tables) {
+std::map<std::string, int> add_crossings(const std::vector<const LocateOutcome*>& crossings, const Units& units,
+                                         TreeTables& tables) {
   std::map<std::string, int> rows;
   FoldsOnce folds;
   for (const LocateOutcome* crossing : crossings) {
@@ -86,7 +87,7 @@ std::map<std::string, int> add_crossings(const std::vector<const LocateOutcome*>
 }
 
 void add_families(const std::vector<Family>& families, const Crossings& crossings,
-                  const std::map<std::string, int>& crossing_rows, const systems::Scales& units,
+                  const std::map<std::string, int>& crossing_rows, const Units& units,
                   const std::function<const Meeting*(const std::string&)>& arrival, TreeTables& tables) {
   std::map<std::string, std::string> names;
   for (const Family& family : families) names[family.key] = family.name;

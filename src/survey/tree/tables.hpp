@@ -10,6 +10,7 @@
 #include "orbweaver/archive/schema/records.hpp"
 #include "orbweaver/survey/run/survey.hpp"
 #include "orbweaver/systems/structure.hpp"
+#include "tasks/units.hpp"
 #include "tree_evidence.hpp"
 
 namespace orbweaver::survey {
@@ -26,11 +27,11 @@ struct TreeTables {
 /// Adds a row for every crossing (they lie on families that stay) but for the second of two at one fold. Returns the
 /// rows by key.
 [[nodiscard]] std::map<std::string, int> add_crossings(const std::vector<const LocateOutcome*>& crossings,
-                                                       const systems::Scales& units, TreeTables& tables);
+                                                       const Units& units, TreeTables& tables);
 
 /// Adds a row for every family. `arrival` says where the branch with a key has arrived; null if nowhere.
 void add_families(const std::vector<Family>& families, const Crossings& crossings,
-                  const std::map<std::string, int>& crossing_rows, const systems::Scales& units,
+                  const std::map<std::string, int>& crossing_rows, const Units& units,
                   const std::function<const Meeting*(const std::string&)>& arrival, TreeTables& tables);
 
 }  // namespace orbweaver::survey

@@ -82,7 +82,7 @@ class Gatherer {
     const ArrivalRecord& arrival = branch.outcome->arrival.front();
     evidence.met = true;
     evidence.period = arrival.period * _tree.units.time;
-    evidence.energy = arrival.energy * _tree.units.energy();
+    evidence.level = arrival.level * _tree.units.level();
     if (const Meeting* meeting = _tree.pruning.arrival(key)) {
       evidence.joined = true;
       const auto row = _tree.crossing_rows.find(meeting->crossing);

@@ -8,8 +8,8 @@
 
 #include "arrivals.hpp"
 #include "family.hpp"
-#include "orbweaver/systems/scales.hpp"
 #include "pruning.hpp"
+#include "tasks/units.hpp"
 
 namespace orbweaver::survey {
 
@@ -44,7 +44,7 @@ struct EndEvidence {
   std::optional<continuation::Ending> end;  ///< none: the branch has no outcome
   bool met = false;                         ///< at a family of more symmetry,
   double period = 0.0;                      ///< here
-  double energy = 0.0;
+  double level = 0.0;
   bool joined = false;      ///< it is known along which direction of which crossing it came
   int crossing = -1;        ///< that crossing, if the tables have it
   std::vector<int> nearby;  ///< where it is not known: crossings that agree in period and energy, of orbits as near
@@ -73,7 +73,7 @@ struct TreeSources {
   const Arrivals& arrivals;
   const std::vector<FamilySide>& kept;
   const std::map<std::string, int>& crossing_rows;  ///< indices into the tables' crossings by key
-  const systems::Scales& units;                     ///< of the tasks' outcomes
+  const Units& units;                               ///< of the tasks' outcomes
   std::function<DirectionFate(const std::string& branch, const Lineage& lineage)> fate_of_unknown;
 };
 [[nodiscard]] TreeEvidence evidence_of(const TreeSources& tree);

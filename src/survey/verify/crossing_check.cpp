@@ -28,6 +28,7 @@
 #include "tasks/executor.hpp"
 #include "tasks/locate_task.hpp"
 #include "tasks/orbit_row.hpp"
+#include "tasks/units.hpp"
 
 namespace orbweaver::survey {
 
@@ -56,6 +57,8 @@ constexpr double kernel_factor = 100.0;
 constexpr double kernel_rounding = 1e-8;
 /// A slope that vanishes, relative to those at the orbits beside it.
 constexpr double vanishing_slope = 1e-5;
+/// Relative, between the orbits beside a fold: a period that does not change.
+constexpr double period_rounding = 1e-9;
 /// How far the first orbit of a family may lie from its crossing, and the last from where it ends, in parts of the way
 /// to the next orbit or of the orbit's amplitude, whichever is more.
 constexpr double steps_away = 3.0;
@@ -126,7 +129,7 @@ class CrossingCheck {
     if (place && findings.objections.empty()) families(*place, findings);
   }
 
-  /// The family's orbit whose period, or energy where that changes more, is the row's.
+  /// The family's orbit whose period, or level where that changes more, is the row's.
   [[nodiscard]] std::optional<Place> find(corrector::Method method, std::size_t behind, Claims& claims) {
     const double arclength = real("arclength");
     const auto& number = _atlas.archive().orbits().integers("step");
@@ -164,8 +167,8 @@ class CrossingCheck {
     const double told = a.position + share * length;
     const std::optional<double> found = position_of(curve, a, b, told);
     if (!found) {
-      claims.object("period", fmt::format("{:.17g} with energy {:.17g}: no orbit between those beside it has it",
-                                          real("period"), real("energy")));
+      claims.object("period", fmt::format("{:.17g} with {} {:.17g}: no orbit between those beside it has it",
+                                          real("period"), level(), real(level())));
       return std::nullopt;
     }
     const double way = _atlas.has_reversor(static_cast<std::size_t>(_crossing.family)) && !is_placed()
@@ -185,19 +188,22 @@ class CrossingCheck {
   [[nodiscard]] std::optional<double> position_of(continuation::FamilyCurve& curve,
                                                   const continuation::FamilyCurve::Known& a,
                                                   const continuation::FamilyCurve::Known& b, double told) const {
-    const systems::Scales& units = _system.scales();
-    const double energy_a = continuation::energy_of(_system, a.loop);
-    const double energy_b = continuation::energy_of(_system, b.loop);
+    const Units units(_system);
+    const double level_a = continuation::level_of(_system, a.loop);
+    const double level_b = continuation::level_of(_system, b.loop);
     const double in_period = std::abs(b.loop.period / a.loop.period - 1.0);
-    const double in_energy = std::abs(energy_b - energy_a) / std::max(std::abs(energy_a), std::abs(energy_b));
-    // Not by the one that turns; false where there is no energy.
-    const bool by_energy =
-        _kind == CrossingKind::fold_period || (_kind != CrossingKind::fold_energy && in_energy > in_period);
-    const double wanted = by_energy ? real("energy") / units.energy() : real("period") / units.time;
+    const double in_level = std::abs(level_b - level_a) / std::max(std::abs(level_a), std::abs(level_b));
+    // Not by the one that turns; false where there is no level.
+    const bool turns_in_level = _kind == CrossingKind::fold_energy || _kind == CrossingKind::fold_parameter;
+    const bool by_level = _kind == CrossingKind::fold_period || (!turns_in_level && in_level > in_period);
+    // A drive of one frequency leaves no other period: such a fold is where its slope vanishes.
+    const bool by_slope = turns_in_level && in_period < period_rounding;
+    const double wanted = by_level ? real(level()) / units.level() : real("period") / units.time;
     const auto off = [&](double position) {
-      const auto point = curve.at(position);
+      const auto point = curve.at(position, by_slope);
       if (!point) return std::numeric_limits<double>::quiet_NaN();
-      return (by_energy ? continuation::energy_of(_system, point->loop) : point->loop.period) - wanted;
+      if (by_slope) return slope(*point);
+      return (by_level ? continuation::level_of(_system, point->loop) : point->loop.period) - wanted;
     };
     // The quantity may turn between the two: near the place it does not, unless the crossing is a fold.
     const double length = b.position - a.position;
@@ -210,6 +216,9 @@ class CrossingCheck {
     return std::nullopt;
   }
 
+  /// The column of the energy, or of the parameter that moves.
+  [[nodiscard]] const char* level() const { return _atlas.tree().in_parameter() ? "parameter" : "energy"; }
+
   [[nodiscard]] bool is_placed() const { return _crossing.multiplicity > _atlas.scene().survey.subharmonics; }
 
   /// The slopes at the orbits beside a fold.
@@ -221,18 +230,24 @@ class CrossingCheck {
 
   [[nodiscard]] double slope(const continuation::CurvePoint& point) const {
     return _kind == CrossingKind::fold_period ? bifurcation::period_slope(point)
-                                              : bifurcation::energy_slope(_system, point);
+                                              : bifurcation::level_slope(_system, point);
   }
 
   void hold(const Place& place, Claims& claims) {
     const loop::Loop& loop = place.point.loop;
-    const systems::Scales& units = _system.scales();
+    const Units units(_system);
     const bool placed = is_placed();
     const double allowed = placed ? same_placement : same_place;
     claims.agree("period", real("period"), loop.period * units.time, allowed * real("period"));
-    const double energy = continuation::energy_of(_system, loop) * units.energy();
-    const double scale = std::fmax(std::abs(energy), _crossing.energy_scale);
-    claims.agree("energy", real("energy"), energy, allowed * (std::isnan(scale) ? 1.0 : scale));
+    const double level_there = continuation::level_of(_system, loop) * units.level();
+    const double scale = std::fmax(std::abs(level_there), _crossing.level_scale);
+    claims.agree(level(), real(level()), level_there, allowed * (std::isnan(scale) ? 1.0 : scale));
+    if (_atlas.tree().in_parameter()) {
+      const double energy = continuation::energy_of(_system, loop) * units.energy();
+      claims.agree("energy", real("energy"), energy, allowed * std::abs(energy));
+    } else {
+      claims.agree("parameter", real("parameter"), archive::not_computed, 0.0);
+    }
     state(loop, allowed, claims);
     const std::optional<spectrum::Stability> stability = stability_of(_system, loop, _isotropy);
     if (stability)
@@ -324,9 +339,9 @@ class CrossingCheck {
   void sector(const Place& place, const std::optional<spectrum::Stability>& stability, bool placed, Claims& claims) {
     const bifurcation::Sector sector{_crossing.sector_q, _crossing.sector_j};
     if (!stability) return claims.object("test_value", "the multipliers there cannot be computed");
-    const bifurcation::Reading found = bifurcation::index_deviation(*stability, sector);
+    const bifurcation::Reading found = bifurcation::index_deviation(_system.structure(), *stability, sector);
     const double allowed = found.error + (placed ? same_placement : index_rounding);
-    claims.agree("test_value", real("test_value"), sector.index() + found.value, allowed);
+    claims.agree("test_value", real("test_value"), sector.value(_system.structure().symplectic) + found.value, allowed);
     claims.agree("residual", real("residual"), found.value, allowed);
     claims.below("sector_q", std::abs(found.value), allowed + located * rate(sector, place),
                  "the index there, from its sector's,");
@@ -339,14 +354,15 @@ class CrossingCheck {
     const double length = place.before + place.after;
     double rate = 1.0;
     const std::size_t width = archive::stability_width(_atlas.archive().header());
+    const std::size_t parts = archive::has_complex_stability(_atlas.archive().header()) ? 2 : 1;
     const auto& values = _atlas.archive().orbits().reals("fundamental_stability");
     const auto after = std::upper_bound(_family.arclengths.begin(), _family.arclengths.end(), real("arclength"));
     if (after == _family.arclengths.begin() || after == _family.arclengths.end() || width == 0) return rate;
     const std::size_t next = _family.first_orbit + static_cast<std::size_t>(after - _family.arclengths.begin());
     for (const std::size_t row : {next - 1, next}) {
       double nearest = std::numeric_limits<double>::infinity();
-      for (std::size_t i = 0; i < width; ++i)
-        nearest = std::min(nearest, std::abs(values[row * width + i] - sector.index()));
+      for (std::size_t i = 0; i < width; i += parts)
+        nearest = std::min(nearest, std::abs(values[row * width + i] - sector.value(_system.structure().symplectic)));
       if (std::isfinite(nearest)) rate = std::max(rate, 2.0 * nearest / length);
     }
     return rate;
@@ -356,9 +372,10 @@ class CrossingCheck {
               Claims& claims) {
     bifurcation::KernelOptions settings;
     settings.even_in_time = false;
-    const bool touches = _crossing.kernel_dimension > expected_dimension(stability, sector, false);
-    const bifurcation::Kernel kernel = bifurcation::kernel_of(_system, place.point, _isotropy, sector,
-                                                              expected_dimension(stability, sector, touches), settings);
+    const bool touches = _crossing.kernel_dimension > expected_dimension(_system.structure(), stability, sector, false);
+    const int expected = expected_dimension(_system.structure(), stability, sector, touches);
+    const bifurcation::Kernel kernel =
+        bifurcation::kernel_of(_system, place.point, _isotropy, sector, expected, settings);
     claims.expect(kernel.dimension() == _crossing.kernel_dimension, "kernel_dimension",
                   fmt::format("is {}, found {}", _crossing.kernel_dimension, kernel.dimension()));
     if (kernel.dimension() > 0)

@@ -45,6 +45,8 @@ constexpr double certificate_factor = 16.0;
 /// of the restricted problem.
 constexpr double same_way = 1e-9;
 constexpr double same_way_without_phase = 3e-4;
+/// The same of families in a parameter: by 3.1e-4 at most in the responses of Duffing's oscillator.
+constexpr double same_way_in_parameter = 1e-3;
 /// Of the way: smaller harmonics change its length by the square of that part.
 constexpr double seen_in_way = 1e-4;
 
@@ -118,7 +120,19 @@ class OrbitCheck {
     const double momentum = std::abs(action) + _loop.period * steepness * _size;
     _claims.agree("action", real("action"), action * units.action(),
                   sum_rounding * epsilon * momentum * units.action());
-    _claims.agree("parameter", real("parameter"), archive::not_computed, 0.0);
+    parameter();
+  }
+
+  /// That it moves, and within the limits; the equation says whether it is that of the orbit.
+  void parameter() {
+    if (_system.family_scalars().free.empty())
+      return _claims.agree("parameter", real("parameter"), archive::not_computed, 0.0);
+    const scene::Limits& limits = _atlas.scene().limits;
+    const double value = real("parameter");
+    const double allowed = at_limit * _system.scales().parameter(0);
+    _claims.expect(
+        value >= limits.parameter_from - allowed && value <= limits.parameter_to + allowed, "parameter",
+        fmt::format("is {:.12g}; limits.parameter is [{:g}, {:g}]", value, limits.parameter_from, limits.parameter_to));
   }
 
   void shape() {
@@ -203,6 +217,8 @@ class OrbitCheck {
                                name_of(judged.verdict), judged.found, judged.allowed));
   }
 
+  /// Of the parameter's scale: a family may begin so far beside a limit.
+  static constexpr double at_limit = 1e-9;
   /// Of the largest state: what one integration of a segment can be off by rounding.
   static constexpr double certificate_rounding = 1e-13;
   /// Of a distance between two places of one loop.
@@ -239,7 +255,8 @@ void check_way(const VerifiedAtlas& atlas, std::size_t from, const loop::Loop& a
   const bool has_phase = atlas.has_reversor(family);
   const double rounding = sum_rounding * epsilon * (std::abs(arclengths[from]) + std::abs(arclengths[to]));
   const double step = std::abs(arclengths[to] - arclengths[from]);
-  const double allowed = (has_phase ? same_way : same_way_without_phase) * step + rounding;
+  const double of_step = has_phase ? same_way : a.parameters.empty() ? same_way_without_phase : same_way_in_parameter;
+  const double allowed = of_step * step + rounding;
   double found;
   if (has_phase) {
     found = end(a, b);

@@ -32,7 +32,8 @@ class TableRules {
     orbits();
     crossings();
     sections();
-    if (_atlas.system()->structure().conservative())
+    // Along a family in a parameter dW is not T dE alone.
+    if (_atlas.system()->structure().conservative() && _atlas.system()->family_scalars().free.empty())
       for (std::size_t n = 0; n < _atlas.tree().families.size(); ++n) action_along(n);
   }
 

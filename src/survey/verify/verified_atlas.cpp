@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -28,23 +29,17 @@ namespace {
 /// Relative: an orbit at a period or an energy that the scene asks for is solved for at it.
 constexpr double at_request = 1e-9;
 
-/// The scales that the columns are told in; all 1 in archives from before there were any.
-systems::Scales scales_of(const archive::Header& header, const systems::System& system) {
-  systems::Scales scales;
-  const auto dimension = static_cast<std::size_t>(system.dimension());
-  const std::size_t conserved = system.structure().conserved.size();
-  if (header.scales.empty()) return scales;
-  if (header.scales.size() != 1 + dimension + conserved)
+/// Archives from before there were scales have none.
+void require_scales(const archive::Header& header, const systems::System& system) {
+  const std::size_t wanted = 1 + static_cast<std::size_t>(system.dimension()) + system.structure().conserved.size() +
+                             system.family_scalars().free.size();
+  if (!header.scales.empty() && header.scales.size() != wanted)
     throw core::InputError(fmt::format("the archive has {} scales; its system {} asks for {}", header.scales.size(),
-                                       system.info().name, 1 + dimension + conserved));
-  scales.time = header.scales.front();
-  scales.coordinates.assign(header.scales.begin() + 1, header.scales.begin() + 1 + static_cast<long>(dimension));
-  scales.conserved.assign(header.scales.begin() + 1 + static_cast<long>(dimension), header.scales.end());
-  return scales;
+                                       system.info().name, wanted));
 }
 
 std::shared_ptr<const systems::System> system_of(const archive::Header& header, const scene::Scene& scene) {
-  auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  auto system = scene::bound_system(scene.system);
   const bool fits =
       header.state_names == system->info().state_names && header.winding_names == system->winding_names() &&
       header.pairs == system->structure().pairs() &&
@@ -54,6 +49,7 @@ std::shared_ptr<const systems::System> system_of(const archive::Header& header, 
         "the archive's columns are not those of the system {} that its scene names: it was written by another version, "
         "or changed",
         scene.system.name));
+  require_scales(header, *system);
   const systems::Scales scales = scales_of(header, *system);
   return scales.are_one() ? system : systems::scaled(system, scales);
 }
@@ -72,7 +68,13 @@ VerifiedAtlas::VerifiedAtlas(archive::Archive&& open)
 }
 
 loop::Loop VerifiedAtlas::loop(std::size_t orbit) const {
-  return loop::in_scales(archive::loop_of(*_archive, orbit, _system->structure().angles), _system->scales());
+  loop::Loop found = archive::loop_of(*_archive, orbit, _system->structure().angles);
+  const bool moves = !_system->family_scalars().free.empty();
+  if (moves && found.parameters.empty())
+    throw core::InputError(fmt::format("{}: row {} of /orbits: `parameter` is not a number, though families move in it",
+                                       _archive->path().string(), orbit));
+  if (!moves) found.parameters.clear();  // which the checks of the columns object to
+  return loop::in_scales(std::move(found), _system->scales());
 }
 
 bool VerifiedAtlas::has_reversor(std::size_t family) const {
@@ -91,7 +93,7 @@ loop::Loop VerifiedAtlas::begun_as(std::size_t family, const loop::Loop& loop, c
   alignment.name = "1";
   alignment.map = systems::AffineMap::identity(system.dimension);
   alignment.shift = shift - std::floor(shift);
-  (void)loop::difference_at(from, to, system.angles, shift, &alignment.turns);
+  (void)loop::difference_at(from, to, system.angles, alignment.shift, &alignment.turns);
   return loop::aligned(loop, alignment);
 }
 

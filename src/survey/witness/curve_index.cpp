@@ -33,19 +33,19 @@ CurveIndex::CurveIndex(const AtlasTree& tree) {
     const std::vector<Invariants>& points = tree.families[family].curve.points();
     for (std::size_t n = 0; n + 1 < points.size(); ++n) {
       auto [period_from, period_to] = range_beyond(points, n, Invariant::period);
-      const auto [energy_from, energy_to] = range_beyond(points, n, Invariant::energy);
+      const auto [level_from, level_to] = range_beyond(points, n, Invariant::level);
       const double shortest = std::fmin(points[n].value(Invariant::period), points[n + 1].value(Invariant::period));
       if (!(shortest > 0.0) || !std::isfinite(period_to)) continue;
       period_from = std::fmax(period_from, beyond * shortest);  // a step may be longer than the period
       for (std::int64_t cell = cell_of(period_from); cell <= cell_of(period_to); ++cell)
         _cells[cell].push_back(_entries.size());
-      _entries.push_back({{static_cast<int>(family), n}, period_from, period_to, energy_from, energy_to});
+      _entries.push_back({{static_cast<int>(family), n}, period_from, period_to, level_from, level_to});
     }
   }
 }
 
-std::vector<CurveIndex::Segment> CurveIndex::near(double period, double energy, double in_period,
-                                                  double in_energy) const {
+std::vector<CurveIndex::Segment> CurveIndex::near(double period, double level, double in_period,
+                                                  double in_level) const {
   std::vector<std::size_t> found;
   for (std::int64_t cell = cell_of(period - in_period); cell <= cell_of(period + in_period); ++cell) {
     const auto entries = _cells.find(cell);
@@ -53,7 +53,7 @@ std::vector<CurveIndex::Segment> CurveIndex::near(double period, double energy, 
     for (const std::size_t n : entries->second) {
       const Entry& e = _entries[n];
       const bool is_outside = period < e.period_from - in_period || period > e.period_to + in_period ||
-                              energy < e.energy_from - in_energy || energy > e.energy_to + in_energy;
+                              level < e.level_from - in_level || level > e.level_to + in_level;
       if (!is_outside) found.push_back(n);
     }
   }

@@ -15,7 +15,7 @@ namespace orbweaver::survey {
 [[nodiscard]] std::pair<double, double> range_beyond(const std::vector<Invariants>& points, std::size_t segment,
                                                      Invariant invariant);
 
-/// The segments between neighbouring orbits of all families of an atlas, found by period and energy.
+/// The segments between neighbouring orbits of all families of an atlas, found by period and level.
 class CurveIndex {
  public:
   struct Segment {
@@ -25,14 +25,14 @@ class CurveIndex {
 
   explicit CurveIndex(const AtlasTree& tree);
 
-  /// Those whose ranges of period and energy, widened by `in_period` and `in_energy` (absolute), hold the place; by
-  /// family, then segment. A NaN energy lies in all ranges. Ranges are those of range_beyond.
-  [[nodiscard]] std::vector<Segment> near(double period, double energy, double in_period, double in_energy) const;
+  /// Those whose ranges of period and level, widened by `in_period` and `in_level` (absolute), hold the place; by
+  /// family, then segment. A NaN level lies in all ranges. Ranges are those of range_beyond.
+  [[nodiscard]] std::vector<Segment> near(double period, double level, double in_period, double in_level) const;
 
  private:
   struct Entry {
     Segment at;
-    double period_from, period_to, energy_from, energy_to;
+    double period_from, period_to, level_from, level_to;
   };
   std::vector<Entry> _entries;                                        // by family, then segment
   std::unordered_map<std::int64_t, std::vector<std::size_t>> _cells;  // of the logarithm of the period

@@ -12,8 +12,9 @@ namespace orbweaver::survey {
 
 namespace {
 
-/// How far an equilibrium may be from the image of another, relative to 1 + its size: Newton's method leaves rounding.
-constexpr double same_equilibrium = 1e-8;
+/// How far where one family begins may be from the image of where another does, relative to 1 + its size: Newton's
+/// method leaves rounding, and Hopf points are located to 1e-12 in parts of a step.
+constexpr double same_beginning = 1e-8;
 
 }  // namespace
 
@@ -57,21 +58,30 @@ double Evidence::distance_between(std::span<const double> point, std::span<const
   return largest;
 }
 
-bool Evidence::is_image_by(const systems::AffineMap& map, int equilibrium, int other) const {
-  const std::vector<double>& from = known.equilibria[static_cast<std::size_t>(equilibrium)];
-  const std::vector<double>& to = known.equilibria[static_cast<std::size_t>(other)];
-  const Eigen::VectorXd image =
-      map(Eigen::Map<const Eigen::VectorXd>(from.data(), static_cast<Eigen::Index>(from.size())));
-  const double size = Eigen::Map<const Eigen::VectorXd>(to.data(), static_cast<Eigen::Index>(to.size())).norm();
-  return distance_between({image.data(), to.size()}, to) <= same_equilibrium * (1.0 + size);
+std::vector<double> Evidence::beginning_of(int row) const {
+  const auto hopf = known.beginnings.find(base_of(key(row)));
+  if (hopf != known.beginnings.end()) return hopf->second;
+  const int equilibrium = equilibrium_of(row);
+  return equilibrium < 0 ? std::vector<double>{} : known.equilibria[static_cast<std::size_t>(equilibrium)];
 }
 
-bool Evidence::are_images(int equilibrium, int other) const {
-  if (equilibrium < 0 || other < 0 || equilibrium == other) return false;
+bool Evidence::begins_at_image(const systems::AffineMap& map, int row, int other) const {
+  const std::vector<double> from = beginning_of(row);
+  const std::vector<double> to = beginning_of(other);
+  const auto d = static_cast<std::size_t>(map.dimension());
+  if (from.size() < d || from.size() != to.size()) return false;
+  const Eigen::VectorXd image = map(Eigen::Map<const Eigen::VectorXd>(from.data(), static_cast<Eigen::Index>(d)));
+  const double size = Eigen::Map<const Eigen::VectorXd>(to.data(), static_cast<Eigen::Index>(d)).norm();
+  double away = distance_between({image.data(), d}, {to.data(), d});
+  for (std::size_t i = d; i < to.size(); ++i) away = std::fmax(away, std::abs(from[i] - to[i]));
+  return away <= same_beginning * (1.0 + size);
+}
+
+bool Evidence::begin_at_images(int row, int other) const {
+  if (begins_at_image(systems::AffineMap::identity(system->dimension()), row, other)) return false;
   const loop::SymmetryGroup group = loop::SymmetryGroup::of_space(system->structure());
-  return std::any_of(group.elements().begin(), group.elements().end(), [&](const loop::SymmetryElement& element) {
-    return is_image_by(element.map, equilibrium, other);
-  });
+  return std::any_of(group.elements().begin(), group.elements().end(),
+                     [&](const loop::SymmetryElement& element) { return begins_at_image(element.map, row, other); });
 }
 
 }  // namespace orbweaver::survey

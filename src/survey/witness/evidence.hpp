@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <set>
 #include <span>
@@ -28,6 +29,8 @@ struct WitnessInput {
   std::vector<std::string> family_keys;                ///< sorted: one a row of /families
   std::vector<int> crossing_rows;                      ///< of the tables' crossings, which `tree` counts
   std::vector<std::vector<double>> equilibria;         ///< by the index that keys begin with
+  /// Of base families that do not begin at their equilibrium itself: the state and the parameter of the Hopf point.
+  std::map<std::string, std::vector<double>> beginnings;
   std::vector<std::vector<KernelRecord>> kernels;      ///< of several oscillations, by the same index
   std::vector<std::vector<Oscillation>> oscillations;  ///< that were followed, by the same index
   double time_unit = 1.0;                              ///< of the kernels' periods
@@ -59,10 +62,15 @@ struct Evidence {
   [[nodiscard]] Severity severity_about(int row) const;
   /// The largest difference of a coordinate, angles modulo whole turns.
   [[nodiscard]] double distance_between(std::span<const double> point, std::span<const double> other) const;
-  /// Whether the map takes one equilibrium to the other, modulo whole turns.
-  [[nodiscard]] bool is_image_by(const systems::AffineMap& map, int equilibrium, int other) const;
-  /// Whether some symmetry of the system takes one equilibrium to another one.
-  [[nodiscard]] bool are_images(int equilibrium, int other) const;
+  /// Whether the map takes where one family, or what it descends from, begins to where the other does, modulo whole
+  /// turns.
+  [[nodiscard]] bool begins_at_image(const systems::AffineMap& map, int row, int other) const;
+  /// Whether some symmetry of the system takes where one family begins to where the other does, which is elsewhere.
+  [[nodiscard]] bool begin_at_images(int row, int other) const;
+
+ private:
+  /// The equilibrium, or the Hopf point with its parameter; empty: unknown.
+  [[nodiscard]] std::vector<double> beginning_of(int row) const;
 };
 
 }  // namespace orbweaver::survey

@@ -146,7 +146,7 @@ std::string text_of(const Finding& finding, const FindingNames& names) {
   text += sentence_of(finding, names);
   if (!std::isnan(finding.period)) {
     text += fmt::format(" (T = {:.9g}", finding.period);
-    if (!std::isnan(finding.energy)) text += fmt::format(", E = {:.9g}", finding.energy);
+    if (!std::isnan(finding.level)) text += fmt::format(", {} = {:.9g}", names.level, finding.level);
     text += ")";
   }
   return text;

@@ -7,12 +7,12 @@
 
 namespace orbweaver::survey {
 
-/// A place in period, energy and action, in the units of the atlas.
+/// A place in period, level and action, in the units of the atlas.
 struct PlaceOfOrbit {
   double period = 0.0;
-  double energy = 0.0;
+  double level = 0.0;
   double action = 0.0;
-  double energy_scale = 0.0;  ///< what deviations in energy are relative to
+  double level_scale = 0.0;  ///< what deviations in level are relative to
 };
 
 /// Segments whose family passes within 1e-3 of the place, relatively: what the extrapolation of a branch to where it

@@ -6,6 +6,7 @@
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/survey/atlas/loop_check.hpp"
 #include "tasks/payload/keys.hpp"
+#include "tasks/units.hpp"
 #include "witness/passing.hpp"
 #include "witness/tolerance.hpp"
 
@@ -18,13 +19,13 @@ std::vector<Placement> placements(const std::filesystem::path& atlas, const std:
   const AtlasTree tree(archive, witness_tolerance);
   const CurveIndex index(tree);
   const LoopCheck check(system);
-  const systems::Scales& units = system->scales();
+  const Units units(*system);
   std::vector<Placement> found;
   for (const FamilyTree::Unplaced& one : unplaced) {
     const loop::Loop& orbit = one.arrival->beneath.front().orbit;
     const double action = continuation::action_of(*system, orbit) * units.action();
     const double period = orbit.period * units.time;
-    const PlaceOfOrbit place{period, continuation::energy_of(*system, orbit) * units.energy(), action,
+    const PlaceOfOrbit place{period, continuation::level_of(*system, orbit) * units.level(), action,
                              std::abs(action) / period};
     std::optional<Placement> best;
     for (const auto& [row, segment] : passing(tree, index, place)) {

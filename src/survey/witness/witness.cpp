@@ -9,6 +9,7 @@
 #include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/queue/run_for_outcomes.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
+#include "tasks/units.hpp"
 #include "witness/checks.hpp"
 #include "witness/tolerance.hpp"
 
@@ -16,17 +17,19 @@ namespace orbweaver::survey {
 
 namespace {
 
-FindingNames names_of(const AtlasTree& tree, const Finding& finding) {
+FindingNames names_of(const AtlasTree& tree, const Finding& finding, const Units& units) {
   const auto name = [&](int row) { return row < 0 ? "" : tree.families[static_cast<std::size_t>(row)].name; };
   return {name(finding.family), name(finding.other_family),
-          finding.crossing < 0 ? "" : place_text(tree.crossings[static_cast<std::size_t>(finding.crossing)])};
+          finding.crossing < 0 ? "" : place_text(tree.crossings[static_cast<std::size_t>(finding.crossing)]),
+          units.level_name()};
 }
 
-void add(const AtlasTree& tree, const Finding& finding, Testimony& testimony) {
-  const std::string text = limited(text_of(finding, names_of(tree, finding)));
+void add(const AtlasTree& tree, const Finding& finding, const Units& units, Testimony& testimony) {
+  const std::string text = limited(text_of(finding, names_of(tree, finding, units)));
   testimony.records.push_back({std::string(name_of(finding.severity)), std::string(name_of(finding.kind)),
-                               finding.family, finding.other_family, finding.crossing, finding.period, finding.energy,
-                               finding.deviation, text});
+                               finding.family, finding.other_family, finding.crossing, finding.period,
+                               tree.in_parameter() ? archive::not_computed : finding.level,
+                               tree.in_parameter() ? finding.level : archive::not_computed, finding.deviation, text});
   testimony.summaries.push_back({finding.severity, finding.kind, text});
   if (is_wrong(finding.severity)) ++testimony.wrong;
 }
@@ -63,7 +66,7 @@ class Witness {
                      [](const Finding& a, const Finding& b) { return a.severity < b.severity; });
     Testimony testimony;
     for (const Finding& finding : findings) {
-      add(_tree, finding, testimony);
+      add(_tree, finding, Units(*_evidence.system), testimony);
       if (finding.kind != FindingKind::failed_certificate && finding.kind != FindingKind::silent_certificate) continue;
       std::string& doubts = testimony.doubts[_evidence.key(finding.family)];
       doubts += fmt::format("{}{} of {} orbits: {}", doubts.empty() ? "" : "; ", finding.number, finding.other_number,

@@ -54,6 +54,8 @@ class Archive {
   [[nodiscard]] bool has_checksums() const noexcept;
   /// What the file says.
   [[nodiscard]] std::int64_t format_minor() const noexcept;
+  /// The parameter that moves along the families (their column `parameter`); empty: none does.
+  [[nodiscard]] std::string moving_parameter() const;
   /// Empty unless opened with ChangedRows::listed.
   [[nodiscard]] const std::vector<ChangedRow>& changed_rows() const noexcept { return _changed; }
   /// What is wrong with the checksums of the orbit's modes and time map, if anything.

@@ -11,6 +11,7 @@ enum class CrossingKind {
   subharmonic,
   fold_energy,
   fold_period,
+  fold_parameter,
   torus,
   krein,
   unknown,  ///< of a file from another version: never written
@@ -24,7 +25,7 @@ enum class CrossingKind {
 
 /// Families are born there: by a multiplier that passes a root of unity.
 [[nodiscard]] bool has_sector(CrossingKind kind);
-/// The family turns there in period or energy.
+/// The family turns there in period, energy or parameter.
 [[nodiscard]] bool is_fold(CrossingKind kind);
 
 }  // namespace orbweaver::archive

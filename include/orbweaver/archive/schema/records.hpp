@@ -81,6 +81,7 @@ struct CrossingRecord {
   double arclength = 0.0;
   double period = 0.0;
   double energy = not_computed;
+  double parameter = not_computed;
   CrossingKind kind = CrossingKind::branch_point;
   int multiplicity = 1;
   int kernel_dimension = 0;
@@ -111,6 +112,7 @@ struct FindingRecord {
   int crossing = -1;
   double period = not_computed;
   double energy = not_computed;
+  double parameter = not_computed;
   double deviation = not_computed;  ///< how far off, in what the kind is measured in
   std::string text;
 };
@@ -128,7 +130,7 @@ struct Header {
   std::vector<std::string> effects;
   std::vector<std::string> parameter_names;
   std::vector<double> parameter_values;
-  std::vector<std::string> scale_names;  ///< time, coordinates, conserved quantities
+  std::vector<std::string> scale_names;  ///< time, coordinates, conserved quantities, parameters that move
   std::vector<double> scales;            ///< of the survey (docs/mathematics.md, "Scales")
 };
 

@@ -14,14 +14,16 @@ inline constexpr const char* segment_format = "orbweaver-segment";
 inline constexpr int format_version = 1;
 /// Root attribute `format_minor`: it rises with every table, column or attribute that is added; older files of the
 /// version are read. 1: /findings, system, effects, parameters, scales. 2: checksums. 3: what certificates say. 4:
-/// /sections is filled.
-inline constexpr int format_minor = 4;
+/// /sections is filled. 5: the parameter at crossings and findings.
+inline constexpr int format_minor = 5;
 /// The first with checksums.
 inline constexpr int checksums_since = 2;
 /// The first with verdicts.
 inline constexpr int certificates_since = 3;
 /// The first whose /sections has what the scene asks for.
 inline constexpr int sections_since = 4;
+/// The first with the parameter of families in one.
+inline constexpr int parameters_since = 5;
 
 enum class ColumnType { integer, real, text };
 

@@ -9,8 +9,8 @@
 namespace orbweaver::loop {
 
 struct Loop;
-/// Throws MisuseError unless sizes agree, cutoff >= 1, the period is positive and finite, every mode is finite and the
-/// time map consists of finite numbers with kappa > 0.
+/// Throws MisuseError unless sizes agree, cutoff >= 1, the period is positive and finite, every mode and parameter is
+/// finite and the time map consists of finite numbers with kappa > 0.
 void validate(const Loop& loop);
 /// The same for a loop that has been read; none at all, as Loop{} is, will do.
 void validate_received(const Loop& loop);
@@ -25,16 +25,19 @@ struct Loop {
   std::vector<double>
       winding;       ///< n of each coordinate (size dimension, whole numbers; 0 but for angles that turn over)
   TimeMap time_map;  ///< phi: how s runs with time
+  /// Values of the parameters that move along the families of its system (systems::FamilyScalars), in their order;
+  /// empty where none does.
+  std::vector<double> parameters;
 
   [[nodiscard]] double& cosine(int k, int i) { return modes[index(k == 0 ? 0 : 2 * k - 1, i)]; }
   [[nodiscard]] double cosine(int k, int i) const { return modes[index(k == 0 ? 0 : 2 * k - 1, i)]; }
   [[nodiscard]] double& sine(int k, int i) { return modes[index(2 * k, i)]; }
   [[nodiscard]] double sine(int k, int i) const { return modes[index(2 * k, i)]; }
 
-  static constexpr int wire_version = 1;
+  static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, dimension, cutoff, period, modes, winding, time_map);
+    core::serialize_members(archive, dimension, cutoff, period, modes, winding, time_map, parameters);
     if constexpr (Archive::is_loading::value) validate_received(*this);
   }
 

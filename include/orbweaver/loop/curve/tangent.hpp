@@ -42,7 +42,7 @@ struct Tangent {
 /// The change of z(s) as a loop: without winding, with the period and the time map of `at`.
 [[nodiscard]] Loop perturbation(const Loop& at, const Tangent& tangent);
 
-/// base + step * tangent, modes and period. The tangent needs the cutoff of the base.
+/// base + step * tangent, modes, period and parameters. The tangent needs the cutoff of the base.
 [[nodiscard]] Loop moved(Loop base, const Tangent& tangent, double step);
 
 /// |dz(s = 0)| for a step of length 1 times the tangent.

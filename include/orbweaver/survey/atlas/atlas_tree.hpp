@@ -42,8 +42,9 @@ struct TreeCrossing {
   int sector_q = 1;
   int fundamental_order = 1;
   double period = 0.0;
-  double energy = 0.0;
-  double energy_scale = 0.0;  ///< of the family's orbit nearest to it; NaN: no energy
+  double level = 0.0;         ///< the energy, or the parameter that moves
+  double level_scale = 0.0;   ///< of the family's orbit nearest to it; NaN: neither
+  std::string parameter;      ///< that moves; empty: none does
   std::vector<int> children;  ///< rows of the families born there
 };
 
@@ -55,9 +56,12 @@ struct AtlasTree {
   std::vector<TreeFamily> families;
   std::vector<TreeCrossing> crossings;
   std::vector<int> roots;  ///< families without a parent
+  std::string parameter;   ///< that moves along the families; empty: none does
+
+  [[nodiscard]] bool in_parameter() const { return !parameter.empty(); }
 };
 
-/// "period-doubling T 8.44293"
+/// "period-doubling T 8.44293", "fold-parameter T 5.23599, drive_amplitude 0.4"
 [[nodiscard]] std::string place_text(const TreeCrossing& crossing);
 
 }  // namespace orbweaver::survey

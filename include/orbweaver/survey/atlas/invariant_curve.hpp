@@ -6,10 +6,11 @@
 
 namespace orbweaver::survey {
 
-/// Numbers of an orbit that neither a symmetry of the system nor a time shift changes.
-enum class Invariant : std::size_t { period, energy, action, parameter, trace };
-inline constexpr std::array all_invariants{Invariant::period, Invariant::energy, Invariant::action,
-                                           Invariant::parameter, Invariant::trace};
+/// Numbers of an orbit that neither a symmetry of the system nor a time shift changes. The level is the energy, or the
+/// parameter where one moves along the families; beside it the energy counts as another number.
+enum class Invariant : std::size_t { period, level, action, energy, trace };
+inline constexpr std::array all_invariants{Invariant::period, Invariant::level, Invariant::action, Invariant::energy,
+                                           Invariant::trace};
 
 /// Of one orbit; NaN: not known. `trace`: asinh of half the sum of the stability values, so that it is smooth along a
 /// family and unstable orbits do not drown the others.
@@ -38,7 +39,7 @@ struct CurveFit {
 
 /// The curve through a family's orbits in the space of invariants.
 ///
-/// Beside each two neighbours the one among period, energy and parameter that changes most is the variable; the others
+/// Beside each two neighbours the one among period, level and energy that changes most is the variable; the others
 /// are interpolated by polynomials through up to six orbits among which it is monotone. The error is taken for the
 /// largest difference to polynomials of one or two orbits fewer. No arclength is used: chords between orbits that lie
 /// elsewhere add up to another one.
@@ -64,7 +65,7 @@ class InvariantCurve {
 /// searched in vain is limited, so that the cost is linear in the number of orbits.
 [[nodiscard]] std::vector<CurveFit> fit_all(const InvariantCurve& curve, const std::vector<Invariants>& orbits);
 
-/// "energy".
+/// "action".
 [[nodiscard]] const char* name_of(Invariant invariant);
 
 }  // namespace orbweaver::survey

@@ -21,8 +21,8 @@ struct FamilySummary {
   int orbits = 0;
   double period_from = 0.0;
   double period_to = 0.0;
-  double energy_from = 0.0;
-  double energy_to = 0.0;
+  double level_from = 0.0;  ///< energy or parameter
+  double level_to = 0.0;
   std::string end_reason;
   bool failed = false;
   int depth = 0;         ///< 0 for base families
@@ -39,6 +39,7 @@ struct FindingSummary {
 /// What a survey came to; complete on rank 0, `failures` and `stopped_early` on all ranks.
 struct Summary {
   std::vector<FamilySummary> families;    ///< by depth, then key
+  std::string parameter{};                ///< that moves along the families; empty: none, and their level is the energy
   std::vector<std::string> remarks;       ///< equilibria without oscillations, rejected dips, limits that cut
   std::vector<std::string> failed_tasks;  ///< key and reason
   std::vector<FindingSummary> findings;   ///< by severity; empty where no archive was made

@@ -68,7 +68,7 @@ struct Finding {
   int other_family = -1;
   int crossing = -1;
   double period = std::numeric_limits<double>::quiet_NaN();
-  double energy = std::numeric_limits<double>::quiet_NaN();
+  double level = std::numeric_limits<double>::quiet_NaN();      ///< energy, or the parameter that moves
   double deviation = std::numeric_limits<double>::quiet_NaN();  ///< how far off (docs/file_format.md says in what)
   int number = 0;
   int other_number = 0;
@@ -79,7 +79,8 @@ struct Finding {
 struct FindingNames {
   std::string family;
   std::string other_family;
-  std::string crossing;  ///< "period-doubling T 8.44293"
+  std::string crossing;     ///< "period-doubling T 8.44293"
+  std::string level = "E";  ///< or the parameter's
 };
 /// "In-Phase: ...", a sentence without a full stop.
 [[nodiscard]] std::string text_of(const Finding& finding, const FindingNames& names);

@@ -18,6 +18,7 @@ continuation::Start start_of(const BranchWork& work, const systems::Structure& s
   start.base = work.base;
   start.direction = work.direction;
   start.isotropy = loop::with_declared_matrices(work.isotropy, system);
+  start.base_is_orbit = work.base_is_orbit;
   return start;
 }
 

@@ -22,15 +22,16 @@ struct BranchWork {
   std::string key;
   std::string name;  ///< for progress; final names are given at the end
   Lineage lineage;
-  loop::Loop base;          ///< the equilibrium, or the crossing's orbit as many times around as it takes
+  loop::Loop base;          ///< the equilibrium, the crossing's orbit as many times around as it takes, or an orbit
   loop::Tangent direction;  ///< in its modes, to this branch's side
   loop::Isotropy isotropy;
-  double amplitude = 0.0;  ///< |dz(s = 0)| of the first orbit; 0: the scene's
+  double amplitude = 0.0;      ///< |dz(s = 0)| of the first orbit; 0: the scene's
+  bool base_is_orbit = false;  ///< `base` is the family's first orbit, `direction` one of its scalars
 
-  static constexpr int wire_version = 1;
+  static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, key, name, lineage, base, direction, isotropy, amplitude);
+    core::serialize_members(archive, key, name, lineage, base, direction, isotropy, amplitude, base_is_orbit);
   }
 };
 
@@ -50,7 +51,7 @@ struct CrossingBeneath {
 /// A branch has come to an orbit with more symmetry than its own: a crossing of another family, or of its own.
 struct ArrivalRecord {
   double period = 0.0;  ///< where it meets, by interpolation, or as the crossing there was located
-  double energy = 0.0;
+  double level = 0.0;   ///< continuation::level_of
   loop::Loop near;                         ///< an orbit of the branch shortly before
   int multiplicity = 1;                    ///< times that it goes around the orbit it meets, where that is all it gains
   std::vector<CrossingBeneath> beneath{};  ///< one, where the crossing that is met was located
@@ -59,7 +60,7 @@ struct ArrivalRecord {
   static constexpr int wire_version = 3;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, period, energy, near, multiplicity, beneath, ahead);
+    core::serialize_members(archive, period, level, near, multiplicity, beneath, ahead);
   }
 };
 
@@ -70,10 +71,10 @@ struct BranchOutcome {
   /// Ranges and last values in the units of the scene.
   double period_from = 0.0;
   double period_to = 0.0;
-  double energy_from = 0.0;
-  double energy_to = 0.0;
+  double level_from = 0.0;
+  double level_to = 0.0;
   double last_period = 0.0;
-  double last_energy = 0.0;
+  double last_level = 0.0;
   int last_cutoff = 0;
   continuation::Ending end;
   std::vector<ArrivalRecord> arrival;  ///< one or none
@@ -84,12 +85,12 @@ struct BranchOutcome {
   int limited_by = 0;          ///< Limit: with wider ones the branch would have gone on
   std::string before_limit;    ///< the state (queue::Task) from which it would, without children; empty: from its start
 
-  static constexpr int wire_version = 3;
+  static constexpr int wire_version = 4;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, key, orbits, period_from, period_to, energy_from, energy_to, last_period,
-                            last_energy, last_cutoff, end, arrival, equilibrium, remarks, tolerance_met, moved_out,
-                            limited_by, before_limit);
+    core::serialize_members(archive, key, orbits, period_from, period_to, level_from, level_to, last_period, last_level,
+                            last_cutoff, end, arrival, equilibrium, remarks, tolerance_met, moved_out, limited_by,
+                            before_limit);
     if constexpr (Archive::is_loading::value) check_limits(limited_by);
   }
 };

@@ -68,6 +68,8 @@ int event_number(std::string_view key, std::string_view branch) {
 
 int equilibrium_index(std::string_view key) { return ordered_at(key).value_or(-1); }
 
+std::string base_of(std::string_view key) { return std::string(key.substr(0, key.find_first_of("+-/"))); }
+
 std::string mode_of(std::string_view base) {
   const std::size_t point = base.find('.');
   if (point == std::string_view::npos) return "";

@@ -27,6 +27,8 @@ namespace orbweaver::survey {
 
 /// The index of the equilibrium at which the family, or what it descends from, begins: 2 of "0002.0001/003.q4.j1/0".
 [[nodiscard]] int equilibrium_index(std::string_view key);
+/// The base family, whatever its side, that the family is or descends from: "0002.0001" of "0002.0001+/003.q4.j1/0".
+[[nodiscard]] std::string base_of(std::string_view key);
 /// The mode of a base family among those of its equilibrium: "0001" of "0002.0001+".
 [[nodiscard]] std::string mode_of(std::string_view base);
 

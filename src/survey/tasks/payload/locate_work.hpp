@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -67,6 +69,8 @@ struct LocateOutcome {
   double arclength_unit = 1.0;  ///< how long a length of 1 in the survey's scales is there in it
   double period = 0.0;
   double energy = 0.0;
+  double parameter = std::numeric_limits<double>::quiet_NaN();  ///< that moves
+  [[nodiscard]] double level() const { return std::isnan(parameter) ? energy : parameter; }
   std::optional<archive::CrossingKind> kind;  ///< none: nothing crosses there
   int multiplicity = 1;
   int kernel_dimension = 0;
@@ -83,12 +87,12 @@ struct LocateOutcome {
   std::string remark;
   int limited_by = 0;  ///< Limit: with wider ones more would have been looked for
 
-  static constexpr int wire_version = 2;
+  static constexpr int wire_version = 3;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, key, lineage, arclength, arclength_unit, period, energy, kind, multiplicity,
-                            kernel_dimension, residual, kernel_singular_value, next_singular_value, test_value, state,
-                            q, j, fundamental_order, leaving, undecided, remark, limited_by);
+    core::serialize_members(archive, key, lineage, arclength, arclength_unit, period, energy, parameter, kind,
+                            multiplicity, kernel_dimension, residual, kernel_singular_value, next_singular_value,
+                            test_value, state, q, j, fundamental_order, leaving, undecided, remark, limited_by);
     if constexpr (Archive::is_loading::value) check_limits(limited_by);
   }
 };

@@ -10,16 +10,18 @@
 
 namespace orbweaver::survey {
 
-/// Look for small oscillations around one equilibrium.
+/// Look for small oscillations around one equilibrium, or, where a parameter moves, for the Hopf points of its curve;
+/// or correct an orbit that the scene gives.
 struct SweepWork {
   static constexpr const char* payload_name = "sweep work";
-  int index = 0;  ///< of the equilibrium, in sorted order
+  int index = 0;  ///< of the equilibrium, in sorted order; states come behind
   std::vector<double> point;
+  double period = 0.0;  ///< of an orbit through `point`; 0: an equilibrium
 
-  static constexpr int wire_version = 1;
+  static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, index, point);
+    core::serialize_members(archive, index, point, period);
   }
 };
 
@@ -32,11 +34,15 @@ struct FoundMode {
   loop::Isotropy isotropy;
   bool one_direction = true;  ///< a symmetry maps one direction of the start onto the other
   double amplitude = 0.0;     ///< |dz(s = 0)| of the first orbit; 0: the scene's
+  loop::Loop base;            ///< where it is not the sweep's equilibrium: a Hopf point, or an orbit of the family
+  bool base_is_orbit = false;
+  double distance = 0.0;  ///< of a Hopf point from the equilibrium, along the curve of equilibria
 
-  static constexpr int wire_version = 3;
+  static constexpr int wire_version = 5;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, period, place, direction, cutoff, isotropy, one_direction, amplitude);
+    core::serialize_members(archive, period, place, direction, cutoff, isotropy, one_direction, amplitude, base,
+                            base_is_orbit, distance);
   }
 };
 

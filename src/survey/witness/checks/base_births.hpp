@@ -73,12 +73,12 @@ class BaseBirths final : public Check {
     std::array<double, orbits_asked> energies{};
     std::array<double, orbits_asked> periods{};
     for (std::size_t n = 0; n < orbits_asked; ++n) {
-      energies[n] = family.curve.points()[first + n].value(Invariant::energy) - rest;
+      energies[n] = family.curve.points()[first + n].value(Invariant::level) - rest;
       periods[n] = family.curve.points()[first + n].value(Invariant::period);
     }
     const Invariants& orbit = family.curve.points()[first];
     const double energy_floor =
-        orbit.floor_of(Invariant::energy) + std::numeric_limits<double>::epsilon() * std::abs(rest);
+        orbit.floor_of(Invariant::level) + std::numeric_limits<double>::epsilon() * std::abs(rest);
     const double floor = energy_floor / std::abs(energies[0]) + orbit.floor_of(Invariant::period) / period +
                          orbit.floor_of(Invariant::action) / std::abs(period * energies[0]);
     if (!(floor < telling)) return std::nullopt;
@@ -96,7 +96,7 @@ class BaseBirths final : public Check {
     finding.severity = evidence.severity_about(row);
     finding.family = row;
     finding.period = periods[0];
-    finding.energy = orbit.value(Invariant::energy);
+    finding.level = orbit.value(Invariant::level);
     finding.deviation = off / period;
     return finding;
   }

@@ -48,7 +48,7 @@ class BranchCounts final : public Check {
     finding.family = place.family;
     finding.crossing = crossing.crossing;
     finding.period = place.period;
-    finding.energy = place.energy;
+    finding.level = place.level;
     const auto add = [&](FindingKind kind, Severity severity) {
       finding.kind = kind;
       finding.severity = severity;

@@ -30,7 +30,7 @@ class Certificates final : public Check {
         finding.severity = is_failure(is) ? Severity::contradiction : Severity::undecided;
         finding.family = static_cast<int>(row);
         finding.period = orbits.reals("period")[orbit];
-        finding.energy = orbits.reals("energy")[orbit];
+        finding.level = orbits.reals(evidence.tree.in_parameter() ? "parameter" : "energy")[orbit];
         finding.other_number = static_cast<int>(family.orbits());
         finding.detail = name_of(is);
       }

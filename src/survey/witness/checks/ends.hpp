@@ -33,6 +33,7 @@ class Ends final : public Check {
       case EndReason::energy_limit:
       case EndReason::step_limit:
       case EndReason::cutoff_limit:
+      case EndReason::parameter_limit:
       case EndReason::guard_limit:
       case EndReason::stopped: return true;
       case EndReason::collision:
@@ -52,7 +53,7 @@ class Ends final : public Check {
     if (end.failed || !end.end) return std::nullopt;  // said as a failure
     if (end.met) {
       finding.period = end.period;
-      finding.energy = end.energy;
+      finding.level = end.level;
       if (end.joined && end.crossing >= 0) return std::nullopt;
       if (end.joined) {
         finding.kind = FindingKind::unlisted_target;
@@ -92,7 +93,7 @@ class Ends final : public Check {
     finding.kind = FindingKind::unknown_equilibrium;
     finding.severity = Severity::undecided;
     finding.period = last.value(Invariant::period);
-    finding.energy = last.value(Invariant::energy);
+    finding.level = last.value(Invariant::level);
     return finding;
   }
 
@@ -126,12 +127,12 @@ class Ends final : public Check {
     if (family.orbits() == 0) return finding;
     const Invariants& last = end.side > 0 ? family.curve.points().back() : family.curve.points().front();
     const double action = last.value(Invariant::action) + 0.5 * (last.value(Invariant::period) + end.period) *
-                                                              (end.energy - last.value(Invariant::energy));
+                                                              (end.level - last.value(Invariant::level));
     for (int m = 1; m <= most_times; ++m) {
       const double period = end.period / m;
       int met = -1;  // of several that are images, the one at the same equilibrium
       for (const auto& [other, segment] :
-           passing(evidence.tree, evidence.index, {period, end.energy, action / m, last.scale_of(Invariant::energy)})) {
+           passing(evidence.tree, evidence.index, {period, end.level, action / m, last.scale_of(Invariant::level)})) {
         if (m == 1 && evidence.family(other).isotropy == family.isotropy) continue;  // itself, or its mirror image
         if (met < 0 || evidence.equilibrium_of(other) == evidence.equilibrium_of(finding.family)) met = other;
       }

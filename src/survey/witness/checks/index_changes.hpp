@@ -180,10 +180,10 @@ class IndexChanges final : public Check {
     finding.severity = severity;
     finding.family = row;
     finding.period = x.value(Invariant::period);
-    finding.energy = x.value(Invariant::energy);
+    finding.level = x.value(Invariant::level);
     finding.number = sector.j;
     finding.other_number = sector.q;
-    finding.deviation = stability.fundamental.front().real() - sector.index();
+    finding.deviation = stability.fundamental.front().real() - sector.value(evidence.system->structure().symplectic);
     return finding;
   }
 

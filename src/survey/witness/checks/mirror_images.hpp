@@ -10,17 +10,19 @@
 
 namespace orbweaver::survey {
 
-/// Families at equilibria that a symmetry maps to one another are images: they have the same crossings, ends and
-/// extents, and so has what is born there.
+/// Families that begin where a symmetry maps one beginning to the other (equilibria, Hopf points) are images: they have
+/// the same crossings, ends and extents, and so has what is born there.
 class MirrorImages final : public Check {
  public:
   [[nodiscard]] std::vector<Finding> findings(const Evidence& evidence,
                                               std::span<const Answered> /*answered*/) const override {
     std::vector<Finding> found;
-    std::map<std::string, std::vector<int>> base;  // rows by the mode of the equilibrium
-    for (std::size_t row = 0; row < evidence.tree.families.size(); ++row)
-      if (evidence.tree.families[row].parent < 0)
-        base[mode_of(evidence.key(static_cast<int>(row)))].push_back(static_cast<int>(row));
+    std::map<std::string, std::vector<int>> base;  // rows by the mode of the equilibrium; of all Hopf points together
+    for (std::size_t row = 0; row < evidence.tree.families.size(); ++row) {
+      if (evidence.tree.families[row].parent >= 0) continue;
+      const std::string& key = evidence.key(static_cast<int>(row));
+      base[evidence.known.beginnings.contains(base_of(key)) ? "" : mode_of(key)].push_back(static_cast<int>(row));
+    }
     for (const auto& [mode, rows] : base)
       for (const int row : rows)
         if (const int image = image_of(evidence, row, rows); image >= 0) compare(evidence, row, image, found);
@@ -28,15 +30,15 @@ class MirrorImages final : public Check {
   }
 
  private:
-  /// Relative in period and energy: crossings are located to an index of 1e-9.
+  /// Relative in period and level: crossings are located to an index of 1e-9.
   static constexpr double same_place = 1e-6;
 
-  // The last of the later ones whose equilibria are images that shares its first orbits' period most nearly: modes with
+  // The last of the later ones that begins at an image and shares its first orbits' period most nearly: modes with
   // two sides have two rows.
   static int image_of(const Evidence& evidence, int row, const std::vector<int>& rows) {
     int best = -1;
     for (const int other : rows) {
-      if (other <= row || !evidence.are_images(evidence.equilibrium_of(row), evidence.equilibrium_of(other))) continue;
+      if (other <= row || !evidence.begin_at_images(row, other)) continue;
       if (evidence.family(row).orbits() == 0 || evidence.family(other).orbits() == 0) continue;
       if (best < 0 || extent_apart(evidence, row, other) < extent_apart(evidence, row, best)) best = other;
     }
@@ -74,7 +76,7 @@ class MirrorImages final : public Check {
         finding.kind = FindingKind::mirror_place;
         finding.crossing = a.crossings[n];
         finding.period = x.period;
-        finding.energy = x.energy;
+        finding.level = x.level;
         finding.deviation = away;
         found.push_back(finding);
       } else if (x.children.size() == y.children.size()) {  // others: a branch between the images is stored once
@@ -84,8 +86,8 @@ class MirrorImages final : public Check {
   }
 
   static double apart(const TreeCrossing& x, const TreeCrossing& y) {
-    const double in_energy = std::abs(x.energy - y.energy) / x.energy_scale;
-    return std::fmax(std::abs(x.period / y.period - 1.0), std::isnan(in_energy) ? 0.0 : in_energy);
+    const double in_level = std::abs(x.level - y.level) / x.level_scale;
+    return std::fmax(std::abs(x.period / y.period - 1.0), std::isnan(in_level) ? 0.0 : in_level);
   }
 
   static bool is_another(const TreeCrossing& x, const TreeCrossing& y) {
@@ -127,7 +129,7 @@ class MirrorImages final : public Check {
       // Their steps need not be the same: one may stop a step before the other.
       if (a.ends[n].kind == b.ends[m].kind && apart <= last_step(a, n) + last_step(b, m)) continue;
       finding.period = x.value(Invariant::period);
-      finding.energy = x.value(Invariant::energy);
+      finding.level = x.value(Invariant::level);
       finding.deviation = apart / x.scale_of(Invariant::period);
       found.push_back(finding);
     }
@@ -139,11 +141,11 @@ class MirrorImages final : public Check {
     const EndEvidence* end = meeting_of(evidence, finding.family, orbit);
     const EndEvidence* other = meeting_of(evidence, finding.other_family, other_orbit);
     if (end == nullptr || other == nullptr) return false;
-    const double scale = evidence.family(finding.family).curve.points()[orbit].scale_of(Invariant::energy);
+    const double scale = evidence.family(finding.family).curve.points()[orbit].scale_of(Invariant::level);
     return std::abs(end->period / other->period - 1.0) <= same_meeting &&
-           !(std::abs(end->energy - other->energy) > same_meeting * scale);
+           !(std::abs(end->level - other->level) > same_meeting * scale);
   }
-  /// Relative in period and energy: what the extrapolation to a meeting may be off (tree/arrivals.cpp).
+  /// Relative in period and level: what the extrapolation to a meeting may be off (tree/arrivals.cpp).
   static constexpr double same_meeting = 1e-3;
 
   // How the side of the family that ends with this orbit ended, if it met another family; null otherwise.

@@ -23,10 +23,10 @@ class SharedPoints final : public Check {
       if (!archive::has_sector(archive::crossing_kind_of(crossing.kind))) continue;
       const Invariants x = born_at(evidence, crossing);
       const double in_period = x.floor_of(Invariant::period);
-      const double in_energy = x.floor_of(Invariant::energy);
+      const double in_level = x.floor_of(Invariant::level);
       std::map<int, std::pair<double, std::size_t>> nearest;  // segment of each family
       for (const auto& [family, segment] :
-           evidence.index.near(x.value(Invariant::period), x.value(Invariant::energy), in_period, in_energy)) {
+           evidence.index.near(x.value(Invariant::period), x.value(Invariant::level), in_period, in_level)) {
         if (family == crossing.family && crossing.multiplicity == 1) continue;
         const double away = distance_from(evidence.family(family).curve.points(), segment, x);
         if (!may_have_index_two(evidence, evidence.family(family).curve.points(), segment)) continue;
@@ -56,7 +56,7 @@ class SharedPoints final : public Check {
       finding.other_family = question.family;
       finding.crossing = question.crossing;
       finding.period = crossing.multiplicity * crossing.period;
-      finding.energy = crossing.energy;
+      finding.level = crossing.level;
       finding.deviation = reply.distance;
       found.push_back(finding);
     }
@@ -69,7 +69,7 @@ class SharedPoints final : public Check {
   static constexpr double of_place = 1e-7;
   static constexpr double of_action = 1e-3;
 
-  // Sum of the distances from the segment's two orbits, in period, energy and action; infinite if the nearer one is
+  // Sum of the distances from the segment's two orbits, in period, level and action; infinite if the nearer one is
   // further away than a step: a family may turn between the two. Loops decide.
   static double distance_from(const std::vector<Invariants>& points, std::size_t segment, const Invariants& x) {
     const auto step = [&](std::size_t n) { return std::sqrt(square_distance(points[n], points[n + 1], x)); };
@@ -92,18 +92,18 @@ class SharedPoints final : public Check {
 
   static double square_distance(const Invariants& a, const Invariants& b, const Invariants& x) {
     double sum = 0.0;
-    for (const Invariant i : {Invariant::period, Invariant::energy, Invariant::action}) {
+    for (const Invariant i : {Invariant::period, Invariant::level, Invariant::action}) {
       const double part = (a.value(i) - b.value(i)) / x.scale_of(i);
       if (!std::isnan(part)) sum += part * part;
     }
     return sum;
   }
 
-  static bool is_near(const Invariants& x, double period, double energy) {
+  static bool is_near(const Invariants& x, double period, double level) {
     return std::abs(period - x.value(Invariant::period)) <= near_place * x.value(Invariant::period) &&
-           !(std::abs(energy - x.value(Invariant::energy)) > near_place * x.scale_of(Invariant::energy));
+           !(std::abs(level - x.value(Invariant::level)) > near_place * x.scale_of(Invariant::level));
   }
-  /// Crossings that lie closer, relative in period and energy, are one place.
+  /// Crossings that lie closer, relative in period and level, are one place.
   static constexpr double near_place = 1e-5;
 
   // The orbit at the crossing, gone around as what is born there.
@@ -114,15 +114,16 @@ class SharedPoints final : public Check {
     double nearest = std::numeric_limits<double>::infinity();
     for (const Invariants& point : family.curve.points()) {
       const double away = std::abs(point.value(Invariant::period) / crossing.period - 1.0) +
-                          std::abs(point.value(Invariant::energy) - crossing.energy) / crossing.energy_scale;
+                          std::abs(point.value(Invariant::level) - crossing.level) / crossing.level_scale;
       if (!(away < nearest)) continue;
       nearest = away;
+      if (evidence.tree.in_parameter()) continue;
       action = point.value(Invariant::action) + 0.5 * (point.value(Invariant::period) + crossing.period) *
-                                                    (crossing.energy - point.value(Invariant::energy));
+                                                    (crossing.level - point.value(Invariant::level));
     }
     Invariants x;
-    x.values = {m * crossing.period, crossing.energy, m * action, archive::not_computed, archive::not_computed};
-    x.scale = {m * crossing.period, crossing.energy_scale, std::abs(m * action), 1.0, 1.0};
+    x.values = {m * crossing.period, crossing.level, m * action, archive::not_computed, archive::not_computed};
+    x.scale = {m * crossing.period, crossing.level_scale, std::abs(m * action), 1.0, 1.0};
     for (std::size_t i = 0; i < x.floor.size(); ++i) x.floor[i] = of_place * x.scale[i];
     x.floor[static_cast<std::size_t>(Invariant::action)] = of_action * x.scale_of(Invariant::action);
     return x;
@@ -136,8 +137,8 @@ class SharedPoints final : public Check {
     if (row < 0 || points.empty()) return false;
     const TreeCrossing& birth = evidence.crossing(row);
     double along = 0.0;
-    for (const auto& [i, at_birth] : {std::pair{Invariant::period, birth.multiplicity * birth.period},
-                                      std::pair{Invariant::energy, birth.energy}}) {
+    for (const auto& [i, at_birth] :
+         {std::pair{Invariant::period, birth.multiplicity * birth.period}, std::pair{Invariant::level, birth.level}}) {
       const double part =
           (x.value(i) - at_birth) * (points.front().value(i) - at_birth) / (x.scale_of(i) * x.scale_of(i));
       if (!std::isnan(part)) along += part;
@@ -164,7 +165,7 @@ class SharedPoints final : public Check {
     return std::any_of(places.begin(), places.end(), [&](int row) {
       const TreeCrossing& place = evidence.crossing(row);
       const double around = place.family == family ? 1.0 : place.multiplicity;
-      return is_near(x, around * place.period, place.energy);
+      return is_near(x, around * place.period, place.level);
     });
   }
 };

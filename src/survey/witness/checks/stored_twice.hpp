@@ -12,8 +12,9 @@
 
 namespace orbweaver::survey {
 
-/// No orbit is stored in two families, nor, with its images under the system's symmetries, twice in one. Families at
-/// equilibria that are images of one another are images too, and are stored both; what descends from them as well.
+/// No orbit is stored in two families, nor, with its images under the system's symmetries, twice in one. Families that
+/// begin at images of one another (equilibria, Hopf points) are images too, and are stored both; what descends from
+/// them as well.
 class StoredTwice final : public Check {
  public:
   [[nodiscard]] std::vector<LoopQuestion> questions(const Evidence& evidence) const override {
@@ -45,7 +46,7 @@ class StoredTwice final : public Check {
   static constexpr std::size_t least_hits = 2;
   /// Loops that are compared for a pair of families.
   static constexpr std::size_t compared = 5;
-  /// Of the floors of period and energy: as two computations of one orbit differ.
+  /// Of the floors of period and level: as two computations of one orbit differ.
   static constexpr double floors = 3.0;
   /// Segments beside an orbit that are its own.
   static constexpr std::size_t own_segments = 2;
@@ -62,8 +63,8 @@ class StoredTwice final : public Check {
         const Invariants& x = points[n];
         int last = -1;  // one hit a family and orbit
         for (const auto& [other, segment] :
-             evidence.index.near(x.value(Invariant::period), x.value(Invariant::energy),
-                                 floors * x.floor_of(Invariant::period), floors * x.floor_of(Invariant::energy))) {
+             evidence.index.near(x.value(Invariant::period), x.value(Invariant::level),
+                                 floors * x.floor_of(Invariant::period), floors * x.floor_of(Invariant::level))) {
           const int own = static_cast<int>(row);
           if (other == last || (other == own && is_own(evidence.tree.families[row], n, segment))) continue;
           const Pair pair = std::minmax(own, other);
@@ -89,15 +90,13 @@ class StoredTwice final : public Check {
     return closes && apart + own_segments >= family.orbits();
   }
 
-  // Whether they descend from equilibria that are images, and are not their own images.
+  // Whether they descend from families that begin at images of one another, and are not their own images.
   static bool are_images(const Evidence& evidence, int row, int other) {
-    const int from = evidence.equilibrium_of(row);
-    const int to = evidence.equilibrium_of(other);
-    if (!evidence.are_images(from, to)) return false;
+    if (!evidence.begin_at_images(row, other)) return false;
     const systems::Structure& structure = evidence.system->structure();
     const loop::SymmetryGroup group(structure, loop::isotropy_of(structure, evidence.family(row).isotropy));
     return std::none_of(group.elements().begin(), group.elements().end(), [&](const loop::SymmetryElement& element) {
-      return evidence.is_image_by(element.map, from, to);
+      return evidence.begins_at_image(element.map, row, other);
     });
   }
 
@@ -131,7 +130,7 @@ class StoredTwice final : public Check {
     finding.family = pair.first;
     finding.other_family = pair.first == pair.second ? -1 : pair.second;
     finding.period = x.value(Invariant::period);
-    finding.energy = x.value(Invariant::energy);
+    finding.level = x.value(Invariant::level);
     finding.deviation = shown.reply.distance;
     finding.number = static_cast<int>(same);
     finding.other_number = static_cast<int>(answered.size());

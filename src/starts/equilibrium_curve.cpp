@@ -1,0 +1,307 @@
+#include "orbweaver/starts/equilibrium_curve.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <map>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
+
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
+#include "orbweaver/numerics/locate.hpp"
+#include "orbweaver/starts/sweep.hpp"
+
+namespace orbweaver::starts {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Complex = std::complex<double>;
+
+constexpr int newton_steps = 12;
+/// A Newton step below this, in parts of 1 + |z|, is rounding's.
+constexpr double converged = 1e-13;
+/// Steps grow by this where Newton's method takes at most so many steps, and are halved where it fails.
+constexpr double growth = 1.5;
+constexpr int few_steps = 4;
+/// Cosine of the largest turn of the direction over a step: a longer one may have gone over to another curve.
+constexpr double least_cosine = 0.9;
+/// Zeros are located to this, in parts of a step.
+constexpr double located_to = 1e-12;
+/// Steps after which a curve may have come back.
+constexpr std::size_t least_round = 8;
+/// Of the largest eigenvalue: a pair whose sum is smaller than this cancels, and its real part is none.
+constexpr double cancels = 1e-6;
+
+/// A place on the curve: the state, then the parameter.
+struct Node {
+  VectorXd x;
+  VectorXd direction;
+};
+
+class Curve {
+ public:
+  Curve(const systems::System& system, const EquilibriumCurveOptions& options)
+      : _system(system),
+        _name(system.family_scalars().free.front()),
+        _unit(system.parameter_scale(_name)),
+        _options(options),
+        _d(system.dimension()) {}
+
+  struct Linear {
+    VectorXd f;
+    MatrixXd jacobian;  // d x d
+    VectorXd by_parameter;
+  };
+
+  [[nodiscard]] Linear at(const VectorXd& x) const {
+    const std::shared_ptr<const systems::System> here = _system.with_parameters({{_name, x(_d) * _unit}});
+    Linear out{VectorXd(_d), MatrixXd(), VectorXd(_d)};
+    RowMajor jacobian(_d, _d);
+    here->field_jacobian(1, x.data(), out.f.data(), jacobian.data());
+    here->parameter_derivatives(_name, 1, x.data(), out.by_parameter.data());
+    out.jacobian = jacobian;
+    return out;
+  }
+
+  /// On the hyperplane through `guess` across `row`.
+  [[nodiscard]] std::optional<VectorXd> corrected(VectorXd x, const VectorXd& row, int& steps) const {
+    const VectorXd guess = x;
+    for (steps = 0; steps < newton_steps; ++steps) {
+      const Linear linear = at(x);
+      if (!linear.f.allFinite() || !linear.jacobian.allFinite()) return std::nullopt;
+      MatrixXd matrix(_d + 1, _d + 1);
+      matrix << linear.jacobian, linear.by_parameter, row.transpose();
+      VectorXd right(_d + 1);
+      right << -linear.f, row.dot(guess - x);
+      const VectorXd step = Eigen::PartialPivLU<MatrixXd>(matrix).solve(right);
+      if (!step.allFinite()) return std::nullopt;
+      x += step;
+      if (step.norm() <= converged * (1.0 + x.norm())) return x;
+    }
+    return std::nullopt;
+  }
+
+  /// The unit null vector of (J, df/dp), on the side of `near`.
+  [[nodiscard]] VectorXd direction(const VectorXd& x, const VectorXd& near) const {
+    const Linear linear = at(x);
+    MatrixXd matrix(_d + 1, _d + 1);
+    matrix << linear.jacobian, linear.by_parameter, near.transpose();
+    const VectorXd out = Eigen::PartialPivLU<MatrixXd>(matrix).solve(VectorXd::Unit(_d + 1, _d));
+    return out.allFinite() ? VectorXd(out.normalized()) : near;
+  }
+
+  [[nodiscard]] Eigen::VectorXcd eigenvalues(const VectorXd& x) const {
+    return Eigen::EigenSolver<MatrixXd>(at(x).jacobian, false).eigenvalues();
+  }
+
+  /// The product of the sums of two eigenvalues, each divided by its moduli: real, and 0 at Hopf points.
+  [[nodiscard]] double hopf_function(const VectorXd& x) const {
+    const Eigen::VectorXcd values = eigenvalues(x);
+    Complex product = 1.0;
+    for (Index i = 0; i < values.size(); ++i)
+      for (Index l = i + 1; l < values.size(); ++l)
+        product *= (values(i) + values(l)) / (std::abs(values(i)) + std::abs(values(l)));
+    return product.real();
+  }
+
+  [[nodiscard]] std::optional<HopfPoint> hopf_at(const VectorXd& x) const;
+  [[nodiscard]] Equilibrium equilibrium(const VectorXd& x) const { return {{x.data(), x.data() + _d}, x(_d)}; }
+  [[nodiscard]] bool is_within(double parameter) const {
+    return parameter >= _options.parameter_from && parameter <= _options.parameter_to;
+  }
+  [[nodiscard]] const EquilibriumCurveOptions& options() const { return _options; }
+  [[nodiscard]] Index dimension() const { return _d; }
+  [[nodiscard]] const std::string& name() const { return _name; }
+  [[nodiscard]] double unit() const { return _unit; }
+
+ private:
+  const systems::System& _system;
+  const std::string& _name;
+  double _unit;
+  const EquilibriumCurveOptions& _options;
+  Index _d;
+};
+
+std::optional<HopfPoint> Curve::hopf_at(const VectorXd& x) const {
+  const Eigen::EigenSolver<MatrixXd> solver(at(x).jacobian, true);
+  const Eigen::VectorXcd values = solver.eigenvalues();
+  const double largest = values.cwiseAbs().maxCoeff();
+  Index found = -1;
+  for (Index i = 0; i < values.size(); ++i)
+    if (values(i).imag() > cancels * largest && std::abs(values(i).real()) < cancels * largest &&
+        (found < 0 || std::abs(values(i).real()) < std::abs(values(found).real())))
+      found = i;
+  if (found < 0) return std::nullopt;  // two real eigenvalues cancel: a neutral saddle
+  HopfPoint out;
+  out.at = equilibrium(x);
+  out.period = 2.0 * std::numbers::pi / values(found).imag();
+  out.real_part = values(found).real();
+  Eigen::VectorXcd v = solver.eigenvectors().col(found);
+  // The phase in which z(s = 0) is largest.
+  const Complex square = (v.array() * v.array()).sum();
+  if (std::abs(square) > 0.0) v *= std::polar(1.0, -0.5 * std::arg(square));
+  const double length = v.real().norm();
+  loop::Loop loop = loop::constant_loop(out.at.state, out.period, _options.cutoff);
+  loop.parameters = {out.at.parameter};
+  loop::Loop oscillation = loop;
+  std::fill(oscillation.modes.begin(), oscillation.modes.end(), 0.0);
+  for (Index i = 0; i < _d; ++i) {  // Re(v e^{is})
+    oscillation.cosine(1, static_cast<int>(i)) = v(i).real() / length;
+    oscillation.sine(1, static_cast<int>(i)) = -v(i).imag() / length;
+  }
+  out.direction.modes = std::move(oscillation.modes);
+  out.isotropy = loop::find_isotropy(_system.structure(), loop::moved(std::move(loop), out.direction, 1.0),
+                                     loop::symmetry_tolerance);
+  return out;
+}
+
+/// One side of the curve, from a node on.
+class Side {
+ public:
+  Side(const Curve& curve, Node start) : _curve(curve), _nodes{std::move(start)} {}
+
+  void run() {
+    const EquilibriumCurveOptions& options = _curve.options();
+    double length = options.largest_step;
+    while (_end.empty()) {
+      if (static_cast<int>(_nodes.size()) >= options.most_points)
+        _end = fmt::format("{} points", options.most_points);
+      else if (!step(length))
+        break;
+    }
+  }
+  [[nodiscard]] const std::vector<Node>& nodes() const { return _nodes; }
+  [[nodiscard]] const std::string& end() const { return _end; }
+
+ private:
+  bool step(double& length) {
+    const EquilibriumCurveOptions& options = _curve.options();
+    const Node& last = _nodes.back();
+    const Index p = _curve.dimension();
+    while (length >= options.smallest_step) {
+      int steps = 0;
+      const auto x = _curve.corrected(last.x + length * last.direction, last.direction, steps);
+      if (x) {
+        Node next{*x, _curve.direction(*x, last.direction)};
+        if (next.direction.dot(last.direction) >= least_cosine) return accept(std::move(next), steps, length);
+      }
+      length *= 0.5;
+    }
+    _end = fmt::format("no equilibrium further on from {} = {:.9g}", _curve.name(), last.x(p) * _curve.unit());
+    return false;
+  }
+
+  bool accept(Node next, int steps, double& length) {
+    const EquilibriumCurveOptions& options = _curve.options();
+    const Index p = _curve.dimension();
+    if (!_curve.is_within(next.x(p))) {
+      const double limit = next.x(p) > options.parameter_to ? options.parameter_to : options.parameter_from;
+      const double share = (limit - _nodes.back().x(p)) / (next.x(p) - _nodes.back().x(p));
+      VectorXd guess = _nodes.back().x + share * (next.x - _nodes.back().x);
+      guess(p) = limit;
+      int more = 0;
+      if (const auto x = _curve.corrected(guess, VectorXd::Unit(p + 1, p), more))
+        _nodes.push_back({*x, _curve.direction(*x, next.direction)});
+      _end = fmt::format("parameter limit ({} = {:g})", _curve.name(), limit * _curve.unit());
+      return false;
+    }
+    _nodes.push_back(std::move(next));
+    if ((_nodes.back().x - _nodes.front().x).norm() > options.largest_state) {
+      _end = "it leaves for infinity";
+      return false;
+    }
+    if (_nodes.size() > least_round && (_nodes.back().x - _nodes.front().x).norm() < length) {
+      _end = "closed curve";
+      return false;
+    }
+    if (steps <= few_steps) length = std::min(options.largest_step, growth * length);
+    return true;
+  }
+
+  const Curve& _curve;
+  std::vector<Node> _nodes;
+  std::string _end;
+};
+
+/// The zero of a function of places between two nodes: the corrected place on the chord, share of the way.
+template <class F>
+std::optional<VectorXd> zero_between(const Curve& curve, const Node& a, const Node& b, const F& function) {
+  const VectorXd chord = b.x - a.x;
+  std::optional<VectorXd> place;
+  const auto there = [&](double share) {
+    int steps = 0;
+    place = curve.corrected(a.x + share * chord, chord.normalized(), steps);
+    return place ? function(*place) : std::numeric_limits<double>::quiet_NaN();
+  };
+  const auto found = numerics::locate_root(there, 0.0, 1.0, located_to);
+  if (!found) return std::nullopt;
+  static_cast<void>(there(found->position));
+  return place;
+}
+
+}  // namespace
+
+EquilibriumCurve follow_equilibrium(const systems::System& system, std::span<const double> start,
+                                    const EquilibriumCurveOptions& options) {
+  core::require(!system.family_scalars().free.empty(), "equilibria are followed in a parameter that moves");
+  core::require(static_cast<int>(start.size()) == system.dimension(), "a state of another dimension");
+  const Curve curve(system, options);
+  const Index d = curve.dimension();
+  VectorXd x(d + 1);
+  for (Index i = 0; i < d; ++i) x(i) = start[static_cast<std::size_t>(i)];
+  x(d) = system.parameters().at(curve.name()) / curve.unit();
+  int steps = 0;
+  const auto first = curve.corrected(x, VectorXd::Unit(d + 1, d), steps);
+  if (!first) throw core::NumericalError("Newton's method reaches no equilibrium from the start of the curve");
+  const VectorXd ahead = curve.direction(*first, VectorXd::Unit(d + 1, d));
+  Side up(curve, {*first, ahead});
+  Side down(curve, {*first, -ahead});
+  up.run();
+  down.run();
+
+  std::vector<Node> nodes(down.nodes().rbegin(), down.nodes().rend());
+  for (Node& node : nodes) node.direction *= -1.0;
+  nodes.insert(nodes.end(), up.nodes().begin() + 1, up.nodes().end());
+  EquilibriumCurve out;
+  out.ends = {down.end(), up.end()};
+  for (const Node& node : nodes)
+    out.points.push_back({curve.equilibrium(node.x), {node.direction.data(), node.direction.data() + d + 1}});
+  const std::size_t begin = down.nodes().size() - 1;
+  const auto length = [&](std::size_t from, std::size_t to) {
+    double sum = 0.0;
+    for (std::size_t n = from; n < to; ++n) sum += (nodes[n + 1].x - nodes[n].x).norm();
+    return sum;
+  };
+  for (std::size_t n = 1; n < nodes.size(); ++n) {
+    const Node& a = nodes[n - 1];
+    const Node& b = nodes[n];
+    if (a.direction(d) * b.direction(d) < 0.0) {
+      const auto slope = [&](const VectorXd& at) { return curve.direction(at, a.direction)(d); };
+      if (const auto fold = zero_between(curve, a, b, slope)) out.folds.push_back(curve.equilibrium(*fold));
+    }
+    const auto hopf = [&](const VectorXd& at) { return curve.hopf_function(at); };
+    if (hopf(a.x) * hopf(b.x) > 0.0) continue;
+    const auto place = zero_between(curve, a, b, hopf);
+    if (!place) continue;
+    auto point = curve.hopf_at(*place);
+    if (!point) continue;
+    point->distance =
+        n > begin ? length(begin, n - 1) + (*place - a.x).norm() : length(n, begin) + (b.x - *place).norm();
+    out.hopf.push_back(std::move(*point));
+  }
+  return out;
+}
+
+}  // namespace orbweaver::starts

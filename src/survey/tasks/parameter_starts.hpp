@@ -1,0 +1,24 @@
+#pragma once
+
+#include <memory>
+
+#include "orbweaver/core/mpi/team.hpp"
+#include "orbweaver/scene/scene.hpp"
+#include "orbweaver/systems/system.hpp"
+#include "tasks/payload/work.hpp"
+
+namespace orbweaver::survey {
+
+/// The Hopf points on the curve of equilibria through `work.point`, as places where families start.
+[[nodiscard]] SweepOutcome hopf_starts(const scene::Scene& scene, const systems::System& system, const SweepWork& work);
+
+/// The equilibrium `work.point` of a driven system whose drive is at zero, while the phase turns once: the drive is
+/// raised from there.
+[[nodiscard]] SweepOutcome drive_start(const systems::System& system, const SweepWork& work);
+
+/// The orbit near the trajectory from `work.point` over `work.period`, with its symmetries; two starts, one to each
+/// side. Throws NumericalError where Newton's method finds none.
+[[nodiscard]] SweepOutcome state_start(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
+                                       const SweepWork& work, core::Team* team);
+
+}  // namespace orbweaver::survey

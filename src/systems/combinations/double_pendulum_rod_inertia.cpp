@@ -1,0 +1,8 @@
+#include "double_pendulum.hpp"
+#include "model_system.hpp"
+
+namespace orbweaver::systems {
+
+template struct Registered<DoublePendulum<RodInertia>>;
+
+}  // namespace orbweaver::systems

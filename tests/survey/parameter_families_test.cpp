@@ -1,0 +1,183 @@
+// Surveys of families in a parameter, against what is known of them and against trajectories.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+
+#include "orbweaver/survey/verify/verify.hpp"
+#include "survey/atlas.hpp"
+#include "survey/atlas_records.hpp"
+
+namespace {
+
+using namespace orbweaver;
+
+scene::Scene scene_of(const std::string& name, const std::vector<std::string>& more = {}) {
+  return scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/" + name, more);
+}
+
+TEST(ParameterFamilies, VanDerPolHasTheKnownPeriods) {
+  const core::Communicator comm;
+  const survey::Summary summary = test::run(comm, scene_of("van_der_pol.yaml"), "van_der_pol");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  ASSERT_EQ(summary.families.size(), 1U);
+  const test::Atlas atlas(summary.atlas);
+  const std::vector<double> mu = atlas.column("parameter", "Cycle");
+  const std::vector<double> period = atlas.column("period", "Cycle");
+  const auto& steps = atlas.orbits().integers("step");
+  const auto start = static_cast<std::size_t>(std::find(steps.begin(), steps.end(), 0) - steps.begin());
+  ASSERT_LT(start, mu.size());
+  EXPECT_GT(start, 0U) << "it runs to both sides";
+  EXPECT_EQ(mu[start], 1.0);
+  EXPECT_NEAR(period[start], 6.663286859323130, 1e-11);
+  EXPECT_EQ(mu.back(), 10.0);
+  EXPECT_NEAR(period.back(), 19.07836956694, 1e-11);
+  EXPECT_EQ(mu.front(), 0.01);
+  EXPECT_TRUE(std::is_sorted(mu.begin(), mu.end()));
+  EXPECT_NEAR(period.front(), 2.0 * std::numbers::pi * (1.0 + 0.01 * 0.01 / 16.0), 1e-9) << "Lindstedt's series";
+}
+
+// The oscillations of mu = 0 are circles of any size. The Hopf point lies on the limit, where rounding has it on either
+// side.
+TEST(ParameterFamilies, OrbitsOfOneParameterAndPeriodAreNotFollowed) {
+  const core::Communicator comm;
+  const scene::Scene scene =
+      scene_of("van_der_pol.yaml", {"starts={fixed_points: {grid: [[0]]}}", "limits.parameter=[0, 10]"});
+  const survey::Summary summary = test::run(comm, scene, "circles");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  ASSERT_EQ(summary.families.size(), 1U);
+  EXPECT_GT(summary.families.front().orbits, 0);
+  EXPECT_NE(summary.families.front().end_reason.find("not isolated"), std::string::npos)
+      << summary.families.front().end_reason;
+}
+
+TEST(ParameterFamilies, LorenzGoesFromItsHopfPointsToTheHomoclinicOrbits) {
+  constexpr double hopf = 470.0 / 19.0;
+  constexpr double homoclinic = 13.926557407;
+  const core::Communicator comm;
+  // With one equilibrium given the Hopf point of the other is found on the same curve.
+  for (const std::string grid : {"[[-8, 0, 8], [-8, 0, 8], [0, 27]]", "[[-8], [-8], [27]]"}) {
+    SCOPED_TRACE(grid);
+    const survey::Summary summary =
+        test::run(comm, scene_of("lorenz.yaml", {"starts.fixed_points.grid=" + grid}), "lorenz");
+    if (!comm.is_root()) continue;
+    EXPECT_EQ(summary.failures, 0U);
+    ASSERT_EQ(summary.families.size(), 2U);
+    const bool both = grid.size() > 20;
+    EXPECT_EQ(summary.families[0].name, "Equilibrium 1, Hopf point 1");
+    EXPECT_EQ(summary.families[1].name, both ? "Equilibrium 3, Hopf point 1" : "Equilibrium 1, Hopf point 2");
+    const test::Atlas atlas(summary.atlas);
+    for (const survey::FamilySummary& family : summary.families) {
+      const std::vector<double> rho = atlas.column("parameter", family.name);
+      const std::vector<double> period = atlas.column("period", family.name);
+      const double amplitude = hopf - rho.front();  // rho leaves with the square of the amplitude
+      EXPECT_GT(amplitude, 0.0);
+      EXPECT_LT(amplitude, 2e-3);
+      EXPECT_NEAR(period.front(), 2.0 * std::numbers::pi / std::sqrt(8.0 / 3.0 * (hopf + 10.0)), 1e-3);
+      EXPECT_EQ(period.back(), 30.0);
+      EXPECT_NEAR(rho.back(), homoclinic, 1e-8);
+    }
+  }
+}
+
+/// x'' + 0.1 x' + x + x^3 = 0.3 cos(frequency t) by the classical Runge-Kutta method from (x, v, phase): the largest
+/// |x| of the last 100 of 3000 time units.
+double late_amplitude(std::array<double, 3> state, double frequency) {
+  constexpr double step = 0.01;
+  constexpr int steps = 300000;
+  constexpr int late = 290000;
+  const auto rate = [&](const std::array<double, 3>& s) {
+    const double force = 0.3 * std::cos(s[2]) - 0.1 * s[1] - s[0] - s[0] * s[0] * s[0];
+    return std::array<double, 3>{s[1], force, frequency};
+  };
+  const auto moved = [](std::array<double, 3> s, const std::array<double, 3>& k, double by) {
+    for (std::size_t i = 0; i < 3; ++i) s[i] += by * k[i];
+    return s;
+  };
+  double largest = 0.0;
+  for (int n = 0; n < steps; ++n) {
+    const auto a = rate(state);
+    const auto b = rate(moved(state, a, 0.5 * step));
+    const auto c = rate(moved(state, b, 0.5 * step));
+    const auto d = rate(moved(state, c, step));
+    for (std::size_t i = 0; i < 3; ++i) state[i] += step / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]);
+    if (n >= late) largest = std::max(largest, std::abs(state[0]));
+  }
+  return largest;
+}
+
+TEST(ParameterFamilies, DuffingFoldsWhereTrajectoriesJump) {
+  const core::Communicator comm;
+  const survey::Summary summary = test::run(comm, scene_of("duffing.yaml"), "duffing");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  ASSERT_EQ(summary.families.size(), 1U);
+  const test::Atlas atlas(summary.atlas);
+  ASSERT_EQ(atlas.crossings().rows(), 2U);
+  std::vector<std::array<double, 3>> states;
+  std::vector<double> frequencies;
+  for (std::size_t row = 0; row < 2; ++row) {
+    EXPECT_EQ(atlas.crossings().texts("kind")[row], "fold-parameter");
+    frequencies.push_back(atlas.crossings().reals("parameter")[row]);
+    EXPECT_NEAR(atlas.crossings().reals("period")[row] * frequencies[row], 2.0 * std::numbers::pi, 1e-10);
+    const auto state = atlas.crossings().reals("state").begin() + static_cast<std::ptrdiff_t>(3 * row);
+    states.push_back({state[0], state[1], state[2]});
+  }
+  EXPECT_NEAR(frequencies[0], 1.7797, 1e-4);
+  EXPECT_NEAR(frequencies[1], 1.3242, 1e-4);
+  // Beyond the upper fold the strong answer is gone, below the lower one the weak one: on the other sides both stay.
+  constexpr double beside = 1e-3;
+  constexpr double strong = 1.2;
+  constexpr double weak = 0.7;
+  EXPECT_GT(late_amplitude(states[0], frequencies[0] - beside), strong);
+  EXPECT_LT(late_amplitude(states[0], frequencies[0] + beside), weak);
+  EXPECT_LT(late_amplitude(states[1], frequencies[1] + beside), weak);
+  EXPECT_GT(late_amplitude(states[1], frequencies[1] - beside), strong);
+}
+
+/// Duffing's response, and copies of it with changed numbers and checksums that match them.
+TEST(ParameterFamilies, ChangedNumbersAreFound) {
+  constexpr double part = 1e-8;
+  const core::Communicator comm;
+  const survey::Summary summary = test::run(comm, scene_of("duffing.yaml"), "response");
+  const test::Atlas atlas(summary.atlas);
+  const archive::Records records = test::complete_records_of(atlas);
+  const auto named = [&](const archive::Records& changed) {
+    const auto folder = test::fresh_folder(fmt::format("changed{}", comm.size()), comm.get());
+    if (comm.is_root()) test::write_sample_atlas(folder, atlas.header(), changed);
+    MPI_Barrier(comm.get());
+    std::set<std::string> rows;
+    for (const survey::Objection& objection : survey::verify(comm, folder / "atlas.h5").objections)
+      rows.insert(fmt::format("{} {}", objection.table, objection.row));
+    return rows;
+  };
+  EXPECT_TRUE(named(records).empty()) << fmt::format("{}", fmt::join(named(records), "; "));
+  const std::vector<std::pair<std::string, std::function<void(archive::Records&)>>> changes{
+      {"orbits 5", [](auto& r) { r.orbits[5].parameter *= 1.0 + part; }},
+      {"orbits 12", [](auto& r) { r.orbits[12].period *= 1.0 + part; }},
+      {"orbits 20", [](auto& r) { r.orbits[20].modes[r.orbits[20].modes.size() / 3] += part; }},
+      {"orbits 30", [](auto& r) { r.orbits[30].stability[0] += part; }},
+      {"orbits 40", [](auto& r) { r.orbits[40].parameter = archive::not_computed; }},
+      {"crossings 0", [](auto& r) { r.crossings[0].parameter *= 1.0 + part; }},
+      {"crossings 1", [](auto& r) { r.crossings[1].period *= 1.0 + part; }},
+  };
+  archive::Records changed = records;
+  for (const auto& [place, change] : changes) change(changed);
+  const std::set<std::string> found = named(changed);
+  if (!comm.is_root()) return;
+  for (const auto& [place, change] : changes)
+    EXPECT_TRUE(found.contains(place)) << place << "; found were " << fmt::format("{}", fmt::join(found, "; "));
+}
+
+}  // namespace

@@ -1,0 +1,31 @@
+# Families in a parameter: the same archive on 1, 2 and 3 ranks, which is verified, and after kills.
+foreach(name IN ITEMS van_der_pol lorenz duffing)
+  set(archives "")
+  set(required "")
+  foreach(ranks IN ITEMS 1 2 3)
+    set(folder "${runs}/system.${name}.ranks${ranks}/out")
+    system_test(${name}.ranks${ranks} ${ranks} 0 "OUT=0 contradictions|, 0 failed|archive: " "FRESH=${folder}"
+      "HAS=${folder}/atlas.h5" survey "${PROJECT_SOURCE_DIR}/drivers/scenes/${name}.yaml" -o out)
+    set_tests_properties(system.${name}.ranks${ranks} PROPERTIES FIXTURES_SETUP "${name}${ranks}")
+    list(APPEND archives "${folder}/atlas.h5")
+    list(APPEND required "${name}${ranks}")
+  endforeach()
+  orbweaver_add_ctest(system.${name}.same_archive 1 system 60 $<TARGET_FILE:compare_archives> ${archives})
+  set_tests_properties(system.${name}.same_archive PROPERTIES FIXTURES_REQUIRED "${required}")
+  system_test(${name}.verify 2 0 "OUT=section points: all hold" verify "${runs}/system.${name}.ranks1/out/atlas.h5")
+  set_tests_properties(system.${name}.verify PROPERTIES FIXTURES_REQUIRED "${name}1")
+endforeach()
+orbweaver_add_ctest(system.lorenz.changed_bytes 1 system 300 "${CMAKE_CURRENT_SOURCE_DIR}/changed_bytes.sh"
+  $<TARGET_FILE:orbweaver> "${runs}/system.lorenz.ranks1/out/atlas.h5" 30)
+set_tests_properties(system.lorenz.changed_bytes PROPERTIES FIXTURES_REQUIRED lorenz1)
+system_test(lorenz.show 1 0 "OUT=rho          13.9266 .. 24.7356|Equilibrium 1, Hopf point 1|Equilibrium 3, Hopf point 1"
+  show "${runs}/system.lorenz.ranks1/out/atlas.h5")
+system_test(duffing.show_crossings 1 0 "OUT=drive_frequency|1.7797|fold-parameter"
+  show "${runs}/system.duffing.ranks1/out/atlas.h5" crossings)
+set_tests_properties(system.lorenz.show PROPERTIES FIXTURES_REQUIRED lorenz1)
+set_tests_properties(system.duffing.show_crossings PROPERTIES FIXTURES_REQUIRED duffing1)
+
+set(of_pendulum "${scene}")
+set(scene "${PROJECT_SOURCE_DIR}/drivers/scenes/lorenz.yaml")
+broken_off_test(lorenz.kills system 300 kills.sh 5 1 -- --set output.flush_seconds=0.1 --set output.flush_orbits=5)
+set(scene "${of_pendulum}")
