@@ -144,7 +144,11 @@ export class Store {
   private write(): void {
     const fragment = this.fragment();
     if (location.hash.slice(1) === fragment) return;
-    history.replaceState(null, '', `#${fragment}`);
+    try {
+      history.replaceState(null, '', `#${fragment}`);
+    } catch {
+      // Safari allows a hundred changes in half a minute; the next one comes.
+    }
   }
 
   private read(): void {
