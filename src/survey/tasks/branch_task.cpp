@@ -410,7 +410,7 @@ void BranchTask::folds_from_birth(const std::vector<continuation::FamilyCurve::K
   const double birth = known[0].position;
   std::vector<continuation::CurvePoint> points;  // from the first orbit towards the birth
   for (double away = known[1].position - birth; points.size() < places_from_birth; away *= nearer_to_birth) {
-    auto point = curve.at(birth + away, true);
+    auto point = curve.at(points.empty() ? known[1].position : birth + away, true);
     if (!point || point->tangent.empty()) break;
     points.push_back(std::move(*point));
   }
