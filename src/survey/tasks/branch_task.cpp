@@ -29,9 +29,9 @@ constexpr std::size_t kept_orbits = 5;
 /// First orbits from which, with the one where the family is born, those in between are predicted: a cubic.
 constexpr std::size_t orbits_from_birth = 3;
 
-/// Places from a family's first orbit towards its birth at which slopes tell folds, each so much nearer to the birth
-/// than the one before: the last is a thousandth of the way from it.
-constexpr std::size_t places_from_birth = 6;
+/// Places from a family's second orbit to its birth at which slopes tell folds, from the first orbit on each so much
+/// nearer to the birth than the one before: the last is a thousandth of the first orbit's way from it.
+constexpr std::size_t places_from_birth = 7;
 constexpr double nearer_to_birth = 0.25;
 
 /// Test functions of a family's birth that are smaller vanish there, the family's own for one. Their error bounds say
@@ -408,28 +408,27 @@ void BranchTask::folds_from_birth(const std::vector<continuation::FamilyCurve::K
   continuation::FamilyCurve curve(_system, _start.isotropy, branch_options(_scene, _team));
   for (const continuation::FamilyCurve::Known& one : known) curve.add(one);
   const double birth = known[0].position;
-  std::vector<continuation::CurvePoint> points;  // from the first orbit towards the birth
-  for (double away = known[1].position - birth; points.size() < places_from_birth; away *= nearer_to_birth) {
-    auto point = curve.at(points.empty() ? known[1].position : birth + away, true);
+  std::vector<double> places{known[2].position, known[1].position};
+  while (places.size() < places_from_birth) places.push_back(birth + nearer_to_birth * (places.back() - birth));
+  std::vector<continuation::CurvePoint> points;  // from the second orbit towards the birth
+  for (const double place : places) {
+    auto point = curve.at(place, true);
     if (!point || point->tangent.empty()) break;
     points.push_back(std::move(*point));
   }
-  const auto look = [&](Kind kind, const auto& slope, double at_first, double at_second) {
-    const double seen = visible_change * std::abs(at_first);
-    double beyond = at_second - at_first;
-    double to = known[2].position;
-    for (const continuation::CurvePoint& point : points) {
-      const double here = slope(point);
-      if (!(std::abs(here) * (point.position - birth) > seen)) return;
-      if (here * beyond < 0.0 && std::abs(beyond) > seen) add_event({kind, {}, false}, point.position, to, known);
-      beyond = here * (point.position - birth);
-      to = point.position;
+  const auto look = [&](Kind kind, const auto& slope, double size) {
+    double beyond = 0.0;
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      const double here = slope(points[n]);
+      if (!(std::abs(here) * (points[n].position - birth) > visible_change * std::abs(size))) return;
+      if (here * beyond < 0.0) add_event({kind, {}, false}, points[n].position, points[n - 1].position, known);
+      beyond = here;
     }
   };
-  look(Kind::fold_period, bifurcation::period_slope, known[1].loop.period, known[2].loop.period);
+  look(Kind::fold_period, bifurcation::period_slope, known[1].loop.period);
   look(
       Kind::fold_energy, [&](const auto& point) { return bifurcation::energy_slope(*_system, point); },
-      continuation::energy_of(*_system, known[1].loop), continuation::energy_of(*_system, known[2].loop));
+      continuation::energy_of(*_system, known[1].loop));
 }
 
 void BranchTask::add_event(const bifurcation::Event& event, double from, double to,
