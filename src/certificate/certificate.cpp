@@ -213,52 +213,38 @@ class Certifier::Parts {
     for (std::size_t m = 0; m < ends.size(); ++m) found.apart = std::max(found.apart, distance(ends[m], (*series)[m]));
   }
 
-  // Closure once around, and how much an error grows on the way. NaN where the orbit is so unstable that the integration
-  // leaves the region where the system is defined. A state displaced in the energy goes along in the register of the
-  // orbit's own.
+  // Closure once around, and how much an error grows on the way where that is far off. NaN where the orbit is so
+  // unstable that the integration leaves the region where the system is defined. The growth is that of integrations
+  // with steps of their own: what rounding grows to on the way counts too.
   void once_around(Certificate& found) const {
-    States starts{_states.front()};
-    if (!_system.structure().conserved.empty()) {
-      State gradient(_states.front().size());
-      _system.conserved_gradient(0, _states.front(), gradient);
-      if (norm(gradient) > 0.0) starts.push_back(displaced_along(gradient, found.reach));
-    }
-    for (; !starts.empty(); starts.pop_back()) try {
-        const States ends = integrate_together(_system, starts, _loop->period, _options.tolerance);
-        found.single_shot = distance(ends.front(), _states.back());
-        if (!(found.single_shot > far_return * found.reach)) return;
-        if (ends.size() > 1)
-          found.displaced_growth = distance(ends[1], ends[0]) / (displaced * found.reach);
-        else if (_system.structure().conserved.empty())
-          found.displaced_growth = growth_in_all_directions(ends.front(), found.reach);
-        return;
-      } catch (const core::NumericalError&) {  // the displaced one may have left, and the orbit's own not
-      }
-  }
-
-  [[nodiscard]] State displaced_along(const State& direction, double reach) const {
-    State moved = _states.front();
-    const double step = displaced * reach / norm(direction);
-    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += step * direction[i];
-    return moved;
-  }
-
-  // NaN where one of them leaves.
-  [[nodiscard]] double growth_in_all_directions(const State& end, double reach) const {
-    States starts;
-    for (std::size_t i = 0; i < end.size(); ++i) {
-      State direction(end.size(), 0.0);
-      direction[i] = 1.0;
-      starts.push_back(displaced_along(direction, reach));
-    }
-    double largest = unknown;
     try {
-      for (const State& other : integrate_together(_system, starts, _loop->period, _options.tolerance))
-        largest = std::fmax(largest, distance(other, end) / (displaced * reach));
+      const State end = integrate(_system, _states.front(), _loop->period, _options.tolerance);
+      found.single_shot = distance(end, _states.back());
+      if (!(found.single_shot > far_return * found.reach)) return;
+      double largest = unknown;
+      for (const State& direction : displacements()) {
+        const double length = norm(direction);
+        if (!(length > 0.0)) continue;
+        State moved = _states.front();
+        for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += displaced * found.reach / length * direction[i];
+        const State other = integrate(_system, moved, _loop->period, _options.tolerance);
+        largest = std::fmax(largest, distance(other, end) / (displaced * found.reach));
+      }
+      found.displaced_growth = largest;
     } catch (const core::NumericalError&) {
-      return unknown;
     }
-    return largest;
+  }
+
+  // The gradient of the energy, or, where nothing is conserved, every coordinate.
+  [[nodiscard]] States displacements() const {
+    const std::size_t d = _states.front().size();
+    States directions;
+    if (_system.structure().conserved.empty()) {
+      for (std::size_t i = 0; i < d; ++i) directions.emplace_back(d, 0.0)[i] = 1.0;
+    } else {
+      _system.conserved_gradient(0, _states.front(), directions.emplace_back(d));
+    }
+    return directions;
   }
 
   void conserved(Certificate& found) const {

@@ -31,6 +31,11 @@ constexpr std::size_t kept_orbits = 5;
 /// First orbits from which, with the one where the family is born, those in between are predicted: a cubic.
 constexpr std::size_t orbits_from_birth = 3;
 
+/// Places from a family's second orbit to its birth at which slopes tell folds, from the first orbit on each so much
+/// nearer to the birth than the one before: the last is a thousandth of the first orbit's way from it.
+constexpr std::size_t places_from_birth = 7;
+constexpr double nearer_to_birth = 0.25;
+
 /// Test functions of a family's birth that are smaller vanish there, the family's own for one. Their error bounds say
 /// nothing: they take a Newton step, and the orbits of two families lie side by side. The crossing is located to 1e-9.
 constexpr double zero_at_birth = 1e-6;
@@ -45,6 +50,11 @@ constexpr double nearly_at_rest = 1e-5;
 /// Between an equilibrium and the first orbit a test function changes with the square of the amplitude. Of its larger
 /// modulus, but 0.1 at least: where it changes by more, the fourth power may give it zeros in pairs. Not measured.
 constexpr double largest_change = 0.1;
+/// Relative to the equilibrium's: a period or an energy that is asked for and is no further from it is its own.
+constexpr double at_equilibrium = 1e-10;
+/// Relative to their size, of changes of T and E: ten times what a fold is seen by (bifurcation/fold_watch), for
+/// what differences of them are off.
+constexpr double visible_change = 1e-9;
 
 continuation::Options options_of(const scene::Scene& scene, const BranchWork& work, core::Team* team) {
   continuation::Options options = branch_options(scene, team);
@@ -231,6 +241,9 @@ bool BranchTask::take(const continuation::Orbit& orbit) {
   _curve.add(orbit.arclength, orbit.loop, kept_orbits);
   if (_outcome.orbits > 0 && _curve.known().size() == orbits_from_birth) detect_from_birth();
   if (arrive(orbit)) return false;
+  if (!_last && _options.too_far && !(_work.amplitude > 0.0))  // a fold may lie between this orbit and the next
+    (void)_folds.advance(orbit.arclength - continuation::arclength_between(_start.base, orbit.loop),
+                         _start.base.period, continuation::energy_of(*_system, _start.base));
   const std::optional<spectrum::Stability>& stability = stability_at(orbit);
   detect(orbit, stability);
   if (_last) solve_requested(orbit);
@@ -276,13 +289,51 @@ bool BranchTask::jumped(const continuation::Orbit& from, const continuation::Orb
                                  {to, *after});
 }
 
-/// Whether, between the equilibrium and the first orbit, indices pass what the survey looks for, or may do so. Families
-/// of one resonance start at one amplitude, and what they pass among each other nearer is known.
+/// Whether, between the equilibrium and the first orbit, lies what the survey looks for.
 bool BranchTask::is_too_far(const continuation::Orbit& first) {
-  if (!_at_rest) {
-    const loop::Loop small = loop::moved(_start.base, _start.direction, nearly_at_rest / _start.direction.norm());
-    _at_rest = test_point(0.0, stability_of(*_system, small, _start.isotropy, _team));
-  }
+  const loop::Loop small = loop::moved(_start.base, _start.direction, nearly_at_rest / _start.direction.norm());
+  if (passes_index(small, first)) return true;
+  return !(_work.amplitude > 0.0) && (has_requested(first) || has_turned(small, first));
+}
+
+bool BranchTask::has_requested(const continuation::Orbit& first) const {
+  const auto passes = [](double rest, double there) {
+    return [rest, there](double wanted) {
+      return (wanted - rest) * (wanted - there) < 0.0 && std::abs(wanted - rest) > at_equilibrium * std::abs(rest);
+    };
+  };
+  const std::vector<double>& periods = _scene.events.periods;
+  const std::vector<double>& energies = _scene.events.energies;
+  return std::any_of(periods.begin(), periods.end(), passes(_start.base.period, first.loop.period)) ||
+         std::any_of(energies.begin(), energies.end(),
+                     passes(continuation::energy_of(*_system, _start.base), first.energy));
+}
+
+/// Whether T or E turns: both change with the square of the amplitude and with its fourth power, which the orbit of
+/// half the amplitude tells.
+bool BranchTask::has_turned(const loop::Loop& small, const continuation::Orbit& first) const {
+  continuation::FamilyCurve curve(_system, _start.isotropy, branch_options(_scene, _team));
+  const double length = continuation::arclength_between(small, first.loop);
+  curve.add(0.0, small);
+  curve.add(length, first.loop);
+  const std::optional<continuation::CurvePoint> half = curve.at(0.5 * length);
+  if (!half) return false;
+  const auto turns = [](double rest, double middle, double there) {
+    const double change = there - rest;
+    const double by_square = (16.0 * (middle - rest) - change) / 3.0;
+    const double at_first = 2.0 * change - by_square;  // half the amplitude times the slope there
+    const double seen = visible_change * std::max(std::abs(rest), std::abs(there));
+    return std::abs(by_square) > seen && std::abs(at_first) > seen && by_square * at_first < 0.0;
+  };
+  return turns(_start.base.period, half->loop.period, first.loop.period) ||
+         turns(continuation::energy_of(*_system, _start.base), continuation::energy_of(*_system, half->loop),
+               first.energy);
+}
+
+/// Whether indices pass what the survey looks for, or may do so. Families of one resonance start at one amplitude, and
+/// what they pass among each other nearer is known.
+bool BranchTask::passes_index(const loop::Loop& small, const continuation::Orbit& first) {
+  if (!_at_rest) _at_rest = test_point(0.0, stability_of(*_system, small, _start.isotropy, _team));
   const bool is_resonant = _work.amplitude > 0.0;
   const bifurcation::TestPoint there = test_point(0.0, stability_at(first));
   for (std::size_t f = 0; f < _functions.size(); ++f) {
@@ -373,6 +424,37 @@ void BranchTask::detect_from_birth() {
       add_event({bifurcation::Event::Kind::test_function, _functions[f], false}, known[0].position, known[1].position,
                 known);
   }
+  folds_from_birth(known);
+}
+
+/// Folds that the orbits from the first one on do not show: on the way from the birth to it, and on that to the second.
+void BranchTask::folds_from_birth(const std::vector<continuation::FamilyCurve::Known>& known) {
+  using Kind = bifurcation::Event::Kind;
+  if (known.size() < 3) return;
+  continuation::FamilyCurve curve(_system, _start.isotropy, branch_options(_scene, _team));
+  for (const continuation::FamilyCurve::Known& one : known) curve.add(one);
+  const double birth = known[0].position;
+  std::vector<double> places{known[2].position, known[1].position};
+  while (places.size() < places_from_birth) places.push_back(birth + nearer_to_birth * (places.back() - birth));
+  std::vector<continuation::CurvePoint> points;  // from the second orbit towards the birth
+  for (const double place : places) {
+    auto point = curve.at(place, true);
+    if (!point || point->tangent.empty()) break;
+    points.push_back(std::move(*point));
+  }
+  const auto look = [&](Kind kind, const auto& slope, double size) {
+    double beyond = 0.0;
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      const double here = slope(points[n]);
+      if (!(std::abs(here) * (points[n].position - birth) > visible_change * std::abs(size))) return;
+      if (here * beyond < 0.0) add_event({kind, {}, false}, points[n].position, points[n - 1].position, known);
+      beyond = here;
+    }
+  };
+  look(Kind::fold_period, bifurcation::period_slope, known[1].loop.period);
+  look(
+      Kind::fold_energy, [&](const auto& point) { return bifurcation::energy_slope(*_system, point); },
+      continuation::energy_of(*_system, known[1].loop));
 }
 
 void BranchTask::add_event(const bifurcation::Event& event, double from, double to,

@@ -42,6 +42,9 @@ class BranchTask {
   const std::optional<spectrum::Stability>& stability_at(const continuation::Orbit& orbit);
   bool jumped(const continuation::Orbit& from, const continuation::Orbit& to);
   [[nodiscard]] bool is_too_far(const continuation::Orbit& first);
+  bool passes_index(const loop::Loop& small, const continuation::Orbit& first);
+  [[nodiscard]] bool has_requested(const continuation::Orbit& first) const;
+  [[nodiscard]] bool has_turned(const loop::Loop& small, const continuation::Orbit& first) const;
   bool arrive(const continuation::Orbit& orbit);
   [[nodiscard]] static bool is_nearly_two(const spectrum::Stability& stability);
   bool arrives_ahead();
@@ -49,6 +52,7 @@ class BranchTask {
   [[nodiscard]] continuation::Ending met() const;
   void detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability);
   void detect_from_birth();
+  void folds_from_birth(const std::vector<continuation::FamilyCurve::Known>& known);
   void add_event(const bifurcation::Event& event, double from, double to,
                  std::vector<continuation::FamilyCurve::Known> known);
   void solve_requested(const continuation::Orbit& orbit);

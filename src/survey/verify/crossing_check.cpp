@@ -94,7 +94,7 @@ class CrossingCheck {
     // Between its birth and its first orbit: there are no orbits beside it to find it from.
     const double first = _family.arclengths[0];
     const bool before_first = arclength < first && arclength > first - steps_away * (_family.arclengths[1] - first);
-    if (_family.parent >= 0 && before_first) return;
+    if (_family.parent >= 0 && (before_first || is_between_sides(arclength))) return;
     if (arclength < _family.arclengths.front() || arclength > _family.arclengths.back())
       return _claims.object("arclength", fmt::format("is {:.12g}; its family runs from {:.12g} to {:.12g}", arclength,
                                                      _family.arclengths.front(), _family.arclengths.back()));
@@ -447,6 +447,14 @@ class CrossingCheck {
       if (std::abs(period - real("period")) <= same_placement * real("period")) return true;
     }
     return false;
+  }
+
+  /// Whether it lies between the first orbits on both sides of a birth, as those before the first one of a single side.
+  [[nodiscard]] bool is_between_sides(double arclength) const {
+    const auto& steps = _atlas.archive().orbits().integers("step");
+    const std::size_t first = first_of(_family);
+    return first > 0 && steps[_family.first_orbit + first - 1] < 0 && steps[_family.first_orbit + first] >= 0 &&
+           _family.arclengths[first - 1] < arclength && arclength < _family.arclengths[first];
   }
 
   [[nodiscard]] std::size_t first_of(const TreeFamily& family) const {
