@@ -211,8 +211,8 @@ class Location {
     }
   }
 
-  /// An index passes 2 where the energy turns, and nothing leaves: what is nearly flat is so for another reason, such as
-  /// a small amplitude.
+  /// An index passes 2 where the energy turns, and nothing leaves: what is nearly flat is so for another reason, such
+  /// as a small amplitude.
   void as_fold(const bifurcation::Kernel& kernel) {
     _outcome.kind = fold_kind();
     _outcome.kernel_dimension = 0;

@@ -40,8 +40,8 @@ constexpr double both_bounds = 4.0;
 /// Between two bounds or integrations of one orbit whose loops differ by rounding.
 constexpr double bounds_factor = 64.0;
 constexpr double certificate_factor = 16.0;
-/// The same of bounds of multipliers, which are the largest of a few random probes: up to 800 apart in orbits of Lorenz'
-/// equations beside the origin, whose multipliers are 1e13 and more.
+/// The same of bounds of multipliers, which are the largest of a few random probes: up to 800 apart in orbits of
+/// Lorenz' equations beside the origin, whose multipliers are 1e13 and more.
 constexpr double probes_factor = 4096.0;
 /// Of the way between two orbits; and where no reversor fixes the phase: a branch measures it between loops that were
 /// begun nearly, not quite, where they are nearest to each other. By 8.5e-5 at most in 10,000 steps of the pendulum and
