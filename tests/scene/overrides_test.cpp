@@ -84,7 +84,7 @@ TEST(Overrides, TextHoldsThemAndReadsBackTheSame) {
 
 TEST(OverrideErrors, NameTheOverride) {
   EXPECT_EQ(message({"limits.perid=3"}),
-            "--set limits.perid=3: limits.perid: unknown key, expected one of period, energy, guards, families, steps, "
+            "--set limits.perid=3: limits.perid: unknown key, expected one of period, energy, parameter, guards, families, steps, "
             "time or task_time, got "
             "`perid`; "
             "did you mean `period`?");
