@@ -375,7 +375,8 @@ void FamilyDifferences::compare_ends(const Pair& pair) {
             by, allowed);
     };
     at_limit(survey::EndKind::period_limit, Invariant::period);
-    at_limit(survey::EndKind::energy_limit, Invariant::level);
+    at_limit(survey::EndKind::energy_limit, _a.in_parameter() ? Invariant::energy : Invariant::level);
+    at_limit(survey::EndKind::parameter_limit, Invariant::level);
   }
   if (turned) return;  // the columns hold one of the two
   const auto other_of = [](const std::vector<int>& match, int row) { return row < 0 ? -1 : match[index(row)]; };
