@@ -40,6 +40,7 @@ std::vector<Fold> FoldWatch::advance(double at, double period_there, double ener
   std::vector<Fold> folds;
   take(period, at, period_there, Fold::Quantity::period, folds);
   take(energy, at, energy_there, Fold::Quantity::energy, folds);
+  parameter.scale = std::max(parameter.scale, 1.0);  // that of the parameter, which may rest at 0
   take(parameter, at, parameter_there, Fold::Quantity::parameter, folds);
   return folds;
 }

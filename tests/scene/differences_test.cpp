@@ -50,7 +50,7 @@ const std::map<std::string, Case> cases{
     {"starts.fixed_points.letters", {"{}", ""}},  // none without names
     {"starts.sweep.period", {"auto", "[1, 13]"}},
     {"starts.sweep.step", {"auto", "0.02"}},
-    {"starts.states", {"[]", "[{state: [10, 0, 0.5, 0], period: 6.3, name: Eight}]"}},
+    {"starts.states", {"[]", "[{state: [15, 0, 0.5, 0], period: 6.3, name: Eight}]"}},
     {"continuation.step", {"adaptive", "0.5deg"}},
     {"continuation.start", {"0.5deg", "0.4deg"}},
     {"continuation.tolerance", {"1e-10", "1e-12"}},

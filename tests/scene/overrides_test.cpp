@@ -84,10 +84,8 @@ TEST(Overrides, TextHoldsThemAndReadsBackTheSame) {
 
 TEST(OverrideErrors, NameTheOverride) {
   EXPECT_EQ(message({"limits.perid=3"}),
-            "--set limits.perid=3: limits.perid: unknown key, expected one of period, energy, guards, families, steps, "
-            "time or task_time, got "
-            "`perid`; "
-            "did you mean `period`?");
+            "--set limits.perid=3: limits.perid: unknown key, expected one of period, energy, parameter, guards, "
+            "families, steps, time or task_time, got `perid`; did you mean `period`?");
   EXPECT_EQ(message({"limits.period=-3"}),
             "--set limits.period=-3: limits.period: expected a number > 0 or infinite, got `-3`; for example 30");
   EXPECT_EQ(message({"limits.period="}),

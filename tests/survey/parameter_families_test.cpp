@@ -138,7 +138,7 @@ TEST(ParameterFamilies, DuffingFoldsWhereTrajectoriesJump) {
   EXPECT_NEAR(frequencies[1], 1.3242, 1e-4);
   // Beyond the upper fold the strong answer is gone, below the lower one the weak one: on the other sides both stay.
   constexpr double beside = 1e-3;
-  constexpr double strong = 1.2;
+  constexpr double strong = 1.0;
   constexpr double weak = 0.7;
   EXPECT_GT(late_amplitude(states[0], frequencies[0] - beside), strong);
   EXPECT_LT(late_amplitude(states[0], frequencies[0] + beside), weak);
@@ -162,7 +162,8 @@ TEST(ParameterFamilies, ChangedNumbersAreFound) {
       rows.insert(fmt::format("{} {}", objection.table, objection.row));
     return rows;
   };
-  EXPECT_TRUE(named(records).empty()) << fmt::format("{}", fmt::join(named(records), "; "));
+  const std::set<std::string> unchanged = named(records);
+  EXPECT_TRUE(unchanged.empty()) << fmt::format("{}", fmt::join(unchanged, "; "));
   const std::vector<std::pair<std::string, std::function<void(archive::Records&)>>> changes{
       {"orbits 5", [](auto& r) { r.orbits[5].parameter *= 1.0 + part; }},
       {"orbits 12", [](auto& r) { r.orbits[12].period *= 1.0 + part; }},

@@ -33,6 +33,7 @@ void fill(test::Filler& filler, Loop& loop) {
   loop.modes = {-0.0, 5e-324, 1.7e308, -1.0 / 3.0, 0.0, 1e-17};
   loop.winding = {-0.0, 1e9};
   loop.time_map = {2.0 / 3.0, {-0.0, 1e-300}};
+  loop.parameters = {-0.0};
 }
 
 }  // namespace orbweaver::loop
@@ -112,6 +113,7 @@ TEST(Travellers, LoopsThatAreNoneAreRefused) {
   for (const auto& spoil :
        {+[](loop::Loop& loop) { loop.modes.pop_back(); }, +[](loop::Loop& loop) { loop.period = 0; },
         +[](loop::Loop& loop) { loop.modes[3] = std::nan(""); },
+        +[](loop::Loop& loop) { loop.parameters = {std::nan("")}; },
         +[](loop::Loop& loop) { loop.time_map.kappa = -1.0; }}) {
     BranchWork spoilt = work;
     spoil(spoilt.base);

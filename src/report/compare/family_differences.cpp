@@ -97,6 +97,12 @@ double distance(const TreeFamily& a, const FamilyEnd& x, const TreeFamily& b, co
   return relative_distance(one, other, Invariant::period) + (std::isnan(in_level) ? 0.0 : in_level);
 }
 
+/// "energy", or the name of the parameter that moves, for the level.
+std::string told(const AtlasTree& tree, Invariant invariant) {
+  if (invariant != Invariant::level) return name_of(invariant);
+  return tree.in_parameter() ? tree.parameter : "energy";
+}
+
 }  // namespace
 
 void FamilyDifferences::add(DifferenceKind kind, const Pair& pair, std::string text, double by, double allowed) {
@@ -172,7 +178,7 @@ void FamilyDifferences::compare_known(const Pair& pair) {
     // Where its error is too large the stability is left out, and orbits at other places lie on the other side of that.
     if (invariant == Invariant::trace && unknown < orbits) continue;
     add(DifferenceKind::orbits, pair,
-        fmt::format("{} is known in {}, and for {} of {} orbits of {} it is not", name_of(invariant),
+        fmt::format("{} is known in {}, and for {} of {} orbits of {} it is not", told(_a, invariant),
                     in_a > 0 ? "B" : "A", unknown, orbits, in_a > 0 ? "A" : "B"));
   }
 }
@@ -370,12 +376,13 @@ void FamilyDifferences::compare_ends(const Pair& pair) {
       const double allowed = x.floor_of(invariant) / x.scale_of(invariant);
       if (by > allowed)
         add(DifferenceKind::end_place, pair,
-            fmt::format("ends with {} = {:.12g} in A, {:.12g} in B", name_of(invariant), x.value(invariant),
+            fmt::format("ends with {} = {:.12g} in A, {:.12g} in B", told(_a, invariant), x.value(invariant),
                         y.value(invariant)),
             by, allowed);
     };
     at_limit(survey::EndKind::period_limit, Invariant::period);
-    at_limit(survey::EndKind::energy_limit, Invariant::level);
+    at_limit(survey::EndKind::energy_limit, _a.in_parameter() ? Invariant::energy : Invariant::level);
+    at_limit(survey::EndKind::parameter_limit, Invariant::level);
   }
   if (turned) return;  // the columns hold one of the two
   const auto other_of = [](const std::vector<int>& match, int row) { return row < 0 ? -1 : match[index(row)]; };

@@ -211,8 +211,8 @@ class Location {
     }
   }
 
-  /// An index passes 2 where the energy turns, and nothing leaves: what is nearly flat is so for another reason, such as
-  /// a small amplitude.
+  /// An index passes 2 where the energy turns, and nothing leaves: what is nearly flat is so for another reason, such
+  /// as a small amplitude.
   void as_fold(const bifurcation::Kernel& kernel) {
     _outcome.kind = fold_kind();
     _outcome.kernel_dimension = 0;
@@ -292,7 +292,9 @@ int expected_dimension(const systems::Structure& system, const spectrum::Stabili
   const std::size_t count = stability.fundamental.size() - (system.conservative() && !system.symplectic ? 1 : 0);
   for (std::size_t n = 0; n < count; ++n) {
     const double away = std::abs(stability.fundamental[n] - sector.value(system.symplectic));
-    if (away < std::max(in_sector, error_bounds * stability.fundamental_error[n])) ++pairs;
+    // Where a parameter folds the bounds of all multipliers grow: orbits of its value are not isolated there.
+    const double bound = system.symplectic ? error_bounds * stability.fundamental_error[n] : 0.0;
+    if (away < std::max(in_sector, bound)) ++pairs;
   }
   return std::max(1, pairs) * (sector.q <= 2 && !touches ? 1 : 2);
 }

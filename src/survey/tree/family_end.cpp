@@ -24,6 +24,7 @@ std::string_view name_of(EndKind kind) {
   switch (kind) {
     case EndKind::period_limit: return continuation::name_of(EndReason::period_limit);
     case EndKind::energy_limit: return continuation::name_of(EndReason::energy_limit);
+    case EndKind::parameter_limit: return continuation::name_of(EndReason::parameter_limit);
     case EndKind::guard_limit: return continuation::name_of(EndReason::guard_limit);
     case EndKind::step_limit: return continuation::name_of(EndReason::step_limit);
     case EndKind::cutoff_limit: return continuation::name_of(EndReason::cutoff_limit);

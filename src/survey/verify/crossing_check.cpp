@@ -57,8 +57,6 @@ constexpr double kernel_factor = 100.0;
 constexpr double kernel_rounding = 1e-8;
 /// A slope that vanishes, relative to those at the orbits beside it.
 constexpr double vanishing_slope = 1e-5;
-/// Relative, between the orbits beside a fold: a period that does not change.
-constexpr double period_rounding = 1e-9;
 /// How far the first orbit of a family may lie from its crossing, and the last from where it ends, in parts of the way
 /// to the next orbit or of the orbit's amplitude, whichever is more.
 constexpr double steps_away = 3.0;
@@ -196,8 +194,8 @@ class CrossingCheck {
     // Not by the one that turns; false where there is no level.
     const bool turns_in_level = _kind == CrossingKind::fold_energy || _kind == CrossingKind::fold_parameter;
     const bool by_level = _kind == CrossingKind::fold_period || (!turns_in_level && in_level > in_period);
-    // A drive of one frequency leaves no other period: such a fold is where its slope vanishes.
-    const bool by_slope = turns_in_level && in_period < period_rounding;
+    // A drive ties the period to its frequency: both turn there, or the period does not change at all.
+    const bool by_slope = _kind == CrossingKind::fold_parameter;
     const double wanted = by_level ? real(level()) / units.level() : real("period") / units.time;
     const auto off = [&](double position) {
       const auto point = curve.at(position, by_slope);

@@ -10,6 +10,7 @@ namespace orbweaver::survey {
 enum class EndKind {
   period_limit,
   energy_limit,
+  parameter_limit,
   guard_limit,
   step_limit,
   cutoff_limit,
