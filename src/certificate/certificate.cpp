@@ -359,10 +359,8 @@ class Certifier::Parts {
       for (std::size_t m = 0; of_sources.size() < ends.size(); ++m)
         if (_sources[m].segment == static_cast<int>(m))
           of_sources.emplace_back(vector_of(moved[m + 1]) - vector_of(ends[of_sources.size()]));
-      const std::vector<Eigen::VectorXd> gaps =
-          for_all(of_sources, [](const Eigen::MatrixXd& g, const Eigen::VectorXd& gap) -> Eigen::VectorXd {
-            return g * gap;
-          });
+      const std::vector<Eigen::VectorXd> gaps = for_all(
+          of_sources, [](const Eigen::MatrixXd& g, const Eigen::VectorXd& gap) -> Eigen::VectorXd { return g * gap; });
       NewtonSystem::Step second = system.solve(gaps);
       project(second.states);
       found.contraction = moves > 0.0 ? largest(second.states) / moves : 0.0;

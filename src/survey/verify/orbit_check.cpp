@@ -37,6 +37,8 @@ constexpr double sum_rounding = 256.0;
 constexpr double index_rounding = 1e-13;
 /// Of the bound computed again, where that of the stored values is not stored.
 constexpr double both_bounds = 4.0;
+/// Of a stability value: with a bound as large it is not told, and may come out as anything of its size.
+constexpr double untold = 0.5;
 /// Between two bounds or integrations of one orbit whose loops differ by rounding.
 constexpr double bounds_factor = 64.0;
 constexpr double certificate_factor = 16.0;
@@ -162,9 +164,11 @@ class OrbitCheck {
     set_stability(_system.structure(), stability, found);
     const double errors = std::fmax(real("stability_error"), 0.0) + std::fmax(found.stability_error, 0.0);
     const auto compare = [&](const char* column, const std::vector<double>& values, double allowed) {
-      for (std::size_t i = 0; i < values.size(); ++i)
-        _claims.agree(column, _orbits.reals(column)[_row * values.size() + i], values[i],
-                      allowed + index_rounding * (1.0 + std::abs(values[i])));
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const double stored = _orbits.reals(column)[_row * values.size() + i];
+        const double size = allowed >= untold * std::abs(stored) ? std::abs(stored) : 0.0;
+        _claims.agree(column, stored, values[i], allowed + size + index_rounding * (1.0 + std::abs(values[i])));
+      }
     };
     double fundamental = 0.0;
     if (stability)
