@@ -26,6 +26,7 @@ fill() {
       SCENE) words+=("$scene" "${quick[@]}") ;;
       ATLAS) words+=(DIR/atlas.h5) ;;
       FAMILY) words+=(In-Phase) ;;
+      SYSTEM) words+=(double_pendulum) ;;
       ORBIT) words+=(T=8.45) ;;
       ROW) words+=(0) ;;
       N) words+=(20) ;;
