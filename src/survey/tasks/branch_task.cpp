@@ -242,8 +242,8 @@ bool BranchTask::take(const continuation::Orbit& orbit) {
   if (_outcome.orbits > 0 && _curve.known().size() == orbits_from_birth) detect_from_birth();
   if (arrive(orbit)) return false;
   if (!_last && _options.too_far && !(_work.amplitude > 0.0))  // a fold may lie between this orbit and the next
-    (void)_folds.advance(orbit.arclength - continuation::arclength_between(_start.base, orbit.loop),
-                         _start.base.period, continuation::energy_of(*_system, _start.base));
+    (void)_folds.advance(orbit.arclength - continuation::arclength_between(_start.base, orbit.loop), _start.base.period,
+                         continuation::energy_of(*_system, _start.base));
   const std::optional<spectrum::Stability>& stability = stability_at(orbit);
   detect(orbit, stability);
   if (_last) solve_requested(orbit);
@@ -447,7 +447,13 @@ void BranchTask::folds_from_birth(const std::vector<continuation::FamilyCurve::K
     for (std::size_t n = 0; n < points.size(); ++n) {
       const double here = slope(points[n]);
       if (!(std::abs(here) * (points[n].position - birth) > visible_change * std::abs(size))) return;
-      if (here * beyond < 0.0) add_event({kind, {}, false}, points[n].position, points[n - 1].position, known);
+      if (here * beyond < 0.0) {
+        const auto hidden = [&](std::size_t one, std::size_t other) {
+          return !not_told_apart(*_system, points[one].loop, &points[other].loop, _start.isotropy, _team).empty();
+        };
+        if (hidden(n, n - 1) || hidden(n - 1, n)) return;  // rounding decides tangents there
+        add_event({kind, {}, false}, points[n].position, points[n - 1].position, known);
+      }
       beyond = here;
     }
   };
