@@ -442,25 +442,29 @@ void BranchTask::folds_from_birth(const std::vector<continuation::FamilyCurve::K
     if (!point || point->tangent.empty()) break;
     points.push_back(std::move(*point));
   }
-  const auto look = [&](Kind kind, const auto& slope, double size) {
+  const auto look = [&](Kind kind, const auto& slope, const auto& value) {
+    const double at_birth = value(known[0].loop);
+    const double visible = visible_change * std::abs(at_birth);
     double beyond = 0.0;
     for (std::size_t n = 0; n < points.size(); ++n) {
       const double here = slope(points[n]);
-      if (!(std::abs(here) * (points[n].position - birth) > visible_change * std::abs(size))) return;
+      // Beside the birth a tangent may hold a part of the other family's: the way from the birth must say the same.
+      const double way = std::copysign(1.0, here) * (value(points[n].loop) - at_birth);
+      if (!(std::abs(here) * (points[n].position - birth) > visible)) return;
       if (here * beyond < 0.0) {
         const auto hidden = [&](std::size_t one, std::size_t other) {
           return !not_told_apart(*_system, points[one].loop, &points[other].loop, _start.isotropy, _team).empty();
         };
-        if (hidden(n, n - 1) || hidden(n - 1, n)) return;  // rounding decides tangents there
+        if (!(way > visible) || hidden(n, n - 1) || hidden(n - 1, n)) return;
         add_event({kind, {}, false}, points[n].position, points[n - 1].position, known);
       }
       beyond = here;
     }
   };
-  look(Kind::fold_period, bifurcation::period_slope, known[1].loop.period);
+  look(Kind::fold_period, bifurcation::period_slope, [](const loop::Loop& loop) { return loop.period; });
   look(
       Kind::fold_energy, [&](const auto& point) { return bifurcation::energy_slope(*_system, point); },
-      continuation::energy_of(*_system, known[1].loop));
+      [&](const loop::Loop& loop) { return continuation::energy_of(*_system, loop); });
 }
 
 void BranchTask::add_event(const bifurcation::Event& event, double from, double to,
