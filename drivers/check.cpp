@@ -183,7 +183,7 @@ std::string depth_text(int depth) {
 std::string certificate_text(scene::Certificate certificate) {
   switch (certificate) {
     case scene::Certificate::automatic: return "closure of every orbit, as it is found";
-    case scene::Certificate::none: return "none (closure: 2 to 4 orbits an orbit; full: 3 to 8)";
+    case scene::Certificate::none: return "none (closure: 2 to 16 orbits an orbit; full: 4 to 21)";
     case scene::Certificate::closure: return "closure of every orbit, when all families are known";
     case scene::Certificate::full: break;
   }
@@ -193,7 +193,8 @@ std::string certificate_text(scene::Certificate certificate) {
 /// What is off says what it would cost, in times of an orbit of its branch (the ladder `features` of `orbweaver cost`,
 /// docs/accuracy.md).
 std::string stability_text(bool on) {
-  return on ? "multipliers of every orbit" : "off: no crossings but folds are looked for (on: 1 to 3 orbits an orbit)";
+  return on ? "multipliers of every orbit"
+            : "off: no crossings but folds are looked for (on: 0.4 to 3 orbits an orbit)";
 }
 
 void print_survey(const scene::Scene& scene) {
@@ -203,7 +204,7 @@ void print_survey(const scene::Scene& scene) {
               {{"depth", fmt::format("{}: {}", survey.depth, depth_text(survey.depth))},
                {"subharmonics", fmt::format("branches that close after up to {} period{}", survey.subharmonics,
                                             survey.subharmonics == 1 ? "" : "s")},
-               {"spectrum", all ? "at every orbit" : "at events (at every orbit: 30 to 300 orbits an orbit)"},
+               {"spectrum", all ? "at every orbit" : "at events (at every orbit: 10 to 160 orbits an orbit)"},
                {"stability", stability_text(scene.compute.stability)},
                {"certificate", certificate_text(scene.compute.certificate)},
                {"team size", fmt::format("{} rank{} a task", survey.team_size, survey.team_size == 1 ? "" : "s")}});
@@ -253,7 +254,7 @@ void print_events(const scene::Scene& scene) {
 }
 
 std::string section_text(const scene::Scene& scene, const systems::System& system) {
-  if (scene.section.coordinate.empty()) return "none (with one: 0.1 to 1 orbits an orbit)";
+  if (scene.section.coordinate.empty()) return "none (with one: 0.05 to 0.6 orbits an orbit)";
   const auto place =
       std::find(system.info().state_names.begin(), system.info().state_names.end(), scene.section.coordinate);
   const auto index = static_cast<std::size_t>(place - system.info().state_names.begin());
