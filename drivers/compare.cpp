@@ -13,14 +13,14 @@ namespace orbweaver::drivers {
 
 namespace {
 
-struct CommandOptions {
+struct CompareOptions {
   std::filesystem::path a;
   std::filesystem::path b;
   report::CompareOptions compare;
   bool json = false;
 };
 
-int compare(const CommandOptions& options, const Invocation& invocation) {
+int compare(const CompareOptions& options, const Invocation& invocation) {
   const core::Session session(invocation.petsc_options);
   const archive::Archive a(options.a);
   const archive::Archive b(options.b);
@@ -35,7 +35,7 @@ int compare(const CommandOptions& options, const Invocation& invocation) {
 
 Command make_compare_command(CLI::App& program) {
   CLI::App* parser = program.add_subcommand("compare", "Say what differs between two atlases, as trees of families");
-  auto options = std::make_shared<CommandOptions>();
+  auto options = std::make_shared<CompareOptions>();
   parser->add_option("A", options->a, "The atlas.h5 of a survey")->required();
   parser->add_option("B", options->b, "Another one")->required();
   parser->add_option("--tolerance", options->compare.tolerance, "Relative deviation that does not count")

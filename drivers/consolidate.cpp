@@ -16,12 +16,12 @@ namespace orbweaver::drivers {
 
 namespace {
 
-struct Options {
+struct ConsolidateOptions {
   LogOptions log;
   std::filesystem::path directory;
 };
 
-int consolidate_on(const core::Communicator& comm, const Options& options) {
+int consolidate_on(const core::Communicator& comm, const ConsolidateOptions& options) {
   const survey::Summary summary =
       alike_on_all_ranks(comm, [&] { return survey::archive_survey(comm, options.directory); });
   agree(comm, [&] {
@@ -30,7 +30,7 @@ int consolidate_on(const core::Communicator& comm, const Options& options) {
   return static_cast<int>(status_of(summary));
 }
 
-int run(const Options& options, const Invocation& invocation) {
+int run(const ConsolidateOptions& options, const Invocation& invocation) {
   const core::Session session(invocation.petsc_options);
   const core::Communicator comm;
   core::start_logging(options.log.level(), comm.rank(), comm.size());
@@ -48,7 +48,7 @@ int run(const Options& options, const Invocation& invocation) {
 }  // namespace
 
 Command make_consolidate_command(CLI::App& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ConsolidateOptions>();
   CLI::App* parser = program.add_subcommand(
       "consolidate", "Make the archive of what a survey that was broken off has come to (under mpirun or alone)");
   parser->add_option("directory", options->directory, "The folder of the survey")->required()->check(named_path());

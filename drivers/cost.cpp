@@ -20,7 +20,7 @@ namespace orbweaver::drivers {
 
 namespace {
 
-struct Options {
+struct CostOptions {
   SceneOptions scene;
   cost::Options cost;
   std::filesystem::path directory;
@@ -35,7 +35,7 @@ void write_csv(const std::filesystem::path& directory, const cost::Table& table)
   if (!file) throw core::EnvironmentError(fmt::format("cannot write {}", path.string()));
 }
 
-int run(const Options& options, const Invocation& invocation) {
+int run(const CostOptions& options, const Invocation& invocation) {
   const scene::Scene scene = options.scene.load();
   const core::Session session(invocation.petsc_options);
   const core::Communicator comm;
@@ -63,7 +63,7 @@ int run(const Options& options, const Invocation& invocation) {
 }  // namespace
 
 Command make_cost_command(CLI::App& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CostOptions>();
   CLI::App* parser = program.add_subcommand("cost", "What accuracy costs in time, on the scene's own families");
   add_scene_options(*parser, options->scene);
   parser->add_option("-o,--output", options->directory, "A folder for the tables (CSV) and their plots")

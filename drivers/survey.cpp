@@ -27,7 +27,7 @@ namespace orbweaver::drivers {
 
 namespace {
 
-struct Options {
+struct SurveyOptions {
   SceneOptions scene;
   LogOptions log;
   std::filesystem::path directory;
@@ -36,13 +36,13 @@ struct Options {
   std::string progress = "auto";
 };
 
-survey::Display display_for(const Options& options) {
+survey::Display display_for(const SurveyOptions& options) {
   if (options.log.quiet) return survey::Display::none;
   if (options.progress == "auto") return stderr_reaches_terminal() ? survey::Display::live : survey::Display::lines;
   return options.progress == "live" ? survey::Display::live : survey::Display::lines;
 }
 
-std::string how_to_go_on(const Options& options) {
+std::string how_to_go_on(const SurveyOptions& options) {
   const std::string signal = stop_signal();
   return fmt::format(
       "stopped{}; the survey goes on, on any number of ranks, with\n  orbweaver survey {}{} -o {} --resume\n",
@@ -50,7 +50,7 @@ std::string how_to_go_on(const Options& options) {
       options.scene.overrides.empty() ? "" : " (with the same --set)", options.directory.string());
 }
 
-int survey_on(const core::Communicator& comm, const Options& options) {
+int survey_on(const core::Communicator& comm, const SurveyOptions& options) {
   scene::Scene scene;
   survey::DirectoryStatus status = survey::DirectoryStatus::none;
   survey::RunOptions run_options{display_for(options), options.resume};
@@ -83,7 +83,7 @@ int survey_on(const core::Communicator& comm, const Options& options) {
   return static_cast<int>(status_of(summary));
 }
 
-int run(const Options& options, const Invocation& invocation) {
+int run(const SurveyOptions& options, const Invocation& invocation) {
   stop_on_signals();
   const core::Session session(invocation.petsc_options);
   const core::Communicator comm;
@@ -104,7 +104,7 @@ int run(const Options& options, const Invocation& invocation) {
 }  // namespace
 
 Command make_survey_command(CLI::App& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SurveyOptions>();
   CLI::App* parser =
       program.add_subcommand("survey", "Find, follow and archive the families of a scene (under mpirun or alone)");
   add_scene_options(*parser, options->scene);

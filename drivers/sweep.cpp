@@ -17,7 +17,7 @@ namespace orbweaver::drivers {
 
 namespace {
 
-struct Options {
+struct SweepOptions {
   SceneOptions scene;
   std::filesystem::path csv;
   bool table = false;
@@ -32,7 +32,7 @@ void write_file(const std::filesystem::path& path, const std::string& text) {
         fmt::format("cannot write {}: give --csv a file in a folder where you may write", path.string()));
 }
 
-int run(const Options& options, const Invocation& invocation) {
+int run(const SweepOptions& options, const Invocation& invocation) {
   const scene::Scene scene = options.scene.load();
   const core::Session session(invocation.petsc_options);
   const core::Communicator comm;
@@ -48,7 +48,7 @@ int run(const Options& options, const Invocation& invocation) {
 }  // namespace
 
 Command make_sweep_command(CLI::App& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SweepOptions>();
   CLI::App* parser =
       program.add_subcommand("sweep", "Smallest eigenvalues against the period at the scene's fixed points");
   add_scene_options(*parser, options->scene);

@@ -16,7 +16,7 @@ namespace orbweaver::drivers {
 
 namespace {
 
-struct Options {
+struct SystemsOptions {
   std::string name;
 };
 
@@ -55,7 +55,7 @@ std::string system_text(const std::string& name) {
   return text + fmt::format("  compiled with {}\n", fmt::join(combinations, ", "));
 }
 
-int run(const Options& options, const Invocation& invocation) {
+int run(const SystemsOptions& options, const Invocation& invocation) {
   if (!invocation.petsc_options.empty())
     throw core::InputError(
         fmt::format("systems: expected no PETSc options, got `{}`; it follows no family, so drop `--` and what follows",
@@ -73,7 +73,7 @@ int run(const Options& options, const Invocation& invocation) {
 }  // namespace
 
 Command make_systems_command(CLI::App& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SystemsOptions>();
   CLI::App* parser = program.add_subcommand("systems", "Systems, their parameters with units, and their effects");
   parser->add_option("name", options->name, "One system; none: all")->type_name("SYSTEM");
   return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};

@@ -22,7 +22,7 @@ namespace orbweaver::drivers {
 
 namespace {
 
-struct Options {
+struct VerifyOptions {
   LogOptions log;
   std::filesystem::path atlas;
   bool margins = false;
@@ -36,7 +36,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void require_options_fit(const Options& options) {
+void require_options_fit(const VerifyOptions& options) {
   const bool is_proofs = prove::is_proofs_file(options.atlas);
   if (is_proofs && (options.prove || options.margins))
     throw core::InputError("a file of proofs is checked without options");
@@ -47,7 +47,7 @@ void require_options_fit(const Options& options) {
 }
 
 /// Proves orbits of an archive, one after the other; what cannot be proven does not stop the others.
-bool prove_orbits(const Options& options) {
+bool prove_orbits(const VerifyOptions& options) {
   const archive::Archive atlas(options.atlas);
   std::vector<prove::Proof> proofs;
   std::vector<double> seconds;
@@ -83,7 +83,7 @@ bool check_proofs(const std::filesystem::path& path) {
   return failed == 0;
 }
 
-int verify_on(const core::Communicator& comm, const Options& options) {
+int verify_on(const core::Communicator& comm, const VerifyOptions& options) {
   agree(comm, [&] { require_options_fit(options); });
   bool is_proven = false;
   const bool proves = options.prove || prove::is_proofs_file(options.atlas);
@@ -101,7 +101,7 @@ int verify_on(const core::Communicator& comm, const Options& options) {
   return static_cast<int>(holds ? core::ExitStatus::done : core::ExitStatus::goal_missed);
 }
 
-int run(const Options& options, const Invocation& invocation) {
+int run(const VerifyOptions& options, const Invocation& invocation) {
   const core::Session session(invocation.petsc_options);
   const core::Communicator comm;
   core::start_logging(options.log.level(), comm.rank(), comm.size());
@@ -115,7 +115,7 @@ int run(const Options& options, const Invocation& invocation) {
 }  // namespace
 
 Command make_verify_command(CLI::App& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<VerifyOptions>();
   CLI::App* parser = program.add_subcommand(
       "verify", "Compute an atlas again from its modes alone and say what does not hold (under mpirun or alone)");
   parser->add_option("ATLAS", options->atlas, "The atlas.h5 of a survey, or a file of proofs")->required();

@@ -162,8 +162,9 @@ Points<double> ConditionedOrbit::converge(const Points<double>& guess, const Hel
 
 Eigen::VectorXd ConditionedOrbit::direction(const Points<double>& points) {
   const Eigen::MatrixXd matrix = _shooting.jacobian(points, _shooting.pass(points, true));
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  return svd.matrixV().col(matrix.cols() - 1);
+  // The kernel is the last column of the orthogonal factor of the transpose.
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(matrix.transpose());
+  return factors.householderQ() * Eigen::VectorXd::Unit(matrix.cols(), matrix.cols() - 1);
 }
 
 void ConditionedOrbit::factor(const Points<double>& points, const Held& held) {

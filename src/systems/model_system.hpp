@@ -11,6 +11,7 @@
 
 #include "checks.hpp"
 #include "complex_system.hpp"
+#include "linearized_formulas.hpp"
 #include "orbweaver/ad/derivatives.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/formulas.hpp"
@@ -75,21 +76,8 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
 
   void linearize(const numerics::QuadVector& z, numerics::QuadVector& f,
                  numerics::QuadMatrix& jacobian) const override {
-    using S = ad::First<Model::dimension, numerics::Quad>;
-    core::require(z.size() == Model::dimension, "a state of another dimension");
-    BoundTo<S> bound{{}, _bound.effects, {}};
-    for (const auto& [name, value] : _bound.parameters) bound.parameters.emplace(name, S(value));
-    const typename Model::template With<S> model(bound);
-    const auto whole = [&model](const S* state, S* value) { model.field(state, value); };
-    const auto result = ad::field_jacobian<Model::dimension>(whole, z.data());
-    f.resize(Model::dimension);
-    jacobian.resize(Model::dimension, Model::dimension);
-    for (std::size_t i = 0; i < size; ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      f(row) = result.value[i];
-      for (std::size_t l = 0; l < size; ++l)
-        jacobian(row, static_cast<Eigen::Index>(l)) = result.jacobian[i * size + l];
-    }
+    if (!_formulas) _formulas = std::make_unique<const Formulas>(formulas());
+    linearize_formulas(*_formulas, z, f, jacobian);
   }
 
   [[nodiscard]] Formulas formulas() const override {
@@ -258,6 +246,7 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
   Field _field{_model};
   Structure _structure;
   Bound _bound;
+  mutable std::unique_ptr<const Formulas> _formulas;  // recorded when they are first asked for
 };
 
 template <class Model>

@@ -22,7 +22,7 @@ class Drive {
                   {{"drive_amplitude", 0.1, 0.0, std::numeric_limits<double>::infinity(), false,
                     coordinates == 1 ? "1" : "N", "largest force"},
                    drive_frequency()}};
-    if (coordinates == 1) effect.parameters.back().unit = "1";
+    if (coordinates == 1) effect.parameters.back().unit = std::string("1");
     if (coordinates == 2)
       effect.parameters.push_back(
           drive_direction("drive_direction", "direction from the vertical: 0 upwards, 90 sideways"));
