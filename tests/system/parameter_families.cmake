@@ -15,9 +15,7 @@ foreach(name IN ITEMS van_der_pol lorenz duffing)
   system_test(${name}.verify 2 0 "OUT=section points: all hold" verify "${runs}/system.${name}.ranks1/out/atlas.h5")
   set_tests_properties(system.${name}.verify PROPERTIES FIXTURES_REQUIRED "${name}1")
 endforeach()
-orbweaver_add_ctest(system.lorenz.changed_bytes 1 system 300 "${CMAKE_CURRENT_SOURCE_DIR}/changed_bytes.sh"
-  $<TARGET_FILE:orbweaver> "${runs}/system.lorenz.ranks1/out/atlas.h5" 30)
-set_tests_properties(system.lorenz.changed_bytes PROPERTIES FIXTURES_REQUIRED lorenz1)
+changed_bytes_test(lorenz.changed_bytes system "${runs}/system.lorenz.ranks1/out/atlas.h5" lorenz1 10)
 system_test(lorenz.show 1 0 "OUT=rho          13.9266 .. 24.7356|Equilibrium 1, Hopf point 1|Equilibrium 3, Hopf point 1"
   show "${runs}/system.lorenz.ranks1/out/atlas.h5")
 system_test(duffing.show_crossings 1 0 "OUT=drive_frequency|1.7797|fold-parameter"
