@@ -1,5 +1,7 @@
 #include "common_options.hpp"
 
+#include "orbweaver/systems/plugins.hpp"
+
 namespace orbweaver::drivers {
 
 core::LogLevel LogOptions::level() const {
@@ -23,6 +25,20 @@ void add_scene_options(CLI::App& parser, SceneOptions& options) {
 void add_log_options(CLI::App& parser, LogOptions& options) {
   CLI::Option* quiet = parser.add_flag("-q,--quiet", options.quiet, "Say errors only");
   parser.add_flag("-v,--verbose", options.verbose, "Say more, from every rank")->excludes(quiet);
+}
+
+void add_plugin_option(CLI::App& parser) {
+  parser
+      .add_option_function<std::vector<std::string>>(
+          "--plugin",
+          [](const std::vector<std::string>& files) {
+            for (const std::string& file : files) static_cast<void>(systems::load_plugin(file));
+          },
+          "The plugin that brings the system, if the scene has one (docs/your_own_system.md)")
+      ->type_name("FILE")
+      ->check(named_path())
+      ->allow_extra_args(false)
+      ->take_all();
 }
 
 }  // namespace orbweaver::drivers

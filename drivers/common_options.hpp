@@ -34,5 +34,7 @@ struct LogOptions {
 /// Adds the options to a subcommand; `options` must outlive the parser.
 void add_scene_options(CLI::App& parser, SceneOptions& options);
 void add_log_options(CLI::App& parser, LogOptions& options);
+/// --plugin, for subcommands that read an archive: loads the file while the command line is read.
+void add_plugin_option(CLI::App& parser);
 
 }  // namespace orbweaver::drivers

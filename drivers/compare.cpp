@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "command.hpp"
+#include "common_options.hpp"
 #include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/report/compare/comparison.hpp"
 #include "orbweaver/report/compare/comparison_text.hpp"
@@ -46,6 +47,7 @@ Command make_compare_command(CLI::App& program) {
       ->check(CLI::NonNegativeNumber);
   parser->add_flag("--strict-names", options->compare.strict_names, "Families with another name differ");
   parser->add_flag("--json", options->json, "As JSON");
+  add_plugin_option(*parser);
   return {parser, [options](const Invocation& invocation) { return compare(*options, invocation); }};
 }
 

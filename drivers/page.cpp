@@ -59,6 +59,7 @@ Command make_page_command(CLI::App& program) {
       ->check(named_path())
       ->type_name("FILE.html");
   parser->footer("Example:\n  orbweaver page out/double_pendulum/atlas.h5 -o double_pendulum.html");
+  add_plugin_option(*parser);
   return {parser, [options](const Invocation&) { return run(*options); }};
 }
 

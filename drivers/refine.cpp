@@ -124,6 +124,7 @@ Command make_refine_command(CLI::App& program) {
   parser->add_option("--after", options->after, "The first orbit with this T or E after a step");
   parser->add_option("-n,--digits", options->digits, "Significant digits of every number")->capture_default_str();
   parser->add_option("-o,--output", options->output, "A file for the text too")->check(named_path());
+  add_plugin_option(*parser);
   return {parser, [options](const Invocation&) { return refine_command(*options); }};
 }
 

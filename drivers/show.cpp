@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "command.hpp"
+#include "common_options.hpp"
 #include "orbweaver/report/show.hpp"
 #include "result_stream.hpp"
 
@@ -46,6 +47,7 @@ Command make_show_command(CLI::App& program) {
           ->check(CLI::IsMember({"families", "orbits", "crossings", "findings"}));
   CLI::Option* csv = parser->add_flag("--csv", options->csv, "The table as CSV, full precision")->needs(table);
   parser->add_flag("--json", options->json, "The table as JSON, full precision")->needs(table)->excludes(csv);
+  add_plugin_option(*parser);
   return {parser, [options](const Invocation&) { return show(*options); }};
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "command.hpp"
+#include "common_options.hpp"
 #include "failure.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/registry.hpp"
@@ -76,6 +77,7 @@ Command make_systems_command(CLI::App& program) {
   const auto options = std::make_shared<SystemsOptions>();
   CLI::App* parser = program.add_subcommand("systems", "Systems, their parameters with units, and their effects");
   parser->add_option("name", options->name, "One system; none: all")->type_name("SYSTEM");
+  add_plugin_option(*parser);
   return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
 }
 

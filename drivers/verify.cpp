@@ -125,6 +125,7 @@ Command make_verify_command(CLI::App& program) {
   parser->add_option("-o,--output", options->output, "With --prove: a file for the proofs, which verify checks again");
   parser->add_flag("--margins", options->margins, "Say how near each column came to what is allowed");
   add_log_options(*parser, options->log);
+  add_plugin_option(*parser);
   return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
 }
 

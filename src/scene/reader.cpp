@@ -16,8 +16,6 @@ namespace orbweaver::scene {
 
 namespace {
 
-constexpr std::size_t longest_text = 64;
-
 bool is_quoted(const YAML::Node& node) { return node.Tag() == "!"; }
 
 std::string shorten(const std::string& text) { return core::shortened(core::printable(text), 40); }
@@ -97,14 +95,14 @@ std::optional<std::string> Field::plain_scalar() const {
   return _node.Scalar();
 }
 
-std::string Field::text(std::string_view example) const {
+std::string Field::text(std::string_view example, std::size_t longest) const {
   const auto refuse = [&](const std::string& expected) {
     fail(expected, got(), fmt::format("for example `{}`", example));
   };
   if (!_node.IsScalar() || (!is_quoted(_node) && !plain_scalar())) refuse("text");
   const std::string& value = _node.Scalar();
-  if (value.empty() || value.size() > longest_text || core::printable(value) != value)
-    refuse(fmt::format("one line of text with 1 to {} characters", longest_text));
+  if (value.empty() || value.size() > longest || core::printable(value) != value)
+    refuse(fmt::format("one line of text with 1 to {} characters", longest));
   return value;
 }
 

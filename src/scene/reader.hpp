@@ -48,8 +48,8 @@ class Field {
   [[noreturn]] void fail(const std::string& problem) const;
   [[noreturn]] void fail(const std::string& expected, const std::string& came, const std::string& advice) const;
 
-  /// Non-empty text of at most 64 characters on one line, without control characters.
-  [[nodiscard]] std::string text(std::string_view example) const;
+  /// Non-empty text of at most `longest` characters on one line, without control characters.
+  [[nodiscard]] std::string text(std::string_view example, std::size_t longest = 64) const;
   /// One of the words in `known`.
   [[nodiscard]] std::string choice(const std::vector<std::string>& known) const;
   [[nodiscard]] double number(const NumberRule& rule) const;

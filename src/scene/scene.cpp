@@ -1,6 +1,7 @@
 #include "orbweaver/scene/scene.hpp"
 
 #include <fstream>
+#include <optional>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -33,12 +34,12 @@ void read_starts(const Field& field, const systems::System& system, Scene& scene
   if (const auto states = keys.find("states")) read_states(*states, system, scene.states);
 }
 
-Scene read_scene(const Field& root) {
+Scene read_scene(const Field& root, const std::optional<std::filesystem::path>& folder) {
   const Keys keys(
       root, {"name", "system", "starts", "continuation", "survey", "compute", "limits", "events", "section", "output"},
       smallest_scene);
   Scene scene;
-  read_system(require_key(keys, root, "system", "system: {name: double_pendulum}"), scene.system);
+  read_system(require_key(keys, root, "system", "system: {name: double_pendulum}"), folder, scene.system);
   read_family_scalars(keys.find("continuation"), scene.system);
   const auto bound = bound_system(scene.system);
   const systems::System& system = *bound;
@@ -93,7 +94,10 @@ std::string read_file(const std::filesystem::path& file) {
 
 }  // namespace
 
-Scene parse(const std::string& text, const std::string& origin, const std::vector<std::string>& overrides) {
+namespace {
+
+Scene parse_in(const std::optional<std::filesystem::path>& folder, const std::string& text, const std::string& origin,
+               const std::vector<std::string>& overrides) {
   const std::string place = quoted(origin);
   const Source source(place, parse_overrides(overrides));
   const YAML::Node document = parse_document(text, place, true);
@@ -102,15 +106,23 @@ Scene parse(const std::string& text, const std::string& origin, const std::vecto
     throw core::InputError(
         fmt::format("{}:1: expected a scene, a map, got {}; for example {}", place, came, smallest_scene));
   }
-  const YAML::Node root = apply_overrides(document, source.overrides());
-  Scene scene = read_scene(Field(source, root, "", 1));
-  scene.text = overrides.empty() ? text : emit(root);
+  YAML::Node root = apply_overrides(document, source.overrides());
+  Scene scene = read_scene(Field(source, root, "", 1), folder);
+  const bool is_plain = overrides.empty() && (scene.system.plugin.empty() || root["system"]["plugin_source"]);
+  if (!scene.system.plugin.empty()) root["system"]["plugin_source"] = scene.system.plugin_source;
+  scene.text = is_plain ? text : emit(root);
   require_scene_size(scene.text.size(), place);
   return scene;
 }
 
+}  // namespace
+
+Scene parse(const std::string& text, const std::string& origin, const std::vector<std::string>& overrides) {
+  return parse_in(std::nullopt, text, origin, overrides);
+}
+
 Scene load(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  return parse(read_file(file), file.string(), overrides);
+  return parse_in(file.parent_path(), read_file(file), file.string(), overrides);
 }
 
 }  // namespace orbweaver::scene

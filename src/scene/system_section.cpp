@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/systems/plugins.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/scaled_system.hpp"
 
@@ -128,11 +129,56 @@ std::vector<std::string> scale_names(const systems::System& system) {
   return names;
 }
 
-void read_system(const Field& field, SystemChoice& system) {
-  const Keys keys(field, {"name", "parameters", "effects", "scales"}, "system: {name: double_pendulum}");
+namespace {
+
+constexpr std::size_t longest_path = 4096;
+
+/// The plugin of a scene that is a file: it lies beside it. That of a stored scene has been loaded, or is the one that
+/// was given on the command line.
+const systems::Plugin& plugin_of(const Field& file, const Field* source,
+                                 const std::optional<std::filesystem::path>& folder) {
+  const std::string wanted = source != nullptr ? source->text("the hash that the archive's scene has") : "";
+  const systems::Plugin* found = nullptr;
+  if (folder) {
+    try {
+      found = &systems::load_plugin(*folder / file.text("./my_system.so", longest_path));
+    } catch (const core::InputError& error) {
+      file.fail(error.what());
+    }
+  } else {
+    found = systems::find_plugin(wanted);
+    const std::vector<const systems::Plugin*> loaded = systems::loaded_plugins();
+    if (found == nullptr && !loaded.empty()) found = loaded.back();
+  }
+  if (found == nullptr)
+    file.fail("the plugin that brings the system", "none, for a stored scene does not hold it",
+              "give it by `--plugin FILE`");
+  if (!wanted.empty() && found->source != wanted)
+    source->fail(fmt::format("a plugin of this source, {}", wanted),
+                 fmt::format("'{}' of source {}", found->file.string(), found->source),
+                 "give the plugin that was built from that source");
+  return *found;
+}
+
+}  // namespace
+
+void read_system(const Field& field, const std::optional<std::filesystem::path>& folder, SystemChoice& system) {
+  const Keys keys(field, {"name", "plugin", "plugin_source", "parameters", "effects", "scales"},
+                  "system: {name: double_pendulum}");
   const auto name = keys.find("name");
-  if (!name) field.fail("the system's `name`", "a map without it", "add for example `name: double_pendulum`");
-  system.name = name->choice(systems::system_names());
+  const auto plugin = keys.find("plugin");
+  const auto source = keys.find("plugin_source");
+  if (!name && !plugin)
+    field.fail("the system's `name`", "a map without it", "add for example `name: double_pendulum`");
+  if (source && !plugin) source->fail("a `plugin` beside it", "none", "remove it");
+  if (plugin) {
+    const systems::Plugin& found = plugin_of(*plugin, source ? &*source : nullptr, folder);
+    system.plugin = plugin->text("./my_system.so", longest_path);
+    system.plugin_source = found.source;
+    system.name = name ? name->choice(found.models) : found.models.front();
+  } else {
+    system.name = name->choice(systems::system_names());
+  }
   if (const auto effects = keys.find("effects")) read_effects(*effects, system);
   if (const auto parameters = keys.find("parameters"))
     read_parameters(*parameters, systems::model_info(system.name), system);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "orbweaver/scene/scene.hpp"
@@ -9,8 +11,9 @@
 
 namespace orbweaver::scene {
 
-/// Fills `system`, effects before parameters; throws core::InputError as Field does.
-void read_system(const Field& field, SystemChoice& system);
+/// Fills `system`, effects before parameters; throws core::InputError as Field does. `folder`: of the scene's file, in
+/// which a plugin lies; none for a stored scene, whose plugin is loaded already.
+void read_system(const Field& field, const std::optional<std::filesystem::path>& folder, SystemChoice& system);
 
 /// What has a scale: time, coordinates, conserved quantities.
 [[nodiscard]] std::vector<std::string> scale_names(const systems::System& system);

@@ -1,6 +1,6 @@
 #include <limits>
 
-#include "model_system.hpp"
+#include "orbweaver/systems/model/model_system.hpp"
 
 namespace orbweaver::systems {
 

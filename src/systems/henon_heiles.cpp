@@ -1,7 +1,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "model_system.hpp"
+#include "orbweaver/systems/model/model_system.hpp"
 
 namespace orbweaver::systems {
 

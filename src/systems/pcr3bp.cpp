@@ -1,6 +1,6 @@
 #include "pcr3bp.hpp"
 
-#include "model_system.hpp"
+#include "orbweaver/systems/model/model_system.hpp"
 
 namespace orbweaver::systems {
 

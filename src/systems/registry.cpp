@@ -2,24 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "checks.hpp"
 #include "orbweaver/core/error.hpp"
-#include "registered.hpp"
+#include "orbweaver/systems/model/checks.hpp"
+#include "registry_lines.hpp"
 
 namespace orbweaver::systems {
-
-struct RegistryLine {
-  const ModelInfo& (*info)();
-  const std::vector<std::string>& (*effects)();
-  std::shared_ptr<const System> (*make)(const Bound& bound);
-};
-
-template <class Model>
-constexpr RegistryLine line{&Registered<Model>::info, &Registered<Model>::effects, &Registered<Model>::make};
 
 // Models that have effects, which are defined in files of their own.
 template <class... Effects>
@@ -37,77 +30,166 @@ class Drive;
 
 // One line a system and combination of its effects, the ideal one first; `class` declares what is defined in a file of
 // its own. Each combination is instantiated in the model's source or in combinations/.
-constexpr std::array registry{
-    line<DoublePendulum<>>,
-    line<DoublePendulum<class RodInertia>>,
-    line<DoublePendulum<class TorsionSprings>>,
-    line<DoublePendulum<class JointDamping>>,
-    line<DoublePendulum<class PivotDrive>>,
-    line<DoublePendulum<class JointTorque>>,
-    line<DoublePendulum<JointDamping, PivotDrive>>,
-    line<DoublePendulum<JointDamping, JointTorque>>,
-    line<DoublePendulum<RodInertia, TorsionSprings, JointDamping, PivotDrive, JointTorque>>,
-    line<Duffing<>>,
-    line<Duffing<Damping<1>>>,
-    line<Duffing<Drive<1>>>,
-    line<Duffing<Damping<1>, Drive<1>>>,
-    line<class HarmonicOscillator>,
-    line<class HenonHeiles>,
-    line<class Lorenz>,
-    line<Pcr3bp<>>,
-    line<Pcr3bp<class Radiation>>,
-    line<Pcr3bp<class Oblateness>>,
-    line<Pcr3bp<Radiation, Oblateness>>,
-    line<SwingingSpring<>>,
-    line<SwingingSpring<Damping<2>>>,
-    line<SwingingSpring<Drive<2>>>,
-    line<SwingingSpring<Damping<2>, Drive<2>>>,
-    line<class VanDerPol>,
+constexpr std::array built_in{
+    registry_line<DoublePendulum<>>,
+    registry_line<DoublePendulum<class RodInertia>>,
+    registry_line<DoublePendulum<class TorsionSprings>>,
+    registry_line<DoublePendulum<class JointDamping>>,
+    registry_line<DoublePendulum<class PivotDrive>>,
+    registry_line<DoublePendulum<class JointTorque>>,
+    registry_line<DoublePendulum<JointDamping, PivotDrive>>,
+    registry_line<DoublePendulum<JointDamping, JointTorque>>,
+    registry_line<DoublePendulum<RodInertia, TorsionSprings, JointDamping, PivotDrive, JointTorque>>,
+    registry_line<Duffing<>>,
+    registry_line<Duffing<Damping<1>>>,
+    registry_line<Duffing<Drive<1>>>,
+    registry_line<Duffing<Damping<1>, Drive<1>>>,
+    registry_line<class HarmonicOscillator>,
+    registry_line<class HenonHeiles>,
+    registry_line<class Lorenz>,
+    registry_line<Pcr3bp<>>,
+    registry_line<Pcr3bp<class Radiation>>,
+    registry_line<Pcr3bp<class Oblateness>>,
+    registry_line<Pcr3bp<Radiation, Oblateness>>,
+    registry_line<SwingingSpring<>>,
+    registry_line<SwingingSpring<Damping<2>>>,
+    registry_line<SwingingSpring<Drive<2>>>,
+    registry_line<SwingingSpring<Damping<2>, Drive<2>>>,
+    registry_line<class VanDerPol>,
 };
 
 namespace {
 
-const RegistryLine& find_line(const std::string& name) {
-  const auto found = std::find_if(registry.begin(), registry.end(),
+std::vector<RegistryLine>& registry() {
+  static std::vector<RegistryLine> lines(built_in.begin(), built_in.end());
+  return lines;
+}
+
+const RegistryLine* find_line(const std::string& name) {
+  const auto found = std::find_if(registry().begin(), registry().end(),
                                   [&](const RegistryLine& candidate) { return candidate.info().name == name; });
-  if (found == registry.end())
-    throw core::InputError(fmt::format("there is no system '{}'; the systems are: {}", name, joined(system_names())));
-  return *found;
+  return found == registry().end() ? nullptr : &*found;
+}
+
+bool has_parameter(const ModelInfo& info, const Parameter& parameter) {
+  return std::any_of(info.parameters.begin(), info.parameters.end(), [&](const Parameter& other) {
+    return other.name == parameter.name && other.standard == parameter.standard;
+  });
+}
+
+/// What a scene says of one model means the same of the other: one is a combination of effects of the other.
+bool are_one_model(const ModelInfo& a, const ModelInfo& b) {
+  return a.title == b.title && a.parameters.size() == b.parameters.size() && a.effects.size() == b.effects.size() &&
+         std::all_of(a.parameters.begin(), a.parameters.end(),
+                     [&](const Parameter& parameter) { return has_parameter(b, parameter); });
+}
+
+void require_new(const RegistryLine& line) {
+  const ModelInfo& info = line.info();
+  const RegistryLine* known = find_line(info.name);
+  if (known == nullptr) return;
+  if (!are_one_model(info, known->info()))
+    throw core::InputError(
+        fmt::format("it brings a system '{}', and there is another one of that name: rename it", info.name));
+  const std::set<std::string> effects(line.effects().begin(), line.effects().end());
+  for (const std::vector<std::string>& built : built_effects(info.name))
+    if (std::set(built.begin(), built.end()) == effects)
+      throw core::InputError(
+          fmt::format("it brings '{}' with the effects [{}], which there is already: leave the plugin out", info.name,
+                      joined(built)));
 }
 
 [[noreturn]] void refuse_combination(const std::string& name, const std::vector<std::string>& effects) {
   std::vector<std::string> texts;
   for (const std::vector<std::string>& built : built_effects(name)) texts.push_back(fmt::format("[{}]", joined(built)));
   throw core::InputError(fmt::format(
-      "system '{}' is not compiled with the effects [{}] together; it is with one of {}: choose one of these, or add "
-      "the combination as docs/architecture.md says, \"Where to add\"",
-      name, joined(effects), joined(texts)));
+      "system '{}' is not compiled with the effects [{}] together; it is with one of {}: choose one of these, or have "
+      "it compiled by `orbweaver build-system --model {} --effects {} -o FILE.so` and name that file as the system's "
+      "`plugin`",
+      name, joined(effects), joined(texts), name, fmt::join(effects, ",")));
+}
+
+/// What stands between the outer brackets of a template's type.
+std::vector<std::string> template_arguments(const std::string& type) {
+  std::vector<std::string> arguments;
+  std::string argument;
+  int depth = 0;
+  for (const char c : type) {
+    if (c == '>' && --depth == 0 && !argument.empty()) arguments.push_back(argument);
+    if (c == ',' && depth == 1) {
+      arguments.push_back(argument);
+      argument.clear();
+    } else if (depth > 0 && (c != ' ' || depth > 1)) {
+      argument += c;
+    }
+    if (c == '<') ++depth;
+  }
+  return arguments;
 }
 
 }  // namespace
 
+const std::vector<RegistryLine>& registry_lines() { return registry(); }
+
+void add_registry_lines(std::span<const RegistryLine> lines) {
+  const std::size_t before = registry().size();
+  try {
+    for (const RegistryLine& line : lines) {
+      require_new(line);
+      registry().push_back(line);
+    }
+  } catch (...) {
+    registry().resize(before);
+    throw;
+  }
+}
+
 std::vector<std::string> system_names() {
   std::vector<std::string> names;
-  for (const RegistryLine& candidate : registry)
-    if (candidate.effects().empty()) names.push_back(candidate.info().name);
+  for (const RegistryLine& candidate : registry())
+    if (std::find(names.begin(), names.end(), candidate.info().name) == names.end())
+      names.push_back(candidate.info().name);
   return names;
 }
 
-const ModelInfo& model_info(const std::string& name) { return find_line(name).info(); }
+const ModelInfo& model_info(const std::string& name) {
+  if (const RegistryLine* line = find_line(name)) return line->info();
+  throw core::InputError(fmt::format("there is no system '{}'; the systems are: {}", name, joined(system_names())));
+}
 
 std::vector<std::vector<std::string>> built_effects(const std::string& name) {
   const ModelInfo& ideal = model_info(name);
   std::vector<std::vector<std::string>> combinations;
-  for (const RegistryLine& candidate : registry)
+  for (const RegistryLine& candidate : registry())
     if (candidate.info().name == ideal.name) combinations.push_back(candidate.effects());
   return combinations;
+}
+
+std::string type_with_effects(const std::string& name, const std::vector<std::string>& effects) {
+  const ModelInfo& info = model_info(name);
+  if (info.effects.empty()) throw core::InputError(fmt::format("the system {} has no effects", name));
+  static_cast<void>(bound_to(info, {}, effects));
+  std::map<std::string, std::string> types;
+  std::string model;
+  for (const RegistryLine& candidate : registry()) {
+    if (candidate.info().name != name) continue;
+    const std::string type = candidate.type();
+    model = type.substr(0, type.find('<'));
+    const std::vector<std::string> arguments = template_arguments(type);
+    for (std::size_t n = 0; n < arguments.size(); ++n) types[candidate.effects().at(n)] = arguments[n];
+  }
+  std::vector<std::string> in_order;
+  for (const Effect& effect : info.effects)
+    if (std::find(effects.begin(), effects.end(), effect.name) != effects.end())
+      in_order.push_back(types.at(effect.name));
+  return fmt::format("{}<{}>", model, joined(in_order));
 }
 
 std::shared_ptr<const System> make_system(const std::string& name, const std::map<std::string, double>& parameters,
                                           const std::vector<std::string>& effects, const FamilyScalars& scalars) {
   const Bound bound = bound_to(model_info(name), parameters, effects, scalars);
   const std::set<std::string> asked(effects.begin(), effects.end());
-  for (const RegistryLine& candidate : registry) {
+  for (const RegistryLine& candidate : registry()) {
     if (candidate.info().name != name) continue;
     const std::vector<std::string>& has = candidate.effects();
     if (std::set(has.begin(), has.end()) == asked) return candidate.make(bound);

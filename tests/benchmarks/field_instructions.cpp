@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "model_system.hpp"
+#include "orbweaver/systems/model/model_system.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 

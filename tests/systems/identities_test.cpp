@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 
-#include "complex_system.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/identities.hpp"
+#include "orbweaver/systems/model/complex_system.hpp"
 #include "orbweaver/systems/quad_system.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "systems/samples.hpp"

@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "checks.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/systems/model/checks.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "systems/samples.hpp"

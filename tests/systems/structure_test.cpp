@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "model_system.hpp"
 #include "orbweaver/systems/identities.hpp"
+#include "orbweaver/systems/model/model_system.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "systems/samples.hpp"
 

@@ -15,6 +15,8 @@ namespace orbweaver::scene {
 
 struct SystemChoice {
   std::string name;
+  std::string plugin;         ///< the file that brings it, as the scene says; "" for a system of the program
+  std::string plugin_source;  ///< the hash of that plugin's source (systems::Plugin)
   std::map<std::string, double> parameters;
   std::vector<std::string> effects;
   /// Scales that the scene gives, by name: time, a coordinate, a conserved quantity. The others are found (`auto`).

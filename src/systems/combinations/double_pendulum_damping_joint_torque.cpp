@@ -1,5 +1,5 @@
 #include "double_pendulum.hpp"
-#include "model_system.hpp"
+#include "orbweaver/systems/model/model_system.hpp"
 
 namespace orbweaver::systems {
 

@@ -1,4 +1,4 @@
-#include "model_system.hpp"
+#include "orbweaver/systems/model/model_system.hpp"
 #include "pcr3bp.hpp"
 
 namespace orbweaver::systems {

@@ -1,4 +1,4 @@
-#include "model_system.hpp"
+#include "orbweaver/systems/model/model_system.hpp"
 #include "swinging_spring.hpp"
 
 namespace orbweaver::systems {

@@ -1,4 +1,4 @@
-#include "checks.hpp"
+#include "orbweaver/systems/model/checks.hpp"
 
 #include <algorithm>
 #include <cmath>

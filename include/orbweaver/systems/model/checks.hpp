@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bound.hpp"
+#include "orbweaver/systems/model/bound.hpp"
 #include "orbweaver/systems/model_info.hpp"
 #include "orbweaver/systems/structure.hpp"
 

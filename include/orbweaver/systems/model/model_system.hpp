@@ -7,16 +7,19 @@
 #include <memory>
 #include <string>
 #include <type_traits>
+#include <typeinfo>
 #include <utility>
 
-#include "checks.hpp"
-#include "complex_system.hpp"
-#include "linearized_formulas.hpp"
+#include <boost/core/demangle.hpp>
+
 #include "orbweaver/ad/derivatives.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/formulas.hpp"
+#include "orbweaver/systems/model/checks.hpp"
+#include "orbweaver/systems/model/complex_system.hpp"
+#include "orbweaver/systems/model/linearized_formulas.hpp"
+#include "orbweaver/systems/model/registered.hpp"
 #include "orbweaver/systems/quad_system.hpp"
-#include "registered.hpp"
 
 namespace orbweaver::systems {
 
@@ -269,6 +272,11 @@ const std::vector<std::string>& Registered<Model>::effects() {
 template <class Model>
 std::shared_ptr<const System> Registered<Model>::make(const Bound& bound) {
   return std::make_shared<const ModelSystem<Model>>(bound);
+}
+
+template <class Model>
+std::string Registered<Model>::type() {
+  return boost::core::demangle(typeid(Model).name());
 }
 
 }  // namespace orbweaver::systems

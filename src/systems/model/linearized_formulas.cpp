@@ -1,4 +1,4 @@
-#include "linearized_formulas.hpp"
+#include "orbweaver/systems/model/linearized_formulas.hpp"
 
 #include <vector>
 

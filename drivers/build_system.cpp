@@ -1,0 +1,143 @@
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "command.hpp"
+#include "common_options.hpp"
+#include "failure.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/core/file_hash.hpp"
+#include "orbweaver/core/process.hpp"
+#include "orbweaver/systems/plugins.hpp"
+#include "orbweaver/systems/registry.hpp"
+#include "plugin_flags.hpp"
+
+namespace orbweaver::drivers {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BuildSystemOptions {
+  fs::path source;
+  std::string model;
+  std::vector<std::string> effects;
+  fs::path output;
+};
+
+/// Where the headers and the models of this program lie: below its prefix, or in its source tree.
+struct Headers {
+  std::string package;
+  std::string models;
+};
+
+Headers headers() {
+  const fs::path program = fs::read_symlink("/proc/self/exe");
+  if (program.string().starts_with(plugin_build_folder + "/")) return {plugin_headers, plugin_models};
+  const fs::path prefix = program.parent_path().parent_path();
+  return {(prefix / plugin_installed_headers).string(), (prefix / plugin_installed_models).string()};
+}
+
+std::vector<std::string> compiler_words(const Headers& at) {
+  std::vector<std::string> words{plugin_compiler, "-std=c++20", "-O3", "-DNDEBUG", "-DFMT_SHARED", "-Wall", "-Wextra"};
+  words.insert(words.end(), plugin_machine_flags.begin(), plugin_machine_flags.end());
+  for (const std::string& folder : {at.package, at.models})
+    if (!folder.empty()) words.insert(words.end(), {"-isystem", folder});
+  for (const std::string& folder : plugin_packages) words.insert(words.end(), {"-isystem", folder});
+  return words;
+}
+
+/// A file that is gone when it is not needed any more.
+class ScratchFile {
+ public:
+  explicit ScratchFile(fs::path path) : _path(std::move(path)) {}
+  ~ScratchFile() {
+    std::error_code code;
+    fs::remove(_path, code);
+  }
+  ScratchFile(const ScratchFile&) = delete;
+  ScratchFile& operator=(const ScratchFile&) = delete;
+  [[nodiscard]] const fs::path& path() const { return _path; }
+
+ private:
+  fs::path _path;
+};
+
+void compile(const std::vector<std::string>& words, const std::string& what) {
+  const auto status = core::run_program(words);
+  if (!status)
+    throw core::EnvironmentError(fmt::format("there is no compiler {}: install it (Debian: g++)", words.front()));
+  if (*status != 0) throw core::InputError(fmt::format("{} does not compile; the compiler's messages are above", what));
+}
+
+/// The source and the files beside it that it includes: what a rule of make lists.
+std::vector<fs::path> sources_of(const fs::path& source, std::vector<std::string> words, const fs::path& output) {
+  const ScratchFile rule(fs::path(output).concat(".d"));
+  words.insert(words.end(), {"-MM", source.string(), "-MF", rule.path().string()});
+  compile(words, source.string());
+  std::ifstream stream(rule.path());
+  std::vector<fs::path> files;
+  std::string word;
+  for (stream >> word; stream >> word;)
+    if (word != "\\") files.emplace_back(word);
+  return files;
+}
+
+/// The source of a model of the program with effects that it is not compiled with.
+std::string combination(const BuildSystemOptions& options) {
+  return fmt::format(
+      "#include \"{}.hpp\"\n\n#include \"orbweaver/systems/plugin.hpp\"\n\nnamespace orbweaver::systems {{\nusing "
+      "Combination = {};\n}}\n\nORBWEAVER_SYSTEMS(orbweaver::systems::Combination);\n",
+      options.model, systems::type_with_effects(options.model, options.effects));
+}
+
+int run(const BuildSystemOptions& options, const Invocation& invocation) {
+  if (!invocation.petsc_options.empty())
+    throw core::InputError("build-system takes no PETSc options: drop `--` and what follows");
+  if (options.source.empty() == options.model.empty())
+    throw core::InputError("expected either the source of a model, or --model and --effects");
+  if (options.source.empty() == false && !options.effects.empty())
+    throw core::InputError("--effects are those of a --model of the program; a source names its own");
+  std::unique_ptr<ScratchFile> generated;
+  fs::path source = options.source;
+  if (source.empty()) {
+    generated = std::make_unique<ScratchFile>(fs::path(options.output).concat(".cpp"));
+    source = generated->path();
+    std::ofstream(source) << combination(options);
+  }
+  if (!fs::is_regular_file(source)) throw core::InputError(fmt::format("there is no file '{}'", source.string()));
+
+  const std::vector<std::string> words = compiler_words(headers());
+  const std::string hash = core::file_hash(sources_of(source, words, options.output));
+  const ScratchFile unfinished(fs::path(options.output).concat(".part"));
+  std::vector<std::string> build = words;
+  build.insert(build.end(), {fmt::format("-DORBWEAVER_PLUGIN_SOURCE=\"{}\"", hash),
+                             "-DORBWEAVER_PLUGIN_VERSION=\"" ORBWEAVER_VERSION "\"", "-shared", "-fPIC", "-Wl,-z,lazy",
+                             source.string(), "-o", unfinished.path().string()});
+  compile(build, options.model.empty() ? source.string() : "the combination");
+  const systems::Plugin& plugin = systems::load_plugin(unfinished.path());
+  fs::rename(unfinished.path(), options.output);
+  print_result(fmt::format("{}: {}, source {}\n", options.output.string(), fmt::join(plugin.models, ", "), hash));
+  return 0;
+}
+
+}  // namespace
+
+Command make_build_system_command(CLI::App& program) {
+  const auto options = std::make_shared<BuildSystemOptions>();
+  CLI::App* parser = program.add_subcommand("build-system", "Compile a model of your own into a plugin for scenes");
+  parser->add_option("SOURCE", options->source, "The model's C++ source (docs/your_own_system.md)");
+  parser->add_option("--model", options->model, "Instead of SOURCE: a system of the program, with --effects");
+  parser->add_option("--effects", options->effects, "Its effects: damping,pivot_drive")->delimiter(',');
+  parser->add_option("-o,--output", options->output, "The plugin to write")->required()->check(named_path());
+  return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
+}
+
+}  // namespace orbweaver::drivers

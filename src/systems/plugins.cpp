@@ -1,0 +1,92 @@
+#include "orbweaver/systems/plugins.hpp"
+
+#include <deque>
+#include <fstream>
+#include <span>
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/core/file_hash.hpp"
+#include "orbweaver/systems/model/plugin_table.hpp"
+#include "registry_lines.hpp"
+
+namespace orbweaver::systems {
+
+namespace {
+
+std::deque<Plugin>& plugins() {
+  static std::deque<Plugin> loaded;  // references to its members stay
+  return loaded;
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& text) {
+  throw core::InputError(fmt::format("the plugin '{}': {}", file.string(), text));
+}
+
+constexpr std::string_view build_again = "build it again with this program's `orbweaver build-system`";
+
+// A library stays loaded also where it is refused: nothing of it is used.
+void* opened(const std::filesystem::path& file, int mode) {
+  void* library = dlopen(file.c_str(), mode | RTLD_LOCAL);
+  if (library == nullptr) refuse(file, fmt::format("cannot be loaded ({}); {}", dlerror(), build_again));
+  return library;
+}
+
+const PluginTable& table_of(const std::filesystem::path& file) {
+  // Lazily first, so that a plugin for another version says so before a symbol of that version is missed.
+  void* library = opened(file, RTLD_LAZY);
+  const auto* table = static_cast<const PluginTable*>(dlsym(library, "orbweaver_plugin"));
+  if (table == nullptr)
+    refuse(file,
+           "it has no symbol `orbweaver_plugin`: its source ends with ORBWEAVER_SYSTEMS(Model), and "
+           "`orbweaver build-system` compiles it");
+  if (table->abi != plugin_abi)
+    refuse(file, fmt::format("it is of ABI version {}, this program of {}; {}", table->abi, plugin_abi, build_again));
+  if (table->size != sizeof(PluginTable))
+    refuse(file,
+           fmt::format("its table has {} bytes, this program's {}; {}", table->size, sizeof(PluginTable), build_again));
+  if (table->layout != plugin_layout)
+    refuse(file, fmt::format("it was built against version {}, with other types, a different compiler or for another "
+                             "processor; {}",
+                             table->version, build_again));
+  opened(file, RTLD_NOW);
+  if (table->line_count == 0 || table->lines == nullptr) refuse(file, "it brings no system");
+  return *table;
+}
+
+}  // namespace
+
+const Plugin& load_plugin(const std::filesystem::path& file) {
+  std::error_code code;
+  const std::filesystem::path path = std::filesystem::canonical(file, code);
+  if (code || !std::filesystem::is_regular_file(path, code)) refuse(file, "there is no such file");
+  for (const Plugin& plugin : plugins())
+    if (plugin.file == path) return plugin;
+  const PluginTable& table = table_of(path);
+  Plugin plugin{path, table.source, {}};
+  if (plugin.source.empty()) plugin.source = core::file_hash({path});
+  const std::span lines(table.lines, table.line_count);
+  for (const RegistryLine& line : lines) plugin.models.push_back(line.info().name);
+  try {
+    add_registry_lines(lines);
+  } catch (const core::InputError& error) {
+    refuse(file, error.what());
+  }
+  return plugins().emplace_back(std::move(plugin));
+}
+
+const Plugin* find_plugin(const std::string& source) {
+  for (const Plugin& plugin : plugins())
+    if (plugin.source == source) return &plugin;
+  return nullptr;
+}
+
+std::vector<const Plugin*> loaded_plugins() {
+  std::vector<const Plugin*> all;
+  for (const Plugin& plugin : plugins()) all.push_back(&plugin);
+  return all;
+}
+
+}  // namespace orbweaver::systems
