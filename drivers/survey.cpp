@@ -18,6 +18,7 @@
 #include "orbweaver/survey/run/survey.hpp"
 #include "orbweaver/survey/state/directory_status.hpp"
 #include "orbweaver/systems/registry.hpp"
+#include "same_input.hpp"
 #include "signals.hpp"
 #include "summary_status.hpp"
 #include "terminal.hpp"
@@ -58,6 +59,7 @@ int survey_on(const core::Communicator& comm, const SurveyOptions& options) {
     scene = options.scene.load();
     if (options.walltime) run_options.walltime = seconds_of(*options.walltime);
   });
+  require_same_input(comm, scene.text);
   stop_on_signals();  // again, whatever MPI and PETSc made of them
   agree(comm, [&] {
     if (!comm.is_root()) return;  // folders need not look alike from every machine

@@ -17,6 +17,7 @@
 #include "orbweaver/report/proof_text.hpp"
 #include "orbweaver/report/verify_text.hpp"
 #include "orbweaver/survey/verify/verify.hpp"
+#include "same_input.hpp"
 
 namespace orbweaver::drivers {
 
@@ -85,6 +86,7 @@ bool check_proofs(const std::filesystem::path& path) {
 
 int verify_on(const core::Communicator& comm, const VerifyOptions& options) {
   agree(comm, [&] { require_options_fit(options); });
+  require_same_input(comm, "");
   bool is_proven = false;
   const bool proves = options.prove || prove::is_proofs_file(options.atlas);
   agree(comm, [&] {  // by rank 0 alone

@@ -9,6 +9,7 @@
 #include "document.hpp"
 #include "fixed_points.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/systems/model/plugin_table.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "overrides.hpp"
 #include "reader.hpp"
@@ -109,7 +110,10 @@ Scene parse_in(const std::optional<std::filesystem::path>& folder, const std::st
   YAML::Node root = apply_overrides(document, source.overrides());
   Scene scene = read_scene(Field(source, root, "", 1), folder);
   const bool is_plain = overrides.empty() && (scene.system.plugin.empty() || root["system"]["plugin_source"]);
-  if (!scene.system.plugin.empty()) root["system"]["plugin_source"] = scene.system.plugin_source;
+  if (!scene.system.plugin.empty()) {
+    root["system"]["plugin_source"] = scene.system.plugin_source;
+    root["system"]["plugin_abi"] = systems::plugin_abi;
+  }
   scene.text = is_plain ? text : emit(root);
   require_scene_size(scene.text.size(), place);
   return scene;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/systems/model/plugin_table.hpp"
 #include "orbweaver/systems/plugins.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/scaled_system.hpp"
@@ -163,13 +164,19 @@ const systems::Plugin& plugin_of(const Field& file, const Field* source,
 }  // namespace
 
 void read_system(const Field& field, const std::optional<std::filesystem::path>& folder, SystemChoice& system) {
-  const Keys keys(field, {"name", "plugin", "plugin_source", "parameters", "effects", "scales"},
+  const Keys keys(field, {"name", "plugin", "plugin_source", "plugin_abi", "parameters", "effects", "scales"},
                   "system: {name: double_pendulum}");
   const auto name = keys.find("name");
   const auto plugin = keys.find("plugin");
   const auto source = keys.find("plugin_source");
   if (!name && !plugin)
     field.fail("the system's `name`", "a map without it", "add for example `name: double_pendulum`");
+  if (const auto abi = keys.find("plugin_abi")) {
+    const int version = abi->integer({.lower = 1, .example = "1"});
+    if (version != systems::plugin_abi)
+      abi->fail(fmt::format("{}, this program's ABI version for plugins", systems::plugin_abi), abi->got(),
+                "use the version of Orbweaver that wrote it");
+  }
   if (source && !plugin) source->fail("a `plugin` beside it", "none", "remove it");
   if (plugin) {
     const systems::Plugin& found = plugin_of(*plugin, source ? &*source : nullptr, folder);

@@ -65,8 +65,8 @@ const Plugin& load_plugin(const std::filesystem::path& file) {
   for (const Plugin& plugin : plugins())
     if (plugin.file == path) return plugin;
   const PluginTable& table = table_of(path);
-  Plugin plugin{path, table.source, {}};
-  if (plugin.source.empty()) plugin.source = core::file_hash({path});
+  Plugin plugin{path, table.source, core::file_hash({path}), {}};
+  if (plugin.source.empty()) plugin.source = plugin.build;
   const std::span lines(table.lines, table.line_count);
   for (const RegistryLine& line : lines) plugin.models.push_back(line.info().name);
   try {

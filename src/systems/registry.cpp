@@ -71,24 +71,20 @@ const RegistryLine* find_line(const std::string& name) {
   return found == registry().end() ? nullptr : &*found;
 }
 
-bool has_parameter(const ModelInfo& info, const Parameter& parameter) {
-  return std::any_of(info.parameters.begin(), info.parameters.end(), [&](const Parameter& other) {
-    return other.name == parameter.name && other.standard == parameter.standard;
-  });
-}
-
-/// What a scene says of one model means the same of the other: one is a combination of effects of the other.
-bool are_one_model(const ModelInfo& a, const ModelInfo& b) {
-  return a.title == b.title && a.parameters.size() == b.parameters.size() && a.effects.size() == b.effects.size() &&
-         std::all_of(a.parameters.begin(), a.parameters.end(),
-                     [&](const Parameter& parameter) { return has_parameter(b, parameter); });
+/// One is a combination of effects of the other.
+bool are_one_model(const RegistryLine& a, const RegistryLine& b) {
+  const auto model = [](const RegistryLine& line) {
+    const std::string type = line.type();
+    return type.substr(0, type.find('<'));
+  };
+  return model(a) == model(b) && !a.info().effects.empty();
 }
 
 void require_new(const RegistryLine& line) {
   const ModelInfo& info = line.info();
   const RegistryLine* known = find_line(info.name);
   if (known == nullptr) return;
-  if (!are_one_model(info, known->info()))
+  if (!are_one_model(line, *known))
     throw core::InputError(
         fmt::format("it brings a system '{}', and there is another one of that name: rename it", info.name));
   const std::set<std::string> effects(line.effects().begin(), line.effects().end());

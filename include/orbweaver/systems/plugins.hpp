@@ -10,6 +10,7 @@ namespace orbweaver::systems {
 struct Plugin {
   std::filesystem::path file;
   std::string source;               ///< 40 hexadecimal digits: SHA-1 of its source, or of the file where it has none
+  std::string build;                ///< the same of the file
   std::vector<std::string> models;  ///< names of its systems, the first one first
 };
 

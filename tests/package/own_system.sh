@@ -1,0 +1,84 @@
+#!/usr/bin/env bash
+# own_system.sh DOCUMENT PREFIX: writes the files that the document shows (```cpp NAME, ```yaml NAME) and runs its commands (```sh) in the
+# order in which they stand, with the package installed at PREFIX. Then what a plugin is refused for.
+set -euo pipefail
+document=$1 prefix=$2
+export PATH="$prefix/bin:$PATH"
+rm -rf own && mkdir own && cd own
+
+fail() {
+  echo "own_system.sh: $*" >&2
+  exit 1
+}
+kind='' file=''
+ran=0
+while IFS= read -r line; do
+  case "$line" in
+    '```sh') kind=command ;;
+    '```'*\ *) kind=file file=${line##* } && : >"$file" ;;
+    '```') kind='' ;;
+    *)
+      case "$kind" in
+        file) printf '%s\n' "$line" >>"$file" ;;
+        command)
+          echo "== $line"
+          bash -c "$line" </dev/null || fail "'$line' ended with status $?"
+          ran=$((ran + 1))
+          ;;
+      esac
+      ;;
+  esac
+done <"$document"
+((ran >= 7)) || fail "only $ran commands found in $document"
+orbweaver show out/atlas.h5 >shown.txt
+grep -q 'q1, q2, p1, p2' shown.txt || fail "the archive does not name the coordinates"
+
+# expect_refusal TEXT COMMAND ...
+expect_refusal() {
+  local text=$1 status=0
+  shift
+  "$@" >refused.txt 2>&1 || status=$?
+  ((status == 2)) || fail "'$*': status $status instead of 2: $(cat refused.txt)"
+  grep -qF "$text" refused.txt || fail "'$*' does not say '$text': $(cat refused.txt)"
+}
+expect_refusal "give it by \`--plugin FILE\`" orbweaver verify out/atlas.h5
+# As if built from another source.
+hash=$(strings two_masses.so | grep -xE '[0-9a-f]{40}')
+LC_ALL=C sed "s/$hash/${hash//[0-9]/0}/" two_masses.so >other.so
+expect_refusal "expected a plugin of this source" orbweaver verify --plugin other.so out/atlas.h5
+expect_refusal "there is another one of that name" orbweaver verify --plugin other.so --plugin two_masses.so out/atlas.h5
+sed 's/two_masses.so/other.so/' two_masses.yaml >other.yaml
+expect_refusal "plugin_source" mpirun -n 2 orbweaver survey other.yaml -o out --resume
+expect_refusal "cannot be loaded" orbweaver verify --plugin two_masses.yaml out/atlas.h5
+expect_refusal "there is no such file" orbweaver verify --plugin nowhere.so out/atlas.h5
+expect_refusal "which there is already" orbweaver build-system --model duffing --effects drive -o drive.so
+echo 'int nothing;' >nothing.cpp
+expect_refusal "has no symbol \`orbweaver_plugin\`" orbweaver build-system nothing.cpp -o nothing.so
+echo 'int nothing' >nothing.cpp
+expect_refusal "does not compile" orbweaver build-system nothing.cpp -o nothing.so
+# The first bytes of the table are its ABI version, its size and two texts; then come sizes of types.
+at=$(nm -D two_masses.so | awk '$3 == "orbweaver_plugin" {print $1}')
+section=$(readelf -SW two_masses.so | awk '$2 == ".data.rel.ro" || $3 == ".data.rel.ro" {for (n = 1; n < NF; ++n) if ($n == "PROGBITS") print $(n + 1), $(n + 2)}')
+read -r address offset <<<"$section"
+table=$((16#$at - 16#$address + 16#$offset))
+# changed BYTE VALUE: a copy with one byte of the table changed
+changed() {
+  cp two_masses.so changed.so
+  printf "\\x$2" | dd of=changed.so bs=1 seek=$((table + $1)) conv=notrunc status=none
+}
+changed 0 07
+expect_refusal "it is of ABI version 7" orbweaver verify --plugin changed.so out/atlas.h5
+changed 4 07
+expect_refusal "its table has 7 bytes" orbweaver verify --plugin changed.so out/atlas.h5
+changed 24 07
+expect_refusal "with other types, a different compiler" orbweaver verify --plugin changed.so out/atlas.h5
+# Ranks that see different files.
+mkdir -p same else && cp two_masses.so same/ && cp two_masses.so else/
+printf '\0' >>else/two_masses.so
+expect_refusal "rank 1 loads another build of a plugin" \
+  mpirun -n 1 --wdir "$PWD/same" orbweaver verify --plugin two_masses.so ../out/atlas.h5 : \
+  -n 1 --wdir "$PWD/else" orbweaver verify --plugin two_masses.so ../out/atlas.h5
+# Nothing is left of what was not finished.
+leftover=$(find . -name '*.part' -o -name '*.d')
+[[ -z "$leftover" ]] || fail "left over: $leftover"
+echo "$ran commands of $document, and 14 refusals"
