@@ -30,6 +30,11 @@ fill() {
       ORBIT) words+=(T=8.45) ;;
       ROW) words+=(0) ;;
       N) words+=(20) ;;
+      MODEL.cpp)
+        awk '/^```cpp/ {on = 1; next} /^```/ {on = 0} on' "${readme%/*}/docs/your_own_system.md" >DIR/model.cpp
+        words+=(DIR/model.cpp)
+        ;;
+      FILE.so) words+=(DIR/model.so) ;;
       FILE.html) words+=(DIR/atlas.html) ;;
       FILE.txt) words+=(DIR/refined.txt) ;;
       PROOFS.h5) words+=(DIR/proofs.h5) ;;

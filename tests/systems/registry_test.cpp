@@ -95,6 +95,18 @@ TEST(Registry, EquivariancesFormAGroupWithTheIdentity) {
   }
 }
 
+TEST(Registry, NamesTheTypeOfAnyCombinationOfEffects) {
+  EXPECT_EQ(type_with_effects("duffing", {}), "orbweaver::systems::Duffing<>");
+  EXPECT_EQ(type_with_effects("swinging_spring", {"drive"}),
+            "orbweaver::systems::SwingingSpring<orbweaver::systems::Drive<2>>");
+  EXPECT_EQ(type_with_effects("double_pendulum", {"damping", "torsion_springs"}),
+            "orbweaver::systems::DoublePendulum<orbweaver::systems::TorsionSprings, "
+            "orbweaver::systems::JointDamping>");
+  EXPECT_THAT([] { (void)type_with_effects("henon_heiles", {}); },
+              ThrowsMessage<core::InputError>(HasSubstr("henon_heiles has no effects")));
+  EXPECT_THROW((void)type_with_effects("duffing", {"radiation"}), core::InputError);
+}
+
 TEST(Registry, HenonHeilesHasTheTriangleGroup) {
   const auto system = make_system("henon_heiles");
   const Structure& structure = system->structure();

@@ -20,8 +20,8 @@ namespace orbweaver::systems {
 [[nodiscard]] std::vector<std::vector<std::string>> built_effects(const std::string& name);
 
 /// The C++ type of the system `name` with effects, "orbweaver::systems::Duffing<orbweaver::systems::Damping<1>>", also
-/// where it is not compiled with them together. Throws core::InputError on an unknown system or effect, one named twice,
-/// or a system that has none.
+/// where it is not compiled with them together. Throws core::InputError on an unknown system or effect, one named
+/// twice, or a system that has none.
 [[nodiscard]] std::string type_with_effects(const std::string& name, const std::vector<std::string>& effects);
 
 /// Binds parameters and effects, in any order of the effects. Throws core::InputError on an unknown system, parameter
