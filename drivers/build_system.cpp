@@ -47,7 +47,8 @@ Headers headers() {
 
 std::vector<std::string> compiler_words(const Headers& at) {
   std::vector<std::string> words{plugin_compiler, "-std=c++20", "-O3", "-DNDEBUG", "-DFMT_SHARED", "-Wall", "-Wextra"};
-  words.insert(words.end(), plugin_machine_flags.begin(), plugin_machine_flags.end());
+  for (const std::string& flag : plugin_machine_flags)
+    if (!flag.empty()) words.push_back(flag);
   for (const std::string& folder : {at.package, at.models})
     if (!folder.empty()) words.insert(words.end(), {"-isystem", folder});
   for (const std::string& folder : plugin_packages) words.insert(words.end(), {"-isystem", folder});

@@ -18,6 +18,8 @@ namespace orbweaver::systems {
 template <class... Effects>
 class DoublePendulum;
 template <class... Effects>
+class Cr3bp;
+template <class... Effects>
 class Duffing;
 template <class... Effects>
 class Pcr3bp;
@@ -40,6 +42,8 @@ constexpr std::array built_in{
     registry_line<DoublePendulum<JointDamping, PivotDrive>>,
     registry_line<DoublePendulum<JointDamping, JointTorque>>,
     registry_line<DoublePendulum<RodInertia, TorsionSprings, JointDamping, PivotDrive, JointTorque>>,
+    registry_line<Cr3bp<>>,
+    registry_line<Cr3bp<class Radiation, class Oblateness>>,
     registry_line<Duffing<>>,
     registry_line<Duffing<Damping<1>>>,
     registry_line<Duffing<Drive<1>>>,
@@ -48,8 +52,8 @@ constexpr std::array built_in{
     registry_line<class HenonHeiles>,
     registry_line<class Lorenz>,
     registry_line<Pcr3bp<>>,
-    registry_line<Pcr3bp<class Radiation>>,
-    registry_line<Pcr3bp<class Oblateness>>,
+    registry_line<Pcr3bp<Radiation>>,
+    registry_line<Pcr3bp<Oblateness>>,
     registry_line<Pcr3bp<Radiation, Oblateness>>,
     registry_line<SwingingSpring<>>,
     registry_line<SwingingSpring<Damping<2>>>,
