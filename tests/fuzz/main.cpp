@@ -168,6 +168,7 @@ std::string orbweaver::fuzz::bytes_of(const std::filesystem::path& file) {
 }
 
 void orbweaver::fuzz::write_bytes(const std::filesystem::path& file, const std::string& bytes) {
+  std::filesystem::remove(file);  // ext4 writes a file that replaces another out to the disk at once
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
