@@ -29,8 +29,8 @@
 // fuzz KIND --only NUMBER  reads one of them again
 // fuzz KIND --write COUNT  writes COUNT inputs as files input-NUMBER into the working folder, and reads none
 //
-// An input fails that crashes, takes longer or more memory than the bounds below, ends otherwise than with success or the
-// status of wrong input, or is refused with a text that cannot be shown as it is.
+// An input fails that crashes, takes longer or more memory than the bounds below, ends otherwise than with success or
+// the status of wrong input, or is refused with a text that cannot be shown as it is.
 
 namespace {
 

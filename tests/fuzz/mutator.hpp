@@ -18,8 +18,8 @@ class Mutator {
 
   const std::string& one_of(const std::vector<std::string>& words) { return words[below(words.size())]; }
 
-  /// One change of a text that may well leave it one of its kind: a number becomes one of `values`, a line is taken out or
-  /// doubled, a word of `dictionary` is put in.
+  /// One change of a text that may well leave it one of its kind: a number becomes one of `values`, a line is taken out
+  /// or doubled, a word of `dictionary` is put in.
   std::string edited(std::string text, const std::vector<std::string>& values,
                      const std::vector<std::string>& dictionary) {
     constexpr const char* digits = "0123456789";

@@ -29,8 +29,8 @@ void expect(const PayloadType& type, boost::archive::binary_iarchive& archive) {
   archive >> version;
   if (name != type.name || version != type.version)
     throw core::EnvironmentError(fmt::format("expected a {} of version {}, got a {} of version {}: {}", type.name,
-                                             type.version, core::printable(core::shortened(name, longest_name)), version,
-                                             same_build));
+                                             type.version, core::printable(core::shortened(name, longest_name)),
+                                             version, same_build));
   std::uint64_t layout = 0;
   archive >> layout;
   if (layout != type.layout)
