@@ -10,6 +10,7 @@ set(ORBWEAVER_TEST_ENVIRONMENT
   "OMPI_MCA_rmaps_base_oversubscribe=1"
   "OMPI_MCA_btl_base_warn_component_unused=0"
   "ASAN_OPTIONS=fast_unwind_on_malloc=0"
+  "UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1"
   "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/cmake/lsan.supp")
 
 # Tests spend their time in the libraries: -O2 compiles them in a seventh less time than -O3. Not less than -O2, which contracts
@@ -68,6 +69,9 @@ function(orbweaver_add_ctest name ranks labels timeout)
   endif()
   set(folder "${PROJECT_BINARY_DIR}/test_runs/${name}")
   file(MAKE_DIRECTORY "${folder}")
+  if(ORBWEAVER_SANITIZE)
+    math(EXPR timeout "10 * ${timeout}")
+  endif()
   add_test(NAME ${name} COMMAND ${ARGN} WORKING_DIRECTORY "${folder}")
   list(REMOVE_ITEM labels "")
   set_tests_properties(${name} PROPERTIES

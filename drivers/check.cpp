@@ -17,6 +17,7 @@
 #include "orbweaver/scene/in_scales.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/starts/natural_scales.hpp"
+#include "orbweaver/survey/run/expected_work.hpp"
 #include "orbweaver/systems/field_cost.hpp"
 #include "orbweaver/systems/identities.hpp"
 #include "orbweaver/systems/registry.hpp"
@@ -268,6 +269,32 @@ void print_outputs(const scene::Scene& scene, const systems::System& system) {
        {"flush", fmt::format("every {} s or {} orbits", scene.output.flush_seconds, scene.output.flush_orbits)}});
 }
 
+std::string bytes_text(double bytes) {
+  constexpr double kibi = 1024.0;
+  if (bytes < kibi * kibi) return fmt::format("{:.3g} KiB", bytes / kibi);
+  if (bytes < kibi * kibi * kibi) return fmt::format("{:.3g} MiB", bytes / (kibi * kibi));
+  return fmt::format("{:.3g} GiB", bytes / (kibi * kibi * kibi));
+}
+
+std::string orbit_cost_text(const survey::OrbitCost& cost) {
+  constexpr double measured_from = 0.01;  // less is not proportional to the unknowns any more
+  const std::string time = cost.seconds_to < measured_from
+                               ? "some milliseconds"
+                               : fmt::format("{:.2g} to {:.2g} s", cost.seconds_from, cost.seconds_to);
+  return fmt::format("{:.0f} unknowns, {} an orbit, {} of memory a rank, {} an orbit in the archive", cost.unknowns,
+                     time, bytes_text(cost.memory_bytes), bytes_text(cost.archive_bytes));
+}
+
+/// Throws InputError where the scene asks for what this machine cannot do.
+void print_cost(const scene::Scene& scene, const systems::System& system) {
+  const survey::ExpectedWork work = survey::expected_work(scene, system);
+  survey::require_memory(work, survey::usable_memory());
+  print_group("Cost, about", {{"sweep", fmt::format("{:.0f} periods at each equilibrium, {:.2g} s at most",
+                                                    work.sweep_periods, work.sweep_seconds)},
+                              {fmt::format("K = {}", work.least.cutoff), orbit_cost_text(work.least)},
+                              {fmt::format("K = {}", work.most.cutoff), orbit_cost_text(work.most)}});
+}
+
 int check(const SceneOptions& options, const Invocation& invocation) {
   if (!invocation.petsc_options.empty())
     throw core::InputError(
@@ -287,6 +314,7 @@ int check(const SceneOptions& options, const Invocation& invocation) {
   print_limits(scene, system.structure());
   print_events(scene);
   print_outputs(scene, system);
+  print_cost(scene, system);
   print_result("");  // throws if what was printed cannot be written
   return 0;
 }

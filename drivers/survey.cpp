@@ -15,6 +15,7 @@
 #include "orbweaver/core/mpi/communicator.hpp"
 #include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/report/summary_text.hpp"
+#include "orbweaver/survey/run/expected_work.hpp"
 #include "orbweaver/survey/run/survey.hpp"
 #include "orbweaver/survey/state/directory_status.hpp"
 #include "orbweaver/systems/registry.hpp"
@@ -53,10 +54,13 @@ std::string how_to_go_on(const SurveyOptions& options) {
 
 int survey_on(const core::Communicator& comm, const SurveyOptions& options) {
   scene::Scene scene;
+  std::shared_ptr<const systems::System> system;
   survey::DirectoryStatus status = survey::DirectoryStatus::none;
   survey::RunOptions run_options{display_for(options), options.resume};
   agree(comm, [&] {
     scene = options.scene.load();
+    system = scene::bound_system(scene.system);
+    survey::require_memory(survey::expected_work(scene, *system), survey::usable_memory());
     if (options.walltime) run_options.walltime = seconds_of(*options.walltime);
   });
   require_same_input(comm, scene.text);
@@ -74,7 +78,6 @@ int survey_on(const core::Communicator& comm, const SurveyOptions& options) {
                                failed ? ", with failures (orbweaver show says which)" : ""));
     return static_cast<int>(failed ? core::ExitStatus::goal_missed : core::ExitStatus::done);
   }
-  const auto system = scene::bound_system(scene.system);
   const survey::Summary summary =
       alike_on_all_ranks(comm, [&] { return survey::run_survey(comm, scene, system, options.directory, run_options); });
   agree(comm, [&] {

@@ -47,6 +47,7 @@ const Frontier& Branch::frontier() {
   _tracer->complete_frontier();
   return _tracer->frontier();
 }
+bool Branch::met_limit() const { return _tracer->met_limit(); }
 const Frontier& Branch::restart_frontier() const { return _tracer->frontier(); }
 
 Ending trace(std::shared_ptr<const systems::System> system, const Start& start, const Options& options,

@@ -67,6 +67,7 @@ void Tracer::go_on_from(Frontier frontier) {
 
 std::optional<Orbit> Tracer::advance() {
   if (_ending) return std::nullopt;
+  _met_limit = false;
   if (!begun()) return _start.base_is_orbit ? base_orbit() : first_orbit();
   _ending = end_at(_frontier, *_system, _options);
   return _ending ? std::nullopt : next_on_family();
@@ -282,6 +283,7 @@ std::optional<Orbit> Tracer::accept_within_limits(const Trial& trial, double len
   const bool is_outside = is_beyond_energies(value);
   const bool is_beside = is_beyond_parameters(trial);
   if (!is_late && !is_outside && !is_beside) return accept_within_guards(trial, length, refused);
+  _met_limit = true;
   OnLimit on_limit;
   if (is_late) {
     on_limit = orbit_at_scalar(
@@ -324,6 +326,7 @@ std::optional<Orbit> Tracer::accept_within_guards(Trial trial, double length, En
     const int guard = guard_number(_system->structure(), name);
     const auto least = [&](const Trial& other) { return least_guard(*_system, guard, other.loop); };
     if (!(least(trial) < limit)) continue;
+    _met_limit = true;
     OnLimit on_limit = orbit_at_value(_stepper, {EndReason::guard_limit, name, limit, length, trial, 1.0, 0.0},
                                       _frontier.guards[static_cast<std::size_t>(guard)].least, least);
     if (!on_limit.trial) {

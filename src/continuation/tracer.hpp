@@ -20,6 +20,8 @@ class Tracer {
   [[nodiscard]] std::optional<Orbit> advance();
   [[nodiscard]] const std::optional<Ending>& ending() const { return _ending; }
   [[nodiscard]] const Frontier& frontier() const { return _frontier; }
+  /// Whether limits had a part in the last advance: a step that was tried led beyond one.
+  [[nodiscard]] bool met_limit() const { return _met_limit; }
   void go_on_from(Frontier frontier);
   /// Sets the frontier's tangent if it is not known yet.
   void complete_frontier();
@@ -61,6 +63,7 @@ class Tracer {
   Options _options;
   Frontier _frontier;
   std::optional<Ending> _ending;
+  bool _met_limit = false;
   std::unique_ptr<PointProblem> _problem;
   Stepper _stepper;
 };

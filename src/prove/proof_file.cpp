@@ -8,6 +8,7 @@
 
 #include "orbweaver/archive/file/text_table.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/text.hpp"
 
 namespace orbweaver::prove {
 
@@ -70,7 +71,7 @@ std::string to_text(const std::vector<Value>& values) {
 }
 
 [[noreturn]] void refuse(const std::string& text) {
-  throw core::InputError(fmt::format("a proof holds `{}` where something else was expected", text));
+  throw core::InputError(fmt::format("a proof holds `{}` where something else was expected", core::printable(text)));
 }
 
 void from_text(const std::string& text, std::string& value) { value = text; }

@@ -36,6 +36,11 @@ mkfifo archive.h5
 refused "archive.h5' is not a regular file" show archive.h5
 refused "/dev/zero' is not a regular file" show /dev/zero
 
+# 8 million unknowns take more than the limit above leaves.
+for command in check "survey -o out"; do
+  refused "continuation.cutoff: expected orbits that fit into the memory at hand, 0.954 GiB" $command "$scene" \
+    --set 'continuation.cutoff=[1000000, 1000000]'
+done
 yes '[1, 2],' | head -c 3000000 > long.yaml
 refused "a scene of 3000000 bytes" check long.yaml
 refused "at most 32 keys joined by dots" check "$scene" --set "$(printf 'a.%.0s' {1..20000})a=1"

@@ -225,6 +225,37 @@ TEST_F(Reopened, ABranchFromTheStateBeforeItsLimit) {
   }
 }
 
+// Its children so far are no tasks yet, and go back with it.
+TEST_F(Reopened, ABranchThatRunsFromTheStateBeforeALimitThatItCameBy) {
+  const std::string key = "0000.0002";
+  const EndedTask ended = branch_with_state(key, 1, 3, 1);
+  BranchState now;
+  now.outcome = unpack_branch_outcome(ended.outcome.payload);
+  now.events = 2;
+  now.children = {task("locate " + key + "/000.q4.j1", TaskKind::locate),
+                  task("locate " + key + "/001.q4.j1", TaskKind::locate)};
+  queue::Task running = ended.task;
+  running.state = pack(now);
+  for (const int widened : {period_limited, step_limited}) {
+    Checkpoint kept = checkpoint;
+    kept.unfinished = {running};
+    Reopening reopening(widened, kept);
+    reopening.finish();
+    ASSERT_EQ(kept.unfinished.size(), 1U);
+    if (widened == step_limited) {
+      EXPECT_EQ(kept.unfinished[0], running) << "another limit";
+      EXPECT_THAT(kept.voided, IsEmpty());
+      continue;
+    }
+    const BranchState before = unpack_branch_state(kept.unfinished[0].state);
+    EXPECT_EQ(before.outcome.orbits, 3);
+    EXPECT_EQ(before.outcome.limited_by, 0);
+    EXPECT_THAT(keys_of(before.children), ElementsAre("locate " + key + "/000.q4.j1"));
+    ASSERT_EQ(kept.voided.size(), 1U);
+    EXPECT_EQ(kept.voided[0].first_step, 3);
+  }
+}
+
 TEST_F(Reopened, AStartWithTheBranchThatItMade) {
   const std::string key = "0000.0001/000.q4.j1/0";
   const auto branch_at = [](const std::string& at) {

@@ -102,6 +102,9 @@ class Branch {
   [[nodiscard]] const Frontier& frontier();
   /// The same without a tangent that no step has needed yet: for checkpoints.
   [[nodiscard]] const Frontier& restart_frontier() const;
+  /// Whether a step that the last `advance` tried led beyond a limit. It may have been taken back since, and what was
+  /// tried after it depends on the limit all the same.
+  [[nodiscard]] bool met_limit() const;
 
  private:
   std::unique_ptr<Tracer> _tracer;

@@ -7,6 +7,7 @@
 
 #include "orbweaver/ad/lanes.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/interruption.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
 #include "resampled.hpp"
@@ -65,6 +66,13 @@ void validate_received(const Loop& loop) {
   if (!none) validate(loop);
 }
 
+namespace {
+
+/// Registers of harmonics whose sines and cosines take a tenth of a millisecond: then the work may be given up.
+constexpr int registers_between_questions = 1 << 12;
+
+}  // namespace
+
 std::vector<double> state_at(const Loop& loop, double time) {
   // Reduced by whole turns before it is multiplied by k, so that large times keep their digits.
   const double turns = time / loop.period;
@@ -78,7 +86,9 @@ std::vector<double> state_at(const Loop& loop, double time) {
   double angles[width];
   double cosines[width];
   double sines[width];
+  int registers = 0;
   for (int top = loop.cutoff; top >= 1; top -= width) {
+    if (++registers % registers_between_questions == 0) core::interruption_point();
     for (int n = 0; n < width; ++n) angles[n] = (top - n) * s;
     const ad::Lanes packed = ad::Lanes::load(angles);
     ad::cos(packed).store(cosines);

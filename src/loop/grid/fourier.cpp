@@ -7,8 +7,16 @@
 #include <fftw3.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/interruption.hpp"
 
 namespace orbweaver::loop {
+
+namespace {
+
+/// Nodes whose transform takes a tenth of a millisecond or more: before each the work may be given up.
+constexpr int long_transform = 1 << 14;
+
+}  // namespace
 
 struct FourierGrid::Plans {
   double* real = nullptr;
@@ -18,10 +26,12 @@ struct FourierGrid::Plans {
 
   // Each is made when it is first needed: planning takes a millisecond. FFTW_ESTIMATE leaves the arrays alone.
   void transform_forward(int nodes) {
+    if (nodes >= long_transform) core::interruption_point();
     if (forward == nullptr) forward = fftw_plan_dft_r2c_1d(nodes, real, complex, FFTW_ESTIMATE);
     fftw_execute(forward);
   }
   void transform_backward(int nodes) {
+    if (nodes >= long_transform) core::interruption_point();
     if (backward == nullptr) backward = fftw_plan_dft_c2r_1d(nodes, complex, real, FFTW_ESTIMATE);
     fftw_execute(backward);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <numbers>
 
@@ -9,6 +10,7 @@
 
 #include "folded_filters.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/interruption.hpp"
 
 namespace orbweaver::loop {
 
@@ -16,13 +18,15 @@ namespace {
 
 /// Dense filters are faster up to 96 cells, times sqrt(copies) (measured: docs/performance.md).
 constexpr int most_dense_cells = 96;
+/// Nodes whose transforms take a tenth of a millisecond or more: before each the work may be given up.
+constexpr int long_transform = 1 << 14;
 /// Entries of symmetry matrices: exact up to products of a few rounded sines and cosines.
 constexpr double same_entry = 1e-12;
 /// Nodal arrays are padded to whole vector registers of four doubles.
 constexpr int padding = 4;
 
 bool matrices_are_faster(int cells, int copies) {
-  return cells * cells <= most_dense_cells * most_dense_cells * copies;
+  return std::int64_t{cells} * cells <= std::int64_t{most_dense_cells} * most_dense_cells * copies;
 }
 
 bool is_diagonal_of_signs(const Eigen::MatrixXd& matrix) {
@@ -146,6 +150,7 @@ void StaggeredGrid::apply_by_fft(const std::vector<double>& real, const std::vec
                                  double* out, int count, int out_stride) const {
   const int n = nodes();
   const int half = n / 2 + 1;
+  if (n >= long_transform) core::interruption_point();
   expand(y, _transforms->real);
   fftw_execute(_transforms->forward);
   for (int i = 0; i < dimension(); ++i) {

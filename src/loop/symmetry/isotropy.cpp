@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/text.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/subspace.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
@@ -75,7 +76,7 @@ Isotropy with_declared_matrices(Isotropy isotropy, const systems::Structure& sys
         std::find_if(declared.begin(), declared.end(), [&](const systems::Symmetry& s) { return s.name == g.name; });
     if (found == declared.end())
       throw core::EnvironmentError(
-          fmt::format("a task names the symmetry `{}`, which the system does not declare", g.name));
+          fmt::format("a task names the symmetry `{}`, which the system does not declare", core::printable(g.name)));
     if (g.shift_denominator < 1)
       throw core::EnvironmentError(
           fmt::format("a task names `{}` with the shift {}/{}", g.name, g.shift_numerator, g.shift_denominator));

@@ -62,6 +62,7 @@ void Reopening::finish() {
       if (dropped) drop(task);
       return dropped;
     });
+  for (queue::Task& task : _checkpoint.unfinished) go_back(task);
   _checkpoint.unfinished.insert(_checkpoint.unfinished.end(), _again.begin(), _again.end());
 }
 
@@ -93,6 +94,23 @@ void Reopening::reopen(const EndedTask& entry) {
     _behind.push_back({task.key, events});
   }
   _again.push_back(std::move(task));
+}
+
+/// A branch that has not ended, but came by a limit, which it will not meet there any more.
+void Reopening::go_back(queue::Task& running) {
+  if (kind_of(running) != TaskKind::branch || running.state.empty()) return;
+  const BranchState now = unpack_branch_state(running.state);
+  if ((now.outcome.limited_by & _widened) == 0) return;
+  int orbits = 0;
+  running.state.clear();
+  if (!now.outcome.before_limit.empty()) {
+    BranchState before = unpack_branch_state(now.outcome.before_limit);
+    orbits = before.outcome.orbits;
+    for (const queue::Task& child : now.children)
+      if (event_number(place_of(child.key), running.key) < before.events) before.children.push_back(child);
+    running.state = pack(before);
+  }
+  forget_rows(running, orbits);
 }
 
 void Reopening::drop(const queue::Task& task) {

@@ -36,6 +36,7 @@ class Reopening {
   [[nodiscard]] bool is_limited(const EndedTask& entry) const;
   void reopen(const EndedTask& entry);
   void drop(const queue::Task& task);
+  void go_back(queue::Task& running);
   void forget_rows(const queue::Task& branch, int from);
 
   int _widened;

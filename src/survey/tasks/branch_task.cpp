@@ -169,7 +169,7 @@ continuation::Ending BranchTask::follow() {
     const continuation::Frontier& there = _branch->restart_frontier();
     const bool on_limit = orbit->loop.period >= _options.period_limit || there.on_energy_limit ||
                           there.on_parameter_limit || there.on_guard_limit >= 0;
-    if (on_limit) limited_by(orbit_limited, before);
+    if (on_limit || _branch->met_limit()) limited_by(orbit_limited, before);
     const double period = orbit->loop.period * units().time;
     if (!take(*orbit)) return met();
     if (on_limit) continue;
@@ -196,7 +196,6 @@ continuation::Ending BranchTask::met() const {
 
 void BranchTask::note_limits(const continuation::Ending& ending, const continuation::Frontier& before) {
   using continuation::EndReason;
-  if (_outcome.limited_by != 0) return;  // at the orbit on a limit
   switch (ending.reason) {
     case EndReason::step_limit: return limited_by(step_limited, before);
     case EndReason::period_limit:
@@ -213,14 +212,14 @@ void BranchTask::note_limits(const continuation::Ending& ending, const continuat
   }
 }
 
+/// The first limit counts: orbits behind it may depend on it.
 void BranchTask::limited_by(int limits, const continuation::Frontier& before) {
-  if (_last) {
+  if (_outcome.limited_by == 0 && _last) {
     BranchState state = state_at(before);
-    state.children.clear();  // they are tasks of their own by the time that this is needed
-    state.outcome.limited_by = 0;
+    state.children.clear();  // of a branch that has ended they are tasks of their own (else see reopen.cpp)
     _outcome.before_limit = pack(state);
   }
-  _outcome.limited_by = limits;
+  _outcome.limited_by |= limits;
 }
 
 /// What only the family's end shows, from the stored orbits alone, whatever was probed before.

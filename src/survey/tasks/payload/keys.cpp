@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/text.hpp"
 
 namespace orbweaver::survey {
 
@@ -63,7 +64,8 @@ bool lies_on(std::string_view key, std::string_view branch) {
 int event_number(std::string_view key, std::string_view branch) {
   if (lies_on(key, branch))
     if (const std::optional<int> number = ordered_at(key.substr(branch.size() + 1))) return *number;
-  throw core::EnvironmentError(fmt::format("`{}` is no key of an event of `{}`", key, branch));
+  throw core::EnvironmentError(
+      fmt::format("`{}` is no key of an event of `{}`", core::printable(key), core::printable(branch)));
 }
 
 int equilibrium_index(std::string_view key) { return ordered_at(key).value_or(-1); }

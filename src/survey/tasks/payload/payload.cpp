@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/text.hpp"
 
 namespace orbweaver::survey {
 
@@ -14,6 +15,9 @@ namespace {
 
 // The head before it says more, and is read within its bytes.
 constexpr unsigned archive_flags = boost::archive::no_header | boost::archive::no_codecvt;
+
+// Of a foreign name, in a message; ours are shorter.
+constexpr std::size_t longest_name = 40;
 
 constexpr const char* same_build =
     "all ranks, and whoever wrote the files of a survey, must be the same build of Orbweaver";
@@ -25,7 +29,8 @@ void expect(const PayloadType& type, boost::archive::binary_iarchive& archive) {
   archive >> version;
   if (name != type.name || version != type.version)
     throw core::EnvironmentError(fmt::format("expected a {} of version {}, got a {} of version {}: {}", type.name,
-                                             type.version, name, version, same_build));
+                                             type.version, core::printable(core::shortened(name, longest_name)),
+                                             version, same_build));
   std::uint64_t layout = 0;
   archive >> layout;
   if (layout != type.layout)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/text.hpp"
 
 namespace orbweaver::survey {
 
@@ -19,7 +20,7 @@ const char* name_of(TaskKind kind) {
 TaskKind kind_of(const queue::Task& task) {
   for (const TaskKind kind : {TaskKind::sweep, TaskKind::branch, TaskKind::locate, TaskKind::start})
     if (task.kind == name_of(kind)) return kind;
-  throw core::EnvironmentError(fmt::format("no such kind of task: `{}`", task.kind));
+  throw core::EnvironmentError(fmt::format("no such kind of task: `{}`", core::printable(task.kind)));
 }
 
 int priority_of(TaskKind kind, int depth) {
