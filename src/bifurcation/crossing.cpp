@@ -36,6 +36,11 @@ class EventFunction {
     return there ? there->reading.value : nan;
   }
 
+  double twist_at(double position) {
+    const std::optional<Crossing> there = at(position);
+    return there ? there->stability.twist : nan;
+  }
+
   /// Why the function had no value where it was asked for last without one.
   [[nodiscard]] const std::optional<NotLocated>& without_value() const { return _without_value; }
 
@@ -167,10 +172,13 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
   constexpr double widest = 1e-10;  // what |index - value| <= |dk/ds| 1e-10 allows
   const double absolute = std::min(tolerance * (1.0 + std::max(std::abs(from), std::abs(to))), widest);
   const auto along = [&](double position) { return function(position); };
-  std::optional<numerics::Located> located =
-      event.tangency
-          ? numerics::locate_minimum([&](double position) { return std::abs(function(position)); }, from, to, absolute)
-          : numerics::locate_root(along, from, to, absolute);
+  std::optional<numerics::Located> located;
+  if (event.passed)
+    located = numerics::locate_root([&](double position) { return function.twist_at(position); }, from, to, absolute);
+  else
+    located = event.tangency ? numerics::locate_minimum([&](double position) { return std::abs(function(position)); },
+                                                        from, to, absolute)
+                             : numerics::locate_root(along, from, to, absolute);
   // Where directions along the family are uncertain, the extremum itself is looked for.
   if (!located && event.kind != Event::Kind::test_function)
     located = extremum(system, family, event, from, to, absolute);

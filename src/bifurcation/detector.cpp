@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "orbweaver/core/error.hpp"
@@ -50,6 +51,23 @@ Vertex vertex_of(const Node& a, const Node& b, const Node& c) {
           2.0 * half_curvature};
 }
 
+double passed_at(const TestPoint& point, std::size_t function) {
+  return point.passed.empty() ? std::numeric_limits<double>::quiet_NaN() : point.passed[function];
+}
+
+/// Zeros that a function has passed between two places, 0 where that is not known.
+int passed_between(double from, double to) {
+  const double change = std::abs(to - from);
+  return std::isnan(change) ? 0 : static_cast<int>(change);
+}
+
+/// Whether some function has passed several zeros between two points: its signs would show every other one.
+bool pass_several(const TestPoint& from, const TestPoint& to) {
+  for (std::size_t f = 0; f < from.readings.size(); ++f)
+    if (passed_between(passed_at(from, f), passed_at(to, f)) > 1) return true;
+  return false;
+}
+
 void add_sign_changes(std::size_t function, const std::vector<Node>& nodes, std::vector<Bracket>& found) {
   const Node* before = nullptr;
   for (const Node& node : nodes) {
@@ -69,10 +87,21 @@ std::optional<TestPoint> Detector::probed(const Probe& probe, double position) c
   return point;
 }
 
+/// Whether so much is turned on both sides of n that functions are no measure of it, but what the points next to it let
+/// expect.
+bool Detector::turns_evenly(const std::vector<TestPoint>& grid, std::size_t n) const {
+  if (n == 0 || !(std::abs(grid[n].turns - grid[n - 1].turns) > _options.turning_step) ||
+      !(std::abs(grid[n + 1].turns - grid[n].turns) > _options.turning_step))
+    return false;
+  const double share = (grid[n].position - grid[n - 1].position) / (grid[n + 1].position - grid[n - 1].position);
+  const double expected = grid[n - 1].turns + share * (grid[n + 1].turns - grid[n - 1].turns);
+  return std::abs(grid[n].turns - expected) <= 0.5 * _options.turning_error;
+}
+
 /// Whether the points next to n let expect another reading there: linear interpolation between them is off by half as
 /// much as linear extrapolation from one side. The family's second point is compared with its first.
 bool Detector::badly_extrapolated(const std::vector<TestPoint>& grid, std::size_t n) const {
-  if (n + 1 == grid.size()) return false;
+  if (n + 1 == grid.size() || turns_evenly(grid, n)) return false;
   for (std::size_t f = 0; f < _state.watches.size(); ++f) {
     const Reading& here = grid[n].readings[f];
     const Reading& after = grid[n + 1].readings[f];
@@ -100,7 +129,7 @@ std::vector<TestPoint> Detector::subdivided(const TestPoint& next, const Probe& 
     halved = false;
     std::vector<TestPoint> finer(grid.begin(), grid.begin() + known);
     for (auto n = static_cast<std::size_t>(known); n < grid.size(); ++n) {
-      if (badly_extrapolated(grid, n - 1) || badly_extrapolated(grid, n)) {
+      if (badly_extrapolated(grid, n - 1) || badly_extrapolated(grid, n) || pass_several(grid[n - 1], grid[n])) {
         if (auto middle = probed(probe, 0.5 * (grid[n - 1].position + grid[n].position))) {
           finer.push_back(*std::move(middle));
           halved = true;
@@ -158,6 +187,20 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
   found.push_back({function, from->position, to->position, true});
 }
 
+/// Brackets the zeros that the function has passed between two nodes, as their counts tell, and signs do not show.
+void Detector::count(std::size_t function, const Node& left, const Node& right, const Probe& probe,
+                     std::vector<Bracket>& found) {
+  const int passed = passed_between(left.passed, right.passed);
+  if (passed == 0) return;
+  const std::size_t before = found.size();
+  const bool is_shown = left.reading.sign() != right.reading.sign();
+  if (!is_shown) examine(function, left, right, probe, found);
+  for (std::size_t n = before; n < found.size(); ++n) found[n].passed = found[n].tangency && passed == 1;
+  if (found.size() > before) _state.watches[function].examined_to = right.position;
+  const auto bracketed = static_cast<int>(found.size() - before) + (is_shown ? 1 : 0);
+  if (passed > bracketed) _state.missed.push_back({function, left.position, right.position, passed - bracketed});
+}
+
 /// Examines the minimum of |value| that the parabola through three nodes of one sign has between them, if it may reach
 /// zero. (With unlike signs a minimum would have the wrong curvature.)
 void Detector::look_for_minimum(std::size_t function, const Node& a, const Node& b, const Node& c, const Probe& probe,
@@ -188,8 +231,9 @@ void Detector::take(std::size_t function, const Node& node, const Probe& probe, 
   if (!last.empty()) {
     if (last.back().reading.sign() != node.reading.sign())
       found.push_back({function, last.back().position, node.position, false});
-    else if (watch.undecided)
+    else if (watch.undecided && passed_between(last.back().passed, node.passed) == 0)
       examine(function, last.back(), node, probe, found);
+    count(function, last.back(), node, probe, found);
   }
   if (last.size() == 2) {
     look_for_minimum(function, last[0], last[1], node, probe, found);
@@ -209,7 +253,8 @@ std::vector<Bracket> Detector::advance(const TestPoint& next, const Probe& probe
       _state.watches[f].scale = std::max(_state.watches[f].scale, std::abs(next.readings[f].value));
   std::vector<Bracket> found;
   for (TestPoint& point : subdivided(next, probe)) {
-    for (std::size_t f = 0; f < point.readings.size(); ++f) take(f, {point.position, point.readings[f]}, probe, found);
+    for (std::size_t f = 0; f < point.readings.size(); ++f)
+      take(f, {point.position, point.readings[f], passed_at(point, f)}, probe, found);
     _state.points.push_back(std::move(point));
   }
   if (_state.points.size() > 2) _state.points.erase(_state.points.begin(), _state.points.end() - 2);

@@ -8,6 +8,7 @@
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/bifurcation/test_functions.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
+#include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/numerics/locate.hpp"
@@ -67,17 +68,76 @@ bool has_index_two_between(const std::shared_ptr<const systems::System>& system,
   return root && root->value == 0.0;
 }
 
-bool is_elliptic(const spectrum::Stability& s) {
-  return s.fundamental.size() == 1 && std::abs(s.fundamental[0].real()) + s.fundamental_error[0] < 2.0;
-}
-
 /// By which neighbours of an elliptic orbit go around, in the sense of its twist.
 double angle_of(const spectrum::Stability& s) {
   return std::copysign(std::acos(0.5 * s.fundamental[0].real()), s.twist);
 }
 
+bool are_counted(const spectrum::Stability& from, const spectrum::Stability& to) {
+  return !std::isnan(to.turns - from.turns);
+}
+
 /// Of a turn, by which it may change over a step.
 constexpr double most_rotation = 0.25;
+/// The same where an orbit is not elliptic: from an index above 2 to one below -2 it is half a turn.
+constexpr double most_with_hyperbolic = 0.5;
+/// How far apart orbits may be between which the angle passes a whole turn, in parts of the step below which nothing is
+/// asked: a curve without a gap has them one such part apart, and twice that where it is bent.
+constexpr double most_apart = 3.0;
+/// By which the place is sought, at most: halving a step of length 1 takes 24.
+constexpr int most_places = 60;
+/// Iterations of the false position method after which the interval is halved.
+constexpr int before_halving = 3;
+/// Where the place is sought beside an end of the interval, how near to it, in parts of the least width: so that the
+/// other end comes near too.
+constexpr double beside_root = 0.4;
+
+std::optional<spectrum::Stability> known_stability(const systems::System& system, const loop::Loop& loop,
+                                                   const loop::Isotropy& isotropy) {
+  try {
+    return spectrum::floquet(system, loop, isotropy);
+  } catch (const core::NumericalError&) {
+    return std::nullopt;
+  }
+}
+
+/// Whether the angle passes a whole turn between two elliptic orbits as it does along one family: beside that place, on
+/// either side, there are orbits as near to one another as steps that are not asked. Across a gap there are none.
+bool passes_one_without_gap(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
+                            const continuation::Options& options, const KnownStability& from,
+                            const KnownStability& to) {
+  if (!are_counted(from.stability, to.stability)) return false;
+  struct Place {
+    double position;
+    double twist;
+    loop::Loop loop;
+  };
+  Place before{0.0, from.stability.twist, from.orbit.loop};
+  Place after{1.0, to.stability.twist, to.orbit.loop};
+  continuation::FamilyCurve step(system, isotropy, options);
+  step.add(before.position, before.loop);
+  step.add(after.position, after.loop);
+  const double least_width = options.smallest_jump / continuation::arclength_between(before.loop, after.loop);
+  double weight_before = before.twist;
+  double weight_after = after.twist;
+  for (int n = 1; n <= most_places && after.position - before.position > least_width; ++n) {
+    const double width = after.position - before.position;
+    const double share = n % before_halving == 0 ? 0.5 : weight_before / (weight_before - weight_after);
+    const double least = std::min(0.5, beside_root * least_width / width);
+    const double position = before.position + std::clamp(share, least, 1.0 - least) * width;
+    std::optional<continuation::CurvePoint> point = step.at(position);
+    const std::optional<spectrum::Stability> here =
+        point ? known_stability(*system, point->loop, isotropy) : std::nullopt;
+    if (!here || std::isnan(here->twist) || here->fundamental[0].real() - here->fundamental_error[0] > 2.0)
+      return false;
+    const bool is_before = here->twist * before.twist > 0.0;
+    (is_before ? before : after) = {position, here->twist, std::move(point->loop)};
+    weight_before = is_before ? here->twist : 0.5 * weight_before;
+    weight_after = is_before ? 0.5 * weight_after : here->twist;
+  }
+  return continuation::arclength_between(before.loop, after.loop) <= most_apart * options.smallest_jump;
+}
+
 /// Of the amplitude: over shorter steps the sense of rotation changes by rounding, or where an index passes 2.
 constexpr double rotating_steps = 1e-3;
 
@@ -94,7 +154,10 @@ bool passes_one_unseen(const spectrum::Stability& from, const spectrum::Stabilit
 }
 
 bool rotates_too_far(const spectrum::Stability& from, const spectrum::Stability& to) {
-  if (!is_elliptic(from) || !is_elliptic(to) || std::isnan(from.twist * to.twist)) return false;
+  const bool are_elliptic = is_elliptic(from) && is_elliptic(to);
+  if (are_counted(from, to))
+    return std::abs(to.turns - from.turns) > (are_elliptic ? most_rotation : most_with_hyperbolic);
+  if (!are_elliptic || std::isnan(from.twist * to.twist)) return false;
   const double turn = 2.0 * std::numbers::pi;
   const double change = std::remainder(angle_of(to) - angle_of(from), turn);
   return std::abs(change) > most_rotation * turn;
@@ -102,7 +165,9 @@ bool rotates_too_far(const spectrum::Stability& from, const spectrum::Stability&
 
 bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
                 const continuation::Options& options, const KnownStability& from, const KnownStability& to) {
-  if (passes_one_unseen(from.stability, to.stability)) return true;
+  if (are_counted(from.stability, to.stability) && rotates_too_far(from.stability, to.stability)) return true;
+  if (passes_one_unseen(from.stability, to.stability))
+    return !passes_one_without_gap(system, isotropy, options, from, to);
   if (loop::mean_distance(from.orbit.loop, to.orbit.loop) > rotating_steps * loop::rms_amplitude(to.orbit.loop) &&
       rotates_too_far(from.stability, to.stability))
     return true;

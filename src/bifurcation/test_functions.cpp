@@ -53,6 +53,11 @@ bool are_decided(const spectrum::Stability& stability) {
   return true;
 }
 
+bool is_elliptic(const spectrum::Stability& stability) {
+  return stability.fundamental.size() == 1 &&
+         std::abs(stability.fundamental[0].real()) + stability.fundamental_error[0] < 2.0;
+}
+
 bool is_isolated(const spectrum::Stability& stability) {
   for (std::size_t i = 0; i < stability.fundamental.size(); ++i)
     if (std::abs(stability.fundamental[i] - 2.0) <= error_margin * stability.fundamental_error[i]) return false;
@@ -89,6 +94,16 @@ Reading evaluate(const TestFunction& function, const systems::Structure& system,
   for (const Bounded& factor : factors) result = product(result, factor);
   const double rounding = roundings_a_factor * static_cast<double>(factors.size());
   return {result.value.real(), result.error + rounding};
+}
+
+double zeros_passed(const TestFunction& function, const spectrum::Stability& stability) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  if (!has_sector(function.kind) || std::isnan(stability.turns)) return unknown;
+  const double place = static_cast<double>(function.sector.j) / function.sector.q;
+  if (function.sector.q > 2) return std::floor(stability.turns - place) + std::floor(stability.turns + place);
+  const double index = stability.fundamental.front().real();
+  const bool has_opened = function.sector.q == 1 ? index >= 2.0 : index <= -2.0;
+  return has_opened ? unknown : std::floor(stability.turns - place);
 }
 
 bool is_event(const TestFunction& function, const systems::Structure& system, const spectrum::Stability& stability,

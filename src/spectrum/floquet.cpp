@@ -19,6 +19,7 @@
 #include "orbweaver/numerics/random.hpp"
 #include "orbweaver/systems/quad_system.hpp"
 #include "transverse_flow.hpp"
+#include "transverse_turns.hpp"
 
 namespace orbweaver::spectrum {
 
@@ -306,6 +307,8 @@ Stability floquet(const systems::System& family, const loop::Loop& loop, const l
   } else {
     add_rounding_probes(system, chain, flow, group.order, indices, team, stability);
   }
+  if (is_single_pair(structure, flow) && flow.bases.cols() > 0)
+    stability.turns = transverse_turns(chain, flow, group, stability.fundamental[0].real(), stability.twist);
   mark_beyond_range(stability.full, stability.full_error);
   mark_beyond_range(stability.fundamental, stability.fundamental_error);
   if (structure.conservative() && !structure.symplectic) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "matrix_table.hpp"
 #include "orbweaver/ad/lanes.hpp"
@@ -167,6 +168,7 @@ TransverseFlow reduced(const Chain& chain, const FundamentalGroup& group, core::
     Eigen::Matrix4d all;
     all << chain.fields.col(0), chain.gradients.col(0), first;
     flow.orientation = std::copysign(1.0, all.determinant());
+    flow.bases = std::move(bases);
   }
   return flow;
 }

@@ -17,6 +17,7 @@ struct TransverseFlow {
   /// In four dimensions with a conserved energy: +1 or -1, the orientation of the first basis behind f and the gradient
   /// of the energy. 0 otherwise.
   double orientation = 0.0;
+  Eigen::MatrixXd bases;  ///< there too: 8 x (segments + 1), the basis at each t_m, vector by vector. Empty otherwise
 
   [[nodiscard]] Eigen::Index dimension() const { return around.rows(); }
 };

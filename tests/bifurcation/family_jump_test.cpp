@@ -239,4 +239,70 @@ TEST(FamilyJump, AnAngleThatChangesByMoreThanAQuarterOfATurnIsNotTrusted) {
   EXPECT_FALSE(bifurcation::rotates_too_far(rotating(200), hyperbolic));
 }
 
+TEST(FamilyJump, WholeTurnsAreNotTaken) {
+  const auto turned = [](double turns, double index) {
+    spectrum::Stability out;
+    out.fundamental = {index};
+    out.fundamental_error = {1e-10};
+    out.twist = std::sin(2.0 * std::numbers::pi * turns);
+    out.turns = turns;
+    return out;
+  };
+  const auto elliptic = [&](double turns) { return turned(turns, 2.0 * std::cos(2.0 * std::numbers::pi * turns)); };
+  EXPECT_FALSE(bifurcation::rotates_too_far(elliptic(707.3), elliptic(707.5)));
+  EXPECT_TRUE(bifurcation::rotates_too_far(elliptic(707.3), elliptic(708.3)));
+  EXPECT_TRUE(bifurcation::rotates_too_far(elliptic(707.3), elliptic(701.35)));
+  EXPECT_FALSE(bifurcation::rotates_too_far(turned(3.0, 2.5), turned(3.5, -2.5)));
+  EXPECT_FALSE(bifurcation::rotates_too_far(turned(3.0, 2.5), elliptic(3.4)));
+  EXPECT_TRUE(bifurcation::rotates_too_far(turned(3.0, 2.5), turned(4.0, 2.5)));
+}
+
+/// The slow swing of a pendulum whose outer rod has this length, in steps that do not jump.
+struct SlowSwing {
+  std::shared_ptr<const systems::System> system;
+  std::vector<double> turns{};
+  int passages = 0;
+  continuation::Ending ending{};
+
+  SlowSwing(double l2, double period, double start) : system(systems::make_system("double_pendulum", {{"l2", l2}})) {
+    const double b = 2.0 * (1.0 + l2) / l2;  // of w^4 - b w^2 + 2/l2 = 0, m = l1 = g = 1
+    const double square = 0.5 * (b - std::sqrt(b * b - 8.0 / l2));
+    continuation::Start from;
+    from.base = loop::constant_loop(std::vector<double>(4, 0.0), 2.0 * std::numbers::pi / std::sqrt(square), 10);
+    from.direction.modes.assign(from.base.modes.size(), 0.0);
+    from.direction.modes[4] = 1.0;
+    from.direction.modes[5] = square / (1.0 - l2 * square);
+    from.direction.modes[10] = -std::sqrt(square);
+    from.direction.modes[11] = from.direction.modes[10] * from.direction.modes[5];
+    from.isotropy = test::pendulum_isotropy(*system);
+    Options plain;
+    plain.period_limit = period;
+    plain.start_amplitude = start;
+    Options options = plain;
+    const auto stability = [&](const Orbit& orbit) { return spectrum::floquet(*system, orbit.loop, from.isotropy); };
+    options.jumped = [&](const Orbit& here, const Orbit& next) {
+      return has_jumped(system, from.isotropy, plain, {here, stability(here)}, {next, stability(next)});
+    };
+    ending = continuation::trace(system, from, options, [&](const Orbit& orbit) {
+      turns.push_back(stability(orbit).turns);
+      return true;
+    });
+    for (std::size_t n = 1; n < turns.size(); ++n)
+      if (std::floor(turns[n]) != std::floor(turns[n - 1])) ++passages;
+  }
+};
+
+// Of the outer bob, which turns 71 times a half period and more often as it swings further: no gap that rounding shows.
+TEST(FamilyJump, AFastPhaseThatPassesWholeTurnsDoesNotStopTheBranch) {
+  const SlowSwing swing(1e-4, 6.4, 0.0087);
+  EXPECT_EQ(swing.ending.reason, continuation::EndReason::period_limit) << swing.ending.text();
+  EXPECT_EQ(swing.passages, 3);
+  EXPECT_LT(swing.turns.size(), 50U) << "a step of 1e-7 at each passage would take thirty orbits more";
+  for (std::size_t n = 1; n < swing.turns.size(); ++n) EXPECT_LE(std::abs(swing.turns[n] - swing.turns[n - 1]), 0.25);
+  // From another first orbit the same is passed, and the last one, at the same period, is the same.
+  const SlowSwing other(1e-4, 6.4, 0.003);
+  EXPECT_EQ(other.passages, swing.passages);
+  EXPECT_NEAR(other.turns.back(), swing.turns.back(), 1e-5);
+}
+
 }  // namespace

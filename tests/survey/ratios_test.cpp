@@ -88,4 +88,41 @@ TEST(Ratios, OrbitsThatRoundingDoesNotTellApartEndAFamily) {
   EXPECT_GE(count_of(summary, survey::Severity::undecided), 1U);
 }
 
+scene::Scene slow_swing(const std::string& l2, const std::string& period, const std::string& start) {
+  return scene_with({"system.parameters.l2=" + l2, "limits.period=" + period, "continuation.start=" + start,
+                     "starts.sweep.period=[6, 7]", "survey.subharmonics=2"});
+}
+
+// The outer bob turns by two whole turns more in half a period: it passes every quarter of one, from whatever orbit.
+TEST(Ratios, AllThatAFastPhasePassesIsFound) {
+  const core::Communicator comm;
+  std::size_t orbits = 0;
+  for (const char* start : {"0.2deg", "0.5deg", "1.3deg"}) {
+    const survey::Summary summary = test::run(comm, slow_swing("1e-4", "6.36", start), "fast_phase");
+    if (!comm.is_root()) continue;
+    EXPECT_EQ(summary.failures, 0U);
+    EXPECT_EQ(count_of(summary, survey::Severity::undecided), 0U);
+    const test::Atlas atlas(summary.atlas);
+    for (const double period : {6.291870031, 6.307098151, 6.322729875, 6.338778954, 6.355260274})
+      EXPECT_TRUE(atlas.crossing("In-Phase", "branch-point", period).has_value()) << period << " from " << start;
+    for (const double period : {6.284403309, 6.299434459, 6.314862728, 6.330701343, 6.346964606})
+      EXPECT_TRUE(atlas.crossing("In-Phase", "period-doubling", period).has_value()) << period << " from " << start;
+    ASSERT_EQ(summary.families.size(), 1U);
+    EXPECT_EQ(summary.crossings, 10) << start;
+    orbits = std::max<std::size_t>(orbits, summary.families.front().orbits);
+  }
+  EXPECT_LT(orbits, 40U) << "a whole turn has stopped the branch";
+}
+
+// Ten times as fast no kernel is found where the multiplier passes 1 or -1: that it does is said.
+TEST(Ratios, WhatAFastPhasePassesAndIsNotLocatedIsSaid) {
+  const core::Communicator comm;
+  const survey::Summary summary = test::run(comm, slow_swing("1e-5", "6.2885", "0.5deg"), "faster_phase");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  EXPECT_EQ(count_of(summary, survey::Severity::contradiction), 0U);
+  EXPECT_EQ(count_of(summary, survey::Severity::undecided) + static_cast<std::size_t>(summary.crossings), 2U)
+      << "of turns 224.25 and 224.5";
+}
+
 }  // namespace

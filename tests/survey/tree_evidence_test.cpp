@@ -125,4 +125,16 @@ TEST_F(Evidence, FailedLocationsBelongToTheirFamilies) {
   EXPECT_EQ(found.failures[0].reason, "locate " + p.key + ": no root");
 }
 
+TEST_F(Evidence, WhatABranchHasPassedAndNotFoundIsUndecided) {
+  BranchOutcome outcome = unpack_branch_outcome(base().outcome.payload);
+  outcome.unlocated = {"two zeros"};
+  Ended branch = base();
+  branch.outcome.payload = pack(outcome);
+  const TreeEvidence found = evidence({branch});
+  EXPECT_THAT(found.failures, IsEmpty());
+  ASSERT_EQ(found.undecided.size(), 1U);
+  EXPECT_EQ(found.undecided[0].family, "0000.0000");
+  EXPECT_EQ(found.undecided[0].reason, "two zeros");
+}
+
 }  // namespace

@@ -73,6 +73,7 @@ BranchOutcome sample_branch_outcome() {
           {{8.5, -1.5, sample_loop()}},
           2,
           {"a remark"},
+          {"what was not found"},
           5e-13,
           0.75,
           period_limited,
@@ -80,7 +81,7 @@ BranchOutcome sample_branch_outcome() {
 }
 LocateWork sample_locate_work() {
   LocateWork work{"0001.0002/003.q4.j1", "Naïve", sample_lineage(), sample_isotropy(), {{0.5, sample_loop()}}, 0.25};
-  work.event = {bifurcation::Event::Kind::test_function, {bifurcation::TestFunction::Kind::sector, {8, 3}}, true};
+  work.event = {bifurcation::Event::Kind::test_function, {bifurcation::TestFunction::Kind::sector, {8, 3}}, true, true};
   work.from = 1.25;
   work.to = 1.5;
   return work;

@@ -20,11 +20,14 @@ struct Event {
   Kind kind = Kind::test_function;
   TestFunction function{};  ///< of Kind::test_function
   bool tangency = false;    ///< the function only touches zero
+  /// A tangency at which a multiplier passes 1 or -1 and stays on the unit circle, to rounding: there
+  /// `Stability::twist` changes its sign, by which it is located.
+  bool passed = false;
 
-  static constexpr int wire_version = 1;
+  static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, kind, function, tangency);
+    core::serialize_members(archive, kind, function, tangency, passed);
   }
 };
 

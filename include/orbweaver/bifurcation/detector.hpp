@@ -15,11 +15,15 @@ namespace orbweaver::bifurcation {
 struct TestPoint {
   double position;                ///< along the family (arclength), increasing
   std::vector<Reading> readings;  ///< one a test function, in the caller's order
+  /// How many zeros of each function the family has passed, but for a constant (`zeros_passed`); NaN where that is not
+  /// known. Empty: of none.
+  std::vector<double> passed{};
+  double turns = std::numeric_limits<double>::quiet_NaN();  ///< spectrum::Stability::turns, of an elliptic orbit only
 
-  static constexpr int wire_version = 1;
+  static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, position, readings);
+    core::serialize_members(archive, position, readings, passed, turns);
   }
 };
 
@@ -29,6 +33,21 @@ struct Bracket {
   double from;
   double to;
   bool tangency;
+  bool passed = false;  ///< a tangency that is one: counts say that a zero is passed there
+};
+
+/// Between `from` and `to` a function has more zeros than were bracketed, by so many.
+struct MissedZeros {
+  std::size_t function;
+  double from;
+  double to;
+  int count;
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, function, from, to, count);
+  }
 };
 
 struct DetectorOptions {
@@ -36,6 +55,11 @@ struct DetectorOptions {
   /// largest modulus so far (but 0.1 at least). Zeros in pairs within a step are missed above, steps wasted below; not
   /// measured.
   double extrapolation_error = 0.1;
+  /// The same in turns, where they are known: the angle of a multiplier may change evenly while its functions go up and
+  /// down. As much as the above is where a function is steepest.
+  double turning_error = 0.02;
+  /// Where points are so many turns apart, at least: below, functions tell more of what is new along the family.
+  double turning_step = 0.1;
   int halvings = 3;  ///< of one step, at most
   /// A minimum of |value| below this, or below its error bound, touches zero. Located to 1e-6 of a bracket, a true
   /// touch is far below; what is taken for one wrongly costs a location that finds nothing.
@@ -49,11 +73,12 @@ struct DetectorState {
   struct Node {
     double position = 0.0;
     Reading reading{};
+    double passed = std::numeric_limits<double>::quiet_NaN();  ///< of TestPoint::passed
 
-    static constexpr int wire_version = 1;
+    static constexpr int wire_version = 2;
     template <class Archive>
     void serialize(Archive& archive, unsigned /*version*/) {
-      core::serialize_members(archive, position, reading);
+      core::serialize_members(archive, position, reading, passed);
     }
   };
   struct Watch {
@@ -70,16 +95,20 @@ struct DetectorState {
   };
   std::vector<TestPoint> points;  ///< the last two, probed ones included
   std::vector<Watch> watches;     ///< one a test function
+  std::vector<MissedZeros> missed;
 
-  static constexpr int wire_version = 1;
+  static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, points, watches);
+    core::serialize_members(archive, points, watches, missed);
   }
 };
 
 /// Finds the zeros of test functions along a family from its points one after the other. Where a step is too coarse for
 /// that (a reading is not what its neighbours let expect), it asks for points in between.
+///
+/// Where the points say how many zeros have been passed, as many are bracketed, whether signs show them or not; or they
+/// are `missed`.
 ///
 /// A function's sign is compared with its last one: points without a sign are passed over, so noise below the error
 /// bound is no event, nor is a family's start, where a function is about zero before it has had a sign.
@@ -98,14 +127,19 @@ class Detector {
   [[nodiscard]] std::vector<Bracket> finish(const Probe& probe);
 
   [[nodiscard]] const DetectorState& state() const { return _state; }
+  /// All so far.
+  [[nodiscard]] const std::vector<MissedZeros>& missed() const { return _state.missed; }
 
  private:
   using Node = DetectorState::Node;
   using Watch = DetectorState::Watch;
 
   [[nodiscard]] bool badly_extrapolated(const std::vector<TestPoint>& grid, std::size_t n) const;
+  [[nodiscard]] bool turns_evenly(const std::vector<TestPoint>& grid, std::size_t n) const;
   [[nodiscard]] std::vector<TestPoint> subdivided(const TestPoint& next, const Probe& probe) const;
   void take(std::size_t function, const Node& node, const Probe& probe, std::vector<Bracket>& found);
+  void count(std::size_t function, const Node& left, const Node& right, const Probe& probe,
+             std::vector<Bracket>& found);
   void look_for_minimum(std::size_t function, const Node& a, const Node& b, const Node& c, const Probe& probe,
                         std::vector<Bracket>& found);
   void examine(std::size_t function, const Node& left, const Node& right, const Probe& probe,

@@ -66,10 +66,18 @@ struct TestFunction {
 [[nodiscard]] Reading evaluate(const TestFunction& function, const systems::Structure& system,
                                const spectrum::Stability& stability);
 
+/// How many zeros of the function a family has passed whose multiplier has turned so far (`Stability::turns`), but for
+/// a constant. NaN where that is not known: of functions without a sector, and for q = 1 and 2 at orbits that have
+/// opened there (an index beyond 2, or -2), where the sign tells.
+[[nodiscard]] double zeros_passed(const TestFunction& function, const spectrum::Stability& stability);
+
 /// Whether double precision tells at the orbit what its indices pass: false where one of a pair that is on the unit
 /// circle, or near it (|k| <= 3), is known to worse than 1e-4. Beside a motion a thousand times as fast the phase that
 /// it gains in a period is known no better, and no crossing could be located by it.
 [[nodiscard]] bool are_decided(const spectrum::Stability& stability);
+
+/// Whether the orbit has one index, and that is between -2 and 2 by more than its error.
+[[nodiscard]] bool is_elliptic(const spectrum::Stability& stability);
 
 /// False where an index of the fundamental map is 2 to within its error: the linearised equations of the orbit are
 /// singular to rounding, and orbits beside it are not told from it.

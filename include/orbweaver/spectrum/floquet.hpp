@@ -40,6 +40,12 @@ struct Stability {
   /// same way along a family. Of an elliptic orbit (|k| < 2) its sign is the sense in which neighbours go around, and
   /// |twist| >= |sin| of the angle: along a family it changes only where a multiplier passes 1 or -1. NaN otherwise.
   double twist = std::numeric_limits<double>::quiet_NaN();
+  /// In four dimensions, symplectic, for a state of two positions and their velocities or momenta: the turns by which
+  /// neighbours go around in T/p, counted along the orbit in a frame that is continuous along families too. Of an
+  /// elliptic orbit a whole number plus the angle of the multiplier, in the sense of `twist`; of others the whole (k >=
+  /// 2) or half (k <= -2) number. Along a family it is continuous, and so says what is passed between two orbits. NaN
+  /// otherwise, and where the chain's segments are too long to tell.
+  double turns = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Stability of an accepted orbit, at a cost proportional to the number of its harmonics.

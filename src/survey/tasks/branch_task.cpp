@@ -50,6 +50,8 @@ constexpr double nearly_at_rest = 1e-5;
 /// Between an equilibrium and the first orbit a test function changes with the square of the amplitude. Of its larger
 /// modulus, but 0.1 at least: where it changes by more, the fourth power may give it zeros in pairs. Not measured.
 constexpr double largest_change = 0.1;
+/// And turns of the multiplier (Stability::turns), which tell where functions have come back to what they were.
+constexpr double most_turned = 0.25;
 /// Relative to the equilibrium's: a period or an energy that is asked for and is no further from it is its own.
 constexpr double at_equilibrium = 1e-10;
 /// Relative to their size, of changes of T and E: ten times what a fold is seen by (bifurcation/fold_watch), for
@@ -228,8 +230,18 @@ void BranchTask::finish() {
   _curve.forget_found();
   const auto probing = [this](double position) { return probe(position); };
   for (const bifurcation::Bracket& b : _detector.finish(probing))
-    add_event({bifurcation::Event::Kind::test_function, _functions[b.function], b.tangency}, b.from, b.to,
+    add_event({bifurcation::Event::Kind::test_function, _functions[b.function], b.tangency, b.passed}, b.from, b.to,
               _curve.known());
+  for (const bifurcation::MissedZeros& missed : _detector.missed()) add_missed(missed);
+}
+
+/// Positions as they are: which arclength they have is known of the last few orbits only.
+void BranchTask::add_missed(const bifurcation::MissedZeros& missed) {
+  const bifurcation::Sector& sector = _functions[missed.function].sector;
+  _outcome.unlocated.push_back(fmt::format(
+      "a multiplier passes exp(2 pi i {}/{}), or its inverse, {} times more than was found, {} to {} of the "
+      "survey's lengths along the family",
+      sector.j, sector.q, missed.count, missed.from, missed.to));
 }
 
 /// False where the branch has arrived at another family.
@@ -335,6 +347,7 @@ bool BranchTask::passes_index(const loop::Loop& small, const continuation::Orbit
   if (!_at_rest) _at_rest = test_point(0.0, stability_of(*_system, small, _start.isotropy, _team));
   const bool is_resonant = _work.amplitude > 0.0;
   const bifurcation::TestPoint there = test_point(0.0, stability_at(first));
+  if (!is_resonant && std::abs(there.turns - _at_rest->turns) > most_turned) return true;
   for (std::size_t f = 0; f < _functions.size(); ++f) {
     const bifurcation::Reading& from = _at_rest->readings[f];
     const bifurcation::Reading& to = there.readings[f];
@@ -368,10 +381,13 @@ bool BranchTask::arrive(const continuation::Orbit& orbit) {
 bifurcation::TestPoint BranchTask::test_point(double position,
                                               const std::optional<spectrum::Stability>& stability) const {
   bifurcation::TestPoint out{position, {}};
-  for (const bifurcation::TestFunction& function : _functions)
-    out.readings.push_back(stability && bifurcation::are_decided(*stability)
-                               ? bifurcation::evaluate(function, _system->structure(), *stability)
-                               : bifurcation::Reading{archive::not_computed, archive::not_computed});
+  const bool decided = stability && bifurcation::are_decided(*stability);
+  for (const bifurcation::TestFunction& function : _functions) {
+    out.readings.push_back(decided ? bifurcation::evaluate(function, _system->structure(), *stability)
+                                   : bifurcation::Reading{archive::not_computed, archive::not_computed});
+    out.passed.push_back(decided ? bifurcation::zeros_passed(function, *stability) : archive::not_computed);
+  }
+  if (decided && bifurcation::is_elliptic(*stability)) out.turns = stability->turns;
   return out;
 }
 
@@ -386,7 +402,7 @@ void BranchTask::detect(const continuation::Orbit& orbit, const std::optional<sp
   using Kind = bifurcation::Event::Kind;
   const auto probing = [this](double position) { return probe(position); };
   for (const bifurcation::Bracket& b : _detector.advance(test_point(orbit.arclength, stability), probing))
-    add_event({Kind::test_function, _functions[b.function], b.tangency}, b.from, b.to, _curve.known());
+    add_event({Kind::test_function, _functions[b.function], b.tangency, b.passed}, b.from, b.to, _curve.known());
   // Where a parameter moves only it folds; T and the energy have extrema that say nothing.
   using Quantity = bifurcation::Fold::Quantity;
   const bool moves = !orbit.loop.parameters.empty();
@@ -419,9 +435,14 @@ void BranchTask::detect_from_birth() {
   for (std::size_t f = 0; f < _functions.size(); ++f) {
     const double before = at_birth.readings[f].value;
     const int after = at_first.readings[f].sign();
-    if (std::abs(before) > zero_at_birth && before * after < 0.0)
+    const bool is_shown = std::abs(before) > zero_at_birth && before * after < 0.0;
+    if (is_shown)
       add_event({bifurcation::Event::Kind::test_function, _functions[f], false}, known[0].position, known[1].position,
                 known);
+    // Of two places of one function signs show none. The one where a family is born is none.
+    const double passed = std::abs(at_first.passed[f] - at_birth.passed[f]);
+    if (_functions[f].sector.q > 2 && passed > 1.0)
+      add_missed({f, known[0].position, known[1].position, static_cast<int>(passed) - (is_shown ? 1 : 0)});
   }
   folds_from_birth(known);
 }

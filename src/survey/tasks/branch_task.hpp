@@ -52,6 +52,7 @@ class BranchTask {
   [[nodiscard]] continuation::Ending met() const;
   void detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability);
   void detect_from_birth();
+  void add_missed(const bifurcation::MissedZeros& missed);
   void folds_from_birth(const std::vector<continuation::FamilyCurve::Known>& known);
   void add_event(const bifurcation::Event& event, double from, double to,
                  std::vector<continuation::FamilyCurve::Known> known);

@@ -107,6 +107,7 @@ class Location {
     // Only minima that come near zero, and functions that vanish for other reasons, may turn out to be nothing.
     done.failed = !_event.tangency && why.reason != bifurcation::NotLocated::Reason::no_event;
     _outcome.remark = to_text(why);
+    _outcome.undecided = _event.passed;
     if (done.failed)
       if (const std::string hidden = hidden_in(family); !hidden.empty()) {
         done.failed = false;
@@ -202,8 +203,9 @@ class Location {
                       continuation::FamilyCurve& family) {
     _outcome.remark = fmt::format("no flat direction besides the family's own (smallest singular value {:.2g})",
                                   kernel.singular_values.empty() ? archive::not_computed : kernel.singular_values[0]);
-    if (_event.tangency) {  // a minimum that came near zero, but is none
+    if (_event.tangency) {  // a minimum that came near zero, but is none, or is not told from none
       _outcome.kind.reset();
+      _outcome.undecided = _event.passed;
     } else if (_event.function.sector.q == 1 && turns(family)) {
       _outcome.kind = fold_kind();
     } else {

@@ -28,6 +28,9 @@ class Gatherer {
     for (const FamilySide branch : _tree.kept) {
       evidence.ends.push_back(of(*branch));
       if (branch->second.failed) evidence.failures.push_back({branch->second.lineage.family, branch->second.reason});
+      if (!branch->second.outcome) continue;
+      for (const std::string& passed : branch->second.outcome->unlocated)
+        evidence.undecided.push_back({branch->second.lineage.family, passed});
     }
     add_locations(_tree.failed_locations, evidence.failures);
     add_locations(_tree.undecided_events, evidence.undecided);

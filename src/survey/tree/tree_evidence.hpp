@@ -59,7 +59,7 @@ struct TreeEvidence {
   std::vector<CrossingEvidence> crossings;
   std::vector<EndEvidence> ends;
   std::vector<FailureEvidence> failures;
-  std::vector<FailureEvidence> undecided;  ///< events that rounding keeps from being located
+  std::vector<FailureEvidence> undecided;  ///< events that rounding keeps from being located, or that were not found
   std::vector<std::string> disputed;  ///< keys of families
 };
 

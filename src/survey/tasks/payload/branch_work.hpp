@@ -80,17 +80,18 @@ struct BranchOutcome {
   std::vector<ArrivalRecord> arrival;  ///< one or none
   int equilibrium = -1;                ///< at which it ended, among the survey's; -1: at none of them
   std::vector<std::string> remarks;
+  std::vector<std::string> unlocated;  ///< what was passed, as its multiplier's turns tell, and not found
   double tolerance_met = 0.0;  ///< the largest of the orbits', where rounding keeps one above the tolerance; else 0
   double moved_out = 0.0;      ///< of the first orbit, as continuation::Orbit
   int limited_by = 0;          ///< Limit: with wider ones the branch would have gone on
   std::string before_limit;    ///< the state (queue::Task) from which it would, without children; empty: from its start
 
-  static constexpr int wire_version = 4;
+  static constexpr int wire_version = 5;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, key, orbits, period_from, period_to, level_from, level_to, last_period, last_level,
-                            last_cutoff, end, arrival, equilibrium, remarks, tolerance_met, moved_out, limited_by,
-                            before_limit);
+                            last_cutoff, end, arrival, equilibrium, remarks, unlocated, tolerance_met, moved_out,
+                            limited_by, before_limit);
     if constexpr (Archive::is_loading::value) check_limits(limited_by);
   }
 };
