@@ -214,7 +214,7 @@ std::filesystem::path fresh_folder(const std::string& name, MPI_Comm comm) {
 
 void remove_checksums(const std::filesystem::path& atlas) {
   const H5Handle file(check_h5(H5Fopen(atlas.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "H5Fopen"), H5Fclose);
-  for (const char* name : {"families", "orbits", "crossings", "sections", "findings"})
+  for (const char* name : {"families", "orbits", "crossings", "sections", "loci", "findings"})
     check_h5(H5Ldelete(file.get(), fmt::format("{}/checksum", name).c_str(), H5P_DEFAULT), name);
   for (const char* name : {"orbits/modes_checksum", "orbits/time_map_checksum"})
     check_h5(H5Ldelete(file.get(), name, H5P_DEFAULT), name);
