@@ -259,7 +259,7 @@ void read_loci(const Field& field, Scene& scene, const systems::System& system) 
       const auto place = std::find(kinds.begin(), kinds.end(), name) - kinds.begin();
       loci.of.push_back(static_cast<Loci::Of>(place));
       const auto [problem, advice] = obstacle_of(loci.of.back(), system);
-      if (!problem.empty()) kind.fail(fmt::format("loci that can be had: {}", problem), name, advice);
+      if (!problem.empty()) kind.fail(fmt::format("loci that can be had: {}", problem), kind.got(), advice);
     }
     const std::vector<Field> second = free->list("[m2]");
     if (second.size() != 1) free->fail("one parameter", free->got(), "a locus has one besides that of the families");
@@ -274,7 +274,7 @@ void read_loci(const Field& field, Scene& scene, const systems::System& system) 
       keys.find("range").value_or(entry).fail(
           fmt::format("a range within [{:g}, {:g}] that has the scene's {} = {:g}", parameter->lower, parameter->upper,
                       loci.free, here),
-          fmt::format("[{:g}, {:g}]", loci.from, loci.to), "change the range");
+          fmt::format("`[{:g}, {:g}]`", loci.from, loci.to), "change the range");
     scene.loci.push_back(std::move(loci));
   }
 }

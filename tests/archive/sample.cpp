@@ -139,6 +139,7 @@ Records tables_of(const Records& records) {
   Records tables;
   tables.families = records.families;
   tables.crossings = records.crossings;
+  tables.loci = records.loci;
   tables.left_out_keys = records.left_out_keys;
   tables.voided = records.voided;
   tables.earlier_scenes = records.earlier_scenes;
