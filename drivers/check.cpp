@@ -255,8 +255,8 @@ std::string loci_text(const scene::Scene& scene) {
     std::vector<std::string> kinds;
     for (const scene::Loci::Of of : loci.of) kinds.push_back(scene::name_of(of));
     const std::string first = scene.system.moving.free.empty() ? "T" : scene.system.moving.free.front();
-    texts.push_back(fmt::format("{} in {} and {} from {:g} to {:g}", fmt::join(kinds, ", "), first, loci.free,
-                                loci.from, loci.to));
+    texts.push_back(
+        fmt::format("{} in {} and {} from {:g} to {:g}", fmt::join(kinds, ", "), first, loci.free, loci.from, loci.to));
   }
   return fmt::format("{}", fmt::join(texts, "; "));
 }

@@ -52,9 +52,10 @@ class LocusTracer {
       : _system(system), _test(test), _options(options), _base(start), _isotropy(isotropy) {
     const FamilyOf family{_system, _base, _isotropy, 2};
     if (const std::string why = CollocationProblem::obstacle(family, options.branch.cutoff_to); !why.empty())
-      throw core::InputError(fmt::format("loci are solved for by collocation, which does not apply to orbits of {} with "
-                                         "the isotropy `{}`: {}",
-                                         system.info().name, loop::to_text(isotropy), why));
+      throw core::InputError(
+          fmt::format("loci are solved for by collocation, which does not apply to orbits of {} with "
+                      "the isotropy `{}`: {}",
+                      system.info().name, loop::to_text(isotropy), why));
     _problem.emplace(family, _options.branch, _state);
   }
 
@@ -65,8 +66,8 @@ class LocusTracer {
       if (static_cast<int>(_locus.points.size()) >= _options.branch.step_limit)
         return end(EndReason::step_limit, fmt::format("{} points", _locus.points.size()));
       if (!(length >= least_step * _options.largest_step))
-        return end(_why.first, fmt::format("at {} after {} points: {}", place_text(_last.loop), _locus.points.size(),
-                                           _why.second));
+        return end(_why.first,
+                   fmt::format("at {} after {} points: {}", place_text(_last.loop), _locus.points.size(), _why.second));
       std::optional<Solved> next = solve(length);
       if (!next || turns_too_far(*next)) {
         length *= 0.5;
@@ -132,7 +133,8 @@ class LocusTracer {
     std::vector<Vector*> values;
     for (Kept* kept : {&_before, &_after}) {
       for (TracePoint& point : kept->points) values.push_back(&point.values);
-      for (Vector* v : {&kept->last.values, &kept->last.along, &kept->last.across, &kept->last.still}) values.push_back(v);
+      for (Vector* v : {&kept->last.values, &kept->last.along, &kept->last.across, &kept->last.still})
+        values.push_back(v);
     }
     for (TracePoint& point : _points) values.push_back(&point.values);
     for (Vector* v : {&_last.values, &_last.along, &_last.across, &_last.still}) values.push_back(v);
@@ -183,7 +185,8 @@ class LocusTracer {
     std::optional<Trial> trial;
     do {
       at = {_problem->from_loop(_base), _problem->from_change(loop::perturbation(_base, family)), 1};
-      for (std::size_t n = 0; n < family.scalars.size(); ++n) at.tangent[_problem->scalars_at() + n] += family.scalars[n];
+      for (std::size_t n = 0; n < family.scalars.size(); ++n)
+        at.tangent[_problem->scalars_at() + n] += family.scalars[n];
       at.across.assign(at.values.size(), 0.0);
       at.across[last_parameter()] = 1.0;
       _conditions = _problem->conditions_at(at);
@@ -449,8 +452,8 @@ class LocusTracer {
     const std::vector<std::string>& free = _system.family_scalars().free;
     const std::size_t q = free.size() - 1;
     const auto parameter = [](std::size_t n) { return [n](const loop::Loop& l) { return l.parameters[n]; }; };
-    std::vector<Limit> limits{{EndReason::period_limit, "T", o.period_limit, scales.time,
-                               [](const loop::Loop& l) { return l.period; }}};
+    std::vector<Limit> limits{
+        {EndReason::period_limit, "T", o.period_limit, scales.time, [](const loop::Loop& l) { return l.period; }}};
     for (const double value : {_options.from, _options.to})
       limits.push_back({EndReason::parameter_limit, free[q], value, scales.parameter(q), parameter(q)});
     if (q > 0)

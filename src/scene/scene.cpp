@@ -34,9 +34,10 @@ void read_starts(const Field& field, const systems::System& system, Scene& scene
 }
 
 Scene read_scene(const Field& root) {
-  const Keys keys(
-      root, {"name", "system", "starts", "continuation", "survey", "compute", "limits", "events", "section", "loci", "output"},
-      smallest_scene);
+  const Keys keys(root,
+                  {"name", "system", "starts", "continuation", "survey", "compute", "limits", "events", "section",
+                   "loci", "output"},
+                  smallest_scene);
   Scene scene;
   read_system(require_key(keys, root, "system", "system: {name: double_pendulum}"), scene.system);
   read_family_scalars(keys.find("continuation"), scene.system);

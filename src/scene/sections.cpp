@@ -271,10 +271,9 @@ void read_loci(const Field& field, Scene& scene, const systems::System& system) 
     if (const auto range = keys.find("range")) std::tie(loci.from, loci.to) = range->range({.example = "[0.5, 2]"});
     const double here = system.parameters().at(loci.free);
     if (loci.from < parameter->lower || loci.to > parameter->upper || here < loci.from || here > loci.to)
-      keys.find("range").value_or(entry).fail(
-          fmt::format("a range within [{:g}, {:g}] that has the scene's {} = {:g}", parameter->lower, parameter->upper,
-                      loci.free, here),
-          fmt::format("`[{:g}, {:g}]`", loci.from, loci.to), "change the range");
+      keys.find("range").value_or(entry).fail(fmt::format("a range within [{:g}, {:g}] that has the scene's {} = {:g}",
+                                                          parameter->lower, parameter->upper, loci.free, here),
+                                              fmt::format("`[{:g}, {:g}]`", loci.from, loci.to), "change the range");
     scene.loci.push_back(std::move(loci));
   }
 }

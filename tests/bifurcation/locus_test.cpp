@@ -23,9 +23,9 @@ using continuation::LocusPoint;
 
 /// Duffing's oscillator with damping and drive.
 std::shared_ptr<const systems::System> duffing(std::vector<std::string> free, double amplitude, double damping = 0.1) {
-  return systems::make_system(
-      "duffing", {{"damping", damping}, {"drive_amplitude", amplitude}, {"drive_frequency", 0.5}}, {"damping", "drive"},
-      {std::move(free), {}});
+  return systems::make_system("duffing",
+                              {{"damping", damping}, {"drive_amplitude", amplitude}, {"drive_frequency", 0.5}},
+                              {"damping", "drive"}, {std::move(free), {}});
 }
 
 /// At rest without a drive; the drive's amplitude is raised, then the frequency, or the other way.
@@ -78,7 +78,8 @@ std::vector<Found> folds(double amplitude, double largest_step = 1.0) {
   std::vector<Found> found;
   for (const bifurcation::Fold& fold : seen) {
     bifurcation::NotLocated why;
-    auto crossing = bifurcation::locate(*system, curve, {Event::Kind::fold_parameter, {}, false}, fold.from, fold.to, why);
+    auto crossing =
+        bifurcation::locate(*system, curve, {Event::Kind::fold_parameter, {}, false}, fold.from, fold.to, why);
     EXPECT_TRUE(crossing) << to_text(why);
     if (crossing) found.push_back({std::move(*crossing), start.isotropy});
   }

@@ -31,11 +31,11 @@ scene::Scene folds_of_duffing() {
 
 /// Raised from rest: a symmetric answer, its pair of unsymmetric ones, and their doubling.
 scene::Scene doublings_of_duffing(double frequency, const std::string& loci) {
-  return scene_of("duffing.yaml",
-                  {"survey.depth=1", "survey.subharmonics=2", "system.parameters.damping=0.2",
-                   "system.parameters.drive_amplitude=0", fmt::format("system.parameters.drive_frequency={}", frequency),
-                   "starts={fixed_points: {grid: [[0]]}}", "continuation.free=drive_amplitude",
-                   "limits.parameter=[0, 20]", "limits.period=30", "loci=" + loci});
+  return scene_of("duffing.yaml", {"survey.depth=1", "survey.subharmonics=2", "system.parameters.damping=0.2",
+                                   "system.parameters.drive_amplitude=0",
+                                   fmt::format("system.parameters.drive_frequency={}", frequency),
+                                   "starts={fixed_points: {grid: [[0]]}}", "continuation.free=drive_amplitude",
+                                   "limits.parameter=[0, 20]", "limits.period=30", "loci=" + loci});
 }
 
 constexpr const char* doublings = "[{of: [period-doubling, branch-point], free: [drive_frequency], range: [1, 1.6]}]";
@@ -96,13 +96,14 @@ TEST(Loci, FoldsOfDuffingAreOneCurveWithACusp) {
 std::vector<double> located_near(const core::Communicator& comm, const Point& point) {
   constexpr double beside = 0.02;
   constexpr double within = 0.1;
-  const scene::Scene scene = scene_of(
-      "duffing.yaml",
-      {"system.parameters.damping=0.2", fmt::format("system.parameters.drive_frequency={}", point.second),
-       fmt::format("system.parameters.drive_amplitude={}", point.parameter + beside), "continuation.free=drive_amplitude",
-       fmt::format("starts={{states: [{{state: [{}, {}, {}], period: {}}}]}}", point.state[0], point.state[1],
-                   point.state[2] / std::numbers::pi * 180.0, point.period),
-       fmt::format("limits.parameter=[{}, {}]", point.parameter - within, point.parameter + within)});
+  const scene::Scene scene =
+      scene_of("duffing.yaml",
+               {"system.parameters.damping=0.2", fmt::format("system.parameters.drive_frequency={}", point.second),
+                fmt::format("system.parameters.drive_amplitude={}", point.parameter + beside),
+                "continuation.free=drive_amplitude",
+                fmt::format("starts={{states: [{{state: [{}, {}, {}], period: {}}}]}}", point.state[0], point.state[1],
+                            point.state[2] / std::numbers::pi * 180.0, point.period),
+                fmt::format("limits.parameter=[{}, {}]", point.parameter - within, point.parameter + within)});
   const test::Atlas atlas(test::run(comm, scene, "direct").atlas);
   std::vector<double> found;
   for (std::size_t row = 0; row < atlas.crossings().rows(); ++row)
@@ -137,12 +138,11 @@ TEST(Loci, DoublingsOfDuffingLieWhereTheyAreLocated) {
 
 TEST(Loci, OfThePendulumInPeriodAndMass) {
   const core::Communicator comm;
-  const survey::Summary summary =
-      test::run(comm,
-                scene_of("double_pendulum.yaml",
-                         {"survey.depth=0", "starts.fixed_points.grid=[[0], [0]]", "limits.period=9",
-                          "loci=[{of: [period-doubling], free: [m2], range: [0.5, 2]}]"}),
-                "pendulum");
+  const survey::Summary summary = test::run(
+      comm,
+      scene_of("double_pendulum.yaml", {"survey.depth=0", "starts.fixed_points.grid=[[0], [0]]", "limits.period=9",
+                                        "loci=[{of: [period-doubling], free: [m2], range: [0.5, 2]}]"}),
+      "pendulum");
   EXPECT_EQ(objections_to(comm, summary.atlas), "");
   if (!comm.is_root()) return;
   EXPECT_EQ(summary.failures, 0U);

@@ -38,7 +38,7 @@ struct LocusOptions {
   /// Of the second parameter, the last of the system's free ones, in its scale.
   double from = -std::numeric_limits<double>::infinity();
   double to = std::numeric_limits<double>::infinity();
-  double largest_step = 0.25;  ///< in the length of steps: a curve of less than that is drawn by its ends
+  double largest_step = 0.25;           ///< in the length of steps: a curve of less than that is drawn by its ends
   std::function<void()> before_each{};  ///< called before every orbit that is sought; may throw
 };
 

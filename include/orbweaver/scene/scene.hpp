@@ -121,7 +121,7 @@ struct Section {
 struct Loci {
   enum class Of { fold_period, fold_energy, fold_parameter, period_doubling, branch_point, torus };
   std::vector<Of> of;
-  std::string free;  ///< the second parameter
+  std::string free;                                        ///< the second parameter
   double from = -std::numeric_limits<double>::infinity();  ///< of the second parameter, in its unit
   double to = std::numeric_limits<double>::infinity();
 };

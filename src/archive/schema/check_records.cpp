@@ -163,7 +163,8 @@ void check_loci(const Header& header, const Records& records) {
   std::set<std::string> keys;
   for (const FamilyRecord& family : records.families) keys.insert(family.key);
   for (const LocusRecord& point : records.loci) {
-    const std::string record = fmt::format("point {} of locus {} of family '{}'", point.step, point.locus, point.family_key);
+    const std::string record =
+        fmt::format("point {} of locus {} of family '{}'", point.step, point.locus, point.family_key);
     check_key(record, point.family_key);
     check_reference(record, "family_key", point.family_key, keys);
     expect(point.crossing >= 0, record, "it begins at no crossing");

@@ -111,8 +111,7 @@ Selection selection_of(const Records& tables) {
 RootTables make_root_tables(const Header& header, const Records& tables, const std::vector<std::string>& keys,
                             const Numbering& numbering) {
   RootTables root{Table(families_spec(), tables.families.size()),
-                  Table(crossings_spec(header), tables.crossings.size()),
-                  Table(loci_spec(header), tables.loci.size())};
+                  Table(crossings_spec(header), tables.crossings.size()), Table(loci_spec(header), tables.loci.size())};
   const std::vector<std::size_t> order = crossing_order(tables.crossings);
   const auto crossing = [&](std::size_t row) -> const CrossingRecord& { return tables.crossings[order[row]]; };
   fill_columns(root.crossings, crossing_columns(), crossing);

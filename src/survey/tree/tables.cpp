@@ -74,8 +74,8 @@ bool comes_to(const LocusOutcome& locus, const LocateOutcome& crossing) {
   });
 }
 
-archive::LocusRecord row_of(const LocusOutcome& locus, const LocusPointRecord& point, const LocateOutcome& born, int row,
-                            const Units& units) {
+archive::LocusRecord row_of(const LocusOutcome& locus, const LocusPointRecord& point, const LocateOutcome& born,
+                            int row, const Units& units) {
   archive::LocusRecord record;
   record.family_key = born.lineage.family;
   record.crossing = row;

@@ -33,8 +33,7 @@ constexpr double zero = 1e-6;
 
 class Point {
  public:
-  Point(const VerifiedAtlas& atlas, std::size_t row)
-      : _table(atlas.archive().loci()), _row(row) {
+  Point(const VerifiedAtlas& atlas, std::size_t row) : _table(atlas.archive().loci()), _row(row) {
     std::map<std::string, double> values = atlas.system()->parameters();
     const std::string moving = atlas.archive().moving_parameter();
     if (!moving.empty()) values[moving] = real("parameter");
