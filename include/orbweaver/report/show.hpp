@@ -18,7 +18,8 @@ enum class TextFormat { readable, csv, json };
 void print_summary(std::ostream& out, const archive::Archive& atlas);
 
 /// One table. Readable: aligned columns with ten digits; crossings and loci with names in place of indices; findings in
-/// a line each, as sentences; families as the tree in lines of at most 120 characters, children indented behind their parent,
+/// a line each, as sentences; families as the tree in lines of at most 120 characters, children indented behind their
+/// parent,
 /// each with the crossing it was born at (kind, period, m), its ranges of period and energy, isotropy, intervals of
 /// stability, and why it ended, cut where it is long. CSV: a head line, then full precision (%.17g), vector columns
 /// spread out as column_coordinate, what was not computed as `nan`. JSON: one array of objects with full precision,
