@@ -55,8 +55,8 @@ Split split_of(const loop::SymmetryGroup& group, const Sector& sector, int multi
 /// be better than that.
 constexpr double of_vectors = 1e-6;
 constexpr double of_solves = 1e-7;
-/// The vector beside the kernel, which shows the gap, may need more harmonics than the kernel: beside a driven pendulum's
-/// doublings up to twice as many were seen to do. A power of two.
+/// The vector beside the kernel, which shows the gap, may need more harmonics than the kernel: beside a driven
+/// oscillator's branch point twice as many were seen to do. A power of two.
 constexpr int most_harmonics_times = 4;
 /// Below it singular values of a loop's Jacobian are rounding.
 constexpr double rounding = 1e-11;

@@ -152,10 +152,10 @@ TEST(ParameterFamilies, DuffingFoldsWhereTrajectoriesJump) {
 TEST(ParameterFamilies, BranchesOfADrivenFamilyHold) {
   const core::Communicator comm;
   const scene::Scene scene = scene_of(
-      "duffing.yaml", {"survey.depth=1", "survey.subharmonics=2", "system.parameters.damping=0.2",
-                       "system.parameters.drive_amplitude=0", "system.parameters.drive_frequency=1.3178123854595376",
-                       "starts={fixed_points: {grid: [[0]]}}", "continuation.free=drive_amplitude",
-                       "limits.parameter=[0, 20]"});
+      "duffing.yaml",
+      {"survey.depth=1", "survey.subharmonics=2", "system.parameters.damping=0.2",
+       "system.parameters.drive_amplitude=0", "system.parameters.drive_frequency=1.3178123854595376",
+       "starts={fixed_points: {grid: [[0]]}}", "continuation.free=drive_amplitude", "limits.parameter=[0, 20]"});
   const survey::Summary summary = test::run(comm, scene, "branches");
   const survey::Verification verified = survey::verify(comm, summary.atlas);
   if (!comm.is_root()) return;
@@ -205,8 +205,9 @@ TEST(ParameterFamilies, DrivesAndFrictionDoNoNetWork) {
   // Torques act on the angles of the joints, th1 and th2 - th1.
   hold(
       scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/double_pendulum.yaml",
-                  {"name=torque", "system={name: double_pendulum, effects: [damping, joint_torque], parameters: {c1: 0.2, "
-                                  "c2: 0.1, torque1: 0.3, torque1_amplitude: 0, drive_frequency: 0.7}}",
+                  {"name=torque",
+                   "system={name: double_pendulum, effects: [damping, joint_torque], parameters: {c1: 0.2, "
+                   "c2: 0.1, torque1: 0.3, torque1_amplitude: 0, drive_frequency: 0.7}}",
                    "starts={fixed_points: {grid: [[0], [0]]}}", "continuation.free=torque1_amplitude",
                    "limits.parameter=[0, 1]", "survey.depth=0"}),
       "work_pendulum",
