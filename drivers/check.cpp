@@ -249,9 +249,23 @@ std::string value_list(const std::string& quantity, const std::vector<double>& v
   return values.empty() ? "none" : fmt::format("the orbits with {} = {}", quantity, fmt::join(values, ", "));
 }
 
+std::string loci_text(const scene::Scene& scene) {
+  if (scene.loci.empty()) return "none";
+  std::vector<std::string> texts;
+  for (const scene::Loci& loci : scene.loci) {
+    std::vector<std::string> kinds;
+    for (const scene::Loci::Of of : loci.of) kinds.push_back(scene::name_of(of));
+    const std::string first = scene.system.moving.free.empty() ? "T" : scene.system.moving.free.front();
+    texts.push_back(
+        fmt::format("{} in {} and {} from {:g} to {:g}", fmt::join(kinds, ", "), first, loci.free, loci.from, loci.to));
+  }
+  return fmt::format("{}", fmt::join(texts, "; "));
+}
+
 void print_events(const scene::Scene& scene) {
   print_group("Located on every family, besides its crossings", {{"periods", value_list("T", scene.events.periods)},
-                                                                 {"energies", value_list("E", scene.events.energies)}});
+                                                                 {"energies", value_list("E", scene.events.energies)},
+                                                                 {"loci", loci_text(scene)}});
 }
 
 std::string section_text(const scene::Scene& scene, const systems::System& system) {

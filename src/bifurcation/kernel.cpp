@@ -55,6 +55,9 @@ Split split_of(const loop::SymmetryGroup& group, const Sector& sector, int multi
 /// be better than that.
 constexpr double of_vectors = 1e-6;
 constexpr double of_solves = 1e-7;
+/// The vector beside the kernel, which shows the gap, may need more harmonics than the kernel: beside a driven
+/// oscillator's branch point twice as many were seen to do. A power of two.
+constexpr int most_harmonics_times = 4;
 /// Below it singular values of a loop's Jacobian are rounding.
 constexpr double rounding = 1e-11;
 
@@ -103,13 +106,18 @@ double Kernel::next() const {
                                                  : std::numeric_limits<double>::quiet_NaN();
 }
 
-Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& point, const loop::Isotropy& isotropy,
-                 const Sector& sector, int expected, const KernelOptions& settings) {
+namespace {
+
+/// The kernel of the orbit with so many times the harmonics that it and the kernel need.
+Kernel kernel_with(int times, const systems::System& system, const continuation::CurvePoint& point,
+                   const loop::Isotropy& isotropy, const Sector& sector, int expected, const KernelOptions& settings) {
   const loop::SymmetryGroup group(system.structure(), isotropy);
   const int multiplicity = sector.multiplicity(group.order());
   Kernel kernel;
   const auto holding = [&](loop::Loop orbit) {
-    return holding_kernel(system, std::move(orbit), isotropy, sector, group.order(), expected, settings);
+    const loop::Loop held =
+        holding_kernel(system, std::move(orbit), isotropy, sector, group.order(), expected, settings);
+    return times == 1 ? held : loop::with_cutoff(held, loop::allowed_cutoff_at_least(times * held.cutoff));
   };
   if (settings.even_in_time || multiplicity > 1) {
     const loop::Loop even = holding(loop::evenly_in_time(point.loop));
@@ -142,6 +150,21 @@ Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& 
     kernel.vectors.push_back(std::move(v));
   }
   return kernel;
+}
+
+}  // namespace
+
+Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& point, const loop::Isotropy& isotropy,
+                 const Sector& sector, int expected, const KernelOptions& settings) {
+  for (int times = 1;; times *= 2) {
+    try {
+      return kernel_with(times, system, point, isotropy, sector, expected, settings);
+    } catch (const UndecidedError&) {
+      throw;
+    } catch (const core::NumericalError&) {
+      if (times == most_harmonics_times || 2 * times * point.loop.cutoff > settings.most_harmonics) throw;
+    }
+  }
 }
 
 }  // namespace orbweaver::bifurcation

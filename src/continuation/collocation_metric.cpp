@@ -93,33 +93,49 @@ void energy_condition(const Collocation& e, const Prediction& prediction, double
 
 }  // namespace
 
-std::vector<double> step_conditions(const Collocation& e, const Prediction& prediction, double period_unit) {
+namespace {
+
+/// No change along `direction`, in the product of steps; one row of `size` numbers.
+void place_condition(const Collocation& e, const std::vector<double>& direction, double period_unit, double* weights) {
   const int stride = e.grid().stride();
   const auto size = static_cast<std::size_t>(e.size());
   const std::vector<double>& share = e.node_weights();
-  std::vector<double> weights(static_cast<std::size_t>(e.borders()) * size, 0.0);
   double square = 0.0;
   for (int i = 0; i < e.dimension(); ++i)
     for (int j = 0; j <= e.cells(); ++j) {
       const auto n = static_cast<std::size_t>(i * stride + j);
-      weights[n] = share[static_cast<std::size_t>(j)] * prediction.tangent[n];
-      square += weights[n] * prediction.tangent[n];
+      weights[n] = share[static_cast<std::size_t>(j)] * direction[n];
+      square += weights[n] * direction[n];
     }
   const auto at_period = static_cast<std::size_t>(e.period_at());
-  weights[at_period] = prediction.tangent[at_period] / (period_unit * period_unit);
-  square += weights[at_period] * prediction.tangent[at_period];
+  weights[at_period] = direction[at_period] / (period_unit * period_unit);
+  square += weights[at_period] * direction[at_period];
   for (std::size_t p = at_period + 1; p <= at_period + parameters_of(e); ++p) {
-    weights[p] = prediction.tangent[p];
+    weights[p] = direction[p];
     square += weights[p] * weights[p];
   }
   for (std::size_t n = 0; n < size; ++n) weights[n] /= std::sqrt(square);
+}
+
+}  // namespace
+
+std::vector<double> step_conditions(const Collocation& e, const Prediction& prediction, double period_unit) {
+  const auto size = static_cast<std::size_t>(e.size());
+  const auto at_period = static_cast<std::size_t>(e.period_at());
+  std::vector<double> weights(static_cast<std::size_t>(e.borders()) * size, 0.0);
+  place_condition(e, prediction.tangent, period_unit, weights.data());
   double* next = weights.data() + size;
+  double* end = weights.data() + weights.size();
+  if (!prediction.across.empty()) {
+    end -= size;
+    place_condition(e, prediction.across, period_unit, end);
+  }
   using Hold = systems::FamilyScalars::Hold;
   const Hold hold = e.system().family_scalars().hold;
   if (hold == Hold::energy) energy_condition(e, prediction, next);
   if (hold == Hold::period) next[at_period] = 1.0;
   if (hold != Hold::nothing) next += size;
-  if (next != weights.data() + weights.size()) phase_condition(e, prediction, next);
+  if (next != end) phase_condition(e, prediction, next);
   return weights;
 }
 

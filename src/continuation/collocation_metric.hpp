@@ -14,7 +14,8 @@ namespace orbweaver::continuation {
                                   const std::vector<double>& b, const std::vector<double>& c,
                                   const std::vector<double>& d, double period_unit);
 
-/// The change of a prediction orthogonal to its direction, and to the time shift where the domain has one.
+/// The change of a prediction orthogonal to its direction, what the family holds, and the change orthogonal to the time
+/// shift where the domain has one, then to the direction across where there is one.
 [[nodiscard]] std::vector<double> step_conditions(const equations::Collocation& equations, const Prediction& prediction,
                                                   double period_unit);
 

@@ -68,7 +68,7 @@ std::string CollocationProblem::obstacle(const FamilyOf& family, int largest_cut
   const loop::FundamentalDomain domain = loop::fundamental_domain(family.system.structure(), family.isotropy);
   if (!domain.expresses(family.isotropy)) return "one part of the loop, repeated, does not have all of their isotropy";
   if (!domain.is_square()) return "the ends of their fundamental domain hold more or fewer conditions than coordinates";
-  if (!Collocation::applies(family.system, domain))
+  if (!Collocation::applies(family.system, domain, family.places))
     return "it takes a reversor, a conserved quantity, or a parameter that moves";
   const int coarsest = cell_counts::cutoff_of(domain, cell_counts::least);
   if (coarsest > largest_cutoff)
@@ -147,6 +147,12 @@ std::vector<double> CollocationProblem::from_change(const loop::Loop& change) {
 }
 
 loop::Tangent CollocationProblem::tangent_of(const std::vector<double>& direction, const loop::Loop& at) {
+  loop::Tangent out = change_of(direction, at);
+  out.normalize();
+  return out;
+}
+
+loop::Tangent CollocationProblem::change_of(const std::vector<double>& direction, const loop::Loop& at) {
   const Collocation& own = equations();
   const loop::StaggeredGrid* grid = &own.grid();
   std::vector<double> values = direction;
@@ -164,7 +170,6 @@ loop::Tangent CollocationProblem::tangent_of(const std::vector<double>& directio
   out = loop::with_cutoff(std::move(out), at.cutoff, at.dimension);
   const auto scalars = values.end() - own.borders();
   out.scalars.assign(scalars, scalars + 1 + static_cast<std::ptrdiff_t>(_system.family_scalars().free.size()));
-  out.normalize();
   return out;
 }
 
@@ -192,6 +197,13 @@ std::vector<double> CollocationProblem::direction_at(const std::vector<double>& 
   } catch (const core::NumericalError&) {
     return near.tangent;
   }
+}
+
+std::array<std::vector<double>, 2> CollocationProblem::surface_at(const std::vector<double>& orbit,
+                                                                  const Prediction& near) {
+  const std::shared_ptr<Collocation> e = equations_on(resolution());
+  e->set_conditions(conditions_at(near), orbit);
+  return {equations::family_direction(*e, orbit, 0), equations::family_direction(*e, orbit, e->borders() - 1)};
 }
 
 std::vector<double> CollocationProblem::conditions_at(const Prediction& prediction) {

@@ -45,6 +45,9 @@ class CollocationProblem final : public PointProblem {
   [[nodiscard]] Trial solve(Prediction prediction, const std::vector<double>& conditions) override;
   [[nodiscard]] bool resolved(Trial& trial) override;
   [[nodiscard]] std::vector<double> direction_at(const std::vector<double>& orbit, const Prediction& near) override;
+  [[nodiscard]] std::array<std::vector<double>, 2> surface_at(const std::vector<double>& orbit,
+                                                              const Prediction& near) override;
+  [[nodiscard]] loop::Tangent change_of(const std::vector<double>& direction, const loop::Loop& at) override;
 
  private:
   /// The equations of the state, with the factor that it names.

@@ -36,6 +36,14 @@ std::vector<double> PointProblem::conditions_with(const Prediction& prediction, 
   return conditions;
 }
 
+std::array<std::vector<double>, 2> PointProblem::surface_at(const std::vector<double>&, const Prediction&) {
+  throw core::MisuseError("surfaces of orbits are solved for by collocation");
+}
+
+loop::Tangent PointProblem::change_of(const std::vector<double>&, const loop::Loop&) {
+  throw core::MisuseError("surfaces of orbits are solved for by collocation");
+}
+
 Trial PointProblem::correct(Prediction prediction, const std::vector<double>& conditions) {
   if (_family.family_scalars().hold != systems::FamilyScalars::Hold::energy)
     return solve(std::move(prediction), conditions);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -115,6 +116,12 @@ class PointProblem {
   /// The family's direction at an orbit, on the side of `near.tangent`, which it is where the linear system is
   /// singular (next to a crossing). The course of the branch does not depend on who asks.
   [[nodiscard]] virtual std::vector<double> direction_at(const std::vector<double>& orbit, const Prediction& near) = 0;
+  /// Two directions that span the surface of orbits at one of them: along `near.tangent` and not `near.across`, and the
+  /// other way round. Throws MisuseError for problems of families, NumericalError where the linear system is singular.
+  [[nodiscard]] virtual std::array<std::vector<double>, 2> surface_at(const std::vector<double>& orbit,
+                                                                      const Prediction& near);
+  /// As `tangent_of`, of the length that the direction has.
+  [[nodiscard]] virtual loop::Tangent change_of(const std::vector<double>& direction, const loop::Loop& at);
 
  protected:
   PointProblem(const systems::System& system, ProblemState& state) : _family(system), _state(state) {}
@@ -131,6 +138,7 @@ struct FamilyOf {
   const systems::System& system;
   const loop::Loop& base;  ///< a loop of the family, or a fixed point as a constant loop
   const loop::Isotropy& isotropy;
+  int places = 1;  ///< conditions that pick an orbit: 2 where the orbits are a surface
 };
 
 /// By collocation where it applies and the method is `automatic` or `collocation`, as whole loops otherwise. Throws

@@ -39,9 +39,9 @@ int Collocation::conditions_of_families(const systems::System& system, const loo
   return 1 + holds + (domain.reversor ? 0 : 1);
 }
 
-bool Collocation::applies(const systems::System& system, const loop::FundamentalDomain& domain) {
-  return domain.is_square() &&
-         static_cast<int>(scalars_of_families(system, domain).size()) == conditions_of_families(system, domain);
+bool Collocation::applies(const systems::System& system, const loop::FundamentalDomain& domain, int places) {
+  const int conditions = conditions_of_families(system, domain) + places - 1;
+  return domain.is_square() && static_cast<int>(scalars_of_families(system, domain).size()) == conditions;
 }
 
 Collocation::Collocation(const systems::System& system, const loop::FundamentalDomain& domain,
@@ -472,27 +472,28 @@ void Collocation::from_loop(const loop::Loop& loop, double* u) const {
 
 namespace {
 
-/// J v = e, e a unit in the first condition.
+/// J v = e, e a unit in one condition.
 class DirectionEquations final : public PreconditionedEquations {
  public:
-  explicit DirectionEquations(const Collocation& equations) : _equations(equations) {}
+  DirectionEquations(const Collocation& equations, int condition) : _equations(equations), _condition(condition) {}
   [[nodiscard]] int size() const override { return _equations.size(); }
   void residual(const double* v, double* r) const override {
     _equations.apply_jacobian(v, r);
-    r[_equations.period_at()] -= 1.0;
+    r[_equations.period_at() + _condition] -= 1.0;
   }
   void factor(const double*) override {}
   void precondition(double* r) const override { _equations.precondition(r); }
 
  private:
   const Collocation& _equations;
+  int _condition;
 };
 
 }  // namespace
 
-std::vector<double> family_direction(Collocation& equations, const std::vector<double>& u) {
+std::vector<double> family_direction(Collocation& equations, const std::vector<double>& u, int condition) {
   equations.factor(u.data());
-  DirectionEquations linear(equations);
+  DirectionEquations linear(equations, condition);
   AndersonSolver solver;
   std::vector<double> direction(at(equations.size()), 0.0);
   AndersonSolver::Options options;

@@ -7,6 +7,7 @@
 #include "show_families.hpp"
 #include "show_findings.hpp"
 #include "show_level.hpp"
+#include "show_loci.hpp"
 #include "show_values.hpp"
 #include "show_verdicts.hpp"
 
@@ -16,9 +17,10 @@ const archive::Table& shown_table(const archive::Archive& atlas, const std::stri
   if (name == "families") return atlas.families();
   if (name == "orbits") return atlas.orbits();
   if (name == "crossings") return atlas.crossings();
+  if (name == "loci") return atlas.loci();
   if (name == "findings") return atlas.findings();
   throw core::InputError(
-      fmt::format("cannot show '{}': the tables of an atlas are families, orbits, crossings and findings", name));
+      fmt::format("cannot show '{}': the tables of an atlas are families, orbits, crossings, loci and findings", name));
 }
 
 void print_summary(std::ostream& out, const archive::Archive& atlas) {
@@ -34,6 +36,8 @@ void print_summary(std::ostream& out, const archive::Archive& atlas) {
   out << fmt::format("orbits       {}\n", atlas.orbits().rows());
   out << fmt::format("crossings    {}\n", atlas.crossings().rows());
   out << fmt::format("sections     {}\n", atlas.sections().rows());
+  if (const auto& loci = atlas.loci().integers("locus"); !loci.empty())
+    out << fmt::format("loci         {}, of {} points\n", loci.back() + 1, loci.size());
   out << fmt::format("findings     {}\n", atlas.findings().rows());
   if (const std::string verdicts = verdicts_text(atlas, 0, atlas.orbits().rows()); !verdicts.empty())
     out << fmt::format("certificates {}\n", verdicts);
@@ -56,6 +60,8 @@ void print_table(std::ostream& out, const archive::Archive& atlas, const std::st
     print_families(out, atlas);
   else if (name == "crossings")
     print_crossings(out, atlas);
+  else if (name == "loci")
+    print_loci(out, atlas);
   else if (name == "findings")
     print_findings(out, atlas);
   else

@@ -1,7 +1,5 @@
 #include "show_crossings.hpp"
 
-#include <cmath>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,18 +9,6 @@
 namespace orbweaver::report {
 
 namespace {
-
-std::vector<std::string> cells_of(const std::vector<double>& values, const char* format) {
-  std::vector<std::string> cells;
-  for (const double value : values) cells.push_back(std::isnan(value) ? "-" : fmt::format(fmt::runtime(format), value));
-  return cells;
-}
-
-std::vector<std::string> cells_of(const std::vector<std::int64_t>& values) {
-  std::vector<std::string> cells;
-  for (const std::int64_t value : values) cells.push_back(value < 0 ? "-" : std::to_string(value));
-  return cells;
-}
 
 std::vector<std::string> families_of(const archive::Archive& atlas) {
   std::vector<std::string> cells;

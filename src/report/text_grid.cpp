@@ -1,9 +1,12 @@
 #include "text_grid.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <string_view>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace orbweaver::report {
 
@@ -51,6 +54,18 @@ std::vector<std::string> TextGrid::lines() const {
 
 void TextGrid::print(std::ostream& out) const {
   for (const std::string& line : lines()) out << line << '\n';
+}
+
+std::vector<std::string> cells_of(const std::vector<double>& values, const char* format) {
+  std::vector<std::string> cells;
+  for (const double value : values) cells.push_back(std::isnan(value) ? "-" : fmt::format(fmt::runtime(format), value));
+  return cells;
+}
+
+std::vector<std::string> cells_of(const std::vector<std::int64_t>& values) {
+  std::vector<std::string> cells;
+  for (const std::int64_t value : values) cells.push_back(value < 0 ? "-" : std::to_string(value));
+  return cells;
 }
 
 std::string cut(const std::string& text, std::size_t width) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -26,6 +27,10 @@ class TextGrid {
   };
   std::vector<GridColumn> _columns;
 };
+
+/// Numbers as cells, "-" where there is none: NaN, or a negative row.
+[[nodiscard]] std::vector<std::string> cells_of(const std::vector<double>& values, const char* format);
+[[nodiscard]] std::vector<std::string> cells_of(const std::vector<std::int64_t>& values);
 
 /// `text` of at most `width` characters: what is longer is cut and ends in "...".
 [[nodiscard]] std::string cut(const std::string& text, std::size_t width);

@@ -87,6 +87,10 @@ class Values {
     add_limits(scene.limits);
     add("events.periods", list_text(scene.events.periods, text_of));
     add("events.energies", list_text(scene.events.energies, text_of));
+    add("loci", list_text(scene.loci, [](const Loci& loci) {
+          const std::string of = list_text(loci.of, [](Loci::Of kind) { return scene::name_of(kind); });
+          return fmt::format("{{of: {}, free: [{}], range: {}}}", of, loci.free, range_text(loci.from, loci.to));
+        }));
     add("section.coordinate", scene.section.coordinate);
     add("section.value", coordinate_text(scene.section.value, index_of(scene.section.coordinate)));
     add("output.flush_seconds", scene.output.flush_seconds);

@@ -36,9 +36,10 @@ void read_starts(const Field& field, const systems::System& system, Scene& scene
 }
 
 Scene read_scene(const Field& root, const std::optional<std::filesystem::path>& folder) {
-  const Keys keys(
-      root, {"name", "system", "starts", "continuation", "survey", "compute", "limits", "events", "section", "output"},
-      smallest_scene);
+  const Keys keys(root,
+                  {"name", "system", "starts", "continuation", "survey", "compute", "limits", "events", "section",
+                   "loci", "output"},
+                  smallest_scene);
   Scene scene;
   read_system(require_key(keys, root, "system", "system: {name: double_pendulum}"), folder, scene.system);
   read_family_scalars(keys.find("continuation"), scene.system);
@@ -56,6 +57,7 @@ Scene read_scene(const Field& root, const std::optional<std::filesystem::path>& 
   if (const auto field = keys.find("limits")) read_limits(*field, system, scene.limits);
   if (const auto field = keys.find("events")) read_events(*field, scene.events);
   if (const auto field = keys.find("section")) read_section(*field, system, scene.section);
+  if (const auto field = keys.find("loci")) read_loci(*field, scene, system);
   if (const auto field = keys.find("output")) read_output(*field, scene.output);
   return scene;
 }

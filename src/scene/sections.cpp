@@ -189,6 +189,95 @@ void read_section(const Field& field, const systems::System& system, Section& se
     section.value = radians(section.value);
 }
 
+std::string name_of(Loci::Of of) {
+  switch (of) {
+    case Loci::Of::fold_period: return "fold-period";
+    case Loci::Of::fold_energy: return "fold-energy";
+    case Loci::Of::fold_parameter: return "fold-parameter";
+    case Loci::Of::period_doubling: return "period-doubling";
+    case Loci::Of::branch_point: return "branch-point";
+    case Loci::Of::torus: break;
+  }
+  return "torus";
+}
+
+namespace {
+
+/// Why the families have no such loci, and what to do; empty where they may have some.
+std::pair<std::string, std::string> obstacle_of(Loci::Of of, const systems::System& system) {
+  const systems::Structure& structure = system.structure();
+  const bool moves = !system.family_scalars().free.empty();
+  switch (of) {
+    case Loci::Of::fold_period:
+    case Loci::Of::fold_energy:
+      if (moves)
+        return {fmt::format("families in {} fold in it", system.family_scalars().free.front()), "say fold-parameter"};
+      break;
+    case Loci::Of::fold_parameter:
+      if (!moves) return {"no parameter moves along the families", "say fold-period or fold-energy"};
+      break;
+    case Loci::Of::period_doubling: break;
+    case Loci::Of::branch_point:
+      if (structure.equivariances.empty() && structure.reversors.empty())
+        return {fmt::format("{} has no symmetry that could enforce branch points, and those that none enforces have "
+                            "codimension two: in two parameters they are points",
+                            system.info().title),
+                "leave it out"};
+      break;
+    case Loci::Of::torus:
+      if (structure.symplectic || structure.conservative())
+        return {fmt::format("multipliers of {} do not leave the unit circle as torus points have them",
+                            system.info().title),
+                "leave it out"};
+      break;
+  }
+  return {};
+}
+
+}  // namespace
+
+void read_loci(const Field& field, Scene& scene, const systems::System& system) {
+  constexpr std::string_view example = "[{of: [period-doubling], free: [m2], range: [0.5, 2]}]";
+  if (!scene.compute.stability)
+    field.fail("`compute.stability: true`, as loci begin at crossings", "false", "leave one of them out");
+  const std::vector<systems::Parameter> parameters =
+      known_parameters(systems::model_info(scene.system.name), scene.system);
+  const std::vector<std::string>& moving = system.family_scalars().free;
+  std::vector<std::string> names;
+  for (const systems::Parameter& parameter : parameters)
+    if (std::find(moving.begin(), moving.end(), parameter.name) == moving.end()) names.push_back(parameter.name);
+  std::vector<std::string> kinds;
+  for (int n = 0; n <= static_cast<int>(last_of(Loci::Of{})); ++n) kinds.push_back(name_of(static_cast<Loci::Of>(n)));
+  for (const Field& entry : field.list(example)) {
+    const Keys keys(entry, {"of", "free", "range"}, example);
+    const auto of = keys.find("of");
+    const auto free = keys.find("free");
+    if (!of || !free) entry.fail("an `of` and a `free`", entry.got(), fmt::format("for example {}", example));
+    Loci loci;
+    for (const Field& kind : of->list("[period-doubling]")) {
+      const std::string name = kind.choice(kinds);
+      const auto place = std::find(kinds.begin(), kinds.end(), name) - kinds.begin();
+      loci.of.push_back(static_cast<Loci::Of>(place));
+      const auto [problem, advice] = obstacle_of(loci.of.back(), system);
+      if (!problem.empty()) kind.fail(fmt::format("loci that can be had: {}", problem), kind.got(), advice);
+    }
+    const std::vector<Field> second = free->list("[m2]");
+    if (second.size() != 1) free->fail("one parameter", free->got(), "a locus has one besides that of the families");
+    loci.free = second.front().choice(names);
+    const auto parameter = std::find_if(parameters.begin(), parameters.end(),
+                                        [&](const systems::Parameter& p) { return p.name == loci.free; });
+    loci.from = parameter->lower;
+    loci.to = parameter->upper;
+    if (const auto range = keys.find("range")) std::tie(loci.from, loci.to) = range->range({.example = "[0.5, 2]"});
+    const double here = system.parameters().at(loci.free);
+    if (loci.from < parameter->lower || loci.to > parameter->upper || here < loci.from || here > loci.to)
+      keys.find("range").value_or(entry).fail(fmt::format("a range within [{:g}, {:g}] that has the scene's {} = {:g}",
+                                                          parameter->lower, parameter->upper, loci.free, here),
+                                              fmt::format("`[{:g}, {:g}]`", loci.from, loci.to), "change the range");
+    scene.loci.push_back(std::move(loci));
+  }
+}
+
 void read_output(const Field& field, Output& output) {
   const Keys keys(field, {"flush_seconds", "flush_orbits"}, "output: {flush_seconds: 5}");
   if (const auto seconds = keys.find("flush_seconds"))

@@ -21,6 +21,8 @@ void read_compute(const Field& field, Compute& compute);
 void read_limits(const Field& field, const systems::System& system, Limits& limits);
 void read_events(const Field& field, Events& events);
 void read_section(const Field& field, const systems::System& system, Section& section);
+/// `scene`: what was read of it before, whose system's kind of families decides what has loci.
+void read_loci(const Field& field, Scene& scene, const systems::System& system);
 void read_output(const Field& field, Output& output);
 
 }  // namespace orbweaver::scene

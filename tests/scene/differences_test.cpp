@@ -74,6 +74,7 @@ const std::map<std::string, Case> cases{
     {"limits.task_time", {".inf", "60", Change::free}},
     {"events.periods", {"[]", "[10]"}},
     {"events.energies", {"[]", "[0.5]"}},
+    {"loci", {"[]", "[{of: [period-doubling], free: [m2], range: [0.5, 2]}]"}},
     {"section.coordinate", {"", ""}},  // no section without one: tested below
     {"section.value", {"", ""}},
     {"output.flush_seconds", {"5", "6", Change::free}},

@@ -105,6 +105,28 @@ inline archive::Records complete_records_of(const Atlas& atlas) {
     orbit.tail = atlas.orbits().reals("tail")[row];
     orbit.off_branch_eigenvalue = atlas.orbits().reals("off_branch_eigenvalue")[row];
   }
+  const archive::Table& loci = atlas.loci();
+  for (std::size_t row = 0; row < loci.rows(); ++row) {
+    archive::LocusRecord point;
+    point.family_key = key_of(loci.integers("family")[row]);
+    point.crossing = static_cast<int>(loci.integers("crossing")[row]);
+    point.locus = static_cast<int>(loci.integers("locus")[row]);
+    point.step = static_cast<int>(loci.integers("step")[row]);
+    point.arclength = loci.reals("arclength")[row];
+    point.kind = archive::crossing_kind_of(loci.texts("kind")[row]);
+    point.period = loci.reals("period")[row];
+    point.energy = loci.reals("energy")[row];
+    point.parameter = loci.reals("parameter")[row];
+    point.second_parameter = loci.reals("second_parameter")[row];
+    point.second_name = loci.texts("second_name")[row];
+    point.sector_j = static_cast<int>(loci.integers("sector_j")[row]);
+    point.sector_q = static_cast<int>(loci.integers("sector_q")[row]);
+    point.fundamental_order = static_cast<int>(loci.integers("fundamental_order")[row]);
+    const auto first = loci.reals("state").begin() + static_cast<std::ptrdiff_t>(row * d);
+    point.state.assign(first, first + static_cast<std::ptrdiff_t>(d));
+    point.note = loci.texts("note")[row];
+    records.loci.push_back(point);
+  }
   const archive::Table& sections = atlas.sections();
   for (std::size_t row = 0; row < sections.rows(); ++row) {
     const archive::OrbitRecord& orbit = records.orbits[static_cast<std::size_t>(sections.integers("orbit")[row])];

@@ -13,6 +13,8 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include "orbweaver/archive/read/loop_of.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/survey/verify/verify.hpp"
 #include "survey/atlas.hpp"
 #include "survey/atlas_records.hpp"
@@ -144,6 +146,77 @@ TEST(ParameterFamilies, DuffingFoldsWhereTrajectoriesJump) {
   EXPECT_LT(late_amplitude(states[0], frequencies[0] + beside), weak);
   EXPECT_LT(late_amplitude(states[1], frequencies[1] + beside), weak);
   EXPECT_GT(late_amplitude(states[1], frequencies[1] - beside), strong);
+}
+
+/// The second vector beside the mirror image's branch point needs more harmonics than the orbit and the kernel.
+TEST(ParameterFamilies, BranchesOfADrivenFamilyHold) {
+  const core::Communicator comm;
+  const scene::Scene scene = scene_of(
+      "duffing.yaml",
+      {"survey.depth=1", "survey.subharmonics=2", "system.parameters.damping=0.2",
+       "system.parameters.drive_amplitude=0", "system.parameters.drive_frequency=1.3178123854595376",
+       "starts={fixed_points: {grid: [[0]]}}", "continuation.free=drive_amplitude", "limits.parameter=[0, 20]"});
+  const survey::Summary summary = test::run(comm, scene, "branches");
+  const survey::Verification verified = survey::verify(comm, summary.atlas);
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  for (const survey::Objection& o : verified.objections) ADD_FAILURE() << o.table << " " << o.row << ": " << o.text;
+  const test::Atlas atlas(summary.atlas);
+  ASSERT_EQ(summary.families.size(), 2U);
+  EXPECT_EQ(summary.families[1].name, "Equilibrium 1 B");
+  EXPECT_EQ(summary.families[1].depth, 1);
+  const auto& kinds = atlas.crossings().texts("kind");
+  EXPECT_EQ(std::count(kinds.begin(), kinds.end(), "branch-point"), 1);
+  EXPECT_EQ(std::count(kinds.begin(), kinds.end(), "period-doubling"), 1);
+}
+
+/// The mean over a period, by so many equal steps that the smooth ones among these orbits leave rounding only.
+double mean_over_period(const loop::Loop& loop, const std::function<double(const std::vector<double>&)>& power) {
+  const int steps = 16 * loop.cutoff + 64;
+  double sum = 0.0;
+  for (int n = 0; n < steps; ++n) sum += power(loop::state_at(loop, loop.period * n / steps));
+  return sum / steps;
+}
+
+/// What a drive gives a closed orbit, friction takes.
+TEST(ParameterFamilies, DrivesAndFrictionDoNoNetWork) {
+  const core::Communicator comm;
+  const auto hold = [&](const scene::Scene& scene, const char* name, const auto& drive, const auto& friction) {
+    const survey::Summary summary = test::run(comm, scene, name);
+    EXPECT_EQ(summary.failures, 0U);
+    if (!comm.is_root()) return;
+    const test::Atlas atlas(summary.atlas);
+    const std::vector<int> angles = scene::bound_system(scene.system)->structure().angles;
+    ASSERT_GT(atlas.orbits().rows(), 10U);
+    double largest = 0.0;
+    for (std::size_t row = 0; row < atlas.orbits().rows(); ++row) {
+      const loop::Loop loop = archive::loop_of(atlas, row, angles);
+      const double given = loop.period * mean_over_period(loop, [&](const auto& z) { return drive(z, loop); });
+      const double taken = loop.period * mean_over_period(loop, [&](const auto& z) { return friction(z, loop); });
+      EXPECT_NEAR(given + taken, 0.0, 1e-10) << "orbit " << row;
+      largest = std::max(largest, given);
+    }
+    EXPECT_GT(largest, 0.1) << "the drive does work";
+  };
+  hold(
+      scene_of("duffing.yaml"), "work_duffing",
+      [](const std::vector<double>& z, const loop::Loop&) { return 0.3 * std::cos(z[2]) * z[1]; },
+      [](const std::vector<double>& z, const loop::Loop&) { return -0.1 * z[1] * z[1]; });
+  // Torques act on the angles of the joints, th1 and th2 - th1.
+  hold(
+      scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/double_pendulum.yaml",
+                  {"name=torque",
+                   "system={name: double_pendulum, effects: [damping, joint_torque], parameters: {c1: 0.2, "
+                   "c2: 0.1, torque1: 0.3, torque1_amplitude: 0, drive_frequency: 0.7}}",
+                   "starts={fixed_points: {grid: [[0], [0]]}}", "continuation.free=torque1_amplitude",
+                   "limits.parameter=[0, 1]", "survey.depth=0"}),
+      "work_pendulum",
+      [](const std::vector<double>& z, const loop::Loop& loop) {
+        return (0.3 + loop.parameters.front() * std::cos(z[4])) * z[2];
+      },
+      [](const std::vector<double>& z, const loop::Loop&) {
+        return -0.2 * z[2] * z[2] - 0.1 * (z[3] - z[2]) * (z[3] - z[2]);
+      });
 }
 
 /// Duffing's response, and copies of it with changed numbers and checksums that match them.

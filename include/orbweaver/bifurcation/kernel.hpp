@@ -37,7 +37,8 @@ struct KernelOptions {
 /// The kernel at an orbit in one sector of its fundamental map (order p, design: m = q/gcd(q, p) times around). Its
 /// dimension, at most `expected` (1 for q <= 2 and 2 beyond, times the pairs of multipliers that are there), is where
 /// the singular values have their largest gap. `base` has the harmonics that the orbit or the kernel needs, whichever
-/// are more (spectrum::floquet_vector_cutoff). Throws UndecidedError where those are too many.
+/// are more (spectrum::floquet_vector_cutoff), or two or four times as many where the vector beside the kernel does not
+/// converge with them. Throws UndecidedError where those are too many.
 [[nodiscard]] Kernel kernel_of(const systems::System& system, const continuation::CurvePoint& point,
                                const loop::Isotropy& isotropy, const Sector& sector, int expected,
                                const KernelOptions& settings = {});

@@ -37,7 +37,9 @@ class Collocation final : public PreconditionedEquations {
   /// of this is divided by a team, and need not be. Five orbits of a chain of oscillators take one rank 0.8, 1.2, 12
   /// and 66 ms (d = 8, 16, 32, 64); as loops they take one rank 5.6, 16, 80 and 471 ms, and a team of two 5.5, 15, 58
   /// and 316 ms.
-  [[nodiscard]] static bool applies(const systems::System& system, const loop::FundamentalDomain& domain);
+  /// `places`: how many conditions pick an orbit among all, 1 on a family and 2 on a surface of orbits.
+  [[nodiscard]] static bool applies(const systems::System& system, const loop::FundamentalDomain& domain,
+                                    int places = 1);
 
   /// `centre`: a point that the symmetries of the domain map to itself, to which y is relative; `winding` as in Loop;
   /// `scalars` begin with T, then those that loops carry, and without any are those of the system's families.
@@ -136,7 +138,9 @@ class Collocation final : public PreconditionedEquations {
 };
 
 /// The direction of the family through the orbit `u`: the solution of the linearised equations that the first condition
-/// of `equations` sees as 1. Builds the preconditioner at `u`. Throws NumericalError where it does not converge.
-[[nodiscard]] std::vector<double> family_direction(Collocation& equations, const std::vector<double>& u);
+/// of `equations`, or the one with the number `condition`, sees as 1 and the others as 0. Builds the preconditioner at
+/// `u`. Throws NumericalError where it does not converge.
+[[nodiscard]] std::vector<double> family_direction(Collocation& equations, const std::vector<double>& u,
+                                                   int condition = 0);
 
 }  // namespace orbweaver::equations

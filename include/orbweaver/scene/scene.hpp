@@ -118,6 +118,19 @@ struct Section {
   double value = 0.0;      ///< radians where the coordinate is an angle (degrees in the YAML)
 };
 
+/// Curves in two parameters of what is located along families (docs/mathematics.md, "Loci"); T or the energy is the
+/// first where no parameter moves.
+struct Loci {
+  enum class Of { fold_period, fold_energy, fold_parameter, period_doubling, branch_point, torus };
+  std::vector<Of> of;
+  std::string free;                                        ///< the second parameter
+  double from = -std::numeric_limits<double>::infinity();  ///< of the second parameter, in its unit
+  double to = std::numeric_limits<double>::infinity();
+};
+[[nodiscard]] constexpr Loci::Of last_of(Loci::Of) { return Loci::Of::torus; }
+/// "fold-period", ...: as in a scene and in the archive.
+[[nodiscard]] std::string name_of(Loci::Of of);
+
 struct Output {
   double flush_seconds = 5.0;
   int flush_orbits = 5000;
@@ -136,6 +149,7 @@ struct Scene {
   Limits limits;
   Events events;
   Section section;
+  std::vector<Loci> loci;
   Output output;
   std::string text;  ///< the YAML with overrides applied, as the archive stores it
 };

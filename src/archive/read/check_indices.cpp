@@ -73,6 +73,8 @@ void check_indices(const SerialFile& file, const AtlasTables& tables) {
   expect_range(file, tables.crossings, "family", 0, families);
   expect_range(file, tables.orbits, "family", 0, families);
   expect_range(file, tables.sections, "orbit", 0, tables.orbits.rows());
+  expect_range(file, tables.loci, "crossing", 0, crossings);
+  expect_range(file, tables.loci, "family", 0, families);
   expect_range(file, tables.findings, "family", -1, families);
   expect_range(file, tables.findings, "other_family", -1, families);
   expect_range(file, tables.findings, "crossing", -1, crossings);

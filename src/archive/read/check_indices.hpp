@@ -11,6 +11,7 @@ struct AtlasTables {
   const Table& orbits;
   const Table& crossings;
   const Table& sections;
+  const Table& loci;
   const Table& findings;
   std::uint64_t mode_values = 0;
   std::uint64_t map_values = 0;

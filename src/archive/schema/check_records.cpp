@@ -159,6 +159,26 @@ void check_crossings(const Header& header, const Records& records) {
   }
 }
 
+void check_loci(const Header& header, const Records& records) {
+  std::set<std::string> keys;
+  for (const FamilyRecord& family : records.families) keys.insert(family.key);
+  for (const LocusRecord& point : records.loci) {
+    const std::string record =
+        fmt::format("point {} of locus {} of family '{}'", point.step, point.locus, point.family_key);
+    check_key(record, point.family_key);
+    check_reference(record, "family_key", point.family_key, keys);
+    expect(point.crossing >= 0, record, "it begins at no crossing");
+    check_index(record, "crossing", point.crossing, records.crossings.size());
+    check_finite(record, "arclength", point.arclength);
+    check_finite(record, "period", point.period);
+    check_text(record, "second_name", point.second_name);
+    check_text(record, "note", point.note);
+    expect(point.kind != CrossingKind::unknown, record,
+           "its kind is unknown; one of those that have names was expected");
+    check_vector(record, "state", point.state, header.state_names.size(), "one a state name");
+  }
+}
+
 void check_voided(const Records& records, std::size_t segments) {
   for (const VoidedRows& rows : records.voided) {
     const std::string record = fmt::format("voided rows of family '{}'", rows.family_key);

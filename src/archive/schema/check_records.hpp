@@ -13,6 +13,7 @@ void check_sections(const Header& header, const Records& records);
 /// Families and crossings as they are handed over for a finished archive.
 void check_families(const Records& records);
 void check_crossings(const Header& header, const Records& records);
+void check_loci(const Header& header, const Records& records);
 /// `segments`: how many are listed to consolidate.
 void check_voided(const Records& records, std::size_t segments);
 

@@ -119,6 +119,29 @@ const ColumnDefinitions<SectionRecord>& section_columns() {
   return columns;
 }
 
+const ColumnDefinitions<LocusRecord>& locus_columns() {
+  static const ColumnDefinitions<LocusRecord> columns{
+      {"locus", row_number},
+      {"crossing", row_number},
+      {"family", row_number},
+      {"step", &LocusRecord::step},
+      {"arclength", &LocusRecord::arclength},
+      {"kind", &LocusRecord::kind},
+      {"period", &LocusRecord::period},
+      {"energy", &LocusRecord::energy},
+      {"parameter", &LocusRecord::parameter},
+      {"second_parameter", &LocusRecord::second_parameter},
+      {"second_name", &LocusRecord::second_name},
+      {"sector_j", &LocusRecord::sector_j},
+      {"sector_q", &LocusRecord::sector_q},
+      {"fundamental_order", &LocusRecord::fundamental_order},
+      {"state", &LocusRecord::state, RowShape::state},
+      {"note", &LocusRecord::note},
+      {"checksum", checksum},
+  };
+  return columns;
+}
+
 const ColumnDefinitions<FindingRecord>& finding_columns() {
   static const ColumnDefinitions<FindingRecord> columns{
       {"severity", &FindingRecord::severity},

@@ -43,6 +43,7 @@ using ColumnDefinitions = std::vector<ColumnDefinition<Record>>;
 [[nodiscard]] const ColumnDefinitions<CertificateRecord>& certificate_columns();
 [[nodiscard]] const ColumnDefinitions<CrossingRecord>& crossing_columns();
 [[nodiscard]] const ColumnDefinitions<SectionRecord>& section_columns();
+[[nodiscard]] const ColumnDefinitions<LocusRecord>& locus_columns();
 [[nodiscard]] const ColumnDefinitions<FindingRecord>& finding_columns();
 /// In segments, where rows have no numbers yet, orbits and sections name their family by its key.
 [[nodiscard]] const ColumnDefinitions<OrbitRecord>& segment_orbit_columns();

@@ -63,6 +63,8 @@ TableSpec crossings_spec(const Header& header) { return spec_of("crossings", cro
 
 TableSpec sections_spec(const Header& header) { return spec_of("sections", section_columns(), header); }
 
+TableSpec loci_spec(const Header& header) { return spec_of("loci", locus_columns(), header); }
+
 TableSpec findings_spec() { return spec_of("findings", finding_columns(), {}); }
 
 TableSpec segment_orbits_spec(const Header& header) { return spec_of("orbits", segment_orbit_columns(), header); }

@@ -229,6 +229,7 @@ void check_input(MPI_Comm comm, const Header& header, const Records& tables, std
     check_header(header);
     check_families(tables);
     check_crossings(header, tables);
+    check_loci(header, tables);
     check_voided(tables, segments);
   });
 }
@@ -258,8 +259,10 @@ bool consolidate(MPI_Comm comm, const std::vector<std::filesystem::path>& segmen
 
   agree_on_text_widths(comm, root.families);
   agree_on_text_widths(comm, root.crossings);
+  agree_on_text_widths(comm, root.loci);
   const std::uint64_t families = core::greatest(comm, root.families.rows());
   const std::uint64_t crossings = core::greatest(comm, root.crossings.rows());
+  const std::uint64_t loci = core::greatest(comm, root.loci.rows());
 
   ParallelFile file(comm, order.output,
                     {atlas_format,
@@ -267,10 +270,12 @@ bool consolidate(MPI_Comm comm, const std::vector<std::filesystem::path>& segmen
                      {{root.families.spec(), families},
                       {orbits_spec(order.header), numbering.orbits.size()},
                       {root.crossings.spec(), crossings},
-                      {sections_spec(order.header), numbering.sections.size()}},
+                      {sections_spec(order.header), numbering.sections.size()},
+                      {root.loci.spec(), loci}},
                      {{"modes", numbering.modes_at.back()}, {"time_maps", numbering.maps_at.back()}}});
   file.write_table(root.families, 0);
   file.write_table(root.crossings, 0);
+  file.write_table(root.loci, 0);
   write_orbits(comm, file, order, numbering);
   write_sections(comm, file, order, numbering);
   std::optional<std::vector<FindingRecord>> findings(std::in_place);

@@ -51,6 +51,27 @@ void number_family(Table& table, std::size_t row, const FamilyRecord& family, co
   table.integers("end_crossing")[row] = crossing_row(family.end_crossing);
 }
 
+// By the crossing where they begin, then along each curve.
+void number_loci(Table& table, const std::vector<LocusRecord>& loci, const std::vector<std::string>& keys,
+                 const std::vector<std::int64_t>& crossing_rows) {
+  const auto curve = [&](const LocusRecord& point) {
+    return std::tuple(crossing_rows[static_cast<std::size_t>(point.crossing)], point.locus);
+  };
+  std::vector<const LocusRecord*> order;
+  for (const LocusRecord& point : loci) order.push_back(&point);
+  std::stable_sort(order.begin(), order.end(), [&](const LocusRecord* a, const LocusRecord* b) {
+    return std::tuple(curve(*a), a->step) < std::tuple(curve(*b), b->step);
+  });
+  fill_columns(table, locus_columns(), [&](std::size_t row) -> const LocusRecord& { return *order[row]; });
+  std::int64_t number = -1;
+  for (std::size_t row = 0; row < order.size(); ++row) {
+    if (row == 0 || curve(*order[row]) != curve(*order[row - 1])) ++number;
+    table.integers("locus")[row] = number;
+    table.integers("crossing")[row] = std::get<0>(curve(*order[row]));
+    table.integers("family")[row] = index_of(keys, order[row]->family_key);
+  }
+}
+
 // In the order of the keys.
 std::vector<const FamilyRecord*> family_order(const std::vector<FamilyRecord>& families,
                                               const std::vector<std::string>& keys) {
@@ -90,7 +111,7 @@ Selection selection_of(const Records& tables) {
 RootTables make_root_tables(const Header& header, const Records& tables, const std::vector<std::string>& keys,
                             const Numbering& numbering) {
   RootTables root{Table(families_spec(), tables.families.size()),
-                  Table(crossings_spec(header), tables.crossings.size())};
+                  Table(crossings_spec(header), tables.crossings.size()), Table(loci_spec(header), tables.loci.size())};
   const std::vector<std::size_t> order = crossing_order(tables.crossings);
   const auto crossing = [&](std::size_t row) -> const CrossingRecord& { return tables.crossings[order[row]]; };
   fill_columns(root.crossings, crossing_columns(), crossing);
@@ -101,8 +122,10 @@ RootTables make_root_tables(const Header& header, const Records& tables, const s
   fill_columns(root.families, family_columns(), [&](std::size_t row) -> const FamilyRecord& { return *families[row]; });
   for (std::size_t row = 0; row < families.size(); ++row)
     number_family(root.families, row, *families[row], keys, crossing_rows, numbering);
+  number_loci(root.loci, tables.loci, keys, crossing_rows);
   set_checksums(root.families, 0);
   set_checksums(root.crossings, 0);
+  set_checksums(root.loci, 0);
   return root;
 }
 

@@ -12,6 +12,7 @@ namespace orbweaver::archive {
 struct RootTables {
   Table families;
   Table crossings;
+  Table loci;
 };
 
 /// What `tables` says of the rows of the segments.

@@ -20,6 +20,7 @@ int limits_of(const EndedTask& entry) {
     case TaskKind::locate: return outcome.empty() ? 0 : unpack_locate_outcome(outcome).limited_by;
     // One that failed may have been driven beyond a limit on the way.
     case TaskKind::start: return entry.had_children ? unpack_start_outcome(outcome).limited_by : orbit_limited;
+    case TaskKind::locus: return outcome.empty() ? 0 : unpack_locus_outcome(outcome).limited_by;
     case TaskKind::sweep: break;
   }
   return 0;

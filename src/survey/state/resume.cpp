@@ -30,6 +30,7 @@ void expect_readable(const queue::Task& task) {
       case TaskKind::branch: (void)unpack_branch_work(task.payload); break;
       case TaskKind::locate: (void)unpack_locate_work(task.payload); break;
       case TaskKind::start: (void)unpack_start_work(task.payload); break;
+      case TaskKind::locus: (void)unpack_locus_work(task.payload); break;
     }
   if (kind == TaskKind::branch && !task.state.empty()) (void)unpack_branch_state(task.state);
 }
@@ -42,6 +43,7 @@ void expect_readable(const EndedTask& entry) {
     case TaskKind::sweep: (void)unpack_sweep_outcome(outcome); break;
     case TaskKind::locate: (void)unpack_locate_outcome(outcome); break;
     case TaskKind::start: (void)unpack_start_outcome(outcome); break;
+    case TaskKind::locus: (void)unpack_locus_outcome(outcome); break;
     case TaskKind::branch:
       if (const std::string before = unpack_branch_outcome(outcome).before_limit; !before.empty())
         (void)unpack_branch_state(before);

@@ -481,6 +481,9 @@ void BranchTask::folds_from_birth(const std::vector<continuation::FamilyCurve::K
       beyond = here;
     }
   };
+  if (!_system->family_scalars().free.empty())
+    return look(Kind::fold_parameter, bifurcation::parameter_slope,
+                [](const loop::Loop& loop) { return loop.parameters.front(); });
   look(Kind::fold_period, bifurcation::period_slope, [](const loop::Loop& loop) { return loop.period; });
   look(
       Kind::fold_energy, [&](const auto& point) { return bifurcation::energy_slope(*_system, point); },

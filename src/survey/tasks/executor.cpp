@@ -6,6 +6,7 @@
 
 #include "branch_task.hpp"
 #include "locate_task.hpp"
+#include "locus_task.hpp"
 #include "orbweaver/bifurcation/small_oscillations.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/starts/sweep.hpp"
@@ -27,6 +28,7 @@ queue::TaskOutcome Executor::execute(const queue::Task& task, queue::TaskContext
     case TaskKind::branch:
       return BranchTask(_scene, _system, unpack_branch_work(task.payload), task.state, _rows, context, _team).run();
     case TaskKind::locate: return locate(_scene, _system, unpack_locate_work(task.payload), context, _team);
+    case TaskKind::locus: return follow_locus(_scene, *_system, unpack_locus_work(task.payload), context, _team);
     case TaskKind::start: return start(_scene, _system, unpack_start_work(task.payload), _team);
   }
   throw core::MisuseError("a task of a kind that is none");

@@ -17,6 +17,8 @@
 #include "orbweaver/bifurcation/kernel.hpp"
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/symmetry/subspace.hpp"
+#include "orbweaver/loss/unknowns.hpp"
 
 namespace orbweaver::survey {
 
@@ -37,6 +39,9 @@ constexpr double turning_slope = 1e-3;
 
 /// Values of indices on the unit circle are no further apart.
 constexpr double apart_indices = 4.0;
+
+/// Of a kernel vector that the family's symmetries leave as it is, they keep all but what it is wrong by, 1e-6.
+constexpr double in_symmetric_space = 0.99;
 
 /// The run is to stop.
 struct Interrupted {};
@@ -94,12 +99,45 @@ class Location {
       } catch (const core::NumericalError& error) {  // the crossing itself is located, and stays
         fail(crossing, error.what());
       }
+    if (!_failure) add_loci(crossing);
     queue::TaskOutcome done;
     done.failed = _failure.has_value();
     done.reason = _failure.value_or("");
     done.children = std::move(_starts);
     done.payload = pack(_outcome);
     return done;
+  }
+
+  /// The loci that the scene asks for.
+  void add_loci(const bifurcation::Crossing& crossing) {
+    if (!_outcome.kind) return;
+    for (std::size_t n = 0; n < _scene.loci.size(); ++n) {
+      const std::vector<scene::Loci::Of>& of = _scene.loci[n].of;
+      const std::string_view kind = archive::name_of(*_outcome.kind);
+      if (std::none_of(of.begin(), of.end(), [&](scene::Loci::Of o) { return scene::name_of(o) == kind; })) continue;
+      if (*_outcome.kind == CrossingKind::branch_point && !_breaks_symmetry) {
+        _outcome.remark += fmt::format("{}no symmetry enforces the branch point: its locus has codimension two",
+                                       _outcome.remark.empty() ? "" : "; ");
+        continue;
+      }
+      LocusWork locus;
+      locus.crossing = _work.key;
+      locus.depth = _work.lineage.depth;
+      locus.entry = static_cast<int>(n);
+      locus.kind = *_outcome.kind;
+      locus.event = _event;
+      if (archive::is_fold(*_outcome.kind)) locus.event = {fold_event(*_outcome.kind), {}, false};
+      locus.fundamental_order = _outcome.fundamental_order;
+      locus.isotropy = _work.isotropy;
+      locus.orbit = crossing.point.loop;
+      locus.tangent = crossing.point.tangent;
+      _starts.push_back(task_of(locus));
+    }
+  }
+
+  [[nodiscard]] static Event::Kind fold_event(CrossingKind kind) {
+    if (kind == CrossingKind::fold_period) return Event::Kind::fold_period;
+    return kind == CrossingKind::fold_energy ? Event::Kind::fold_energy : Event::Kind::fold_parameter;
   }
 
   queue::TaskOutcome without_crossing(const bifurcation::NotLocated& why, const continuation::FamilyCurve& family) {
@@ -163,6 +201,7 @@ class Location {
     _outcome.next_singular_value = kernel.next();
     if (kernel.dimension() == 0) return without_kernel(crossing, kernel, family);
     if (sector.q == 1 && kernel.dimension() == 1 && turns_at(crossing, family)) return as_fold(kernel);
+    _breaks_symmetry = sector.q > 1 || breaks_symmetry(kernel, isotropy);
     if (!starts) return;
     report();
     int number = 0;
@@ -185,6 +224,17 @@ class Location {
         add_starts(direction, leaving);
       _outcome.leaving.push_back(std::move(leaving));
     }
+  }
+
+  /// Whether the kernel leaves the space of loops with the family's symmetries.
+  [[nodiscard]] static bool breaks_symmetry(const bifurcation::Kernel& kernel, const loop::Isotropy& isotropy) {
+    const loop::Subspace subspace(kernel.base.dimension, kernel.base.cutoff, isotropy);
+    const loss::Unknowns unknowns{subspace, {}};
+    return std::any_of(kernel.vectors.begin(), kernel.vectors.end(), [&](const loop::Tangent& v) {
+      double square = 0.0;
+      for (const double x : unknowns.coordinates_of({v.modes, {}})) square += x * x;
+      return std::sqrt(square) < in_symmetric_space * v.norm();
+    });
   }
 
   /// Where rounding does not tell the crossing from those of other sectors, its kernel may be any of theirs.
@@ -284,6 +334,7 @@ class Location {
   LocateOutcome _outcome;
   std::vector<queue::Task> _starts;
   std::optional<std::string> _failure;
+  bool _breaks_symmetry = false;  // what leaves
 };
 
 }  // namespace

@@ -64,6 +64,9 @@ void FamilyTree::add(const queue::Task& task, const queue::TaskOutcome& outcome)
       add_crossing(std::move(crossing));
     else if (crossing.undecided)
       _undecided[place_of(task.key)] = std::move(crossing.remark);
+  } else if (kind == TaskKind::locus) {
+    if (outcome.failed) _locus_failures[place_of(task.key)] = outcome.reason;
+    if (!outcome.payload.empty()) _loci.insert_or_assign(place_of(task.key), unpack_locus_outcome(outcome.payload));
   }
 }
 
@@ -203,6 +206,7 @@ FamilyTree::Result FamilyTree::resolve() const {
   const std::map<std::string, int> rows = add_crossings(crossings, _units, result);
   add_families(
       families, _crossings, rows, _units, [this](const std::string& key) { return _pruning.arrival(key); }, result);
+  add_loci(_loci, _crossings, rows, _units, result);
   result.evidence =
       evidence_of({_branches, _crossings, _failures, _undecided, _pruning, _arrivals, kept, rows, _units,
                    [this](const std::string& branch, const Lineage& lineage) { return fate_of(branch, lineage); }});
@@ -215,6 +219,8 @@ FamilyTree::Result FamilyTree::resolve() const {
 
   for (const auto& [key, reason] : _failures)
     if (on_kept(key)) result.failures.push_back(fmt::format("locate {}: {}", key, reason));
+  for (const auto& [key, reason] : _locus_failures)
+    if (on_kept(key)) result.failures.push_back(fmt::format("locus {}: {}", key, reason));
   const auto beyond = std::count_if(crossings.begin(), crossings.end(), [this](const LocateOutcome* crossing) {
     return crossing->multiplicity * crossing->period > _scene.limits.period;
   });

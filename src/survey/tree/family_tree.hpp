@@ -67,6 +67,8 @@ class FamilyTree {
   std::set<std::string> _not_begun;              // branches whose first orbit lies beyond the limits
   std::map<std::string, std::string> _failures;  // of locations: by the crossing's key
   std::map<std::string, std::string> _undecided;  // reasons by the key of an event that rounding hides
+  std::map<std::string, LocusOutcome> _loci;      // by crossing and entry
+  std::map<std::string, std::string> _locus_failures;
   Arrivals _arrivals;
   Pruning _pruning;
   FamilyLimit _limit;

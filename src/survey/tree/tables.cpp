@@ -62,6 +62,42 @@ archive::CrossingRecord row_of(const LocateOutcome& crossing, const Units& units
   return row;
 }
 
+/// Relative, of the period and what else moves: far above what locations are off.
+constexpr double same_return = 1e-6;
+
+/// Whether the locus passes the crossing where the second parameter has its value again.
+bool comes_to(const LocusOutcome& locus, const LocateOutcome& crossing) {
+  const auto same = [](double a, double b) { return std::abs(a - b) <= same_return * (std::abs(a) + std::abs(b)); };
+  return std::any_of(locus.points.begin(), locus.points.end(), [&](const LocusPointRecord& point) {
+    const double level = std::isnan(point.parameter) ? point.energy : point.parameter;
+    return point.is_return && same(point.period, crossing.period) && same(level, crossing.level());
+  });
+}
+
+archive::LocusRecord row_of(const LocusOutcome& locus, const LocusPointRecord& point, const LocateOutcome& born,
+                            int row, const Units& units) {
+  archive::LocusRecord record;
+  record.family_key = born.lineage.family;
+  record.crossing = row;
+  record.locus = locus.entry;
+  record.step = point.step;
+  record.arclength = point.arclength;
+  record.kind = locus.kind;
+  record.period = point.period * units.time;
+  record.energy = point.energy * units.energy();
+  if (units.in_parameter()) record.parameter = point.parameter * units.parameter(0);
+  record.second_parameter = point.second;
+  record.second_name = locus.second_name;
+  const bool by_sector = archive::has_sector(locus.kind);
+  record.sector_j = by_sector ? locus.event.function.sector.j : 0;
+  record.sector_q = by_sector ? locus.event.function.sector.q : 1;
+  record.fundamental_order = locus.fundamental_order;
+  record.state = point.state;
+  for (std::size_t i = 0; i < record.state.size(); ++i) record.state[i] *= units.coordinate(i);
+  record.note = point.note;
+  return record;
+}
+
 /// The orbits of another side.
 void add_orbits(const BranchOutcome& branch, FamilySummary& summary) {
   const bool first = summary.orbits == 0;
@@ -84,6 +120,23 @@ std::map<std::string, int> add_crossings(const std::vector<const LocateOutcome*>
     tables.tables.crossings.push_back(row_of(*crossing, units));
   }
   return rows;
+}
+
+void add_loci(const std::map<std::string, LocusOutcome>& loci, const Crossings& crossings,
+              const std::map<std::string, int>& crossing_rows, const Units& units, TreeTables& tables) {
+  std::vector<const LocusOutcome*> kept;
+  for (const auto& [key, locus] : loci) {
+    const auto row = crossing_rows.find(locus.crossing);
+    if (row == crossing_rows.end()) continue;
+    const LocateOutcome& born = crossings.at(locus.crossing);
+    const bool is_known = std::any_of(kept.begin(), kept.end(), [&](const LocusOutcome* other) {
+      return other->entry == locus.entry && other->kind == locus.kind && comes_to(*other, born);
+    });
+    if (is_known) continue;
+    kept.push_back(&locus);
+    for (const LocusPointRecord& point : locus.points)
+      tables.tables.loci.push_back(row_of(locus, point, born, row->second, units));
+  }
 }
 
 void add_families(const std::vector<Family>& families, const Crossings& crossings,

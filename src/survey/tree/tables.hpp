@@ -29,6 +29,11 @@ struct TreeTables {
 [[nodiscard]] std::map<std::string, int> add_crossings(const std::vector<const LocateOutcome*>& crossings,
                                                        const Units& units, TreeTables& tables);
 
+/// Adds the points of the loci that begin at crossings with rows. One that has come back to where another begins is the
+/// same curve: of these the one from the first crossing stays.
+void add_loci(const std::map<std::string, LocusOutcome>& loci, const Crossings& crossings,
+              const std::map<std::string, int>& crossing_rows, const Units& units, TreeTables& tables);
+
 /// Adds a row for every family. `arrival` says where the branch with a key has arrived; null if nowhere.
 void add_families(const std::vector<Family>& families, const Crossings& crossings,
                   const std::map<std::string, int>& crossing_rows, const Units& units,

@@ -10,6 +10,7 @@
 #include "tasks/payload/payload.hpp"
 #include "tasks/section_rows.hpp"
 #include "verify/crossing_check.hpp"
+#include "verify/locus_check.hpp"
 #include "verify/orbit_check.hpp"
 
 namespace orbweaver::survey {
@@ -29,7 +30,9 @@ Findings findings_in(const queue::Task& task, const queue::TaskOutcome& outcome)
   if (!outcome.failed && !outcome.payload.empty()) return from_payload<Findings>(outcome.payload);
   const auto work = from_payload<VerifyWork>(task.payload);
   Findings findings;
-  const char* table = work.what == VerifyWork::What::crossings ? "crossings" : "orbits";
+  const char* table = work.what == VerifyWork::What::crossings ? "crossings"
+                      : work.what == VerifyWork::What::loci    ? "loci"
+                                                               : "orbits";
   findings.objections.push_back(
       {table, work.first, "",
        fmt::format("could not be verified (rows {} to {}): {}", work.first, work.end - 1, outcome.reason)});
@@ -54,6 +57,10 @@ queue::TaskOutcome VerifyExecutor::execute(const queue::Task& task, queue::TaskC
         check_crossing(atlas(), static_cast<std::size_t>(row), findings);
       break;
     case VerifyWork::What::sections: check_sections(work, findings); break;
+    case VerifyWork::What::loci:
+      for (std::int64_t row = work.first; row < work.end; ++row)
+        check_locus_point(atlas(), static_cast<std::size_t>(row), findings);
+      break;
   }
   queue::TaskOutcome done;
   done.payload = to_payload(findings);

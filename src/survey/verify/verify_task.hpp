@@ -22,8 +22,9 @@ struct VerifyWork {
     orbits,     ///< of one family
     crossings,
     sections,
+    loci,  ///< points of them
   };
-  [[nodiscard]] friend constexpr What last_of(What) { return What::sections; }
+  [[nodiscard]] friend constexpr What last_of(What) { return What::loci; }
   What what = What::orbits;
   std::int64_t first = 0;
   std::int64_t end = 0;

@@ -102,6 +102,26 @@ struct SectionRecord {
   std::vector<double> state;
 };
 
+/// One row of /loci: a point of a curve in two parameters along which a crossing or fold persists.
+struct LocusRecord {
+  std::string family_key;  ///< of the family on which the crossing lies where the curve begins
+  int crossing = -1;       ///< that crossing: index into those that are handed over with it (Records)
+  int locus = 0;           ///< tells the curves that begin at one crossing apart; numbered through in the archive
+  int step = 0;            ///< 0 at the crossing; points to its other side count backwards
+  double arclength = 0.0;
+  CrossingKind kind = CrossingKind::branch_point;
+  double period = 0.0;
+  double energy = not_computed;
+  double parameter = not_computed;
+  double second_parameter = not_computed;
+  std::string second_name;
+  int sector_j = 0;
+  int sector_q = 1;
+  int fundamental_order = 1;
+  std::vector<double> state;
+  std::string note;  ///< "start", "cusp", "return", or why the curve ends there; empty at all others
+};
+
 /// One row of /findings: what does not add up in a survey, or what its limits cut. Rows are those of the other tables
 /// as they are written; -1: none.
 struct FindingRecord {
@@ -155,6 +175,7 @@ struct Records {
   std::vector<OrbitRecord> orbits;
   std::vector<CrossingRecord> crossings;
   std::vector<SectionRecord> sections;
+  std::vector<LocusRecord> loci;
   std::vector<std::string> left_out_keys;  ///< families that the archive does not have; rows of theirs are left out
   std::vector<VoidedRows> voided;          ///< several for one family are allowed
   /// Scenes, besides the header's, for which segments may have been written: those before limits were widened.

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::string_view locating = "locate ";
 constexpr std::string_view starting = "start ";
+constexpr std::string_view following = "locus ";
 
 /// Usual digits.
 constexpr std::size_t of_event = 3;
@@ -80,9 +81,12 @@ std::string mode_of(std::string_view base) {
 
 std::string locate_key(std::string_view crossing) { return fmt::format("{}{}", locating, crossing); }
 std::string start_key(std::string_view branch) { return fmt::format("{}{}", starting, branch); }
+std::string locus_key(std::string_view crossing, int entry) {
+  return fmt::format("{}{}:{}", following, crossing, entry);
+}
 
 std::string place_of(std::string_view task_key) {
-  for (const std::string_view verb : {locating, starting})
+  for (const std::string_view verb : {locating, starting, following})
     if (task_key.starts_with(verb)) return std::string(task_key.substr(verb.size()));
   return std::string(task_key);
 }

@@ -35,7 +35,9 @@ namespace orbweaver::survey {
 /// "locate KEY" and "start KEY": tasks about a crossing or a family, whose branch has the task KEY.
 [[nodiscard]] std::string locate_key(std::string_view crossing);
 [[nodiscard]] std::string start_key(std::string_view branch);
-/// The crossing's, family's or branch's KEY of any task.
+/// "locus KEY:1": the scene's loci with this number, from a crossing.
+[[nodiscard]] std::string locus_key(std::string_view crossing, int entry);
+/// The crossing's, family's or branch's KEY of any task, with the number of a locus.
 [[nodiscard]] std::string place_of(std::string_view task_key);
 
 }  // namespace orbweaver::survey

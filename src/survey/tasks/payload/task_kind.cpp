@@ -13,12 +13,13 @@ const char* name_of(TaskKind kind) {
     case TaskKind::branch: return "branch";
     case TaskKind::locate: return "locate";
     case TaskKind::start: return "start";
+    case TaskKind::locus: return "locus";
   }
   return "unknown";
 }
 
 TaskKind kind_of(const queue::Task& task) {
-  for (const TaskKind kind : {TaskKind::sweep, TaskKind::branch, TaskKind::locate, TaskKind::start})
+  for (const TaskKind kind : {TaskKind::sweep, TaskKind::branch, TaskKind::locate, TaskKind::start, TaskKind::locus})
     if (task.kind == name_of(kind)) return kind;
   throw core::EnvironmentError(fmt::format("no such kind of task: `{}`", core::printable(task.kind)));
 }
@@ -29,7 +30,8 @@ int priority_of(TaskKind kind, int depth) {
     case TaskKind::sweep: return 0;
     case TaskKind::branch: return 1 + kinds_a_depth * depth;
     case TaskKind::locate: return 2 + kinds_a_depth * depth;
-    case TaskKind::start: return 3 + kinds_a_depth * depth;
+    case TaskKind::start:
+    case TaskKind::locus: return 3 + kinds_a_depth * depth;
   }
   return 0;
 }

@@ -5,7 +5,7 @@
 namespace orbweaver::survey {
 
 /// What a task is to do.
-enum class TaskKind { sweep, branch, locate, start };
+enum class TaskKind { sweep, branch, locate, start, locus };
 /// As in queue::Task::kind.
 [[nodiscard]] const char* name_of(TaskKind kind);
 /// Throws EnvironmentError for a task that is none of ours.
@@ -26,7 +26,7 @@ inline constexpr int orbit_limited = period_limited | energy_limited | guard_lim
 void check_limits(int limits);
 
 /// Tasks run by depth; within one branches first, then the location of what they crossed, then the starts of what
-/// leaves there. Sweeps come before all.
+/// leaves there and the loci. Sweeps come before all.
 [[nodiscard]] int priority_of(TaskKind kind, int depth);
 
 }  // namespace orbweaver::survey

@@ -4,5 +4,6 @@
 
 #include "branch_work.hpp"
 #include "locate_work.hpp"
+#include "locus_work.hpp"
 #include "start_work.hpp"
 #include "sweep_work.hpp"

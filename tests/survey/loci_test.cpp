@@ -1,0 +1,198 @@
+// Surveys with loci: curves of crossings in two parameters as tasks of the queue, and what verify says of them.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+
+#include "orbweaver/survey/verify/verify.hpp"
+#include "survey/atlas.hpp"
+#include "survey/atlas_records.hpp"
+
+namespace {
+
+using namespace orbweaver;
+
+scene::Scene scene_of(const std::string& name, const std::vector<std::string>& more) {
+  return scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/" + name, more);
+}
+
+scene::Scene folds_of_duffing() {
+  return scene_of("duffing.yaml", {"loci=[{of: [fold-parameter], free: [drive_amplitude], range: [0.01, 0.5]}]"});
+}
+
+/// Raised from rest: a symmetric answer, its pair of unsymmetric ones, and their doubling.
+scene::Scene doublings_of_duffing(double frequency, const std::string& loci) {
+  return scene_of("duffing.yaml", {"survey.depth=1", "survey.subharmonics=2", "system.parameters.damping=0.2",
+                                   "system.parameters.drive_amplitude=0",
+                                   fmt::format("system.parameters.drive_frequency={}", frequency),
+                                   "starts={fixed_points: {grid: [[0]]}}", "continuation.free=drive_amplitude",
+                                   "limits.parameter=[0, 20]", "limits.period=30", "loci=" + loci});
+}
+
+constexpr const char* doublings = "[{of: [period-doubling, branch-point], free: [drive_frequency], range: [1, 1.6]}]";
+
+struct Point {
+  double period, parameter, second;
+  std::string note;
+  std::vector<double> state;
+};
+
+/// The curves of a kind.
+std::vector<std::vector<Point>> loci_of(const test::Atlas& atlas, const std::string& kind) {
+  const archive::Table& loci = atlas.loci();
+  const std::size_t d = atlas.header().state_names.size();
+  std::map<std::int64_t, std::vector<Point>> curves;
+  for (std::size_t row = 0; row < loci.rows(); ++row) {
+    if (loci.texts("kind")[row] != kind) continue;
+    const auto first = loci.reals("state").begin() + static_cast<std::ptrdiff_t>(row * d);
+    curves[loci.integers("locus")[row]].push_back({loci.reals("period")[row],
+                                                   loci.reals("parameter")[row],
+                                                   loci.reals("second_parameter")[row],
+                                                   loci.texts("note")[row],
+                                                   {first, first + static_cast<std::ptrdiff_t>(d)}});
+  }
+  std::vector<std::vector<Point>> out;
+  for (auto& [number, curve] : curves) out.push_back(std::move(curve));
+  return out;
+}
+
+std::string objections_to(const core::Communicator& comm, const std::filesystem::path& atlas) {
+  std::string text;
+  for (const survey::Objection& o : survey::verify(comm, atlas).objections)
+    text += fmt::format("{} {} {}: {}\n", o.table, o.row, o.column, o.text);
+  return text;
+}
+
+TEST(Loci, FoldsOfDuffingAreOneCurveWithACusp) {
+  const core::Communicator comm;
+  const survey::Summary summary = test::run(comm, folds_of_duffing(), "folds");
+  EXPECT_EQ(objections_to(comm, summary.atlas), "");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  const test::Atlas atlas(summary.atlas);
+  const auto curves = loci_of(atlas, "fold-parameter");
+  ASSERT_EQ(curves.size(), 1U) << "it comes to the other fold, where another would begin";
+  const std::vector<Point>& curve = curves.front();
+  EXPECT_EQ(std::count_if(curve.begin(), curve.end(), [](const Point& p) { return p.note == "cusp"; }), 1);
+  const auto back = std::find_if(curve.begin(), curve.end(), [](const Point& p) { return p.note == "return"; });
+  ASSERT_NE(back, curve.end());
+  EXPECT_NEAR(back->parameter, atlas.crossings().reals("parameter")[1], 1e-9);
+  for (const Point* end : {&curve.front(), &curve.back()}) {
+    EXPECT_NEAR(end->second, 0.5, 1e-10);
+    EXPECT_EQ(end->note, "parameter limit (drive_amplitude = 0.5)");
+  }
+}
+
+/// The doublings of the family in the drive's amplitude that passes near a point of a locus, from its state.
+std::vector<double> located_near(const core::Communicator& comm, const Point& point) {
+  constexpr double beside = 0.02;
+  constexpr double within = 0.1;
+  const scene::Scene scene =
+      scene_of("duffing.yaml",
+               {"system.parameters.damping=0.2", fmt::format("system.parameters.drive_frequency={}", point.second),
+                fmt::format("system.parameters.drive_amplitude={}", point.parameter + beside),
+                "continuation.free=drive_amplitude",
+                fmt::format("starts={{states: [{{state: [{}, {}, {}], period: {}}}]}}", point.state[0], point.state[1],
+                            point.state[2] / std::numbers::pi * 180.0, point.period),
+                fmt::format("limits.parameter=[{}, {}]", point.parameter - within, point.parameter + within)});
+  const test::Atlas atlas(test::run(comm, scene, "direct").atlas);
+  std::vector<double> found;
+  for (std::size_t row = 0; row < atlas.crossings().rows(); ++row)
+    if (atlas.crossings().texts("kind")[row] == "period-doubling")
+      found.push_back(atlas.crossings().reals("parameter")[row]);
+  return found;
+}
+
+TEST(Loci, DoublingsOfDuffingLieWhereTheyAreLocated) {
+  const core::Communicator comm;
+  const survey::Summary summary = test::run(comm, doublings_of_duffing(1.2, doublings), "doublings");
+  EXPECT_EQ(objections_to(comm, summary.atlas), "");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  const test::Atlas atlas(summary.atlas);
+  EXPECT_EQ(loci_of(atlas, "branch-point").size(), 1U) << "the mirror image enforces it";
+  const auto curves = loci_of(atlas, "period-doubling");
+  ASSERT_EQ(curves.size(), 1U);
+  const std::vector<Point>& curve = curves.front();
+  const core::Communicator alone(MPI_COMM_SELF);
+  int compared = 0;
+  for (std::size_t n = 1; n + 1 < curve.size(); n += curve.size() / 7) {
+    if (!curve[n].note.empty()) continue;
+    SCOPED_TRACE(curve[n].second);
+    const std::vector<double> found = located_near(alone, curve[n]);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_NEAR(found.front(), curve[n].parameter, 1e-8);
+    ++compared;
+  }
+  EXPECT_GE(compared, 5);
+}
+
+TEST(Loci, OfThePendulumInPeriodAndMass) {
+  const core::Communicator comm;
+  const survey::Summary summary = test::run(
+      comm,
+      scene_of("double_pendulum.yaml", {"survey.depth=0", "starts.fixed_points.grid=[[0], [0]]", "limits.period=9",
+                                        "loci=[{of: [period-doubling], free: [m2], range: [0.5, 2]}]"}),
+      "pendulum");
+  EXPECT_EQ(objections_to(comm, summary.atlas), "");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  const test::Atlas atlas(summary.atlas);
+  const auto curves = loci_of(atlas, "period-doubling");
+  const bool found = std::any_of(curves.begin(), curves.end(), [](const std::vector<Point>& curve) {
+    return std::any_of(curve.begin(), curve.end(), [](const Point& point) {
+      return point.note == "start" && std::abs(point.period - 8.442930704977588) < 1e-9 && std::isnan(point.parameter);
+    });
+  });
+  EXPECT_TRUE(found) << "In-Phase's first doubling";
+}
+
+TEST(Loci, HaveTheSameBytesOnAllRanksAndResumed) {
+  const core::Communicator comm;
+  const scene::Scene scene = doublings_of_duffing(1.2, doublings);
+  const auto system = scene::bound_system(scene.system);
+  const auto folder = test::fresh_folder(fmt::format("resumed{}", comm.size()), comm.get());
+  survey::RunOptions options;
+  options.walltime = 0.15;
+  (void)survey::run_survey(comm, scene, system, folder, options);
+  const survey::Summary resumed = survey::run_survey(comm, scene, system, folder, {survey::Display::none, true});
+  EXPECT_FALSE(resumed.stopped_early);
+  if (!comm.is_root()) return;
+  const core::Communicator alone(MPI_COMM_SELF);
+  const auto other = test::fresh_folder("alone");
+  const survey::Summary whole = survey::run_survey(alone, scene, system, other, {});
+  EXPECT_EQ(test::dataset_bytes(resumed.atlas), test::dataset_bytes(whole.atlas));
+}
+
+TEST(Loci, ChangedNumbersAreFound) {
+  constexpr double part = 1e-6;
+  const core::Communicator comm;
+  const survey::Summary summary = test::run(comm, folds_of_duffing(), "changed");
+  const test::Atlas atlas(summary.atlas);
+  archive::Records changed = test::complete_records_of(atlas);
+  ASSERT_GT(changed.loci.size(), 20U);
+  changed.loci[3].parameter *= 1.0 + part;
+  changed.loci[6].second_parameter *= 1.0 + part;
+  changed.loci[9].period *= 1.0 + part;
+  changed.loci[12].state[0] += part;
+  changed.loci[15].kind = archive::CrossingKind::period_doubling;
+  const auto folder = test::fresh_folder(fmt::format("changed_numbers{}", comm.size()), comm.get());
+  if (comm.is_root()) test::write_sample_atlas(folder, atlas.header(), changed);
+  MPI_Barrier(comm.get());
+  std::set<std::int64_t> rows;
+  for (const survey::Objection& objection : survey::verify(comm, folder / "atlas.h5").objections)
+    if (objection.table == "loci") rows.insert(objection.row);
+  if (!comm.is_root()) return;
+  EXPECT_EQ(rows, (std::set<std::int64_t>{3, 6, 9, 12, 15}));
+}
+
+}  // namespace
