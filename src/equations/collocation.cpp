@@ -376,7 +376,12 @@ double Collocation::distance(const double* a, const double* b) const {
   double square = 0.0;
   for (int i = 0; i < dimension(); ++i)
     for (int j = 0; j < m; ++j) square += _density[at(j)] * _z[at(i * m + j)] * _z[at(i * m + j)] / m;
-  return std::hypot(std::sqrt(square), (a[period_at()] - b[period_at()]) / b[period_at()]);
+  double parameters = 0.0;
+  for (std::size_t n = 0; n < _system.family_scalars().free.size(); ++n) {
+    const int p = period_at() + 1 + static_cast<int>(n);
+    parameters = std::hypot(parameters, a[p] - b[p]);
+  }
+  return std::hypot(std::sqrt(square), (a[period_at()] - b[period_at()]) / b[period_at()], parameters);
 }
 
 std::vector<double> Collocation::resampled(const Collocation& from, const std::vector<double>& u) const {

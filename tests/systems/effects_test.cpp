@@ -102,6 +102,8 @@ struct PendulumLagrangian {
 };
 
 /// Velocities in the frame at rest, whose turning is that of two bodies on circles under their own attraction.
+/// In the plane (N = 2) or in space.
+template <int N>
 struct RestrictedLagrangian {
   Parameters p;
 
@@ -120,17 +122,21 @@ struct RestrictedLagrangian {
     using std::pow;
     const double n = turning();
     const double mu = p.at("mu");
-    const S vx = z[2] - n * z[1];
-    const S vy = z[3] + n * z[0];
+    const S vx = z[N] - n * z[1];
+    const S vy = z[N + 1] + n * z[0];
+    const S height = N == 3 ? z[2] : S(0.0);
+    const S vz = N == 3 ? z[2 * N - 1] : S(0.0);
     const auto depth = [&](double mass, double place, double flatness, double dark) {
       const S x = z[0] - place;
-      const S square = x * x + z[1] * z[1];
-      return mass * (dark * pow(square, -0.5) + 0.5 * flatness * pow(square, -1.5));
+      const S square = x * x + z[1] * z[1] + height * height;
+      const S legendre = 0.5 * (3.0 * height * height / square - 1.0);  // of the sine of the latitude
+      return mass * (dark * pow(square, -0.5) - flatness * legendre * pow(square, -1.5));
     };
-    return 0.5 * (vx * vx + vy * vy) + depth(1.0 - mu, -mu, value_of(p, "A1"), 1.0 - value_of(p, "radiation")) +
+    return 0.5 * (vx * vx + vy * vy + vz * vz) +
+           depth(1.0 - mu, -mu, value_of(p, "A1"), 1.0 - value_of(p, "radiation")) +
            depth(mu, 1.0 - mu, value_of(p, "A2"), 1.0);
   }
-  [[nodiscard]] Eigen::VectorXd forces(const std::vector<double>&) const { return Eigen::Vector2d::Zero(); }
+  [[nodiscard]] Eigen::VectorXd forces(const std::vector<double>&) const { return Eigen::VectorXd::Zero(N); }
 };
 
 struct SpringLagrangian {
@@ -192,14 +198,20 @@ void expect_equations_of(const std::string& name) {
 }
 
 TEST(Effects, OfThePendulumFollowFromItsLagrangian) { expect_equations_of<2, PendulumLagrangian>("double_pendulum"); }
-TEST(Effects, OfTheRestrictedProblemFollowFromItsLagrangian) { expect_equations_of<2, RestrictedLagrangian>("pcr3bp"); }
+TEST(Effects, OfTheRestrictedProblemFollowFromItsLagrangian) {
+  expect_equations_of<2, RestrictedLagrangian<2>>("pcr3bp");
+}
+TEST(Effects, OfTheRestrictedProblemInSpaceFollowFromItsLagrangian) {
+  expect_equations_of<3, RestrictedLagrangian<3>>("cr3bp");
+}
 TEST(Effects, OfTheSpringFollowFromItsLagrangian) { expect_equations_of<2, SpringLagrangian>("swinging_spring"); }
 TEST(Effects, OfDuffingsOscillatorFollowFromItsLagrangian) { expect_equations_of<1, DuffingLagrangian>("duffing"); }
 
 /// Energies too, where one is conserved: p . v - L.
 TEST(Effects, EnergiesFollowFromTheLagrangian) {
   std::mt19937 generator(32);
-  const auto expect_energy = [&]<class Lagrangian>(const std::string& name, const Lagrangian&) {
+  const auto expect_energy = [&]<int N, class Lagrangian>(std::integral_constant<int, N>, const std::string& name,
+                                                          const Lagrangian&) {
     for (const std::vector<std::string>& effects : built_effects(name)) {
       const auto parameters = random_parameters(model_info(name), generator, effects);
       const auto system = make_system(name, parameters, effects);
@@ -207,15 +219,19 @@ TEST(Effects, EnergiesFollowFromTheLagrangian) {
       SCOPED_TRACE((Built{name, effects}.title()));
       auto z = random_state(*system, generator);
       z.push_back(0.0);
-      const auto [value, gradient] = ad::value_gradient<5>(Lagrangian{parameters}, z.data());
-      const double action = gradient[2] * z[2] + gradient[3] * z[3];
+      const auto [value, gradient] = ad::value_gradient<2 * N + 1>(Lagrangian{parameters}, z.data());
+      double action = 0.0;
+      for (std::size_t i = N; i < 2 * N; ++i) action += gradient[i] * z[i];
       const double scale = 1.0 + std::abs(value) + std::abs(action);
-      EXPECT_NEAR(system->action_density({z.data(), 4}), action, 1e-13 * scale);
-      EXPECT_NEAR(system->conserved(0, {z.data(), 4}), action - value, 1e-13 * scale);
+      EXPECT_NEAR(system->action_density({z.data(), 2 * N}), action, 1e-13 * scale);
+      EXPECT_NEAR(system->conserved(0, {z.data(), 2 * N}), action - value, 1e-13 * scale);
     }
   };
-  expect_energy("double_pendulum", PendulumLagrangian{});
-  expect_energy("pcr3bp", RestrictedLagrangian{});
+  constexpr std::integral_constant<int, 2> in_plane;
+  constexpr std::integral_constant<int, 3> in_space;
+  expect_energy(in_plane, "double_pendulum", PendulumLagrangian{});
+  expect_energy(in_plane, "pcr3bp", RestrictedLagrangian<2>{});
+  expect_energy(in_space, "cr3bp", RestrictedLagrangian<3>{});
 }
 
 // What makes an effect strong; the others (frequencies, directions, rest angles) say how it acts.

@@ -89,7 +89,7 @@ TEST(Flow, CarriesTransitionsAndKeepsTheEnergy) {
       return ad::evaluate<Extended>(formulas.tape, formulas.conserved, z, parameters).front();
     };
     EXPECT_LT(numerics::log10_abs(energy(end) - energy(start)), -38.0) << name;
-    const Extended h("1e-12");
+    const Extended h = numerics::extended_of("1e-12");
     for (std::size_t c = 0; c < 4; ++c) {
       std::vector<Extended> plus = start;
       std::vector<Extended> minus = start;

@@ -95,7 +95,8 @@ class Collocation final : public PreconditionedEquations {
   [[nodiscard]] loop::Loop to_loop(const double* u) const;
   /// The point of a loop that has this grid's time map and symmetries.
   void from_loop(const loop::Loop& loop, double* u) const;
-  /// sqrt(mean over time of |z_a - z_b|^2 + ((T_a - T_b) / T_b)^2): the archive's arclength between neighbours.
+  /// sqrt(mean over time of |z_a - z_b|^2 + ((T_a - T_b) / T_b)^2 + |p_a - p_b|^2), p the parameters that move along
+  /// families: the archive's arclength between neighbours.
   [[nodiscard]] double distance(const double* a, const double* b) const;
   /// The same orbit on another grid or under another time map.
   [[nodiscard]] std::vector<double> resampled(const Collocation& from, const std::vector<double>& u) const;

@@ -275,7 +275,7 @@ std::shared_ptr<const System> Registered<Model>::make(const Bound& bound) {
 }
 
 template <class Model>
-std::string Registered<Model>::type() {
+inline std::string Registered<Model>::type() {
   return boost::core::demangle(typeid(Model).name());
 }
 

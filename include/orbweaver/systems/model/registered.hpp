@@ -18,7 +18,7 @@ struct Registered {
   static const std::vector<std::string>& effects();
   static std::shared_ptr<const System> make(const Bound& bound);
   /// The model's C++ type, "orbweaver::systems::Duffing<orbweaver::systems::Damping<1> >".
-  [[maybe_unused]] static std::string type();
+  static std::string type();
 };
 
 /// A model with one combination of its effects.
