@@ -255,6 +255,7 @@ equations::AndersonSolver::Options CollocationProblem::solver_options() {
 Trial CollocationProblem::solve(Prediction prediction, const std::vector<double>& conditions) {
   Collocation& e = equations();
   e.precondition_by(preconditioner_of(e));
+  e.keep_symmetries(prediction.values.data());
   e.set_conditions(conditions, prediction.values);
   Trial trial;
   trial.order = prediction.order;

@@ -54,7 +54,8 @@ Collocation::Collocation(const systems::System& system, const loop::FundamentalD
       _winding(std::move(winding)),
       _scalars(scalars.empty() ? scalars_of_families(system, domain) : std::move(scalars)),
       _keeps_mean(domain.coordinates_with_mean()),
-      _ends(domain.ends()) {
+      _ends(domain.ends()),
+      _projection(domain.projection) {
   core::require(cells % BoxScheme::lanes == 0, "the cells of a domain must fill the lanes of the box scheme");
   core::require(_scalars.front().kind == loss::Scalar::Kind::period, "collocation solves for T");
   const double h = _grid.spacing();
@@ -84,9 +85,21 @@ Collocation::~Collocation() = default;
 
 void Collocation::precondition(double* r) const {
   const core::LogEvent event(core::Event::precondition);
-  if (_exact) return _exact->solve(r);
-  core::require(_box != nullptr, "collocation points are preconditioned before their matrices are factored");
-  _box->solve(r);
+  core::require(_exact || _box, "collocation points are preconditioned before their matrices are factored");
+  if (_exact)
+    _exact->solve(r);
+  else
+    _box->solve(r);
+  keep_symmetries(r);
+}
+
+// The equations are the same across the projection's kernel as they are; where a family crosses one of less symmetry they
+// are singular there, and the rounding that a solve multiplies would leave the symmetry.
+void Collocation::keep_symmetries(double* v) const {
+  if (!_projection) return;
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Eigen::Map<Rows> nodes(v, dimension(), _grid.stride());
+  nodes = (*_projection * nodes).eval();
 }
 
 void Collocation::set_conditions(std::span<const double> weights, std::span<const double> reference) {

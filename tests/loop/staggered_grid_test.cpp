@@ -168,7 +168,11 @@ TEST(Domain, KnowsWhatItDoesNotExpress) {
   Isotropy spatial = of_pendulum(true, false);
   spatial[0].shift_numerator = 0;
   spatial[0].shift_denominator = 1;
-  EXPECT_FALSE(fundamental_domain(test::structure_of(4), spatial).expresses(spatial));
+  const FundamentalDomain kept = fundamental_domain(test::structure_of(4), spatial);
+  EXPECT_TRUE(kept.expresses(spatial));
+  ASSERT_TRUE(kept.projection);
+  EXPECT_LT((*kept.projection - 0.5 * (Eigen::Matrix4d::Identity() + spatial[0].map.matrix)).norm(), 1e-15);
+  EXPECT_FALSE(fundamental_domain(test::structure_of(4), of_pendulum(true, true)).projection);
 }
 
 TEST(Domain, TakesTheLeastShift) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -98,6 +99,9 @@ class Collocation final : public PreconditionedEquations {
   /// sqrt(mean over time of |z_a - z_b|^2 + ((T_a - T_b) / T_b)^2 + |p_a - p_b|^2), p the parameters that move along
   /// families: the archive's arclength between neighbours.
   [[nodiscard]] double distance(const double* a, const double* b) const;
+  /// Projects a point, or a difference of points, on the states that the equivariances of shift 0 keep: extrapolation
+  /// multiplies what rounding has left beside them, and no correction sees it.
+  void keep_symmetries(double* u) const;
   /// The same orbit on another grid or under another time map.
   [[nodiscard]] std::vector<double> resampled(const Collocation& from, const std::vector<double>& u) const;
   /// False where the symmetries make the coordinate's mean over the loop zero (relative to the centre).
@@ -128,6 +132,7 @@ class Collocation final : public PreconditionedEquations {
   std::vector<double> _node_weights;
   std::vector<bool> _keeps_mean;
   loop::FundamentalDomain::Ends _ends;
+  std::optional<Eigen::MatrixXd> _projection;  // of the domain
   std::vector<double> _weights;
   std::vector<double> _reference;
   std::unique_ptr<BoxScheme> _box;

@@ -52,12 +52,15 @@ FundamentalDomain::Ends FundamentalDomain::ends() const {
 }
 
 bool FundamentalDomain::expresses(const Isotropy& isotropy) const {
-  return std::all_of(isotropy.begin(), isotropy.end(), [this](const SymmetryElement& element) {
+  const Eigen::Index d = generator.rows();
+  const MatrixXd kept = projection ? *projection : MatrixXd::Identity(d, d);
+  return std::all_of(isotropy.begin(), isotropy.end(), [&](const SymmetryElement& element) {
     if (element.reversing && !reversor) return false;
     MatrixXd power = element.reversing ? *reversor : MatrixXd::Identity(generator.rows(), generator.cols());
     for (int n = 0; n < order; ++n) {
       const double turns = element.shift() - static_cast<double>(n) / order;
-      if (std::abs(turns - std::round(turns)) < same && (power - element.map.matrix).norm() < same) return true;
+      if (std::abs(turns - std::round(turns)) < same && ((power - element.map.matrix) * kept).norm() < same)
+        return true;
       power = generator * power;
     }
     return false;
@@ -86,6 +89,14 @@ FundamentalDomain fundamental_domain(const systems::Structure& structure, const 
   domain.order = group.order();
   domain.generator = group.generator().matrix;
   if (const SymmetryElement* reversor = group.reversor_at_start()) domain.reversor = reversor->map.matrix;
+  MatrixXd sum = MatrixXd::Zero(domain.dimension(), domain.dimension());
+  int count = 0;
+  for (const SymmetryElement& element : group.elements())
+    if (!element.reversing && element.shift_numerator == 0) {
+      sum += element.map.matrix;
+      ++count;
+    }
+  if (count > 1) domain.projection = sum / count;
   return domain;
 }
 

@@ -14,6 +14,8 @@ struct FundamentalDomain {
   int order = 1;                            ///< p
   Eigen::MatrixXd generator;                ///< dimension x dimension
   std::optional<Eigen::MatrixXd> reversor;  ///< R of shift 0
+  /// Onto the states that all equivariances of shift 0 keep, in which such a loop lies; none where there are none.
+  std::optional<Eigen::MatrixXd> projection;
 
   [[nodiscard]] int dimension() const { return static_cast<int>(generator.rows()); }
   /// How many copies of the domain make the loop.
@@ -25,7 +27,8 @@ struct FundamentalDomain {
   };
   /// z(end) = generator z(0), or z(0) in Fix(R) and z(end) in Fix(generator R).
   [[nodiscard]] Ends ends() const;
-  /// True if every element of `isotropy` is a product of the generator and the reversor: the domain then has all of it.
+  /// True if every element of `isotropy` acts on the states that the projection keeps as a product of the generator and
+  /// the reversor: the domain then has all of it.
   [[nodiscard]] bool expresses(const Isotropy& isotropy) const;
   /// False for coordinates whose mean over the loop the symmetries make zero (relative to a point that they keep).
   [[nodiscard]] std::vector<bool> coordinates_with_mean() const;
