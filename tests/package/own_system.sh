@@ -33,6 +33,16 @@ done <"$document"
 orbweaver show out/atlas.h5 >shown.txt
 grep -q 'q1, q2, p1, p2' shown.txt || fail "the archive does not name the coordinates"
 
+orbweaver show out/atlas.h5 orbits --csv >orbits.csv
+# In the first family both masses swing alike, to rounding, however far it has been followed: extrapolation multiplies what is not.
+awk -F, 'NR == 1 {for (n = 1; n <= NF; ++n) at[$n] = n; next}
+  $at["family"] == "Equilibrium 1, mode 1" || $at["family"] == 0 {
+    apart = $at["state_q1"] - $at["state_q2"]; if (apart < 0) apart = -apart
+    if (apart > 1e-14 * (1 + $at["state_q1"])) exit 1
+    ++rows
+  }
+  END {exit rows < 20}' orbits.csv || fail "the masses do not swing alike: $(cut -d, -f1-6 orbits.csv | tail -3)"
+
 # expect_refusal TEXT COMMAND ...
 expect_refusal() {
   local text=$1 status=0
