@@ -13,16 +13,10 @@ set(ORBWEAVER_TEST_ENVIRONMENT
   "UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1"
   "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/cmake/lsan.supp")
 
-# Tests spend their time in the libraries: -O2 compiles them in a seventh less time than -O3. Not less than -O2, which contracts
-# products and sums as -O3 does: inline functions of tests and libraries are one.
-# With it g++ 12 takes moved strings for writes beyond their end (GCC 105329, 105651).
-set(ORBWEAVER_TEST_OPTIMISATION $<$<CONFIG:Release>:-O2> $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds> $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>)
-
 # As orbweaver_precompiled, with GoogleMock.
 if(ORBWEAVER_PRECOMPILED_HEADERS)
   add_library(orbweaver_test_precompiled OBJECT EXCLUDE_FROM_ALL "${PROJECT_BINARY_DIR}/precompiled.cpp")
   target_link_libraries(orbweaver_test_precompiled PRIVATE orbweaver_build_flags Eigen3::Eigen fmt::fmt GTest::gmock)
-  target_compile_options(orbweaver_test_precompiled PRIVATE ${ORBWEAVER_TEST_OPTIMISATION})
   target_precompile_headers(orbweaver_test_precompiled PRIVATE ${ORBWEAVER_COMMON_HEADERS} <gmock/gmock.h> <gtest/gtest.h>)
 endif()
 
@@ -45,7 +39,6 @@ function(orbweaver_test name)
     target_link_libraries(${target} PRIVATE Eigen3::Eigen fmt::fmt)
     target_precompile_headers(${target} REUSE_FROM orbweaver_test_precompiled)
   endif()
-  target_compile_options(${target} PRIVATE ${ORBWEAVER_TEST_OPTIMISATION})
   target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/tests")
   target_compile_definitions(${target} PRIVATE
     ORBWEAVER_SOURCE_DIR="${PROJECT_SOURCE_DIR}" ORBWEAVER_BINARY_DIR="${PROJECT_BINARY_DIR}")

@@ -93,8 +93,8 @@ void Collocation::precondition(double* r) const {
   keep_symmetries(r);
 }
 
-// The equations are the same across the projection's kernel as they are; where a family crosses one of less symmetry they
-// are singular there, and the rounding that a solve multiplies would leave the symmetry.
+// Where a family crosses one of less symmetry the equations are singular across the projection's kernel, and the
+// rounding that a solve multiplies there would leave the symmetry.
 void Collocation::keep_symmetries(double* v) const {
   if (!_projection) return;
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -389,12 +389,12 @@ double Collocation::distance(const double* a, const double* b) const {
   double square = 0.0;
   for (int i = 0; i < dimension(); ++i)
     for (int j = 0; j < m; ++j) square += _density[at(j)] * _z[at(i * m + j)] * _z[at(i * m + j)] / m;
-  double parameters = 0.0;
+  double apart = std::hypot(std::sqrt(square), (a[period_at()] - b[period_at()]) / b[period_at()]);
   for (std::size_t n = 0; n < _system.family_scalars().free.size(); ++n) {
     const int p = period_at() + 1 + static_cast<int>(n);
-    parameters = std::hypot(parameters, a[p] - b[p]);
+    apart = std::hypot(apart, a[p] - b[p]);
   }
-  return std::hypot(std::sqrt(square), (a[period_at()] - b[period_at()]) / b[period_at()], parameters);
+  return apart;
 }
 
 std::vector<double> Collocation::resampled(const Collocation& from, const std::vector<double>& u) const {

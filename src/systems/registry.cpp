@@ -33,6 +33,8 @@ class Drive;
 // One line a system and combination of its effects, the ideal one first; `class` declares what is defined in a file of
 // its own. Each combination is instantiated in the model's source or in combinations/.
 constexpr std::array built_in{
+    registry_line<Cr3bp<>>,
+    registry_line<Cr3bp<class Radiation, class Oblateness>>,
     registry_line<DoublePendulum<>>,
     registry_line<DoublePendulum<class RodInertia>>,
     registry_line<DoublePendulum<class TorsionSprings>>,
@@ -42,8 +44,6 @@ constexpr std::array built_in{
     registry_line<DoublePendulum<JointDamping, PivotDrive>>,
     registry_line<DoublePendulum<JointDamping, JointTorque>>,
     registry_line<DoublePendulum<RodInertia, TorsionSprings, JointDamping, PivotDrive, JointTorque>>,
-    registry_line<Cr3bp<>>,
-    registry_line<Cr3bp<class Radiation, class Oblateness>>,
     registry_line<Duffing<>>,
     registry_line<Duffing<Damping<1>>>,
     registry_line<Duffing<Drive<1>>>,
@@ -182,7 +182,7 @@ std::string type_with_effects(const std::string& name, const std::vector<std::st
   for (const Effect& effect : info.effects)
     if (std::find(effects.begin(), effects.end(), effect.name) != effects.end())
       in_order.push_back(types.at(effect.name));
-  return fmt::format("{}<{}>", model, joined(in_order));
+  return fmt::format("{}<{}>", model, fmt::join(in_order, ", "));
 }
 
 std::shared_ptr<const System> make_system(const std::string& name, const std::map<std::string, double>& parameters,

@@ -15,16 +15,16 @@ namespace orbweaver::systems {
 [[nodiscard]] Structure structure_of_ideal_restricted_problem(int space, const Bound& bound);
 
 /// The circular restricted three-body problem (Szebehely 1967, Theory of Orbits): a particle without mass in the field
-/// of two bodies on circles, in the frame that turns with them. Units: the distance of the bodies, the mass of both, and
-/// the time in which the frame turns by 1 rad. State x, y, vx, vy, or x, y, z, vx, vy, vz; bodies of masses 1 - mu at
-/// (-mu, 0, 0) and mu at (1 - mu, 0, 0), at distances r1 and r2;
+/// of two bodies on circles, in the frame that turns with them. Units: the distance of the bodies, the mass of both,
+/// and the time in which the frame turns by 1 rad. State x, y, vx, vy, or x, y, z, vx, vy, vz; bodies of masses
+/// 1 - mu at (-mu, 0, 0) and mu at (1 - mu, 0, 0), at distances r1 and r2;
 ///   H = (vx^2 + vy^2 + vz^2)/2 - (x^2 + y^2)/2 - (1 - mu)/r1 - mu/r2,   momenta vx - y, vy + x and vz.
 /// Jacobi's constant is -2 H (some authors add mu (1 - mu)).
 ///
 /// Terms of effects may have
 ///   void change_attraction(std::array<P, 2>& strengths) const;   // g of the attractions g/r^2
 ///   void change_turning(P& square) const;                        // n^2 of the frame, which is 1 without
-///   void set_quadrupoles(std::array<P, 2>& strengths) const;     // g of attractions g/r^4 in the plane; one effect only
+///   void set_quadrupoles(std::array<P, 2>& strengths) const;     // g of g/r^4 in the plane; one effect only
 template <int space, class... Effects>
 class RestrictedProblem {
  public:

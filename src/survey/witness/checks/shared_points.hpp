@@ -161,6 +161,10 @@ class SharedPoints final : public Check {
 
   static bool is_known(const Evidence& evidence, const std::map<int, std::vector<int>>& known, int family,
                        const Invariants& x) {
+    // A family that ends there says so, whether or not it was brought together with the crossing: the check of ends
+    // judges.
+    for (const EndEvidence& end : evidence.known.tree.ends)
+      if (end.met && evidence.row_of(end.family) == family && is_near(x, end.period, end.level)) return true;
     const std::vector<int>& places = known.at(family);
     return std::any_of(places.begin(), places.end(), [&](int row) {
       const TreeCrossing& place = evidence.crossing(row);
