@@ -67,6 +67,9 @@ bool falls_no_further(const loop::Loop& loop, double tail) {
 std::string CollocationProblem::obstacle(const FamilyOf& family, int largest_cutoff) {
   const loop::FundamentalDomain domain = loop::fundamental_domain(family.system.structure(), family.isotropy);
   if (!domain.expresses(family.isotropy)) return "one part of the loop, repeated, does not have all of their isotropy";
+  // Rounding cannot break such a symmetry, and the subspace of whole loops has no unknowns there.
+  if (domain.projection && domain.projection->isDiagonal())
+    return "a symmetry keeps coordinates at zero, which whole loops leave out";
   if (!domain.is_square()) return "the ends of their fundamental domain hold more or fewer conditions than coordinates";
   if (!Collocation::applies(family.system, domain, family.places))
     return "it takes a reversor, a conserved quantity, or a parameter that moves";
