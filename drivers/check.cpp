@@ -18,6 +18,8 @@
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/starts/natural_scales.hpp"
 #include "orbweaver/survey/run/expected_work.hpp"
+#include "orbweaver/survey/run/scaled_scene.hpp"
+#include "orbweaver/survey/tree/expected_starts.hpp"
 #include "orbweaver/systems/field_cost.hpp"
 #include "orbweaver/systems/identities.hpp"
 #include "orbweaver/systems/registry.hpp"
@@ -141,7 +143,10 @@ std::string sweep_text(const scene::Sweep& sweep) {
   return fmt::format("small oscillations {}; smallest eigenvalue {}", range, step);
 }
 
-void print_starts(const scene::Scene& scene, const systems::System& system) {
+std::string named(const std::string& name) { return name.empty() ? "" : ", " + name; }
+
+void print_starts(const scene::Scene& scene, const std::shared_ptr<const systems::System>& bound) {
+  const systems::System& system = *bound;
   const scene::FixedPoints& points = scene.fixed_points;
   std::size_t count = 1;
   std::vector<std::string> axes;
@@ -162,6 +167,23 @@ void print_starts(const scene::Scene& scene, const systems::System& system) {
                        fmt::format("at ({}): {}", fmt::join(texts, ", "), name_list(points, named.names)));
   }
   lines.emplace_back("sweep", sweep_text(scene.sweep));
+  for (const scene::StateStart& start : scene.states)
+    lines.emplace_back("state", fmt::format("T = {:g}{}", start.period, named(start.name)));
+  for (const scene::LoopStart& start : scene.loops)
+    lines.emplace_back("loop", fmt::format("{}, {} samples, T = {:g}{}", core::printable(start.file.path),
+                                           start.samples.times.size(), start.period, named(start.name)));
+  if (!scene.orbits.empty() || scene.recurrences) {
+    const survey::ScaledScene scaled(scene, bound);
+    const survey::ExpectedStarts expected = survey::expected_starts(scaled.scene(), *scaled.system());
+    for (std::size_t n = 0; n < expected.orbits.size(); ++n)
+      lines.emplace_back("orbit", core::printable(expected.orbits[n]) + named(scene.orbits[n].name));
+    if (scene.recurrences)
+      lines.emplace_back("recurrences",
+                         fmt::format("{} returns to {:g} within T = {:g}, each a guess to correct; at most {} orbits "
+                                     "are followed",
+                                     expected.near_returns, scene.recurrences->tolerance, scene.recurrences->time,
+                                     scene.recurrences->most));
+  }
   print_group("Starts", lines);
 }
 
@@ -322,7 +344,7 @@ int check(const SceneOptions& options, const Invocation& invocation) {
   fmt::print("{}: a valid scene, \"{}\"\n", core::printable(options.file.string()), scene.name);
   print_system(scene, system);
   print_simulated(scene, system, points);
-  print_starts(scene, system);
+  print_starts(scene, bound);
   print_continuation(scene, system);
   print_survey(scene);
   print_limits(scene, system.structure());

@@ -43,8 +43,9 @@ Command make_show_command(CLI::App& program) {
   auto options = std::make_shared<ShowOptions>();
   parser->add_option("atlas", options->atlas, "The atlas.h5 of a survey")->required();
   CLI::Option* table =
-      parser->add_option("table", options->table, "families, orbits, crossings or findings; none: a summary")
-          ->check(CLI::IsMember({"families", "orbits", "crossings", "loci", "findings"}));
+      parser->add_option("table", options->table,
+                         "families, orbits, crossings, loci, equilibria or findings; none: a summary")
+          ->check(CLI::IsMember({"families", "orbits", "crossings", "loci", "equilibria", "findings"}));
   CLI::Option* csv = parser->add_flag("--csv", options->csv, "The table as CSV, full precision")->needs(table);
   parser->add_flag("--json", options->json, "The table as JSON, full precision")->needs(table)->excludes(csv);
   add_plugin_option(*parser);

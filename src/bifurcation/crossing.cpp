@@ -44,20 +44,21 @@ class EventFunction {
   /// Why the function had no value where it was asked for last without one.
   [[nodiscard]] const std::optional<NotLocated>& without_value() const { return _without_value; }
 
-  std::optional<Crossing> at(double position, bool with_tangent = false) {
+  /// `whole`: with the tangent and the multipliers also where the function does not need them.
+  std::optional<Crossing> at(double position, bool whole = false) {
     const bool fold = _event.kind != Event::Kind::test_function;
-    std::optional<continuation::CurvePoint> point = _family.at(position, with_tangent || fold);
+    std::optional<continuation::CurvePoint> point = _family.at(position, whole || fold);
     if (!point) return without_value(NotLocated::Reason::no_orbit, position, period_before(position));
     Crossing out;
     out.point = std::move(*point);
-    try {
-      spectrum::FloquetOptions options;
-      options.team = _family.options().corrector.team;
-      out.stability = spectrum::floquet(_system, out.point.loop, _family.isotropy(), options);
-    } catch (const core::NumericalError& error) {
-      if (_event.kind == Event::Kind::test_function)
-        return without_value(NotLocated::Reason::no_multipliers, position, out.point.loop.period, error.what());
-    }
+    if (whole || !fold) try {
+        spectrum::FloquetOptions options;
+        options.team = _family.options().corrector.team;
+        out.stability = spectrum::floquet(_system, out.point.loop, _family.isotropy(), options);
+      } catch (const core::NumericalError& error) {
+        if (_event.kind == Event::Kind::test_function)
+          return without_value(NotLocated::Reason::no_multipliers, position, out.point.loop.period, error.what());
+      }
     if (_event.kind == Event::Kind::test_function)
       out.reading = evaluate(_event.function, _system.structure(), out.stability);
     else

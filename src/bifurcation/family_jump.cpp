@@ -42,6 +42,41 @@ constexpr double at_two = 1e-3;
 constexpr double narrowest = 1e-6;
 constexpr int most_orbits = 20;
 
+/// Lengths of pieces of a curve, in parts of what they have of the chord: those of a curve that turns from it by less
+/// than 60 degrees are below 2, and a piece across a gap has more the shorter it is.
+constexpr double torn = 4.0;
+/// How far from 2 an index may be on either side of a narrow gap: 0.006 and 0.002 were seen where steps led over one.
+constexpr double beside_gap = 0.1;
+/// The shortest piece that is looked at, in parts of the chord: gaps narrower than four of them are not seen.
+constexpr double shortest_piece = 1e-3;
+
+/// Whether the orbits between the ends of the step are one curve: halves again and again what is longest.
+bool is_one_curve(continuation::FamilyCurve& step) {
+  struct Piece {
+    double from;
+    double to;
+    loop::Loop before;
+    loop::Loop after;
+    double length;
+  };
+  const auto piece = [](double from, double to, loop::Loop before, loop::Loop after) {
+    const double length = continuation::arclength_between(before, after);
+    return Piece{from, to, std::move(before), std::move(after), length};
+  };
+  Piece longest = piece(0.0, 1.0, step.known().front().loop, step.known().back().loop);
+  const double chord = longest.length;
+  while (longest.to - longest.from > shortest_piece) {
+    const double middle = 0.5 * (longest.from + longest.to);
+    const std::optional<continuation::CurvePoint> point = step.at(middle);
+    if (!point) return false;
+    Piece first = piece(longest.from, middle, longest.before, point->loop);
+    Piece second = piece(middle, longest.to, point->loop, longest.after);
+    longest = first.length > second.length ? std::move(first) : std::move(second);
+    if (longest.length > torn * (longest.to - longest.from) * chord) return false;
+  }
+  return true;
+}
+
 /// Whether the curve between the orbits is there, and the index comes to 2 on it.
 bool has_index_two_between(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
                            const continuation::Options& options, const KnownStability& from, const KnownStability& to) {
@@ -65,7 +100,7 @@ bool has_index_two_between(const std::shared_ptr<const systems::System>& system,
     }
   };
   const auto root = numerics::locate_root(along, before, after, narrowest, most_orbits);
-  return root && root->value == 0.0;
+  return root && root->value == 0.0 && is_one_curve(step);
 }
 
 /// By which neighbours of an elliptic orbit go around, in the sense of its twist.
@@ -163,13 +198,24 @@ bool rotates_too_far(const spectrum::Stability& from, const spectrum::Stability&
   return std::abs(change) > most_rotation * turn;
 }
 
+bool are_turns_asked(const spectrum::Stability& from, const spectrum::Stability& to, double length,
+                     double smallest_jump) {
+  double largest = 4.0;
+  for (const spectrum::Stability* s : {&from, &to})
+    if (!s->fundamental.empty()) largest = std::max(largest, std::abs(s->fundamental[0]));
+  return 4.0 / largest * length >= smallest_jump;
+}
+
 bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
                 const continuation::Options& options, const KnownStability& from, const KnownStability& to) {
-  if (are_counted(from.stability, to.stability) && rotates_too_far(from.stability, to.stability)) return true;
+  const double length = continuation::arclength_between(from.orbit.loop, to.orbit.loop);
+  const bool has_turned = are_turns_asked(from.stability, to.stability, length, options.smallest_jump) &&
+                          rotates_too_far(from.stability, to.stability);
+  if (has_turned && are_counted(from.stability, to.stability)) return true;
   if (passes_one_unseen(from.stability, to.stability))
     return !passes_one_without_gap(system, isotropy, options, from, to);
-  if (loop::mean_distance(from.orbit.loop, to.orbit.loop) > rotating_steps * loop::rms_amplitude(to.orbit.loop) &&
-      rotates_too_far(from.stability, to.stability))
+  if (has_turned &&
+      loop::mean_distance(from.orbit.loop, to.orbit.loop) > rotating_steps * loop::rms_amplitude(to.orbit.loop))
     return true;
   const TestFunction two{TestFunction::Kind::sector, {1, 0}};
   const int before = evaluate(two, system->structure(), from.stability).sign();
@@ -185,7 +231,13 @@ bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop
   if (!start || !end) return true;
   for (const continuation::CurvePoint* point : {&*start, &*end})
     if (along_chord(*point, start->loop, end->loop) < options.least_cosine) return true;
-  return level_slope(*system, *start) * level_slope(*system, *end) > 0.0;
+  if (level_slope(*system, *start) * level_slope(*system, *end) > 0.0) return true;
+  // On either side of a narrow gap slopes are as they are at a fold, and indices near 2.
+  const auto distance_of = [&](const spectrum::Stability& s) {
+    return std::abs(evaluate(two, system->structure(), s).value);
+  };
+  return std::max(distance_of(from.stability), distance_of(to.stability)) < beside_gap &&
+         !has_index_two_between(system, isotropy, options, from, to);
 }
 
 }  // namespace orbweaver::bifurcation

@@ -195,6 +195,21 @@ bool may_lie_between(const Orbit& a, const Orbit& b, const Orbit& x, double wide
          between(a.action, b.action, x.action, widening * std::abs(x.action));
 }
 
+bool same_orbit(const systems::System& system, const loop::Loop& a, const loop::Loop& b, double tolerance) {
+  const auto once = [&](const loop::Loop& orbit) {
+    const int m = loop::repetitions(orbit, std::min(tolerance, repeated * loop::rms_amplitude(orbit)));
+    return m > 1 ? loop::without_repetition(orbit, m) : orbit;
+  };
+  if (a.parameters.size() != b.parameters.size()) return false;
+  const loop::Loop first = once(a);
+  const loop::Loop second = once(b);
+  const double allowed = tolerance * (1.0 + loop::rms_size(first));
+  for (std::size_t n = 0; n < a.parameters.size(); ++n)
+    if (!(std::abs(a.parameters[n] - b.parameters[n]) <= allowed)) return false;
+  if (!(std::abs(first.period / second.period - 1.0) <= allowed)) return false;
+  return distance_between(first, second, loop::align(system.structure(), first, second).distance) <= allowed;
+}
+
 Comparison same_family(const systems::System& system, const Orbit& a, const Orbit& b, const loop::Isotropy& isotropy,
                        const Orbit& x, const IdentityOptions& options) {
   Orbit primitive = x;

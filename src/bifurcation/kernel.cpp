@@ -130,6 +130,7 @@ Kernel kernel_with(int times, const systems::System& system, const continuation:
   const Split split = split_of(group, sector, multiplicity);
   spectrum::TripletOptions options;
   options.count = split.signs.size() > 1 && expected > 1 ? expected / 2 + 1 : expected + 1;
+  options.nearly_flat = options.count - 1;
   options.tolerance = of_vectors;
   options.inner_tolerance = of_solves;
   options.team = settings.team;

@@ -39,8 +39,13 @@ std::optional<loop::Loop> orbit_of_amplitude(const systems::System& system, loop
     Eigen::MatrixXd conditions(unknowns.size(), 2);
     conditions.col(0) = Eigen::Map<const Eigen::VectorXd>(along.data(), unknowns.size()).normalized();
     conditions.col(1) = Eigen::Map<const Eigen::VectorXd>(shift.data(), unknowns.size()).normalized();
-    corrector::Result result =
-        corrector::correct(system, guess, unknowns, loss::Slice(unknowns.size(), conditions), options.corrector);
+    const loss::Slice slice(unknowns.size(), conditions);
+    corrector::Result result = corrector::correct(system, guess, unknowns, slice, options.corrector);
+    if (result.outcome == corrector::Outcome::stalled) {  // what is left of a loop is a guess by second order only
+      corrector::Options careful = options.corrector;
+      careful.method = corrector::Method::brgn;
+      result = corrector::correct(system, guess, unknowns, slice, careful);
+    }
     if (result.converged()) return std::move(result.loop);
     const int larger = loop::next_cutoff(guess.cutoff);
     if (result.outcome != corrector::Outcome::under_resolved || larger > options.cutoff_to) return std::nullopt;
@@ -79,6 +84,7 @@ std::optional<CrossingFound> crossing_beneath(const std::shared_ptr<const system
     if (!before || !after) return std::nullopt;
     continuation::FamilyCurve curve(system, {}, options);
     curve.add(0.0, *before);
+    curve.add(0.5, *middle);
     curve.add(1.0, *after);
     NotLocated why;
     if (auto crossing = locate(*system, curve, event, 0.0, 1.0, why)) return CrossingFound{event, std::move(*crossing)};

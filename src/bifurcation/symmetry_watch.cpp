@@ -46,6 +46,11 @@ Eigen::MatrixXcd coefficients_of(const loop::Loop& loop) {
   return out;
 }
 
+/// Whether the loop goes around an orbit a number of times, the shift's denominator.
+bool is_repetition(const SymmetryGain& gain) {
+  return !gain.reversing && gain.shift_numerator == 1 && gain.name == "1";
+}
+
 double shift_of(const SymmetryGain& gain) { return static_cast<double>(gain.shift_numerator) / gain.shift_denominator; }
 
 // Broken means modulo the lattice of angles: A's within a half turn of 0, B's within a half turn of A's.
@@ -129,13 +134,20 @@ SymmetryWatch::SampledOrbit SymmetryWatch::sampled(const loop::Loop& loop) {
   return sampled_with(loop, loop.time_map.is_identity() ? loop : loop::interpolant(loop::time_samples(loop)));
 }
 
-// The coefficients of M^-1 z(t + T shift) - z(t), or of M^-1 z(-t - T shift) - z(t) for a reversor.
+// The coefficients of M^-1 z(t + T shift) - z(t), or of M^-1 z(-t - T shift) - z(t) for a reversor. Of a repetition,
+// all of them that are not repeated, with one weight: a short shift changes slow harmonics little.
 Eigen::MatrixXcd SymmetryWatch::broken_part(const SymmetryGain& gain, const systems::AffineMap& inverse,
                                             const SampledOrbit& orbit, double shift) const {
   const Eigen::MatrixXcd& z = orbit.coefficients;
   Eigen::MatrixXcd image = gain.reversing ? Eigen::MatrixXcd(z.conjugate()) : z;
   const Eigen::Map<const Eigen::VectorXd> winding(orbit.loop.winding.data(), orbit.loop.dimension);
   image.col(0) += (gain.reversing ? -1.0 : 1.0) * two_pi * shift * winding.cast<std::complex<double>>();
+  if (is_repetition(gain)) {
+    Eigen::MatrixXcd broken = -z;
+    broken.col(0) += image.col(0);
+    for (Eigen::Index k = gain.shift_denominator; k < z.cols(); k += gain.shift_denominator) broken.col(k).setZero();
+    return broken;
+  }
   const std::complex<double> step = std::polar(1.0, two_pi * shift);
   std::complex<double> wave = 1.0;
   for (Eigen::Index k = 1; k < image.cols(); ++k) image.col(k) *= wave *= step;
@@ -205,16 +217,19 @@ class SymmetryWatch::Correlation {
         _a(a),
         _b(b),
         _angles(angles),
-        _sums(std::min(a.coefficients.cols(), b.coefficients.cols())) {
+        _sums(std::min(a.coefficients.cols(), b.coefficients.cols())),
+        _plain(_sums.size()) {
     const Eigen::MatrixXcd image_a = inverse.matrix * a.coefficients;
     const Eigen::MatrixXcd image_b = inverse.matrix * b.coefficients;
     for (Eigen::Index k = 1; k < _sums.size(); ++k) {
+      _plain(k) = b.coefficients.col(k).dot(a.coefficients.col(k)).real();
       _unshifted += image_b.col(k).dot(image_a.col(k)).real() + b.coefficients.col(k).dot(a.coefficients.col(k)).real();
       _sums(k) = b.coefficients.col(k).dot(image_a.col(k)) + a.coefficients.col(k).dot(image_b.col(k));
     }
   }
 
-  [[nodiscard]] double at(double shift) const {
+  [[nodiscard]] double of(const SymmetryGain& gain) const {
+    const double shift = shift_of(gain);
     const Eigen::VectorXd winding = Eigen::Map<const Eigen::VectorXd>(_a.loop.winding.data(), _a.loop.dimension);
     const Eigen::VectorXd turn = two_pi * shift * winding;
     const Eigen::VectorXd mean_a = _a.coefficients.col(0).real();
@@ -222,6 +237,12 @@ class SymmetryWatch::Correlation {
     Eigen::VectorXd broken_a = _inverse(mean_a + turn) - mean_a;
     Eigen::VectorXd broken_b = _inverse(mean_b + turn) - mean_b;
     reduce(_angles, broken_a, broken_b);
+    if (is_repetition(gain)) {
+      double mixed = broken_a.dot(broken_b);
+      for (Eigen::Index k = 1; k < _plain.size(); ++k)
+        if (k % gain.shift_denominator != 0) mixed += _plain(k);
+      return mixed;
+    }
     double mixed = _unshifted + broken_a.dot(broken_b);
     const std::complex<double> step = std::polar(1.0, two_pi * shift);
     std::complex<double> wave = 1.0;
@@ -239,6 +260,7 @@ class SymmetryWatch::Correlation {
   const std::vector<int>& _angles;
   double _unshifted = 0.0;
   Eigen::VectorXcd _sums;
+  Eigen::VectorXd _plain;  // of the loops themselves, for repetitions
 };
 
 // Elements of the group that `gain` and the own isotropy generate; a reversor doubles it, whatever its phase.
@@ -259,7 +281,7 @@ std::vector<SymmetryGain> SymmetryWatch::nearly_gained(const SampledOrbit& from,
     const systems::AffineMap inverse = symmetry.map.inverse();
     const Correlation correlation(inverse, to, to, _system.angles);
     for (const SymmetryGain& candidate : candidates) {
-      if (!(correlation.at(shift_of(candidate)) < small * small)) continue;
+      if (!(correlation.of(candidate) < small * small)) continue;
       SymmetryGain seen = candidate;
       const Products products = compare_resolved(seen, orbits);
       if (products.mixed > 0.0 && products.second < std::min(products.first, small * small))
@@ -287,7 +309,7 @@ std::vector<SymmetryGain> SymmetryWatch::all_passed(const SampledOrbit& from, co
     const systems::AffineMap inverse = symmetry.map.inverse();
     const Correlation correlation(inverse, from, to, _system.angles);
     for (const SymmetryGain& candidate : candidates)
-      if (correlation.at(shift_of(candidate)) <= at_most) consider(candidate);
+      if (correlation.of(candidate) <= at_most) consider(candidate);
   }
   for (const systems::Symmetry& r : _reversors) {
     if (!keeps_winding(r.map.matrix, -1.0, from.loop)) continue;

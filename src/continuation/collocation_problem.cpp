@@ -41,6 +41,9 @@ constexpr double left_to_truncation = 0.3;
 /// so dense: a passage at the distance r takes r^(3/2) of time (docs/performance.md).
 constexpr int guarded_map_cells = 96;
 constexpr double guarded_density = 1e-6;
+/// Where time scales may be far apart, as beside slow manifolds of what conserves nothing. Van der Pol's orbits need
+/// three times the harmonics at mu = 5 without, and 16 times at mu = 75 (docs/mathematics.md, "Time map").
+constexpr int dissipative_map_cells = 192;
 /// The residual between the places where the equations ask, in parts of that at them, from which on it is truncation's,
 /// and not the solver's or rounding's, which are alike at both. Truncation was seen at 900.
 constexpr double shows_truncation = 10.0;
@@ -67,9 +70,6 @@ bool falls_no_further(const loop::Loop& loop, double tail) {
 std::string CollocationProblem::obstacle(const FamilyOf& family, int largest_cutoff) {
   const loop::FundamentalDomain domain = loop::fundamental_domain(family.system.structure(), family.isotropy);
   if (!domain.expresses(family.isotropy)) return "one part of the loop, repeated, does not have all of their isotropy";
-  // Rounding cannot break such a symmetry, and the subspace of whole loops has no unknowns there.
-  if (domain.projection && domain.projection->isDiagonal())
-    return "a symmetry keeps coordinates at zero, which whole loops leave out";
   if (!domain.is_square()) return "the ends of their fundamental domain hold more or fewer conditions than coordinates";
   if (!Collocation::applies(family.system, domain, family.places))
     return "it takes a reversor, a conserved quantity, or a parameter that moves";
@@ -459,8 +459,10 @@ std::optional<Resolution> CollocationProblem::remapped(const Trial& of, const st
   const double allowed = left_to_truncation * of.threshold * period / (2.0 * std::numbers::pi * e.grid().cutoff());
   const double rounding = mode_rounding * of.size;
   const bool guarded = !_system.structure().guards.empty();
-  if (e.cells() < (guarded ? std::min(_options.general_map_cells, guarded_map_cells) : _options.general_map_cells))
-    return std::nullopt;
+  int from_cells = _options.general_map_cells;
+  if (guarded) from_cells = std::min(from_cells, guarded_map_cells);
+  if (_system.structure().dissipative) from_cells = std::min(from_cells, dissipative_map_cells);
+  if (e.cells() < from_cells) return std::nullopt;
   return general_resolution(e, settled, _isotropy,
                             std::max(std::min(tail_limit(of.amplitude, of.size, _options), allowed), rounding),
                             _options.cutoff_from, guarded ? guarded_density : loop::least_density);

@@ -226,8 +226,22 @@ Eigen::MatrixXd LoopProblem::columns(const std::vector<double>& conditions) {
   return out;
 }
 
+/// Without what rounding has left beside the isotropy: extrapolations would multiply it, and no correction sees it.
+loop::Loop LoopProblem::with_symmetries(const loop::Loop& loop) {
+  const loop::Subspace& subspace = unknowns().subspace;
+  const loop::Loop base = loop::with_cutoff(_base, loop.cutoff);
+  std::vector<double> change(loop.modes.size());
+  for (std::size_t n = 0; n < change.size(); ++n) change[n] = loop.modes[n] - base.modes[n];
+  std::vector<double> coordinates(static_cast<std::size_t>(subspace.size()));
+  subspace.project(change, coordinates);
+  loop::Loop out = loop;
+  out.modes = base.modes;
+  subspace.add_to(coordinates, out.modes);
+  return out;
+}
+
 Trial LoopProblem::solve(Prediction prediction, const std::vector<double>& conditions) {
-  const loop::Loop guess = to_loop(prediction.values);
+  const loop::Loop guess = with_symmetries(to_loop(prediction.values));
   corrector::Result result = corrector::correct(
       _system, guess, unknowns(), loss::Slice(unknowns().size(), columns(conditions)), _options.corrector);
   Trial trial;

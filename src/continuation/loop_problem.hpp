@@ -52,6 +52,7 @@ class LoopProblem final : public PointProblem {
   /// The condition of what the family holds, as a row; empty where it holds nothing.
   [[nodiscard]] std::vector<double> held_condition(const Prediction& prediction);
   /// The unit time shift of a point that the symmetries leave free; empty where there is none.
+  [[nodiscard]] loop::Loop with_symmetries(const loop::Loop& loop);
   [[nodiscard]] std::vector<double> time_shift(const std::vector<double>& values);
 
   const systems::System& _system;

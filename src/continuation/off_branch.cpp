@@ -128,6 +128,7 @@ std::vector<OffBranchTriplet> sector_triplets(const systems::System& system, con
   if (slice.free() == 0) return {};
   spectrum::TripletOptions here = options;
   here.count = std::min(options.count, slice.free());
+  here.nearly_flat = std::min(options.nearly_flat, here.count - 1);
   const spectrum::SingularTriplets found = spectrum::smallest_singular_triplets(system, loop, unknowns, slice, here);
   std::vector<OffBranchTriplet> all;
   for (std::size_t n = 0; n < found.values.size(); ++n) {

@@ -15,6 +15,8 @@ namespace {
 /// present map, the more are not tried: on the earth-moon families and the pendulum's, of 375 times, they then needed
 /// less in 6, by 3 to 9 %, which does not pay.
 constexpr int density_harmonics[] = {16, 32};
+/// Harmonics of the density's logarithm to try for orbits that may have time scales far apart.
+constexpr int scale_harmonics[] = {16, 32, 64};
 /// Rates far from all guards to try, in parts of 2 pi/T. Larger ones spend harmonics where the orbit is slow.
 constexpr double base_rates[] = {0.03, 0.3, 1.0};
 /// A new general map is to need at most this share of the harmonics: less would not repay the regrid.
@@ -64,6 +66,11 @@ std::optional<Resolution> general_resolution(const equations::Collocation& equat
     for (const double base : base_rates) {
       loop::TimeMapFit fit =
           loop::fit_to_rate(loop, guard_rate(equations.system(), loop.period, base), isotropy, tolerance);
+      if (fit.harmonics < best.harmonics) best = std::move(fit);
+    }
+  if (equations.system().structure().dissipative)  // slow manifolds
+    for (const int most : scale_harmonics) {
+      loop::TimeMapFit fit = loop::fit_scales(loop, isotropy, tolerance, most);
       if (fit.harmonics < best.harmonics) best = std::move(fit);
     }
   if (best.map == loop.time_map || best.harmonics > general_pays * own || !loop::is_invariant(best.map, isotropy))

@@ -409,10 +409,12 @@ std::vector<double> Collocation::resampled(const Collocation& from, const std::v
     // z at this grid's nodes, which the other map has elsewhere: harmonics by rotation, node by node.
     std::vector<double> turn_cos(at(count)), turn_sin(at(count)), c(at(count), 1.0), s(at(count), 0.0);
     std::vector<double> z(at(d * _grid.stride()), 0.0);
+    std::vector<double> here(at(count));
+    for (int j = 0; j < count; ++j) here[at(j)] = j * _grid.spacing();
+    const std::vector<double> there = from._map.parameters_at(_map, here);
     for (int j = 0; j < count; ++j) {
-      const double there = from._map.parameter_at(_map, j * _grid.spacing());
-      turn_cos[at(j)] = std::cos(there);
-      turn_sin[at(j)] = std::sin(there);
+      turn_cos[at(j)] = std::cos(there[at(j)]);
+      turn_sin[at(j)] = std::sin(there[at(j)]);
     }
     for (int k = 0; k <= from._grid.cutoff(); ++k) {
       for (int i = 0; i < d; ++i) {
@@ -431,10 +433,7 @@ std::vector<double> Collocation::resampled(const Collocation& from, const std::v
     // Where angles turn over, n s changes with the map as well.
     for (int i = 0; i < d; ++i)
       if (_winding[at(i)] != 0.0)
-        for (int j = 0; j < count; ++j) {
-          const double here = j * _grid.spacing();
-          z[at(i * _grid.stride() + j)] += _winding[at(i)] * (from._map.parameter_at(_map, here) - here);
-        }
+        for (int j = 0; j < count; ++j) z[at(i * _grid.stride() + j)] += _winding[at(i)] * (there[at(j)] - here[at(j)]);
     _grid.from_nodal(z.data(), out.data());
   }
   for (int q = 0; q < borders(); ++q) out[at(period_at() + q)] = u[at(from.period_at() + q)];

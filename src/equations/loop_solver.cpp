@@ -20,10 +20,29 @@ constexpr double zero = 1e-300;
 
 struct Context {
   const LoopEquations* equations = nullptr;
+  LoopSolver::Outer raised{};
   core::CallbackGuard guard{};
 };
 
-using Product = void (LoopEquations::*)(const LoopEquations::In&, LoopEquations::Out) const;
+using Product = void (*)(const Context&, const LoopEquations::In&, LoopEquations::Out);
+
+void apply_raised(const Context& context, const LoopEquations::In& x, LoopEquations::Out out) {
+  context.equations->apply(x, out);
+  if (context.raised.columns.size() > 0) out += context.raised.columns * (context.raised.rows.transpose() * x);
+}
+
+void apply_raised_transposed(const Context& context, const LoopEquations::In& y, LoopEquations::Out out) {
+  context.equations->apply_transposed(y, out);
+  if (context.raised.columns.size() > 0) out += context.raised.rows * (context.raised.columns.transpose() * y);
+}
+
+void precondition(const Context& context, const LoopEquations::In& r, LoopEquations::Out out) {
+  context.equations->precondition(r, out);
+}
+
+void precondition_transposed(const Context& context, const LoopEquations::In& u, LoopEquations::Out out) {
+  context.equations->precondition_transposed(u, out);
+}
 
 PetscErrorCode apply(Context& context, Product product, Vec x, Vec y) {
   PetscInt rows = 0;
@@ -32,8 +51,8 @@ PetscErrorCode apply(Context& context, Product product, Vec x, Vec y) {
   PetscCall(VecGetLocalSize(x, &rows));
   PetscCall(VecGetArrayRead(x, &in));
   PetscCall(VecGetArrayWrite(y, &out));
-  const PetscErrorCode code = context.guard.run(
-      [&] { (context.equations->*product)(loss::ConstVectorMap(in, rows), loss::VectorMap(out, rows)); });
+  const PetscErrorCode code =
+      context.guard.run([&] { product(context, loss::ConstVectorMap(in, rows), loss::VectorMap(out, rows)); });
   PetscCall(VecRestoreArrayWrite(y, &out));
   PetscCall(VecRestoreArrayRead(x, &in));
   return code;
@@ -47,7 +66,7 @@ PetscErrorCode multiply(Mat matrix, Vec x, Vec y) {
 }
 
 template <Product product>
-PetscErrorCode precondition(PC pc, Vec x, Vec y) {
+PetscErrorCode run_preconditioner(PC pc, Vec x, Vec y) {
   void* context = nullptr;
   PetscCall(PCShellGetContext(pc, &context));
   return apply(*static_cast<Context*>(context), product, x, y);
@@ -71,8 +90,8 @@ LoopSolver::LoopSolver(int size, const char* options_prefix) : _krylov(std::make
     core::check(MatShellSetOperation(k.matrix.get(), operation, reinterpret_cast<void (*)()>(function)),
                 "MatShellSetOperation");
   };
-  set(MATOP_MULT, multiply<&LoopEquations::apply>);
-  set(MATOP_MULT_TRANSPOSE, multiply<&LoopEquations::apply_transposed>);
+  set(MATOP_MULT, multiply<apply_raised>);
+  set(MATOP_MULT_TRANSPOSE, multiply<apply_raised_transposed>);
   core::check(KSPCreate(PETSC_COMM_SELF, k.ksp.put()), "KSPCreate");
   core::check(KSPSetOptionsPrefix(k.ksp.get(), options_prefix), "KSPSetOptionsPrefix");
   core::check(KSPSetOperators(k.ksp.get(), k.matrix.get(), k.matrix.get()), "KSPSetOperators");
@@ -83,13 +102,14 @@ LoopSolver::LoopSolver(int size, const char* options_prefix) : _krylov(std::make
   core::check(KSPGetPC(k.ksp.get(), &pc), "KSPGetPC");
   core::check(PCSetType(pc, PCSHELL), "PCSetType");
   core::check(PCShellSetContext(pc, &k.context), "PCShellSetContext");
-  core::check(PCShellSetApply(pc, precondition<&LoopEquations::precondition>), "PCShellSetApply");
-  core::check(PCShellSetApplyTranspose(pc, precondition<&LoopEquations::precondition_transposed>),
-              "PCShellSetApplyTranspose");
+  core::check(PCShellSetApply(pc, run_preconditioner<precondition>), "PCShellSetApply");
+  core::check(PCShellSetApplyTranspose(pc, run_preconditioner<precondition_transposed>), "PCShellSetApplyTranspose");
   core::check(KSPSetFromOptions(k.ksp.get()), "KSPSetFromOptions");
 }
 
 LoopSolver::~LoopSolver() = default;
+
+void LoopSolver::raise(Outer outer) { _krylov->context.raised = std::move(outer); }
 
 Eigen::VectorXd LoopSolver::run(const LoopEquations& equations, const Eigen::VectorXd& right_side, Accuracy accuracy,
                                 bool transposed) {

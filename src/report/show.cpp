@@ -1,9 +1,12 @@
 #include "orbweaver/report/show.hpp"
 
+#include <set>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "show_crossings.hpp"
+#include "show_equilibria.hpp"
 #include "show_families.hpp"
 #include "show_findings.hpp"
 #include "show_level.hpp"
@@ -18,9 +21,10 @@ const archive::Table& shown_table(const archive::Archive& atlas, const std::stri
   if (name == "orbits") return atlas.orbits();
   if (name == "crossings") return atlas.crossings();
   if (name == "loci") return atlas.loci();
+  if (name == "equilibria") return atlas.equilibria();
   if (name == "findings") return atlas.findings();
-  throw core::InputError(
-      fmt::format("cannot show '{}': the tables of an atlas are families, orbits, crossings, loci and findings", name));
+  throw core::InputError(fmt::format(
+      "cannot show '{}': the tables of an atlas are families, orbits, crossings, loci, equilibria and findings", name));
 }
 
 void print_summary(std::ostream& out, const archive::Archive& atlas) {
@@ -38,6 +42,9 @@ void print_summary(std::ostream& out, const archive::Archive& atlas) {
   out << fmt::format("sections     {}\n", atlas.sections().rows());
   if (const auto& loci = atlas.loci().integers("locus"); !loci.empty())
     out << fmt::format("loci         {}, of {} points\n", loci.back() + 1, loci.size());
+  if (const auto& equilibria = atlas.equilibria().integers("equilibrium"); !equilibria.empty())
+    out << fmt::format("equilibria   {}, with {} points of their curves\n",
+                       std::set(equilibria.begin(), equilibria.end()).size(), equilibria.size());
   out << fmt::format("findings     {}\n", atlas.findings().rows());
   if (const std::string verdicts = verdicts_text(atlas, 0, atlas.orbits().rows()); !verdicts.empty())
     out << fmt::format("certificates {}\n", verdicts);
@@ -62,6 +69,8 @@ void print_table(std::ostream& out, const archive::Archive& atlas, const std::st
     print_crossings(out, atlas);
   else if (name == "loci")
     print_loci(out, atlas);
+  else if (name == "equilibria")
+    print_equilibria(out, atlas);
   else if (name == "findings")
     print_findings(out, atlas);
   else

@@ -34,9 +34,10 @@ std::string to_text(const survey::Verification& verification, const std::filesys
         "and multipliers were compared\n",
         verification.uninformative);
   text += fmt::format(
-      "{}: {} families, {} orbits, {} crossings, {} section points{}: {}; {:.2f} s on {} rank{}\n", atlas.string(),
+      "{}: {} families, {} orbits, {} crossings, {} section points{}{}: {}; {:.2f} s on {} rank{}\n", atlas.string(),
       verification.families, verification.orbits, verification.crossings, verification.sections,
       verification.loci > 0 ? fmt::format(", {} points of loci", verification.loci) : "",
+      verification.equilibria > 0 ? fmt::format(", {} equilibria", verification.equilibria) : "",
       verification.holds() ? "all hold" : fmt::format("{} claims do not hold", verification.objections.size()),
       verification.seconds, verification.ranks, verification.ranks == 1 ? "" : "s");
   return text;

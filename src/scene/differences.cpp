@@ -69,6 +69,9 @@ std::string list_text(const Items& items, const Text& text) {
 
 std::string range_text(double from, double to) { return list_text(std::array{from, to}, text_of); }
 
+/// What it holds, where that is known: it may have been moved.
+std::string file_text(const StartFile& file) { return file.hash.empty() ? file.path : file.hash; }
+
 // All keys of a scene with their values, the ones it does not give included.
 class Values {
  public:
@@ -158,6 +161,22 @@ class Values {
           return fmt::format("{{state: {}, period: {}, name: {}}}", point_text(start.state), text_of(start.period),
                              start.name);
         }));
+    add("starts.orbits", list_text(scene.orbits, [](const OrbitStart& start) {
+          return fmt::format("{{archive: {}, family: {}, near: {{{}: {}}}, name: {}}}", file_text(start.archive),
+                             start.family, name_of(start.near), text_of(start.value), start.name);
+        }));
+    add("starts.loops", list_text(scene.loops, [](const LoopStart& start) {
+          return fmt::format("{{file: {}, period: {}, name: {}}}", file_text(start.file), text_of(start.period),
+                             start.name);
+        }));
+    const auto add_of_returns = [&](const char* key, const auto& text) {
+      add(fmt::format("starts.recurrences.{}", key), scene.recurrences ? text(*scene.recurrences) : "");
+    };
+    add_of_returns("state", [&](const Recurrences& given) { return point_text(given.state); });
+    add_of_returns("time", [](const Recurrences& given) { return text_of(given.time); });
+    add_of_returns("period", [](const Recurrences& given) { return range_text(given.period_from, given.period_to); });
+    add_of_returns("tolerance", [](const Recurrences& given) { return text_of(given.tolerance); });
+    add_of_returns("most", [](const Recurrences& given) { return fmt::format("{}", given.most); });
   }
 
   void add_moving(const systems::FamilyScalars& moving) {
@@ -185,8 +204,7 @@ class Values {
   void add_limits(const Limits& limits) {
     add_limit("limits.period", LimitKey::period, limits.period);
     add_limits("limits.energy", LimitKey::energy, limits.energy_from, limits.energy_to);
-    // No limit to widen: equilibria are followed within it, and with them their Hopf points.
-    add_range("limits.parameter", limits.parameter_from, limits.parameter_to);
+    add_limits("limits.parameter", LimitKey::parameter, limits.parameter_from, limits.parameter_to);
     for (const std::string& name : _system->structure().guard_names()) add_guard(name, limits.guards);
     add_limit("limits.families", LimitKey::families, limits.families);
     add_limit("limits.steps", LimitKey::steps, limits.steps);

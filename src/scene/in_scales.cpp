@@ -44,9 +44,22 @@ Scene in_scales(Scene scene, const systems::System& system, const systems::Scale
   scene.limits.period /= scales.time;
   scene.limits.parameter_from /= scales.parameter(0);
   scene.limits.parameter_to /= scales.parameter(0);
+  const auto to_scales = [&](std::vector<double>& state) {
+    for (std::size_t i = 0; i < state.size(); ++i) state[i] /= scales.coordinate(i);
+  };
   for (StateStart& start : scene.states) {
-    for (std::size_t i = 0; i < start.state.size(); ++i) start.state[i] /= scales.coordinate(i);
+    to_scales(start.state);
     start.period /= scales.time;
+  }
+  for (LoopStart& start : scene.loops) {
+    for (std::vector<double>& state : start.samples.states) to_scales(state);
+    for (double& time : start.samples.times) time /= scales.time;
+    start.period /= scales.time;
+  }
+  if (scene.recurrences) {
+    to_scales(scene.recurrences->state);
+    for (double* time : {&scene.recurrences->time, &scene.recurrences->period_from, &scene.recurrences->period_to})
+      *time /= scales.time;
   }
   scene.limits.energy_from /= scales.energy();
   scene.limits.energy_to /= scales.energy();

@@ -7,13 +7,13 @@
 #include <fmt/format.h>
 
 #include "document.hpp"
-#include "fixed_points.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/model/plugin_table.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "overrides.hpp"
 #include "reader.hpp"
 #include "sections.hpp"
+#include "starts_section.hpp"
 #include "system_section.hpp"
 
 namespace orbweaver::scene {
@@ -28,13 +28,6 @@ Field require_key(const Keys& keys, const Field& root, const std::string& key, s
   root.fail(fmt::format("the key `{}`", key), "a scene without it", fmt::format("add for example `{}`", example));
 }
 
-void read_starts(const Field& field, const systems::System& system, Scene& scene) {
-  const Keys keys(field, {"fixed_points", "sweep", "states"}, "starts: {fixed_points: {grid: [[0, 180], [0, 180]]}}");
-  if (const auto points = keys.find("fixed_points")) read_fixed_points(*points, system, scene.fixed_points);
-  if (const auto sweep = keys.find("sweep")) read_sweep(*sweep, scene.sweep);
-  if (const auto states = keys.find("states")) read_states(*states, system, scene.states);
-}
-
 Scene read_scene(const Field& root, const std::optional<std::filesystem::path>& folder) {
   const Keys keys(root,
                   {"name", "system", "starts", "continuation", "survey", "compute", "limits", "events", "section",
@@ -47,7 +40,8 @@ Scene read_scene(const Field& root, const std::optional<std::filesystem::path>& 
   const systems::System& system = *bound;
   scene.name = scene.system.name;
   if (const auto name = keys.find("name")) scene.name = name->text("double-pendulum");
-  read_starts(require_key(keys, root, "starts", "starts: {fixed_points: {grid: [[0, 180], [0, 180]]}}"), system, scene);
+  read_starts(require_key(keys, root, "starts", "starts: {fixed_points: {grid: [[0, 180], [0, 180]]}}"), system, folder,
+              scene);
   if (const auto field = keys.find("continuation")) read_continuation(*field, system, scene.continuation);
   if (const auto field = keys.find("survey")) read_survey(*field, scene.survey);
   if (const auto field = keys.find("compute")) read_compute(*field, scene.compute);
@@ -116,7 +110,8 @@ Scene parse_in(const std::optional<std::filesystem::path>& folder, const std::st
     root["system"]["plugin_source"] = scene.system.plugin_source;
     root["system"]["plugin_abi"] = systems::plugin_abi;
   }
-  scene.text = is_plain ? text : emit(root);
+  const bool has_hashes = keep_hashes(scene, root);
+  scene.text = is_plain && has_hashes ? text : emit(root);
   require_scene_size(scene.text.size(), place);
   return scene;
 }

@@ -84,30 +84,6 @@ void read_family_scalars(const std::optional<Field>& field, SystemChoice& choice
     choice.moving.hold = hold && hold->choice({"energy", "period"}) == "period" ? Hold::period : Hold::energy;
 }
 
-void read_states(const Field& field, const systems::System& system, std::vector<StateStart>& states) {
-  constexpr std::string_view example = "[{state: [0.1, 0], period: 6.3, name: Eight}]";
-  const auto d = static_cast<std::size_t>(system.dimension());
-  for (const Field& entry : field.list(example)) {
-    const Keys keys(entry, {"state", "period", "name"}, example);
-    StateStart start;
-    const auto state = keys.find("state");
-    const auto period = keys.find("period");
-    if (!state || !period) entry.fail("a `state` and a `period`", entry.got(), fmt::format("for example {}", example));
-    const std::vector<Field> numbers = state->list("[0.1, 0]");
-    if (numbers.size() != d)
-      state->fail(fmt::format("{} numbers, for {}", d, fmt::join(system.info().state_names, ", ")), state->got(),
-                  "give every coordinate at t = 0");
-    for (std::size_t i = 0; i < d; ++i) {
-      const double value = numbers[i].number({.example = "0.1"});
-      start.state.push_back(system.structure().is_angle(i) ? radians(value) : value);
-    }
-    start.period = period->number({.lower = 0, .lower_open = true, .example = "6.3"});
-    start.name = fmt::format("State {}", states.size() + 1);
-    if (const auto name = keys.find("name")) start.name = name->text("Eight");
-    states.push_back(std::move(start));
-  }
-}
-
 void read_survey(const Field& field, Survey& survey) {
   const Keys keys(field, {"depth", "subharmonics", "spectrum", "team_size"}, "survey: {depth: 2, subharmonics: 4}");
   if (const auto depth = keys.find("depth")) survey.depth = depth->integer({.lower = 0, .upper = 16, .example = "2"});

@@ -15,7 +15,6 @@ void read_sweep(const Field& field, Sweep& sweep);
 void read_continuation(const Field& field, const systems::System& system, Continuation& continuation);
 /// What moves along families, from the same section, absent or not.
 void read_family_scalars(const std::optional<Field>& field, SystemChoice& choice);
-void read_states(const Field& field, const systems::System& system, std::vector<StateStart>& states);
 void read_survey(const Field& field, Survey& survey);
 void read_compute(const Field& field, Compute& compute);
 void read_limits(const Field& field, const systems::System& system, Limits& limits);

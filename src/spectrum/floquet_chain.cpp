@@ -50,12 +50,11 @@ Chain nodes_of(const systems::System& system, const loop::Loop& loop, const Fund
   chain.steps = Eigen::VectorXd::Constant(segments, loop.period / around);
   if (!loop.time_map.is_identity()) {
     const double rate = loop.period / (2 * std::numbers::pi);
-    double before = loop.time_map.phase(0.0);
-    for (Eigen::Index m = 0; m < segments; ++m) {
-      const double after = loop.time_map.phase(2 * std::numbers::pi * static_cast<double>(m + 1) / around);
-      chain.steps[m] = rate * (after - before);
-      before = after;
-    }
+    std::vector<double> s;
+    for (int m = 0; m <= segments; ++m) s.push_back(2 * std::numbers::pi * static_cast<double>(m) / around);
+    const std::vector<double> phases = loop.time_map.phases(s);
+    for (int m = 0; m < segments; ++m)
+      chain.steps[m] = rate * (phases[static_cast<std::size_t>(m) + 1] - phases[static_cast<std::size_t>(m)]);
   }
   chain.states.resize(d, segments + 1);
   for (Eigen::Index j = 0; j < chain.states.cols(); ++j)

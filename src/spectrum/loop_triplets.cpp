@@ -90,13 +90,11 @@ core::Handle<Mat> shell_of(Inverse& inverse) {
 }
 
 // Smooth, as the vectors that are sought, without symmetry, and in the slice.
-core::Handle<Vec> smooth_start(const equations::LoopEquations& equations) {
+Eigen::VectorXd smooth_start(const equations::LoopEquations& equations, int number = 0) {
   const loss::Unknowns& unknowns = equations.unknowns();
-  core::Handle<Vec> start = start_vector(unknowns.size());
-  Eigen::VectorXd values = loss::to_eigen(start.get());
+  Eigen::VectorXd values = loss::to_eigen(start_vector(unknowns.size(), number).get());
   for (int n = 0; n < unknowns.subspace.size(); ++n) values(n) /= std::pow(1.0 + unknowns.subspace.harmonic(n), 2);
-  loss::assign(start.get(), equations.slice().expand(equations.slice().reduce(values)));
-  return start;
+  return equations.slice().expand(equations.slice().reduce(values));
 }
 
 std::span<const double> view(const Eigen::VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
@@ -139,7 +137,8 @@ std::vector<Triplet> largest_of(Inverse& inverse, int count, double tolerance) {
   core::check(SVDSetDimensions(svd.get(), count, std::min(basis_size(count), inverse.unknowns()), PETSC_DEFAULT),
               "SVDSetDimensions");
   core::check(SVDSetTolerances(svd.get(), tolerance, PETSC_DEFAULT), "SVDSetTolerances");
-  const core::Handle<Vec> start = smooth_start(inverse.equations);
+  const core::Handle<Vec> start = loss::create_vector(inverse.unknowns());
+  loss::assign(start.get(), smooth_start(inverse.equations));
   Vec raw = start.get();
   core::check(SVDSetInitialSpaces(svd.get(), 1, &raw, 0, nullptr), "SVDSetInitialSpaces");
   BV basis[2] = {nullptr, nullptr};
@@ -169,6 +168,114 @@ void append_column(Eigen::MatrixXd& matrix, const Eigen::VectorXd& column) {
   matrix.col(matrix.cols() - 1) = column;
 }
 
+bool is_good(const Triplet& t, double rate) {
+  return std::max(t.residual, t.left_residual) <= std::max(share_of_value * t.value, share_of_rate * rate);
+}
+
+void add(Inverse& inverse, std::vector<Triplet>& found, Triplet t) {
+  append_column(inverse.right, t.right);
+  append_column(inverse.left, t.left);
+  found.push_back(std::move(t));
+}
+
+/// Of I - C'(A + B C')^-1 B = (I + C' A^-1 B)^-1, which is about sigma / rate over the parts of u and v in B and C: a
+/// block that leaves more holds nothing nearly flat (kernels of the double pendulum leave 4e-8 to 4e-4, sectors without
+/// one 0.03 and more).
+constexpr double nearly_flat = 1e-2;
+/// The first solve only tells that, and the next one takes out what it is wrong by. What the others are wrong by stays
+/// in the vectors: A itself is known to 1e-10 of the rate at best, the tolerance of orbits.
+constexpr equations::LoopSolver::Accuracy of_first_solve{1e-4, 1e-2, 0.0};
+constexpr equations::LoopSolver::Accuracy of_flat_vectors{1e-11, 1e-8, 0.0};
+
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
+  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), columns.cols());
+}
+
+/// Inverse iteration with a block of vectors, for triplets whose values are nearly zero: on A + B C', which is regular,
+/// and (A + B C')^-1 B spans what A^-1 B spans (docs/mathematics.md, "Singular triplets").
+class FlatTriplets {
+ public:
+  FlatTriplets(Inverse& inverse, int count) : _inverse(inverse), _equations(inverse.equations), _count(count) {}
+
+  /// Adds those that are triplets by their residuals: all, some or none of the block.
+  void find(std::vector<Triplet>& found) {
+    const double rate = _equations.linearization().rate();
+    Eigen::MatrixXd right(_inverse.unknowns(), _count);
+    for (int n = 0; n < _count; ++n) right.col(n) = smooth_start(_equations, n);
+    right = orthonormal(right);
+    Eigen::MatrixXd columns = rate * padded(orthonormal(right.topRows(_equations.image().size())));
+    Eigen::MatrixXd rows = padded(right);
+    _inverse.solver.raise({columns, rows});
+    const Eigen::MatrixXd first = solve(rows, true, of_first_solve);
+    const Eigen::MatrixXd remains = Eigen::MatrixXd::Identity(_count, _count) - columns.transpose() * first;
+    if (!(Eigen::JacobiSVD<Eigen::MatrixXd>(remains).singularValues().minCoeff() < nearly_flat)) return;
+
+    columns = rate * padded(orthonormal(projected(left_of(first))));
+    _inverse.solver.raise({columns, rows});
+    right = orthonormal(solve(columns, false, of_flat_vectors).topRows(right.rows()));
+    rows = padded(right);
+    _inverse.solver.raise({columns, rows});
+    Eigen::MatrixXd left = left_of(solve(rows, true, of_flat_vectors));
+
+    Eigen::MatrixXd images(_inverse.rows(), _count);
+    for (int n = 0; n < _count; ++n) {
+      const Eigen::VectorXd v = right.col(n);
+      images.col(n) = vector_of(_equations.linearization().apply_jacobian(_equations.unknowns(), view(v)));
+    }
+    const Eigen::JacobiSVD<Eigen::MatrixXd> ritz(left.transpose() * images, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    right *= ritz.matrixV();
+    left *= ritz.matrixU();
+    for (int n = _count; n-- > 0;) {
+      Triplet t = triplet_of(_equations, right.col(n), left.col(n));
+      if (is_good(t, rate)) add(_inverse, found, std::move(t));
+    }
+  }
+
+ private:
+  [[nodiscard]] Eigen::MatrixXd padded(const Eigen::MatrixXd& columns) const {
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(_equations.size(), columns.cols());
+    out.topRows(columns.rows()) = columns;
+    return out;
+  }
+
+  [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& right_sides, bool transposed,
+                                      equations::LoopSolver::Accuracy accuracy) {
+    Eigen::MatrixXd out(right_sides.rows(), right_sides.cols());
+    for (Eigen::Index n = 0; n < out.cols(); ++n)
+      out.col(n) = transposed ? _inverse.solver.solve_transposed(_equations, right_sides.col(n), accuracy)
+                              : _inverse.solver.solve(_equations, right_sides.col(n), accuracy);
+    return out;
+  }
+
+  /// Rows of J from solutions of the transposed equations.
+  [[nodiscard]] Eigen::MatrixXd left_of(const Eigen::MatrixXd& solutions) const {
+    Eigen::MatrixXd out(_inverse.rows(), solutions.cols());
+    for (Eigen::Index n = 0; n < out.cols(); ++n)
+      _equations.project_rows_transposed(solutions.col(n).head(_equations.image().size()), out.col(n));
+    return orthonormal(out);
+  }
+
+  [[nodiscard]] Eigen::MatrixXd projected(const Eigen::MatrixXd& rows) const {
+    Eigen::MatrixXd out(_equations.image().size(), rows.cols());
+    for (Eigen::Index n = 0; n < out.cols(); ++n) _equations.project_rows(rows.col(n), out.col(n));
+    return out;
+  }
+
+  Inverse& _inverse;
+  const equations::LoopEquations& _equations;
+  int _count;
+};
+
+/// What it does not find is left to the search.
+void find_flat(Inverse& inverse, std::vector<Triplet>& found, int count) {
+  try {
+    FlatTriplets(inverse, count).find(found);
+  } catch (const core::NumericalError&) {  // A + B C' is singular too: flat in more directions than were expected
+  }
+  inverse.solver.raise({});
+}
+
 /// Inverse iterations on a triplet, and what each may leave of its residuals to be followed by another. Beside kernels
 /// at 1e-14 each was seen to leave 0.2 to 0.4 (m2 = 16/9 m1).
 constexpr int most_cleanings = 12;
@@ -179,7 +286,7 @@ void search(Inverse& inverse, std::vector<Triplet>& found, int count, double tol
   const std::size_t before = found.size();
   const double rate = inverse.equations.linearization().rate();
   const auto acceptable = [&](const Triplet& t) { return std::max(share_of_value * t.value, share_of_rate * rate); };
-  const auto good = [&](const Triplet& t) { return std::max(t.residual, t.left_residual) <= acceptable(t); };
+  const auto good = [&](const Triplet& t) { return is_good(t, rate); };
   std::string failure = "Krylov iterations did not converge";
   for (Triplet& t : largest_of(inverse, count, tolerance)) {
     // Tiny values leave the solves little but their own vectors, and Lanczos vectors mix: inverse iteration cleans
@@ -201,9 +308,7 @@ void search(Inverse& inverse, std::vector<Triplet>& found, int count, double tol
                             t.residual, t.left_residual, acceptable(t));
       break;
     }
-    append_column(inverse.right, t.right);
-    append_column(inverse.left, t.left);
-    found.push_back(std::move(t));
+    add(inverse, found, std::move(t));
   }
   if (found.size() == before)
     throw core::NumericalError(
@@ -226,6 +331,8 @@ SingularTriplets smallest_singular_triplets(const equations::LoopEquations& equa
   const int rows = equations.linearization().rows();
   const int free = equations.slice().free();
   core::require(options.count >= 1 && options.count <= free, "between one and all singular triplets can be asked for");
+  core::require(options.nearly_flat >= 0 && options.nearly_flat < options.count,
+                "beside triplets that are expected to be nearly flat one more is to be asked for");
   Inverse inverse{equations,
                   equations::LoopSolver(equations.size(), "spectrum_inner_"),
                   {options.inner_tolerance, 1.0, share_of_rate * equations.linearization().rate()},
@@ -234,11 +341,15 @@ SingularTriplets smallest_singular_triplets(const equations::LoopEquations& equa
 
   std::vector<Triplet> found;
   const auto wanted = static_cast<std::size_t>(options.count);
-  while (found.size() < wanted) search(inverse, found, static_cast<int>(wanted - found.size()), options.tolerance);
-  while (options.multiple && static_cast<int>(found.size()) < free) {
-    const double largest = found[order_of(found)[wanted - 1]].value;
-    search(inverse, found, 1, options.tolerance);
-    if (found.back().value >= largest) break;
+  if (options.nearly_flat > 0) find_flat(inverse, found, options.nearly_flat);
+  // A search finds the smallest values of what is left, multiple ones once: nothing smaller is missing where the last
+  // value that it found is no smaller than those that are wanted.
+  bool complete = false;
+  while (found.size() < wanted || (!complete && static_cast<int>(found.size()) < free)) {
+    const int missing = found.size() < wanted ? static_cast<int>(wanted - found.size()) : 1;
+    search(inverse, found, missing, options.tolerance);
+    complete = (!options.multiple || missing == 1) && found.size() >= wanted &&
+               found.back().value >= found[order_of(found)[wanted - 1]].value;
   }
 
   SingularTriplets out;

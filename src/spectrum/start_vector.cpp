@@ -18,11 +18,11 @@ constexpr double equally_large = 1e-6;
 
 }  // namespace
 
-core::Handle<Vec> start_vector(int size) {
+core::Handle<Vec> start_vector(int size, int number) {
   core::Handle<Vec> vector = loss::create_vector(size);
   Eigen::VectorXd values(size);
   // Quasi-random and without symmetry, so that no eigenvector is orthogonal to it by accident.
-  for (int n = 0; n < size; ++n) values(n) = 0.5 + std::fmod(golden * (n + 1), 1.0);
+  for (int n = 0; n < size; ++n) values(n) = 0.5 + std::fmod(golden * (number + 1.0) * (n + 1), 1.0);
   loss::assign(vector.get(), values);
   return vector;
 }

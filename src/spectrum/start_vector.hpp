@@ -11,8 +11,9 @@
 
 namespace orbweaver::spectrum {
 
-/// The fixed vector that every Krylov solver starts from, so that results depend on the matrix alone.
-[[nodiscard]] core::Handle<Vec> start_vector(int size);
+/// The fixed vector that every Krylov solver starts from, so that results depend on the matrix alone; others by their
+/// numbers, for blocks of them.
+[[nodiscard]] core::Handle<Vec> start_vector(int size, int number = 0);
 
 /// Gives a solver's basis a random generator with a fixed seed (PETSc's default seed depends on the rank).
 void seed_basis(BV basis);

@@ -50,6 +50,13 @@ struct Node {
   VectorXd direction;
 };
 
+/// A point that was located between two nodes.
+struct Between {
+  VectorXd x;
+  EquilibriumKind kind;
+  double period = 0.0;
+};
+
 class Curve {
  public:
   Curve(const systems::System& system, const EquilibriumCurveOptions& options)
@@ -276,30 +283,45 @@ EquilibriumCurve follow_equilibrium(const systems::System& system, std::span<con
   nodes.insert(nodes.end(), up.nodes().begin() + 1, up.nodes().end());
   EquilibriumCurve out;
   out.ends = {down.end(), up.end()};
-  for (const Node& node : nodes)
-    out.points.push_back({curve.equilibrium(node.x), {node.direction.data(), node.direction.data() + d + 1}});
   const std::size_t begin = down.nodes().size() - 1;
   const auto length = [&](std::size_t from, std::size_t to) {
     double sum = 0.0;
     for (std::size_t n = from; n < to; ++n) sum += (nodes[n + 1].x - nodes[n].x).norm();
     return sum;
   };
+  out.points.push_back({curve.equilibrium(nodes.front().x)});
   for (std::size_t n = 1; n < nodes.size(); ++n) {
     const Node& a = nodes[n - 1];
     const Node& b = nodes[n];
+    std::vector<Between> between;
     if (a.direction(d) * b.direction(d) < 0.0) {
       const auto slope = [&](const VectorXd& at) { return curve.direction(at, a.direction)(d); };
-      if (const auto fold = zero_between(curve, a, b, slope)) out.folds.push_back(curve.equilibrium(*fold));
+      if (const auto fold = zero_between(curve, a, b, slope)) {
+        out.folds.push_back(curve.equilibrium(*fold));
+        between.push_back({*fold, EquilibriumKind::fold});
+      }
     }
+    const double started = nodes[begin].x(d);
+    if ((a.x(d) - started) * (b.x(d) - started) < 0.0)
+      if (const auto again = zero_between(curve, a, b, [&](const VectorXd& at) { return at(d) - started; }))
+        between.push_back({*again, EquilibriumKind::came_back});
     const auto hopf = [&](const VectorXd& at) { return curve.hopf_function(at); };
-    if (hopf(a.x) * hopf(b.x) > 0.0) continue;
-    const auto place = zero_between(curve, a, b, hopf);
-    if (!place) continue;
-    auto point = curve.hopf_at(*place);
-    if (!point) continue;
-    point->distance =
-        n > begin ? length(begin, n - 1) + (*place - a.x).norm() : length(n, begin) + (b.x - *place).norm();
-    out.hopf.push_back(std::move(*point));
+    if (hopf(a.x) * hopf(b.x) <= 0.0)
+      if (const auto place = zero_between(curve, a, b, hopf))
+        if (auto point = curve.hopf_at(*place)) {
+          point->distance =
+              n > begin ? length(begin, n - 1) + (*place - a.x).norm() : length(n, begin) + (b.x - *place).norm();
+          between.push_back({*place, EquilibriumKind::hopf, point->period});
+          out.hopf.push_back(std::move(*point));
+        }
+    const VectorXd chord = b.x - a.x;
+    std::stable_sort(between.begin(), between.end(), [&](const Between& one, const Between& other) {
+      return chord.dot(one.x) < chord.dot(other.x);
+    });
+    for (const Between& point : between)
+      out.points.push_back({curve.equilibrium(point.x), point.kind, point.period});
+    if (n == begin) out.start = out.points.size();
+    out.points.push_back({curve.equilibrium(b.x)});
   }
   return out;
 }

@@ -285,14 +285,6 @@ std::vector<Resonance> resonances_of(const std::vector<Oscillation>& oscillation
   return out;
 }
 
-LinearStability stability_of(const LinearModes& modes) {
-  if (!modes.rest.empty() && modes.rest.front().real() > 0.0) return LinearStability::unstable;
-  if (!modes.undecided.empty()) return LinearStability::undecided;
-  if (modes.rest.empty()) return LinearStability::elliptic;
-  return modes.oscillations.empty() && modes.rest.front().real() < 0.0 ? LinearStability::stable
-                                                                       : LinearStability::neutral;
-}
-
 }  // namespace
 
 double UndecidedEigenvalues::period() const { return 2.0 * std::numbers::pi / std::abs(mean.imag()); }
@@ -325,6 +317,14 @@ std::string to_text(LinearStability stability) {
     case LinearStability::undecided: return "undecided";
   }
   return "";
+}
+
+LinearStability stability_of(const LinearModes& modes) {
+  if (!modes.rest.empty() && modes.rest.front().real() > 0.0) return LinearStability::unstable;
+  if (!modes.undecided.empty()) return LinearStability::undecided;
+  if (modes.rest.empty()) return LinearStability::elliptic;
+  return modes.oscillations.empty() && modes.rest.front().real() < 0.0 ? LinearStability::stable
+                                                                       : LinearStability::neutral;
 }
 
 LinearModes linear_modes(const systems::System& system, std::span<const double> fixed_point) {

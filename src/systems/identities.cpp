@@ -234,9 +234,12 @@ std::vector<std::vector<double>> states_around(const Structure& structure,
   return states;
 }
 
-void require_identities(const System& system, const std::vector<std::vector<double>>& equilibria) {
+void require_identities(const System& system, const std::vector<std::vector<double>>& equilibria,
+                        const std::vector<std::vector<double>>& states) {
   const Structure& structure = system.structure();
-  for (const std::vector<double>& point : equilibria)
+  std::vector<std::vector<double>> points = equilibria;
+  points.insert(points.end(), states.begin(), states.end());
+  for (const std::vector<double>& point : points)
     for (std::size_t k = 0; k < structure.guards.size(); ++k) {
       const double value = system.guard(static_cast<int>(k), point);
       if (!(value > 0.0))
@@ -244,10 +247,10 @@ void require_identities(const System& system, const std::vector<std::vector<doub
                point);
     }
   const auto require_as_far_as = [&](double size) {
-    for (const IdentityError& found : identity_errors(system, states_around(structure, equilibria, states_each, size)))
+    for (const IdentityError& found : identity_errors(system, states_around(structure, points, states_each, size)))
       require(system, found);
   };
-  const double size = largest_coordinate(structure, equilibria);
+  const double size = largest_coordinate(structure, points);
   require_as_far_as(size);
   // Coordinates may be rounding's only; motions of 1 beside far larger coordinates would lose digits.
   if (size < 1.0) require_as_far_as(1.0);

@@ -124,7 +124,7 @@ TEST_F(BadFiles, OlderFilesHaveNoScales) {
 
 TEST_F(BadFiles, NoMoreIsReadThanTheFileHolds) {
   constexpr hsize_t forged = hsize_t{1} << 28;
-  for (const std::string table : {"families", "orbits", "crossings", "sections", "loci", "findings"})
+  for (const std::string table : {"families", "orbits", "crossings", "sections", "loci", "equilibria", "findings"})
     EXPECT_THAT(altered([&](hid_t file) { claim_rows(file, table, forged); }),
                 AllOf(HasSubstr("altered.h5' has a dataset /" + table), HasSubstr("more than the file's")))
         << table;

@@ -140,6 +140,7 @@ Records tables_of(const Records& records) {
   tables.families = records.families;
   tables.crossings = records.crossings;
   tables.loci = records.loci;
+  tables.equilibria = records.equilibria;
   tables.left_out_keys = records.left_out_keys;
   tables.voided = records.voided;
   tables.earlier_scenes = records.earlier_scenes;
@@ -215,7 +216,7 @@ std::filesystem::path fresh_folder(const std::string& name, MPI_Comm comm) {
 
 void remove_checksums(const std::filesystem::path& atlas) {
   const H5Handle file(check_h5(H5Fopen(atlas.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "H5Fopen"), H5Fclose);
-  for (const char* name : {"families", "orbits", "crossings", "sections", "loci", "findings"})
+  for (const char* name : {"families", "orbits", "crossings", "sections", "loci", "equilibria", "findings"})
     check_h5(H5Ldelete(file.get(), fmt::format("{}/checksum", name).c_str(), H5P_DEFAULT), name);
   for (const char* name : {"orbits/modes_checksum", "orbits/time_map_checksum"})
     check_h5(H5Ldelete(file.get(), name, H5P_DEFAULT), name);

@@ -239,6 +239,21 @@ TEST(FamilyJump, AnAngleThatChangesByMoreThanAQuarterOfATurnIsNotTrusted) {
   EXPECT_FALSE(bifurcation::rotates_too_far(rotating(200), hyperbolic));
 }
 
+// At k = 1e13 an index is between -2 and 2 on 4e-15 of a step of 0.01.
+TEST(FamilyJump, TurnsAreNotAskedWhereAnIndexIsSteepBeyondAllSteps) {
+  const auto of_index = [](double index) {
+    spectrum::Stability out;
+    out.fundamental = {index};
+    return out;
+  };
+  const double smallest = Options{}.smallest_jump;
+  EXPECT_TRUE(bifurcation::are_turns_asked(of_index(-1.0), of_index(3.0), 0.01, smallest));
+  EXPECT_TRUE(bifurcation::are_turns_asked(of_index(-1e4), of_index(3.0), 0.01, smallest));
+  EXPECT_FALSE(bifurcation::are_turns_asked(of_index(-1.3e13), of_index(3.0), 0.01, smallest));
+  EXPECT_FALSE(bifurcation::are_turns_asked(of_index(1.0), of_index(3.8e15), 0.01, smallest));
+  EXPECT_TRUE(bifurcation::are_turns_asked({}, {}, 0.01, smallest)) << "without indices";
+}
+
 TEST(FamilyJump, WholeTurnsAreNotTaken) {
   const auto turned = [](double turns, double index) {
     spectrum::Stability out;

@@ -51,6 +51,16 @@ Comparison compare(const std::vector<Orbit>& side, const loop::Isotropy& own, co
   return compare(side[n], side[n + 1], own, x);
 }
 
+TEST(Identity, OfOneOrbitWithItsImages) {
+  const auto& orbits = test::family_to_twelve(test::in_phase()).orbits;
+  const loop::Loop& orbit = orbits[10].loop;
+  for (const loop::Loop& image : images_of(orbit)) EXPECT_TRUE(same_orbit(*test::pendulum(), orbit, image));
+  EXPECT_FALSE(same_orbit(*test::pendulum(), orbit, orbits[11].loop));
+  loop::Loop longer = orbit;
+  longer.period *= 1.0 + 1e-4;
+  EXPECT_FALSE(same_orbit(*test::pendulum(), orbit, longer));
+}
+
 TEST(Identity, OfAnOrbitBetweenItsNeighbours) {
   const auto& orbits = test::family_to_twelve(test::in_phase()).orbits;
   for (std::size_t n = 3; n + 1 < orbits.size(); n += 6) {

@@ -229,6 +229,22 @@ TEST(SymmetryWatch, SaysWhatIsNearlyGained) {
   EXPECT_TRUE(nearly(2.0, 1.0).empty()) << "far away";
 }
 
+// A slow oscillation, and a small fast one that changes its sign: a shift by a hundredth of the period changes the slow
+// one less than the fast one, and still nothing repeats.
+TEST(SymmetryWatch, AFastOscillationThatChangesItsSignIsNoRepetition) {
+  const auto at = [](double fast) {
+    loop::Loop out = loop::constant_loop(std::vector<double>(4, 0.0), 5.0, 24);
+    for (int i = 0; i < 4; ++i) {
+      out.cosine(1, i) = 1.0 + 0.1 * i;
+      out.sine(13, i) = fast;
+    }
+    return out;
+  };
+  const SymmetryWatch watch(pendulum(), {});
+  const auto passed = watch.all_passed(SymmetryWatch::sampled(at(0.2)), SymmetryWatch::sampled(at(-0.2)));
+  EXPECT_TRUE(std::none_of(passed.begin(), passed.end(), [](const SymmetryGain& gain) { return gain.name == "1"; }));
+}
+
 TEST(SymmetryWatch, RespectsTheLargestOrder) {
   const Pitchfork p = threefold();
   EXPECT_FALSE(test::first_passed(SymmetryWatch(p.system, p.own, 2, 2), p.at(0.2), p.at(-0.1)).has_value());

@@ -161,6 +161,27 @@ TEST_P(InSectors, SolvesAreThoseOfTheMatrix) {
   EXPECT_LT((a.transpose() * y - b).norm(), 1e-11);
 }
 
+TEST_P(InSectors, RaisedSolvesAreThoseOfTheMatrixWithTheOuterProduct) {
+  Problem problem(GetParam(), 10);
+  problem.equations.factor(*problem.system, problem.loop);
+  const int size = problem.equations.size();
+  Eigen::MatrixXd columns(size, 2);
+  Eigen::MatrixXd rows(size, 2);
+  for (int n = 0; n < 2; ++n) {
+    columns.col(n) = test::unit_direction(size, 5 + n);
+    rows.col(n) = test::unit_direction(size, 7 + n);
+  }
+  const Eigen::MatrixXd plain = problem.matrix();
+  const Eigen::MatrixXd raised = plain + columns * rows.transpose();
+  LoopSolver solver(size, "test_");
+  const Eigen::VectorXd b = test::unit_direction(size, 3);
+  solver.raise({columns, rows});
+  EXPECT_LT((raised * solver.solve(problem.equations, b, {1e-12, 1e-11}) - b).norm(), 1e-11);
+  EXPECT_LT((raised.transpose() * solver.solve_transposed(problem.equations, b, {1e-12, 1e-11}) - b).norm(), 1e-11);
+  solver.raise({});
+  EXPECT_LT((plain * solver.solve(problem.equations, b, {1e-12, 1e-11}) - b).norm(), 1e-11);
+}
+
 INSTANTIATE_TEST_SUITE_P(LoopEquations, InSectors, testing::Values("all", "++", "+-", "-+", "--"),
                          [](const auto& tested) {
                            std::string name = tested.param;

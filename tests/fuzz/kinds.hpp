@@ -9,7 +9,7 @@
 
 namespace orbweaver::fuzz {
 
-/// A kind of input from outside. A reader that comes (loops in CSV, archives whose orbits are starts, plugins) gets a
+/// A kind of input from outside. A reader that comes (plugins) gets a
 /// function here and its line in main.cpp.
 struct Kind {
   std::function<std::string(Mutator&)> make;
@@ -27,11 +27,15 @@ Kind grown_scenes();  ///< keys, values and structures put together
 Kind overrides();     ///< words behind --set, one a line
 Kind messages();      ///< of the queue, half of them with a right checksum
 
+Kind loops();  ///< in CSV, as starts
+
 /// Files are written into `folder`, which exists and is empty.
 Kind archives(const std::filesystem::path& folder);
 Kind segments(const std::filesystem::path& folder);
 Kind checkpoints(const std::filesystem::path& folder);  ///< half of them with a right checksum
 Kind journals(const std::filesystem::path& folder);     ///< the same
+
+Kind start_archives(const std::filesystem::path& folder);  ///< whose orbits a scene starts from
 
 [[nodiscard]] std::string bytes_of(const std::filesystem::path& file);
 void write_bytes(const std::filesystem::path& file, const std::string& bytes);

@@ -76,6 +76,8 @@ fuzz::Kind kind_of(const std::string& name) {
       {"grown_scenes", fuzz::grown_scenes},
       {"overrides", fuzz::overrides},
       {"messages", fuzz::messages},
+      {"loops", fuzz::loops},
+      {"start_archives", [&] { return fuzz::start_archives(folder()); }},
       {"archives", [&] { return fuzz::archives(folder()); }},
       {"segments", [&] { return fuzz::segments(folder()); }},
       {"checkpoints", [&] { return fuzz::checkpoints(folder()); }},

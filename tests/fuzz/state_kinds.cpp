@@ -58,6 +58,7 @@ Checkpoint sample(const std::filesystem::path& folder) {
   SweepOutcome sweep;
   sweep.modes.resize(3);
   sweep.kernels.resize(1);
+  sweep.equilibria.resize(2);
   sweep.rejected = {"a dip"};
   LocateOutcome located;
   located.state = {1.0, 2.0, 3.0, 4.0};

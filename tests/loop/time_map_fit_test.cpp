@@ -67,6 +67,29 @@ TEST(TimeMapFit, GoesOnFromAnotherMap) {
   }
 }
 
+/// tanh(sin(s - begun)/width): two jumps, whose singularities lie width pi/2 from real s.
+Loop jumping(double width, double begun, int cutoff) {
+  Loop loop = constant_loop(std::vector<double>{0.0}, 3.0, cutoff);
+  const int nodes = FourierGrid::nodes_at_least(4 * cutoff);
+  std::vector<double> values(static_cast<std::size_t>(nodes));
+  for (int j = 0; j < nodes; ++j)
+    values[static_cast<std::size_t>(j)] = std::tanh(std::sin(2.0 * std::numbers::pi * j / nodes - begun) / width);
+  FourierGrid::of_size(nodes).analyze(cutoff, 1, values.data(), loop.modes.data());
+  return loop;
+}
+
+TEST(TimeMapFit, DrawsScalesFarApartWhereverALoopBegins) {
+  for (const double begun : {0.0, 0.3, 1.2}) {
+    SCOPED_TRACE(begun);
+    const Loop even = jumping(0.02, begun, 1200);
+    const TimeMapFit fit = fit_scales(even, {}, tolerance);
+    EXPECT_GT(harmonics_above(even, tolerance), 700);
+    const int needed = harmonics_above(with_time_map(even, fit.map, 600), tolerance);
+    EXPECT_LT(needed, 200);
+    EXPECT_GT(fit.harmonics, 0.5 * needed) << "counted a hundred times higher, and extrapolated";
+  }
+}
+
 TEST(TimeMapFit, IsInvariantUnderTheIsotropy) {
   const Isotropy group = of_pendulum();
   const Loop even = unmapped({4.0, {}}, group);

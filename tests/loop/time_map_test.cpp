@@ -43,11 +43,14 @@ TEST(TimeMap, IdentityByDefault) {
 
 // Fitted to an orbit of the double pendulum. The phase has a step near s = 4, on either side of which Newton's method
 // jumps to the other side, again and again.
+TimeMap with_a_step() {
+  return {1.0, {-0.12, -0.60, 0.32,  0.51,  0.45,  -0.20, -0.22, -0.07, 0.22,  0.16,  0.08, -0.21, -0.16, 0.10,
+                0.14,  0.08,  -0.10, -0.14, -0.08, 0.10,  0.11,  -0.05, -0.03, -0.06, 0.04, 0.04,  0.05,  -0.04,
+                -0.02, 0.00,  0.03,  0.01,  0.02,  -0.04, 0.00,  0.00,  0.02,  -0.01, 0.00, -0.01}};
+}
+
 TEST(TimeMap, InverseWhereThePhaseHasAStep) {
-  const TimeMap map{1.0,
-                    {-0.12, -0.60, 0.32,  0.51,  0.45,  -0.20, -0.22, -0.07, 0.22,  0.16,  0.08, -0.21, -0.16, 0.10,
-                     0.14,  0.08,  -0.10, -0.14, -0.08, 0.10,  0.11,  -0.05, -0.03, -0.06, 0.04, 0.04,  0.05,  -0.04,
-                     -0.02, 0.00,  0.03,  0.01,  0.02,  -0.04, 0.00,  0.00,  0.02,  -0.01, 0.00, -0.01}};
+  const TimeMap map = with_a_step();
   for (int n = 0; n <= 2000; ++n) {
     const double wanted = two_pi * n / 2000;
     EXPECT_NEAR(map.phase(map.inverse(wanted)), wanted, 1e-14 * (1.0 + wanted));
@@ -157,6 +160,28 @@ TEST(TimeMap, ParametersAtTheSameTime) {
   for (const TimeMap& map : maps())
     for (const TimeMap& other : maps())
       for (const double s : {0.2, 1.9, 4.0}) EXPECT_NEAR(map.phase(map.parameter_at(other, s)), other.phase(s), 1e-14);
+}
+
+// More than are taken together, beyond a turn on both sides, and where Newton's method needs its bracket.
+TEST(TimeMap, ManyAtOnceAreThoseOneByOne) {
+  std::vector<double> s;
+  for (int n = -50; n < 150; ++n) s.push_back(two_pi * (n + 0.3) / 99.0);
+  TimeMap sharp{1.0, {-1.0, 0.0, 0.5, 0.0, -1.0, 0.0, 0.5, 0.0}};
+  for (double& c : sharp.coefficients) c *= 1.0 - 1.0 / 4096.0;
+  std::vector<TimeMap> all = maps();
+  all.push_back(with_a_step());
+  all.push_back(sharp);
+  for (std::size_t m = 0; m < all.size(); ++m) {
+    const std::vector<double> phases = all[m].phases(s);
+    ASSERT_EQ(phases.size(), s.size());
+    for (std::size_t j = 0; j < s.size(); ++j) EXPECT_NEAR(phases[j], all[m].phase(s[j]), 1e-14) << m << " at " << s[j];
+    for (const TimeMap& other : all) {
+      const std::vector<double> at = all[m].parameters_at(other, s);
+      ASSERT_EQ(at.size(), s.size());
+      for (std::size_t j = 0; j < s.size(); ++j)
+        EXPECT_NEAR(all[m].phase(at[j]), other.phase(s[j]), 3e-14) << m << " at " << s[j];
+    }
+  }
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ class ShowCommand : public ::testing::Test {
 
 TEST_F(ShowCommand, PrintsWhatTheArchiveLayerFormats) {
   const archive::Archive read(atlas);
-  for (const std::string table : {"families", "orbits", "crossings", "findings"}) {
+  for (const std::string table : {"families", "orbits", "crossings", "loci", "equilibria", "findings"}) {
     for (const auto& [option, format] :
          {std::pair{"", report::TextFormat::readable}, std::pair{" --csv", report::TextFormat::csv},
           std::pair{" --json", report::TextFormat::json}}) {

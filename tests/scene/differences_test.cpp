@@ -54,6 +54,13 @@ const std::map<std::string, Case> cases{
     {"starts.sweep.period", {"auto", "[1, 13]"}},
     {"starts.sweep.step", {"auto", "0.02"}},
     {"starts.states", {"[]", "[{state: [15, 0, 0.5, 0], period: 6.3, name: Eight}]"}},
+    {"starts.orbits", {"[]", "[{archive: a.h5, family: A, near: {period: 9}, name: B}]"}},
+    {"starts.loops", {"[]", "[{file: a.csv, period: 6.3, name: B}]"}},
+    {"starts.recurrences.state", {"", ""}},  // only together: starts_section_test.cpp
+    {"starts.recurrences.time", {"", ""}},
+    {"starts.recurrences.period", {"", ""}},
+    {"starts.recurrences.tolerance", {"", ""}},
+    {"starts.recurrences.most", {"", ""}},
     {"continuation.step", {"adaptive", "0.5deg"}},
     {"continuation.start", {"0.5deg", "0.4deg"}},
     {"continuation.tolerance", {"1e-10", "1e-12"}},
@@ -148,7 +155,10 @@ TEST(Differences, OfFamiliesInAParameterAreFound) {
     std::vector<std::string> found;
     for (const auto& difference : differences(with(before), with(now))) {
       found.push_back(difference.key);
-      EXPECT_EQ(difference.change, Change::other) << difference.key;
+      if (difference.key == "limits.parameter")
+        EXPECT_EQ(difference.limit, scene::LimitKey::parameter);
+      else
+        EXPECT_EQ(difference.change, Change::other) << difference.key;
     }
     return found;
   };
@@ -218,6 +228,18 @@ TEST(Differences, GuardsAreLimitsOfTheirOwn) {
   EXPECT_EQ(found("{r2: 0.001}", "{r2: 0.0045}").at(0).change, Change::narrowed);
   EXPECT_EQ(found("{r2: 0.001}", "{}").at(0).change, Change::widened);
   EXPECT_EQ(found("{}", "{r2: 0.001}").at(0).change, Change::narrowed);
+}
+
+TEST(Differences, TheParameterIsALimit) {
+  const auto of = [](const std::string& range) {
+    return scene::parse("system: {name: lorenz}\nstarts: {}\ncontinuation: {free: rho}\n", "base.yaml",
+                        {"limits.parameter=" + range});
+  };
+  const auto found = differences(of("[1, 30]"), of("[0, 30]"));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].limit, scene::LimitKey::parameter);
+  EXPECT_EQ(found[0].change, Change::widened);
+  EXPECT_EQ(differences(of("[1, 30]"), of("[0, 29]")).at(0).change, Change::narrowed);
 }
 
 TEST(Differences, LimitsAreNamed) {

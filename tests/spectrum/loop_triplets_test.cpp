@@ -208,6 +208,54 @@ TEST(LoopTriplets, FindTheNextValuesBesideAnExactlyFlatDirection) {
   for (std::size_t n = 1; n < 4; ++n) EXPECT_NEAR(free.values[n], dense.values[n], 1e-8 * dense.values[n]) << n;
 }
 
+// Nothing is flat there: what is expected to be is not taken for granted, and no value is passed over.
+TEST(LoopTriplets, ExpectedFlatDirectionsThatAreNotThereChangeNothing) {
+  const Problem problem(in_phase_at(8.3), "all");
+  const SingularTriplets dense = problem.dense(3);
+  const SingularTriplets free = problem.triplets({.count = 3, .nearly_flat = 2, .krylov_from = 1});
+  ASSERT_GT(dense.values[0], 1e-4);
+  for (std::size_t n = 0; n < 3; ++n) EXPECT_NEAR(free.values[n], dense.values[n], 1e-9 * dense.values[n]) << n;
+}
+
+// At the crossing one direction is flat, whether one, two or none are expected to be. Where they are, solves see a
+// regular matrix, and take as many iterations as beside any orbit: without that, several times as many.
+TEST(LoopTriplets, ExpectedFlatDirectionsAreFoundWithFewIterations) {
+  const loop::Loop orbit = in_phase_at(crossing);
+  for (const std::string& sector : {flat_sector(), std::string("all")}) {
+    const Problem problem(orbit, sector);
+    const SingularTriplets dense = problem.dense(3);
+    ASSERT_LT(dense.values[0], 1e-10) << sector;
+    const SingularTriplets unexpected = problem.matrix_free(3);
+    for (const int expected : {1, 2}) {
+      const SingularTriplets free = problem.triplets({.count = 3, .nearly_flat = expected, .krylov_from = 1});
+      EXPECT_LT(free.values[0], 1e-10) << sector << expected;
+      EXPECT_NEAR(std::abs(free.right.col(0).dot(dense.right.col(0))), 1.0, 1e-9) << sector << expected;
+      EXPECT_LT(free.left_residuals[0], 1e-9) << sector << expected;
+      for (std::size_t n = 1; n < 3; ++n)
+        EXPECT_NEAR(free.values[n], dense.values[n], 1e-8 * dense.values[n]) << sector << expected << n;
+      EXPECT_LT(2 * free.inner_iterations, unexpected.inner_iterations) << sector << expected;
+    }
+  }
+}
+
+// Orbits of the harmonic oscillator have one period: the amplitude and the time shift are flat. One is expected, so
+// that A is singular with what is added to it, too.
+TEST(LoopTriplets, MoreFlatDirectionsThanExpectedAreAllFound) {
+  Problem problem(in_phase_at(8.3), "all");
+  problem.system = systems::make_system("harmonic_oscillator");
+  problem.loop = loop::constant_loop(std::vector<double>{0.0, 0.0}, 2.0 * std::numbers::pi, 40);
+  problem.loop.cosine(1, 0) = 0.7;
+  problem.loop.sine(1, 1) = -0.7;
+  problem.unknowns = {loop::Subspace::unrestricted(2, 40), {}};
+  problem.slice = loss::Slice(problem.unknowns.size(), Eigen::MatrixXd(problem.unknowns.size(), 0));
+  const SingularTriplets dense = problem.dense(4);
+  ASSERT_LT(dense.values[1], 1e-13);
+  const SingularTriplets free = problem.triplets({.count = 4, .multiple = true, .nearly_flat = 1, .krylov_from = 1});
+  EXPECT_GT(free.inner_iterations, 0);
+  for (std::size_t n = 0; n < 2; ++n) EXPECT_LT(free.values[n], 1e-13) << n;
+  for (std::size_t n = 2; n < 4; ++n) EXPECT_NEAR(free.values[n], dense.values[n], 1e-8 * dense.values[n]) << n;
+}
+
 TEST(LoopTriplets, GiveTheEigenpairsOfH) {
   const Problem problem(in_phase_at(8.3), "all");
   const loss::Linearization linearization(*problem.system, problem.loop, loss::Linearization::Order::jacobian);
@@ -264,6 +312,7 @@ TEST(LoopTriplets, RefuseWhatTheyCannotFind) {
   const Problem problem(orbit, "-+");
   EXPECT_THROW(static_cast<void>(problem.matrix_free(0)), core::MisuseError);
   EXPECT_THROW(static_cast<void>(problem.matrix_free(problem.slice.free() + 1)), core::MisuseError);
+  EXPECT_THROW(static_cast<void>(problem.triplets({.count = 2, .nearly_flat = 2})), core::MisuseError);
   // Truncated, the loop is no orbit and its J not that of the equations.
   EXPECT_THROW(static_cast<void>(Problem(loop::with_cutoff(orbit, 13), "all").matrix_free(2)), core::NumericalError);
 }

@@ -127,6 +127,28 @@ inline archive::Records complete_records_of(const Atlas& atlas) {
     point.note = loci.texts("note")[row];
     records.loci.push_back(point);
   }
+  const archive::Table& equilibria = atlas.equilibria();
+  for (std::size_t row = 0; row < equilibria.rows(); ++row) {
+    archive::EquilibriumRecord point;
+    point.equilibrium = static_cast<int>(equilibria.integers("equilibrium")[row]);
+    point.step = static_cast<int>(equilibria.integers("step")[row]);
+    point.arclength = equilibria.reals("arclength")[row];
+    point.kind = equilibria.texts("kind")[row];
+    point.parameter = equilibria.reals("parameter")[row];
+    point.energy = equilibria.reals("energy")[row];
+    point.stability = equilibria.texts("stability")[row];
+    point.note = equilibria.texts("note")[row];
+    const auto values = [&](const auto& all, const char* name, auto& into) {
+      const std::size_t width = equilibria.column(name).spec.width();
+      const auto first = all.begin() + static_cast<std::ptrdiff_t>(row * width);
+      into.assign(first, first + static_cast<std::ptrdiff_t>(width));
+    };
+    values(equilibria.reals("state"), "state", point.state);
+    values(equilibria.reals("eigenvalues"), "eigenvalues", point.eigenvalues);
+    values(equilibria.reals("periods"), "periods", point.periods);
+    values(equilibria.integers("multiplicity"), "multiplicity", point.multiplicity);
+    records.equilibria.push_back(point);
+  }
   const archive::Table& sections = atlas.sections();
   for (std::size_t row = 0; row < sections.rows(); ++row) {
     const archive::OrbitRecord& orbit = records.orbits[static_cast<std::size_t>(sections.integers("orbit")[row])];

@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "orbweaver/archive/read/loop_of.hpp"
+#include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/survey/verify/verify.hpp"
 #include "survey/atlas.hpp"
@@ -29,7 +30,8 @@ scene::Scene scene_of(const std::string& name, const std::vector<std::string>& m
 
 TEST(ParameterFamilies, VanDerPolHasTheKnownPeriods) {
   const core::Communicator comm;
-  const survey::Summary summary = test::run(comm, scene_of("van_der_pol.yaml"), "van_der_pol");
+  const survey::Summary summary = test::run(
+      comm, scene_of("van_der_pol.yaml", {"limits.parameter=[0.01, 10]", "compute.stability=true"}), "van_der_pol");
   if (!comm.is_root()) return;
   EXPECT_EQ(summary.failures, 0U);
   ASSERT_EQ(summary.families.size(), 1U);
@@ -47,6 +49,30 @@ TEST(ParameterFamilies, VanDerPolHasTheKnownPeriods) {
   EXPECT_EQ(mu.front(), 0.01);
   EXPECT_TRUE(std::is_sorted(mu.begin(), mu.end()));
   EXPECT_NEAR(period.front(), 2.0 * std::numbers::pi * (1.0 + 0.01 * 0.01 / 16.0), 1e-9) << "Lindstedt's series";
+}
+
+// Beyond mu = 75 the orbits would need more than 4096 harmonics without a time map for scales far apart.
+TEST(ParameterFamilies, VanDerPolGoesOnToRelaxationOscillations) {
+  // By Taylor series of order 26 in long double, three times around from (2, 0).
+  constexpr double period_at_1000 = 1614.40112580833;
+  const core::Communicator comm;
+  const survey::Summary summary =
+      test::run(comm, scene_of("van_der_pol.yaml", {"compute.certificate=none"}), "relaxation");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  const test::Atlas atlas(summary.atlas);
+  const std::vector<double> mu = atlas.column("parameter", "Cycle");
+  const std::vector<double> period = atlas.column("period", "Cycle");
+  EXPECT_EQ(mu.back(), 1000.0);
+  EXPECT_NEAR(period.back(), period_at_1000, 1e-8);
+  for (std::size_t n = 0; n < mu.size(); ++n) {  // Dorodnicyn's series, whose next term is of the order of ln(mu)/mu
+    if (mu[n] <= 100.0) continue;
+    const double law = (3.0 - 2.0 * std::numbers::ln2) * mu[n] + 7.0143 / std::cbrt(mu[n]);
+    EXPECT_NEAR(period[n], law, std::log(mu[n]) / mu[n]);
+  }
+  // Without maps of the density's logarithm 4096 end the family at mu = 75.
+  const std::vector<std::int64_t>& cutoffs = atlas.orbits().integers("cutoff");
+  EXPECT_LT(*std::max_element(cutoffs.begin(), cutoffs.end()), 1100);
 }
 
 // The oscillations of mu = 0 are circles of any size. The Hopf point lies on the limit, where rounding has it on either
@@ -220,6 +246,43 @@ TEST(ParameterFamilies, DrivesAndFrictionDoNoNetWork) {
 }
 
 /// Duffing's response, and copies of it with changed numbers and checksums that match them.
+TEST(ParameterFamilies, WiderLimitsOfTheParameterGiveTheArchiveOfTheWideOnes) {
+  struct Case {
+    std::string scene, narrow, wide;
+    std::vector<std::string> more;
+  };
+  // The second begins again, since the unit of mu is 8 instead of 4, the last since its Hopf points are looked for.
+  const std::vector<Case> cases{{"van_der_pol.yaml", "[0.05, 9]", "[0.01, 10]", {"compute.stability=true"}},
+                                {"van_der_pol.yaml", "[0.01, 5]", "[0.01, 10]", {}},
+                                {"duffing.yaml", "[0.3, 2.5]", "[0.3, 3]", {}},
+                                {"lorenz.yaml", "[15, 30]", "[14, 30]", {"limits.steps=20"}}};
+  const core::Communicator comm;
+  int number = 0;
+  for (const Case& given : cases) {
+    SCOPED_TRACE(given.scene + " " + given.narrow);
+    const auto limited = [&](const std::string& range) {
+      std::vector<std::string> words = given.more;
+      words.push_back("limits.parameter=" + range);
+      return scene_of(given.scene, words);
+    };
+    const scene::Scene wide = limited(given.wide);
+    const auto system = scene::bound_system(wide.system);
+    const auto folder = test::fresh_folder(fmt::format("widened{}_{}", ++number, comm.size()), comm.get());
+    const survey::Summary narrow = survey::run_survey(comm, limited(given.narrow), system, folder, {});
+    const auto cut = test::dataset_bytes(narrow.atlas);
+    const survey::Summary resumed = survey::run_survey(comm, wide, system, folder, {survey::Display::none, true});
+    EXPECT_THROW((void)survey::run_survey(comm, limited(given.narrow), system, folder, {survey::Display::none, true}),
+                 core::InputError);
+    if (!comm.is_root()) continue;
+    EXPECT_FALSE(resumed.stopped_early);
+    EXPECT_NE(test::dataset_bytes(resumed.atlas), cut);
+    const core::Communicator alone(MPI_COMM_SELF);
+    const survey::Summary whole =
+        survey::run_survey(alone, wide, system, test::fresh_folder(fmt::format("whole{}", number)), {});
+    EXPECT_EQ(test::dataset_bytes(resumed.atlas), test::dataset_bytes(whole.atlas));
+  }
+}
+
 TEST(ParameterFamilies, ChangedNumbersAreFound) {
   constexpr double part = 1e-8;
   const core::Communicator comm;

@@ -73,7 +73,8 @@ TEST(Resonance, TheSpringSwingsInTwoWays) {
 TEST(Resonance, DetunedSpringsHaveTheSameThreeFamilies) {
   const core::Communicator comm;
   std::vector<double> resonant;
-  for (const double detuning : {0.0, 1e-9, -1e-9, 1e-6, -1e-6, 1e-3, -1e-3, 1.25e-3, -1.25e-3, 3e-3, -3e-3}) {
+  for (const double detuning :
+       {0.0, 1e-9, -1e-9, 1e-6, -1e-6, 1e-3, -1e-3, 1.25e-3, -1.25e-3, -1.5e-3, -2e-3, 3e-3, -3e-3}) {
     const scene::Scene scene = spring(2, detuning, {"survey.depth=1", "limits.energy=[-.inf, -1.0]"});
     const survey::Summary summary = test::run(comm, scene, "detuned");
     EXPECT_EQ(summary.failures, 0U) << detuning;

@@ -165,22 +165,6 @@ TEST(RestrictedProblem, EndsBeforeTheirResonanceAreVerified) {
   EXPECT_TRUE(is_refused(-1.32)) << "what does not repeat is most of the orbit";
 }
 
-// From the crossing of order 13 one way leads along the long-period family, the other beside it. There an index is 7e-5
-// from 2, and cells that hold all its harmonics do not tell its orbits from others.
-TEST(RestrictedProblem, TheFamilyBesideTheLongOneIsFollowed) {
-  const core::Communicator comm;
-  const scene::Scene scene =
-      scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_mu_0.001.yaml",
-                  {"starts.fixed_points.grid=[[0.499], [0.866]]", "starts.sweep.period=[6, 80]",
-                   "starts.sweep.step=0.1", "survey.depth=1", "survey.subharmonics=13", "limits.period=120"});
-  const survey::Summary summary = test::run(comm, scene, "beside");
-  EXPECT_EQ(summary.failures, 0U);
-  if (!comm.is_root()) return;
-  const test::Atlas atlas(summary.atlas);
-  const std::vector<double> energies = atlas.column("energy", "SfT13");
-  EXPECT_LT(*std::min_element(energies.begin(), energies.end()), -1.26);
-}
-
 // No reversor maps these orbits to themselves, so nothing but a search tells in which directions families leave; at a
 // tripling they move along the short-period family as fast as away from it.
 TEST(RestrictedProblem, FamiliesAreBornAtTriplingsWithoutReversor) {

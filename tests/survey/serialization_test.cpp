@@ -122,10 +122,10 @@ TEST(Travellers, LoopsThatAreNoneAreRefused) {
 }
 
 TEST(Travellers, LimitsAndEnumsThatAreNoneAreRefused) {
-  expect_refused(StartOutcome{64}, "limits 0x40");
+  expect_refused(StartOutcome{128}, "limits 0x80");
   BranchOutcome outcome;
-  outcome.limited_by = 64;
-  expect_refused(outcome, "limits 0x40");
+  outcome.limited_by = 128;
+  expect_refused(outcome, "limits 0x80");
   LocateOutcome located;
   located.limited_by = -1;
   expect_refused(located, "limits -0x1");

@@ -47,7 +47,18 @@ SweepOutcome sample_sweep_outcome() {
           {{6.25, 2, true, 1, {0, 1}, {3, 2}, {1, 2}}},
           5,
           1.0,
-          12.0};
+          12.0,
+          {{-3,
+            -0.25,
+            starts::EquilibriumKind::hopf,
+            2.0,
+            {1.5},
+            0.5,
+            starts::LinearStability::neutral,
+            {0.0, 1.0},
+            {6.5},
+            {1},
+            "an end"}}};
 }
 BranchWork sample_branch_work() {
   return {"0001.0002/003.q4.j1/0-",
@@ -101,14 +112,14 @@ TEST(Payload, EqualWorkHasEqualBytes) { EXPECT_EQ(pack(sample_branch_work()), pa
 TEST(Payload, AnotherKindIsRefusedByName) {
   const std::string text = environment_error_of([] { (void)unpack_branch_work(pack(sample_sweep_outcome())); });
   EXPECT_THAT(text, AllOf(HasSubstr("expected a branch work of version 2"),
-                          HasSubstr("got a sweep outcome of version 3"), HasSubstr("same build")));
+                          HasSubstr("got a sweep outcome of version 4"), HasSubstr("same build")));
 }
 
 TEST(Payload, AnotherVersionIsRefused) {
   const PayloadType other{SweepWork::payload_name, SweepWork::wire_version + 1, 0};
   const std::string bytes = write_payload(other, [](auto&) {});
   const std::string text = environment_error_of([&] { (void)unpack_sweep_work(bytes); });
-  EXPECT_THAT(text, HasSubstr("got a sweep work of version 3"));
+  EXPECT_THAT(text, HasSubstr("got a sweep work of version 4"));
 }
 
 TEST(Payload, TornAtAnyByteIsRefused) {

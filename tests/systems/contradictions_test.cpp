@@ -71,6 +71,8 @@ void expect_refusal(const System& system, const std::vector<std::vector<double>>
 
 TEST(Contradictions, ThereAreNoneInRegisteredSystems) {
   EXPECT_NO_THROW(require_identities(*make_system("double_pendulum"), pendulum_rests));
+  // Its Jacobian's eigenvalues pair at equilibria only.
+  EXPECT_NO_THROW(require_identities(*make_system("double_pendulum"), pendulum_rests, {{1.7, 0, 0, 1.1}}));
   EXPECT_NO_THROW(require_identities(*make_system("henon_heiles"), {{0, 0, 0, 0}, {0, 1, 0, 0}}));
   EXPECT_NO_THROW(require_identities(*make_system("swinging_spring"), {{0, -4.0 / 3.0, 0, 0}}));
   const double mu = 0.01215058560962404;

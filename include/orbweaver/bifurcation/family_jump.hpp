@@ -30,11 +30,17 @@ struct KnownStability {
 /// turns by less than three quarters while the angle changes less than twice as fast, and is seen.
 [[nodiscard]] bool rotates_too_far(const spectrum::Stability& from, const spectrum::Stability& to);
 
+/// True unless an index is so large that it is between -2 and 2 on less than `smallest_jump` of the way between two
+/// orbits, of the given length: where families are nearer than that they cross to rounding, and turns tell nothing.
+[[nodiscard]] bool are_turns_asked(const spectrum::Stability& from, const spectrum::Stability& to, double length,
+                                   double smallest_jump);
+
 /// True if a step along a family that passes 2 only at folds has gone over to another one: an index has passed 2, and
-/// the energy does not turn on the way. Also where that cannot be told, which a shorter step may change: neighbours of
-/// the two orbits go around by angles too far apart (`rotates_too_far`), the directions of the family at the two orbits
-/// cannot be had, or one turns too far from the chord (`least_cosine` of the options). On other families of a
-/// symplectic system: an index has passed 2, and no orbit between the two has it.
+/// the energy does not turn on the way, or the orbits between are not one curve on which it is 2. Also where that
+/// cannot be told, which a shorter step may change: neighbours of the two orbits go around by angles too far apart
+/// (`rotates_too_far`), the directions of the family at the two orbits cannot be had, or one turns too far from the
+/// chord (`least_cosine` of the options). On other families of a symplectic system: an index has passed 2, and no orbit
+/// between the two has it.
 [[nodiscard]] bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
                               const continuation::Options& options, const KnownStability& from,
                               const KnownStability& to);

@@ -42,6 +42,11 @@ struct Comparison {
 [[nodiscard]] bool may_lie_between(const continuation::Orbit& a, const continuation::Orbit& b,
                                    const continuation::Orbit& x, double widening);
 
+/// Are these the same orbit, modulo time shift, the system's symmetries and reversal, whole turns of angles, and
+/// repetition (up to 12 times around)? To `tolerance` as in IdentityOptions.
+[[nodiscard]] bool same_orbit(const systems::System& system, const loop::Loop& a, const loop::Loop& b,
+                              double tolerance = IdentityOptions{}.tolerance);
+
 /// Is `x` an orbit of the family with the isotropy `isotropy`, of which `a` and `b` are neighbours? Modulo time shift,
 /// the system's symmetries and reversal, whole turns of angles, and repetition (`x` may go up to 12 times around).
 ///

@@ -27,10 +27,11 @@ struct SymmetryGain {
 ///
 /// Candidates are every declared equivariance with shifts p/q, q <= `largest_order`, and the identity with shifts 1/q,
 /// q <= `largest_repetition`, that the own isotropy does not generate, and, if it has no reversor, the declared
-/// reversors at any phase. With c(z) = e z - z, the broken part, the signed part of an orbit B seen from A is <c(A),
-/// c(B)> / <c(A), c(A)>: 1 at A, and of the other sign beyond an orbit with the symmetry e. Inner products are means
-/// over time, of as many samples as it takes for what they leave out to be small beside the broken part. Orbits A and B
-/// are neighbours of one branch, with its phase convention.
+/// reversors at any phase. With c(z) = e z - z, the broken part (of a repetition 1@1/q: the harmonics that are no
+/// multiples of q), the signed part of an orbit B seen from A is <c(A), c(B)> / <c(A), c(A)>: 1 at A, and of the other
+/// sign beyond an orbit with the symmetry e. Inner products are means over time, of as many samples as it takes for
+/// what they leave out to be small beside the broken part. Orbits A and B are neighbours of one branch, with its phase
+/// convention.
 class SymmetryWatch {
  public:
   SymmetryWatch(const systems::Structure& system, const loop::Isotropy& own, int largest_order = 12,

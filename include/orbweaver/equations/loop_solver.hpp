@@ -22,12 +22,21 @@ class LoopSolver {
     double of_solution = 0.0;
   };
 
+  /// columns rows' of size x count each.
+  struct Outer {
+    Eigen::MatrixXd columns;
+    Eigen::MatrixXd rows;
+  };
+
   LoopSolver(int size, const char* options_prefix);
   ~LoopSolver();
   LoopSolver(const LoopSolver&) = delete;
   LoopSolver& operator=(const LoopSolver&) = delete;
   LoopSolver(LoopSolver&&) = delete;
   LoopSolver& operator=(LoopSolver&&) = delete;
+
+  /// From here on A + columns rows' stands for A; the preconditioner remains. Empty: A itself.
+  void raise(Outer outer);
 
   /// A x = right side. Throws NumericalError unless the residual falls to what is accepted.
   [[nodiscard]] Eigen::VectorXd solve(const LoopEquations& equations, const Eigen::VectorXd& right_side,

@@ -17,7 +17,7 @@ enum class Change {
 };
 
 /// Limits that a survey which goes on may widen.
-enum class LimitKey { period, energy, guards, steps, depth, families };
+enum class LimitKey { period, energy, parameter, guards, steps, depth, families };
 
 struct Difference {
   std::string key;                ///< as users write it: "limits.period"

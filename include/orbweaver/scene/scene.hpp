@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "orbweaver/scene/loop_samples.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::scene {
@@ -43,7 +44,44 @@ struct FixedPoints {
 struct StateStart {
   std::vector<double> state;  ///< angles in radians
   double period = 0.0;
-  std::string name;
+  std::string name;  ///< empty: by what its family is
+};
+
+/// A file that a scene names. Its place is told from the scene's folder; a stored scene has its hash alone.
+struct StartFile {
+  std::string path;            ///< as the scene says
+  std::filesystem::path file;  ///< empty in a stored scene
+  std::string hash;            ///< core::file_hash; empty where neither the file nor a hash is given
+};
+
+/// An orbit of another archive of the same system, as a guess where its parameters are others.
+struct OrbitStart {
+  enum class Near { period, energy, step };
+  StartFile archive;
+  std::string family;  ///< its name there
+  Near near = Near::period;
+  double value = 0.0;  ///< in the units of that archive
+  std::string name;    ///< empty: by what its family is
+};
+/// "period", ...: as in a scene.
+[[nodiscard]] std::string name_of(OrbitStart::Near near);
+
+/// A loop of which samples are known.
+struct LoopStart {
+  StartFile file;
+  double period = 0.0;
+  std::string name;     ///< empty: by what its family is
+  LoopSamples samples;  ///< none in a stored scene
+};
+
+/// Orbits that a trajectory comes near.
+struct Recurrences {
+  std::vector<double> state;  ///< at its begin, angles in radians
+  double time = 0.0;          ///< its length
+  double period_from = 0.0;   ///< of the orbits
+  double period_to = 0.0;
+  double tolerance = 0.1;  ///< greatest distance of what counts as a return, in the survey's scales
+  int most = 1000;         ///< orbits kept, those with the shortest periods
 };
 
 /// At which periods small oscillations are looked for, and how finely the picture of their eigenvalue is drawn.
@@ -143,6 +181,9 @@ struct Scene {
   FixedPoints fixed_points;
   Sweep sweep;
   std::vector<StateStart> states;
+  std::vector<OrbitStart> orbits;
+  std::vector<LoopStart> loops;
+  std::optional<Recurrences> recurrences;
   Continuation continuation;
   Survey survey;
   Compute compute;

@@ -16,8 +16,12 @@ struct TripletOptions {
   double tolerance = 1e-8;        ///< of the vectors, matrix-free; values are right to its square
   double inner_tolerance = 1e-9;  ///< of the solves inside
   bool multiple = false;          ///< look again beside those found, matrix-free: else a multiple value is found once
-  int krylov_from = 120;          ///< smaller problems are solved by dense matrices (measured: docs/performance.md)
-  core::Team* team = nullptr;     ///< ranks that divide the matrix-free way among them; then it is collective
+  /// Fewer than `count`: so many of the values are expected to be far below 2 pi / T, and sought first by inverse
+  /// iteration, matrix-free. Nothing is taken for granted: what has not the residuals of a triplet is left to the
+  /// search that finds the others.
+  int nearly_flat = 0;
+  int krylov_from = 120;       ///< smaller problems are solved by dense matrices (measured: docs/performance.md)
+  core::Team* team = nullptr;  ///< ranks that divide the matrix-free way among them; then it is collective
 };
 
 /// The smallest singular triplets of a loop's J over the `unknowns` on the `slice` (J restricted to what the slice

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <span>
 #include <string>
@@ -17,10 +18,20 @@ struct Equilibrium {
   double parameter = 0.0;
 };
 
-/// An equilibrium of a curve, with the curve's direction there.
+/// What a point of a curve of equilibria is.
+enum class EquilibriumKind {
+  regular,
+  hopf,
+  fold,       ///< the parameter turns
+  came_back,  ///< the parameter has the value of the curve's start again
+};
+[[nodiscard]] constexpr EquilibriumKind last_of(EquilibriumKind) { return EquilibriumKind::came_back; }
+
+/// An equilibrium of a curve.
 struct EquilibriumPoint {
   Equilibrium at;
-  std::vector<double> direction;  ///< of length 1: dimension numbers, then that of the parameter
+  EquilibriumKind kind = EquilibriumKind::regular;
+  double period = 0.0;  ///< of the small oscillations at a Hopf point
 };
 
 /// Where a pair of eigenvalues passes the imaginary axis: a family of periodic orbits begins.
@@ -34,7 +45,8 @@ struct HopfPoint {
 };
 
 struct EquilibriumCurve {
-  std::vector<EquilibriumPoint> points;  ///< from one end of the curve to the other
+  std::vector<EquilibriumPoint> points;  ///< from one end of the curve to the other, those of all kinds
+  std::size_t start = 0;                 ///< the one of `points` where the curve was begun
   std::vector<Equilibrium> folds;        ///< where the parameter turns
   std::vector<HopfPoint> hopf;           ///< by the place on the curve
   std::vector<std::string> ends;         ///< why it ends at its first and at its last point

@@ -57,6 +57,8 @@ enum class LinearStability {
   undecided,  ///< rounding does not tell
 };
 
+[[nodiscard]] constexpr LinearStability last_of(LinearStability) { return LinearStability::undecided; }
+
 [[nodiscard]] std::string to_text(LinearStability stability);
 
 /// All that the Jacobian at an equilibrium says of small motions.
@@ -68,6 +70,9 @@ struct LinearModes {
   std::vector<UndecidedEigenvalues> undecided;
   LinearStability stability = LinearStability::undecided;
 };
+
+/// What oscillations, `rest` and `undecided` say together.
+[[nodiscard]] LinearStability stability_of(const LinearModes& modes);
 
 /// The eigenvalues of the Jacobian at a fixed point, in quadruple precision where the system has it
 /// (systems/quad_system.hpp; docs/mathematics.md, "Linear modes"). Throws MisuseError for a state of another dimension,

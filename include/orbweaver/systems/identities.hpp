@@ -39,10 +39,11 @@ struct IdentityError {
                                                              const std::vector<std::vector<double>>& points, int count,
                                                              double size);
 
-/// Throws core::InputError where the system contradicts its structure beyond rounding, at `equilibria` (sizes
-/// dimension) and around them, as far as their largest coordinate and 1: an identity above, eigenvalues that do not
-/// pair though it is symplectic, or a guard that is not positive at an equilibrium. The message says which, by how
-/// much, and where. Takes well below a millisecond for an equilibrium.
-void require_identities(const System& system, const std::vector<std::vector<double>>& equilibria);
+/// Throws core::InputError where the system contradicts its structure beyond rounding, at `equilibria` and other
+/// `states` (sizes dimension) and around them, as far as their largest coordinate and 1: an identity above, eigenvalues
+/// at an equilibrium that do not pair though it is symplectic, or a guard that is not positive at one of them. The
+/// message says which, by how much, and where. Takes well below a millisecond for an equilibrium.
+void require_identities(const System& system, const std::vector<std::vector<double>>& equilibria,
+                        const std::vector<std::vector<double>>& states = {});
 
 }  // namespace orbweaver::systems

@@ -26,12 +26,14 @@ Archive::Archive(const std::filesystem::path& path, ChangedRows changed)
   for (const std::string& name : _crossings.texts("kind")) _crossing_kinds.push_back(crossing_kind_of(name));
   _sections = read_table(*_file, sections_spec(header));
   _loci = _file->has_table("loci") ? read_table(*_file, loci_spec(header)) : Table(loci_spec(header), 0);
+  _equilibria =
+      _file->has_table("equilibria") ? read_table(*_file, equilibria_spec(header)) : Table(equilibria_spec(header), 0);
   _findings = _file->has_table("findings") ? read_table(*_file, findings_spec()) : Table(findings_spec(), 0);
   _mode_values = _file->expect_flat("modes");
   const std::uint64_t map_values = _file->expect_flat("time_maps");
   if (_file->has_checksums()) {
     if (std::string text = _file->change_in_header(); !text.empty()) _changed.push_back({"", 0, std::move(text)});
-    for (const Table* table : {&_families, &_orbits, &_crossings, &_sections, &_loci, &_findings})
+    for (const Table* table : {&_families, &_orbits, &_crossings, &_sections, &_loci, &_equilibria, &_findings})
       for (const std::size_t row : archive::changed_rows(*table, _file->minor()))
         _changed.push_back({table->name(), row, changed_row(table->name(), row)});
   }

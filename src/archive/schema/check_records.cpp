@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -176,6 +177,22 @@ void check_loci(const Header& header, const Records& records) {
     expect(point.kind != CrossingKind::unknown, record,
            "its kind is unknown; one of those that have names was expected");
     check_vector(record, "state", point.state, header.state_names.size(), "one a state name");
+  }
+}
+
+void check_equilibria(const Header& header, const Records& records) {
+  const std::size_t dimension = header.state_names.size();
+  std::set<std::pair<int, int>> places;
+  for (const EquilibriumRecord& point : records.equilibria) {
+    const std::string record = fmt::format("point {} of equilibrium {}", point.step, point.equilibrium);
+    expect(point.equilibrium >= 0, record, "its number is negative");
+    expect(places.emplace(point.equilibrium, point.step).second, record, "there is another one");
+    check_finite(record, "arclength", point.arclength);
+    check_vector(record, "state", point.state, dimension, "one a state name");
+    check_optional(record, "eigenvalues", point.eigenvalues, 2 * dimension, "two a state name");
+    check_optional(record, "periods", point.periods, dimension / 2, "one a pair of state names");
+    check_size(record, "multiplicity", point.multiplicity.size(), point.periods.size(), "one a period");
+    for (const std::string* text : {&point.kind, &point.stability, &point.note}) check_text(record, "a text", *text);
   }
 }
 

@@ -14,6 +14,7 @@ void check_sections(const Header& header, const Records& records);
 void check_families(const Records& records);
 void check_crossings(const Header& header, const Records& records);
 void check_loci(const Header& header, const Records& records);
+void check_equilibria(const Header& header, const Records& records);
 /// `segments`: how many are listed to consolidate.
 void check_voided(const Records& records, std::size_t segments);
 

@@ -142,6 +142,25 @@ const ColumnDefinitions<LocusRecord>& locus_columns() {
   return columns;
 }
 
+const ColumnDefinitions<EquilibriumRecord>& equilibrium_columns() {
+  static const ColumnDefinitions<EquilibriumRecord> columns{
+      {"equilibrium", &EquilibriumRecord::equilibrium},
+      {"step", &EquilibriumRecord::step},
+      {"arclength", &EquilibriumRecord::arclength},
+      {"kind", &EquilibriumRecord::kind},
+      {"parameter", &EquilibriumRecord::parameter},
+      {"state", &EquilibriumRecord::state, RowShape::state},
+      {"energy", &EquilibriumRecord::energy},
+      {"stability", &EquilibriumRecord::stability},
+      {"eigenvalues", &EquilibriumRecord::eigenvalues, RowShape::eigenvalues},
+      {"periods", &EquilibriumRecord::periods, RowShape::oscillations},
+      {"multiplicity", &EquilibriumRecord::multiplicity, RowShape::oscillations},
+      {"note", &EquilibriumRecord::note},
+      {"checksum", checksum},
+  };
+  return columns;
+}
+
 const ColumnDefinitions<FindingRecord>& finding_columns() {
   static const ColumnDefinitions<FindingRecord> columns{
       {"severity", &FindingRecord::severity},

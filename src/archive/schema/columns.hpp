@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <type_traits>
 #include <variant>
@@ -14,7 +15,7 @@
 namespace orbweaver::archive {
 
 /// How many values a row of a column has; the header tells the numbers.
-enum class RowShape { one, state, winding, stability };
+enum class RowShape { one, state, winding, stability, eigenvalues, oscillations };
 
 /// An integer that says where other rows lie: it is filled in when the rows are numbered, and -1 until then.
 struct RowNumber {};
@@ -27,7 +28,8 @@ struct Checksum {};
 template <class Record>
 struct ColumnDefinition {
   using Member = std::variant<RowNumber, Checksum, int Record::*, double Record::*, std::string Record::*,
-                              CrossingKind Record::*, std::vector<double> Record::*>;
+                              CrossingKind Record::*, std::vector<double> Record::*,
+                              std::vector<std::int64_t> Record::*>;
   const char* name;
   Member member = RowNumber{};
   RowShape shape = RowShape::one;
@@ -44,6 +46,7 @@ using ColumnDefinitions = std::vector<ColumnDefinition<Record>>;
 [[nodiscard]] const ColumnDefinitions<CrossingRecord>& crossing_columns();
 [[nodiscard]] const ColumnDefinitions<SectionRecord>& section_columns();
 [[nodiscard]] const ColumnDefinitions<LocusRecord>& locus_columns();
+[[nodiscard]] const ColumnDefinitions<EquilibriumRecord>& equilibrium_columns();
 [[nodiscard]] const ColumnDefinitions<FindingRecord>& finding_columns();
 /// In segments, where rows have no numbers yet, orbits and sections name their family by its key.
 [[nodiscard]] const ColumnDefinitions<OrbitRecord>& segment_orbit_columns();
@@ -65,6 +68,10 @@ void fill_columns(Table& table, const ColumnDefinitions<Record>& columns, const 
                 std::copy(
                     (from.*member).begin(), (from.*member).end(),
                     std::get<std::vector<double>>(column.values).begin() + static_cast<std::ptrdiff_t>(row * width));
+              else if constexpr (std::is_same_v<Member, std::vector<std::int64_t> Record::*>)
+                std::copy((from.*member).begin(), (from.*member).end(),
+                          std::get<std::vector<std::int64_t>>(column.values).begin() +
+                              static_cast<std::ptrdiff_t>(row * width));
               else if constexpr (std::is_same_v<Member, int Record::*>)
                 std::get<std::vector<std::int64_t>>(column.values)[row] = from.*member;
               else if constexpr (std::is_same_v<Member, double Record::*>)

@@ -15,6 +15,8 @@ std::vector<std::size_t> extents_of(RowShape shape, const Header& header) {
     case RowShape::one: break;
     case RowShape::state: return {header.state_names.size()};
     case RowShape::winding: return {header.winding_names.size()};
+    case RowShape::eigenvalues: return {header.state_names.size(), 2};
+    case RowShape::oscillations: return {header.state_names.size() / 2};
     case RowShape::stability:
       if (has_complex_stability(header)) return {pairs, 2};
       return {pairs};
@@ -64,6 +66,8 @@ TableSpec crossings_spec(const Header& header) { return spec_of("crossings", cro
 TableSpec sections_spec(const Header& header) { return spec_of("sections", section_columns(), header); }
 
 TableSpec loci_spec(const Header& header) { return spec_of("loci", locus_columns(), header); }
+
+TableSpec equilibria_spec(const Header& header) { return spec_of("equilibria", equilibrium_columns(), header); }
 
 TableSpec findings_spec() { return spec_of("findings", finding_columns(), {}); }
 

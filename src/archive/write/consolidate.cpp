@@ -230,6 +230,7 @@ void check_input(MPI_Comm comm, const Header& header, const Records& tables, std
     check_families(tables);
     check_crossings(header, tables);
     check_loci(header, tables);
+    check_equilibria(header, tables);
     check_voided(tables, segments);
   });
 }
@@ -260,9 +261,11 @@ bool consolidate(MPI_Comm comm, const std::vector<std::filesystem::path>& segmen
   agree_on_text_widths(comm, root.families);
   agree_on_text_widths(comm, root.crossings);
   agree_on_text_widths(comm, root.loci);
+  agree_on_text_widths(comm, root.equilibria);
   const std::uint64_t families = core::greatest(comm, root.families.rows());
   const std::uint64_t crossings = core::greatest(comm, root.crossings.rows());
   const std::uint64_t loci = core::greatest(comm, root.loci.rows());
+  const std::uint64_t equilibria = core::greatest(comm, root.equilibria.rows());
 
   ParallelFile file(comm, order.output,
                     {atlas_format,
@@ -271,11 +274,13 @@ bool consolidate(MPI_Comm comm, const std::vector<std::filesystem::path>& segmen
                       {orbits_spec(order.header), numbering.orbits.size()},
                       {root.crossings.spec(), crossings},
                       {sections_spec(order.header), numbering.sections.size()},
-                      {root.loci.spec(), loci}},
+                      {root.loci.spec(), loci},
+                      {root.equilibria.spec(), equilibria}},
                      {{"modes", numbering.modes_at.back()}, {"time_maps", numbering.maps_at.back()}}});
   file.write_table(root.families, 0);
   file.write_table(root.crossings, 0);
   file.write_table(root.loci, 0);
+  file.write_table(root.equilibria, 0);
   write_orbits(comm, file, order, numbering);
   write_sections(comm, file, order, numbering);
   std::optional<std::vector<FindingRecord>> findings(std::in_place);

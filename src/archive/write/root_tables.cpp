@@ -72,6 +72,19 @@ void number_loci(Table& table, const std::vector<LocusRecord>& loci, const std::
   }
 }
 
+// By equilibrium, then along its curve.
+Table equilibria_of(const Header& header, const std::vector<EquilibriumRecord>& equilibria) {
+  std::vector<const EquilibriumRecord*> order;
+  for (const EquilibriumRecord& point : equilibria) order.push_back(&point);
+  std::sort(order.begin(), order.end(), [](const EquilibriumRecord* a, const EquilibriumRecord* b) {
+    return std::tie(a->equilibrium, a->step) < std::tie(b->equilibrium, b->step);
+  });
+  Table table(equilibria_spec(header), order.size());
+  fill_columns(table, equilibrium_columns(), [&](std::size_t row) -> const EquilibriumRecord& { return *order[row]; });
+  set_checksums(table, 0);
+  return table;
+}
+
 // In the order of the keys.
 std::vector<const FamilyRecord*> family_order(const std::vector<FamilyRecord>& families,
                                               const std::vector<std::string>& keys) {
@@ -111,7 +124,8 @@ Selection selection_of(const Records& tables) {
 RootTables make_root_tables(const Header& header, const Records& tables, const std::vector<std::string>& keys,
                             const Numbering& numbering) {
   RootTables root{Table(families_spec(), tables.families.size()),
-                  Table(crossings_spec(header), tables.crossings.size()), Table(loci_spec(header), tables.loci.size())};
+                  Table(crossings_spec(header), tables.crossings.size()), Table(loci_spec(header), tables.loci.size()),
+                  equilibria_of(header, tables.equilibria)};
   const std::vector<std::size_t> order = crossing_order(tables.crossings);
   const auto crossing = [&](std::size_t row) -> const CrossingRecord& { return tables.crossings[order[row]]; };
   fill_columns(root.crossings, crossing_columns(), crossing);

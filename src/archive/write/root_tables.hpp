@@ -13,6 +13,7 @@ struct RootTables {
   Table families;
   Table crossings;
   Table loci;
+  Table equilibria;
 };
 
 /// What `tables` says of the rows of the segments.

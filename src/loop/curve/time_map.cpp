@@ -71,6 +71,44 @@ std::pair<Real, Real> phase_and_density(const TimeMap& map, Real s) {
   return {phase, density};
 }
 
+// Parameters whose harmonics are added side by side: what that takes stays in the first cache.
+constexpr std::size_t block = 32;
+
+// Both at up to `block` parameters.
+struct PhasesAndDensities {
+  double phase[block];
+  double density[block];
+
+  PhasesAndDensities(const TimeMap& map, const double* s, std::size_t count) {
+    double sine[block] = {}, cosine[block] = {}, wave_sine[block], wave_cosine[block];
+    for (std::size_t j = 0; j < count; ++j) {
+      sine[j] = std::sin(s[j]);
+      cosine[j] = std::cos(s[j]);
+      phase[j] = s[j];
+      density[j] = 1.0;
+      if (map.kappa == 1.0) continue;
+      phase[j] +=
+          std::atan2((map.kappa - 1.0) * sine[j] * cosine[j], cosine[j] * cosine[j] + map.kappa * sine[j] * sine[j]);
+      density[j] = pulse_density(map.kappa, cosine[j], sine[j]);
+    }
+    std::fill(phase + count, phase + block, 0.0);
+    std::fill(density + count, density + block, 1.0);
+    std::copy(sine, sine + block, wave_sine);
+    std::copy(cosine, cosine + block, wave_cosine);
+    for (std::size_t n = 0; 2 * n + 1 < map.coefficients.size(); ++n) {
+      const double c = map.coefficients[2 * n];
+      const double d = map.coefficients[2 * n + 1];
+      for (std::size_t j = 0; j < block; ++j) {
+        phase[j] += (c * wave_sine[j] + d * (1.0 - wave_cosine[j])) / static_cast<double>(n + 1);
+        density[j] += c * wave_cosine[j] + d * wave_sine[j];
+        const double next = wave_cosine[j] * cosine[j] - wave_sine[j] * sine[j];
+        wave_sine[j] = wave_sine[j] * cosine[j] + wave_cosine[j] * sine[j];
+        wave_cosine[j] = next;
+      }
+    }
+  }
+};
+
 // A density that is a small difference of its coefficients, which are about 1, is summed in long double: to double the
 // rounding of its terms, over the density, would show as noise in the harmonics of what runs under the map.
 constexpr double small_density = 0.019;  // below the least that maps have where nothing is guarded (time_map_fit.hpp)
@@ -78,6 +116,42 @@ bool needs_more_digits(const TimeMap& map, double density) {
   return density < small_density && !map.coefficients.empty();
 }
 constexpr int polishing_steps = 2;  // of Newton's method from a parameter that is right but for rounding
+
+// The parameter of `map` at which its time is that of `other` at s, from one that is right but for rounding.
+double polished(const TimeMap& map, const TimeMap& other, double s, double rounded) {
+  const long double wanted = phase_and_density<long double>(other, s).first;
+  long double better = rounded;
+  for (int n = 0; n < polishing_steps; ++n) {
+    const auto [phase, slope] = phase_and_density<long double>(map, better);
+    better += (wanted - phase) / slope;
+  }
+  return static_cast<double>(better);
+}
+
+// Newton's method without a bracket: where it has not converged by then, one is needed.
+constexpr int most_common_steps = 8;
+const double last_step = std::ldexp(1.0, 1 - newton_bits);
+
+// The parameters in [0, 2 pi] of these phases, at most `block`; `density` takes the densities there, `converged` which
+// of them are right.
+void invert_together(const TimeMap& map, const double* wanted, std::size_t count, double* s, double* density,
+                     bool* converged) {
+  std::copy(wanted, wanted + count, s);
+  std::fill(converged, converged + count, false);
+  for (int step = 0; step < most_common_steps; ++step) {
+    const PhasesAndDensities here(map, s, count);
+    bool all = true;
+    for (std::size_t j = 0; j < count; ++j) {
+      density[j] = here.density[j];
+      if (converged[j]) continue;
+      const double change = (wanted[j] - here.phase[j]) / here.density[j];
+      s[j] = std::clamp(s[j] + change, 0.0, two_pi);
+      converged[j] = std::abs(change) <= last_step * std::abs(s[j]);
+      all = all && converged[j];
+    }
+    if (all) return;
+  }
+}
 
 }  // namespace
 
@@ -96,13 +170,42 @@ double TimeMap::density(double s) const {
 double TimeMap::parameter_at(const TimeMap& other, double s) const {
   const double rounded = inverse(other.phase(s));
   if (!needs_more_digits(*this, phase_and_density(*this, rounded).second)) return rounded;
-  const long double wanted = phase_and_density<long double>(other, s).first;
-  long double better = rounded;
-  for (int n = 0; n < polishing_steps; ++n) {
-    const auto [phase, slope] = phase_and_density<long double>(*this, better);
-    better += (wanted - phase) / slope;
+  return polished(*this, other, s, rounded);
+}
+
+std::vector<double> TimeMap::phases(std::span<const double> s) const {
+  std::vector<double> out(s.size());
+  for (std::size_t first = 0; first < s.size(); first += block) {
+    const std::size_t count = std::min(block, s.size() - first);
+    const PhasesAndDensities here(*this, s.data() + first, count);
+    std::copy(here.phase, here.phase + count, out.begin() + static_cast<std::ptrdiff_t>(first));
   }
-  return static_cast<double>(better);
+  return out;
+}
+
+std::vector<double> TimeMap::parameters_at(const TimeMap& other, std::span<const double> s) const {
+  if (*this == other) return {s.begin(), s.end()};
+  std::vector<double> out = other.phases(s);
+  if (coefficients.empty()) {
+    for (double& each : out) each = inverse(each);
+    return out;
+  }
+  double wanted[block], turns[block], found[block], density[block];
+  bool converged[block];
+  for (std::size_t first = 0; first < s.size(); first += block) {
+    const std::size_t count = std::min(block, s.size() - first);
+    for (std::size_t j = 0; j < count; ++j) {
+      turns[j] = std::floor(out[first + j] / two_pi);
+      wanted[j] = out[first + j] - two_pi * turns[j];
+    }
+    invert_together(*this, wanted, count, found, density, converged);
+    for (std::size_t j = 0; j < count; ++j) {
+      const double here = converged[j] ? found[j] + two_pi * turns[j] : inverse(out[first + j]);
+      const double slope = converged[j] ? density[j] : phase_and_density(*this, here).second;
+      out[first + j] = needs_more_digits(*this, slope) ? polished(*this, other, s[first + j], here) : here;
+    }
+  }
+  return out;
 }
 
 double TimeMap::inverse(double phase_wanted) const {

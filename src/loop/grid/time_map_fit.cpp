@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
@@ -27,6 +28,13 @@ constexpr int last_order = 7;
 constexpr double negligible_density = 1e-4;
 /// Nodes of a density that is fitted, at least: sharp ones have 20 to 80 harmonics.
 constexpr int least_fit_nodes = 512;
+
+/// Of fit_scales: nodes of a density for each harmonic of its logarithm, which falls by many orders between two;
+/// passes, each of which sees what the one before has drawn apart; and how far above the tolerance harmonics are
+/// counted.
+constexpr int nodes_a_harmonic = 32;
+constexpr int scale_passes = 3;
+constexpr double above_truncation = 100.0;
 
 // Candidates that would need more harmonics than the loop has are no gain: they count as that many.
 TimeMapFit under(const Loop& loop, const TimeMap& map, double tolerance) {
@@ -174,7 +182,84 @@ std::size_t harmonics_that_count(const TimeMap& map, double least) {
   return count;
 }
 
+// The same density begun at another s, so that `fastest` lies at the phase at which it was: what runs fast there would
+// be missed where slow parts, smoothed, take a little more or less time.
+TimeMap aligned(TimeMap map, double fastest, double phase) {
+  const double shift = -map.inverse(map.phase(fastest) - phase);
+  for (std::size_t n = 0; 2 * n < map.coefficients.size(); ++n) {
+    double& c = map.coefficients[2 * n];
+    double& d = map.coefficients[2 * n + 1];
+    const double cosine = std::cos(static_cast<double>(n + 1) * shift);
+    const double sine = std::sin(static_cast<double>(n + 1) * shift);
+    const double before = c;
+    c = before * cosine - d * sine;
+    d = before * sine + d * cosine;
+  }
+  return map;
+}
+
+// One pass of fit_scales: the map from what the loop shows under its own.
+TimeMap scales_of(const Loop& loop, const Isotropy& isotropy, int most) {
+  const int nodes = FourierGrid::nodes_at_least(2 * nodes_for(loop));
+  const std::vector<double> rate = inverse_distance(loop, nodes);
+  const std::vector<double> s = integrated(rate);
+  std::vector<double> log_density = densities(loop.time_map, nodes);
+  for (std::size_t j = 0; j < s.size(); ++j) log_density[j] = std::log(log_density[j] / rate[j]);
+  std::vector<double> modes(2 * static_cast<std::size_t>(most) + 1, 0.0);  // of the logarithm, in the new s
+  for (int k = 1; k <= most; ++k) {
+    double c = 0.0;
+    double d = 0.0;
+    for (std::size_t j = 0; j < s.size(); ++j) {
+      c += rate[j] * log_density[j] * std::cos(k * s[j]);
+      d += rate[j] * log_density[j] * std::sin(k * s[j]);
+    }
+    for (const SymmetryElement& g : isotropy) make_invariant(g, k, c, d);
+    const double x = std::numbers::pi * k / (most + 1);
+    const double low_pass = 2.0 / nodes * std::sin(x) / x;
+    modes[2 * static_cast<std::size_t>(k) - 1] = low_pass * c;
+    modes[2 * static_cast<std::size_t>(k)] = low_pass * d;
+  }
+  const int fine = FourierGrid::nodes_at_least(std::max(least_fit_nodes, nodes_a_harmonic * most));
+  std::vector<double> density(static_cast<std::size_t>(fine));
+  FourierGrid::of_size(fine).synthesize(most, 1, modes.data(), density.data());
+  double mean = 0.0;
+  for (double& v : density) mean += v = std::exp(v);
+  for (double& v : density) v *= fine / mean;
+  TimeMap map = with_density(density, (fine - 1) / 2);
+  map.coefficients.resize(2 * harmonics_that_count(map, *std::min_element(density.begin(), density.end())));
+  const auto fastest =
+      static_cast<std::size_t>(std::min_element(log_density.begin(), log_density.end()) - log_density.begin());
+  // Reversors fix where s begins.
+  if (std::none_of(isotropy.begin(), isotropy.end(), [](const SymmetryElement& g) { return g.reversing; }))
+    map = aligned(std::move(map), s[fastest], loop.time_map.phase(two_pi * static_cast<double>(fastest) / nodes));
+  for (std::size_t n = 0; 2 * n < map.coefficients.size(); ++n)
+    for (const SymmetryElement& g : isotropy)
+      make_invariant(g, static_cast<int>(n + 1), map.coefficients[2 * n], map.coefficients[2 * n + 1]);
+  return map;
+}
+
 }  // namespace
+
+TimeMapFit fit_scales(const Loop& loop, const Isotropy& isotropy, double tolerance, int most) {
+  // What a loop leaves out is, where s runs faster than before, more than harmonics of the new map leave out.
+  const double seen = above_truncation * tolerance;
+  double size = 0.0;
+  for (int k = 1; k <= loop.cutoff; ++k)
+    for (int i = 0; i < loop.dimension; ++i) size = std::max(size, std::hypot(loop.cosine(k, i), loop.sine(k, i)));
+  Loop at = without_tail(loop, seen);
+  if (harmonics_above(at, seen) == 0) return {};
+  TimeMapFit best;
+  for (int pass = 0; pass < scale_passes; ++pass) {
+    const TimeMap map = scales_of(at, isotropy, most);
+    at = with_time_map(at, map, at.cutoff);
+    const int above = harmonics_above(at, seen);
+    // Harmonics fall like those of a function with singularities at one distance throughout.
+    const int harmonics = static_cast<int>(std::ceil(above * std::log(size / tolerance) / std::log(size / seen)));
+    if (pass == 0 || harmonics < best.harmonics) best = {map, harmonics};
+    at = without_tail(at, seen);
+  }
+  return best;
+}
 
 TimeMapFit fit_to_rate(const Loop& loop, const Rate& rate, const Isotropy& isotropy, double tolerance) {
   const Loop shorter = without_tail(loop, tolerance);

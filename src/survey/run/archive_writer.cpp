@@ -17,6 +17,7 @@
 #include "state/resume.hpp"
 #include "tasks/certified.hpp"
 #include "tasks/payload/keys.hpp"
+#include "tree/equilibria.hpp"
 #include "version.hpp"
 #include "witness/placement.hpp"
 #include "witness/witness.hpp"
@@ -134,13 +135,16 @@ void write_archive(const core::Communicator& comm, const scene::Scene& scene,
     summary.crossings = static_cast<long>(tables.crossings.size());
     const std::size_t told = summary.failed_tasks.size();  // by the tree, from which the witness hears of them
     gather_failed_sweeps(*system, sweeps, summary, tables);
+    add_equilibria(*system, sweeps, tables);
     require_families(*system, sweeps, summary);
     known.failures.assign(summary.failed_tasks.begin() + static_cast<std::ptrdiff_t>(told), summary.failed_tasks.end());
     known.stopped_early = summary.stopped_early;
     known.time_unit = system->scales().time;
     for (const queue::Task& task : checkpoint.unfinished) known.interrupted.push_back(task.key);
     for (const auto& [key, ended] : sweeps) {
-      std::vector<double>& point = known.equilibria.emplace_back(unpack_sweep_work(ended.first.payload).point);
+      SweepWork work = unpack_sweep_work(ended.first.payload);
+      if (!work.given.empty()) break;  // behind the equilibria
+      std::vector<double>& point = known.equilibria.emplace_back(std::move(work.point));
       for (std::size_t i = 0; i < point.size(); ++i) point[i] *= system->scales().coordinate(i);
       std::vector<KernelRecord>& kernels = known.kernels.emplace_back();
       std::vector<Oscillation>& oscillations = known.oscillations.emplace_back();

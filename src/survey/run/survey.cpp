@@ -114,14 +114,16 @@ class Run {
     if (resume) found = find_checkpoint(_comm, _folder);
     if (!found.found) core::on_root(_comm.get(), [&] { expect_nothing(resume); });
     core::on_root(_comm.get(), [&] {
-      if (found.found) {
+      const bool again = found.found && begins_again(_scene, _system->scales(), _folder, found.checkpoint);
+      if (again) core::log_info("limits.parameter is wider: the survey begins again");
+      if (found.found && !again) {
         _start = std::move(found.checkpoint);
         _scaled.expect(_start.scales);
         continue_with(_scene, _folder, _start, [this](const EndedTask& entry) { restore(entry); });
         core::log_info(
             fmt::format("going on: {} segments, {} tasks waiting", _start.segments.size(), _start.unfinished.size()));
       } else {
-        remove_unlisted(_folder, {});  // of a survey that had not come to a checkpoint
+        if (!again) remove_unlisted(_folder, {});  // of a survey that had not come to a checkpoint
         _start.scene = _scene.text;
         _start.scales = _system->scales();
         _start.unfinished = std::move(sweeps);

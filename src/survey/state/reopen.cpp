@@ -35,6 +35,7 @@ int widened_limits(const scene::Scene& before, const scene::Scene& now) {
     switch (*difference.limit) {
       case scene::LimitKey::period: limits |= period_limited; break;
       case scene::LimitKey::energy: limits |= energy_limited; break;
+      case scene::LimitKey::parameter: limits |= parameter_limited; break;
       case scene::LimitKey::guards: limits |= guard_limited; break;
       case scene::LimitKey::steps: limits |= step_limited; break;
       case scene::LimitKey::depth: limits |= depth_limited; break;

@@ -191,6 +191,24 @@ std::string refusal(const scene::Scene& before, const scene::Scene& now) {
   return text;
 }
 
+bool begins_again(const scene::Scene& scene, const systems::Scales& scales, const std::filesystem::path& folder,
+                  const Checkpoint& checkpoint) {
+  const scene::Scene before = scene::parse(checkpoint.scene, "the checkpoint's scene");
+  if (!refusal(before, scene).empty() || (widened_limits(before, scene) & parameter_limited) == 0) return false;
+  systems::Scales measured = checkpoint.scales;
+  measured.parameters = scales.parameters;
+  if (!(measured == scales)) return false;  // which is refused
+  if (!(checkpoint.scales == scales)) return true;
+  const auto has_curve = [](const EndedTask& entry) {
+    return kind_of(entry.task) == TaskKind::sweep && !entry.outcome.payload.empty() &&
+           unpack_sweep_outcome(entry.outcome.payload).equilibria.size() > 1;
+  };
+  return std::any_of(checkpoint.journals.begin(), checkpoint.journals.end(), [&](const JournalFile& journal) {
+    const std::vector<EndedTask> entries = read_journal(folder, journal);
+    return std::any_of(entries.begin(), entries.end(), has_curve);
+  });
+}
+
 void continue_with(const scene::Scene& scene, const std::filesystem::path& folder, Checkpoint& checkpoint,
                    const std::function<void(const EndedTask&)>& take) {
   const scene::Scene before = scene::parse(checkpoint.scene, "the checkpoint's scene");

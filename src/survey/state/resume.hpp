@@ -9,6 +9,7 @@
 #include "checkpoint.hpp"
 #include "orbweaver/core/mpi/communicator.hpp"
 #include "orbweaver/scene/scene.hpp"
+#include "orbweaver/systems/scales.hpp"
 
 namespace orbweaver::survey {
 
@@ -20,6 +21,12 @@ struct Found {
   Checkpoint checkpoint;
 };
 [[nodiscard]] Found find_checkpoint(const core::Communicator& comm, const std::filesystem::path& folder);
+
+/// Whether nothing of the survey stays under `scene`, measured in `scales`: limits.parameter is wider, and its unit
+/// another with it, or curves of equilibria were followed within it: the numbers of their Hopf points are others. On
+/// rank 0 only.
+[[nodiscard]] bool begins_again(const scene::Scene& scene, const systems::Scales& scales,
+                                const std::filesystem::path& folder, const Checkpoint& checkpoint);
 
 /// Makes `checkpoint` one of `scene`, whose limits may be wider: what ended at a limit that lies farther out now waits
 /// again, and all that followed from where it ended is dropped. Reads every journal, and gives `take` the tasks that

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -60,6 +61,9 @@ constexpr double nearer = 0.5;
 /// A part that turns instead of vanishing keeps a size of about 1.
 constexpr double proportional = 2.0;
 constexpr double still_vanishing = 0.05;
+/// What of the part is not proportional falls from place to place by half at least, or it turns: the part of a fast
+/// oscillation may change its sign while the rest of the orbit breaks the symmetry as before (mu = 0.001, T = 82.01).
+constexpr double falling = 0.5;
 /// How much further from proportional than the least a part may be that vanishes where that does, and the rounding of
 /// both. Near three times around an orbit other turns differed by 0.1 to 0.5, those of the orbit by 1e-6.
 constexpr double as_proportional = 10.0;
@@ -69,6 +73,9 @@ constexpr double proportion_rounding = 1e-6;
 constexpr double beside = 1.41;
 /// A smaller broken part does not say in which direction the branch came.
 constexpr double telling = 1e-2;
+
+/// Of a part of the given size what is not proportional to that at the first orbit.
+double not_proportional(double part, double size) { return std::sqrt(std::max(0.0, size * size - part * part)); }
 
 int multiplicity_of(const bifurcation::SymmetryGain& gain) {
   return gain.name == "1" && !gain.reversing ? gain.shift_denominator : 1;
@@ -109,6 +116,7 @@ std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuat
   loop::Loop near = from.loop;
   Place before{from.arclength, 1.0};
   Place beyond{to.arclength, std::min(watch.signed_part(gain, from.loop, to.loop), 0.0)};
+  double off_before = std::numeric_limits<double>::infinity();
   for (int n = 0; n < most_on_the_way; ++n) {
     const double there =
         before.position + on_the_way * before.part / (before.part - beyond.part) * (beyond.position - before.position);
@@ -120,6 +128,9 @@ std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuat
       beyond = {before.position + nearer * (there - before.position), 0.0};
       continue;
     }
+    const double off = not_proportional(part, size);
+    if (off > std::max(still_vanishing, falling * off_before)) return std::nullopt;
+    off_before = off;
     if (size > proportional * std::abs(part) + still_vanishing) {
       if (n == 0) return std::nullopt;  // it turns instead of vanishing: no arrival
       break;
@@ -130,7 +141,7 @@ std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuat
     add(point->loop);
     if (size > telling && part > 0.0) near = point->loop;  // beyond, other families may leave than the one that came
     if (samples.size() == known_before || size < telling ||
-        (std::abs(at_zero(samples, &Sample::period) - period) <= settled * period &&
+        (off <= still_vanishing && std::abs(at_zero(samples, &Sample::period) - period) <= settled * period &&
          !(std::abs(at_zero(samples, &Sample::level) - level) > settled * (1.0 + std::abs(level)))))
       break;
     (part > 0.0 ? before : beyond) = {there, part};
@@ -158,7 +169,7 @@ std::vector<bifurcation::SymmetryGain> vanishing(std::vector<bifurcation::Symmet
   for (const bifurcation::SymmetryGain& gain : gains) {
     const double part = watch.signed_part(gain, from.loop, point->loop);
     const double size = watch.relative_size(gain, from.loop, point->loop);
-    off.push_back(std::sqrt(std::max(0.0, size * size - part * part)));
+    off.push_back(not_proportional(part, size));
   }
   const double most = as_proportional * *std::min_element(off.begin(), off.end()) + proportion_rounding;
   std::vector<bifurcation::SymmetryGain> kept;

@@ -252,7 +252,8 @@ bool BranchTask::take(const continuation::Orbit& orbit) {
   _curve.add(orbit.arclength, orbit.loop, kept_orbits);
   if (_outcome.orbits > 0 && _curve.known().size() == orbits_from_birth) detect_from_birth();
   if (arrive(orbit)) return false;
-  if (!_last && _options.too_far && !(_work.amplitude > 0.0))  // a fold may lie between this orbit and the next
+  // A fold may lie between this orbit and the next.
+  if (!_last && _options.too_far && !(_work.amplitude > 0.0) && !_work.base_is_orbit)
     (void)_folds.advance(orbit.arclength - continuation::arclength_between(_start.base, orbit.loop), _start.base.period,
                          continuation::energy_of(*_system, _start.base));
   const std::optional<spectrum::Stability>& stability = stability_at(orbit);

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include "branch_task.hpp"
+#include "equilibrium_places.hpp"
+#include "given_start.hpp"
 #include "locate_task.hpp"
 #include "locus_task.hpp"
 #include "orbweaver/bifurcation/small_oscillations.hpp"
@@ -41,8 +43,8 @@ void Executor::take_back_rows(bool flushed) {
 
 queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
   queue::TaskOutcome done;
-  if (work.period > 0.0)
-    done.payload = pack(state_start(_scene, _system, work, _team));
+  if (!work.given.empty())
+    done.payload = pack(given_start(_scene, _system, work, _team));
   else if (_system->family_scalars().free.empty())
     done.payload = pack(small_oscillations(work));
   else if (_system->structure().driven)
@@ -62,6 +64,7 @@ SweepOutcome Executor::small_oscillations(const SweepWork& work) const {
   outcome.period_to = options.period_to;
   const bifurcation::SmallOscillations all = bifurcation::small_oscillations(*_system, result, options.cutoff);
   outcome.families = all.count;
+  outcome.equilibria = {equilibrium_place(*_system, work.point, result.linear)};
   for (const bifurcation::LeftOut& left_out : all.left_out)
     if (!left_out.is_told)  // those are among the rejected
       outcome.left_out.push_back({left_out.period, left_out.place, left_out.families});

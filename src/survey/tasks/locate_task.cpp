@@ -14,6 +14,7 @@
 #include "orbweaver/archive/schema/records.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/bifurcation/directions.hpp"
+#include "orbweaver/bifurcation/family_jump.hpp"
 #include "orbweaver/bifurcation/kernel.hpp"
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/core/error.hpp"
@@ -168,7 +169,29 @@ class Location {
       if (why.empty()) why = not_told_apart(*_system, known.loop, beside, family.isotropy(), _team);
       beside = &known.loop;
     }
-    return why;
+    return why.empty() ? steep_in(family) : why;
+  }
+
+  /// Says so where an index is between -2 and 2 on too short a part of the way between the known orbits around the
+  /// event.
+  [[nodiscard]] std::string steep_in(const continuation::FamilyCurve& family) const {
+    if (!_system->structure().symplectic) return {};
+    const loop::Loop* before = nullptr;
+    const loop::Loop* after = nullptr;
+    for (const continuation::FamilyCurve::Known& known : family.known()) {
+      if (known.position <= _work.from) before = &known.loop;
+      if (known.position >= _work.to && !after) after = &known.loop;
+    }
+    if (!before || !after) return {};
+    const auto from = stability_of(*_system, *before, family.isotropy(), _team);
+    const auto to = stability_of(*_system, *after, family.isotropy(), _team);
+    const double smallest = family.options().smallest_jump;
+    if (!from || !to ||
+        bifurcation::are_turns_asked(*from, *to, continuation::arclength_between(*before, *after), smallest))
+      return {};
+    return fmt::format(
+        "an index of {:.2g} is between -2 and 2 on less than {:.0e} of the way: families cross to rounding",
+        std::max(std::abs(from->fundamental[0]), std::abs(to->fundamental[0])), smallest);
   }
 
   void describe(const bifurcation::Crossing& crossing, const continuation::FamilyCurve& family) {

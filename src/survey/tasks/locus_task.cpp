@@ -23,6 +23,7 @@ int limit_of(continuation::EndReason reason) {
   switch (reason) {
     case continuation::EndReason::period_limit: return period_limited;
     case continuation::EndReason::energy_limit: return energy_limited;
+    case continuation::EndReason::parameter_limit: return parameter_limited;
     case continuation::EndReason::step_limit: return step_limited;
     default: return 0;
   }

@@ -16,9 +16,4 @@ namespace orbweaver::survey {
 /// raised from there.
 [[nodiscard]] SweepOutcome drive_start(const systems::System& system, const SweepWork& work);
 
-/// The orbit near the trajectory from `work.point` over `work.period`, with its symmetries; two starts, one to each
-/// side. Throws NumericalError where Newton's method finds none.
-[[nodiscard]] SweepOutcome state_start(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
-                                       const SweepWork& work, core::Team* team);
-
 }  // namespace orbweaver::survey

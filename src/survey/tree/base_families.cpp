@@ -8,6 +8,8 @@
 #include <fmt/ranges.h>
 
 #include "end_text.hpp"
+#include "given_starts.hpp"
+#include "numbered_starts.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
@@ -71,12 +73,8 @@ bool has_equilibrium_families(const systems::System& system) {
   return system.family_scalars().free.empty() || !system.structure().conservative();
 }
 
-/// Of an orbit that the scene gives: the states come behind the equilibria.
 std::string name_of_start(const scene::Scene& scene, const systems::System& system, const SweepOutcome& found,
-                          const FoundMode& mode, std::size_t sweeps) {
-  const std::size_t first_state = sweeps - scene.states.size();
-  if (static_cast<std::size_t>(found.index) >= first_state)
-    return scene.states.at(static_cast<std::size_t>(found.index) - first_state).name;
+                          const FoundMode& mode) {
   if (mode.base.modes.empty()) return base_family_name(scene, system, found.point, found.index, mode.place);
   const std::size_t given = names_given(scene, system, found.point);
   return static_cast<std::size_t>(mode.place) < given
@@ -103,21 +101,60 @@ bool is_of_another(const FoundMode& mode, const SweepOutcome& of, const std::vec
   });
 }
 
+/// A family is followed to one side or, as one family or as two, to both.
+void add_tasks(const std::string& name, const std::string& branch_key, const std::vector<double>& point,
+               const FoundMode& mode, std::vector<queue::Task>& tasks) {
+  BranchWork work;
+  work.key = work.lineage.family = branch_key;
+  work.name = name;
+  work.direction = mode.direction;
+  work.isotropy = mode.isotropy;
+  work.amplitude = mode.amplitude;
+  work.base = mode.base.modes.empty() ? loop::constant_loop(point, mode.period, mode.cutoff) : mode.base;
+  work.base_is_orbit = mode.base_is_orbit;
+  if (mode.one_direction) {
+    tasks.push_back(task_of(work));
+    return;
+  }
+  if (mode.base_is_orbit) {  // two sides of one family
+    work.key = branch_key + "+";
+    tasks.push_back(task_of(work));
+    work.key = branch_key + "-";
+    work.lineage.side = -1;
+    work.direction *= -1.0;
+    tasks.push_back(task_of(work));
+    return;
+  }
+  work.key = work.lineage.family = branch_key + "+";
+  tasks.push_back(task_of(work));
+  work.key = work.lineage.family = branch_key + "-";
+  work.name += " (other side)";
+  work.direction *= -1.0;
+  tasks.push_back(task_of(work));
+}
+
 }  // namespace
 
 std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::System& system) {
   std::vector<queue::Task> tasks;
   std::vector<std::vector<double>> points;
   if (!scene.fixed_points.grid.empty()) points = starts::find_fixed_points(system, scene.fixed_points.grid);
-  std::vector<std::vector<double>> known = points;
-  for (const scene::StateStart& start : scene.states) known.push_back(start.state);
-  systems::require_identities(system, known);
+  std::vector<std::vector<double>> known;
+  std::vector<SweepWork> given = given_starts(scene, system);
+  for (const SweepWork& work : given)
+    if (!work.given.front().is_return()) known.push_back(work.point);
+  if (scene.recurrences) known.push_back(scene.recurrences->state);
+  systems::require_identities(system, points, known);
   if (has_equilibrium_families(system))
     for (const std::vector<double>& point : points)
-      tasks.push_back(task_of(SweepWork{static_cast<int>(tasks.size()), point, 0.0}));
+      tasks.push_back(task_of(SweepWork{static_cast<int>(tasks.size()), point}));
   const std::size_t equilibria = tasks.size();
-  for (const scene::StateStart& start : scene.states)
-    tasks.push_back(task_of(SweepWork{static_cast<int>(tasks.size()), start.state, start.period}));
+  std::size_t returns = 0;
+  for (SweepWork& work : given) {
+    work.index = static_cast<int>(tasks.size());
+    returns += work.given.front().is_return() ? 1 : 0;
+    tasks.push_back(task_of(work));
+  }
   const std::string range = scene.sweep.period
                                 ? fmt::format("from {:g} to {:g}", scene.sweep.period->from * system.scales().time,
                                               scene.sweep.period->to * system.scales().time)
@@ -127,7 +164,12 @@ std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::S
                                : fmt::format("{} each in {}", system.structure().driven ? "driving" : "following",
                                              system.family_scalars().free.front());
   if (equilibria > 0) core::log_info(fmt::format("{} equilibria; {}", equilibria, look));
-  if (equilibria < tasks.size()) core::log_info(fmt::format("{} given orbits", tasks.size() - equilibria));
+  if (given.size() > returns) core::log_info(fmt::format("{} given orbits", given.size() - returns));
+  if (scene.recurrences) core::log_info(fmt::format("{} returns of the trajectory", returns));
+  if (tasks.empty() && scene.recurrences)
+    throw core::InputError(
+        "starts.recurrences: the trajectory has no return: give it more time, longer periods or a "
+        "larger tolerance");
   if (tasks.empty() && !has_equilibrium_families(system))
     throw core::InputError("a conservative family in a parameter starts at an orbit: give one with starts.states");
   if (tasks.empty())
@@ -144,8 +186,18 @@ std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const syst
   std::vector<queue::Task> tasks;
   remark_grid(scene, system, summary);
   std::vector<SweepOutcome> all;
-  for (const auto& [key, ended] : sweeps)
-    if (!ended.second.failed) all.push_back(unpack_sweep_outcome(ended.second.payload));  // gather_failed_sweeps
+  std::vector<FoundStart> given;
+  int equilibria = 0;
+  for (const auto& [key, ended] : sweeps) {
+    SweepWork work = unpack_sweep_work(ended.first.payload);
+    equilibria += work.given.empty() ? 1 : 0;
+    if (ended.second.failed) continue;  // gather_failed_sweeps
+    SweepOutcome outcome = unpack_sweep_outcome(ended.second.payload);
+    if (work.given.empty())
+      all.push_back(std::move(outcome));
+    else
+      given.push_back({std::move(work.given.front()), std::move(outcome)});
+  }
   for (const SweepOutcome& found : all) {
     check_names(scene, system, found);
     if (found.modes.empty() && found.rejected.empty() && !system.family_scalars().free.empty()) {
@@ -164,37 +216,12 @@ std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const syst
       summary.remarks.push_back(fmt::format("dip passed over at {}: {}", point_text(system, found.point), reason));
     for (const FoundMode& mode : found.modes) {
       if (is_of_another(mode, found, all)) continue;
-      const std::string name = name_of_start(scene, system, found, mode, sweeps.size());
-      const std::string branch_key = base_key(found.index, mode.place);
-      BranchWork work;
-      work.key = work.lineage.family = branch_key;
-      work.name = name;
-      work.direction = mode.direction;
-      work.isotropy = mode.isotropy;
-      work.amplitude = mode.amplitude;
-      work.base = mode.base.modes.empty() ? loop::constant_loop(found.point, mode.period, mode.cutoff) : mode.base;
-      work.base_is_orbit = mode.base_is_orbit;
-      if (mode.one_direction) {
-        tasks.push_back(task_of(work));
-        continue;
-      }
-      if (mode.base_is_orbit) {  // two sides of one family
-        work.key = branch_key + "+";
-        tasks.push_back(task_of(work));
-        work.key = branch_key + "-";
-        work.lineage.side = -1;
-        work.direction *= -1.0;
-        tasks.push_back(task_of(work));
-        continue;
-      }
-      work.key = work.lineage.family = branch_key + "+";
-      tasks.push_back(task_of(work));
-      work.key = work.lineage.family = branch_key + "-";
-      work.name += " (other side)";
-      work.direction *= -1.0;
-      tasks.push_back(task_of(work));
+      const std::string name = name_of_start(scene, system, found, mode);
+      add_tasks(name, base_key(found.index, mode.place), found.point, mode, tasks);
     }
   }
+  for (const NumberedStart& start : numbered_starts(scene, system, std::move(given), summary.remarks))
+    add_tasks(start.name, base_key(equilibria + start.number, 0), {}, start.mode, tasks);
   const auto allowed = static_cast<std::size_t>(scene.limits.families);
   if (tasks.size() > allowed) {
     summary.remarks.push_back(fmt::format("{} families found, {} followed (limits.families)", tasks.size(), allowed));
@@ -220,9 +247,15 @@ void gather_failed_sweeps(const systems::System& system, const SweepsEnded& swee
     const SweepWork work = unpack_sweep_work(task.payload);
     archive::FamilyRecord record;
     record.key = equilibrium_key(work.index);
-    record.name = equilibrium_name(work.index);
-    record.end_reason =
-        limited(failure_text(fmt::format("the sweep at {}: {}", point_text(system, work.point), outcome.reason)));
+    if (work.given.empty()) {
+      record.name = equilibrium_name(work.index);
+      record.end_reason =
+          limited(failure_text(fmt::format("the sweep at {}: {}", point_text(system, work.point), outcome.reason)));
+    } else {
+      const GivenStart& given = work.given.front();
+      record.name = given.name.empty() ? given.told : given.name;
+      record.end_reason = limited(failure_text(fmt::format("{}: {}", given.told, outcome.reason)));
+    }
     summary.families.push_back({record.key, record.name, "", 0, 0.0, 0.0, 0.0, 0.0, record.end_reason, true});
     summary.failed_tasks.push_back(fmt::format("{}: {}", key, outcome.reason));
     tables.families.push_back(std::move(record));

@@ -25,6 +25,7 @@ constexpr std::int64_t orbits_a_task = 8;
 constexpr std::int64_t checksums_a_task = 512;
 constexpr std::int64_t sections_a_task = 256;
 constexpr std::int64_t loci_a_task = 8;
+constexpr std::int64_t equilibria_a_task = 256;
 
 void add_blocks(What what, std::int64_t first, std::int64_t end, std::int64_t most, std::vector<queue::Task>& tasks) {
   for (; first < end; first += most) tasks.push_back(task_of({what, first, std::min(first + most, end)}));
@@ -51,6 +52,8 @@ std::vector<queue::Task> tasks_of(const VerifiedAtlas& atlas) {
   }
   add_blocks(What::crossings, 0, static_cast<std::int64_t>(atlas.archive().crossings().rows()), 1, tasks);
   add_blocks(What::loci, 0, static_cast<std::int64_t>(atlas.archive().loci().rows()), loci_a_task, tasks);
+  add_blocks(What::equilibria, 0, static_cast<std::int64_t>(atlas.archive().equilibria().rows()), equilibria_a_task,
+             tasks);
   if (!atlas.section().coordinate.empty())
     add_blocks(What::sections, 0, static_cast<std::int64_t>(atlas.archive().orbits().rows()), sections_a_task, tasks);
   return tasks;
@@ -74,6 +77,7 @@ Verification verify(const core::Communicator& comm, const std::filesystem::path&
     out.crossings = static_cast<std::int64_t>(archive->crossings().rows());
     out.sections = static_cast<std::int64_t>(archive->sections().rows());
     out.loci = static_cast<std::int64_t>(archive->loci().rows());
+    out.equilibria = static_cast<std::int64_t>(archive->equilibria().rows());
     for (const archive::ChangedRow& row : archive->changed_rows())
       findings.objections.push_back(
           {row.table, row.table.empty() ? -1 : static_cast<std::int64_t>(row.row), "", row.text});

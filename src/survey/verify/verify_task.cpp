@@ -10,6 +10,7 @@
 #include "tasks/payload/payload.hpp"
 #include "tasks/section_rows.hpp"
 #include "verify/crossing_check.hpp"
+#include "verify/equilibrium_check.hpp"
 #include "verify/locus_check.hpp"
 #include "verify/orbit_check.hpp"
 
@@ -30,9 +31,10 @@ Findings findings_in(const queue::Task& task, const queue::TaskOutcome& outcome)
   if (!outcome.failed && !outcome.payload.empty()) return from_payload<Findings>(outcome.payload);
   const auto work = from_payload<VerifyWork>(task.payload);
   Findings findings;
-  const char* table = work.what == VerifyWork::What::crossings ? "crossings"
-                      : work.what == VerifyWork::What::loci    ? "loci"
-                                                               : "orbits";
+  const char* table = work.what == VerifyWork::What::crossings    ? "crossings"
+                      : work.what == VerifyWork::What::loci       ? "loci"
+                      : work.what == VerifyWork::What::equilibria ? "equilibria"
+                                                                  : "orbits";
   findings.objections.push_back(
       {table, work.first, "",
        fmt::format("could not be verified (rows {} to {}): {}", work.first, work.end - 1, outcome.reason)});
@@ -60,6 +62,10 @@ queue::TaskOutcome VerifyExecutor::execute(const queue::Task& task, queue::TaskC
     case VerifyWork::What::loci:
       for (std::int64_t row = work.first; row < work.end; ++row)
         check_locus_point(atlas(), static_cast<std::size_t>(row), findings);
+      break;
+    case VerifyWork::What::equilibria:
+      for (std::int64_t row = work.first; row < work.end; ++row)
+        check_equilibrium(atlas(), static_cast<std::size_t>(row), findings);
       break;
   }
   queue::TaskOutcome done;

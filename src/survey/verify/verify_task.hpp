@@ -23,8 +23,9 @@ struct VerifyWork {
     crossings,
     sections,
     loci,  ///< points of them
+    equilibria,
   };
-  [[nodiscard]] friend constexpr What last_of(What) { return What::loci; }
+  [[nodiscard]] friend constexpr What last_of(What) { return What::equilibria; }
   What what = What::orbits;
   std::int64_t first = 0;
   std::int64_t end = 0;

@@ -48,6 +48,8 @@ class Archive {
   [[nodiscard]] const Table& sections() const noexcept { return _sections; }
   /// Empty for an atlas from before there were loci (format_minor 6).
   [[nodiscard]] const Table& loci() const noexcept { return _loci; }
+  /// Empty for an atlas from before they were stored (format_minor 7).
+  [[nodiscard]] const Table& equilibria() const noexcept { return _equilibria; }
   /// Empty for an atlas of format_minor 0, which has no such table.
   [[nodiscard]] const Table& findings() const noexcept { return _findings; }
   /// The column `kind` of crossings().
@@ -84,6 +86,7 @@ class Archive {
   Table _crossings;
   Table _sections;
   Table _loci;
+  Table _equilibria;
   Table _findings;
   std::vector<CrossingKind> _crossing_kinds;
   std::vector<ChangedRow> _changed;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
@@ -122,6 +123,22 @@ struct LocusRecord {
   std::string note;  ///< "start", "cusp", "return", or why the curve ends there; empty at all others
 };
 
+/// One row of /equilibria: an equilibrium that families were looked for at, or a point of its curve in the parameter.
+struct EquilibriumRecord {
+  int equilibrium = 0;
+  int step = 0;            ///< 0 where the scene leads to it; points of the curve to its other side count backwards
+  double arclength = 0.0;  ///< by chords, in the survey's scales
+  std::string kind;        ///< "equilibrium", "hopf", "fold-parameter", "return"
+  double parameter = not_computed;
+  std::vector<double> state;
+  double energy = not_computed;
+  std::string stability;                   ///< of the linearised field; empty: not computed
+  std::vector<double> eigenvalues;         ///< of the Jacobian: (re, im) each, dimension of them; or none
+  std::vector<double> periods;             ///< of the linear oscillations, longest first: dimension/2; or none
+  std::vector<std::int64_t> multiplicity;  ///< oscillations that share each of these periods; or none
+  std::string note;
+};
+
 /// One row of /findings: what does not add up in a survey, or what its limits cut. Rows are those of the other tables
 /// as they are written; -1: none.
 struct FindingRecord {
@@ -176,6 +193,7 @@ struct Records {
   std::vector<CrossingRecord> crossings;
   std::vector<SectionRecord> sections;
   std::vector<LocusRecord> loci;
+  std::vector<EquilibriumRecord> equilibria;
   std::vector<std::string> left_out_keys;  ///< families that the archive does not have; rows of theirs are left out
   std::vector<VoidedRows> voided;          ///< several for one family are allowed
   /// Scenes, besides the header's, for which segments may have been written: those before limits were widened.

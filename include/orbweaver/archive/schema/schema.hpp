@@ -14,8 +14,8 @@ inline constexpr const char* segment_format = "orbweaver-segment";
 inline constexpr int format_version = 1;
 /// Root attribute `format_minor`: it rises with every table, column or attribute that is added; older files of the
 /// version are read. 1: /findings, system, effects, parameters, scales. 2: checksums. 3: what certificates say. 4:
-/// /sections is filled. 5: the parameter at crossings and findings. 6: /loci.
-inline constexpr int format_minor = 6;
+/// /sections is filled. 5: the parameter at crossings and findings. 6: /loci. 7: /equilibria.
+inline constexpr int format_minor = 7;
 /// The first with checksums.
 inline constexpr int checksums_since = 2;
 /// The first with verdicts.
@@ -63,6 +63,7 @@ struct TableSpec {
 [[nodiscard]] TableSpec crossings_spec(const Header& header);
 [[nodiscard]] TableSpec sections_spec(const Header& header);
 [[nodiscard]] TableSpec loci_spec(const Header& header);
+[[nodiscard]] TableSpec equilibria_spec(const Header& header);
 [[nodiscard]] TableSpec findings_spec();
 
 /// The tables of a segment: orbits and sections name their family by its key, since rows are not numbered yet.

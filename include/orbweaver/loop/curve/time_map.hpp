@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "orbweaver/core/serialization.hpp"
@@ -29,6 +30,10 @@ struct TimeMap {
   /// The s at which this map's time is that of `other` at `s`, to rounding: what inverse(other.phase(s)) is, but for
   /// the rounding of the phase, which counts 1/density times.
   [[nodiscard]] double parameter_at(const TimeMap& other, double s) const;
+
+  /// `phase` and `parameter_at` at many parameters, side by side in the lanes of SIMD registers: the same to rounding.
+  [[nodiscard]] std::vector<double> phases(std::span<const double> s) const;
+  [[nodiscard]] std::vector<double> parameters_at(const TimeMap& other, std::span<const double> s) const;
 
   /// True if phase(s + 2 pi turns) = phase(s) + 2 pi turns for all s: only every q-th coefficient for turns = p/q, and
   /// half turns where kappa is not 1.

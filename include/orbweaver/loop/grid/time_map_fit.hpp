@@ -31,6 +31,10 @@ inline constexpr double least_density = 0.02;
 [[nodiscard]] TimeMapFit fit_general(const Loop& loop, const Isotropy& isotropy, double tolerance, int most = 16,
                                      double least = least_density);
 
+/// As fit_general, but it is the logarithm of the density that has up to `most` harmonics: the density may fall to any
+/// part of the even one, and has as many harmonics as that takes. For orbits with time scales far apart.
+[[nodiscard]] TimeMapFit fit_scales(const Loop& loop, const Isotropy& isotropy, double tolerance, int most = 32);
+
 /// How fast s is to run, ds/dt > 0 in any unit, at the samples of a loop.
 using Rate = std::function<std::vector<double>(const Samples& samples)>;
 

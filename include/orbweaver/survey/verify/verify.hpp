@@ -48,6 +48,7 @@ struct Verification {
   std::int64_t crossings = 0;
   std::int64_t sections = 0;
   std::int64_t loci = 0;              ///< points of them
+  std::int64_t equilibria = 0;        ///< and points of their curves
   std::int64_t uninformative = 0;     ///< orbits of which the certificate says nothing: too unstable to be integrated
   std::vector<Objection> objections;  ///< by table, then row
   std::vector<Margin> margins;        ///< one a column, by name

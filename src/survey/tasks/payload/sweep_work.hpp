@@ -7,21 +7,47 @@
 #include "orbweaver/loop/curve/tangent.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/queue/task.hpp"
+#include "orbweaver/starts/equilibrium_curve.hpp"
+#include "orbweaver/starts/linear_modes.hpp"
 
 namespace orbweaver::survey {
+
+/// An orbit that the scene gives (`starts`), near enough for Newton's method.
+struct GivenStart {
+  /// One of its own; a return of a trajectory is a guess: its orbit is looked for at the trajectory's energy, once
+  /// around, and need not exist.
+  enum class From { state, archive, loop, trajectory };
+  From from = From::state;
+  std::string name;     ///< the scene's; empty: by what its family is
+  std::string told;     ///< in messages: "starts.states, entry 2"
+  double period = 0.0;  ///< of the trajectory from the work's point, or of `guess`
+  int symmetry = 0;     ///< after `period` the trajectory goes on as its image (starts::NearReturn)
+  int order = 1;        ///< periods after which it closes then
+  loop::Loop guess;     ///< empty: the trajectory from the work's point
+
+  [[nodiscard]] bool is_return() const { return from == From::trajectory; }
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, from, name, told, period, symmetry, order, guess);
+  }
+};
+
+[[nodiscard]] constexpr GivenStart::From last_of(GivenStart::From) { return GivenStart::From::trajectory; }
 
 /// Look for small oscillations around one equilibrium, or, where a parameter moves, for the Hopf points of its curve;
 /// or correct an orbit that the scene gives.
 struct SweepWork {
   static constexpr const char* payload_name = "sweep work";
-  int index = 0;  ///< of the equilibrium, in sorted order; states come behind
+  int index = 0;  ///< of the equilibrium, in sorted order; given orbits come behind
   std::vector<double> point;
-  double period = 0.0;  ///< of an orbit through `point`; 0: an equilibrium
+  std::vector<GivenStart> given{};  ///< one, or none for an equilibrium
 
-  static constexpr int wire_version = 2;
+  static constexpr int wire_version = 3;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, index, point, period);
+    core::serialize_members(archive, index, point, given);
   }
 };
 
@@ -76,6 +102,28 @@ struct LeftOutMode {
   }
 };
 
+/// An equilibrium, or a point of its curve in the parameter, with its linear modes: all in the survey's scales.
+struct EquilibriumPlace {
+  int step = 0;            ///< 0 at the sweep's equilibrium
+  double arclength = 0.0;  ///< from there, by chords
+  starts::EquilibriumKind kind = starts::EquilibriumKind::regular;
+  double parameter = 0.0;  ///< NaN where none moves
+  std::vector<double> state;
+  double energy = 0.0;  ///< NaN where none is kept
+  starts::LinearStability stability = starts::LinearStability::undecided;
+  std::vector<double> eigenvalues;  ///< re, im of each, by descending real, then imaginary part
+  std::vector<double> periods;      ///< of the oscillations, longest first; NaN behind the last: dimension/2
+  std::vector<int> multiplicity;    ///< of each; -1 behind the last
+  std::string note;                 ///< why the curve ends there; empty at all others
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, step, arclength, kind, parameter, state, energy, stability, eigenvalues, periods,
+                            multiplicity, note);
+  }
+};
+
 struct SweepOutcome {
   static constexpr const char* payload_name = "sweep outcome";
   int index = 0;
@@ -87,12 +135,13 @@ struct SweepOutcome {
   int families = 0;                   ///< of the equilibrium, those left out and undecided included
   double period_from = 0.0;           ///< the range swept
   double period_to = 0.0;
+  std::vector<EquilibriumPlace> equilibria;  ///< along the curve where there is one
 
-  static constexpr int wire_version = 3;
+  static constexpr int wire_version = 4;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, index, point, modes, rejected, left_out, kernels, families, period_from,
-                            period_to);
+    core::serialize_members(archive, index, point, modes, rejected, left_out, kernels, families, period_from, period_to,
+                            equilibria);
   }
 };
 

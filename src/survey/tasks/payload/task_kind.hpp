@@ -18,10 +18,11 @@ enum Limit : int {
   step_limited = 4,
   depth_limited = 8,
   guard_limited = 16,
-  order_limited = 32
+  order_limited = 32,
+  parameter_limited = 64
 };
 /// Those beyond which single orbits may lie: a step that passes one may have passed the others as well.
-inline constexpr int orbit_limited = period_limited | energy_limited | guard_limited;
+inline constexpr int orbit_limited = period_limited | energy_limited | guard_limited | parameter_limited;
 /// Throws EnvironmentError for other bits.
 void check_limits(int limits);
 

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/systems/structure.hpp"
+
+namespace orbweaver::starts {
+
+/// The loop of period `period` through `states` at the times period j/n, j = 0 ... n, n >= 4: it winds as the states do
+/// between the first and the last, and what these miss of closing is spread evenly over the period. Harmonics that a
+/// guess need not have are left out.
+[[nodiscard]] loop::Loop loop_through(const systems::Structure& structure, std::vector<std::vector<double>> states,
+                                      double period);
+
+/// The same of states at any ascending times within a period, at least four; neighbours differ by less than half a turn
+/// of each angle, whole turns apart. A last state a whole period after the first one says how the loop closes;
+/// otherwise it closes along less than half a turn. Between the times it runs along a cubic spline (Akima's, modified).
+[[nodiscard]] loop::Loop loop_through(const systems::Structure& structure, const std::vector<double>& times,
+                                      std::vector<std::vector<double>> states, double period);
+
+}  // namespace orbweaver::starts

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include <yaml-cpp/yaml.h>
+
+#include "orbweaver/scene/scene.hpp"
+#include "reader.hpp"
+
+namespace orbweaver::scene {
+
+/// `starts:`. Files are told from `folder`; none: those of a stored scene, which are not read.
+void read_starts(const Field& field, const systems::System& system, const std::optional<std::filesystem::path>& folder,
+                 Scene& scene);
+
+/// Writes the hash of each file that is a start beside it; true where the text had them all.
+[[nodiscard]] bool keep_hashes(const Scene& scene, YAML::Node& root);
+
+}  // namespace orbweaver::scene

@@ -1,0 +1,242 @@
+#include "given_start.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "orbweaver/certificate/integrate.hpp"
+#include "orbweaver/continuation/branch.hpp"
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/loop/curve/time_samples.hpp"
+#include "orbweaver/loop/grid/time_map_fit.hpp"
+#include "orbweaver/loop/symmetry/alignment.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
+#include "orbweaver/loop/symmetry/shift_search.hpp"
+#include "orbweaver/loop/symmetry/symmetry_group.hpp"
+#include "orbweaver/starts/loop_guess.hpp"
+#include "orbweaver/survey/tasks/branch_options.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+/// Samples of a trajectory, and its integrator's tolerance: the orbit is corrected from them.
+constexpr int samples_of_guess = 4 * loop::time_sample_count;
+constexpr double guess_tolerance = 1e-10;
+/// Of an energy, in its scale: branches end on limits to rounding.
+constexpr double same_energy = 1e-9;
+/// Orbits on the way to the energy of a return: one that is further away along its family is another orbit. Not
+/// measured; most take one or two.
+constexpr int most_steps_to_energy = 30;
+/// How far from the guess of a return a correction begins along the energy's gradient, in |dz(0)|: a branch's first
+/// orbit needs a way from its base. Far less than a return misses.
+constexpr double beside_guess = 1e-7;
+/// A repetition must be exact to this share of the amplitude (bifurcation::same_family has the same).
+constexpr double repeated = 1e-6;
+/// An orbit whose amplitude is less, relative to the size of its states, rests.
+constexpr double at_rest = 1e-6;
+
+/// States of a trajectory that comes near its image after them, moved by what it misses, spread evenly over them, and
+/// continued by their images until they close.
+void close_by_symmetry(const systems::Structure& structure, const GivenStart& given,
+                       std::vector<std::vector<double>>& states) {
+  const auto vector_of = [](const std::vector<double>& z) {
+    return Eigen::Map<const Eigen::VectorXd>(z.data(), static_cast<Eigen::Index>(z.size()));
+  };
+  systems::AffineMap map =
+      loop::SymmetryGroup::of_space(structure).elements().at(static_cast<std::size_t>(given.symmetry)).map;
+  Eigen::VectorXd missed = vector_of(states.back()) - map(vector_of(states.front()));
+  for (const int angle : structure.angles) {
+    const double turns = 2.0 * std::numbers::pi * std::round(missed(angle) / (2.0 * std::numbers::pi));
+    map.offset(angle) += turns;
+    missed(angle) -= turns;
+  }
+  const std::size_t piece = states.size() - 1;
+  for (std::size_t j = 0; j <= piece; ++j)
+    for (std::size_t i = 0; i < states[j].size(); ++i)
+      states[j][i] -= static_cast<double>(j) / static_cast<double>(piece) * missed(static_cast<Eigen::Index>(i));
+  for (std::size_t j = 1; j <= piece * static_cast<std::size_t>(given.order - 1); ++j) {
+    const Eigen::VectorXd image = map(vector_of(states[j]));
+    states.emplace_back(image.begin(), image.end());
+  }
+}
+
+/// The trajectory from a state as a loop: over a period, or over one for each time that it goes on as its image.
+loop::Loop trajectory_of(const systems::System& system, const std::vector<double>& point, const GivenStart& given) {
+  const int samples = samples_of_guess / given.order;
+  std::vector<std::vector<double>> states{point};
+  for (int j = 0; j < samples; ++j)
+    states.push_back(certificate::integrate(system, states.back(), given.period / samples, guess_tolerance));
+  if (given.is_return()) close_by_symmetry(system.structure(), given, states);
+  return starts::loop_through(system.structure(), std::move(states), given.period * given.order);
+}
+
+loop::Loop guess_of(const systems::System& system, const SweepWork& work) {
+  const GivenStart& given = work.given.front();
+  loop::Loop guess = given.guess.modes.empty() ? trajectory_of(system, work.point, given) : given.guess;
+  guess.parameters.clear();
+  for (const std::string& name : system.family_scalars().free)
+    guess.parameters.push_back(system.parameters().at(name) / system.parameter_scale(name));
+  return guess;
+}
+
+/// The orbit started where the first reversor that it has maps it to itself; as it is where it has none.
+loop::Loop at_reversor(const systems::Structure& structure, const loop::Loop& orbit) {
+  const loop::Loop even = loop::evenly_in_time(orbit);
+  for (const systems::Symmetry& reversor : structure.reversors) {
+    // R z(-t), which is z(t - sigma) for some sigma where the orbit has the symmetry.
+    const loop::Loop image = loop::transformed(even, reversor.map, true, 0.0);
+    const std::vector<loop::ShiftMinimum> shifts = loop::shift_minima(image, even, structure.angles);
+    if (shifts.empty() || !(shifts.front().square < std::pow(loop::symmetry_tolerance, 2))) continue;
+    for (const double start : {-0.5 * shifts.front().shift, 0.5 * shifts.front().shift}) {
+      loop::Loop moved = loop::time_shifted(even, start - std::floor(start));
+      for (const loop::SymmetryElement& element : loop::find_isotropy(structure, moved, loop::symmetry_tolerance))
+        if (element.reversing && element.shift_numerator == 0) return moved;
+    }
+  }
+  return orbit;
+}
+
+continuation::Start start_at(const loop::Loop& base, double sign) {
+  continuation::Start start;
+  start.base = base;
+  start.direction = along_last_scalar(base);
+  start.direction *= sign;
+  start.base_is_orbit = true;
+  return start;
+}
+
+/// The orbit of the family through `orbit` that has this energy, if it is near.
+std::optional<continuation::Orbit> at_energy(const std::shared_ptr<const systems::System>& system,
+                                             const continuation::Orbit& orbit, double energy,
+                                             continuation::Options options) {
+  const double unit = std::max(1.0, std::abs(energy));
+  if (std::abs(orbit.energy - energy) <= same_energy * unit) return orbit;
+  const bool is_below = orbit.energy < energy;
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  options.energy_from = is_below ? -unlimited : energy;
+  options.energy_to = is_below ? energy : unlimited;
+  options.period_limit = unlimited;
+  options.fixed_step.reset();
+  options.off_branch_spectrum = false;
+  for (const double sign : {1.0, -1.0}) {
+    continuation::Branch branch(system, start_at(orbit.loop, sign), options);
+    std::optional<continuation::Orbit> next = branch.advance();
+    double away = std::abs(orbit.energy - energy);
+    for (int n = 0; next && n < most_steps_to_energy; ++n) {
+      if (std::abs(next->energy - energy) <= same_energy * unit) return next;
+      next = branch.advance();
+      if (!next || !(std::abs(next->energy - energy) < away)) break;
+      away = std::abs(next->energy - energy);
+      if (away <= same_energy * unit) return next;
+    }
+  }
+  return std::nullopt;
+}
+
+/// The orbit near the guess of a return, found with its energy held to first order (the change is orthogonal to the
+/// energy's gradient) where the guess's period has no orbit near.
+std::optional<continuation::Orbit> beside_energy(const std::shared_ptr<const systems::System>& system,
+                                                 const loop::Loop& guess, continuation::Options options) {
+  loop::TimeSamples samples = loop::time_samples(guess, 2 * guess.cutoff + 2);
+  const auto d = static_cast<std::size_t>(guess.dimension);
+  const auto count = static_cast<std::size_t>(samples.count);
+  std::vector<double> state(d);
+  std::vector<double> gradient(d);
+  for (std::size_t j = 0; j < count; ++j) {
+    for (std::size_t i = 0; i < d; ++i)
+      state[i] = samples.states[i * count + j] +
+                 samples.winding[i] * 2.0 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(count);
+    system->conserved_gradient(0, state, gradient);
+    for (std::size_t i = 0; i < d; ++i) samples.states[i * count + j] = gradient[i];
+  }
+  std::fill(samples.winding.begin(), samples.winding.end(), 0.0);
+  continuation::Start start;
+  start.base = guess;
+  start.direction = {loop::with_cutoff(loop::interpolant(samples), guess.cutoff).modes, {0.0}};
+  options.start_amplitude = beside_guess;
+  return continuation::Branch(system, start, options).advance();
+}
+
+/// The orbit once around.
+loop::Loop once_around(const loop::Loop& orbit) {
+  const int times = loop::repetitions(orbit, repeated * loop::rms_amplitude(orbit));
+  return times > 1 ? loop::without_repetition(orbit, times) : orbit;
+}
+
+/// The orbit that Newton's method finds near the guess; none with the reason in `why`.
+std::optional<continuation::Orbit> corrected(const scene::Scene& scene,
+                                             const std::shared_ptr<const systems::System>& system,
+                                             const SweepWork& work, core::Team* team, std::string& why) {
+  const loop::Loop guess = guess_of(*system, work);
+  continuation::Options options = branch_options(scene, team);
+  const bool is_return = work.given.front().is_return();
+  if (is_return) {  // a return's orbit is within the limits when it has the energy
+    options.energy_from = -std::numeric_limits<double>::infinity();
+    options.energy_to = std::numeric_limits<double>::infinity();
+  }
+  continuation::Branch branch(system, start_at(guess, 1.0), options);
+  std::optional<continuation::Orbit> orbit = branch.advance();
+  if (!orbit) why = branch.ending().value().text();
+  if (!is_return || !system->structure().conservative() || !system->family_scalars().free.empty()) return orbit;
+  const double energy = system->conserved(0, work.point);
+  for (const bool by_energy : {false, true}) {
+    if (by_energy) orbit = beside_energy(system, guess, options);
+    if (!orbit) continue;
+    if (std::optional<continuation::Orbit> found = at_energy(system, *orbit, energy, options)) return found;
+    why = fmt::format("the orbit with T = {:.9g} has another energy, {:.9g}, and none with the trajectory's lies near",
+                      orbit->loop.period * system->scales().time, orbit->energy * system->scales().energy());
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+loop::Tangent along_last_scalar(const loop::Loop& base) {
+  loop::Tangent direction{std::vector<double>(base.modes.size(), 0.0),
+                          std::vector<double>(1 + base.parameters.size(), 0.0)};
+  direction.scalars.back() = 1.0;
+  return direction;
+}
+
+SweepOutcome given_start(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
+                         const SweepWork& work, core::Team* team) {
+  const bool is_return = work.given.front().is_return();
+  SweepOutcome outcome;
+  outcome.index = work.index;
+  outcome.point = work.point;
+  std::string why;
+  const std::optional<continuation::Orbit> orbit = corrected(scene, system, work, team, why);
+  if (!orbit && !is_return) throw core::NumericalError(why);
+  if (!orbit) {
+    outcome.rejected.push_back(why);
+    return outcome;
+  }
+  FoundMode found;
+  found.base = at_reversor(system->structure(), is_return ? once_around(orbit->loop) : orbit->loop);
+  const bool winds =
+      std::any_of(found.base.winding.begin(), found.base.winding.end(), [](double n) { return n != 0.0; });
+  if (!winds && loop::rms_amplitude(found.base) < at_rest * (1.0 + loop::rms_size(found.base))) {
+    if (!is_return) throw core::NumericalError("the orbit found rests: an equilibrium");
+    outcome.rejected.emplace_back("the orbit found rests: an equilibrium");
+    return outcome;
+  }
+  found.isotropy = loop::find_isotropy(system->structure(), found.base, loop::symmetry_tolerance);
+  if (!loop::is_invariant(found.base.time_map, found.isotropy)) found.base = loop::evenly_in_time(found.base);
+  found.period = found.base.period;
+  found.cutoff = found.base.cutoff;
+  found.base_is_orbit = true;
+  found.one_direction = false;
+  found.direction = along_last_scalar(found.base);
+  outcome.modes.push_back(std::move(found));
+  outcome.families = 1;
+  return outcome;
+}
+
+}  // namespace orbweaver::survey
