@@ -7,7 +7,7 @@ times=${options[0]}
 options=("${options[@]:1}")
 begin_anew
 survey whole 1 || fail "the undisturbed run failed"
-survey stopped 1 --walltime 0.5
+held 1 "write segment-000003.h5" survey stopped 1 --walltime 0.5
 [ $? = 4 ] || fail "the survey that was to be stopped came to its end"
 cp -r "$folder/whole" "$folder/finished"
 

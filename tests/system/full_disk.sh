@@ -7,6 +7,12 @@ bytes=$1
 segments=$2
 shift 2
 rm -rf out
+# It stands still before the next one, however fast the machine.
+if ((segments > 0)); then
+  export ORBWEAVER_PAUSE_SECONDS=1
+  ORBWEAVER_PAUSE_AT=$(printf 'write segment-%06d.h5' $((segments + 1)))
+  export ORBWEAVER_PAUSE_AT
+fi
 "$@" &
 pid=$!
 written() { find out/segments -name 'segment-*.h5' ! -newer out/segments/checkpoint 2>/dev/null | wc -l; }

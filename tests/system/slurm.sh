@@ -18,9 +18,9 @@ export PATH=$folder/bin:$PATH SLURM_JOB_ID=17
 batch=$(dirname "$0")/../../docs/slurm.sh
 grep -q '^#SBATCH --signal=B:USR1@' "$batch" || fail "the script asks for no signal"
 
-"$batch" "$scene" "$folder/job" >> "$folder/log" 2>&1 &
+ORBWEAVER_PAUSE_AT="write segment-000002.h5" ORBWEAVER_PAUSE_SECONDS=1 "$batch" "$scene" "$folder/job" >> "$folder/log" 2>&1 &
 job=$!
-until [ -e "$folder/job/segments/segment-000001.h5" ]; do sleep 0.02; done
+wait_until_held $job
 kill -USR1 $job
 wait $job
 [ $? = 4 ] || fail "the job did not end with status 4"

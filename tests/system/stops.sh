@@ -3,9 +3,7 @@
 # and resumes it; the archive must be that of an undisturbed run. Arguments: those of survey_runs.sh.
 . "$(dirname "$0")/survey_runs.sh"
 begin_anew
-began=$(milliseconds)
 survey whole 2 || fail "the undisturbed run failed"
-lasted=$(($(milliseconds) - began))
 
 # expect_stopped STATUS WHAT
 expect_stopped() {
@@ -14,18 +12,14 @@ expect_stopped() {
   [ -e "$folder/stopped/segments/checkpoint" ] || fail "$2: no checkpoint"
 }
 
-# Waits until the survey has written its first rows.
-wait_for_rows() {
-  until [ -e "$folder/stopped/segments/segment-000001.h5" ]; do sleep 0.02; done
-}
-
+place="write segment-000002.h5"
 for case in "TERM rank0" "USR1 mpirun" "USR1 worker" "INT rank0"; do
   read -r signal whom <<< "$case"
   rm -rf "$folder/stopped"
   : > "$folder/log"
-  survey stopped 3 &
+  held 1 "$place" survey stopped 3 &
   job=$!
-  wait_for_rows
+  wait_until_held $job
   case $whom in
     mpirun) victim=$(mpirun_of stopped) ;;
     rank0) victim=$(ranks_of stopped | head -1) ;;
@@ -42,8 +36,7 @@ done
 
 rm -rf "$folder/stopped"
 : > "$folder/log"
-half=$((lasted / 2))
-survey stopped 2 --walltime "0:$((half / 1000)).$(printf '%03d' $((half % 1000)))"
+held 1 "$place" survey stopped 2 --walltime 0:0.8
 expect_stopped $? "--walltime"
 mpirun -n 2 "$program" consolidate "$folder/stopped" >> "$folder/log" 2>&1
 [ $? = 4 ] || fail "consolidate must end as the survey that it is of"
@@ -53,9 +46,10 @@ expect_same stopped
 echo "--walltime: stopped, consolidated, resumed"
 
 rm -rf "$folder/stopped"
-survey stopped 1 &
+: > "$folder/log"
+held 1 "$place" survey stopped 1 &
 job=$!
-wait_for_rows
+wait_until_held $job
 kill -INT "$(ranks_of stopped | head -1)"
 kill -INT "$(ranks_of stopped | head -1)" 2> /dev/null
 wait $job

@@ -19,6 +19,18 @@ survey() {
   mpirun -n "$2" "$program" survey "$scene" -o "$folder/$1" --quiet "${options[@]}" "${@:3}" >> "$folder/log" 2>&1
 }
 
+# held SECONDS PLACE survey ...: that survey, standing still for so long where it comes to PLACE (core::pause_point), so that it
+# cannot be through before it is asked to stop, however fast the machine.
+held() {
+  ORBWEAVER_PAUSE_AT=$2 ORBWEAVER_PAUSE_SECONDS=$1 "${@:3}"
+}
+wait_until_held() {
+  until grep -q "paused at" "$folder/log"; do
+    kill -0 "$1" 2> /dev/null || fail "the run ended without coming to the place where it was to be held"
+    sleep 0.02
+  done
+}
+
 # Waits until no process of the survey in FOLDER/NAME is left.
 wait_for_end() {
   while pgrep -f -- "-o $folder/$1 --quiet" > /dev/null; do sleep 0.05; done
