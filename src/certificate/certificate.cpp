@@ -17,6 +17,7 @@
 #include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/loop/curve/system_at.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/taylor/flow.hpp"
 

@@ -1,4 +1,5 @@
 #include "newton.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 
 #include <algorithm>
 #include <cmath>

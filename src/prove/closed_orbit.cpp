@@ -9,6 +9,7 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::prove {
 

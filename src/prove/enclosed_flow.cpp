@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 
 #include "orbweaver/ad/tape.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::prove {
 

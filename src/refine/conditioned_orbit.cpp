@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::refine {
 

@@ -16,6 +16,7 @@
 #include "orbweaver/equations/loop_solver.hpp"
 #include "orbweaver/loss/assembled.hpp"
 #include "orbweaver/loss/dense.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 #include "start_vector.hpp"
 
 namespace orbweaver::spectrum {

@@ -8,6 +8,7 @@
 #include "orbweaver/bifurcation/directions.hpp"
 #include "orbweaver/bifurcation/small_oscillations.hpp"
 #include "orbweaver/certificate/integrate.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "spectrum/point_systems.hpp"
 

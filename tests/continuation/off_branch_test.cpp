@@ -8,6 +8,7 @@
 
 #include "continuation/families.hpp"
 #include "orbweaver/loss/assembled.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/spectrum/sliced_hessian.hpp"
 #include "spectrum/matrices.hpp"
 #include "support/off_branch_triplets.hpp"

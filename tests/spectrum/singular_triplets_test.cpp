@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/spectrum/eigenpairs.hpp"
 #include "spectrum/matrices.hpp"
 

@@ -10,6 +10,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "orbweaver/loop/symmetry/isotropy.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "spectrum/point_systems.hpp"

@@ -15,6 +15,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loss/assembled.hpp"
 #include "orbweaver/loss/linearization.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/spectrum/eigenpairs.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/systems/registry.hpp"

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/systems/identities.hpp"
 #include "orbweaver/systems/model/model_system.hpp"
 #include "orbweaver/systems/registry.hpp"

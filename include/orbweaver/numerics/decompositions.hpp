@@ -4,7 +4,12 @@
 
 /// Eigen's decompositions of dynamic matrices, compiled once (src/numerics/decompositions.cpp): each takes the compiler
 /// five to twenty seconds. Who decomposes a matrix includes this header; the code is Eigen's own.
+extern template class Eigen::ColPivHouseholderQR<Eigen::MatrixXd>;
+extern template class Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>;
+extern template class Eigen::ComplexEigenSolver<Eigen::MatrixXcd>;
 extern template class Eigen::EigenSolver<Eigen::MatrixXd>;
+extern template Eigen::EigenSolver<Eigen::MatrixXd>& Eigen::EigenSolver<Eigen::MatrixXd>::compute(
+    const Eigen::EigenBase<Eigen::MatrixXd>&, bool);
 extern template class Eigen::HouseholderQR<Eigen::MatrixXd>;
 extern template class Eigen::JacobiSVD<Eigen::MatrixXd>;
 extern template class Eigen::JacobiSVD<Eigen::MatrixXcd>;

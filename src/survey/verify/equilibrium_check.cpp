@@ -12,6 +12,7 @@
 #include <Eigen/Dense>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::survey {
 

@@ -14,6 +14,7 @@
 #include "orbweaver/archive/schema/crossing_kind.hpp"
 #include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/scene/scene.hpp"
 
 namespace orbweaver::survey {
