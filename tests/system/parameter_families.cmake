@@ -29,5 +29,5 @@ set_tests_properties(system.duffing.show_crossings PROPERTIES FIXTURES_REQUIRED 
 
 set(of_pendulum "${scene}")
 set(scene "${PROJECT_SOURCE_DIR}/drivers/scenes/lorenz.yaml")
-broken_off_test(lorenz.kills system 300 kills.sh 5 1 -- --set output.flush_seconds=0.1 --set output.flush_orbits=5)
+broken_off_test(lorenz.kills system 300 kills.sh 3 1 -- --set output.flush_seconds=0.1 --set output.flush_orbits=5)
 set(scene "${of_pendulum}")
