@@ -20,8 +20,8 @@ namespace {
 /// Newton's steps on the energy that a family holds, and the error that they may leave, in parts of 1 + |E|.
 constexpr int most_for_energy = 6;
 constexpr double energy_rounding = 1e-14;
-/// The error, in the same parts, with which an orbit is none of a family that holds the energy; where the orbit is known
-/// to less (its threshold), that.
+/// The error, in the same parts, with which an orbit is none of a family that holds the energy; where the orbit is
+/// known to less (its threshold), that.
 constexpr double energy_missed = 1e-8;
 
 }  // namespace

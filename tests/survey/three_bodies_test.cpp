@@ -1,5 +1,5 @@
-// The figure-eight of three bodies: its digits in the literature, the multipliers of all twelve coordinates, and what scaling and an
-// exchange of bodies, of which the survey knows nothing, say of its families.
+// The figure-eight of three bodies: its digits in the literature, the multipliers of all twelve coordinates, and what
+// scaling and an exchange of bodies, of which the survey knows nothing, say of its families.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -207,8 +207,8 @@ class ConservativeIdentities : public Identities {};
 
 // Coordinates q, v = dq/dt with the Lagrangian L = p . v - H: the field must obey its Euler-Lagrange equations, which
 // hold the momenta of the action against the energy and both against the field, gyroscopic terms included. L_vv v' =
-// L_q - L_vq v by central differences of order eight, in and across the coordinates. Coordinates q, p: dq/dt = dH/dp and
-// dp/dt = -dH/dq, and the action is that of p.
+// L_q - L_vq v by central differences of order eight, in and across the coordinates. Of coordinates q, p:
+// dq/dt = dH/dp and dp/dt = -dH/dq, and the action is that of p.
 TEST_P(ConservativeIdentities, TheActionIsStationaryAlongOrbits) {
   constexpr double h = 0.02;
   constexpr std::array<double, 4> stencil{4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0};
