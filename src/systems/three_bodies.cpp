@@ -8,10 +8,10 @@ namespace orbweaver::systems {
 
 /// Three point masses in the plane under Newtonian gravity, G = 1, without the motion of their centre of mass and
 /// without the angle by which all turn together: its momentum is the angular momentum L, which is a parameter. The
-/// frame is that of bodies 1 and 2: its x axis points from 1 to 2, r is their distance, and (x, y) is body 3 as seen from
-/// the centre of mass of both (Jacobi's vectors; Whittaker 1937, Analytical Dynamics, 13). State r, x, y and their momenta
-/// pr, px, py. With M = m1 + m2, the reduced masses k = m1 m2/M and K = m3 M/(M + m3), the part l = x py - y px of body
-/// 3 in L, and d1, d2 the distances of body 3 from the others:
+/// frame is that of bodies 1 and 2: its x axis points from 1 to 2, r is their distance, and (x, y) is body 3 as seen
+/// from the centre of mass of both (Jacobi's vectors; Whittaker 1937, Analytical Dynamics, 13). State r, x, y and
+/// their momenta pr, px, py. With M = m1 + m2, the reduced masses k = m1 m2/M and K = m3 M/(M + m3), the part l = x
+/// py - y px of body 3 in L, and d1, d2 the distances of body 3 from the others:
 ///   H = pr^2/(2 k) + (L - l)^2/(2 k r^2) + (px^2 + py^2)/(2 K) - m1 m2/r - m1 m3/d1 - m2 m3/d2.
 /// The frame turns at the rate (L - l)/(k r^2).
 class ThreeBodies {
