@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 
 #include "held_energy.hpp"
 #include "orbweaver/loop/curve/system_at.hpp"
@@ -67,7 +68,8 @@ void phase_condition(const Collocation& e, const Prediction& prediction, double*
   for (std::size_t n = 0; n < size; ++n) weights[n] /= std::sqrt(square);
 }
 
-/// The derivative of the energy's mean over the nodes: near enough to correct by (PointProblem::correct).
+/// The derivative of the energy's mean over the nodes, by states and by parameters: on a family all of them have one
+/// energy, and those by parameters alone differ from node to node.
 void energy_condition(const Collocation& e, const Prediction& prediction, double* weights) {
   const loop::Loop loop = e.to_loop(prediction.values.data());
   const std::shared_ptr<const systems::System> system = loop::system_at(e.system(), loop);
@@ -77,9 +79,10 @@ void energy_condition(const Collocation& e, const Prediction& prediction, double
   std::vector<double> z(d * static_cast<std::size_t>(stride));
   std::vector<double> slope(z.size());
   e.grid().at_nodes(prediction.values.data(), z.data(), slope.data());
-  std::vector<double> state(d);
+  std::vector<double> states(nodes * d);
   std::vector<double> gradient(d);
   for (std::size_t j = 0; j < nodes; ++j) {
+    const std::span<double> state = std::span(states).subspan(j * d, d);
     for (std::size_t i = 0; i < d; ++i)
       state[i] = z[i * static_cast<std::size_t>(stride) + j] + e.centre()[i] +
                  e.winding()[i] * static_cast<double>(j) * e.grid().spacing();
@@ -87,8 +90,9 @@ void energy_condition(const Collocation& e, const Prediction& prediction, double
     for (std::size_t i = 0; i < d; ++i)
       weights[i * static_cast<std::size_t>(stride) + j] = e.node_weights()[j] * gradient[i];
   }
+  const std::span<const double> share = std::span(e.node_weights()).first(nodes);
   for (std::size_t n = 0; n < loop.parameters.size(); ++n)
-    weights[static_cast<std::size_t>(e.period_at()) + 1 + n] = energy_by_parameter(e.system(), loop, n);
+    weights[static_cast<std::size_t>(e.period_at()) + 1 + n] = energy_by_parameter(e.system(), loop, n, states, share);
 }
 
 }  // namespace

@@ -20,6 +20,9 @@ namespace {
 /// Newton's steps on the energy that a family holds, and the error that they may leave, in parts of 1 + |E|.
 constexpr int most_for_energy = 6;
 constexpr double energy_rounding = 1e-14;
+/// The error, in the same parts, with which an orbit is none of a family that holds the energy; where the orbit is
+/// known to less (its threshold), that.
+constexpr double energy_missed = 1e-8;
 
 }  // namespace
 
@@ -53,10 +56,17 @@ Trial PointProblem::correct(Prediction prediction, const std::vector<double>& co
   const Eigen::Map<const RowMajor> matrix(conditions.data(), rows, static_cast<Eigen::Index>(size));
   constexpr Eigen::Index hold = 1;
   Trial trial = solve(prediction, conditions);
-  for (int n = 0; n < most_for_energy && trial.converged; ++n) {
+  const double unit = 1.0 + std::abs(_state.held_energy);
+  for (int n = 0; trial.converged; ++n) {
     static_cast<void>(resolved(trial));
     const double off = energy_of(_family, trial.loop) - _state.held_energy;
-    if (std::abs(off) <= energy_rounding * (1.0 + std::abs(_state.held_energy))) break;
+    if (std::abs(off) <= energy_rounding * unit) break;
+    if (n == most_for_energy) {
+      if (std::abs(off) <= std::max(energy_missed, trial.threshold) * unit) break;
+      trial.converged = trial.is_orbit = false;
+      trial.reason = fmt::format("its energy is {:.2g} from the one that the family holds", off);
+      break;
+    }
     // The shift that the other conditions do not see.
     const Eigen::VectorXd factors =
         (matrix * matrix.transpose()).ldlt().solve(-off * Eigen::VectorXd::Unit(rows, hold));

@@ -59,6 +59,7 @@ constexpr std::array built_in{
     registry_line<SwingingSpring<Damping<2>>>,
     registry_line<SwingingSpring<Drive<2>>>,
     registry_line<SwingingSpring<Damping<2>, Drive<2>>>,
+    registry_line<class ThreeBodies>,
     registry_line<class VanDerPol>,
 };
 
