@@ -39,8 +39,8 @@ inline std::vector<Built> all_built() {
 /// A whole number, which can neither be drawn nor differentiated by.
 inline bool is_count(const std::string& parameter) { return parameter == "links"; }
 
-/// Every parameter that is no count drawn between half and twice its standard value, those with the standard value 0 beside it (all
-/// systems so far allow that).
+/// Every parameter that is no count drawn between half and twice its standard value, those with the standard value 0
+/// beside it (all systems so far allow that).
 inline std::map<std::string, double> random_parameters(const ModelInfo& info, std::mt19937& generator,
                                                        const std::vector<std::string>& effects = {}) {
   std::uniform_real_distribution<double> factor(0.5, 2.0);
