@@ -86,13 +86,18 @@ void print_system(const scene::Scene& scene, const systems::System& system) {
   print_group(fmt::format("System: {} ({})", system.info().title, system.info().name), lines);
 }
 
-/// Equilibria of the system or, since nothing driven stands still, of the ideal one, with the phase 0.
-std::vector<std::vector<double>> resting_points(const scene::Scene& scene, const systems::System& system) {
-  if (!system.structure().driven) return starts::find_fixed_points(system, scene.fixed_points.grid);
+/// The system without effects, with the values of the parameters that it then has.
+std::shared_ptr<const systems::System> ideal_of(const systems::System& system) {
   std::map<std::string, double> parameters;
   for (const systems::Parameter& parameter : system.info().parameters)
     parameters[parameter.name] = system.parameters().at(parameter.name);
-  const auto ideal = systems::make_system(scene.system.name, parameters);
+  return systems::make_system(system.info().name, parameters);
+}
+
+/// Equilibria of the system or, since nothing driven stands still, of the ideal one, with the phase 0.
+std::vector<std::vector<double>> resting_points(const scene::Scene& scene, const systems::System& system) {
+  if (!system.structure().driven) return starts::find_fixed_points(system, scene.fixed_points.grid);
+  const auto ideal = ideal_of(system);
   std::vector<std::vector<double>> grid = scene.fixed_points.grid;
   if (grid.size() > static_cast<std::size_t>(ideal->dimension()))
     grid.resize(static_cast<std::size_t>(ideal->dimension()));
@@ -102,9 +107,9 @@ std::vector<std::vector<double>> resting_points(const scene::Scene& scene, const
 }
 
 /// Of the system's field beside the ideal one's.
-std::string price_text(const scene::Scene& scene, const systems::System& system, std::vector<double> point) {
+std::string price_text(const systems::System& system, std::vector<double> point) {
   const systems::FieldCost cost = systems::field_cost(system, point);
-  const auto ideal = systems::make_system(scene.system.name);
+  const auto ideal = ideal_of(system);
   point.resize(static_cast<std::size_t>(ideal->dimension()));
   const systems::FieldCost least = systems::field_cost(*ideal, point);
   return fmt::format("field {:.2g} ns a node, with its Jacobian {:.2g}; the ideal system {:.2g} and {:.2g}", cost.field,
@@ -120,7 +125,7 @@ void print_simulated(const scene::Scene& scene, const systems::System& system,
   lines.emplace_back("dimension", fmt::format("{} coordinates", system.dimension()));
   const Lines holds = structure_lines(system.info(), system.structure());
   lines.insert(lines.end(), holds.begin(), holds.end());
-  if (!points.empty()) lines.emplace_back("price", price_text(scene, system, points.front()));
+  if (!points.empty()) lines.emplace_back("price", price_text(system, points.front()));
   print_group("Simulated", lines);
 }
 

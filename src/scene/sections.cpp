@@ -76,7 +76,10 @@ void read_family_scalars(const std::optional<Field>& field, SystemChoice& choice
     free = keys.find("free");
     hold = keys.find("hold");
   }
-  if (free) choice.moving.free = {free->choice(names)};
+  if (free) {
+    choice.moving.free = {free->choice(names)};
+    ask_system(*free, choice);
+  }
   if (hold && (!free || !conservative))
     hold->fail(free ? "no such key, as the system conserves nothing" : "no such key without `free`", hold->got(),
                "leave it out");
@@ -240,6 +243,9 @@ void read_loci(const Field& field, Scene& scene, const systems::System& system) 
     const std::vector<Field> second = free->list("[m2]");
     if (second.size() != 1) free->fail("one parameter", free->got(), "a locus has one besides that of the families");
     loci.free = second.front().choice(names);
+    SystemChoice moved = scene.system;
+    moved.moving.free.push_back(loci.free);
+    ask_system(second.front(), moved);
     const auto parameter = std::find_if(parameters.begin(), parameters.end(),
                                         [&](const systems::Parameter& p) { return p.name == loci.free; });
     loci.from = parameter->lower;

@@ -14,15 +14,6 @@ namespace orbweaver::scene {
 
 namespace {
 
-// The layer `systems` knows what is allowed; the scene knows where it was asked for.
-void ask_system(const Field& field, const SystemChoice& choice) {
-  try {
-    static_cast<void>(bound_system(choice));
-  } catch (const core::InputError& error) {
-    field.fail(error.what());
-  }
-}
-
 void read_effects(const Field& field, SystemChoice& choice) {
   std::vector<std::string> known;
   for (const systems::Effect& effect : systems::model_info(choice.name).effects) known.push_back(effect.name);
@@ -58,6 +49,14 @@ bool is_asked_for(const SystemChoice& choice, const systems::Effect& effect) {
 }
 
 }  // namespace
+
+void ask_system(const Field& field, const SystemChoice& choice) {
+  try {
+    static_cast<void>(bound_system(choice));
+  } catch (const core::InputError& error) {
+    field.fail(error.what());
+  }
+}
 
 std::shared_ptr<const systems::System> bound_system(const SystemChoice& choice) {
   return systems::make_system(choice.name, choice.parameters, choice.effects, choice.moving);

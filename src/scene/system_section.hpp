@@ -15,6 +15,9 @@ namespace orbweaver::scene {
 /// which a plugin lies; none for a stored scene, whose plugin is loaded already.
 void read_system(const Field& field, const std::optional<std::filesystem::path>& folder, SystemChoice& system);
 
+/// Fails at `field`, with what the layer `systems` says, where it refuses to bind the system as chosen.
+void ask_system(const Field& field, const SystemChoice& choice);
+
 /// What has a scale: time, coordinates, conserved quantities.
 [[nodiscard]] std::vector<std::string> scale_names(const systems::System& system);
 

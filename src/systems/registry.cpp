@@ -10,6 +10,7 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/model/checks.hpp"
+#include "pendulum_chain.hpp"
 #include "registry_lines.hpp"
 
 namespace orbweaver::systems {
@@ -55,6 +56,7 @@ constexpr std::array built_in{
     registry_line<Pcr3bp<Radiation>>,
     registry_line<Pcr3bp<Oblateness>>,
     registry_line<Pcr3bp<Radiation, Oblateness>>,
+    registry_line<PendulumChain>,
     registry_line<SwingingSpring<>>,
     registry_line<SwingingSpring<Damping<2>>>,
     registry_line<SwingingSpring<Drive<2>>>,

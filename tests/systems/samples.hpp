@@ -36,16 +36,20 @@ inline std::vector<Built> all_built() {
   return all;
 }
 
-/// Every parameter drawn between half and twice its standard value, those with the standard value 0 beside it (all
-/// systems so far allow that).
+/// A whole number, which can neither be drawn nor differentiated by.
+inline bool is_count(const std::string& parameter) { return parameter == "links"; }
+
+/// Every parameter that is no count drawn between half and twice its standard value, those with the standard value 0
+/// beside it (all systems so far allow that).
 inline std::map<std::string, double> random_parameters(const ModelInfo& info, std::mt19937& generator,
                                                        const std::vector<std::string>& effects = {}) {
   std::uniform_real_distribution<double> factor(0.5, 2.0);
   std::map<std::string, double> parameters;
   const auto draw = [&](const std::vector<Parameter>& list) {
     for (const Parameter& parameter : list)
-      parameters[parameter.name] =
-          parameter.standard == 0.0 ? factor(generator) - 0.25 : parameter.standard * factor(generator);
+      if (!is_count(parameter.name))
+        parameters[parameter.name] =
+            parameter.standard == 0.0 ? factor(generator) - 0.25 : parameter.standard * factor(generator);
   };
   draw(info.parameters);
   for (const Effect& effect : info.effects)

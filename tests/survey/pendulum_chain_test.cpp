@@ -1,0 +1,54 @@
+// A chain of four pendulums, eight coordinates: more than every other system of the registry has.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "orbweaver/survey/verify/verify.hpp"
+#include "survey/atlas.hpp"
+
+namespace {
+
+using namespace orbweaver;
+
+constexpr int links = 4;
+constexpr double rest = -10.0;
+
+TEST(PendulumChain, ItsNormalModesAreFollowedFromRest) {
+  const core::Communicator comm;
+  const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/chain.yaml",
+                                         {"system.parameters.links=4", "limits.energy=[-.inf, -9.5]"});
+  const survey::Summary summary = test::run(comm, scene, "chain");
+  EXPECT_TRUE(survey::verify(comm, summary.atlas).objections.empty());
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U) << "no task failed, nothing contradicts";
+  ASSERT_EQ(summary.families.size(), 4U);
+  const test::Atlas atlas(summary.atlas);
+  ASSERT_EQ(atlas.header().state_names.size(), 2U * links);
+  EXPECT_EQ(atlas.header().pairs, links - 1);
+
+  // Zeros of 24 L_4(x) = x^4 - 16 x^3 + 72 x^2 - 96 x + 24.
+  const std::vector<double> zeros{0.322547689619392312, 1.745761101158346576, 4.536620296921127983,
+                                  9.395070912301133129};
+  for (int mode = 0; mode < links; ++mode) {
+    const std::string family = fmt::format("Equilibrium 1, mode {}", mode + 1);
+    const std::vector<double> period = atlas.column("period", family);
+    const std::vector<double> energy = atlas.column("energy", family);
+    const double linear = 2.0 * std::numbers::pi / std::sqrt(zeros[static_cast<std::size_t>(mode)]);
+    ASSERT_GE(period.size(), 3U);
+    EXPECT_EQ(atlas.end_of(family), "energy limit (E = -9.5)");
+    EXPECT_NEAR(energy.back(), -9.5, 1e-12);
+    // T is smooth in E - rest: a line through the first two orbits leads to the linear period at rest.
+    const double slope = (period[1] - period[0]) / (energy[1] - energy[0]);
+    EXPECT_GT(energy[0], rest);
+    EXPECT_LT(energy[0], rest + 1e-3);
+    EXPECT_NEAR(period[0] - slope * (energy[0] - rest), linear, 1e-5 * linear) << family;
+    EXPECT_GT(std::abs(period[0] - linear), 1e-7 * linear) << family;
+  }
+}
+
+}  // namespace
