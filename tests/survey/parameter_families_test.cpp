@@ -246,6 +246,27 @@ TEST(ParameterFamilies, DrivesAndFrictionDoNoNetWork) {
       });
 }
 
+/// Where two real multipliers have the product 1, twice in one step (816 and 1/816, then 689 and 1/689): the torus
+/// function changes its sign there, no pair passes the unit circle, and nothing is to be found or missed.
+TEST(ParameterFamilies, NeutralSaddlesAreNoTori) {
+  const core::Communicator comm;
+  const survey::Summary summary = test::run(
+      comm,
+      scene_of("damped_driven_double_pendulum.yaml",
+               {"survey.depth=0", "system.parameters.drive_frequency=0.7", "system.parameters.torque1_amplitude=1.796",
+                "starts={states: [{state: [215.15, 106.9, 0, -0.7371, 192.77], period: 17.951958, name: Doubled}]}",
+                "limits.parameter=[1.755, 1.81]"}),
+      "saddles");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  const test::Atlas atlas(summary.atlas);
+  EXPECT_EQ(atlas.crossings().rows(), 0U);
+  const std::vector<double> torques = atlas.column("parameter", "Doubled");
+  const bool in_one_step = std::none_of(torques.begin(), torques.end(),
+                                        [](double torque) { return torque > 1.766944727 && torque < 1.773493597; });
+  EXPECT_TRUE(in_one_step) << "another start is needed";
+}
+
 /// The double pendulum's energy with m1 = l1 = l2 = g = 1.
 double pendulum_energy(const std::vector<double>& z, double m2) {
   return 0.5 * (1.0 + m2) * z[2] * z[2] + 0.5 * m2 * z[3] * z[3] + m2 * z[2] * z[3] * std::cos(z[0] - z[1]) -
