@@ -153,7 +153,7 @@ TEST(UndampedDriven, DuffingHasOneAndAPair) {
 }
 
 /// x'' + w^2 (1 - amplitude shaken_at^2 cos(shaken_at t)) x = 0, once around, by the classical Runge-Kutta method: the
-/// trace. With all masses, lengths and gravity 1 the modes of the hanging pendulum have w^2 = 2 -+ sqrt 2 and stay apart.
+/// trace. With all masses, lengths and gravity 1 the hanging pendulum's modes have w^2 = 2 -+ sqrt 2, and stay apart.
 double hill_index(double square, double amplitude) {
   constexpr int steps = 4000;
   const double step = 2.0 * std::numbers::pi / shaken_at / steps;
