@@ -12,17 +12,29 @@
 #include "collocation_problem.hpp"
 #include "loop_problem.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/system_at.hpp"
 
 namespace orbweaver::continuation {
 
 namespace {
 
-/// Newton's steps on the energy that a family holds, and the error that they may leave, in parts of 1 + |E|.
-constexpr int most_for_energy = 6;
+/// Steps of the secant method on the energy that a family holds, and the error at which they end, in parts of 1 + |E|.
+constexpr int most_for_energy = 8;
 constexpr double energy_rounding = 1e-14;
-/// The error, in the same parts, with which an orbit is none of a family that holds the energy; where the orbit is
-/// known to less (its threshold), that.
-constexpr double energy_missed = 1e-8;
+/// What they may leave where they come no further: an error of the states, in parts of 1 + |z_i|.
+constexpr double state_left = 1e-11;
+/// The slope of the energy over its condition is 1 to first order where the prediction is an orbit. Steeper and flatter
+/// ones by more than this are taken for rounding.
+constexpr double slope_within = 100.0;
+
+double energy_left(const systems::System& family, const loop::Loop& loop) {
+  const std::vector<double> state = loop::state_at(loop, 0.0);
+  std::vector<double> gradient(state.size());
+  loop::system_at(family, loop)->conserved_gradient(0, state, gradient);
+  double left = 0.0;
+  for (std::size_t i = 0; i < state.size(); ++i) left += std::abs(gradient[i]) * (1.0 + std::abs(state[i]));
+  return state_left * left;
+}
 
 }  // namespace
 
@@ -55,24 +67,34 @@ Trial PointProblem::correct(Prediction prediction, const std::vector<double>& co
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Eigen::Map<const RowMajor> matrix(conditions.data(), rows, static_cast<Eigen::Index>(size));
   constexpr Eigen::Index hold = 1;
+  // The shift that the other conditions do not see, for a change of 1 of this one.
+  const Eigen::VectorXd shift =
+      matrix.transpose() * (matrix * matrix.transpose()).ldlt().solve(Eigen::VectorXd::Unit(rows, hold)).eval();
   Trial trial = solve(prediction, conditions);
-  const double unit = 1.0 + std::abs(_state.held_energy);
+  double slope = 1.0;
+  double last_off = 0.0;
+  double change = 0.0;
   for (int n = 0; trial.converged; ++n) {
-    static_cast<void>(resolved(trial));
+    const bool is_resolved = resolved(trial);
     const double off = energy_of(_family, trial.loop) - _state.held_energy;
-    if (std::abs(off) <= energy_rounding * unit) break;
+    const double rounding = energy_rounding * (1.0 + std::abs(_state.held_energy));
+    if (std::abs(off) <= rounding) break;
+    const bool is_held = std::abs(off) <= rounding + energy_left(_family, trial.loop);
+    if (is_held && n > 0 && std::abs(off) > 0.5 * std::abs(last_off)) break;
     if (n == most_for_energy) {
-      if (std::abs(off) <= std::max(energy_missed, trial.threshold) * unit) break;
+      if (is_held || !is_resolved) break;  // before it has its harmonics the energy says nothing
       trial.converged = trial.is_orbit = false;
-      trial.reason = fmt::format("its energy is {:.2g} from the one that the family holds", off);
+      trial.reason = fmt::format("the energy that the family holds is missed by {:.2g}", off);
       break;
     }
-    // The shift that the other conditions do not see.
-    const Eigen::VectorXd factors =
-        (matrix * matrix.transpose()).ldlt().solve(-off * Eigen::VectorXd::Unit(rows, hold));
-    const Eigen::VectorXd shift = matrix.transpose() * factors;
+    if (n > 0) {
+      const double seen = (off - last_off) / change;
+      if (std::abs(seen) > 1.0 / slope_within && std::abs(seen) < slope_within) slope = seen;
+    }
+    last_off = off;
+    change = -off / slope;
     Prediction next{trial.values, prediction.tangent, trial.order};
-    for (std::size_t k = 0; k < size; ++k) next.values[k] += shift(static_cast<Eigen::Index>(k));
+    for (std::size_t k = 0; k < size; ++k) next.values[k] += change * shift(static_cast<Eigen::Index>(k));
     Trial other = solve(std::move(next), conditions);
     other.iterations += trial.iterations;
     other.prediction_error = trial.prediction_error;

@@ -50,6 +50,11 @@ systems::Formulas refinable_formulas(const systems::System& system) {
   if (structure.pairs() > 1)
     throw core::InputError(fmt::format("{} cannot be refined: its orbits have {} pairs of multipliers, more than one",
                                        system.info().title, structure.pairs()));
+  if (const std::vector<std::string>& free = system.family_scalars().free; !free.empty())
+    throw core::InputError(fmt::format(
+        "orbits of families in {} cannot be refined, as each has a value of its own; survey the system with one value, "
+        "and without `continuation.free`",
+        free.front()));
   return with_formulas->formulas();
 }
 

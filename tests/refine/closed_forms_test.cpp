@@ -162,6 +162,14 @@ TEST(RefineOrbit, RefusesWhatItCannotDo) {
         static_cast<void>(refine_orbit(guess, {Quantity::energy, "half"}, 20));
       },
       ThrowsMessage<core::InputError>(HasSubstr("expected a decimal number such as 9 or -1.25e-3, got `half`")));
+  const auto moving =
+      systems::make_system("harmonic_oscillator", {}, {}, {{"omega"}, systems::FamilyScalars::Hold::energy});
+  const Guess of_many = guess_of(moving, 6.2, {0.0, 0.0}, {1.1, 0.0}, {0.0, -1.1}, "S@1/2 R@0");
+  EXPECT_THAT(
+      [&] {
+        static_cast<void>(refine_orbit(of_many, {Quantity::energy, "0.5"}, 20));
+      },
+      ThrowsMessage<core::InputError>(HasSubstr("orbits of families in omega cannot be refined")));
 }
 
 }  // namespace

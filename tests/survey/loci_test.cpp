@@ -156,6 +156,27 @@ TEST(Loci, OfThePendulumInPeriodAndMass) {
   EXPECT_TRUE(found) << "In-Phase's first doubling";
 }
 
+TEST(Loci, TorusPointsOfADoubledFamily) {
+  const core::Communicator comm;
+  if (comm.size() != 2) GTEST_SKIP() << "it takes seconds; that ranks agree is asked of doublings below";
+  const survey::Summary summary = test::run(
+      comm,
+      scene_of("damped_driven_double_pendulum.yaml", {"survey.depth=1", "limits.parameter=[1.4115, 1.4243]",
+                                                      "loci=[{of: [torus], free: [c1], range: [0.19, 0.21]}]"}),
+      "torus");
+  EXPECT_EQ(objections_to(comm, summary.atlas), "") << "it integrates each point: two multipliers of modulus 1";
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  const auto curves = loci_of(test::Atlas(summary.atlas), "torus");
+  ASSERT_EQ(curves.size(), 1U);
+  const std::vector<Point>& curve = curves.front();
+  EXPECT_GE(curve.size(), 4U);
+  EXPECT_EQ(std::count_if(curve.begin(), curve.end(), [](const Point& p) { return p.note == "start"; }), 1);
+  EXPECT_NEAR(curve.front().parameter, 1.4243, 1e-10);
+  EXPECT_NEAR(curve.back().parameter, 1.4115, 1e-10);
+  for (const Point& point : curve) EXPECT_NEAR(point.period, 4.0 * std::numbers::pi / 0.9, 1e-9) << "twice the drive's";
+}
+
 TEST(Loci, HaveTheSameBytesOnAllRanksAndResumed) {
   const core::Communicator comm;
   const scene::Scene scene = doublings_of_duffing(1.2, doublings);

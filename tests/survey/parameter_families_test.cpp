@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "orbweaver/archive/read/loop_of.hpp"
+#include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/survey/verify/verify.hpp"
@@ -243,6 +244,81 @@ TEST(ParameterFamilies, DrivesAndFrictionDoNoNetWork) {
       [](const std::vector<double>& z, const loop::Loop&) {
         return -0.2 * z[2] * z[2] - 0.1 * (z[3] - z[2]) * (z[3] - z[2]);
       });
+}
+
+/// Where two real multipliers have the product 1, twice in one step (816 and 1/816, then 689 and 1/689): the torus
+/// function changes its sign there, no pair passes the unit circle, and nothing is to be found or missed.
+TEST(ParameterFamilies, NeutralSaddlesAreNoTori) {
+  const core::Communicator comm;
+  const survey::Summary summary = test::run(
+      comm,
+      scene_of("damped_driven_double_pendulum.yaml",
+               {"survey.depth=0", "system.parameters.drive_frequency=0.7", "system.parameters.torque1_amplitude=1.796",
+                "starts={states: [{state: [215.15, 106.9, 0, -0.7371, 192.77], period: 17.951958, name: Doubled}]}",
+                "limits.parameter=[1.755, 1.81]"}),
+      "saddles");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  const test::Atlas atlas(summary.atlas);
+  EXPECT_EQ(atlas.crossings().rows(), 0U);
+  const std::vector<double> torques = atlas.column("parameter", "Doubled");
+  const bool in_one_step = std::none_of(torques.begin(), torques.end(),
+                                        [](double torque) { return torque > 1.766944727 && torque < 1.773493597; });
+  EXPECT_TRUE(in_one_step) << "another start is needed";
+}
+
+/// The double pendulum's energy with m1 = l1 = l2 = g = 1.
+double pendulum_energy(const std::vector<double>& z, double m2) {
+  return 0.5 * (1.0 + m2) * z[2] * z[2] + 0.5 * m2 * z[3] * z[3] + m2 * z[2] * z[3] * std::cos(z[0] - z[1]) -
+         (1.0 + m2) * std::cos(z[0]) - m2 * std::cos(z[1]);
+}
+
+/// Orbits with one mass each, all with one period or one energy: each closes, with its multipliers, under the system
+/// that has its mass.
+TEST(ParameterFamilies, ConservativeOnesHoldThePeriodOrTheEnergy) {
+  constexpr double period = 9.0;
+  const core::Communicator comm;
+  for (const std::string hold : {"period", "energy"}) {
+    SCOPED_TRACE(hold);
+    const survey::Summary summary = test::run(
+        comm,
+        scene_of("double_pendulum.yaml",
+                 {"starts={states: [{state: [77.94016062081789, 69.7471030938806, 0, 0], period: 9, name: Nine}]}",
+                  "continuation.free=m2", "continuation.hold=" + hold, "survey.depth=1", "limits.parameter=[0.5, 2]",
+                  "limits.period=15"}),
+        "hold_" + hold);
+    const survey::Verification verified = survey::verify(comm, summary.atlas);
+    if (!comm.is_root()) continue;
+    EXPECT_EQ(summary.failures, 0U);
+    for (const survey::Objection& o : verified.objections) ADD_FAILURE() << o.table << " " << o.row << ": " << o.text;
+    const test::Atlas atlas(summary.atlas);
+    ASSERT_EQ(summary.families.size(), hold == "period" ? 3U : 4U);
+    EXPECT_EQ(summary.families.front().name, "Nine");
+    const double energy = pendulum_energy({1.3603124223665, 1.21731659271614, 0.0, 0.0}, 1.0);
+    const std::vector<double> masses = atlas.column("parameter", "Nine");
+    EXPECT_EQ(masses.front(), 0.5);
+    EXPECT_EQ(masses.back(), 2.0);
+    double spread = 0.0;
+    for (std::size_t row = 0; row < atlas.orbits().rows(); ++row) {
+      SCOPED_TRACE(row);
+      const loop::Loop loop = archive::loop_of(atlas, row, {0, 1});
+      const std::vector<double> start = loop::state_at(loop, 0.0);
+      const double mass = loop.parameters.front();
+      const double off = hold == "period" ? loop.period - period : pendulum_energy(start, mass) - energy;
+      EXPECT_NEAR(off, 0.0, 1e-10);
+      spread = std::max(
+          spread, hold == "period" ? std::abs(pendulum_energy(start, mass) - energy) : std::abs(loop.period - period));
+      const auto system = systems::make_system("double_pendulum", {{"m2", mass}});
+      const std::vector<double> end = certificate::integrate(*system, start, loop.period, 1e-14);
+      const std::vector<double> flow = certificate::transitions(*system, {start}, loop.period, 1e-13).front();
+      double size = 0.0;
+      for (const double entry : flow) size = std::max(size, std::abs(entry));
+      for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(end[i], start[i], 1e-11 * size) << i;
+      const double trace = flow[0] + flow[5] + flow[10] + flow[15];  // two trivial multipliers, and a pair
+      EXPECT_NEAR(trace - 2.0, atlas.orbits().reals("stability")[row], 1e-9 * size);
+    }
+    EXPECT_GT(spread, 0.4) << "what is not held moves";
+  }
 }
 
 /// Duffing's response, and copies of it with changed numbers and checksums that match them.

@@ -1,8 +1,10 @@
 # Families in a parameter: the same archive on 1, 2 and 3 ranks, which is verified, and after kills.
-foreach(name IN ITEMS van_der_pol lorenz duffing)
+foreach(name IN ITEMS van_der_pol lorenz duffing damped_driven_double_pendulum)
   set(short_form "")
   if(name STREQUAL van_der_pol)  # beyond mu = 250 `verify` does not resolve the jumps in time, in which it measures arclengths
     set(short_form --set "limits.parameter=[0.01,10]" --set compute.stability=true)
+  elseif(name STREQUAL damped_driven_double_pendulum)  # the first doubling, and the torus point of the doubled family
+    set(short_form --set survey.depth=1 --set "limits.parameter=[1.4115,1.4243]")
   endif()
   set(archives "")
   set(required "")
@@ -24,6 +26,11 @@ system_test(lorenz.show 1 0 "OUT=rho          13.9266 .. 24.7356|Equilibrium 1, 
   show "${runs}/system.lorenz.ranks1/out/atlas.h5")
 system_test(duffing.show_crossings 1 0 "OUT=drive_frequency|1.7797|fold-parameter"
   show "${runs}/system.duffing.ranks1/out/atlas.h5" crossings)
+system_test(damped_driven_double_pendulum.show_crossings 1 0
+  "OUT=Strong    6.981317008        1.421973053  period-doubling|Strong D  13.96263402        1.424088756  torus"
+  show "${runs}/system.damped_driven_double_pendulum.ranks1/out/atlas.h5" crossings)
+set_tests_properties(system.damped_driven_double_pendulum.show_crossings PROPERTIES
+  FIXTURES_REQUIRED damped_driven_double_pendulum1)
 set_tests_properties(system.lorenz.show PROPERTIES FIXTURES_REQUIRED lorenz1)
 set_tests_properties(system.duffing.show_crossings PROPERTIES FIXTURES_REQUIRED duffing1)
 

@@ -286,9 +286,12 @@ std::optional<spectrum::Stability> BranchTask::asked_stability(const loop::Loop&
 
 /// Not computed again for the orbit that was asked for last.
 const std::optional<spectrum::Stability>& BranchTask::stability_at(const continuation::Orbit& orbit) {
-  if (_asked != orbit.loop.modes) {
+  // Where all but the phase of a drive rests only the parameter tells orbits apart.
+  const bool is_asked = _asked && _asked->modes == orbit.loop.modes && _asked->period == orbit.loop.period &&
+                        _asked->parameters == orbit.loop.parameters;
+  if (!is_asked) {
     _stability = asked_stability(orbit.loop);
-    _asked = orbit.loop.modes;
+    _asked = orbit.loop;
   }
   return _stability;
 }

@@ -83,8 +83,8 @@ class BranchTask {
   std::optional<bifurcation::TestPoint> _at_rest;                    // of an oscillation that is next to nothing
   bool _may_arrive_ahead = false;                                    // no reversor holds the direction
   std::optional<spectrum::Stability> _last_stability;                // of the last orbit
-  std::vector<double> _asked;                     // modes of the orbit whose stability was asked for last,
-  std::optional<spectrum::Stability> _stability;  // and its stability
+  std::optional<loop::Loop> _asked;                                  // the orbit whose stability was asked for last,
+  std::optional<spectrum::Stability> _stability;                     // and its stability
   double _before_first = 0.0;  // arclength from the crossing to the first orbit, in the scene's units
   int _events = 0;
   BranchOutcome _outcome;

@@ -63,7 +63,9 @@ class Location {
     continuation::FamilyCurve fast(_system, isotropy, options);
     add_known(fast);
     auto crossing = bifurcation::locate(*_system, fast, _event, _work.from, _work.to, why);
-    if (crossing || _event.tangency) return crossing ? located(*crossing, fast) : without_crossing(why, fast);
+    // A zero that was found and is no event is none another way either.
+    const bool is_settled = _event.tangency || why.reason == bifurcation::NotLocated::Reason::no_event;
+    if (crossing || is_settled) return crossing ? located(*crossing, fast) : without_crossing(why, fast);
     // Newton's method on whole loops is slower, and finds orbits that the fast way misses. Its positions between known
     // orbits are a little different ones.
     options.corrector.method = corrector::Method::newton_krylov;
@@ -75,7 +77,12 @@ class Location {
       if (known.position <= _work.from) from = std::max(from, known.position);
       if (known.position >= _work.to) to = std::min(to, known.position);
     }
-    crossing = bifurcation::locate(*_system, any, _event, from, to, why);
+    const bifurcation::NotLocated at_first = why;
+    try {
+      crossing = bifurcation::locate(*_system, any, _event, from, to, why);
+    } catch (const core::InputError&) {  // it does not apply, as to driven orbits that a reversor fixes
+      return without_crossing(at_first, fast);
+    }
     return crossing ? located(*crossing, any) : without_crossing(why, any);
   }
 

@@ -33,6 +33,9 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double residual_rounding = 32.0;
 /// Of a sum over the loop: energies, actions, states.
 constexpr double sum_rounding = 256.0;
+/// Of a period that a family holds: rounding; of the states, a change of which the energy that it holds may show.
+constexpr double held_period = 1e-14;
+constexpr double held_state = 1e-10;
 /// Of a stability value besides the two bounds.
 constexpr double index_rounding = 1e-13;
 /// Of the bound computed again, where that of the stored values is not stored.
@@ -130,6 +133,19 @@ class OrbitCheck {
     _claims.agree("action", real("action"), action * units.action(),
                   sum_rounding * epsilon * momentum * units.action());
     parameter();
+    held(steepness);
+  }
+
+  /// What the family holds is that of its first orbit.
+  void held(double steepness) {
+    using Hold = systems::FamilyScalars::Hold;
+    const Hold hold = _system.family_scalars().hold;
+    const std::size_t first = _atlas.tree().families[_family].first_orbit;
+    if (hold == Hold::period)
+      _claims.agree("period", real("period"), _orbits.reals("period")[first], held_period * real("period"));
+    if (hold == Hold::energy)
+      _claims.agree("energy", real("energy"), _orbits.reals("energy")[first],
+                    held_state * steepness * (1.0 + _size) * _system.scales().energy());
   }
 
   /// That it moves, and within the limits; the equation says whether it is that of the orbit.
