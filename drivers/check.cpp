@@ -162,9 +162,11 @@ void print_starts(const scene::Scene& scene, const std::shared_ptr<const systems
     axes.push_back(fmt::format("{} = {}", system.info().state_names[i], fmt::join(texts, ", ")));
     count *= values.size();
   }
-  Lines lines{{"equilibria", system.structure().driven ? std::string("none: the phase of the drive never stands still")
+  const std::string sought = system.structure().driven ? "none: the phase of the drive never stands still"
+                             : points.grid.empty()     ? "not sought: starts.fixed_points.grid is not given"
                                                        : fmt::format("Newton's method from {} point{}: {}", count,
-                                                                     count == 1 ? "" : "s", fmt::join(axes, "; "))}};
+                                                                 count == 1 ? "" : "s", fmt::join(axes, "; "));
+  Lines lines{{"equilibria", sought}};
   for (const scene::FixedPoints::Names& named : points.names) {
     std::vector<std::string> texts;
     for (std::size_t i = 0; i < named.point.size(); ++i) texts.push_back(value_text(system, i, named.point[i]));

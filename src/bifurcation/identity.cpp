@@ -56,7 +56,19 @@ Eigen::VectorXd shift_direction(const loss::Unknowns& unknowns, const loop::Loop
 }
 
 double distance_between(const loop::Loop& a, const loop::Loop& b, double aligned_distance) {
-  return std::hypot(aligned_distance, a.period / b.period - 1.0);
+  double distance = std::hypot(aligned_distance, a.period / b.period - 1.0);
+  for (std::size_t n = 0; n < std::min(a.parameters.size(), b.parameters.size()); ++n)
+    distance = std::hypot(distance, a.parameters[n] - b.parameters[n]);
+  return distance;
+}
+
+using Hold = systems::FamilyScalars::Hold;
+
+// What moves along a family beside its loops.
+std::vector<loss::Scalar> scalars_of(const systems::System& system) {
+  std::vector<loss::Scalar> scalars{loss::Scalar::period()};
+  for (const std::string& name : system.family_scalars().free) scalars.push_back(loss::Scalar::of_parameter(name));
+  return scalars;
 }
 
 // The family near the chord from a to b, in the modes of one cutoff and one time map.
@@ -83,11 +95,7 @@ class Chord {
   [[nodiscard]] corrector::Result correct(loop::Loop base, double position) {
     while (true) {
       const loop::Loop guess = moved(*_unknowns, base, position * chord_at(base));
-      const Eigen::VectorXd across = chord_at(guess).normalized();
-      const Eigen::VectorXd shift = shift_direction(*_unknowns, guess);
-      Eigen::MatrixXd conditions(across.size(), shift.size() > 0 ? 2 : 1);
-      conditions.col(0) = across;
-      if (shift.size() > 0) conditions.col(1) = shift;
+      const Eigen::MatrixXd conditions = conditions_at(guess);
       corrector::Result result = corrector::correct(_system, guess, *_unknowns,
                                                     loss::Slice(_unknowns->size(), conditions), _options.corrector);
       const int larger = loop::next_cutoff(_first.cutoff);
@@ -114,7 +122,19 @@ class Chord {
   void resize(int cutoff) {
     _first = loop::with_cutoff(_a, cutoff);
     _second = loop::with_time_map(_b, _a.time_map, cutoff);
-    _unknowns.emplace(loss::Unknowns{loop::Subspace(_a.dimension, cutoff, _isotropy), {loss::Scalar::period()}});
+    _unknowns.emplace(loss::Unknowns{loop::Subspace(_a.dimension, cutoff, _isotropy), scalars_of(_system)});
+  }
+
+  // One column each: along the chord, the period that is held, the time shift.
+  [[nodiscard]] Eigen::MatrixXd conditions_at(const loop::Loop& guess) const {
+    std::vector<Eigen::VectorXd> columns{chord_at(guess).normalized()};
+    if (_system.family_scalars().hold == Hold::period)
+      columns.emplace_back(Eigen::VectorXd::Unit(_unknowns->size(), _unknowns->subspace.size()));
+    if (Eigen::VectorXd shift = shift_direction(*_unknowns, guess); shift.size() > 0)
+      columns.push_back(std::move(shift));
+    Eigen::MatrixXd conditions(_unknowns->size(), static_cast<Eigen::Index>(columns.size()));
+    for (Eigen::Index q = 0; q < conditions.cols(); ++q) conditions.col(q) = columns[static_cast<std::size_t>(q)];
+    return conditions;
   }
 
   // b - a without what only shifts the phase.
@@ -159,6 +179,9 @@ Comparison compare(const systems::System& system, Chord chord, const loop::Loop&
     position += step;
     if (position < -beyond || position > 1.0 + beyond)
       return apart(alignment.distance, position, "beyond the neighbours");
+    if (system.family_scalars().hold == Hold::energy)
+      return undecided(alignment.distance, position,
+                       "orbits between those of a family that holds the energy are not found");
     const corrector::Result result = chord.correct(nearest, step);
     if (!result.converged())
       return undecided(alignment.distance, position,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -118,6 +119,20 @@ void sort_by_coordinates(std::vector<std::vector<double>>& points) {
   for (std::size_t n = 0; n < points.size(); ++n) points[n] = std::move(ranked[n].second);
 }
 
+[[noreturn]] void refuse_grid(const systems::System& system, const std::vector<double>& point) {
+  std::vector<std::string> coordinates;
+  for (std::size_t i = 0; i < point.size(); ++i) {
+    const double told = point[i] * system.scales().coordinate(i);
+    const bool angle = system.structure().is_angle(i);
+    coordinates.push_back(fmt::format("{} = {:.6g}{}", system.info().state_names[i],
+                                      angle ? told * 180.0 / std::numbers::pi : told, angle ? " deg" : ""));
+  }
+  throw core::InputError(
+      fmt::format("starts.fixed_points.grid: expected a point where the vector field of {} is finite, got none, the "
+                  "first ({}); give other points or, beside starts that need no equilibrium, leave the grid out",
+                  system.info().name, fmt::join(coordinates, ", ")));
+}
+
 }  // namespace
 
 bool is_same_fixed_point(std::span<const double> a, std::span<const double> b) {
@@ -156,7 +171,6 @@ std::vector<std::vector<double>> find_fixed_points(const systems::System& system
     }
     if (!is_finite_at(system, z)) {
       passed_over.emplace_back(z.begin(), z.end());
-      for (std::size_t i = 0; i < d; ++i) passed_over.back()[i] *= system.scales().coordinate(i);
       continue;
     }
     std::optional<Eigen::VectorXd> point = newton(system, std::move(z));
@@ -165,11 +179,7 @@ std::vector<std::vector<double>> find_fixed_points(const systems::System& system
         std::any_of(found.begin(), found.end(), [&](const Eigen::VectorXd& w) { return is_same(w, *point); });
     if (!known) found.push_back(*point);
   }
-  if (passed_over.size() == starts)
-    throw core::NotFiniteError(
-        fmt::format("the vector field of {} is not finite at any grid point, such as ({:.6g}): expected a grid with "
-                    "points where it is",
-                    system.info().name, fmt::join(passed_over.front(), ", ")));
+  if (passed_over.size() == starts && !grid.empty()) refuse_grid(system, passed_over.front());
   if (not_finite != nullptr) *not_finite = std::move(passed_over);
   std::vector<std::vector<double>> points;
   for (const Eigen::VectorXd& z : found) points.emplace_back(z.begin(), z.end());

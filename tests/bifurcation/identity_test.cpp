@@ -51,6 +51,35 @@ Comparison compare(const std::vector<Orbit>& side, const loop::Isotropy& own, co
   return compare(side[n], side[n + 1], own, x);
 }
 
+/// The in-phase orbit of this period with this m2, as one of a family in m2.
+Orbit in_mass(const systems::System& family, double period, double m2) {
+  const auto system = systems::make_system("double_pendulum", {{"m2", m2}});
+  const corrector::Result found =
+      continuation::orbit_at_period(*system, test::even_in_phase_orbit(period), isotropy(), period, {});
+  EXPECT_TRUE(found.converged()) << found.detail;
+  Orbit out;
+  out.loop = found.loop;
+  out.loop.parameters = {m2};
+  out.energy = continuation::energy_of(family, out.loop);
+  out.action = continuation::action_of(family, out.loop);
+  return out;
+}
+
+TEST(Identity, OfOrbitsOfAFamilyInAParameterThatHoldsThePeriod) {
+  using systems::FamilyScalars;
+  const auto family = systems::make_system("double_pendulum", {}, {}, {{"m2"}, FamilyScalars::Hold::period});
+  const Orbit a = in_mass(*family, 9.0, 1.0);
+  const Orbit b = in_mass(*family, 9.0, 1.04);
+  const Comparison own = same_family(*family, a, b, isotropy(), in_mass(*family, 9.0, 1.02));
+  EXPECT_TRUE(own.same) << own.detail;
+  EXPECT_NEAR(own.position, 0.5, 0.05);
+  for (const double period : {9.001, 9.01}) {
+    const Comparison other = same_family(*family, a, b, isotropy(), in_mass(*family, period, 1.02));
+    EXPECT_FALSE(other.same);
+    EXPECT_TRUE(other.decided) << other.detail;
+  }
+}
+
 TEST(Identity, OfOneOrbitWithItsImages) {
   const auto& orbits = test::family_to_twelve(test::in_phase()).orbits;
   const loop::Loop& orbit = orbits[10].loop;

@@ -57,6 +57,30 @@ TEST(TimeMap, InverseWhereThePhaseHasAStep) {
   }
 }
 
+// Fejer's kernel, but for a floor: the density falls to floor / (1 + floor) between bumps, as one to a harmonic, and
+// does so to rounding beside close approaches.
+TimeMap with_flats(int harmonics, double floor) {
+  TimeMap map;
+  for (int k = 1; k <= harmonics; ++k) {
+    map.coefficients.push_back(2.0 * (1.0 - k / (harmonics + 1.0)) / (1.0 + floor));
+    map.coefficients.push_back(0.0);
+  }
+  return map;
+}
+
+TEST(TimeMap, InverseWhereThePhaseIsFlat) {
+  for (const double floor : {0.0, 1e-12, 1e-6})
+    for (const int harmonics : {20, 200}) {
+      const TimeMap map = with_flats(harmonics, floor);
+      // Of the phase, 8 roundings a harmonic, where Newton's method stops and where it steps to.
+      const double rounding = 4e-15 * harmonics;
+      for (int n = 0; n <= 4 * (harmonics + 1); ++n) {  // every fourth phase is a flat's own
+        const double wanted = two_pi * n / (4 * (harmonics + 1));
+        EXPECT_NEAR(map.phase(map.inverse(wanted)), wanted, rounding) << harmonics << ", " << floor;
+      }
+    }
+}
+
 TEST(TimeMap, PhaseIsItsDefinition) {
   for (const TimeMap& map : maps())
     for (const double s : {0.0, 0.1, 1.5, 1.6, 3.0, 3.2, 4.7, 6.2, -0.4, 7.0})

@@ -120,11 +120,23 @@ TEST(FixedPoints, AGridPointWhereTheFieldIsNotFiniteIsPassedOver) {
   EXPECT_EQ(not_finite, (std::vector<std::vector<double>>{{1.0, 0.0}, {2.0, 0.0}}));
   EXPECT_EQ(find_fixed_points(walled, {{0.4}}, &not_finite).size(), 1u);
   EXPECT_TRUE(not_finite.empty());
-  EXPECT_THAT(
-      ([&] {
-        static_cast<void>(find_fixed_points(walled, {{1.0, 2.0}}));
-      }),
-      testing::ThrowsMessage<core::NotFiniteError>(testing::HasSubstr("not finite at any grid point, such as (1, 0)")));
+  EXPECT_THAT(([&] {
+                static_cast<void>(find_fixed_points(walled, {{1.0, 2.0}}));
+              }),
+              testing::ThrowsMessage<core::InputError>(testing::HasSubstr("the first (z0 = 1, z1 = 0)")));
+}
+
+TEST(FixedPoints, ThoseNotFiniteAreToldInTheSystemsOwnScales) {
+  const auto scaled = systems::scaled(std::make_shared<test::Oscillator>(0.0, 0.5), {1.0, {2.0, 2.0}, {}, {}});
+  std::vector<std::vector<double>> not_finite;
+  static_cast<void>(find_fixed_points(*scaled, {{0.5, 0.1}}, &not_finite));
+  EXPECT_EQ(not_finite, (std::vector<std::vector<double>>{{0.5, 0.0}}));
+}
+
+TEST(FixedPoints, WithoutAGridNoneIsFoundWhereTheFieldIsNotFinite) {
+  std::vector<std::vector<double>> not_finite;
+  EXPECT_TRUE(find_fixed_points(*systems::make_system("three_bodies"), {}, &not_finite).empty());
+  EXPECT_EQ(not_finite.size(), 1u);
 }
 
 TEST(FixedPoints, TheOneNearAState) {

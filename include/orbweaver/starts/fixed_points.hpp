@@ -12,8 +12,9 @@ namespace orbweaver::starts {
 /// coordinate i (coordinates without a list start at 0). Angles are reduced to [0, 2 pi); each equilibrium appears
 /// once, sorted by coordinates. Of a driven system, all coordinates but the phase, which is 0: the points that rest at
 /// every phase, as they do while the drive is at zero. Starts that do not converge are dropped, and so are those where
-/// the field is not finite, which `not_finite` receives if it is given. Throws MisuseError for more lists than
-/// coordinates, NotFiniteError where the field is not finite at any start.
+/// the field is not finite, which `not_finite` receives if it is given. Without any list the one start is the origin,
+/// and none is found where the field is not finite there. Throws MisuseError for more lists than coordinates,
+/// InputError, which names the scene's key, where the field is not finite at any point of the lists.
 [[nodiscard]] std::vector<std::vector<double>> find_fixed_points(
     const systems::System& system, const std::vector<std::vector<double>>& grid,
     std::vector<std::vector<double>>* not_finite = nullptr);

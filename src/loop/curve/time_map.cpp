@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include <boost/math/policies/error_handling.hpp>
 #include <boost/math/tools/roots.hpp>
 
 #include "orbweaver/core/error.hpp"
@@ -21,7 +22,8 @@ constexpr int most_steps = 200;           // of Newton's method: bisection alone
 // Newton's method within a bracket, since the slope is at hand: 5 to 6 values, where TOMS 748 takes 9 to 10 and 1.5 to
 // 3 times as long. A step of 2^-29 is the last: its square is rounding.
 constexpr int newton_bits = 30;
-constexpr double whole = 1e-12;  // turns that differ from a whole number by less are rounding
+constexpr int bracket_bits = 53;  // of the bracket that bisection and interpolation leave: neighbouring numbers
+constexpr double whole = 1e-12;   // turns that differ from a whole number by less are rounding
 
 // cos ks and sin ks, from k to k + 1 by one turn.
 template <class Real>
@@ -153,6 +155,36 @@ void invert_together(const TimeMap& map, const double* wanted, std::size_t count
   }
 }
 
+// The parameter in [0, 2 pi] of a phase in [0, 2 pi], by bisection and interpolation. The map increases from 0 to
+// 2 pi, so that one exists; where the density is no more than rounding, any on the flat is right.
+double inverse_between_signs(const TimeMap& map, double wanted) {
+  const auto excess = [&](double s) { return phase_and_density(map, s).first - wanted; };
+  const double at_start = excess(0.0);
+  const double at_end = excess(two_pi);
+  if (at_start >= 0.0) return 0.0;
+  if (at_end <= 0.0) return two_pi;
+  std::uintmax_t steps = most_steps;
+  const auto [lower, upper] = boost::math::tools::toms748_solve(
+      excess, 0.0, two_pi, at_start, at_end, boost::math::tools::eps_tolerance<double>(bracket_bits), steps);
+  return 0.5 * (lower + upper);
+}
+
+// The same by Newton's method where it arrives: Boost's throws where its first steps leave the bracket on a flat before
+// it has seen both signs.
+double inverse_in_a_turn(const TimeMap& map, double wanted) {
+  const auto excess = [&](double s) {
+    auto [here, slope] = phase_and_density(map, s);
+    return std::pair(here - wanted, slope);
+  };
+  std::uintmax_t steps = most_steps;
+  try {
+    const double s = boost::math::tools::newton_raphson_iterate(excess, wanted, 0.0, two_pi, newton_bits, steps);
+    if (steps < most_steps) return s;
+  } catch (const boost::math::evaluation_error&) {  // it knows no other way to say so
+  }
+  return inverse_between_signs(map, wanted);
+}
+
 }  // namespace
 
 bool TimeMap::is_identity() const {
@@ -216,13 +248,7 @@ double TimeMap::inverse(double phase_wanted) const {
            std::atan2((1.0 / kappa - 1.0) * std::sin(wanted) * std::cos(wanted),
                       std::cos(wanted) * std::cos(wanted) + std::sin(wanted) * std::sin(wanted) / kappa) +
            two_pi * turns;
-  const auto excess = [&](double s) {
-    auto [here, slope] = phase_and_density(*this, s);
-    return std::pair(here - wanted, slope);
-  };
-  std::uintmax_t steps = most_steps;
-  const double s = boost::math::tools::newton_raphson_iterate(excess, wanted, 0.0, two_pi, newton_bits, steps);
-  return s + two_pi * turns;
+  return inverse_in_a_turn(*this, wanted) + two_pi * turns;
 }
 
 bool TimeMap::is_invariant_under_shift(double turns) const {

@@ -44,6 +44,7 @@ std::string left_out_text(const scene::Scene& scene, const systems::System& syst
 }
 
 void remark_grid(const scene::Scene& scene, const systems::System& system, Summary& summary) {
+  if (scene.fixed_points.grid.empty()) return;
   std::vector<std::vector<double>> passed_over;
   (void)starts::find_fixed_points(system, scene.fixed_points.grid, &passed_over);
   if (!passed_over.empty())
