@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "orbweaver/survey/verify/verify.hpp"
@@ -49,6 +50,25 @@ TEST(PendulumChain, ItsNormalModesAreFollowedFromRest) {
     EXPECT_NEAR(period[0] - slope * (energy[0] - rest), linear, 1e-5 * linear) << family;
     EXPECT_GT(std::abs(period[0] - linear), 1e-7 * linear) << family;
   }
+}
+
+// Near E = -53.3005 of ten links an index touches 2 as (E - E_0)^2: a pair of multipliers passes 1 with a gap below
+// their error bounds, 3e-9 to 1e-8.
+TEST(PendulumChain, APairThatPassesOneToRoundingIsUndecided) {
+  const core::Communicator comm;
+  const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/chain.yaml",
+                                         {"starts.sweep.period=[16, 18]", "limits.energy=[-.inf, -53.0]"});
+  const survey::Summary summary = test::run(comm, scene, "touching");
+  EXPECT_TRUE(survey::verify(comm, summary.atlas).objections.empty());
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  EXPECT_THAT(summary.findings, testing::Contains(testing::AllOf(
+                                    testing::Field(&survey::FindingSummary::kind, survey::FindingKind::undecided_event),
+                                    testing::Field(&survey::FindingSummary::severity, survey::Severity::undecided),
+                                    testing::Field(&survey::FindingSummary::text, testing::HasSubstr("E = -53.300")))));
+  const test::Atlas atlas(summary.atlas);
+  EXPECT_EQ(atlas.families().rows(), 1U);
+  EXPECT_EQ(atlas.crossings().rows(), 0U) << "none is listed that is not told from none";
 }
 
 }  // namespace

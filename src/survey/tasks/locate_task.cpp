@@ -20,6 +20,8 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/symmetry/subspace.hpp"
 #include "orbweaver/loss/unknowns.hpp"
+#include "stability_columns.hpp"
+#include "units.hpp"
 
 namespace orbweaver::survey {
 
@@ -223,14 +225,15 @@ class Location {
     settings.even_in_time = starts;
     settings.most_harmonics = _scene.continuation.cutoff_to;
     settings.team = _team;
-    const bifurcation::Kernel kernel = bifurcation::kernel_of(
-        *_system, crossing.point, isotropy, sector,
-        expected_dimension(_system->structure(), crossing.stability, sector, _event.tangency), settings);
+    const int expected = expected_dimension(_system->structure(), crossing.stability, sector, _event.tangency);
+    const bifurcation::Kernel kernel =
+        bifurcation::kernel_of(*_system, crossing.point, isotropy, sector, expected, settings);
     _outcome.kernel_dimension = kernel.dimension();
     _outcome.kernel_singular_value = kernel.largest();
     _outcome.next_singular_value = kernel.next();
-    if (kernel.dimension() == 0) return without_kernel(crossing, kernel, family);
+    if (kernel.dimension() == 0 && !_event.tangency) return without_kernel(crossing, kernel, family);
     if (sector.q == 1 && kernel.dimension() == 1 && turns_at(crossing, family)) return as_fold(kernel);
+    if (_event.tangency && kernel.dimension() < expected) return touching(crossing, kernel, expected);
     _breaks_symmetry = sector.q > 1 || breaks_symmetry(kernel, isotropy);
     if (!starts) return;
     report();
@@ -279,18 +282,31 @@ class Location {
     }
   }
 
+  /// An index comes near its sector's value and turns back, and less is flat than where a pair of multipliers passes
+  /// there and stays on the circle: rounding does not tell one crossing from two beside one another, or from none.
+  void touching(const bifurcation::Crossing& crossing, const bifurcation::Kernel& kernel, int expected) {
+    const bifurcation::Sector& sector = _event.function.sector;
+    const double away = bifurcation::index_deviation(_system->structure(), crossing.stability, sector).value;
+    const double error = stability_error(crossing.stability);
+    const Units units(*_system);
+    _outcome.kind.reset();
+    _outcome.undecided = _event.passed || kernel.dimension() > 0 || std::abs(away) <= error;
+    _outcome.remark = fmt::format(
+        "at T = {:.9g}, {} = {:.9g} an index turns {:.2g} from {:.6g} (error bound {:.2g}), {} of {} directions being "
+        "flat (smallest singular value {:.2g}): rounding hides whether families cross there",
+        _outcome.period * units.time, units.level_name(), _outcome.level() * units.level(), away,
+        sector.value(_system->structure().symplectic), error, kernel.dimension(), expected,
+        kernel.singular_values.empty() ? archive::not_computed : kernel.singular_values[0]);
+  }
+
   void without_kernel(const bifurcation::Crossing& crossing, const bifurcation::Kernel& kernel,
                       continuation::FamilyCurve& family) {
     _outcome.remark = fmt::format("no flat direction besides the family's own (smallest singular value {:.2g})",
                                   kernel.singular_values.empty() ? archive::not_computed : kernel.singular_values[0]);
-    if (_event.tangency) {  // a minimum that came near zero, but is none, or is not told from none
-      _outcome.kind.reset();
-      _outcome.undecided = _event.passed;
-    } else if (_event.function.sector.q == 1 && turns(family)) {
+    if (_event.function.sector.q == 1 && turns(family))
       _outcome.kind = fold_kind();
-    } else {
+    else
       fail(crossing, _outcome.remark);
-    }
   }
 
   /// An index passes 2 where the energy turns, and nothing leaves: what is nearly flat is so for another reason, such

@@ -21,6 +21,12 @@ std::vector<double> columns_of(const std::vector<std::complex<double>>& values, 
 
 }  // namespace
 
+double stability_error(const spectrum::Stability& stability) {
+  double largest = archive::not_computed;
+  for (const double error : stability.full_error) largest = std::fmax(largest, error);
+  return largest;
+}
+
 void set_stability(const systems::Structure& system, const std::optional<spectrum::Stability>& stability,
                    archive::OrbitRecord& row) {
   archive::Header header;
@@ -33,7 +39,7 @@ void set_stability(const systems::Structure& system, const std::optional<spectru
   const bool complex = archive::has_complex_stability(header);
   row.stability = columns_of(stability->full, complex);
   row.fundamental_stability = columns_of(stability->fundamental, complex);
-  for (const double error : stability->full_error) row.stability_error = std::fmax(row.stability_error, error);
+  row.stability_error = stability_error(*stability);
 }
 
 }  // namespace orbweaver::survey

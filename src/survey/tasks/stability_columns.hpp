@@ -8,6 +8,10 @@
 
 namespace orbweaver::survey {
 
+/// The archive's `stability_error`: the largest error bound of the full period's indices, or multipliers; those beyond
+/// double precision have none. NaN where no index is in its range.
+[[nodiscard]] double stability_error(const spectrum::Stability& stability);
+
 /// Fills the row's stability columns; NaN where the multipliers could not be computed.
 void set_stability(const systems::Structure& system, const std::optional<spectrum::Stability>& stability,
                    archive::OrbitRecord& row);
