@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "orbweaver/numerics/decompositions.hpp"
+#include "orbweaver/numerics/eigenvalues.hpp"
 
 namespace orbweaver::spectrum {
 
@@ -21,9 +23,6 @@ constexpr int most_sweeps = 40;
 constexpr double parted = 1e-14;
 /// Moduli closer than this are taken as one, so that the order of a complex pair does not hang on rounding.
 constexpr double same_modulus = 1e-10;
-/// Double eigenvalues that rounding has split take the library's QR iteration over 160 sweeps, where it stops by
-/// default.
-constexpr int slow_iterations = 10000;
 
 /// Neighbouring factors multiplied while the norm stays below `joined_norm`, so that no digits are lost.
 std::vector<Eigen::MatrixXd> joined(const std::vector<Eigen::MatrixXd>& factors) {
@@ -37,15 +36,6 @@ std::vector<Eigen::MatrixXd> joined(const std::vector<Eigen::MatrixXd>& factors)
       groups.push_back(factors[n]);
   }
   return groups;
-}
-
-/// An orthogonal matrix in general position, always the same.
-Eigen::MatrixXd start_frame(Eigen::Index r) {
-  Eigen::MatrixXd matrix(r, r);
-  for (Eigen::Index i = 0; i < r; ++i)
-    for (Eigen::Index j = 0; j < r; ++j)
-      matrix(i, j) = std::cos(1.0 + 2.0 * static_cast<double>(i * r + j) + 0.7 * static_cast<double>(j * j));
-  return Eigen::HouseholderQR<Eigen::MatrixXd>(matrix).householderQ();
 }
 
 /// After `sweep`, product * frame = next * (triangles multiplied, first acts first).
@@ -78,7 +68,7 @@ std::vector<Eigen::Index> block_ends(const Eigen::MatrixXd& turn) {
 
 Iteration iterate(const std::vector<Eigen::MatrixXd>& groups) {
   Iteration iteration;
-  iteration.frame = start_frame(groups.front().rows());
+  iteration.frame = numerics::orthogonal_in_general_position(groups.front().rows());
   iteration.sweep(groups);
   for (int n = 0; n < most_sweeps; ++n) {
     const bool all_parted =
@@ -113,12 +103,10 @@ bool before(const Complex& a, const Complex& b) {
 }
 
 std::vector<Complex> eigenvalues_of(const Eigen::MatrixXd& block) {
-  Eigen::EigenSolver<Eigen::MatrixXd> solver;
-  solver.setMaxIterations(slow_iterations);
-  solver.compute(block, false);
   std::vector<Complex> result(static_cast<std::size_t>(block.rows()), std::numeric_limits<double>::quiet_NaN());
-  if (solver.info() != Eigen::Success) return result;
-  std::copy_n(solver.eigenvalues().data(), result.size(), result.begin());
+  const std::optional<numerics::Eigensystem> system = numerics::eigensystem(block, false);
+  if (!system) return result;
+  std::copy_n(system->values.data(), result.size(), result.begin());
   std::sort(result.begin(), result.end(), before);
   return result;
 }

@@ -11,11 +11,11 @@
 
 #include <fmt/format.h>
 #include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
+#include "orbweaver/numerics/eigenvalues.hpp"
 #include "orbweaver/numerics/locate.hpp"
 #include "orbweaver/starts/sweep.hpp"
 
@@ -109,8 +109,16 @@ class Curve {
     return out.allFinite() ? VectorXd(out.normalized()) : near;
   }
 
-  [[nodiscard]] Eigen::VectorXcd eigenvalues(const VectorXd& x) const {
-    return Eigen::EigenSolver<MatrixXd>(at(x).jacobian, false).eigenvalues();
+  [[nodiscard]] Eigen::VectorXcd eigenvalues(const VectorXd& x) const { return eigensystem(x, false).values; }
+
+  [[nodiscard]] numerics::Eigensystem eigensystem(const VectorXd& x, bool with_vectors) const {
+    std::optional<numerics::Eigensystem> system = numerics::eigensystem(at(x).jacobian, with_vectors);
+    if (!system)
+      throw core::NumericalError(
+          fmt::format("the eigenvalues of the Jacobian at the equilibrium at {} = {:.9g}: the QR "
+                      "iteration does not converge",
+                      _name, x(_d)));
+    return std::move(*system);
   }
 
   /// The product of the sums of two eigenvalues, each divided by its moduli: real, and 0 at Hopf points.
@@ -142,8 +150,8 @@ class Curve {
 };
 
 std::optional<HopfPoint> Curve::hopf_at(const VectorXd& x) const {
-  const Eigen::EigenSolver<MatrixXd> solver(at(x).jacobian, true);
-  const Eigen::VectorXcd values = solver.eigenvalues();
+  const numerics::Eigensystem system = eigensystem(x, true);
+  const Eigen::VectorXcd& values = system.values;
   const double largest = values.cwiseAbs().maxCoeff();
   Index found = -1;
   for (Index i = 0; i < values.size(); ++i)
@@ -155,7 +163,7 @@ std::optional<HopfPoint> Curve::hopf_at(const VectorXd& x) const {
   out.at = equilibrium(x);
   out.period = 2.0 * std::numbers::pi / values(found).imag();
   out.real_part = values(found).real();
-  Eigen::VectorXcd v = solver.eigenvectors().col(found);
+  Eigen::VectorXcd v = system.vectors.col(found);
   // The phase in which z(s = 0) is largest.
   const Complex square = (v.array() * v.array()).sum();
   if (std::abs(square) > 0.0) v *= std::polar(1.0, -0.5 * std::arg(square));
@@ -315,11 +323,9 @@ EquilibriumCurve follow_equilibrium(const systems::System& system, std::span<con
           out.hopf.push_back(std::move(*point));
         }
     const VectorXd chord = b.x - a.x;
-    std::stable_sort(between.begin(), between.end(), [&](const Between& one, const Between& other) {
-      return chord.dot(one.x) < chord.dot(other.x);
-    });
-    for (const Between& point : between)
-      out.points.push_back({curve.equilibrium(point.x), point.kind, point.period});
+    std::stable_sort(between.begin(), between.end(),
+                     [&](const Between& one, const Between& other) { return chord.dot(one.x) < chord.dot(other.x); });
+    for (const Between& point : between) out.points.push_back({curve.equilibrium(point.x), point.kind, point.period});
     if (n == begin) out.start = out.points.size();
     out.points.push_back({curve.equilibrium(b.x)});
   }

@@ -6,10 +6,11 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
+#include "orbweaver/numerics/eigenvalues.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/systems/scaled_system.hpp"
 #include "second_derivatives.hpp"
@@ -99,9 +100,9 @@ class LocalScales {
 
   /// Geometric mean of the moduli of the eigenvalues that do not vanish.
   [[nodiscard]] double mean_rate(const MatrixXd& balanced) {
-    const Eigen::EigenSolver<MatrixXd> solver(balanced, false);
-    if (solver.info() != Eigen::Success) return 0.0;
-    const VectorXd moduli = solver.eigenvalues().cwiseAbs();
+    const std::optional<numerics::Eigensystem> system = numerics::eigensystem(balanced, false);
+    if (!system) return 0.0;
+    const VectorXd moduli = system->values.cwiseAbs();
     double sum = 0.0;
     int count = 0;
     for (const double modulus : moduli)
