@@ -24,9 +24,14 @@ constexpr double wider = 4.0;
 /// How far the number of turns in a sector may be from a whole one: neighbours are 1 apart.
 constexpr double of_a_turn = 0.4;
 
+enum class Guess {
+  rest_of_a_loop,  ///< right to second order only: where Newton's method stalls, a slower one that is damped goes on
+  beside_an_orbit,
+};
+
 /// The orbit whose part along the guess's own oscillation is the guess's: families change their amplitude, and where
 /// they do not, no orbit is found.
-std::optional<loop::Loop> orbit_of_amplitude(const systems::System& system, loop::Loop guess,
+std::optional<loop::Loop> orbit_of_amplitude(const systems::System& system, loop::Loop guess, Guess kind,
                                              const continuation::Options& options) {
   // Of a loop with few harmonics nothing repeats many times: no oscillation is left that could be held.
   if (!(loop::rms_amplitude(guess) > loop::negligible_harmonic)) return std::nullopt;
@@ -41,7 +46,7 @@ std::optional<loop::Loop> orbit_of_amplitude(const systems::System& system, loop
     conditions.col(1) = Eigen::Map<const Eigen::VectorXd>(shift.data(), unknowns.size()).normalized();
     const loss::Slice slice(unknowns.size(), conditions);
     corrector::Result result = corrector::correct(system, guess, unknowns, slice, options.corrector);
-    if (result.outcome == corrector::Outcome::stalled) {  // what is left of a loop is a guess by second order only
+    if (kind == Guess::rest_of_a_loop && result.outcome == corrector::Outcome::stalled) {
       corrector::Options careful = options.corrector;
       careful.method = corrector::Method::brgn;
       result = corrector::correct(system, guess, unknowns, slice, careful);
@@ -73,14 +78,16 @@ std::optional<CrossingFound> crossing_beneath(const std::shared_ptr<const system
                                               const continuation::Options& options) {
   if (!system->structure().symplectic || system->structure().pairs() != 1) return std::nullopt;
   const std::optional<loop::Loop> middle =
-      orbit_of_amplitude(*system, loop::without_repetition(near, multiplicity), options);
+      orbit_of_amplitude(*system, loop::without_repetition(near, multiplicity), Guess::rest_of_a_loop, options);
   if (!middle) return std::nullopt;
   const auto sector = nearest_sector(spectrum::floquet(*system, *middle, {}).full.front().real(), multiplicity);
   if (!sector) return std::nullopt;
   const Event event{Event::Kind::test_function, {TestFunction::Kind::sector, *sector}, false};
   for (double width = first_width; width <= widest; width *= wider) {
-    const auto before = orbit_of_amplitude(*system, with_amplitude(*middle, 1.0 - width), options);
-    const auto after = orbit_of_amplitude(*system, with_amplitude(*middle, 1.0 + width), options);
+    const auto before =
+        orbit_of_amplitude(*system, with_amplitude(*middle, 1.0 - width), Guess::beside_an_orbit, options);
+    const auto after =
+        orbit_of_amplitude(*system, with_amplitude(*middle, 1.0 + width), Guess::beside_an_orbit, options);
     if (!before || !after) return std::nullopt;
     continuation::FamilyCurve curve(system, {}, options);
     curve.add(0.0, *before);

@@ -1,6 +1,7 @@
 #!/bin/bash
 # program.sh PROGRAM FUZZ SCENE COUNT: gives the program itself COUNT inputs each of scenes, --set and archives. Each must be taken or
-# refused, status 0 or 2, within 5 s and 1 GB of addresses, and all that is printed must be text without control characters.
+# refused, status 0 or 2, within 5 s of a processor (a minute by the clock) and 1 GB of addresses, and all that is printed must be
+# text without control characters.
 set -u
 program=$1 fuzz=$2 scene=$3 count=$4
 ulimit -v 1000000
@@ -15,7 +16,7 @@ taken=0 refused=0
 expect_answer() {
   local what=$1 got=0
   shift
-  timeout 5 "$program" "$@" > said 2>&1 || got=$?
+  (ulimit -t 5 && exec timeout 60 "$program" "$@") > said 2>&1 || got=$?
   case $got in
     0) taken=$((taken + 1)) ;;
     2) refused=$((refused + 1)) ;;
