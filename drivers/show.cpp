@@ -18,6 +18,7 @@ struct ShowOptions {
   std::string table;
   bool csv = false;
   bool json = false;
+  report::Selection selection;
 
   [[nodiscard]] report::TextFormat format() const {
     if (csv) return report::TextFormat::csv;
@@ -31,7 +32,7 @@ int show(const ShowOptions& options) {
   if (options.table.empty())
     report::print_summary(out, atlas);
   else
-    report::print_table(out, atlas, options.table, options.format());
+    report::print_table(out, atlas, options.table, options.format(), options.selection);
   out.finish();
   return 0;
 }
@@ -43,11 +44,20 @@ Command make_show_command(CLI::App& program) {
   auto options = std::make_shared<ShowOptions>();
   parser->add_option("atlas", options->atlas, "The atlas.h5 of a survey")->required();
   CLI::Option* table =
-      parser->add_option("table", options->table,
-                         "families, orbits, crossings, loci, equilibria or findings; none: a summary")
+      parser
+          ->add_option("table", options->table,
+                       "families, orbits, crossings, loci, equilibria or findings; none: a summary")
           ->check(CLI::IsMember({"families", "orbits", "crossings", "loci", "equilibria", "findings"}));
   CLI::Option* csv = parser->add_flag("--csv", options->csv, "The table as CSV, full precision")->needs(table);
   parser->add_flag("--json", options->json, "The table as JSON, full precision")->needs(table)->excludes(csv);
+  parser->add_option("--family", options->selection.family, "Only what belongs to the family of this name")
+      ->needs(table);
+  parser->add_option("--columns", options->selection.columns, "These columns only, such as step,period,state_th1")
+      ->delimiter(',')
+      ->needs(table);
+  parser
+      ->add_option("--sort", options->selection.sort, "By this column; downwards with a `-` before it: --sort=-period")
+      ->needs(table);
   add_plugin_option(*parser);
   return {parser, [options](const Invocation&) { return show(*options); }};
 }

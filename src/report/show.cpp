@@ -57,13 +57,18 @@ void print_summary(std::ostream& out, const archive::Archive& atlas) {
   print_families(out, atlas);
 }
 
-void print_table(std::ostream& out, const archive::Archive& atlas, const std::string& name, TextFormat format) {
+void print_table(std::ostream& out, const archive::Archive& atlas, const std::string& name, TextFormat format,
+                 const Selection& selection) {
   const archive::Table& table = shown_table(atlas, name);
   if (format == TextFormat::csv)
-    print_csv(out, atlas.header(), table);
+    print_csv(out, atlas.header(), view_of(atlas, table, selection));
   else if (format == TextFormat::json)
-    print_json(out, table);
-  else if (name == "families")
+    print_json(out, view_of(atlas, table, selection));
+  else if (name == "orbits" || !selection.empty()) {
+    TableView view = view_of(atlas, table, selection);
+    if (selection.columns.empty()) drop_unread_columns(view);
+    print_readable(out, atlas, view);
+  } else if (name == "families")
     print_families(out, atlas);
   else if (name == "crossings")
     print_crossings(out, atlas);
@@ -71,10 +76,8 @@ void print_table(std::ostream& out, const archive::Archive& atlas, const std::st
     print_loci(out, atlas);
   else if (name == "equilibria")
     print_equilibria(out, atlas);
-  else if (name == "findings")
-    print_findings(out, atlas);
   else
-    print_readable(out, atlas.header(), table);
+    print_findings(out, atlas);
 }
 
 }  // namespace orbweaver::report

@@ -23,15 +23,6 @@ std::string csv_text(const std::string& text) {
   return quoted + '"';
 }
 
-// Name of value `index` within a row of a vector column: state_th1, winding_n1, stability_0, stability_0_re.
-std::string value_name(const archive::Header& header, const archive::ColumnSpec& spec, std::size_t index) {
-  if (spec.row_shape.empty()) return spec.name;
-  if (spec.name == "state") return "state_" + header.state_names[index];
-  if (spec.name == "winding") return "winding_" + header.winding_names[index];
-  if (spec.row_shape.size() == 2) return fmt::format("{}_{}_{}", spec.name, index / 2, index % 2 == 0 ? "re" : "im");
-  return fmt::format("{}_{}", spec.name, index);
-}
-
 // Writes the values of a row of a column through the three printers.
 template <class Number>
 std::string value_text(const archive::Column& column, std::size_t at, const Number& number,
@@ -44,29 +35,25 @@ std::string value_text(const archive::Column& column, std::size_t at, const Numb
 
 std::string plain(const std::string& text) { return text; }
 
-// Those that are shown: all but the checksums, which an archive has been held against when it was opened.
-std::vector<const archive::Column*> shown_columns(const archive::Table& table) {
-  std::vector<const archive::Column*> columns;
-  for (const archive::Column& column : table.columns())
-    if (!archive::is_checksum(column.spec)) columns.push_back(&column);
-  return columns;
+std::string family_name(const archive::Archive& atlas, const archive::Column& families, std::size_t row) {
+  const std::int64_t family = std::get<std::vector<std::int64_t>>(families.values)[row];
+  return family < 0 ? "-" : atlas.families().texts("name")[static_cast<std::size_t>(family)];
 }
 
 }  // namespace
 
-void print_csv(std::ostream& out, const archive::Header& header, const archive::Table& table) {
+void print_csv(std::ostream& out, const archive::Header& header, const TableView& view) {
   std::vector<std::string> heads;
-  const std::vector<const archive::Column*> columns = shown_columns(table);
-  for (const archive::Column* column : columns)
-    for (std::size_t i = 0; i < column->spec.width(); ++i)
-      heads.push_back(csv_text(value_name(header, column->spec, i)));
+  for (const TableView::Shown& shown : view.columns)
+    for (std::size_t i = shown.first; i < shown.first + shown.count; ++i)
+      heads.push_back(csv_text(value_name(header, shown.column->spec, i)));
   out << fmt::format("{}\n", fmt::join(heads, ","));
-  for (std::size_t row = 0; row < table.rows(); ++row) {
+  for (const std::size_t row : view.rows) {
     std::vector<std::string> cells;
-    for (const archive::Column* column : columns) {
-      const std::size_t width = column->spec.width();
-      for (std::size_t i = 0; i < width; ++i)
-        cells.push_back(value_text(*column, row * width + i, csv_number, csv_text));
+    for (const TableView::Shown& shown : view.columns) {
+      const std::size_t first = row * shown.column->spec.width() + shown.first;
+      for (std::size_t i = first; i < first + shown.count; ++i)
+        cells.push_back(value_text(*shown.column, i, csv_number, csv_text));
     }
     out << fmt::format("{}\n", fmt::join(cells, ","));
   }
@@ -82,9 +69,11 @@ std::string json_pairs(const archive::Column& column, std::size_t row, std::size
   return fmt::format("[{}]", fmt::join(pairs, ", "));
 }
 
-std::string json_value(const archive::Column& column, std::size_t row) {
+std::string json_value(const TableView::Shown& shown, std::size_t row) {
+  const archive::Column& column = *shown.column;
   const std::size_t width = column.spec.width();
-  if (column.spec.row_shape.empty()) return value_text(column, row, json_number, json_text);
+  if (column.spec.row_shape.empty() || !shown.is_whole())
+    return value_text(column, row * width + shown.first, json_number, json_text);
   if (column.spec.row_shape.size() == 2) return json_pairs(column, row, width);
   std::vector<std::string> values;
   for (std::size_t i = row * width; i < (row + 1) * width; ++i)
@@ -94,28 +83,38 @@ std::string json_value(const archive::Column& column, std::size_t row) {
 
 }  // namespace
 
-void print_json(std::ostream& out, const archive::Table& table) {
+void print_json(std::ostream& out, const TableView& view) {
   out << '[';
-  const std::vector<const archive::Column*> columns = shown_columns(table);
-  for (std::size_t row = 0; row < table.rows(); ++row) {
+  for (std::size_t n = 0; n < view.rows.size(); ++n) {
     std::vector<std::string> members;
-    for (const archive::Column* column : columns)
-      members.push_back(fmt::format("\"{}\": {}", column->spec.name, json_value(*column, row)));
-    out << fmt::format("{}\n  {{{}}}", row == 0 ? "" : ",", fmt::join(members, ", "));
+    for (const TableView::Shown& shown : view.columns)
+      members.push_back(fmt::format("\"{}\": {}", shown.name, json_value(shown, view.rows[n])));
+    out << fmt::format("{}\n  {{{}}}", n == 0 ? "" : ",", fmt::join(members, ", "));
   }
-  out << (table.rows() == 0 ? "]\n" : "\n]\n");
+  out << (view.rows.empty() ? "]\n" : "\n]\n");
 }
 
-void print_readable(std::ostream& out, const archive::Header& header, const archive::Table& table) {
+void drop_unread_columns(TableView& view) {
+  std::erase_if(view.columns, [&](const TableView::Shown& shown) {
+    const std::string& name = shown.column->spec.name;
+    if (name.ends_with("_begin") || name.ends_with("_count")) return true;
+    const auto* reals = std::get_if<std::vector<double>>(&shown.column->values);
+    return reals != nullptr && std::all_of(reals->begin(), reals->end(), [](double x) { return std::isnan(x); });
+  });
+}
+
+void print_readable(std::ostream& out, const archive::Archive& atlas, const TableView& view) {
   TextGrid grid;
-  for (const archive::Column* column : shown_columns(table)) {
-    const std::size_t width = column->spec.width();
-    for (std::size_t i = 0; i < width; ++i) {
+  for (const TableView::Shown& shown : view.columns) {
+    const archive::ColumnSpec& spec = shown.column->spec;
+    const bool names_a_family = spec.name == "family";
+    for (std::size_t i = shown.first; i < shown.first + shown.count; ++i) {
       std::vector<std::string> cells;
-      for (std::size_t row = 0; row < table.rows(); ++row)
-        cells.push_back(value_text(*column, row * width + i, short_number, plain));
-      grid.add_column(value_name(header, column->spec, i), std::move(cells),
-                      column->spec.type != archive::ColumnType::text);
+      for (const std::size_t row : view.rows)
+        cells.push_back(names_a_family ? family_name(atlas, *shown.column, row)
+                                       : value_text(*shown.column, row * spec.width() + i, short_number, plain));
+      grid.add_column(value_name(atlas.header(), spec, i), std::move(cells),
+                      !names_a_family && spec.type != archive::ColumnType::text);
     }
   }
   grid.print(out);

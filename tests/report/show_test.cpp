@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <sstream>
 #include <tuple>
 
@@ -43,6 +44,47 @@ TEST(Show, FamiliesAsCsv) {
             "name,parent,crossing,multiplicity,isotropy,first_orbit,orbit_count,end_reason,end_family,end_crossing");
   EXPECT_EQ(lines[2], "ID1,0,1,1,S@1/2 R@0,12,3,the period reached the scene's limit,-1,-1");
   EXPECT_EQ(lines[5], "\"Ästhetik \"\"B\"\", 1\",3,2,2,S@1/2 R@0,24,5,the period reached the scene's limit,1,0");
+}
+
+std::string selected(const Archive& atlas, const std::string& name, TextFormat format, const Selection& selection) {
+  std::ostringstream out;
+  print_table(out, atlas, name, format, selection);
+  return out.str();
+}
+
+TEST(Show, RowsOfAFamilyInChosenColumnsAndOrder) {
+  const Archive atlas = sample_atlas("selection", test::sample_header());
+  ASSERT_EQ(atlas.families().texts("name")[1], "ID1");
+  const std::vector<std::int64_t>& families = atlas.orbits().integers("family");
+  const auto first = static_cast<std::size_t>(std::find(families.begin(), families.end(), 1) - families.begin());
+  const double period = atlas.orbits().reals("period")[first];
+  const auto lines =
+      lines_of(selected(atlas, "orbits", TextFormat::csv, {"ID1", {"step", "state_w1", "family"}, "-step"}));
+  ASSERT_EQ(lines.size(), 4U);  // of 29 orbits
+  EXPECT_EQ(lines[0], "step,state_w1,family");
+  EXPECT_THAT(lines[1], testing::StartsWith("2,"));
+  EXPECT_THAT(lines[3], testing::AllOf(testing::StartsWith("0,"), testing::EndsWith(",1")));
+  EXPECT_EQ(lines_of(selected(atlas, "orbits", TextFormat::json, {"ID1", {"period"}, "step"}))[1],
+            fmt::format("  {{\"period\": {}}},", period));
+  const auto readable = lines_of(selected(atlas, "orbits", TextFormat::readable, {"ID1", {"family", "step"}, ""}));
+  EXPECT_THAT(readable, ElementsAre("family  step", "ID1        0", "ID1        1", "ID1        2"));
+  EXPECT_EQ(lines_of(selected(atlas, "families", TextFormat::csv, {"ID1", {"name"}, ""})).size(), 2U);
+}
+
+TEST(Show, SelectionsOfWhatIsNotThereAreRefused) {
+  const Archive atlas = sample_atlas("no_selection", test::sample_header());
+  const auto message = [&](const std::string& table, const Selection& selection) -> std::string {
+    try {
+      (void)selected(atlas, table, TextFormat::csv, selection);
+    } catch (const core::InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(message("orbits", {"Nobody", {}, ""}), HasSubstr("no family `Nobody`"));
+  EXPECT_THAT(message("orbits", {"", {"periode"}, ""}), HasSubstr("no column `periode`: orbits has family, step"));
+  EXPECT_THAT(message("orbits", {"", {}, "state"}), HasSubstr("cannot sort by `state`, which has 2 values"));
+  EXPECT_THAT(message("findings", {"ID1", {}, "-nothing"}), HasSubstr("no column `nothing`"));
 }
 
 TEST(Show, OrbitsAsCsvSpreadTheirVectorsAndKeepEveryDigit) {

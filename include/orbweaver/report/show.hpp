@@ -2,12 +2,22 @@
 
 #include <ostream>
 #include <string>
+#include <vector>
 
 #include "orbweaver/archive/read/reader.hpp"
 
 namespace orbweaver::report {
 
 enum class TextFormat { readable, csv, json };
+
+/// Rows and columns of a table.
+struct Selection {
+  std::string family;                ///< rows of the family of this name only
+  std::vector<std::string> columns;  ///< columns, or values of one such as state_th1, in this order; none: all
+  std::string sort;                  ///< by this column or value, downwards behind a `-`; none: as they are stored
+
+  [[nodiscard]] bool empty() const { return family.empty() && columns.empty() && sort.empty(); }
+};
 
 /// The tables that can be shown by name: "families", "orbits", "crossings", "loci", "equilibria", "findings". Throws
 /// InputError for another name.
@@ -17,13 +27,16 @@ enum class TextFormat { readable, csv, json };
 /// period and energy, and the tree of families.
 void print_summary(std::ostream& out, const archive::Archive& atlas);
 
-/// One table. Readable: aligned columns with ten digits; crossings and loci with names in place of indices; equilibria
+/// One table, or a selection of it. Readable: aligned columns with ten digits and the families' names, unless columns are chosen
+/// without those that have no value and those that say where modes lie in the archive; without a selection crossings and loci with names in place of indices; equilibria
 /// with their periods; findings in a line each, as sentences; families as the tree in lines of at most 120 characters,
 /// children indented behind their parent, each with the crossing it was born at (kind, period, m), its ranges of period
 /// and energy, isotropy, intervals of stability, and why it ended, cut where it is long. CSV: a head line, then full
 /// precision (%.17g), vector columns
 /// spread out as column_coordinate, what was not computed as `nan`. JSON: one array of objects with full precision,
-/// vector columns as arrays, what was not computed as `null`.
-void print_table(std::ostream& out, const archive::Archive& atlas, const std::string& name, TextFormat format);
+/// vector columns as arrays, what was not computed as `null`. Throws InputError for a table, family or column that is
+/// not there.
+void print_table(std::ostream& out, const archive::Archive& atlas, const std::string& name, TextFormat format,
+                 const Selection& selection = {});
 
 }  // namespace orbweaver::report
