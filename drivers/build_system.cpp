@@ -138,6 +138,8 @@ Command make_build_system_command(CLI::App& program) {
   parser->add_option("--model", options->model, "Instead of SOURCE: a system of the program, with --effects");
   parser->add_option("--effects", options->effects, "Its effects: damping,pivot_drive")->delimiter(',');
   parser->add_option("-o,--output", options->output, "The plugin to write")->required()->check(named_path());
+  add_examples(*parser, {"orbweaver build-system my_system.cpp -o my_system.so",
+                         "orbweaver build-system --model double_pendulum --effects damping,rod_inertia -o damped.so"});
   return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
 }
 

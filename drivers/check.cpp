@@ -368,6 +368,8 @@ Command make_check_command(CLI::App& program) {
   CLI::App* parser = program.add_subcommand("check", "Validate a scene and say what would be simulated");
   auto options = std::make_shared<SceneOptions>();
   add_scene_options(*parser, *options);
+  add_examples(*parser, {"orbweaver check drivers/scenes/double_pendulum.yaml",
+                         "orbweaver check drivers/scenes/double_pendulum.yaml --set limits.period=20"});
   return {parser, [options](const Invocation& invocation) { return check(*options, invocation); }};
 }
 

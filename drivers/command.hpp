@@ -27,8 +27,10 @@ struct Command {
 Command make_build_system_command(CLI::App& program);
 Command make_check_command(CLI::App& program);
 Command make_compare_command(CLI::App& program);
+Command make_completion_command(CLI::App& program);
 Command make_consolidate_command(CLI::App& program);
 Command make_cost_command(CLI::App& program);
+Command make_manual_command(CLI::App& program);
 Command make_page_command(CLI::App& program);
 Command make_refine_command(CLI::App& program);
 Command make_show_command(CLI::App& program);

@@ -1,5 +1,8 @@
 #include "common_options.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "orbweaver/systems/plugins.hpp"
 
 namespace orbweaver::drivers {
@@ -25,6 +28,12 @@ void add_scene_options(CLI::App& parser, SceneOptions& options) {
 void add_log_options(CLI::App& parser, LogOptions& options) {
   CLI::Option* quiet = parser.add_flag("-q,--quiet", options.quiet, "Say errors only");
   parser.add_flag("-v,--verbose", options.verbose, "Say more, from every rank")->excludes(quiet);
+}
+
+void add_examples(CLI::App& parser, const std::vector<std::string>& lines) {
+  const std::string before = parser.get_footer();
+  parser.footer(fmt::format("{}{}:\n  {}", before.empty() ? "" : before + "\n\n",
+                            lines.size() == 1 ? "Example" : "Examples", fmt::join(lines, "\n  ")));
 }
 
 void add_plugin_option(CLI::App& parser) {

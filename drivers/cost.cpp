@@ -81,6 +81,7 @@ Command make_cost_command(CLI::App& program) {
   for (const cost::LadderInfo& ladder : cost::known_ladders())
     ladders += fmt::format("\n  {:<12}{}", ladder.name, ladder.about);
   parser->footer(ladders);
+  add_examples(*parser, {"orbweaver cost --quick drivers/scenes/double_pendulum.yaml -o out/cost"});
   return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
 }
 

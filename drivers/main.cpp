@@ -23,10 +23,11 @@ using orbweaver::drivers::Invocation;
 std::vector<Command> add_commands(CLI::App& program) {
   using namespace orbweaver::drivers;
   return {
-      make_build_system_command(program), make_check_command(program),   make_compare_command(program),
-      make_consolidate_command(program),  make_cost_command(program),    make_page_command(program),
-      make_refine_command(program),       make_show_command(program),    make_survey_command(program),
-      make_sweep_command(program),        make_systems_command(program), make_verify_command(program),
+      make_build_system_command(program), make_check_command(program),       make_compare_command(program),
+      make_completion_command(program),   make_consolidate_command(program), make_cost_command(program),
+      make_manual_command(program),       make_page_command(program),        make_refine_command(program),
+      make_show_command(program),         make_survey_command(program),      make_sweep_command(program),
+      make_systems_command(program),      make_verify_command(program),
   };
 }
 

@@ -59,6 +59,9 @@ Command make_show_command(CLI::App& program) {
       ->add_option("--sort", options->selection.sort, "By this column; downwards with a `-` before it: --sort=-period")
       ->needs(table);
   add_plugin_option(*parser);
+  add_examples(*parser, {"orbweaver show out/double_pendulum/atlas.h5 families",
+                         "orbweaver show out/double_pendulum/atlas.h5 orbits --family In-Phase --columns "
+                         "step,period,energy --sort=-period"});
   return {parser, [options](const Invocation&) { return show(*options); }};
 }
 

@@ -125,6 +125,9 @@ Command make_survey_command(CLI::App& program) {
       ->check(CLI::IsMember({"auto", "live", "lines"}))
       ->capture_default_str();
   add_log_options(*parser, options->log);
+  add_examples(*parser, {"mpirun -n 2 orbweaver survey drivers/scenes/double_pendulum.yaml -o out/double_pendulum",
+                         "mpirun -n 2 orbweaver survey drivers/scenes/double_pendulum.yaml -o out/double_pendulum "
+                         "--resume --set limits.period=20"});
   return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }, true};
 }
 

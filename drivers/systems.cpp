@@ -78,6 +78,7 @@ Command make_systems_command(CLI::App& program) {
   CLI::App* parser = program.add_subcommand("systems", "Systems, their parameters with units, and their effects");
   parser->add_option("name", options->name, "One system; none: all")->type_name("SYSTEM");
   add_plugin_option(*parser);
+  add_examples(*parser, {"orbweaver systems double_pendulum"});
   return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
 }
 

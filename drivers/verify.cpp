@@ -128,6 +128,8 @@ Command make_verify_command(CLI::App& program) {
   parser->add_flag("--margins", options->margins, "Say how near each column came to what is allowed");
   add_log_options(*parser, options->log);
   add_plugin_option(*parser);
+  add_examples(*parser, {"mpirun -n 2 orbweaver verify out/double_pendulum/atlas.h5",
+                         "orbweaver verify out/double_pendulum/atlas.h5 --prove In-Phase T=9 -o proofs.h5"});
   return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
 }
 

@@ -11,7 +11,8 @@
 namespace orbweaver::numerics {
 namespace {
 
-// 2 cos(2 pi 0.8853) and 2 cos(2 pi 0.2), each twice to rounding. Eigen's QR iteration of real matrices does not end on it.
+// 2 cos(2 pi 0.8853) and 2 cos(2 pi 0.2), each twice to rounding. Eigen's QR iteration of real matrices does not end
+// on it.
 Eigen::Matrix4d with_double_eigenvalues() {
   Eigen::Matrix4d matrix;
   matrix << 0x1.12c61180d3c7p+0, -0x1.ba3cc0a664e4p-7, -0x1.762422711eecp-4, -0x1.bac73e543e2afp-2,  //
