@@ -1,11 +1,36 @@
 #include "orbweaver/numerics/eigenvalues.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
+#include <numeric>
+#include <vector>
 
 #include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::numerics {
+
+namespace {
+
+using Complex = std::complex<double>;
+
+/// Eigenvalues of a real matrix that rounding has left no exact conjugates: each with the nearest to its conjugate.
+void make_conjugate(Eigen::VectorXcd& values) {
+  std::vector<Eigen::Index> left(static_cast<std::size_t>(values.size()));
+  std::iota(left.begin(), left.end(), 0);
+  while (!left.empty()) {
+    Complex& value = values(left.front());
+    const auto partner = std::min_element(left.begin(), left.end(), [&](Eigen::Index a, Eigen::Index b) {
+      return std::abs(values(a) - std::conj(value)) < std::abs(values(b) - std::conj(value));
+    });
+    value = 0.5 * (value + std::conj(values(*partner)));
+    values(*partner) = std::conj(value);
+    left.erase(partner);
+    if (!left.empty() && &values(left.front()) == &value) left.erase(left.begin());
+  }
+}
+
+}  // namespace
 
 Eigen::MatrixXd orthogonal_in_general_position(Eigen::Index n) {
   Eigen::MatrixXd matrix(n, n);
@@ -20,10 +45,11 @@ std::optional<Eigensystem> eigensystem(const Eigen::MatrixXd& matrix, bool with_
   const Eigen::EigenSolver<Eigen::MatrixXd> real(matrix, with_vectors);
   if (real.info() == Eigen::Success)
     return Eigensystem{real.eigenvalues(), with_vectors ? real.eigenvectors() : Eigen::MatrixXcd()};
-  const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> complex(matrix.cast<std::complex<double>>(), with_vectors);
-  if (complex.info() == Eigen::Success)
-    return Eigensystem{complex.eigenvalues(), with_vectors ? complex.eigenvectors() : Eigen::MatrixXcd()};
-  return std::nullopt;
+  const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> complex(matrix.cast<Complex>(), with_vectors);
+  if (complex.info() != Eigen::Success) return std::nullopt;
+  Eigensystem system{complex.eigenvalues(), with_vectors ? complex.eigenvectors() : Eigen::MatrixXcd()};
+  make_conjugate(system.values);
+  return system;
 }
 
 }  // namespace orbweaver::numerics

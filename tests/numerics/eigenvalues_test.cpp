@@ -30,6 +30,7 @@ TEST(Eigenvalues, AreFoundWhereTheIterationTurnsInACircle) {
   const Eigen::Matrix4d matrix = with_double_eigenvalues();
   const std::optional<Eigensystem> system = eigensystem(matrix, true);
   ASSERT_TRUE(system);
+  EXPECT_EQ(system->values.sum().imag(), 0.0) << "no conjugates";
   Eigen::Vector4d values = system->values.real();
   std::sort(values.begin(), values.end());
   const double turn = 2.0 * std::acos(-1.0);

@@ -15,8 +15,8 @@ struct Eigensystem {
 [[nodiscard]] Eigen::MatrixXd orthogonal_in_general_position(Eigen::Index n);
 
 /// Eigenvalues of a square matrix by Eigen's QR iteration; where that does not end, as beside double eigenvalues that
-/// rounding has split (its shifts then go around in a circle), by the one for complex matrices, which finds conjugate
-/// pairs to rounding only. Nothing where neither ends, or the matrix is not finite.
+/// rounding has split (its shifts then go around in a circle), by the one for complex matrices, whose values are
+/// made exact conjugates. Nothing where neither ends, or the matrix is not finite.
 [[nodiscard]] std::optional<Eigensystem> eigensystem(const Eigen::MatrixXd& matrix, bool with_vectors);
 
 }  // namespace orbweaver::numerics
