@@ -112,13 +112,35 @@ bool before(const Complex& a, const Complex& b) {
   return a.real() > b.real();
 }
 
+/// Eigenvalues of a real matrix that rounding has left no exact conjugates: each with the nearest to its conjugate.
+void make_conjugate(std::vector<Complex>& values) {
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    const auto off = [&](const Complex& other) { return std::abs(other - std::conj(values[n])); };
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(n);
+    const auto partner =
+        std::min_element(first, values.end(), [&](const Complex& a, const Complex& b) { return off(a) < off(b); });
+    *first = 0.5 * (*first + std::conj(*partner));
+    if (partner == first) continue;
+    *partner = std::conj(*first);
+    std::iter_swap(first + 1, partner);
+    ++n;
+  }
+}
+
+/// Not numbers where they are not found.
 std::vector<Complex> eigenvalues_of(const Eigen::MatrixXd& block) {
+  std::vector<Complex> result(static_cast<std::size_t>(block.rows()), std::numeric_limits<double>::quiet_NaN());
   Eigen::EigenSolver<Eigen::MatrixXd> solver;
   solver.setMaxIterations(slow_iterations);
   solver.compute(block, false);
-  std::vector<Complex> result(static_cast<std::size_t>(block.rows()), std::numeric_limits<double>::quiet_NaN());
-  if (solver.info() != Eigen::Success) return result;
-  std::copy_n(solver.eigenvalues().data(), result.size(), result.begin());
+  if (solver.info() == Eigen::Success) {
+    std::copy_n(solver.eigenvalues().data(), result.size(), result.begin());
+  } else if (block.allFinite()) {  // double steps may go in circles where several values are double; single ones do not
+    const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> complex(block.cast<Complex>(), false);
+    if (complex.info() != Eigen::Success) return result;
+    std::copy_n(complex.eigenvalues().data(), result.size(), result.begin());
+    make_conjugate(result);
+  }
   std::sort(result.begin(), result.end(), before);
   return result;
 }
