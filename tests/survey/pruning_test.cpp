@@ -22,19 +22,22 @@ using ::testing::IsEmpty;
 
 using Keys = std::set<std::string>;
 
-/// A branch that ends, or a place where a branch may have arrived.
+/// A branch that ends and has passed the first orbits of base families, or a place where a branch may have arrived.
 struct Event {
   std::string branch;
   Lineage lineage;
   std::optional<Meeting> meeting;
+  std::vector<std::string> passed;
 };
 
 std::string crossing_of(const std::string& key) { return key.substr(0, key.rfind('/')); }
 
 Event ends(const std::string& key) {
   const bool two_sided = key.back() == '+' || key.back() == '-';
-  Event event{key, {}, {}};
-  event.lineage.family = two_sided && key.find('/') != std::string::npos ? key.substr(0, key.size() - 1) : key;
+  const bool is_given = key.starts_with("0002.");  // two sides of one base family
+  Event event{key, {}, {}, {}};
+  event.lineage.family =
+      two_sided && (is_given || key.find('/') != std::string::npos) ? key.substr(0, key.size() - 1) : key;
   event.lineage.crossing = crossing_of(key);
   event.lineage.depth = depth_of(key);
   event.lineage.side = key.back() == '-' ? -1 : 1;
@@ -42,7 +45,7 @@ Event ends(const std::string& key) {
 }
 
 Event meets(const std::string& key, const std::string& start, double away) {
-  Event event{key, {}, {}};
+  Event event{key, {}, {}, {}};
   event.meeting = Meeting{crossing_of(start), side_of(ends(start).lineage), away};
   return event;
 }
@@ -56,6 +59,7 @@ class Plainly {
         _meetings[event.branch].push_back(*event.meeting);
       else
         _branches.emplace_back(event.lineage.depth, event.branch, side_of(event.lineage));
+      _passed[event.branch].insert(event.passed.begin(), event.passed.end());
     }
     std::sort(_branches.begin(), _branches.end());
     for (auto& [key, meetings] : _meetings)
@@ -87,7 +91,7 @@ class Plainly {
     return std::any_of(_branches.begin(), _branches.end(), [&](const auto& other) {
       const auto& [depth, key, side] = other;
       return std::tie(depth, key) < std::tie(event.lineage.depth, event.branch) && !dropped.contains(key) &&
-             arrival(key) == side_of(event.lineage);
+             (arrival(key) == side_of(event.lineage) || _passed.at(key).contains(event.lineage.family));
     });
   }
 
@@ -109,7 +113,10 @@ class Plainly {
     for (std::size_t n = 0; n < count; ++n) {
       const auto& [depth, key, side] = _branches[n];
       bool drop = lies_on_one_of(key, out);
-      for (std::size_t m = 0; m < n; ++m) drop = drop || (at[m] == side && !out.contains(std::get<1>(_branches[m])));
+      for (std::size_t m = 0; m < n; ++m) {
+        const std::string& earlier = std::get<1>(_branches[m]);
+        drop = drop || ((at[m] == side || _passed.at(earlier).contains(side.family)) && !out.contains(earlier));
+      }
       if (drop) out.insert(key);
     }
     const Keys by_earlier = out;
@@ -128,13 +135,15 @@ class Plainly {
 
   std::vector<std::tuple<int, std::string, Side>> _branches;
   std::map<std::string, std::vector<Meeting>> _meetings;
+  std::map<std::string, std::set<std::string>> _passed;
 };
 
 class Grown {
  public:
   void add(const Event& event) {
-    const std::vector<std::string> changed = event.meeting ? pruning.add_meetings({{event.branch, *event.meeting}})
-                                                           : pruning.add_branch(event.branch, event.lineage, {});
+    const std::vector<std::string> changed = event.meeting
+                                                 ? pruning.add_meetings({{event.branch, *event.meeting}})
+                                                 : pruning.add_branch(event.branch, event.lineage, {}, event.passed);
     if (!event.meeting) _ended.insert(event.branch);
     for (const std::string& key : changed)
       if (!_told.insert(key).second) _told.erase(key);
@@ -172,7 +181,7 @@ void expect_as_plainly(const Grown& grown, const std::vector<Event>& events) {
 /// surveys.
 std::vector<Event> random_tree(std::mt19937& random, std::size_t size) {
   const auto below = [&](std::size_t n) { return random() % n; };
-  std::vector<std::string> keys{"0000.0000", "0000.0001+", "0000.0001-", "0001.0000"};
+  std::vector<std::string> keys{"0000.0000", "0000.0001+", "0000.0001-", "0001.0000", "0002.0000+", "0002.0000-"};
   while (keys.size() < size) {
     const std::string& parent = keys[below(keys.size())];
     const std::string family = fmt::format("{}/{:03}.q2.j1/{}", parent, below(3), below(2));
@@ -187,7 +196,12 @@ std::vector<Event> random_tree(std::mt19937& random, std::size_t size) {
   for (const std::string& key : keys)
     if (below(8) != 0) ended.push_back(key);
   std::vector<Event> events;
-  for (const std::string& key : ended) events.push_back(ends(key));
+  for (const std::string& key : ended) {
+    events.push_back(ends(key));
+    for (const char* given : {"0001.0000", "0002.0000"})
+      if (depth_of(key) == 0 && ends(key).lineage.family < given && below(6) == 0)
+        events.back().passed.emplace_back(given);
+  }
   for (const std::string& key : ended)
     for (std::size_t n = below(4); n > 1; --n) {
       const std::string& start = keys[below(keys.size())];
@@ -239,6 +253,25 @@ TEST(Pruning, IsTheSameInEveryOrderAndAfterEveryAddition) {
   EXPECT_GT(most_rounds, Pruning::free_rounds);
   EXPECT_GT(with_disputed, 0);
   EXPECT_GT(dropped, 300U);
+}
+
+// The second family passes the start of the third, but lies on the first; what it passes is dropped if the first passes
+// it as well.
+TEST(Pruning, DropsFamiliesWhoseFirstOrbitAnEarlierOneHasPassed) {
+  Pruning pruning;
+  const auto end = [&](const std::string& key, const std::vector<std::string>& passed) {
+    return pruning.add_branch(key, ends(key).lineage, {}, passed);
+  };
+  end("0002.0000+", {});
+  EXPECT_FALSE(pruning.is_dropped("0002.0000+"));
+  EXPECT_FALSE(pruning.would_be_dropped("0002.0000-", ends("0002.0000-").lineage));
+  EXPECT_THAT(end("0001.0000", {"0002.0000"}), ElementsAre("0002.0000+"));
+  EXPECT_TRUE(pruning.would_be_dropped("0002.0000-", ends("0002.0000-").lineage));
+  EXPECT_THAT(end("0000.0000", {"0001.0000"}), testing::UnorderedElementsAre("0001.0000", "0002.0000+"));
+  EXPECT_TRUE(pruning.is_dropped("0001.0000"));
+  EXPECT_FALSE(pruning.is_dropped("0002.0000+")) << "a curve that is recorded twice is better than one that is lost";
+  end("0000.0001+", {"0002.0000"});
+  EXPECT_TRUE(pruning.is_dropped("0002.0000+"));
 }
 
 // A arrives at P's start and, a little farther off, at B's; P lies elsewhere, but its start is where B arrives. If P

@@ -46,8 +46,9 @@ using ::testing::HasSubstr;
 
 template <class T>
 class Travellers : public ::testing::Test {};
-using Payloads = ::testing::Types<SweepWork, SweepOutcome, BranchWork, BranchOutcome, LocateWork, LocateOutcome,
-                                  StartWork, StartOutcome, LoopQuestion, LoopReply, BranchState, Checkpoint>;
+using Payloads =
+    ::testing::Types<SweepWork, SweepOutcome, BranchWork, BranchOutcome, LocateWork, LocateOutcome, GivenOrbits,
+                     StartWork, StartOutcome, LoopQuestion, LoopReply, BranchState, Checkpoint>;
 TYPED_TEST_SUITE(Travellers, Payloads);
 
 TYPED_TEST(Travellers, ListEveryMember) { EXPECT_EQ(test::incomplete_types_in<TypeParam>(), ""); }

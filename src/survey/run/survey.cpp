@@ -173,13 +173,19 @@ class Run {
   void follow() {
     TreeRecorder recorder({_display, _time, *_keeper, *_flusher}, _tree, std::move(_start.left_out));
     std::vector<queue::Task> tasks = std::move(_start.unfinished);
+    std::string given;
     core::on_root(_comm.get(), [&] {
       _keeper->set_stage(Stage::families);
       for (const queue::Task& task : tasks) _known.insert(task.key);
       for (const queue::Task& task : recorder.left_out_tasks()) _known.insert(task.key);
-      for (queue::Task& task : base_family_tasks(_scaled.scene(), *_system, _sweeps_ended, _summary))
+      BaseFamilies base = base_families(_scaled.scene(), *_system, _sweeps_ended, _summary);
+      for (queue::Task& task : base.tasks)
         if (!_known.contains(task.key)) tasks.push_back(std::move(task));
+      given = pack(base.given);
     });
+    given = core::agreed(_comm.get(), given);
+    _member.expect(unpack_given_orbits(given));
+    _executor.expect(given);
     do {
       note_stop(queue::run(_comm, _queue_options, std::move(tasks), _executor, recorder, *_flusher));
       if (_summary.stopped_early) return;
@@ -259,7 +265,8 @@ Summary run_survey(const core::Communicator& comm, const scene::Scene& scene,
   });
   Summary summary;
   if (follower) {
-    summary = follow(*teams.team(), follower->member, follower->rows);
+    summary = follow(*teams.team(), follower->member, follower->rows,
+                     [&](const std::string& given) { follower->member.expect(unpack_given_orbits(given)); });
   } else {
     try {
       summary = run->run(options.resume);

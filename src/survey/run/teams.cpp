@@ -44,6 +44,7 @@ core::Communicator split(const core::Communicator& comm, int colour) {
 /// What a leader says to its followers: one letter, and a text.
 enum class Order : char {
   task = 't',
+  expect = 'k',
   state = 's',
   go_on = 'g',
   stop = 'x',
@@ -144,6 +145,12 @@ Teams::Teams(const core::Communicator& comm, int team_size) {
   if (!comm.is_root()) _team.emplace(members.get());
 }
 
+void TeamExecutor::expect(const std::string& given) {
+  if (_team == nullptr) return;
+  _team->begin();
+  give(*_team, Order::expect, given);
+}
+
 queue::TaskOutcome TeamExecutor::execute(const queue::Task& task, queue::TaskContext& context) {
   if (_team == nullptr) return _member.execute(task, context);
   const core::InterruptionScope whole(nullptr);  // the others would wait for this one
@@ -167,10 +174,15 @@ void dismiss(core::Team* team, const std::exception_ptr& error) {
   give(*team, is_input ? Order::input_error : Order::error, failure.text);
 }
 
-Summary follow(core::Team& team, queue::Executor& member, archive::Records& rows) {
+Summary follow(core::Team& team, queue::Executor& member, archive::Records& rows,
+               const std::function<void(const std::string&)>& expect) {
   for (;;) {
     team.begin();
     const auto [order, text] = take(team);
+    if (order == Order::expect) {
+      expect(text);
+      continue;
+    }
     if (order == Order::input_error) throw core::InputError(text);
     if (order == Order::error) throw core::EnvironmentError(text);
     if (order == Order::done) {

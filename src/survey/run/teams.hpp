@@ -1,7 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "orbweaver/archive/schema/records.hpp"
 #include "orbweaver/core/mpi/communicator.hpp"
@@ -37,6 +39,8 @@ class TeamExecutor final : public queue::Executor {
   /// `member` is what every member does.
   TeamExecutor(core::Team* team, queue::Executor& member) : _team(team), _member(member) {}
 
+  /// Gives the followers what their members are to know (GivenOrbits) before they do a branch.
+  void expect(const std::string& given);
   queue::TaskOutcome execute(const queue::Task& task, queue::TaskContext& context) override;
   void take_back_rows(bool flushed) override { _member.take_back_rows(flushed); }
 
@@ -51,7 +55,10 @@ void dismiss(core::Team* team, const Summary& summary);
 void dismiss(core::Team* team, const std::exception_ptr& error);
 
 /// What a follower does: every task of its leader, until it is dismissed. `rows` is where `member` puts rows; they are
-/// the leader's, and dropped here. Throws what the leader was dismissed with.
-[[nodiscard]] Summary follow(core::Team& team, queue::Executor& member, archive::Records& rows);
+/// the leader's, and dropped here. `expect` takes what TeamExecutor::expect gives. Throws what the leader was dismissed
+/// with.
+[[nodiscard]] Summary follow(
+    core::Team& team, queue::Executor& member, archive::Records& rows,
+    const std::function<void(const std::string&)>& expect = [](const std::string&) {});
 
 }  // namespace orbweaver::survey

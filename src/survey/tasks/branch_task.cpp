@@ -75,10 +75,12 @@ std::vector<bifurcation::TestFunction> functions_of(const scene::Scene& scene, c
 }  // namespace
 
 BranchTask::BranchTask(const scene::Scene& scene, std::shared_ptr<const systems::System> system, BranchWork work,
-                       const std::string& state, archive::Records& rows, queue::TaskContext& context, core::Team* team)
+                       const std::string& state, const GivenOrbitWatch& given, archive::Records& rows,
+                       queue::TaskContext& context, core::Team* team)
     : _scene(scene),
       _system(std::move(system)),
       _work(std::move(work)),
+      _given(given),
       _rows(rows),
       _context(context),
       _team(team),
@@ -258,7 +260,10 @@ bool BranchTask::take(const continuation::Orbit& orbit) {
                          continuation::energy_of(*_system, _start.base));
   const std::optional<spectrum::Stability>& stability = stability_at(orbit);
   detect(orbit, stability);
-  if (_last) solve_requested(orbit);
+  if (_last) {
+    solve_requested(orbit);
+    _given.watch(_work.lineage, _start.isotropy, *_last, orbit, _outcome.passed);
+  }
   const bool is_other_sides = _work.base_is_orbit && _work.lineage.side < 0 && !_last;
   if (!is_other_sides) store(orbit, stability);
   _last = orbit;

@@ -13,6 +13,7 @@
 #include "orbweaver/queue/executor.hpp"
 #include "orbweaver/scene/scene.hpp"
 #include "state/branch_state.hpp"
+#include "tasks/given_orbit_watch.hpp"
 #include "tasks/payload/work.hpp"
 #include "tasks/units.hpp"
 
@@ -24,7 +25,8 @@ class BranchTask {
  public:
   /// `state`: that of queue::Task, possibly empty.
   BranchTask(const scene::Scene& scene, std::shared_ptr<const systems::System> system, BranchWork work,
-             const std::string& state, archive::Records& rows, queue::TaskContext& context, core::Team* team);
+             const std::string& state, const GivenOrbitWatch& given, archive::Records& rows,
+             queue::TaskContext& context, core::Team* team);
 
   [[nodiscard]] queue::TaskOutcome run();
 
@@ -65,6 +67,7 @@ class BranchTask {
   const scene::Scene& _scene;
   std::shared_ptr<const systems::System> _system;
   BranchWork _work;
+  const GivenOrbitWatch& _given;
   archive::Records& _rows;
   queue::TaskContext& _context;
   core::Team* _team;

@@ -28,7 +28,8 @@ queue::TaskOutcome Executor::execute(const queue::Task& task, queue::TaskContext
   switch (kind_of(task)) {
     case TaskKind::sweep: return sweep(unpack_sweep_work(task.payload));
     case TaskKind::branch:
-      return BranchTask(_scene, _system, unpack_branch_work(task.payload), task.state, _rows, context, _team).run();
+      return BranchTask(_scene, _system, unpack_branch_work(task.payload), task.state, _given, _rows, context, _team)
+          .run();
     case TaskKind::locate: return locate(_scene, _system, unpack_locate_work(task.payload), context, _team);
     case TaskKind::locus: return follow_locus(_scene, *_system, unpack_locus_work(task.payload), context, _team);
     case TaskKind::start: return start(_scene, _system, unpack_start_work(task.payload), _team);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 
 #include "orbweaver/archive/schema/records.hpp"
 #include "orbweaver/core/mpi/team.hpp"
@@ -8,6 +9,7 @@
 #include "orbweaver/scene/scene.hpp"
 #include "orbweaver/survey/tasks/branch_options.hpp"
 #include "orbweaver/systems/system.hpp"
+#include "tasks/given_orbit_watch.hpp"
 #include "tasks/payload/work.hpp"
 
 namespace orbweaver::survey {
@@ -19,6 +21,8 @@ class Executor : public queue::Executor {
   Executor(const scene::Scene& scene, std::shared_ptr<const systems::System> system, archive::Records& rows,
            core::Team* team = nullptr);
 
+  /// The orbits that the scene gives, which branches watch for: before the first branch, on every rank that does one.
+  void expect(GivenOrbits given) { _given = {_system, std::move(given), branch_options(_scene, _team)}; }
   queue::TaskOutcome execute(const queue::Task& task, queue::TaskContext& context) override;
   void take_back_rows(bool flushed) override;
 
@@ -30,6 +34,7 @@ class Executor : public queue::Executor {
   std::shared_ptr<const systems::System> _system;
   archive::Records& _rows;
   core::Team* _team;
+  GivenOrbitWatch _given;
   std::size_t _orbits_before = 0;  // of other tasks
   std::size_t _sections_before = 0;
 };

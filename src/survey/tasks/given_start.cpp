@@ -219,7 +219,7 @@ SweepOutcome given_start(const scene::Scene& scene, const std::shared_ptr<const 
     return outcome;
   }
   FoundMode found;
-  found.base = at_reversor(system->structure(), is_return ? once_around(orbit->loop) : orbit->loop);
+  found.base = at_reversor(system->structure(), once_around(orbit->loop));
   const bool winds =
       std::any_of(found.base.winding.begin(), found.base.winding.end(), [](double n) { return n != 0.0; });
   if (!winds && loop::rms_amplitude(found.base) < at_rest * (1.0 + loop::rms_size(found.base))) {

@@ -182,9 +182,10 @@ std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::S
   return tasks;
 }
 
-std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const systems::System& system,
-                                           const SweepsEnded& sweeps, Summary& summary) {
-  std::vector<queue::Task> tasks;
+BaseFamilies base_families(const scene::Scene& scene, const systems::System& system, const SweepsEnded& sweeps,
+                           Summary& summary) {
+  BaseFamilies families;
+  std::vector<queue::Task>& tasks = families.tasks;
   remark_grid(scene, system, summary);
   std::vector<SweepOutcome> all;
   std::vector<FoundStart> given;
@@ -221,14 +222,17 @@ std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const syst
       add_tasks(name, base_key(found.index, mode.place), found.point, mode, tasks);
     }
   }
-  for (const NumberedStart& start : numbered_starts(scene, system, std::move(given), summary.remarks))
-    add_tasks(start.name, base_key(equilibria + start.number, 0), {}, start.mode, tasks);
+  for (const NumberedStart& start : numbered_starts(scene, system, std::move(given), summary.remarks)) {
+    const std::string key = base_key(equilibria + start.number, 0);
+    add_tasks(start.name, key, {}, start.mode, tasks);
+    families.given.all.push_back({key, start.name, start.told, start.mode.base});
+  }
   const auto allowed = static_cast<std::size_t>(scene.limits.families);
   if (tasks.size() > allowed) {
     summary.remarks.push_back(fmt::format("{} families found, {} followed (limits.families)", tasks.size(), allowed));
     tasks.resize(allowed);
   }
-  return tasks;
+  return families;
 }
 
 void require_families(const systems::System& system, const SweepsEnded& sweeps, Summary& summary) {

@@ -10,6 +10,7 @@
 #include "orbweaver/scene/scene.hpp"
 #include "orbweaver/survey/run/survey.hpp"
 #include "orbweaver/systems/system.hpp"
+#include "tasks/payload/given_orbits.hpp"
 
 namespace orbweaver::survey {
 
@@ -20,11 +21,17 @@ using SweepsEnded = std::map<std::string, std::pair<queue::Task, queue::TaskOutc
 /// (systems::require_identities).
 [[nodiscard]] std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::System& system);
 
-/// The families at equilibria in the order of their keys: equilibria sorted, longest period first; no more than the
-/// scene allows. What was passed over or left out is remarked in the summary. Throws InputError where the scene names
-/// more families than an equilibrium has.
-[[nodiscard]] std::vector<queue::Task> base_family_tasks(const scene::Scene& scene, const systems::System& system,
-                                                         const SweepsEnded& sweeps, Summary& summary);
+/// The branches of the families with which a survey begins, and the orbits among them that the scene gives.
+struct BaseFamilies {
+  std::vector<queue::Task> tasks;
+  GivenOrbits given;
+};
+
+/// The families at equilibria in the order of their keys: equilibria sorted, longest period first; behind them those
+/// of given orbits; no more than the scene allows. What was passed over or left out is remarked in the summary. Throws
+/// InputError where the scene names more families than an equilibrium has.
+[[nodiscard]] BaseFamilies base_families(const scene::Scene& scene, const systems::System& system,
+                                         const SweepsEnded& sweeps, Summary& summary);
 
 /// A survey that came to its end without any family has failed: says so, and what to do.
 void require_families(const systems::System& system, const SweepsEnded& sweeps, Summary& summary);

@@ -27,7 +27,10 @@ BranchGraph::Number BranchGraph::known(const std::string& key) {
 
 BranchGraph::Number BranchGraph::known(const Side& side) {
   const auto [place, is_new] = _sides.try_emplace(side, side_count());
-  if (is_new) _starters.emplace_back();
+  if (is_new) {
+    _starters.emplace_back();
+    _passers.emplace_back();
+  }
   return place->second;
 }
 
@@ -51,6 +54,16 @@ BranchGraph::Number BranchGraph::add_candidate(const std::string& key, const Mee
   });
   all.insert(place, std::move(candidate));
   return number;
+}
+
+void BranchGraph::add_passed(const std::string& key, const std::string& family) {
+  const Number number = find(key);
+  core::require(number != none && at(number).side != none, "only a branch that has ended has passed anything");
+  for (const int side : {1, -1}) {
+    const Number beginning = known(Side{family, side});
+    at(number).passes.push_back(beginning);
+    _passers[static_cast<std::size_t>(beginning)].push_back(number);
+  }
 }
 
 BranchGraph::Number BranchGraph::find(const std::string& key) const {

@@ -48,12 +48,16 @@ class BranchGraph {
     Number side = none;                 ///< along which it starts; none until the branch has ended
     std::vector<Candidate> candidates;  ///< nearest first, equally near ones by key
     std::vector<Number> visitors;       ///< branches with a candidate on this one
+    std::vector<Number> passes;         ///< sides of base families whose first orbit lies on it
   };
 
   /// A branch has ended. Throws MisuseError if it had before.
   Number add_ended(const std::string& key, const Lineage& lineage);
   /// Branch `key`, which has ended, may have arrived there.
   Number add_candidate(const std::string& key, const Meeting& meeting);
+
+  /// Branch `key`, which has ended, has passed the first orbit of a base family.
+  void add_passed(const std::string& key, const std::string& family);
 
   [[nodiscard]] Number count() const { return static_cast<Number>(_branches.size()); }
   [[nodiscard]] Number side_count() const { return static_cast<Number>(_starters.size()); }
@@ -64,6 +68,10 @@ class BranchGraph {
   /// Ended branches that start along a side.
   [[nodiscard]] const std::vector<Number>& starters(Number side) const {
     return _starters[static_cast<std::size_t>(side)];
+  }
+  /// Ended branches that have passed the orbit at which a side begins.
+  [[nodiscard]] const std::vector<Number>& passers(Number side) const {
+    return _passers[static_cast<std::size_t>(side)];
   }
 
   /// The order that decides who stays: by depth, then key. Parents come before children.
@@ -81,6 +89,7 @@ class BranchGraph {
   std::unordered_map<std::string, Number> _numbers;
   std::map<Side, Number> _sides;
   std::vector<std::vector<Number>> _starters;  // by side
+  std::vector<std::vector<Number>> _passers;   // by side
 };
 
 }  // namespace orbweaver::survey

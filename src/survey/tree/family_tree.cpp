@@ -40,6 +40,27 @@ std::vector<Family> families_of(const std::vector<FamilySide>& branches) {
   return ordered;
 }
 
+/// Which given orbits lie on which families, and where: of each the first branch that has passed it.
+std::vector<std::string> passed_texts(const std::vector<FamilySide>& kept, const std::vector<Family>& families,
+                                      const Units& units) {
+  std::map<std::string, std::string> names;
+  for (const Family& family : families) names[family.key] = family.name;
+  std::map<std::string, std::string> texts;  // by the key of the family that would begin there
+  for (const FamilySide branch : kept) {
+    if (!branch->second.outcome) continue;
+    for (const PassedStart& start : branch->second.outcome->passed) {
+      const std::string level =
+          std::isnan(start.level) ? "" : fmt::format(", {} = {:.9g}", units.level_name(), start.level);
+      texts.try_emplace(start.family,
+                        fmt::format("{}: {} lies on {}, at T = {:.9g}{}, and is no family of its own", start.told,
+                                    start.name, names.at(branch->second.lineage.family), start.period, level));
+    }
+  }
+  std::vector<std::string> out;
+  for (auto& [key, text] : texts) out.push_back(std::move(text));
+  return out;
+}
+
 }  // namespace
 
 void FamilyTree::add(const queue::Task& task, const queue::TaskOutcome& outcome) {
@@ -72,7 +93,9 @@ void FamilyTree::add(const queue::Task& task, const queue::TaskOutcome& outcome)
 
 void FamilyTree::add_branch(const std::string& key, EndedBranch branch) {
   std::vector<Meeting> meetings;
+  std::vector<std::string> passed;
   if (branch.outcome) {
+    for (const PassedStart& start : branch.outcome->passed) passed.push_back(start.family);
     branch.outcome->before_limit = {};  // a journal has it
     for (ArrivalRecord& arrival : branch.outcome->arrival) {
       meetings = _arrivals.add_branch(key, arrival);
@@ -81,7 +104,7 @@ void FamilyTree::add_branch(const std::string& key, EndedBranch branch) {
   }
   const auto [place, is_new] = _branches.try_emplace(key, std::move(branch));
   core::require(is_new, "a branch ends once, and one ended again");
-  std::vector<std::string> changed = _pruning.add_branch(key, place->second.lineage, meetings);
+  std::vector<std::string> changed = _pruning.add_branch(key, place->second.lineage, meetings, passed);
   changed.push_back(key);
   count(changed);
 }
@@ -110,9 +133,8 @@ bool FamilyTree::wanted(const queue::Task& task) const {
   if (kind != TaskKind::branch && kind != TaskKind::start) return true;
   const BranchWork work =
       kind == TaskKind::branch ? unpack_branch_work(task.payload) : unpack_start_work(task.payload).branch;
-  if (work.lineage.depth == 0) return true;
   return !_pruning.would_be_dropped(work.key, work.lineage) &&
-         _limit.has_room({work.lineage.depth, work.key}, work.lineage.family);
+         (work.lineage.depth == 0 || _limit.has_room({work.lineage.depth, work.key}, work.lineage.family));
 }
 
 std::vector<FamilySide> FamilyTree::kept_branches() const {
@@ -221,6 +243,7 @@ FamilyTree::Result FamilyTree::resolve() const {
     if (on_kept(key)) result.failures.push_back(fmt::format("locate {}: {}", key, reason));
   for (const auto& [key, reason] : _locus_failures)
     if (on_kept(key)) result.failures.push_back(fmt::format("locus {}: {}", key, reason));
+  for (std::string& text : passed_texts(kept, families, _units)) result.remarks.push_back(std::move(text));
   const auto beyond = std::count_if(crossings.begin(), crossings.end(), [this](const LocateOutcome* crossing) {
     return crossing->multiplicity * crossing->period > _scene.limits.period;
   });

@@ -100,7 +100,8 @@ std::vector<NumberedStart> numbered_starts(const scene::Scene& scene, const syst
     std::string name = candidate.given.name.empty() ? name_of(system, candidate) : candidate.given.name;
     const int again = ++times[name];
     if (again > 1) name += fmt::format(" ({})", again);
-    numbered.push_back({std::move(name), static_cast<int>(numbered.size()), std::move(candidate.mode)});
+    numbered.push_back(
+        {std::move(name), candidate.given.told, static_cast<int>(numbered.size()), std::move(candidate.mode)});
   }
   return numbered;
 }

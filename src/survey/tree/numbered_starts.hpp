@@ -18,7 +18,8 @@ struct FoundStart {
 /// A family that begins at an orbit that the scene gives.
 struct NumberedStart {
   std::string name;
-  int number = 0;  ///< among them
+  std::string told;  ///< GivenStart::told
+  int number = 0;    ///< among them
   FoundMode mode;
 };
 

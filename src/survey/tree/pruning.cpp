@@ -11,9 +11,11 @@
 namespace orbweaver::survey {
 
 std::vector<std::string> Pruning::add_branch(const std::string& key, const Lineage& lineage,
-                                             const std::vector<Meeting>& meetings) {
+                                             const std::vector<Meeting>& meetings,
+                                             const std::vector<std::string>& passed) {
   const Number number = _graph->add_ended(key, lineage);
   for (const Meeting& meeting : meetings) _graph->add_candidate(key, meeting);
+  for (const std::string& family : passed) _graph->add_passed(key, family);
   return settle({number});
 }
 
@@ -68,9 +70,10 @@ bool Pruning::would_be_dropped(const std::string& key, const Lineage& lineage) c
     }
   const Number side = _graph->find(side_of(lineage));
   if (side == BranchGraph::none) return false;
+  const auto stays_before = [&](Number other) { return !last.dropped(other) && _graph->comes_first(other, key); };
   const auto& by = last.arrivers(side);
-  return std::any_of(by.begin(), by.end(),
-                     [&](Number other) { return !last.dropped(other) && _graph->comes_first(other, key); });
+  const auto& past = _graph->passers(side);
+  return std::any_of(by.begin(), by.end(), stays_before) || std::any_of(past.begin(), past.end(), stays_before);
 }
 
 const Meeting* Pruning::arrival(const std::string& key) const {

@@ -10,9 +10,9 @@
 
 namespace orbweaver::survey {
 
-/// Which branches are the same curve as another that stays, from the other end, or lie on such a one. A pure function
-/// of the branches and their candidates, whatever the order in which they are added; an addition costs what depends on
-/// it.
+/// Which branches are the same curve as another that stays, from its other end or from an orbit on it, or lie on such a
+/// one. A pure function of the branches and their candidates, whatever the order in which they are added; an addition
+/// costs what depends on it.
 ///
 /// Crossings on a dropped branch do not count where others arrive, so the rule (PruningRound) is applied to its own
 /// result, from `nothing is dropped` on, until that stays as it is. Each round is kept and brought up to date by what
@@ -26,16 +26,18 @@ class Pruning {
   /// what has changed for those who arrive at places below.
   static constexpr int free_rounds = 20;
 
-  /// A branch has ended; it may have arrived at these places. Returns the keys of ended branches whose drop changed.
+  /// A branch has ended; it may have arrived at these places, and has passed the first orbits of these base families.
+  /// Returns the keys of ended branches whose drop changed.
   std::vector<std::string> add_branch(const std::string& key, const Lineage& lineage,
-                                      const std::vector<Meeting>& meetings);
+                                      const std::vector<Meeting>& meetings,
+                                      const std::vector<std::string>& passed = {});
   /// Branches that have ended may have arrived at these places too.
   std::vector<std::string> add_meetings(const std::vector<std::pair<std::string, Meeting>>& meetings);
 
   /// Whether a branch that has ended is dropped.
   [[nodiscard]] bool is_dropped(const std::string& key) const;
   /// Whether a branch that has not ended lies on a dropped one, or an earlier one that stays has arrived along its
-  /// side.
+  /// side or passed the orbit at which it begins.
   [[nodiscard]] bool would_be_dropped(const std::string& key, const Lineage& lineage) const;
   /// Where a branch that has ended arrived; null if nowhere that counts.
   [[nodiscard]] const Meeting* arrival(const std::string& key) const;

@@ -28,6 +28,7 @@ void PruningRound::look(Number n, Pending& first, Pending& second) {
   state(n).side = arrives ? found->side : BranchGraph::none;
   concern(state(n).side);
   if (state(n).side != BranchGraph::none) _arrivers[static_cast<std::size_t>(state(n).side)].push_back(n);
+  for (const Number side : (*_graph)[n].passes) concern(side);
   second.insert(n);
 }
 
@@ -35,9 +36,10 @@ bool PruningRound::is_by_earlier(Number n) const {
   const BranchGraph::Branch& branch = (*_graph)[n];
   if (branch.parent != BranchGraph::none && state(branch.parent).by_earlier) return true;
   if (branch.side == BranchGraph::none) return false;
+  const auto stays_before = [&](Number other) { return !state(other).by_earlier && _graph->comes_first(other, n); };
   const auto& by = arrivers(branch.side);
-  return std::any_of(by.begin(), by.end(),
-                     [&](Number other) { return !state(other).by_earlier && _graph->comes_first(other, n); });
+  const auto& past = _graph->passers(branch.side);
+  return std::any_of(by.begin(), by.end(), stays_before) || std::any_of(past.begin(), past.end(), stays_before);
 }
 
 bool PruningRound::is_by_rule(Number n) const {
@@ -76,11 +78,13 @@ std::vector<BranchGraph::Number> PruningRound::update(const std::vector<Number>&
     second.insert(n);
     const auto& children = (*_graph)[n].children;
     first.insert(children.begin(), children.end());
-    if (state(n).side == BranchGraph::none) continue;
-    for (const Number starter : _graph->starters(state(n).side)) {
-      second.insert(starter);
-      if (_graph->comes_first(n, starter)) first.insert(starter);
-    }
+    std::vector<Number> sides = (*_graph)[n].passes;
+    if (state(n).side != BranchGraph::none) sides.push_back(state(n).side);
+    for (const Number side : sides)
+      for (const Number starter : _graph->starters(side)) {
+        second.insert(starter);
+        if (_graph->comes_first(n, starter)) first.insert(starter);
+      }
   }
   std::vector<Number> flips;
   while (!second.empty()) {

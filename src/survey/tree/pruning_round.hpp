@@ -11,7 +11,8 @@ namespace orbweaver::survey {
 /// count.
 ///
 /// Where a branch arrives is then known: at the nearest candidate that counts. A branch is dropped if it lies on a
-/// dropped one, or if another arrives along its side: an earlier one that stays by this very clause; else a later one
+/// dropped one, if an earlier one that stays by this very clause has passed the orbit at which it begins, or if another
+/// arrives along its side: an earlier one that stays by this very clause; else a later one
 /// that does, if the branch itself does not arrive at the start of that one (it failed or met a limit on the way) and
 /// that one does not lie on it. Each clause asks of earlier branches what the same clause said, and of others what the
 /// clause before said; so a pass over those that a change may reach, in the order of the branches, brings everything up

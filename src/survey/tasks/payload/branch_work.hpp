@@ -50,8 +50,8 @@ struct CrossingBeneath {
 
 /// A branch has come to an orbit with more symmetry than its own: a crossing of another family, or of its own.
 struct ArrivalRecord {
-  double period = 0.0;  ///< where it meets, by interpolation, or as the crossing there was located
-  double level = 0.0;   ///< continuation::level_of
+  double period = 0.0;                     ///< where it meets, by interpolation, or as the crossing there was located
+  double level = 0.0;                      ///< continuation::level_of
   loop::Loop near;                         ///< an orbit of the branch shortly before
   int multiplicity = 1;                    ///< times that it goes around the orbit it meets, where that is all it gains
   std::vector<CrossingBeneath> beneath{};  ///< one, where the crossing that is met was located
@@ -61,6 +61,21 @@ struct ArrivalRecord {
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, period, level, near, multiplicity, beneath, ahead);
+  }
+};
+
+/// A branch has passed an orbit that the scene gives, whose family comes after its own.
+struct PassedStart {
+  std::string family;  ///< GivenOrbit::family, and what else it says
+  std::string name;
+  std::string told;
+  double period = 0.0;  ///< in the units of the scene
+  double level = 0.0;   ///< continuation::level_of, in them
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, family, name, told, period, level);
   }
 };
 
@@ -85,13 +100,14 @@ struct BranchOutcome {
   double moved_out = 0.0;      ///< of the first orbit, as continuation::Orbit
   int limited_by = 0;          ///< Limit: with wider ones the branch would have gone on
   std::string before_limit;    ///< the state (queue::Task) from which it would, without children; empty: from its start
+  std::vector<PassedStart> passed{};
 
-  static constexpr int wire_version = 5;
+  static constexpr int wire_version = 6;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, key, orbits, period_from, period_to, level_from, level_to, last_period, last_level,
                             last_cutoff, end, arrival, equilibrium, remarks, unlocated, tolerance_met, moved_out,
-                            limited_by, before_limit);
+                            limited_by, before_limit, passed);
     if constexpr (Archive::is_loading::value) check_limits(limited_by);
   }
 };

@@ -1,0 +1,30 @@
+# Surveys from given orbits in a short form: the same archive on 1, 2 and 3 ranks, and after kills.
+set(of_pendulum "${scene}")
+# The first two states lie on the family of the fourth, whose winding numbers come first.
+string(CONCAT states "[{state: [0, 0, -5.0444829, 9.5780458], period: 0.8211037}, "
+  "{state: [0, 180, 4.2829949, 9.7374310], period: 0.7692796}, {state: [0, 0, 8.1215228, -8.3236785], period: 0.9913897}, "
+  "{state: [0, 180, -3.9008232, -8.8543736], period: 0.8430239, name: Outer}, "
+  "{state: [0, 180, 7.8737448, 7.8093862], period: 0.8114095}]")
+set(short.rotations --set "limits.energy=[15,40]" --set "starts.fixed_points.grid=[[0],[0]]" --set survey.subharmonics=1
+  --set "starts.states=${states}")
+set(says.rotations "starts.states, entry 1: Orbit n(0,1) T=0.821104 E=20 lies on Outer, at T = 0.8211037|starts.states, entry 2: Orbit n(0,1) T=0.76928 E=23.0475 lies on Outer|5 families (2 of them left out by limits), ")
+set(short.recurrences --set starts.recurrences.time=400 --set starts.recurrences.tolerance=0.2 --set starts.recurrences.most=3)
+set(says.recurrences "3 families, |starts.recurrences: ")
+foreach(name IN ITEMS rotations recurrences)
+  set(scene "${PROJECT_SOURCE_DIR}/drivers/scenes/${name}.yaml")
+  set(archives "")
+  set(required "")
+  foreach(ranks IN ITEMS 1 2 3)
+    set(folder "${runs}/system.${name}.ranks${ranks}/out")
+    system_test(${name}.ranks${ranks} ${ranks} 0 "OUT=${says.${name}}|0 contradictions|, 0 failed|archive: " "FRESH=${folder}"
+      "HAS=${folder}/atlas.h5" survey "${scene}" -o out ${short.${name}})
+    set_tests_properties(system.${name}.ranks${ranks} PROPERTIES FIXTURES_SETUP "${name}${ranks}")
+    list(APPEND archives "${folder}/atlas.h5")
+    list(APPEND required "${name}${ranks}")
+  endforeach()
+  orbweaver_add_ctest(system.${name}.same_archive 1 system 60 $<TARGET_FILE:compare_archives> ${archives})
+  set_tests_properties(system.${name}.same_archive PROPERTIES FIXTURES_REQUIRED "${required}")
+  broken_off_test(${name}.kills system 300 kills.sh 2 1 -- ${short.${name}} --set output.flush_seconds=0.1
+    --set output.flush_orbits=5)
+endforeach()
+set(scene "${of_pendulum}")
