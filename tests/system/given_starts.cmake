@@ -27,4 +27,16 @@ foreach(name IN ITEMS rotations recurrences)
   broken_off_test(${name}.kills system 300 kills.sh 2 1 -- ${short.${name}} --set output.flush_seconds=0.1
     --set output.flush_orbits=5)
 endforeach()
+# With two steps none of these families passes another's start: what they pass when they go on is left out as well.
+set(folder "${runs}/system.rotations.few_steps/out")
+set(scene "${PROJECT_SOURCE_DIR}/drivers/scenes/rotations.yaml")
+system_test(rotations.few_steps 2 0 "OUT=7 families (2 of them left out by limits), |0 contradictions" "FRESH=${folder}"
+  "HAS=${folder}/atlas.h5" survey "${scene}" -o out ${short.rotations} --set limits.steps=2)
+system_test(rotations.more_steps 3 0 "OUT=${says.rotations}|0 contradictions|, 0 failed" survey "${scene}" -o "${folder}" --resume
+  ${short.rotations})
+orbweaver_add_ctest(system.rotations.same_after_more_steps 1 system 60 $<TARGET_FILE:compare_archives>
+  "${runs}/system.rotations.ranks1/out/atlas.h5" "${folder}/atlas.h5")
+set_tests_properties(system.rotations.few_steps PROPERTIES FIXTURES_SETUP rotations.few_steps)
+set_tests_properties(system.rotations.more_steps PROPERTIES FIXTURES_REQUIRED rotations.few_steps FIXTURES_SETUP rotations.more_steps)
+set_tests_properties(system.rotations.same_after_more_steps PROPERTIES FIXTURES_REQUIRED "rotations1;rotations.more_steps")
 set(scene "${of_pendulum}")
