@@ -2,7 +2,7 @@
 # Without git, or outside a clone, there is nothing to look at. Run as
 #   cmake -DROOT=<tree> -P check_top_level.cmake
 cmake_minimum_required(VERSION 3.25)
-set(belongs "^(src|include|drivers|tests|docs|cmake|\\.ci)/|^(CMakeLists\\.txt|CMakePresets\\.json|README\\.md|LICENSE|CHANGELOG\\.md|quickstart|\\.[^/]+)$")
+set(belongs "^(src|include|drivers|tests|docs|cmake|\\.ci)/|^(CMakeLists\\.txt|CMakePresets\\.json|README\\.md|LICENSE|CHANGELOG\\.md|CITATION\\.cff|quickstart|\\.[^/]+)$")
 execute_process(COMMAND git -C "${ROOT}" ls-files --cached
   RESULT_VARIABLE status OUTPUT_VARIABLE listed ERROR_QUIET)
 if(NOT status EQUAL 0 OR listed STREQUAL "")
