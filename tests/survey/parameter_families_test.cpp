@@ -50,6 +50,11 @@ TEST(ParameterFamilies, VanDerPolHasTheKnownPeriods) {
   EXPECT_EQ(mu.front(), 0.01);
   EXPECT_TRUE(std::is_sorted(mu.begin(), mu.end()));
   EXPECT_NEAR(period.front(), 2.0 * std::numbers::pi * (1.0 + 0.01 * 0.01 / 16.0), 1e-9) << "Lindstedt's series";
+  const std::vector<double>& multipliers = atlas.orbits().reals("stability");
+  const std::vector<double>& errors = atlas.orbits().reals("stability_error");
+  const std::vector<double>& log_volumes = atlas.orbits().reals("log_volume");
+  for (std::size_t n = 0; n < mu.size(); ++n)
+    EXPECT_NEAR(std::exp(log_volumes[n]), multipliers[2 * n], errors[n] + 1e-12) << mu[n];
 }
 
 // Beyond mu = 75 the orbits would need more than 4096 harmonics without a time map for scales far apart.
@@ -381,6 +386,7 @@ TEST(ParameterFamilies, ChangedNumbersAreFound) {
       {"orbits 12", [](auto& r) { r.orbits[12].period *= 1.0 + part; }},
       {"orbits 20", [](auto& r) { r.orbits[20].modes[r.orbits[20].modes.size() / 3] += part; }},
       {"orbits 30", [](auto& r) { r.orbits[30].stability[0] += part; }},
+      {"orbits 35", [](auto& r) { r.orbits[35].log_volume *= 1.0 + part; }},
       {"orbits 40", [](auto& r) { r.orbits[40].parameter = archive::not_computed; }},
       {"crossings 0", [](auto& r) { r.crossings[0].parameter *= 1.0 + part; }},
       {"crossings 1", [](auto& r) { r.crossings[1].period *= 1.0 + part; }},

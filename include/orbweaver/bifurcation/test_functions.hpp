@@ -67,8 +67,9 @@ struct TestFunction {
                                const spectrum::Stability& stability);
 
 /// How many zeros of the function a family has passed whose multiplier has turned so far (`Stability::turns`), but for
-/// a constant. NaN where that is not known: of functions without a sector, and for q = 1 and 2 at orbits that have
-/// opened there (an index beyond 2, or -2), where the sign tells.
+/// a constant; of torus the complex pairs of multipliers outside the unit circle, neutral saddles left out. NaN where
+/// that is not known: of krein, for q = 1 and 2 at orbits that have opened there (an index beyond 2, or -2), where the
+/// sign tells, and of torus where two or more real multipliers are outside, which may have been a pair before.
 [[nodiscard]] double zeros_passed(const TestFunction& function, const spectrum::Stability& stability);
 
 /// Whether double precision tells at the orbit what its indices pass: false where one of a pair that is on the unit
@@ -82,6 +83,10 @@ struct TestFunction {
 /// False where an index of the fundamental map is 2 to within its error: the linearised equations of the orbit are
 /// singular to rounding, and orbits beside it are not told from it.
 [[nodiscard]] bool is_isolated(const spectrum::Stability& stability);
+
+/// mu_i + mu_j of the two multipliers whose product is the nearest to 1: at a torus point 2 cos of their angle. Throws
+/// MisuseError as `evaluate`, and for a system without torus points.
+[[nodiscard]] double torus_sum(const systems::Structure& system, const spectrum::Stability& stability);
 
 /// Whether a zero of the function, located at an orbit with this stability, is what the function is for. No continuous
 /// function can tell: krein vanishes as well where two pairs meet off the unit circle (k_i = k_j outside [-2, 2]) and,
