@@ -194,8 +194,26 @@ TEST(RefineOrbit, FindsTheAnswerOfADrivenLinearOscillator) {
   }
 }
 
-// A volume shrinks by the product of the multipliers: where the least one is all of that it has digits far below those of
-// the largest entry of M(T).
+// Where friction is strong both multipliers are real. A volume shrinks by their product, by which the least, 1e-18, has
+// digits of its own: of M(T), whose entries are of size 1, it would have some 35.
+TEST(RefineOrbit, FindsTheLeastMultiplierToItsOwnDigits) {
+  const WorkingDigits working(checked_digits);
+  const auto system = systems::make_system(
+      "duffing", {{"alpha", 2.0}, {"beta", 0.0}, {"damping", 5.0}, {"drive_amplitude", 0.3}, {"drive_frequency", 0.7}},
+      {"drive", "damping"});
+  const double size = 0.3 / (1.51 * 1.51 + 3.5 * 3.5);
+  const double even = size * 1.51;
+  const double odd = size * 3.5;
+  Guess guess = guess_of(system, 9.0, {0.0, 0.0, 0.0}, {even, 0.7 * odd, 0.0}, {odd, -0.7 * even, 0.0}, "S@1/2");
+  guess.loop.winding[2] = 1.0;
+  const RefinedOrbit orbit = refine_orbit(guess, {Quantity::parameter, "0.7"}, 50);
+  const Extended period = 2 * pi() / extended_of("0.7");
+  ASSERT_EQ(orbit.spectrum.size(), 2U);
+  const Extended root = sqrt(Extended(17));
+  expect_value(orbit.spectrum[0].real, exp(Extended(-(5 - root) / 2 * period)), 45, "larger");
+  expect_value(orbit.spectrum[1].real, exp(Extended(-(5 + root) / 2 * period)), 45, "least");
+}
+
 TEST(RefineOrbit, FindsTheCycleOfVanDerPol) {
   const auto system = systems::make_system("van_der_pol", {{"mu", 1.0}});
   const Guess guess = guess_of(system, 6.6, {0.0, 0.0}, {2.0, 0.0}, {0.0, -2.0}, "S@1/2");
