@@ -17,6 +17,7 @@ constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr int most_steps = 30;
 /// Of the distance, what the loop moves in the last step: the distance changes by the square of that.
 constexpr double settled = 1e-6;
+constexpr double rounding = 1e-15;  // of a shift
 
 }  // namespace
 
@@ -55,7 +56,7 @@ double mapped_shift_near(const Loop& y, const Loop& x, const std::vector<int>& a
     }
     const double change = along / speed;  // of 2 pi psi
     shift -= change / two_pi;
-    if (change * change * speed <= settled * settled * square) break;
+    if (std::abs(change) < rounding || change * change * speed <= settled * settled * square) break;
   }
   return shift;
 }
