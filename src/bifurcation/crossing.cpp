@@ -107,32 +107,6 @@ std::optional<numerics::Located> extremum(const systems::System& system, continu
   return std::nullopt;
 }
 
-/// A zero beside those that are no events: where the count of zeros changes, narrowed until the signs show that one.
-std::optional<Crossing> counted_zero(const systems::System& system, EventFunction& function, const Event& event,
-                                     double from, double to, double tolerance) {
-  std::optional<Crossing> a = function.at(from);
-  std::optional<Crossing> b = function.at(to);
-  const auto differ = [&](const std::optional<Crossing>& x, const std::optional<Crossing>& y) {
-    return x && y &&
-           std::abs(zeros_passed(event.function, x->stability) - zeros_passed(event.function, y->stability)) >= 1.0;
-  };
-  while (differ(a, b) && to - from > tolerance) {
-    const double middle = 0.5 * (from + to);
-    std::optional<Crossing> between = function.at(middle);
-    const bool is_before = differ(a, between);
-    (is_before ? to : from) = middle;
-    (is_before ? b : a) = std::move(between);
-    if (!differ(a, b) || !(a->reading.value * b->reading.value < 0.0)) continue;
-    const std::optional<numerics::Located> located =
-        numerics::locate_root([&](double position) { return function(position); }, from, to, tolerance);
-    std::optional<Crossing> crossing = located ? function.at(located->position, true) : std::nullopt;
-    if (!crossing || !is_event(event.function, system.structure(), crossing->stability, event.tangency)) continue;
-    crossing->width = located->width;
-    return crossing;
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
 double period_slope(const continuation::CurvePoint& point) { return point.tangent.period(); }
@@ -222,7 +196,6 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
   }
   if (event.kind == Event::Kind::test_function &&
       !is_event(event.function, system.structure(), crossing->stability, event.tangency)) {
-    if (std::optional<Crossing> other = counted_zero(system, function, event, from, to, absolute)) return other;
     why = {.reason = NotLocated::Reason::no_event, .position = located->position};
     return std::nullopt;
   }

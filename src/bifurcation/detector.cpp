@@ -187,19 +187,6 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
   found.push_back({function, from->position, to->position, true});
 }
 
-/// Halves the way between two nodes of one sign, towards where the count of zeros changes, until signs show one.
-void Detector::narrow(std::size_t function, Node left, Node right, const Probe& probe, std::vector<Bracket>& found) {
-  for (int n = 0; n < _options.probes; ++n) {
-    const std::optional<TestPoint> point = probed(probe, 0.5 * (left.position + right.position));
-    if (!point) return;
-    const Node middle{point->position, point->readings[function], passed_at(*point, function)};
-    const bool is_before = passed_between(left.passed, middle.passed) > 0;
-    if (middle.reading.sign() == 0 || (!is_before && passed_between(middle.passed, right.passed) == 0)) return;
-    if (middle.reading.sign() != left.reading.sign()) return add_sign_changes(function, {left, middle, right}, found);
-    (is_before ? right : left) = middle;
-  }
-}
-
 /// Brackets the zeros that the function has passed between two nodes, as their counts tell, and signs do not show.
 void Detector::count(std::size_t function, const Node& left, const Node& right, const Probe& probe,
                      std::vector<Bracket>& found) {
@@ -208,7 +195,6 @@ void Detector::count(std::size_t function, const Node& left, const Node& right, 
   const std::size_t before = found.size();
   const bool is_shown = left.reading.sign() != right.reading.sign();
   if (!is_shown) examine(function, left, right, probe, found);
-  if (!is_shown && found.size() == before) narrow(function, left, right, probe, found);
   for (std::size_t n = before; n < found.size(); ++n) found[n].passed = found[n].tangency && passed == 1;
   if (found.size() > before) _state.watches[function].examined_to = right.position;
   const auto bracketed = static_cast<int>(found.size() - before) + (is_shown ? 1 : 0);

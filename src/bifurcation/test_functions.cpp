@@ -1,7 +1,6 @@
 #include "orbweaver/bifurcation/test_functions.hpp"
 
 #include <cmath>
-#include <complex>
 #include <limits>
 
 #include <fmt/format.h>
@@ -30,7 +29,6 @@ std::vector<Bounded> indices_of(const systems::Structure& system, const spectrum
   return indices;
 }
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 /// Roundings of a product, a factor: four operations each.
 constexpr double roundings_a_factor = 4.0 * std::numeric_limits<double>::epsilon();
 const Rule& checked_rule(const TestFunction& function, const systems::Structure& system) {
@@ -98,24 +96,8 @@ Reading evaluate(const TestFunction& function, const systems::Structure& system,
   return {result.value.real(), result.error + rounding};
 }
 
-namespace {
-
-double pairs_outside(const spectrum::Stability& stability) {
-  int pairs = 0;
-  int reals = 0;
-  for (const std::complex<double>& mu : stability.fundamental) {
-    if (std::isnan(mu.real())) return unknown;
-    if (!(std::abs(mu) > 1.0)) continue;
-    pairs += mu.imag() > 0.0 ? 1 : 0;
-    reals += mu.imag() == 0.0 ? 1 : 0;
-  }
-  return reals < 2 ? pairs : unknown;
-}
-
-}  // namespace
-
 double zeros_passed(const TestFunction& function, const spectrum::Stability& stability) {
-  if (function.kind == TestFunction::Kind::torus) return pairs_outside(stability);
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   if (!has_sector(function.kind) || std::isnan(stability.turns)) return unknown;
   const double place = static_cast<double>(function.sector.j) / function.sector.q;
   if (function.sector.q > 2) return std::floor(stability.turns - place) + std::floor(stability.turns + place);

@@ -438,40 +438,6 @@ TEST(Detector, CountsTellWhatSignsDoNot) {
     EXPECT_EQ(bracket.passed, family.functions[bracket.function].sector.q <= 2);
 }
 
-// In one step two real multipliers pass mu_1 mu_2 = 1, which is nothing, and a complex pair the unit circle: the product
-// has one sign at both ends, and where it turns the other zero is near.
-TEST(Detector, ATorusPointBesideANeutralSaddleIsBracketed) {
-  systems::Structure structure;
-  structure.dimension = 5;
-  structure.driven = structure.dissipative = true;
-  const std::vector<TestFunction> functions{{TestFunction::Kind::torus, {}}};
-  for (const double saddle : {0.31, 0.437, 0.455}) {
-    constexpr double torus = 0.44;
-    const auto point = [&](double x) {
-      spectrum::Stability stability;
-      const double modulus = std::exp(0.5 * (x - torus));
-      const std::complex<double> pair = std::polar(modulus, 1.9);
-      stability.fundamental = {2.0 * std::exp(40.0 * (x - saddle)), pair, std::conj(pair), 0.5};
-      stability.fundamental_error.assign(4, 1e-12);
-      const TestFunction& function = functions.front();
-      return TestPoint{x, {evaluate(function, structure, stability)}, {zeros_passed(function, stability)}};
-    };
-    for (const double shift : {0.0, 0.02}) {
-      Detector detector;
-      const auto probe = [&](double x) { return std::optional(point(x)); };
-      std::vector<Bracket> brackets;
-      for (double x = -0.7 + shift; x < 1.5; x += 0.2)
-        for (const Bracket& bracket : detector.advance(point(x), probe)) brackets.push_back(bracket);
-      const auto holds = [&](double place) {
-        return std::any_of(brackets.begin(), brackets.end(),
-                           [&](const Bracket& b) { return b.from < place && place < b.to; });
-      };
-      EXPECT_TRUE(holds(torus)) << saddle << ' ' << shift;
-      EXPECT_TRUE(detector.missed().empty()) << saddle << ' ' << shift;
-    }
-  }
-}
-
 TEST(Detector, CountedZerosThatCannotBeBracketedAreTold) {
   for (const double length : {0.2, 1.0, 6.3}) {
     TurningFamily family{[](double x) { return x; }};

@@ -140,7 +140,6 @@ class Detector {
   void take(std::size_t function, const Node& node, const Probe& probe, std::vector<Bracket>& found);
   void count(std::size_t function, const Node& left, const Node& right, const Probe& probe,
              std::vector<Bracket>& found);
-  void narrow(std::size_t function, Node left, Node right, const Probe& probe, std::vector<Bracket>& found);
   void look_for_minimum(std::size_t function, const Node& a, const Node& b, const Node& c, const Probe& probe,
                         std::vector<Bracket>& found);
   void examine(std::size_t function, const Node& left, const Node& right, const Probe& probe,

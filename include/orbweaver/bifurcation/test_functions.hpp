@@ -67,9 +67,8 @@ struct TestFunction {
                                const spectrum::Stability& stability);
 
 /// How many zeros of the function a family has passed whose multiplier has turned so far (`Stability::turns`), but for
-/// a constant; of torus the complex pairs of multipliers outside the unit circle, neutral saddles left out. NaN where
-/// that is not known: of krein, for q = 1 and 2 at orbits that have opened there (an index beyond 2, or -2), where the
-/// sign tells, and of torus where two or more real multipliers are outside, which may have been a pair before.
+/// a constant. NaN where that is not known: of functions without a sector, and for q = 1 and 2 at orbits that have
+/// opened there (an index beyond 2, or -2), where the sign tells.
 [[nodiscard]] double zeros_passed(const TestFunction& function, const spectrum::Stability& stability);
 
 /// Whether double precision tells at the orbit what its indices pass: false where one of a pair that is on the unit

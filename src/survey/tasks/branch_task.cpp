@@ -237,14 +237,11 @@ void BranchTask::finish() {
 
 /// Positions as they are: which arclength they have is known of the last few orbits only.
 void BranchTask::add_missed(const bifurcation::MissedZeros& missed) {
-  const bifurcation::TestFunction& function = _functions[missed.function];
-  const std::string what =
-      bifurcation::has_sector(function.kind)
-          ? fmt::format("a multiplier passes exp(2 pi i {}/{}), or its inverse,", function.sector.j, function.sector.q)
-          : "a pair of multipliers passes the unit circle";
-  _outcome.unlocated.push_back(
-      fmt::format("{} {} times more than was found, {} to {} of the survey's lengths along the family", what,
-                  missed.count, missed.from, missed.to));
+  const bifurcation::Sector& sector = _functions[missed.function].sector;
+  _outcome.unlocated.push_back(fmt::format(
+      "a multiplier passes exp(2 pi i {}/{}), or its inverse, {} times more than was found, {} to {} of the "
+      "survey's lengths along the family",
+      sector.j, sector.q, missed.count, missed.from, missed.to));
 }
 
 /// False where the branch has arrived at another family.
