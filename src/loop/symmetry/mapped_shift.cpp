@@ -1,3 +1,5 @@
+#include "orbweaver/loop/symmetry/mapped_shift.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -6,7 +8,6 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
-#include "orbweaver/loop/symmetry/shift_search.hpp"
 
 namespace orbweaver::loop {
 
