@@ -13,8 +13,8 @@ struct ExtendedMultiplier {
 };
 
 /// The eigenvalues of M(T) but for the trivial one, which is the nearest to 1; the largest modulus first.
-/// `determinant`: of M(T). With many digits of it, the least eigenvalue, where that is real, is what the others leave of
-/// it: of the matrix it would have the digits of the largest entry.
+/// `determinant`: of M(T). With many digits of it, the least eigenvalue, where that is real, is what the others leave
+/// of it: of the matrix it would have the digits of the largest entry.
 [[nodiscard]] std::vector<ExtendedMultiplier> nontrivial_multipliers(const numerics::ExtendedMatrix& monodromy,
                                                                      const numerics::Extended& determinant);
 

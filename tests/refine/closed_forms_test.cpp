@@ -150,8 +150,8 @@ TEST(RefineOrbit, FindsTheIndexOfSmallBounces) {
   EXPECT_LT(numerics::log10_abs((4 * indices[0] - indices[1]) / 3 - at_rest), -10.5);
 }
 
-// x'' + c x' + a x = F cos(omega t): x = (F/D) (A cos phi + c omega sin phi) with A = a - omega^2, D = A^2 + (c omega)^2,
-// and the multipliers exp(-c T/2 +- i T sqrt(a - c^2/4)).
+// x'' + c x' + a x = F cos(omega t): x = (F/D) (A cos phi + c omega sin phi) with A = a - omega^2, D = A^2 +
+// (c omega)^2, and the multipliers exp(-c T/2 +- i T sqrt(a - c^2/4)).
 TEST(RefineOrbit, FindsTheAnswerOfADrivenLinearOscillator) {
   for (const bool is_damped : {true, false}) {
     const WorkingDigits working(checked_digits);

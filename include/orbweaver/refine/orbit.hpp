@@ -23,8 +23,8 @@ struct Guess {
 };
 
 /// What picks one orbit of a family: a period or energy, or the parameter along whose values the family runs, as a
-/// decimal number in the units of the system, that is taken to be exact. The system of a guess has the parameter's value
-/// already; it alone picks the orbit where nothing is conserved.
+/// decimal number in the units of the system, that is taken to be exact. The system of a guess has that value already;
+/// it alone picks the orbit where nothing is conserved.
 struct HeldValue {
   enum class Quantity { period, energy, parameter } quantity;
   std::string decimal;
@@ -81,14 +81,14 @@ struct RefinedOrbit {
 /// It is computed twice, the second time with more digits, a higher order and so other steps; the bounds on errors are
 /// twice the differences of the two, plus the rounding of the first.
 ///
-/// Throws core::InputError for a system that cannot be refined (no formulas, a conserved energy and more than one pair of
-/// multipliers, a parameter without a value of its own), a quantity that does not fit it, or digits outside [1,
-/// most_digits]; core::NumericalError where no orbit is found, or one that the condition does not isolate (a fold in the
-/// period at a held period).
+/// Throws core::InputError for a system that cannot be refined (no formulas, a conserved energy and more than one
+/// pair of multipliers, a parameter without a value of its own), a quantity that does not fit it, or digits outside [1,
+/// most_digits]; core::NumericalError where no orbit is found, or one that the condition does not isolate (a fold in
+/// the period at a held period).
 [[nodiscard]] RefinedOrbit refine_orbit(const Guess& guess, const HeldValue& held, int digits);
 
-/// The orbit near the guess at which the condition holds, of a system with a conserved energy. `towards`: another orbit of the family near by, in phase with
-/// the guess. Throws as refine_orbit, InputError for kinds that have no condition here (torus, krein) or no sector.
+/// The orbit near the guess at which the condition holds, of a system with a conserved energy. `towards`: another orbit
+/// of the family near by, in phase with the guess. Throws as refine_orbit, InputError for kinds that have no condition here (torus, krein) or no sector.
 [[nodiscard]] RefinedOrbit refine_crossing(const Guess& guess, const CrossingCondition& condition, int digits);
 
 inline constexpr int most_digits = 1000;

@@ -36,16 +36,16 @@ class StoredFamily {
   /// InputError where the family has none there, or has several and no step is given, naming them.
   [[nodiscard]] Place with(const HeldValue& value, std::optional<int> after) const;
   /// The orbit that a person names: "T=9" or "E=-0.5", meant exactly, or a step, which is held by what isolates it
-  /// better, as it is stored. Of a family in a parameter "mu=10" or a step; then the system of the guess has that value,
-  /// and what the family holds, if anything, is held. Throws InputError for another text, and as `with` and `at_step`.
+  /// better, as it is stored. Of a family in a parameter "mu=10" or a step; then the system of the guess has that
+  /// value, and what the family holds, if anything, is held. Throws InputError for another text, and as `with` and `at_step`.
   struct Named {
     Place place;
     HeldValue held;
     std::vector<std::string> equations;  ///< what holds exactly: "mu = 10", "T = 9"
   };
   [[nodiscard]] Named named_orbit(const std::string& text, std::optional<int> after) const;
-  /// Polynomials through the orbits beside it. Throws InputError for a family of less than two orbits, or in a parameter:
-  /// between two of its orbits that has no value of its own.
+  /// Polynomials through the orbits beside it. Throws InputError for a family of less than two orbits, or in a
+  /// parameter: between two of its orbits that has no value of its own.
   [[nodiscard]] Place at_arclength(double arclength) const;
 
   /// The stored period, energy or parameter of a step, as the shortest decimal numbers that read as them.

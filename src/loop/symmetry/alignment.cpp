@@ -9,9 +9,9 @@
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
-#include "orbweaver/loop/symmetry/mapped_shift.hpp"
 #include "orbweaver/loop/symmetry/shift_search.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
+#include "symmetry/mapped_shift.hpp"
 
 namespace orbweaver::loop {
 

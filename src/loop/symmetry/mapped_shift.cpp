@@ -1,4 +1,4 @@
-#include "orbweaver/loop/symmetry/mapped_shift.hpp"
+#include "symmetry/mapped_shift.hpp"
 
 #include <algorithm>
 #include <cmath>
