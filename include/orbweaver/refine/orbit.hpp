@@ -88,7 +88,8 @@ struct RefinedOrbit {
 [[nodiscard]] RefinedOrbit refine_orbit(const Guess& guess, const HeldValue& held, int digits);
 
 /// The orbit near the guess at which the condition holds, of a system with a conserved energy. `towards`: another orbit
-/// of the family near by, in phase with the guess. Throws as refine_orbit, InputError for kinds that have no condition here (torus, krein) or no sector.
+/// of the family near by, in phase with the guess. Throws as refine_orbit, InputError for kinds that have no condition
+/// here (torus, krein) or no sector.
 [[nodiscard]] RefinedOrbit refine_crossing(const Guess& guess, const CrossingCondition& condition, int digits);
 
 inline constexpr int most_digits = 1000;

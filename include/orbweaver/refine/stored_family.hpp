@@ -37,7 +37,8 @@ class StoredFamily {
   [[nodiscard]] Place with(const HeldValue& value, std::optional<int> after) const;
   /// The orbit that a person names: "T=9" or "E=-0.5", meant exactly, or a step, which is held by what isolates it
   /// better, as it is stored. Of a family in a parameter "mu=10" or a step; then the system of the guess has that
-  /// value, and what the family holds, if anything, is held. Throws InputError for another text, and as `with` and `at_step`.
+  /// value, and what the family holds, if anything, is held. Throws InputError for another text, and as `with` and
+  /// `at_step`.
   struct Named {
     Place place;
     HeldValue held;
