@@ -9,6 +9,7 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include "command.hpp"
@@ -51,16 +52,15 @@ std::string place_text(const archive::Archive& atlas, const refine::StoredFamily
 }
 
 Outcome refine_one(const archive::Archive& atlas, const RefineOptions& options) {
-  using Quantity = refine::HeldValue::Quantity;
   const auto family = refine::StoredFamily::named(atlas, options.family);
-  const auto [place, held] = family.named_orbit(options.orbit, options.after);
-  const char* name = held.quantity == Quantity::period ? "T" : "E";
+  const auto [place, held, equations] = family.named_orbit(options.orbit, options.after);
+  const std::string exact = fmt::format("{}", fmt::join(equations, ", "));
   Outcome outcome;
   outcome.orbit = refine::refine_orbit(place.guess, held, options.digits);
-  outcome.text = report::refined_text(
-      fmt::format("{}, {} = {}", family.name(), name, held.decimal),
-      {{"family", place_text(atlas, family, place)}, {"held", fmt::format("{} = {} exactly", name, held.decimal)}},
-      *place.guess.system, outcome.orbit);
+  outcome.text =
+      report::refined_text(fmt::format("{}, {}", family.name(), exact),
+                           {{"family", place_text(atlas, family, place)}, {"held", fmt::format("{} exactly", exact)}},
+                           *place.guess.system, outcome.orbit);
   return outcome;
 }
 
@@ -99,7 +99,7 @@ void write(const std::filesystem::path& path, const std::string& text) {
 
 int refine_command(const RefineOptions& options) {
   if (options.crossing.has_value() == !options.family.empty() || options.family.empty() != options.orbit.empty())
-    throw core::InputError("expected FAMILY and ORBIT (a step, T=.. or E=..), or --crossing ROW");
+    throw core::InputError("expected FAMILY and ORBIT (a step, T=.., E=.. or PARAMETER=..), or --crossing ROW");
   const archive::Archive atlas(options.atlas);
   const auto start = std::chrono::steady_clock::now();
   const Outcome outcome = options.crossing ? refine_crossing(atlas, options) : refine_one(atlas, options);
@@ -119,9 +119,9 @@ Command make_refine_command(CLI::App& program) {
   auto options = std::make_shared<RefineOptions>();
   parser->add_option("ATLAS", options->atlas, "The atlas.h5 of a survey")->required();
   parser->add_option("FAMILY", options->family, "The name of a family");
-  parser->add_option("ORBIT", options->orbit, "T=PERIOD or E=ENERGY, meant exactly, or a step");
+  parser->add_option("ORBIT", options->orbit, "T=PERIOD, E=ENERGY or PARAMETER=VALUE, meant exactly, or a step");
   parser->add_option("--crossing", options->crossing, "A row of the table of crossings, counted from 0");
-  parser->add_option("--after", options->after, "The first orbit with this T or E after a step");
+  parser->add_option("--after", options->after, "The first orbit with this value after a step");
   parser->add_option("-n,--digits", options->digits, "Significant digits of every number")->capture_default_str();
   parser->add_option("-o,--output", options->output, "A file for the text too")->check(named_path());
   add_plugin_option(*parser);

@@ -44,7 +44,8 @@ void require_options_fit(const VerifyOptions& options) {
   if (!options.prove && (!options.orbits.empty() || !options.output.empty()))
     throw core::InputError("expected --prove before orbits to be proven and a file for their proofs");
   if (options.orbits.size() % 2 != 0 || (options.prove && options.orbits.empty()))
-    throw core::InputError("expected FAMILY and ORBIT (a step, T=.. or E=..) for each orbit to be proven");
+    throw core::InputError(
+        "expected FAMILY and ORBIT (a step, T=.., E=.. or PARAMETER=..) for each orbit to be proven");
 }
 
 /// Proves orbits of an archive, one after the other; what cannot be proven does not stop the others.
@@ -122,7 +123,8 @@ Command make_verify_command(CLI::App& program) {
       "verify", "Compute an atlas again from its modes alone and say what does not hold (under mpirun or alone)");
   parser->add_option("ATLAS", options->atlas, "The atlas.h5 of a survey, or a file of proofs")->required();
   parser->add_flag("--prove", options->prove, "Prove orbits instead: enclose them by ball arithmetic");
-  parser->add_option("ORBITS", options->orbits, "With --prove: FAMILY T=PERIOD|E=ENERGY|STEP, for each orbit");
+  parser->add_option("ORBITS", options->orbits,
+                     "With --prove: FAMILY T=PERIOD|E=ENERGY|PARAMETER=VALUE|STEP, for each orbit");
   parser->add_option("-n,--digits", options->digits, "With --prove: digits aimed at")->capture_default_str();
   parser->add_option("-o,--output", options->output, "With --prove: a file for the proofs, which verify checks again");
   parser->add_flag("--margins", options->margins, "Say how near each column came to what is allowed");

@@ -1,17 +1,48 @@
 #include "orbweaver/bifurcation/locus.hpp"
 
+#include <limits>
+#include <vector>
+
+#include "orbweaver/core/error.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
 
 namespace orbweaver::bifurcation {
+
+namespace {
+
+/// Beyond 1:1 and 1:2, where the two multipliers meet on the real axis, those with the product 1 are real.
+template <class StabilityOf>
+std::vector<continuation::LocusBoundary> strong_resonances(const systems::System& surface,
+                                                           const StabilityOf& stability_of) {
+  constexpr double largest_sum = 2.0;
+  const auto inside = [&surface, stability_of](double sign) {
+    return [&surface, stability_of, sign](const loop::Loop& loop) {
+      try {
+        return largest_sum + sign * torus_sum(surface.structure(), stability_of(loop));
+      } catch (const core::NumericalError&) {
+        return std::numeric_limits<double>::quiet_NaN();
+      }
+    };
+  };
+  using continuation::EndReason;
+  return {{{EndReason::strong_resonance, "1:1, both multipliers are 1"}, inside(-1.0)},
+          {{EndReason::strong_resonance, "1:2, both multipliers are -1"}, inside(1.0)}};
+}
+
+}  // namespace
 
 continuation::LocusTest locus_test(const systems::System& surface, const loop::Isotropy& isotropy, const Event& event,
                                    core::Team* team) {
   continuation::LocusTest test;
   if (event.kind == Event::Kind::test_function) {
-    test.value = [&surface, isotropy, function = event.function, team](const loop::Loop& loop) {
+    const auto stability_of = [&surface, isotropy, team](const loop::Loop& loop) {
       spectrum::FloquetOptions options;
       options.team = team;
-      const spectrum::Stability stability = spectrum::floquet(surface, loop, isotropy, options);
+      return spectrum::floquet(surface, loop, isotropy, options);
+    };
+    if (event.function.kind == TestFunction::Kind::torus) test.boundaries = strong_resonances(surface, stability_of);
+    test.value = [&surface, stability_of, function = event.function](const loop::Loop& loop) {
+      const spectrum::Stability stability = stability_of(loop);
       if (function.kind == TestFunction::Kind::sector)
         return index_deviation(surface.structure(), stability, function.sector).value;
       return evaluate(function, surface.structure(), stability).value;

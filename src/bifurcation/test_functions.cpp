@@ -106,6 +106,12 @@ double zeros_passed(const TestFunction& function, const spectrum::Stability& sta
   return has_opened ? unknown : std::floor(stability.turns - place);
 }
 
+double torus_sum(const systems::Structure& system, const spectrum::Stability& stability) {
+  const TestFunction torus{TestFunction::Kind::torus, {}};
+  const std::vector<Bounded> indices = indices_of(system, stability);
+  return sum_at_smallest(indices, checked_rule(torus, system).factors(system, torus.sector, indices));
+}
+
 bool is_event(const TestFunction& function, const systems::Structure& system, const spectrum::Stability& stability,
               bool tangency) {
   const Rule& rule = checked_rule(function, system);

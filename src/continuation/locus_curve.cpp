@@ -446,6 +446,7 @@ class LocusTracer {
       double value;
       double unit;
       std::function<double(const loop::Loop&)> of;
+      [[nodiscard]] Ending ending() const { return {reason, fmt::format("{} = {:.9g}", name, value * unit)}; }
     };
     const Options& o = _options.branch;
     const systems::Scales& scales = _system.scales();
@@ -463,14 +464,15 @@ class LocusTracer {
       limits.push_back({EndReason::energy_limit, "E", value, scales.energy(),
                         [this](const loop::Loop& l) { return energy_of(_system, l); }});
     std::optional<std::pair<Ending, double>> first;
-    for (const Limit& limit : limits) {
-      if (!std::isfinite(limit.value)) continue;
-      const auto off = [&](const loop::Loop& l) { return limit.of(l) - limit.value; };
-      if (!(off(_last.loop) * off(loop) < 0.0)) continue;
+    const auto look = [&](const Ending& ending, const auto& off) {
+      if (!(off(_last.loop) * off(loop) < 0.0)) return;
       const auto place = place_where([&](const Last& there) { return off(there.loop); }, length, false);
-      if (place && (!first || place->first < first->second))
-        first = {{limit.reason, fmt::format("{} = {:.9g}", limit.name, limit.value * limit.unit)}, place->first};
-    }
+      if (place && (!first || place->first < first->second)) first = {ending, place->first};
+    };
+    for (const Limit& limit : limits)
+      if (std::isfinite(limit.value))
+        look(limit.ending(), [&](const loop::Loop& l) { return limit.of(l) - limit.value; });
+    for (const LocusBoundary& boundary : _test.boundaries) look(boundary.ending, boundary.inside);
     return first;
   }
 

@@ -41,7 +41,7 @@ constexpr std::size_t kept_orbits = 5;
 
 Setting::Setting(const core::Communicator& comm, const scene::Scene& scene, const Options& options)
     : _comm(comm), _quick(options.quick), _asked(scene), _plain(survey::system_of(scene)), _scaled(scene, _plain) {
-  static_cast<void>(refine::refinable_formulas(*_plain));
+  static_cast<void>(refine::conservative_formulas(*_plain));
   _options = survey::branch_options(_scaled.scene(), nullptr);
   choose_family(options.family);
   trace();

@@ -79,7 +79,7 @@ ClosedOrbit closed_orbit_of(const Statement& statement) {
   if (statement.start.size() != d || statement.end.size() != d || statement.fractions.empty() ||
       statement.fractions.front() != 0.0)
     throw core::InputError("the statement does not fit its system");
-  return {refine::refinable_formulas(*system),
+  return {refine::conservative_formulas(*system),
           system->structure(),
           statement.scales,
           loop::isotropy_of(system->structure(), statement.isotropy),
@@ -228,6 +228,7 @@ Statement statement_about(const std::string& family, const std::vector<std::stri
                           const refine::Guess& guess, const refine::HeldValue& held, int digits) {
   if (digits < 1 || digits > most_proof_digits)
     throw core::InputError(fmt::format("expected 1 to {} digits, got {}", most_proof_digits, digits));
+  static_cast<void>(refine::conservative_formulas(*guess.system));
   const refine::RefinedOrbit refined = refine::refine_orbit(guess, held, digits + centre_guard);
   Statement statement;
   statement.family = family;

@@ -77,9 +77,11 @@ template <class Real>
 Vector<Real> ConditionedOrbit::rows(const Shooting<Real>& shooting, const Points<Real>& points,
                                     const Passage<Real>& passage, const Held& held) const {
   Vector<Real> rows = shooting.residual(points, passage);
+  if (held.kind == Held::Kind::nothing) return rows;
   rows.conservativeResize(rows.size() + 1);
   Real& row = rows(rows.size() - 1);
   switch (held.kind) {
+    case Held::Kind::nothing: break;
     case Held::Kind::period: row = (points.period - as_real<Real>(held.decimal)) / _setup.scales.time; break;
     case Held::Kind::energy:
       row = (shooting.energy(points.nodes.front()) - as_real<Real>(held.decimal)) / _setup.scales.energy();
@@ -100,10 +102,12 @@ Vector<Real> ConditionedOrbit::rows(const Shooting<Real>& shooting, const Points
 Eigen::MatrixXd ConditionedOrbit::jacobian(const Points<double>& points, const Passage<double>& passage,
                                            const Held& held) const {
   Eigen::MatrixXd matrix = _shooting.jacobian(points, passage);
+  if (held.kind == Held::Kind::nothing) return matrix;
   matrix.conservativeResize(matrix.rows() + 1, Eigen::NoChange);
   auto last = matrix.row(matrix.rows() - 1);
   last.setZero();
   switch (held.kind) {
+    case Held::Kind::nothing: break;
     case Held::Kind::period: last(matrix.cols() - 1) = 1.0; break;
     case Held::Kind::energy: {
       const Eigen::VectorXd gradient = _shooting.energy_gradient(points.nodes.front());
@@ -173,10 +177,12 @@ void ConditionedOrbit::factor(const Points<double>& points, const Held& held) {
   _factor.compute(jacobian(points, _shooting.pass(points, true), held));
   const Eigen::VectorXd diagonal = _factor.matrixR().diagonal().cwiseAbs();
   if (!(diagonal.minCoeff() > singular * diagonal.maxCoeff()))
-    throw core::NumericalError(fmt::format(
-        "the orbit is not isolated: the Jacobian's least pivot is {:.1e} of the largest. At an extremum of the period "
-        "hold the energy, at one of the energy the period",
-        diagonal.minCoeff() / diagonal.maxCoeff()));
+    throw core::NumericalError(
+        fmt::format("the orbit is not isolated: the Jacobian's least pivot is {:.1e} of the largest. {}",
+                    diagonal.minCoeff() / diagonal.maxCoeff(),
+                    held.kind == Held::Kind::nothing
+                        ? "At a fold in the parameter its value picks no orbit; one further along the family can be had"
+                        : "At an extremum of the period hold the energy, at one of the energy the period"));
 }
 
 void ConditionedOrbit::polish(Points<Extended>& points, const Held& held, double accuracy, int digits) {

@@ -11,7 +11,12 @@ namespace orbweaver::refine {
 
 /// The condition that picks one orbit of a family.
 struct Held {
-  enum class Kind { period, energy, plane } kind = Kind::plane;
+  enum class Kind {
+    nothing,  ///< the orbit is isolated
+    period,
+    energy,
+    plane,
+  } kind = Kind::plane;
   std::string decimal;  ///< of a period or energy
   // Of a plane: along . (u - origin) = offset, in the scales; u is all nodes, one after the other, and the period.
   Eigen::VectorXd along;

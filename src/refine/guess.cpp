@@ -44,10 +44,12 @@ systems::Formulas refinable_formulas(const systems::System& system) {
   const systems::Structure& structure = system.structure();
   if (with_formulas == nullptr)
     throw core::InputError(fmt::format("{} cannot be refined: it does not give its formulas", system.info().title));
-  if (structure.conserved.size() != 1 || !structure.symplectic)
-    throw core::InputError(fmt::format("{} cannot be refined: only Hamiltonian systems that conserve one quantity can",
-                                       system.info().title));
-  if (structure.pairs() > 1)
+  if (structure.conserved.size() > 1 || (structure.conservative() && !structure.symplectic))
+    throw core::InputError(
+        fmt::format("{} cannot be refined: of systems that conserve something only Hamiltonian ones with one conserved "
+                    "quantity can",
+                    system.info().title));
+  if (structure.conservative() && structure.pairs() > 1)
     throw core::InputError(fmt::format("{} cannot be refined: its orbits have {} pairs of multipliers, more than one",
                                        system.info().title, structure.pairs()));
   if (const std::vector<std::string>& free = system.family_scalars().free; !free.empty())
@@ -56,6 +58,15 @@ systems::Formulas refinable_formulas(const systems::System& system) {
         "and without `continuation.free`",
         free.front()));
   return with_formulas->formulas();
+}
+
+systems::Formulas conservative_formulas(const systems::System& system) {
+  systems::Formulas formulas = refinable_formulas(system);
+  if (!system.structure().conservative())
+    throw core::InputError(fmt::format(
+        "{} conserves nothing: of such systems only `orbweaver refine` takes orbits, by a parameter's value",
+        system.info().title));
+  return formulas;
 }
 
 }  // namespace orbweaver::refine

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "conditioned_orbit.hpp"
+#include "multipliers.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/refine/guess.hpp"
 
@@ -46,14 +47,24 @@ constexpr double farthest = 0.5;
 struct Values {
   std::vector<Extended> state;
   Extended period;
-  Extended energy;
+  std::vector<Extended> energy;   // one, or none
   std::vector<Extended> indices;  // full period, fundamental map; or none
-  std::vector<Extended> test;     // one, at a crossing
+  std::vector<ExtendedMultiplier> multipliers;
+  std::vector<Extended> test;  // one, at a crossing
 };
 
 void check_digits(int digits) {
   if (digits < 1 || digits > most_digits)
     throw core::InputError(fmt::format("expected 1 to {} digits, got {}", most_digits, digits));
+}
+
+Held::Kind kind_of(HeldValue::Quantity quantity) {
+  switch (quantity) {
+    case HeldValue::Quantity::period: return Held::Kind::period;
+    case HeldValue::Quantity::energy: return Held::Kind::energy;
+    case HeldValue::Quantity::parameter: break;
+  }
+  return Held::Kind::nothing;
 }
 
 /// mu + 1/mu of the pair beside the two trivial multipliers.
@@ -106,7 +117,7 @@ class Refinement {
 
   /// An orbit of a given period or energy.
   void hold(const HeldValue& value) {
-    _held.kind = value.quantity == HeldValue::Quantity::period ? Held::Kind::period : Held::Kind::energy;
+    _held.kind = kind_of(value.quantity);
     _held.decimal = value.decimal;
     const Points<double> found = _orbit.converge(_setup.guess, _held);
     _orbit.factor(found, _held);
@@ -153,15 +164,23 @@ class Refinement {
       const Values first = compute(digits);
       _orbit.extra_order += second_order;
       const Values second = compute(digits + second_guard);
-      int missing = 0;
-      RefinedOrbit result = joined(first, second, digits, missing);
-      if (missing <= 0) return result;
+      int missing = second_guard;
+      if (are_alike(first.multipliers, second.multipliers)) {
+        RefinedOrbit result = joined(first, second, digits, missing);
+        if (missing <= 0) return result;
+      }
       digits += missing + second_guard;
     }
     throw core::NumericalError(fmt::format("{} digits could not be had", _digits));
   }
 
  private:
+  /// As many real ones and pairs: beside a double one rounding may decide which.
+  static bool are_alike(const std::vector<ExtendedMultiplier>& a, const std::vector<ExtendedMultiplier>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const auto& x, const auto& y) { return (x.imaginary == 0) == (y.imaginary == 0); });
+  }
+
   void start_from(const Points<double>& found) {
     const WorkingDigits working(static_cast<int>(std::ceil(ConditionedOrbit::double_digits)) + 1);
     _points = extended(found);
@@ -238,8 +257,14 @@ class Refinement {
     Values values;
     values.state = start_on_fixed_set();
     values.period = _held.kind == Held::Kind::period ? numerics::extended_of(_held.decimal) : _points.period;
-    values.energy =
-        _held.kind == Held::Kind::energy ? numerics::extended_of(_held.decimal) : shooting.energy(values.state);
+    if (!_setup.structure.conservative()) {
+      const Matrix<Extended> monodromy = shooting.monodromy(shooting.fundamental_map(passage));
+      const Extended determinant = _setup.structure.symplectic ? Extended(1) : shooting.determinant(passage);
+      values.multipliers = nontrivial_multipliers(monodromy, determinant);
+      return values;
+    }
+    values.energy = {_held.kind == Held::Kind::energy ? numerics::extended_of(_held.decimal)
+                                                      : shooting.energy(values.state)};
     if (_setup.structure.pairs() == 1) {
       const Matrix<Extended> map = shooting.fundamental_map(passage);
       values.indices = {index_of(shooting.monodromy(map)), index_of(map)};
@@ -273,11 +298,14 @@ class Refinement {
   RefinedOrbit joined(const Values& first, const Values& second, int digits, int& missing) const {
     const WorkingDigits working(digits + second_guard);
     missing = std::numeric_limits<int>::min();
-    const auto number = [&](const Extended& a, const Extended& b, double smallest, bool is_exact) {
+    // `has_own_digits`: its rounding is relative to itself, though it need not be known to more than the smallest's.
+    const auto number = [&](const Extended& a, const Extended& b, double smallest, bool is_exact,
+                            bool has_own_digits = false) {
       Number out{numerics::rounded(b), Extended(0)};
       if (is_exact) return out;
       const double size = std::max(numerics::log10_abs(b), std::log10(smallest));
-      const Extended rounding = pow(Extended(10), static_cast<int>(std::floor(size)) + 1 - digits);
+      const double of_rounding = has_own_digits && b != 0 ? numerics::log10_abs(b) : size;
+      const Extended rounding = pow(Extended(10), static_cast<int>(std::floor(of_rounding)) + 1 - digits);
       out.error = 2 * abs(Extended(b - a)) + rounding;
       // half a unit of the last digit is for rounding to so many digits, a tenth for what is not known
       missing = std::max(missing, static_cast<int>(std::ceil(numerics::log10_abs(out.error) - size + _digits + 1)));
@@ -291,8 +319,17 @@ class Refinement {
     }
     out.period =
         number(first.period, second.period, smallest_part * _setup.scales.time, _held.kind == Held::Kind::period);
-    out.energy =
-        number(first.energy, second.energy, smallest_part * _setup.scales.energy(), _held.kind == Held::Kind::energy);
+    if (!first.energy.empty())
+      out.energy = number(first.energy.front(), second.energy.front(), smallest_part * _setup.scales.energy(),
+                          _held.kind == Held::Kind::energy);
+    for (std::size_t i = 0; i < first.multipliers.size(); ++i) {
+      const ExtendedMultiplier& a = first.multipliers[i];
+      const ExtendedMultiplier& b = second.multipliers[i];
+      ComplexNumber& multiplier = out.spectrum.emplace_back();
+      const bool has_own_digits = i + 1 == first.multipliers.size() && b.imaginary == 0 && !_setup.structure.symplectic;
+      multiplier.real = number(a.real, b.real, 1.0, false, has_own_digits);
+      if (b.imaginary != 0) multiplier.imaginary = number(a.imaginary, b.imaginary, 1.0, false);
+    }
     if (!first.indices.empty()) {
       out.index = number(first.indices[0], second.indices[0], 1.0, false);
       out.fundamental_index = number(first.indices[1], second.indices[1], 1.0, false);
@@ -312,7 +349,7 @@ class Refinement {
     if (!first.test.empty()) out.test_value = Number{second.test.front(), Extended(0)};
     out.order = _setup.order;
     out.reversor = _setup.reversor_name;
-    out.largest = _setup.phase;
+    if (!_setup.starts_with_drive()) out.largest = _setup.phase;
     out.digits = _digits;
     out.working_digits = digits + second_guard;
     out.taylor_order = _order_of_series;
@@ -339,6 +376,10 @@ class Refinement {
 RefinedOrbit refine_orbit(const Guess& guess, const HeldValue& held, int digits) {
   check_digits(digits);
   static_cast<void>(numerics::extended_of(held.decimal));
+  const bool is_isolated = !guess.system->structure().conservative();
+  if (is_isolated != (held.quantity == HeldValue::Quantity::parameter))
+    throw core::InputError(is_isolated ? "where nothing is conserved a parameter picks an orbit, no period or energy"
+                                       : "a parameter alone picks no orbit of a system with a conserved energy");
   Refinement refinement(guess, digits);
   refinement.hold(held);
   return refinement.run();
@@ -349,6 +390,7 @@ RefinedOrbit refine_crossing(const Guess& guess, const CrossingCondition& condit
   if (!archive::has_sector(condition.kind) && !archive::is_fold(condition.kind))
     throw core::InputError(fmt::format("a crossing of the kind {} cannot be refined: there is no condition for it",
                                        archive::name_of(condition.kind)));
+  static_cast<void>(conservative_formulas(*guess.system));
   Refinement refinement(guess, digits);
   refinement.locate(condition);
   return refinement.run();
@@ -357,7 +399,7 @@ RefinedOrbit refine_crossing(const Guess& guess, const CrossingCondition& condit
 HeldValue::Quantity better_held(const Guess& guess) {
   // A period that moves by less than this part of a step along the family loses that many digits.
   constexpr double nearly_at_rest = 1e-3;
-  const ShootingSetup setup(refinable_formulas(*guess.system), guess.system->structure(), guess.scales, guess.loop,
+  const ShootingSetup setup(conservative_formulas(*guess.system), guess.system->structure(), guess.scales, guess.loop,
                             guess.isotropy);
   ConditionedOrbit orbit(setup);
   const Eigen::VectorXd along = orbit.direction(setup.guess);

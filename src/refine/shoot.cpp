@@ -31,7 +31,7 @@ void thin(ShootingSetup& setup, int segments) {
 }  // namespace
 
 ShotOrbit shoot(const Guess& guess, const HeldValue& value, int segments) {
-  ShootingSetup setup(refinable_formulas(*guess.system), guess.system->structure(), guess.scales, guess.loop,
+  ShootingSetup setup(conservative_formulas(*guess.system), guess.system->structure(), guess.scales, guess.loop,
                       guess.isotropy);
   if (segments > 0) thin(setup, segments);
   ConditionedOrbit orbit(setup);

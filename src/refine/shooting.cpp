@@ -22,19 +22,38 @@ constexpr int harmonics_a_segment = 2;
 constexpr int least_segments = 4;
 /// What the dense factorisation of the Jacobian takes a tenth of a second for.
 constexpr int most_segments = 64;
+/// Of a quarter of a turn: rounding of an offset.
+constexpr double same_quarter = 1e-12;
 
 Index as_index(std::size_t n) { return static_cast<Index>(n); }
 
 double scale_of(const ShootingSetup& setup, std::size_t i) { return setup.scales.coordinate(i); }
 
-/// Whole turns by which the map misses the state `to`.
+/// The map's own turns, and the whole ones by which it misses the state `to`.
 std::vector<double> turns_between(const systems::AffineMap& map, const std::vector<double>& from,
                                   const std::vector<double>& to, const systems::Structure& structure) {
-  const Eigen::VectorXd image = map.matrix * Eigen::Map<const Eigen::VectorXd>(from.data(), as_index(from.size()));
+  const Eigen::VectorXd image = map(Eigen::Map<const Eigen::VectorXd>(from.data(), as_index(from.size())));
   std::vector<double> turns(from.size(), 0.0);
-  for (std::size_t i = 0; i < from.size(); ++i)
-    if (structure.is_angle(i)) turns[i] = std::round((to[i] - image(as_index(i))) / (2.0 * std::numbers::pi));
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const double quarters = map.offset(as_index(i)) / (0.5 * std::numbers::pi);
+    const double whole = std::round(quarters);
+    if (std::abs(quarters - whole) > same_quarter || (whole != 0.0 && !structure.is_angle(i)))
+      throw core::InputError(
+          "orbits with a symmetry that shifts the state, other than an angle by quarters of a turn, cannot be refined");
+    turns[i] = 0.25 * whole;
+    if (structure.is_angle(i)) turns[i] += std::round((to[i] - image(as_index(i))) / (2.0 * std::numbers::pi));
+  }
   return turns;
+}
+
+/// The same orbit begun where the drive's phase, the last coordinate, is 0.
+loop::Loop begun_with_drive(const loop::Loop& loop) {
+  const int drive = loop.dimension - 1;
+  const auto at = static_cast<std::size_t>(drive);
+  const double turns = loop::state_at(loop, 0.0)[at] / (2.0 * std::numbers::pi * loop.winding[at]);
+  loop::Loop begun = loop::time_shifted(loop, std::ceil(turns) - turns);
+  begun.cosine(0, drive) -= loop::state_at(begun, 0.0)[at];
+  return begun;
 }
 
 template <class Real>
@@ -68,13 +87,13 @@ Vector<Real> as_vector(const std::vector<Real>& values) {
 }  // namespace
 
 ShootingSetup::ShootingSetup(const systems::Formulas& system_formulas, const systems::Structure& system_structure,
-                             const systems::Scales& system_scales, const loop::Loop& loop,
+                             const systems::Scales& system_scales, const loop::Loop& stored,
                              const loop::Isotropy& isotropy)
     : formulas(system_formulas),
       structure(system_structure),
       scales(system_scales),
-      generator(Eigen::MatrixXd::Identity(loop.dimension, loop.dimension)),
-      reversor(Eigen::MatrixXd::Identity(loop.dimension, loop.dimension)) {
+      generator(Eigen::MatrixXd::Identity(stored.dimension, stored.dimension)),
+      reversor(Eigen::MatrixXd::Identity(stored.dimension, stored.dimension)) {
   const loop::SymmetryGroup group(structure, isotropy);
   const loop::SymmetryElement* at_start = group.reversor_at_start();
   order = group.order();
@@ -84,6 +103,7 @@ ShootingSetup::ShootingSetup(const systems::Formulas& system_formulas, const sys
     reversor = ExactMatrix(at_start->map.matrix);
     reversor_name = at_start->name;
   }
+  const loop::Loop loop = structure.driven && !mirrored ? begun_with_drive(stored) : stored;
   const int count = std::clamp(loop.cutoff / (harmonics_a_segment * copies()), least_segments, most_segments);
   const double end = 2.0 * std::numbers::pi / copies();
   for (int n = 0; n <= count; ++n) {
@@ -94,7 +114,6 @@ ShootingSetup::ShootingSetup(const systems::Formulas& system_formulas, const sys
   guess.period = loop.period;
   const auto add = [&](Map::Between between, const systems::AffineMap& map, const std::vector<double>& from,
                        const std::vector<double>& to) {
-    if (!map.is_linear()) throw core::InputError("orbits with a symmetry that shifts the state cannot be refined yet");
     maps.push_back({between, ExactMatrix(map.matrix), turns_between(map, from, to, structure)});
   };
   const std::vector<double>& first = guess.nodes.front();
@@ -108,7 +127,8 @@ ShootingSetup::ShootingSetup(const systems::Formulas& system_formulas, const sys
   }
   if (!mirrored) {
     add(Map::Between::start_and_end, group.generator(), first, last);
-    phase = structure.angles.empty() ? 0 : static_cast<std::size_t>(structure.angles.front());
+    const int angle = structure.angles.empty() ? 0 : structure.angles.front();
+    phase = static_cast<std::size_t>(structure.driven ? structure.dimension - 1 : angle);
     phase_winding = loop.winding[*phase];
   }
 }
@@ -177,7 +197,9 @@ Vector<Real> Shooting<Real>::residual(const Points<Real>& points, const Passage<
     for (std::size_t i = 0; i < d; ++i)
       rows(row++) = (image(as_index(i)) + _two_pi * map.turns[i] - to(map, points)[i]) / scale_of(_setup, i);
   }
-  if (_setup.phase)
+  if (_setup.starts_with_drive())
+    rows(row) = points.nodes.front()[*_setup.phase] / scale_of(_setup, *_setup.phase);
+  else if (_setup.phase)
     rows(row) =
         (field(points.nodes.front())(as_index(*_setup.phase)) - _two_pi * _setup.phase_winding / points.period) *
         (_setup.scales.time / scale_of(_setup, *_setup.phase));
@@ -214,7 +236,9 @@ Matrix<Real> Shooting<Real>::jacobian(const Points<Real>& points, const Passage<
       rows(row, target + as_index(i)) -= Real(1.0);
     }
   }
-  if (_setup.phase) {
+  if (_setup.starts_with_drive()) {
+    rows(row, as_index(*_setup.phase)) = Real(1.0);
+  } else if (_setup.phase) {
     const Matrix<Real> slope = linearized(points.nodes.front());
     for (std::size_t c = 0; c < d; ++c)
       rows(row, as_index(c)) =
@@ -274,6 +298,15 @@ Matrix<Real> Shooting<Real>::monodromy(const Matrix<Real>& fundamental_map) cons
   Matrix<Real> result = fundamental_map;
   for (int n = 1; n < _setup.order; ++n) result = (result * fundamental_map).eval();
   for (int n = 0; n < _setup.order; ++n) result = (_generator * result).eval();
+  return result;
+}
+
+template <class Real>
+Real Shooting<Real>::determinant(const Passage<Real>& passage) const {
+  Real domain(1.0);
+  for (const Matrix<Real>& segment : passage.transitions) domain *= segment.partialPivLu().determinant();
+  Real result(1.0);
+  for (int n = 0; n < _setup.order; ++n) result *= domain;
   return result;
 }
 

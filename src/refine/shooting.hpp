@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "orbweaver/refine/exact_map.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
+#include "orbweaver/refine/exact_map.hpp"
 #include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/systems/scales.hpp"
 #include "orbweaver/systems/structure.hpp"
@@ -38,7 +38,7 @@ struct ShootingSetup {
   struct Map {
     enum class Between { start_and_start, end_and_end, start_and_end } between;
     ExactMatrix matrix;
-    std::vector<double> turns;
+    std::vector<double> turns;  ///< whole quarters
   };
 
   systems::Formulas formulas;
@@ -50,21 +50,25 @@ struct ShootingSetup {
   ExactMatrix generator;  ///< g
   ExactMatrix reversor;   ///< R of phase 0; the identity where there is none
   std::vector<Map> maps;
-  std::vector<double> fractions;     ///< of the nodes, in parts of the period, but for the last, which is 1/copies
-  std::optional<std::size_t> phase;  ///< the coordinate that is largest at the start, without a reversor
-  double phase_winding = 0.0;        ///< its winding number
+  std::vector<double> fractions;  ///< of the nodes, in parts of the period, but for the last, which is 1/copies
+  /// Without a reversor: the coordinate that is largest at the start, or of a driven system the drive's phase, which is
+  /// 0 there.
+  std::optional<std::size_t> phase;
+  double phase_winding = 0.0;  ///< its winding number
   Points<double> guess;
 
   [[nodiscard]] std::size_t dimension() const { return static_cast<std::size_t>(formulas.dimension); }
   [[nodiscard]] int copies() const { return mirrored ? 2 * order : order; }
   [[nodiscard]] std::size_t segments() const { return fractions.size() - 1; }
+  [[nodiscard]] bool starts_with_drive() const { return phase.has_value() && structure.driven; }
 };
 
 /// The equations of multiple shooting on the fundamental domain in some arithmetic, in the scales:
-///   Phi(x_m) = x_(m+1);  x_0 in Fix(R) and x_M in Fix(g R), or x_M = g x_0 and z_i largest at the start;
+///   Phi(x_m) = x_(m+1);
+///   x_0 in Fix(R) and x_M in Fix(g R), or x_M = g x_0 and z_i largest (the drive's phase 0) at the start;
 ///   x_0 kept by what keeps every point of the orbit.
-/// They are more than the unknowns (by what symmetries and the energy make dependent), and agree at an orbit; one
-/// condition that picks an orbit of the family is missing.
+/// They are more than the unknowns (by what symmetries and the energy make dependent), and agree at an orbit. Where a
+/// quantity is conserved, one condition that picks an orbit of the family is missing.
 template <class Real>
 class Shooting {
  public:
@@ -87,6 +91,8 @@ class Shooting {
   [[nodiscard]] Matrix<Real> fundamental_map(const Passage<Real>& passage) const;
   /// M(T).
   [[nodiscard]] Matrix<Real> monodromy(const Matrix<Real>& fundamental_map) const;
+  /// det M(T), as the product of the segments'. Without a reversor.
+  [[nodiscard]] Real determinant(const Passage<Real>& passage) const;
   /// The direction of the family at the start, (dz, dT), with along . (dz, dT) = 1, `along` in the scales.
   [[nodiscard]] Vector<Real> tangent(const Points<Real>& points, const Passage<Real>& passage,
                                      const Eigen::VectorXd& along) const;

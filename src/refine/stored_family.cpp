@@ -29,13 +29,26 @@ constexpr double place_tolerance = 1e-12;  // in arclength
 
 bool is_between(double value, double a, double b) { return (a <= value && value < b) || (b < value && value <= a); }
 
-const char* letter_of(HeldValue::Quantity quantity) { return quantity == HeldValue::Quantity::period ? "T" : "E"; }
+/// A value as a double that reads as it, since systems are bound with doubles.
+double parameter_value(const std::string& name, const std::string& decimal) {
+  constexpr int enough = 60;
+  const numerics::WorkingDigits working(enough);
+  const numerics::Extended meant = numerics::extended_of(decimal);
+  const auto value = static_cast<double>(meant);
+  if (numerics::extended_of(numerics::shortest_decimal(value)) != meant)
+    throw core::InputError(
+        fmt::format("expected a value of {} that double precision reads as written, got `{}`; `{}` is the nearest",
+                    name, decimal, numerics::shortest_decimal(value)));
+  return value;
+}
 
 }  // namespace
 
 StoredFamily::StoredFamily(const archive::Archive& atlas, std::size_t family)
     : _atlas(atlas), _system(survey::scaled_system_of(atlas)) {
-  _plain = survey::system_of(scene::parse(atlas.header().scene, atlas.path().string()));
+  _choice = scene::parse(atlas.header().scene, atlas.path().string()).system;
+  _plain = scene::bound_system(_choice);
+  if (!_choice.moving.free.empty()) _parameter = _choice.moving.free.front();
   const archive::Table& table = atlas.families();
   _name = table.texts("name")[family];
   _isotropy_text = table.texts("isotropy")[family];
@@ -71,10 +84,24 @@ std::size_t StoredFamily::index_of(int step) const {
 }
 
 std::vector<double> StoredFamily::values(HeldValue::Quantity quantity) const {
-  const std::vector<double>& column =
-      _atlas.orbits().reals(quantity == HeldValue::Quantity::period ? "period" : "energy");
+  using Quantity = HeldValue::Quantity;
+  const char* name = quantity == Quantity::period ? "period" : quantity == Quantity::energy ? "energy" : "parameter";
+  const std::vector<double>& column = _atlas.orbits().reals(name);
   return {column.begin() + static_cast<std::ptrdiff_t>(_first_orbit),
           column.begin() + static_cast<std::ptrdiff_t>(_first_orbit + _arclengths.size())};
+}
+
+std::string StoredFamily::letter_of(HeldValue::Quantity quantity) const {
+  if (quantity == HeldValue::Quantity::parameter) return _parameter;
+  return quantity == HeldValue::Quantity::period ? "T" : "E";
+}
+
+std::shared_ptr<const systems::System> StoredFamily::plain_at(double value) const {
+  if (_parameter.empty()) return _plain;
+  scene::SystemChoice choice = _choice;
+  choice.parameters[_parameter] = value;
+  choice.moving = {};
+  return scene::bound_system(choice);
 }
 
 std::string StoredFamily::stored(HeldValue::Quantity quantity, int step) const {
@@ -91,7 +118,8 @@ StoredFamily::Neighbours StoredFamily::beside(double arclength) const {
 }
 
 StoredFamily::Place StoredFamily::at_step(int step) const {
-  Place place = at_arclength(_arclengths[index_of(step)]);
+  const double value = _parameter.empty() ? 0.0 : values(HeldValue::Quantity::parameter)[index_of(step)];
+  Place place = placed(_arclengths[index_of(step)], plain_at(value));
   place.first_step = step;
   place.last_step = step;
   return place;
@@ -132,7 +160,7 @@ StoredFamily::Place StoredFamily::with(const HeldValue& value, std::optional<int
     const auto located = numerics::locate_root(along, _arclengths[n], _arclengths[n + 1], place_tolerance);
     if (located) arclength = located->position;
   }
-  Place place = at_arclength(arclength);
+  Place place = placed(arclength, plain_at(wanted));
   place.first_step = step_of(n);
   place.last_step = known[n] == wanted ? place.first_step : step_of(n + 1);
   return place;
@@ -140,21 +168,61 @@ StoredFamily::Place StoredFamily::with(const HeldValue& value, std::optional<int
 
 StoredFamily::Named StoredFamily::named_orbit(const std::string& text, std::optional<int> after) const {
   using Quantity = HeldValue::Quantity;
+  if (!_parameter.empty()) return of_parameter(text, after);
+  const auto named = [this](Place place, const HeldValue& held) {
+    return Named{std::move(place), held, {fmt::format("{} = {}", letter_of(held.quantity), held.decimal)}};
+  };
   if (text.starts_with("T=") || text.starts_with("E=")) {
     const HeldValue held{text.front() == 'T' ? Quantity::period : Quantity::energy, text.substr(2)};
     static_cast<void>(numerics::extended_of(held.decimal));
-    return {with(held, after), held};
+    return named(with(held, after), held);
   }
+  const int step = step_named(text, ", T=PERIOD or E=ENERGY");
+  Place place = at_step(step);
+  const Quantity quantity = better_held(place.guess);
+  return named(std::move(place), {quantity, stored(quantity, step)});
+}
+
+int StoredFamily::step_named(const std::string& text, const std::string& expected) const {
   int step = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), step);
   if (error != std::errc() || end != text.data() + text.size())
-    throw core::InputError(fmt::format("expected a step of {}, T=PERIOD or E=ENERGY, got `{}`", _name, text));
-  Place place = at_step(step);
-  const Quantity quantity = better_held(place.guess);
-  return {std::move(place), {quantity, stored(quantity, step)}};
+    throw core::InputError(fmt::format("expected a step of {}{}, got `{}`", _name, expected, text));
+  return step;
+}
+
+StoredFamily::Named StoredFamily::of_parameter(const std::string& text, std::optional<int> after) const {
+  using Hold = systems::FamilyScalars::Hold;
+  using Quantity = HeldValue::Quantity;
+  const std::string prefix = _parameter + "=";
+  Named named;
+  named.held.quantity = Quantity::parameter;
+  if (text.starts_with(prefix)) {
+    named.held.decimal = numerics::shortest_decimal(parameter_value(_parameter, text.substr(prefix.size())));
+    named.place = with(named.held, after);
+  } else {
+    const int step = step_named(text, fmt::format(" or {}VALUE", prefix));
+    named.held.decimal = stored(Quantity::parameter, step);
+    named.place = at_step(step);
+  }
+  named.equations = {fmt::format("{} = {}", _parameter, named.held.decimal)};
+  if (_choice.moving.hold == Hold::nothing) return named;
+  const Quantity quantity = _choice.moving.hold == Hold::period ? Quantity::period : Quantity::energy;
+  named.held = {quantity, stored(quantity, step_of(0))};
+  named.equations.push_back(fmt::format("{} = {}", letter_of(quantity), named.held.decimal));
+  return named;
 }
 
 StoredFamily::Place StoredFamily::at_arclength(double arclength) const {
+  if (!_parameter.empty())
+    throw core::InputError(
+        fmt::format("{} runs in {}: of such families orbits can be refined, by a value or a step, "
+                    "and no crossings",
+                    _name, _parameter));
+  return placed(arclength, _plain);
+}
+
+StoredFamily::Place StoredFamily::placed(double arclength, std::shared_ptr<const systems::System> plain) const {
   const Neighbours near = beside(arclength);
   std::size_t nearest = near.first;
   for (std::size_t n = near.first; n < near.end; ++n)
@@ -181,6 +249,7 @@ StoredFamily::Place StoredFamily::at_arclength(double arclength) const {
     guess.period += weights[n] * same.period;
     for (std::size_t i = 0; i < guess.modes.size(); ++i) guess.modes[i] += weights[n] * same.modes[i];
   }
+  guess.parameters.clear();  // those of `plain`
   guess = loop::in_standard_phase(structure, guess, _isotropy);
   for (const loop::SymmetryElement& element : _isotropy)
     if (const double defect = loop::symmetry_defect(guess, element, structure.angles); defect > symmetry_of_a_guess)
@@ -188,7 +257,9 @@ StoredFamily::Place StoredFamily::at_arclength(double arclength) const {
           fmt::format("the orbits of {} do not have its symmetry {}: they are off by {:.1e}; was the file changed?",
                       _name, element.name, defect));
   Place place;
-  place.guess = {_plain, _system->scales(), loop::in_units(guess, _system->scales()), _isotropy};
+  systems::Scales scales = _system->scales();
+  scales.parameters.clear();
+  place.guess = {std::move(plain), scales, loop::in_units(guess, scales), _isotropy};
   const auto after = std::lower_bound(_arclengths.begin(), _arclengths.end(), arclength);
   const auto next = std::min(static_cast<std::size_t>(after - _arclengths.begin()), _arclengths.size() - 1);
   place.first_step = step_of(next > 0 && _arclengths[next] > arclength ? next - 1 : next);

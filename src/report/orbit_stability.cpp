@@ -22,6 +22,7 @@ bool holds_multipliers(const archive::Archive& atlas) {
 OrbitStability::OrbitStability(const archive::Archive& atlas)
     : _values(atlas.orbits().reals("stability")),
       _errors(atlas.orbits().reals("stability_error")),
+      _log_volumes(atlas.orbits().reals("log_volume")),
       _pairs(static_cast<std::size_t>(atlas.header().pairs)),
       _complex(archive::has_complex_stability(atlas.header())),
       _multipliers(holds_multipliers(atlas)) {}
@@ -32,11 +33,18 @@ std::optional<bool> OrbitStability::of(std::size_t orbit) const {
   bool stable = true;
   for (std::size_t pair = 0; pair < _pairs; ++pair) {
     const std::complex<double> k = value(orbit, pair);
-    if (std::isnan(k.real()) || std::isnan(k.imag())) return std::nullopt;
+    if (std::isnan(k.real()) || std::isnan(k.imag())) return by_volume(orbit);
     stable = stable && (_multipliers ? std::abs(k) <= 1.0 + error
                                      : std::abs(k.imag()) <= error && std::abs(k.real()) <= 2.0 + error);
   }
   return stable && error > largest_error ? std::nullopt : std::optional<bool>(stable);
+}
+
+// A single multiplier is all of the volume's change; where it is beyond double precision's range its logarithm is not.
+std::optional<bool> OrbitStability::by_volume(std::size_t orbit) const {
+  const double logarithm = _log_volumes[orbit];
+  if (!_multipliers || _pairs != 1 || !(std::abs(logarithm) > largest_error)) return std::nullopt;
+  return logarithm < 0.0;
 }
 
 std::complex<double> OrbitStability::value(std::size_t orbit, std::size_t pair) const {

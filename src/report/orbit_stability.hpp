@@ -18,14 +18,17 @@ class OrbitStability {
   explicit OrbitStability(const archive::Archive& atlas);
 
   /// True if within `stability_error` all indices are real and between -2 and 2, or all multipliers within the unit
-  /// circle. Nothing where they are not known, or the error exceeds 1e-3 and leaves it open whether they are.
+  /// circle; of a single multiplier that is not known, if its logarithm says so. Nothing where they are not known, or
+  /// the error exceeds 1e-3 and leaves it open whether they are.
   [[nodiscard]] std::optional<bool> of(std::size_t orbit) const;
 
  private:
+  [[nodiscard]] std::optional<bool> by_volume(std::size_t orbit) const;
   [[nodiscard]] std::complex<double> value(std::size_t orbit, std::size_t pair) const;
 
   const std::vector<double>& _values;
   const std::vector<double>& _errors;
+  const std::vector<double>& _log_volumes;
   std::size_t _pairs;
   bool _complex;
   bool _multipliers;

@@ -67,6 +67,7 @@ std::string parameter_texts(const systems::System& system) {
 
 std::string start_text(const systems::System& system, const refine::RefinedOrbit& orbit) {
   if (orbit.largest) return fmt::format("where {} is largest", system.info().state_names[*orbit.largest]);
+  if (orbit.reversor.empty()) return "where the drive's phase is 0";
   return fmt::format("on the fixed set of {}, where {} is larger than half a period later", orbit.reversor,
                      system.info().state_names.front());
 }
@@ -80,7 +81,8 @@ std::string refined_text(const std::string& title, const RefinedLabels& labels, 
   heading.emplace_back("t = 0", start_text(system, orbit));
   std::string text = title + "\n";
   for (const auto& [label, words] : heading) text += fmt::format("  {:<19}{}\n", label, words);
-  std::vector<Line> lines{line_of("period", orbit.period, orbit), line_of("energy", orbit.energy, orbit)};
+  std::vector<Line> lines{line_of("period", orbit.period, orbit)};
+  if (orbit.energy) lines.push_back(line_of("energy", *orbit.energy, orbit));
   for (std::size_t i = 0; i < orbit.state.size(); ++i)
     lines.push_back(line_of(system.info().state_names[i] + "(0)", orbit.state[i], orbit));
   if (orbit.index) {
@@ -91,6 +93,10 @@ std::string refined_text(const std::string& title, const RefinedLabels& labels, 
   const char* names[2][2] = {{"multiplier", "its inverse"}, {"multiplier, real", "imaginary"}};
   for (std::size_t i = 0; i < orbit.multipliers.size(); ++i)
     lines.push_back(line_of(names[orbit.unit_circle ? 1 : 0][i], orbit.multipliers[i], orbit));
+  for (const refine::ComplexNumber& multiplier : orbit.spectrum) {
+    lines.push_back(line_of(multiplier.imaginary ? "multiplier, real" : "multiplier", multiplier.real, orbit));
+    if (multiplier.imaginary) lines.push_back(line_of("imaginary, +-", *multiplier.imaginary, orbit));
+  }
   std::size_t width = 0;
   for (const Line& line : lines) width = std::max(width, line.value.size() + (line.value.front() == '-' ? 0 : 1));
   for (const Line& line : lines) {

@@ -51,6 +51,7 @@ void expect_row(const Archive& atlas, std::size_t row, const OrbitRecord& orbit)
   expect_equal(orbits.reals("loss_rms")[row], orbit.loss_rms);
   expect_equal(orbits.reals("off_branch_eigenvalue")[row], orbit.off_branch_eigenvalue);
   expect_equal(orbits.reals("stability_error")[row], orbit.stability_error);
+  expect_equal(orbits.reals("log_volume")[row], orbit.log_volume);
   expect_equal(orbits.reals("closure")[row], orbit.closure);
   expect_equal(orbits.reals("single_shot")[row], orbit.single_shot);
   expect_equal(orbits.reals("energy_drift")[row], orbit.energy_drift);

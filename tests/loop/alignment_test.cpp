@@ -229,5 +229,17 @@ TEST(Repetitions, AreSeenUnderATimeMap) {
   EXPECT_EQ(repetitions(with_time_map(once, {1.0, {0.2, -0.1}}, 60), 1e-9), 1);
 }
 
+// Features of 1/10 of the period: the 119 harmonics in time that a first look takes leave the shift wrong.
+TEST(AlignmentInTime, SeesWhatPassesFastUnderItsTimeMap) {
+  Loop from = test::random_loop(2, 14, 61);
+  from.time_map = TimeMap{10.0, {}};
+  for (const double shift : {0.0, 1e-4, 3e-3}) {
+    const Loop to = time_shifted(from, shift);
+    const Alignment found = align_in_time(test::structure_of("van_der_pol"), from, to);
+    EXPECT_NEAR(found.shift, shift, 1e-11);
+    EXPECT_LT(found.distance, 1e-6 * mean_distance(from, Loop(time_shifted(from, 0.3))));
+  }
+}
+
 }  // namespace
 }  // namespace orbweaver::loop

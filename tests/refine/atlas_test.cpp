@@ -40,7 +40,7 @@ class RefineAtlas : public ::testing::Test {
 std::vector<Number> numbers_of(const RefinedOrbit& orbit) {
   std::vector<Number> numbers = orbit.state;
   numbers.push_back(orbit.period);
-  numbers.push_back(orbit.energy);
+  numbers.push_back(*orbit.energy);
   numbers.push_back(*orbit.index);
   numbers.push_back(*orbit.fundamental_index);
   return numbers;
@@ -82,7 +82,7 @@ TEST_F(RefineAtlas, GivesOrbitsByPeriodEnergyAndStep) {
   EXPECT_LT(numerics::log10_abs(2 * orbit.multipliers[0].value - orbit.index->value), -18.0);
   EXPECT_TRUE(orbit.unit_circle);
   // From its energy the same orbit, to the digits that the energy has.
-  const HeldValue by_energy{Quantity::energy, numerics::decimal_text(orbit.energy.value, 25)};
+  const HeldValue by_energy{Quantity::energy, numerics::decimal_text(orbit.energy->value, 25)};
   const RefinedOrbit same = refine::refine_orbit(family.with(by_energy, std::nullopt).guess, by_energy, 18);
   EXPECT_LT(numerics::log10_abs(same.period.value - 9), -17.0);
   // A stored orbit: its own numbers to the accuracy that it has.
@@ -137,7 +137,7 @@ TEST_F(RefineAtlas, FindsCrossings) {
     const RefinedOrbit few = refine::refine_crossing(crossing.place.guess, crossing.condition, 12);
     expect_bounds_hold(few, refine::refine_crossing(crossing.place.guess, crossing.condition, 20), what);
     EXPECT_NEAR(static_cast<double>(few.period.value), crossing.period, 1e-8) << what;
-    EXPECT_NEAR(static_cast<double>(few.energy.value), pendulum().crossings().reals("energy")[row], 1e-8) << what;
+    EXPECT_NEAR(static_cast<double>(few.energy->value), pendulum().crossings().reals("energy")[row], 1e-8) << what;
     for (std::size_t i = 0; i < 4; ++i)
       EXPECT_NEAR(static_cast<double>(few.state[i].value), pendulum().crossings().reals("state")[4 * row + i], 1e-7)
           << what;

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include <gmock/gmock.h>
@@ -51,7 +52,7 @@ TEST(RefineOrbit, FindsThePeriodOfTheHarmonicOscillator) {
     expect_value(orbit.period, 20 * pi(), 60, "period");  // omega is the decimal 0.1, not the double next to it
     expect_value(orbit.state[0], Extended(1), 60, "q");
     EXPECT_LT(numerics::log10_abs(orbit.state[1].value), -60.0);
-    EXPECT_EQ(orbit.energy.error, 0);
+    EXPECT_EQ(orbit.energy->error, 0);
     EXPECT_FALSE(orbit.index.has_value());
     EXPECT_EQ(orbit.reversor, isotropy.find('R') == std::string::npos ? "" : "R");
   }
@@ -128,7 +129,7 @@ TEST(RefineOrbit, FindsTheStraightOrbitsOfHenonAndHeiles) {
   const Guess guess =
       guess_of(system, 6.8, {0.0, 0.08, 0.0, 0.0}, {0.0, 0.48, 0.0, 0.0}, {0.0, 0.0, 0.0, -0.44}, "S@0 R@0");
   const RefinedOrbit orbit = refine_orbit(guess, {Quantity::period, numerics::decimal_text(period, 75)}, 60);
-  expect_value(orbit.energy, Extended(1) / 10, 60, "energy");
+  expect_value(*orbit.energy, Extended(1) / 10, 60, "energy");
 }
 
 // At rest the bounce's index is 2 cos(2 pi sqrt(g/|y|) / sqrt(k/m)), and it is even in the amplitude A:
@@ -147,6 +148,91 @@ TEST(RefineOrbit, FindsTheIndexOfSmallBounces) {
   const Extended at_rest = 2 * cos(Extended(2 * pi() * sqrt(Extended(3) / 4) / sqrt(Extended(3))));
   EXPECT_LT(numerics::log10_abs(indices[0] - at_rest), -5.0);
   EXPECT_LT(numerics::log10_abs((4 * indices[0] - indices[1]) / 3 - at_rest), -10.5);
+}
+
+// x'' + c x' + a x = F cos(omega t): x = (F/D) (A cos phi + c omega sin phi) with A = a - omega^2, D = A^2 +
+// (c omega)^2, and the multipliers exp(-c T/2 +- i T sqrt(a - c^2/4)).
+TEST(RefineOrbit, FindsTheAnswerOfADrivenLinearOscillator) {
+  for (const bool is_damped : {true, false}) {
+    const WorkingDigits working(checked_digits);
+    const std::string friction = is_damped ? "0.2" : "0";
+    std::map<std::string, double> parameters{
+        {"alpha", 2.0}, {"beta", 0.0}, {"drive_amplitude", 0.3}, {"drive_frequency", 0.7}};
+    std::vector<std::string> effects{"drive"};
+    if (is_damped) {
+      parameters["damping"] = 0.2;
+      effects.emplace_back("damping");
+    }
+    const auto system = systems::make_system("duffing", parameters, effects);
+    const Extended omega = extended_of("0.7");
+    const Extended c = extended_of(friction);
+    const Extended detuned = 2 - omega * omega;
+    const Extended size = extended_of("0.3") / (detuned * detuned + c * c * omega * omega);
+    const Extended period = 2 * pi() / omega;
+    const Extended decay = exp(Extended(-c * period / 2));
+    const Extended turn = period * sqrt(Extended(2 - c * c / 4));
+    // Roughly, and with friction begun elsewhere than at the drive's phase 0.
+    const double later = is_damped ? 0.4 : 0.0;
+    const double amplitude = 0.2;
+    for (const std::string& isotropy :
+         is_damped ? std::vector<std::string>{"S@1/2", ""} : std::vector<std::string>{"S@1/2 R@0", "R@0"}) {
+      Guess guess =
+          guess_of(system, 9.0, {0.0, 0.0, later}, {amplitude * std::cos(later), -0.14 * std::sin(later), 0.0},
+                   {-amplitude * std::sin(later), -0.14 * std::cos(later), 0.0}, isotropy);
+      guess.loop.winding[2] = 1.0;
+      const RefinedOrbit orbit = refine_orbit(guess, {Quantity::parameter, "0.7"}, 50);
+      expect_value(orbit.period, period, 50, "period");
+      expect_value(orbit.state[0], Extended(size * detuned), 50, "x");
+      if (is_damped) expect_value(orbit.state[1], Extended(size * c * omega * omega), 50, "v");
+      EXPECT_LT(numerics::log10_abs(orbit.state[2].value), -50.0);
+      EXPECT_FALSE(orbit.energy.has_value());
+      ASSERT_EQ(orbit.spectrum.size(), 1U);
+      ASSERT_TRUE(orbit.spectrum[0].imaginary.has_value());
+      expect_value(orbit.spectrum[0].real, Extended(decay * cos(turn)), 49, "real part");
+      expect_value(*orbit.spectrum[0].imaginary, Extended(abs(Extended(decay * sin(turn)))), 49, "imaginary part");
+    }
+  }
+}
+
+// Where friction is strong both multipliers are real. A volume shrinks by their product, by which the least, 1e-18, has
+// digits of its own: of M(T), whose entries are of size 1, it would have some 35.
+TEST(RefineOrbit, FindsTheLeastMultiplierToItsOwnDigits) {
+  const WorkingDigits working(checked_digits);
+  const auto system = systems::make_system(
+      "duffing", {{"alpha", 2.0}, {"beta", 0.0}, {"damping", 5.0}, {"drive_amplitude", 0.3}, {"drive_frequency", 0.7}},
+      {"drive", "damping"});
+  const double size = 0.3 / (1.51 * 1.51 + 3.5 * 3.5);
+  const double even = size * 1.51;
+  const double odd = size * 3.5;
+  Guess guess = guess_of(system, 9.0, {0.0, 0.0, 0.0}, {even, 0.7 * odd, 0.0}, {odd, -0.7 * even, 0.0}, "S@1/2");
+  guess.loop.winding[2] = 1.0;
+  const RefinedOrbit orbit = refine_orbit(guess, {Quantity::parameter, "0.7"}, 50);
+  const Extended period = 2 * pi() / extended_of("0.7");
+  ASSERT_EQ(orbit.spectrum.size(), 2U);
+  const Extended root = sqrt(Extended(17));
+  expect_value(orbit.spectrum[0].real, exp(Extended(-(5 - root) / 2 * period)), 45, "larger");
+  expect_value(orbit.spectrum[1].real, exp(Extended(-(5 + root) / 2 * period)), 45, "least");
+}
+
+TEST(RefineOrbit, FindsTheCycleOfVanDerPol) {
+  const auto system = systems::make_system("van_der_pol", {{"mu", 1.0}});
+  const Guess guess = guess_of(system, 6.6, {0.0, 0.0}, {2.0, 0.0}, {0.0, -2.0}, "S@1/2");
+  const RefinedOrbit orbit = refine_orbit(guess, {Quantity::parameter, "1"}, 25);
+  const WorkingDigits working(checked_digits);
+  // By Taylor series of order 50 in another arithmetic of 45 digits, around until it repeats.
+  expect_value(orbit.period, extended_of("6.66328685932313018969968203048232870681"), 25, "period");
+  expect_value(orbit.state[0], extended_of("2.00861986087484313650964018836264036620"), 25, "x");
+  const RefinedOrbit more = refine_orbit(guess, {Quantity::parameter, "1"}, 45);
+  EXPECT_LE(abs(Extended(more.period.value - orbit.period.value)), orbit.period.error);
+  EXPECT_LT(numerics::log10_abs(orbit.period.error), -24.0);
+  ASSERT_EQ(orbit.spectrum.size(), 1U);
+  EXPECT_FALSE(orbit.spectrum[0].imaginary.has_value());
+  EXPECT_LE(abs(Extended(more.spectrum[0].real.value - orbit.spectrum[0].real.value)), orbit.spectrum[0].real.error);
+  EXPECT_THAT(
+      [&] {
+        static_cast<void>(refine_orbit(guess, {Quantity::period, "6.66"}, 20));
+      },
+      ThrowsMessage<core::InputError>(HasSubstr("where nothing is conserved a parameter picks an orbit")));
 }
 
 TEST(RefineOrbit, RefusesWhatItCannotDo) {

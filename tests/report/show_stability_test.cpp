@@ -53,4 +53,23 @@ TEST(ShowStability, IntervalsNameTheTurnsOfThePeriod) {
             "stable T 1 .. 4 (within 1 .. 5, turning 5 times)");
 }
 
+// Below the least double a single multiplier is not known, but its logarithm is.
+TEST(ShowStability, ASingleMultiplierOutOfRangeIsToldByTheVolume) {
+  const Header header = test::sample_header(1, false);
+  const auto text = [&](double log_volume) {
+    Records records = test::sample_records(header);
+    for (OrbitRecord& orbit : records.orbits) {
+      orbit.energy = not_computed;
+      orbit.stability = {not_computed, not_computed};
+      orbit.stability_error = not_computed;
+      orbit.log_volume = log_volume;
+    }
+    return stability_text(Archive(test::write_sample_atlas(test::fresh_folder("volume"), header, records)), 1);
+  };
+  EXPECT_EQ(text(-2500.0), "stable");
+  EXPECT_EQ(text(2500.0), "unstable");
+  EXPECT_EQ(text(-1e-9), "");
+  EXPECT_EQ(text(not_computed), "");
+}
+
 }  // namespace

@@ -94,14 +94,15 @@ TEST(Show, OrbitsAsCsvSpreadTheirVectorsAndKeepEveryDigit) {
   const Archive atlas(test::write_sample_atlas(test::fresh_folder("orbits_csv"), header, records));
   const auto lines = lines_of(shown(atlas, "orbits", TextFormat::csv));
   ASSERT_EQ(lines.size(), 30u);
-  EXPECT_EQ(lines[0],
-            "family,step,arclength,period,energy,action,parameter,cutoff,loss_rms,off_branch_eigenvalue,stability_0,"
-            "fundamental_stability_0,stability_error,state_θ1,state_w1,closure,single_shot,energy_drift,tail,"
-            "modes_begin,modes_count,time_map_begin,time_map_count,winding_n1,verdict,taylor_closure,"
-            "integrators_apart,other_drift,symmetry_defect,recurrence,orbit_distance,contraction,pairing,index_gap");
+  EXPECT_EQ(
+      lines[0],
+      "family,step,arclength,period,energy,action,parameter,cutoff,loss_rms,off_branch_eigenvalue,stability_0,"
+      "fundamental_stability_0,stability_error,log_volume,state_θ1,state_w1,closure,single_shot,energy_drift,tail,"
+      "modes_begin,modes_count,time_map_begin,time_map_count,winding_n1,verdict,taylor_closure,"
+      "integrators_apart,other_drift,symmetry_defect,recurrence,orbit_distance,contraction,pairing,index_gap");
   EXPECT_EQ(
       lines[1],
-      "0,0,0,3.125,0.10000000000000001,0.28125,nan,2,9.9999999999999994e-12,nan,9,9.5,nan,900,-900.015625,nan,nan,"
+      "0,0,0,3.125,0.10000000000000001,0.28125,nan,2,9.9999999999999994e-12,nan,9,9.5,nan,nan,900,-900.015625,nan,nan,"
       "nan,0.0087890625,0,10,0,5,0,-1,nan,nan,nan,nan,nan,nan,nan,nan,nan");
 }
 
@@ -117,7 +118,8 @@ TEST(Show, OrbitsAsJson) {
       "  {\"family\": 0, \"step\": 1, \"arclength\": 0.25, \"period\": 3.25, \"energy\": -2.375, \"action\": 0.3125, "
       "\"parameter\": null, \"cutoff\": 3, \"loss_rms\": 9.9999999999999994e-12, \"off_branch_eigenvalue\": null, "
       "\"stability\": [[10, -10.015625]], \"fundamental_stability\": [[null, null]], \"stability_error\": null, "
-      "\"state\": [1000, -1000.015625], \"closure\": null, \"single_shot\": null, \"energy_drift\": null, "
+      "\"log_volume\": null, \"state\": [1000, -1000.015625], \"closure\": null, \"single_shot\": null, "
+      "\"energy_drift\": null, "
       "\"tail\": 0.009765625, \"modes_begin\": 10, \"modes_count\": 14, \"time_map_begin\": 5, "
       "\"time_map_count\": 0, \"winding\": [0], \"verdict\": -1, \"taylor_closure\": null, "
       "\"integrators_apart\": null, \"other_drift\": null, \"symmetry_defect\": null, \"recurrence\": null, "

@@ -73,6 +73,7 @@ inline archive::Records records_of(const Atlas& atlas) {
     orbit.stability = row_of(atlas, "stability", row, width);
     orbit.fundamental_stability = row_of(atlas, "fundamental_stability", row, width);
     orbit.stability_error = orbits.reals("stability_error")[row];
+    orbit.log_volume = orbits.reals("log_volume")[row];
     orbit.state = row_of(atlas, "state", row, atlas.header().state_names.size());
     orbit.modes = atlas.modes(row);
     orbit.time_map = atlas.time_map(row);

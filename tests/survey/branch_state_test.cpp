@@ -41,7 +41,7 @@ std::string text_of(const archive::OrbitRecord& r) {
   return fmt::format(
       "{} {} | {} | {} | {} | {} | {} | {} | {} | {}", r.family_key, r.step,
       bits({r.arclength, r.period, r.energy, r.action, r.loss_rms, r.off_branch_eigenvalue, r.stability_error,
-            r.closure, r.single_shot, r.energy_drift, r.taylor_closure, r.recurrence, r.tail}),
+            r.log_volume, r.closure, r.single_shot, r.energy_drift, r.taylor_closure, r.recurrence, r.tail}),
       r.cutoff, bits(r.stability), bits(r.fundamental_stability), bits(r.state), bits(r.modes), bits(r.time_map),
       bits(r.winding));
 }

@@ -83,6 +83,10 @@ struct TestFunction {
 /// singular to rounding, and orbits beside it are not told from it.
 [[nodiscard]] bool is_isolated(const spectrum::Stability& stability);
 
+/// mu_i + mu_j of the two multipliers whose product is the nearest to 1: at a torus point 2 cos of their angle. Throws
+/// MisuseError as `evaluate`, and for a system without torus points.
+[[nodiscard]] double torus_sum(const systems::Structure& system, const spectrum::Stability& stability);
+
 /// Whether a zero of the function, located at an orbit with this stability, is what the function is for. No continuous
 /// function can tell: krein vanishes as well where two pairs meet off the unit circle (k_i = k_j outside [-2, 2]) and,
 /// touching zero (`tangency`), where two pairs pass one another; torus where mu_i mu_j = 1 with both real.

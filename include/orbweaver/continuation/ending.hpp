@@ -20,6 +20,7 @@ enum class EndReason {
   collision,          ///< the smallest value of a guard fell to nothing, and double precision or the cutoff ends it
   fixed_point,        ///< the amplitude shrank to nothing
   closed_loop,        ///< back at the first orbit
+  strong_resonance,   ///< of a locus of torus points: the two multipliers are 1, or -1
   stopped,            ///< the observer asked for it
   undecided,          ///< the corrector failed where rounding does not tell an orbit from its neighbours
   failure,            ///< the corrector failed at the smallest step

@@ -16,13 +16,20 @@
 
 namespace orbweaver::continuation {
 
-/// What vanishes along a locus. One of the two is set.
+/// Where a locus ceases to be what it is for, though its test function goes on vanishing.
+struct LocusBoundary {
+  Ending ending;
+  std::function<double(const loop::Loop&)> inside{};  ///< positive before, zero there
+};
+
+/// What vanishes along a locus. One of the first two is set.
 struct LocusTest {
   /// A test function of an orbit; NaN where it has no value.
   std::function<double(const loop::Loop&)> value{};
   /// Of folds: how the two quantities, of which the first folds where the second is held, change along a direction of
   /// the surface. The surface folds over their plane where the changes along two directions are parallel.
   std::function<std::array<double, 2>(const loop::Loop&, const loop::Tangent&)> projection{};
+  std::vector<LocusBoundary> boundaries{};
 };
 
 /// A point of a locus.

@@ -21,4 +21,7 @@ namespace orbweaver::refine {
 /// Throws core::InputError for a system that cannot be refined, as refine_orbit.
 [[nodiscard]] systems::Formulas refinable_formulas(const systems::System& system);
 
+/// The same, and for one that conserves nothing, whose orbits have no period or energy of their own choice.
+[[nodiscard]] systems::Formulas conservative_formulas(const systems::System& system);
+
 }  // namespace orbweaver::refine

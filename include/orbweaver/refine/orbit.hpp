@@ -22,10 +22,11 @@ struct Guess {
   loop::Isotropy isotropy;  ///< the family's, at that phase
 };
 
-/// What picks one orbit of a family: a period or energy, as a decimal number in the units of the system, that is taken
-/// to be exact.
+/// What picks one orbit of a family: a period or energy, or the parameter along whose values the family runs, as a
+/// decimal number in the units of the system, that is taken to be exact. The system of a guess has that value already;
+/// it alone picks the orbit where nothing is conserved.
 struct HeldValue {
-  enum class Quantity { period, energy } quantity;
+  enum class Quantity { period, energy, parameter } quantity;
   std::string decimal;
 };
 
@@ -42,21 +43,29 @@ struct Number {
   numerics::Extended error;  ///< 0: exact
 };
 
+/// A real number, or that of a conjugate pair which lies above the real axis.
+struct ComplexNumber {
+  Number real;
+  std::optional<Number> imaginary;
+};
+
 /// An orbit to many digits, in the units of the system. All of its numbers hold to `digits` significant digits (of
 /// 1e-9 of their scale, where they are smaller than that).
 struct RefinedOrbit {
   std::vector<Number> state;  ///< at t = 0, in standard phase
   Number period;
-  Number energy;
+  std::optional<Number> energy;             ///< where one is conserved
   int order = 1;                            ///< p of the fundamental map
   std::optional<Number> index;              ///< mu + 1/mu of the full period; none in the plane
   std::optional<Number> fundamental_index;  ///< the same of the fundamental map
-  std::string reversor;                     ///< on whose fixed set t = 0 lies; empty: none
-  std::optional<std::size_t> largest;       ///< then the coordinate that is largest at t = 0
+  std::string reversor;  ///< on whose fixed set t = 0 lies; empty: none, and without `largest` the drive's phase is 0
+  std::optional<std::size_t> largest;  ///< then the coordinate that is largest at t = 0
   /// Of the full period, where the index is not +-2: mu > 1/mu in modulus, real; or the real and imaginary part of the
   /// one above the real axis.
   std::vector<Number> multipliers;
-  bool unit_circle = false;          ///< the latter
+  bool unit_circle = false;  ///< the latter
+  /// Where nothing is conserved: all but the trivial one, the largest modulus first, to `digits` digits of 1.
+  std::vector<ComplexNumber> spectrum;
   std::optional<Number> test_value;  ///< at a crossing: what is left of the condition
   int digits = 0;
   int working_digits = 0;  ///< of the last computation
@@ -72,13 +81,15 @@ struct RefinedOrbit {
 /// It is computed twice, the second time with more digits, a higher order and so other steps; the bounds on errors are
 /// twice the differences of the two, plus the rounding of the first.
 ///
-/// Throws core::InputError for a system that cannot be refined (no formulas, no conserved energy, not symplectic, more
-/// than one pair of multipliers) or digits outside [1, most_digits]; core::NumericalError where no orbit is found, or
-/// one that the condition does not isolate (a fold in the period at a held period).
+/// Throws core::InputError for a system that cannot be refined (no formulas, a conserved energy and more than one
+/// pair of multipliers, a parameter without a value of its own), a quantity that does not fit it, or digits outside [1,
+/// most_digits]; core::NumericalError where no orbit is found, or one that the condition does not isolate (a fold in
+/// the period at a held period).
 [[nodiscard]] RefinedOrbit refine_orbit(const Guess& guess, const HeldValue& held, int digits);
 
-/// The orbit near the guess at which the condition holds. `towards`: another orbit of the family near by, in phase with
-/// the guess. Throws as refine_orbit, InputError for kinds that have no condition here (torus, krein) or no sector.
+/// The orbit near the guess at which the condition holds, of a system with a conserved energy. `towards`: another orbit
+/// of the family near by, in phase with the guess. Throws as refine_orbit, InputError for kinds that have no condition
+/// here (torus, krein) or no sector.
 [[nodiscard]] RefinedOrbit refine_crossing(const Guess& guess, const CrossingCondition& condition, int digits);
 
 inline constexpr int most_digits = 1000;

@@ -8,6 +8,7 @@
 
 #include "orbweaver/archive/read/reader.hpp"
 #include "orbweaver/refine/orbit.hpp"
+#include "orbweaver/scene/scene.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::refine {
@@ -31,20 +32,24 @@ class StoredFamily {
   };
   /// Throws InputError where the family has no such step.
   [[nodiscard]] Place at_step(int step) const;
-  /// The place with this period or energy, the first one behind the step `after` if that is given. Throws InputError
-  /// where the family has none there, or has several and no step is given, naming them.
+  /// The place with this period, energy or parameter, the first one behind the step `after` if that is given. Throws
+  /// InputError where the family has none there, or has several and no step is given, naming them.
   [[nodiscard]] Place with(const HeldValue& value, std::optional<int> after) const;
   /// The orbit that a person names: "T=9" or "E=-0.5", meant exactly, or a step, which is held by what isolates it
-  /// better, as it is stored. Throws InputError for another text, and as `with` and `at_step`.
+  /// better, as it is stored. Of a family in a parameter "mu=10" or a step; then the system of the guess has that
+  /// value, and what the family holds, if anything, is held. Throws InputError for another text, and as `with` and
+  /// `at_step`.
   struct Named {
     Place place;
     HeldValue held;
+    std::vector<std::string> equations;  ///< what holds exactly: "mu = 10", "T = 9"
   };
   [[nodiscard]] Named named_orbit(const std::string& text, std::optional<int> after) const;
-  /// Polynomials through the orbits beside it. Throws InputError for a family of less than two orbits.
+  /// Polynomials through the orbits beside it. Throws InputError for a family of less than two orbits, or in a
+  /// parameter: between two of its orbits that has no value of its own.
   [[nodiscard]] Place at_arclength(double arclength) const;
 
-  /// The stored period and energy of a step, as the shortest decimal numbers that read as them.
+  /// The stored period, energy or parameter of a step, as the shortest decimal numbers that read as them.
   [[nodiscard]] std::string stored(HeldValue::Quantity quantity, int step) const;
 
  private:
@@ -57,10 +62,18 @@ class StoredFamily {
   };
   [[nodiscard]] Neighbours beside(double arclength) const;
   [[nodiscard]] std::vector<double> values(HeldValue::Quantity quantity) const;
+  [[nodiscard]] std::string letter_of(HeldValue::Quantity quantity) const;
+  [[nodiscard]] Place placed(double arclength, std::shared_ptr<const systems::System> plain) const;
+  [[nodiscard]] Named of_parameter(const std::string& text, std::optional<int> after) const;
+  /// The system in the units of its parameters, the one that moves at a value.
+  [[nodiscard]] std::shared_ptr<const systems::System> plain_at(double value) const;
+  [[nodiscard]] int step_named(const std::string& text, const std::string& expected) const;
 
   const archive::Archive& _atlas;
+  scene::SystemChoice _choice;
   std::shared_ptr<const systems::System> _system;  // in the scales of the survey
   std::shared_ptr<const systems::System> _plain;   // in the units of its parameters
+  std::string _parameter;                          // that moves along the family; empty: none
   std::string _name;
   std::string _isotropy_text;
   loop::Isotropy _isotropy;  // at the standard phase

@@ -41,6 +41,7 @@ const ColumnDefinitions<OrbitRecord>& orbit_columns() {
       {"stability", &OrbitRecord::stability, RowShape::stability},
       {"fundamental_stability", &OrbitRecord::fundamental_stability, RowShape::stability},
       {"stability_error", &OrbitRecord::stability_error},
+      {"log_volume", &OrbitRecord::log_volume, RowShape::one, volumes_since},
       {"state", &OrbitRecord::state, RowShape::state},
       {"closure", &OrbitRecord::closure},
       {"single_shot", &OrbitRecord::single_shot},

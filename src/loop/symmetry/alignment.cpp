@@ -11,6 +11,7 @@
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/loop/symmetry/shift_search.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
+#include "symmetry/mapped_shift.hpp"
 
 namespace orbweaver::loop {
 
@@ -80,6 +81,24 @@ Alignment align(const systems::Structure& system, const Loop& from, const Loop& 
     if (best.distance > hopeless || (from.time_map.is_identity() && to.time_map.is_identity())) return best;
   }
   return closest(system, resolved_in_time(from), resolved_in_time(to));
+}
+
+Alignment align_in_time(const systems::Structure& system, const Loop& from, const Loop& to) {
+  const bool are_even = from.time_map.is_identity() && to.time_map.is_identity();
+  const Loop rough_from = coarse(from);
+  const Loop rough_to = coarse(to);
+  const double nearest = shift_minima(rough_from, rough_to, system.angles).front().shift;
+  std::vector<double> shifts{nearest};
+  if (!are_even)
+    shifts = {mapped_shift_near(from, to, system.angles, 0.0), mapped_shift_near(from, to, system.angles, nearest)};
+  Alignment best;
+  for (const double shift : shifts) {
+    Alignment found{"1", false, systems::AffineMap::identity(system.dimension), in_period(shift), {}, infinity};
+    (void)difference_at(rough_from, rough_to, system.angles, found.shift, &found.turns);
+    found.distance = mean_distance(aligned(from, found), to);
+    if (found.distance < best.distance) best = std::move(found);
+  }
+  return best;
 }
 
 Loop aligned(const Loop& from, const Alignment& alignment) {

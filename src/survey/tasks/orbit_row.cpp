@@ -10,6 +10,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loss/linearization.hpp"
+#include "orbweaver/spectrum/log_volume.hpp"
 #include "stability_columns.hpp"
 
 namespace orbweaver::survey {
@@ -50,6 +51,14 @@ double residual_of(const systems::System& system, const loop::Loop& stored, doub
 
 }  // namespace
 
+double log_volume_of(const systems::System& system, const loop::Loop& loop) {
+  try {
+    return spectrum::log_volume(system, loop);
+  } catch (const core::NumericalError&) {
+    return archive::not_computed;
+  }
+}
+
 archive::OrbitRecord orbit_row(const systems::System& system, const std::string& family,
                                const continuation::Orbit& orbit, const loop::Loop& stored,
                                const std::optional<spectrum::Stability>& stability, certificate::Certifier* certifier) {
@@ -72,6 +81,7 @@ archive::OrbitRecord orbit_row(const systems::System& system, const std::string&
   row.time_map = loop::to_numbers(stored.time_map);
   for (const int angle : system.structure().angles)
     row.winding.push_back(orbit.loop.winding[static_cast<std::size_t>(angle)]);
+  if (!system.structure().symplectic) row.log_volume = log_volume_of(system, stored);
   set_stability(system.structure(), stability, row);
   if (certifier != nullptr) {
     const bool is_complex = stability && row.stability.size() != stability->full.size();

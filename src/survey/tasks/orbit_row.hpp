@@ -16,6 +16,9 @@ namespace orbweaver::survey {
                                                               const loop::Isotropy& isotropy,
                                                               core::Team* team = nullptr);
 
+/// The row's log_volume: NaN where the field's derivatives are not finite.
+[[nodiscard]] double log_volume_of(const systems::System& system, const loop::Loop& loop);
+
 /// Why rounding does not tell an orbit from others near it, as the beginning of a sentence; empty where it does, or
 /// where that is not known. `neighbour`: one on its family; may be null.
 [[nodiscard]] std::string not_told_apart(const systems::System& system, const loop::Loop& orbit,

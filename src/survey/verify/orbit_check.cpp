@@ -17,7 +17,6 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
-#include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loss/linearization.hpp"
 #include "tasks/certified.hpp"
 #include "tasks/orbit_row.hpp"
@@ -59,8 +58,6 @@ constexpr double same_way = 1e-9;
 constexpr double same_way_without_phase = 3e-4;
 /// The same of families in a parameter: by 3.1e-4 at most in the responses of Duffing's oscillator.
 constexpr double same_way_in_parameter = 1e-3;
-/// Of the way: smaller harmonics change its length by the square of that part.
-constexpr double seen_in_way = 1e-4;
 
 /// Stored and computed values of one orbit.
 class OrbitCheck {
@@ -100,6 +97,10 @@ class OrbitCheck {
     _residual = std::sqrt(there.loss());
     _rounding = residual_rounding * epsilon * (of_slope + loop::rms_speed(_loop) + rms_jacobian(there) * _size);
     _claims.agree("loss_rms", real("loss_rms"), _residual, _rounding + 1e-9 * real("loss_rms"));
+    if (_atlas.archive().format_minor() < archive::volumes_since) return;
+    const bool has_volume = !_system.structure().symplectic;
+    _claims.agree("log_volume", real("log_volume"), has_volume ? log_volume_of(_system, _loop) : archive::not_computed,
+                  has_volume ? sum_rounding * epsilon * _loop.period * rms_jacobian(there) : 0.0);
   }
 
   /// sqrt of the mean over time of (ds/dt T / 2 pi)^2: what a slope in s becomes, where s does not run evenly.
@@ -297,8 +298,7 @@ void check_way(const VerifiedAtlas& atlas, std::size_t from, const loop::Loop& a
     found = end(a, b);
     if (std::abs(found - arclengths[to]) > allowed) found = end(a, atlas.begun_as(family, b, a));
   } else {
-    const loop::Loop start = loop::resolved_in_time(a, seen_in_way * step);
-    found = end(start, atlas.begun_as(family, loop::resolved_in_time(b, seen_in_way * step), start));
+    found = end(a, atlas.begun_as(family, b, a));
   }
   Claims(findings, "orbits", static_cast<std::int64_t>(to)).agree("arclength", arclengths[to], found, allowed);
 }

@@ -10,10 +10,8 @@
 #include "orbweaver/archive/read/loop_of.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/in_units.hpp"
-#include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
 #include "orbweaver/loop/symmetry/isotropy_text.hpp"
-#include "orbweaver/loop/symmetry/shift_search.hpp"
 #include "orbweaver/scene/in_scales.hpp"
 #include "orbweaver/survey/atlas/stored_orbits.hpp"
 #include "orbweaver/survey/run/scaled_scene.hpp"
@@ -86,15 +84,7 @@ loop::Loop VerifiedAtlas::begun_as(std::size_t family, const loop::Loop& loop, c
   const systems::Structure& system = _system->structure();
   if (has_reversor(family)) return started_as(system, loop, neighbour);
   // Neighbours differ by where they begin, not by a symmetry: only shifts are looked through.
-  const loop::Loop from = loop::resolved_in_time(loop);
-  const loop::Loop to = loop::resolved_in_time(neighbour);
-  const double shift = loop::shift_minima(from, to, system.angles).front().shift;
-  loop::Alignment alignment;
-  alignment.name = "1";
-  alignment.map = systems::AffineMap::identity(system.dimension);
-  alignment.shift = shift - std::floor(shift);
-  (void)loop::difference_at(from, to, system.angles, alignment.shift, &alignment.turns);
-  return loop::aligned(loop, alignment);
+  return loop::aligned(loop, loop::align_in_time(system, loop, neighbour));
 }
 
 bool VerifiedAtlas::is_requested(std::size_t orbit) const {

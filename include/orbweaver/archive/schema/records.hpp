@@ -69,7 +69,8 @@ struct OrbitRecord : CertificateRecord {
   std::vector<double> stability;              ///< stability_width(header) values (schema.hpp), or empty: not computed
   std::vector<double> fundamental_stability;  ///< the same
   double stability_error = not_computed;
-  std::vector<double> state;  ///< dimension, at s = 0
+  double log_volume = not_computed;  ///< of systems whose multipliers do not come in pairs
+  std::vector<double> state;         ///< dimension, at s = 0
   double tail = not_computed;
   std::vector<double> modes;     ///< (2 cutoff + 1) x dimension
   std::vector<double> time_map;  ///< kappa, c_1, d_1, ... (loop::to_numbers); empty = identity

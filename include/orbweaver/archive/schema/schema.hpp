@@ -14,8 +14,9 @@ inline constexpr const char* segment_format = "orbweaver-segment";
 inline constexpr int format_version = 1;
 /// Root attribute `format_minor`: it rises with every table, column or attribute that is added; older files of the
 /// version are read. 1: /findings, system, effects, parameters, scales. 2: checksums. 3: what certificates say. 4:
-/// /sections is filled. 5: the parameter at crossings and findings. 6: /loci. 7: /equilibria.
-inline constexpr int format_minor = 7;
+/// /sections is filled. 5: the parameter at crossings and findings. 6: /loci. 7: /equilibria. 8:
+/// `log_volume` of /orbits.
+inline constexpr int format_minor = 8;
 /// The first with checksums.
 inline constexpr int checksums_since = 2;
 /// The first with verdicts.
@@ -24,6 +25,8 @@ inline constexpr int certificates_since = 3;
 inline constexpr int sections_since = 4;
 /// The first with the parameter of families in one.
 inline constexpr int parameters_since = 5;
+/// The first with log_volume.
+inline constexpr int volumes_since = 8;
 
 enum class ColumnType { integer, real, text };
 

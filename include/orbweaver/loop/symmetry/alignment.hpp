@@ -30,6 +30,10 @@ struct Alignment {
 [[nodiscard]] Alignment align(const systems::Structure& system, const Loop& from, const Loop& to,
                               double hopeless = std::numeric_limits<double>::infinity());
 
+/// The time shift alone that brings `from` closest to `to`, a neighbour that winds alike: loops that begin nearly, not
+/// quite, where they are nearest to each other, or in standard phase.
+[[nodiscard]] Alignment align_in_time(const systems::Structure& system, const Loop& from, const Loop& to);
+
 /// `from` (or a neighbour of it, with the same phase convention) moved by an alignment.
 [[nodiscard]] Loop aligned(const Loop& from, const Alignment& alignment);
 

@@ -40,6 +40,7 @@ class Ends final : public Check {
       case EndReason::period_divergence:
       case EndReason::fixed_point:
       case EndReason::closed_loop:
+      case EndReason::strong_resonance:
       case EndReason::undecided:
       case EndReason::failure: break;
     }

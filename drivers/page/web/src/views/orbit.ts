@@ -29,6 +29,7 @@ const certificateTexts: Record<string, string> = {
   loss_rms: 'residual, rms |dz/dt − f|',
   tail: 'largest of the last harmonics',
   stability_error: 'error bound of the stability index',
+  log_volume: 'logarithm of the product of all multipliers',
   off_branch_eigenvalue: 'smallest eigenvalue off the family',
 };
 
