@@ -1,7 +1,7 @@
 # Families in a parameter: the same archive on 1, 2 and 3 ranks, which is verified, and after kills.
 foreach(name IN ITEMS van_der_pol lorenz duffing damped_driven_double_pendulum)
   set(short_form "")
-  if(name STREQUAL van_der_pol)  # beyond mu = 250 `verify` does not resolve the jumps in time, in which it measures arclengths
+  if(name STREQUAL van_der_pol)  # the whole, to mu = 1000, is below
     set(short_form --set "limits.parameter=[0.01,10]" --set compute.stability=true)
   elseif(name STREQUAL damped_driven_double_pendulum)  # the first doubling, and the torus point of the doubled family
     set(short_form --set survey.depth=1 --set "limits.parameter=[1.4115,1.4243]")
@@ -21,6 +21,12 @@ foreach(name IN ITEMS van_der_pol lorenz duffing damped_driven_double_pendulum)
   system_test(${name}.verify 2 0 "OUT=section points|: all hold" verify "${runs}/system.${name}.ranks1/out/atlas.h5")
   set_tests_properties(system.${name}.verify PROPERTIES FIXTURES_REQUIRED "${name}1")
 endforeach()
+set(folder "${runs}/system.van_der_pol.whole/out")
+system_test(van_der_pol.whole 2 0 "OUT=1 families|0 contradictions|, 0 failed" "FRESH=${folder}" "HAS=${folder}/atlas.h5"
+  survey "${PROJECT_SOURCE_DIR}/drivers/scenes/van_der_pol.yaml" -o out)
+system_test(van_der_pol.whole.verify 2 0 "OUT=all hold" verify "${folder}/atlas.h5")
+set_tests_properties(system.van_der_pol.whole PROPERTIES FIXTURES_SETUP van_der_pol.whole LABELS "system;long" TIMEOUT 1200)
+set_tests_properties(system.van_der_pol.whole.verify PROPERTIES FIXTURES_REQUIRED van_der_pol.whole LABELS "system;long" TIMEOUT 1200)
 changed_bytes_test(lorenz.changed_bytes system "${runs}/system.lorenz.ranks1/out/atlas.h5" lorenz1 10)
 system_test(lorenz.show 1 0 "OUT=rho          13.9266 .. 24.7356|Equilibrium 1, Hopf point 1|Equilibrium 3, Hopf point 1"
   show "${runs}/system.lorenz.ranks1/out/atlas.h5")

@@ -14,9 +14,22 @@ fail() {
   exit 1
 }
 
-# survey NAME RANKS [more options ...]: its exit status is that of mpirun.
+# survey NAME RANKS [more options ...]: its exit status is that of mpirun. Open MPI 4.1's mpirun locks up now and then as it ends after
+# a rank was killed (in PMIx_server_finalize): a minute after its last rank it is killed.
 survey() {
-  mpirun -n "$2" "$program" survey "$scene" -o "$folder/$1" --quiet "${options[@]}" "${@:3}" >> "$folder/log" 2>&1
+  mpirun -n "$2" "$program" survey "$scene" -o "$folder/$1" --quiet "${options[@]}" "${@:3}" >> "$folder/log" 2>&1 &
+  local launcher=$! turns=0 alone=0
+  while kill -0 $launcher 2> /dev/null; do
+    sleep 0.05
+    turns=$((turns + 1))
+    [ $((turns % 20)) = 0 ] || continue
+    if [ -n "$(ranks_of "$1")" ]; then alone=0; else alone=$((alone + 1)); fi
+    if [ $alone -ge 60 ]; then
+      echo "mpirun did not end with its ranks: killed" >> "$folder/log"
+      kill -9 $launcher
+    fi
+  done
+  wait $launcher
 }
 
 # held SECONDS PLACE survey ...: that survey, standing still for so long where it comes to PLACE (core::pause_point), so that it

@@ -18,6 +18,7 @@ enum class EndKind {
   collision,
   fixed_point,
   closed_loop,
+  strong_resonance,  ///< of loci only
   stopped,
   undecided,
   failure,
