@@ -14,8 +14,8 @@ fail() {
   exit 1
 }
 
-# survey NAME RANKS [more options ...]: its exit status is that of mpirun. Open MPI 4.1's mpirun locks up now and then as it ends after
-# a rank was killed (in PMIx_server_finalize): a minute after its last rank it is killed.
+# survey NAME RANKS [more options ...]: its exit status is that of mpirun. Open MPI 4.1's mpirun locks up now and then as it
+# ends after a rank was killed (in PMIx_server_finalize): a minute after its last rank it is killed.
 survey() {
   mpirun -n "$2" "$program" survey "$scene" -o "$folder/$1" --quiet "${options[@]}" "${@:3}" >> "$folder/log" 2>&1 &
   local launcher=$! turns=0 alone=0
