@@ -10,6 +10,7 @@
 #include "end_text.hpp"
 #include "given_starts.hpp"
 #include "numbered_starts.hpp"
+#include "orbweaver/bifurcation/small_oscillations.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
@@ -25,6 +26,7 @@ namespace {
 
 void check_names(const scene::Scene& scene, const systems::System& system, const SweepOutcome& found) {
   const std::size_t given = names_given(scene, system, found.point);
+  if (found.families == bifurcation::not_counted) return;  // names of families that are left out may be any
   if (given > static_cast<std::size_t>(found.families))
     throw core::InputError(fmt::format(
         "starts.fixed_points.names: expected at most {} for the equilibrium at {}, a name for each family of small "
@@ -38,9 +40,11 @@ std::string left_out_text(const scene::Scene& scene, const systems::System& syst
   for (int n = 0; n < mode.families; ++n)
     names.push_back(base_family_name(scene, system, found.point, found.index, mode.place + n));
   const double unit = system.scales().time;
+  const std::string who =
+      mode.families == bifurcation::not_counted ? "oscillations" : fmt::to_string(fmt::join(names, ", "));
   return fmt::format("left out at {}: {} with T = {:.9g}, outside starts.sweep.period [{:g}, {:g}]",
-                     point_text(system, found.point), fmt::join(names, ", "), mode.period * unit,
-                     found.period_from * unit, found.period_to * unit);
+                     point_text(system, found.point), who, mode.period * unit, found.period_from * unit,
+                     found.period_to * unit);
 }
 
 void remark_grid(const scene::Scene& scene, const systems::System& system, Summary& summary) {
