@@ -19,7 +19,7 @@ struct Rough {
   double guessed_period;
   double period;
   double energy;
-  double rest;  ///< energy of the equilibrium
+  double rest;  ///< energy at which the family begins
 };
 
 class RoughStarts : public testing::TestWithParam<Rough> {};
@@ -53,8 +53,8 @@ INSTANTIATE_TEST_SUITE_P(
                           11.0, 11.0635301, -9.9980537, -10.0},
                     Rough{"heavy", "name: double_pendulum, parameters: {m1: 2000, m2: 30, l1: 120, l2: 40, g: 9.81}",
                           "0.02, -2.47, 0, 0", 12.4, 12.5492165, -2401476.7027, -2401488.0},
-                    Rough{"space", "name: cr3bp", "0.839, 0.0005, 0.0305, 0, -0.001, 0.001", 2.785, 2.7854042,
-                          -1.5918537, -1.5940806}),
+                    Rough{"halo", "name: cr3bp", "0.925, -0.004, 0.078, -0.003, -0.347, -0.005", 2.784, 2.7783971,
+                          -1.5324011, -1.5866}),
     [](const auto& rough) { return rough.param.name; });
 
 }  // namespace
