@@ -75,7 +75,11 @@ void compile(const std::vector<std::string>& words, const std::string& what) {
   const auto status = core::run_program(words);
   if (!status)
     throw core::EnvironmentError(fmt::format("there is no compiler {}: install it (Debian: g++)", words.front()));
-  if (*status != 0) throw core::InputError(fmt::format("{} does not compile; the compiler's messages are above", what));
+  if (*status != 0)
+    throw core::InputError(
+        fmt::format("{} does not compile; the compiler's messages are above, and docs/your_own_system.md says what a "
+                    "field is made of (sin, not std::sin)",
+                    what));
 }
 
 /// The source and the files beside it that it includes: what a rule of make lists.

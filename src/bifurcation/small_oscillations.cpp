@@ -99,9 +99,23 @@ class Gatherer {
     }
   }
 
+  /// Whether places of families in the range, or their kernels, depend on how many these are. A search along
+  /// combinations of many oscillations takes minutes.
+  [[nodiscard]] bool is_asked_for(const starts::SharedPeriod& left_out) const {
+    const auto behind = [&](const auto& inside) { return inside.period < left_out.period; };
+    const auto takes_in = [&](const starts::SharedPeriod& inside) {
+      return std::any_of(inside.members.begin(), inside.members.end(), [&](const starts::SharedPeriod::Member& member) {
+        return member.oscillation == left_out.members.front().oscillation;
+      });
+    };
+    return std::any_of(_sweep.modes.begin(), _sweep.modes.end(), behind) ||
+           std::any_of(_sweep.degenerate.begin(), _sweep.degenerate.end(), behind) ||
+           std::any_of(_sweep.degenerate.begin(), _sweep.degenerate.end(), takes_in);
+  }
+
   void add_left_out(const starts::SharedPeriod& shared) {
-    _entries.push_back(
-        {shared.period, shared.members.front().oscillation, {}, {shared.period, 0, families_of(shared)}});
+    const int families = shared.is_simple() || is_asked_for(shared) ? families_of(shared) : not_counted;
+    _entries.push_back({shared.period, shared.members.front().oscillation, {}, {shared.period, 0, families}});
   }
 
   void add(const starts::DegenerateMode& mode) {
@@ -132,6 +146,10 @@ class Gatherer {
 
   void place() {
     for (Entry& entry : _entries) {
+      if (!entry.family && (_all.count == not_counted || entry.left_out.families == not_counted)) {
+        entry.left_out.families = _all.count = not_counted;
+        continue;
+      }
       (entry.family ? entry.family->place : entry.left_out.place) = _all.count;
       _all.count += entry.family ? 1 : entry.left_out.families;
     }

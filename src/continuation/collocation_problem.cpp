@@ -10,6 +10,7 @@
 #include "cell_counts.hpp"
 #include "collocation_metric.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/equations/damped_newton.hpp"
 #include "orbweaver/loop/grid/time_map_fit.hpp"
 #include "regrid.hpp"
 
@@ -271,6 +272,11 @@ Trial CollocationProblem::solve(Prediction prediction, const std::vector<double>
   double last_change = 0.0;
   try {
     auto result = _solver.solve(e, trial.values, !state().factor_point.empty(), solver_options());
+    if (!result.converged && _options.base_is_far) {
+      trial.values = predicted;
+      equations::approach(e, trial.values, e.period_at(), bounded_amplitude());
+      result = _solver.solve(e, trial.values, false, solver_options());
+    }
     trial.iterations = result.iterations;
     trial.prediction_error = result.first_change;
     trial.converged = result.converged;

@@ -97,9 +97,12 @@ std::vector<EquilibriumReport> sweep_report(const scene::Scene& scene) {
                               deviation(*system, point, mode.grid_direction, mode.grid_period),
                               loop::to_text(mode.isotropy)});
     }
-    for (const bifurcation::LeftOut& left_out : all.left_out)
+    for (const bifurcation::LeftOut& left_out : all.left_out) {
+      if (left_out.families == bifurcation::not_counted)
+        report.left_out.push_back({"oscillations", left_out.period * time});
       for (int n = 0; n < left_out.families && !left_out.is_told; ++n)
         report.left_out.push_back({name(left_out.place + n), left_out.period * time});
+    }
     for (const starts::RejectedDip& dip : all.without_family) report.sweep.rejected.push_back(dip);
     tell_in_units(report, system->scales());
     reports.push_back(std::move(report));

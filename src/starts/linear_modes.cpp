@@ -106,17 +106,46 @@ struct Group {
   [[nodiscard]] int count() const { return static_cast<int>(members.size()); }
 };
 
-class Spectrum {
+/// Eigenvalues of a matrix, and its eigenvectors: all at once cost as much as the kernel of one.
+class Eigenpairs {
  public:
-  explicit Spectrum(const QuadMatrix& jacobian) : _a(balanced(jacobian, _scale)) {
-    _moduli = _a.cwiseAbs().cast<double>();
-    _rounding = entry_rounding * _moduli.norm();
-    const Eigen::EigenSolver<QuadMatrix> solver(_a, false);
-    if (solver.info() != Eigen::Success)
+  explicit Eigenpairs(const QuadMatrix& matrix) : _solver(matrix, true) {
+    if (_solver.info() != Eigen::Success)
       throw core::NumericalError(
           "the eigenvalues of the Jacobian at a fixed point: the QR iteration does not converge");
-    for (Eigen::Index i = 0; i < _a.rows(); ++i)
-      _values.push_back({solver.eigenvalues()(i).real(), solver.eigenvalues()(i).imag()});
+  }
+
+  [[nodiscard]] Eigen::Index size() const { return _solver.eigenvalues().size(); }
+  [[nodiscard]] Value value(Eigen::Index i) const {
+    return {_solver.eigenvalues()(i).real(), _solver.eigenvalues()(i).imag()};
+  }
+
+  /// The eigenvector, of unit length, of the eigenvalue nearest to `value`, from which all others are told apart.
+  [[nodiscard]] Eigen::MatrixXcd vector_of(const Value& value) const {
+    Eigen::Index nearest = 0;
+    for (Eigen::Index i = 1; i < size(); ++i)
+      if (distance(this->value(i), value) < distance(this->value(nearest), value)) nearest = i;
+    // Of a conjugate pair, which has two columns, the first one is that with the positive imaginary part.
+    const Quad im = this->value(nearest).im;
+    const Eigen::Index first = im < 0 ? nearest - 1 : nearest;
+    Eigen::VectorXcd vector(size());
+    vector.real() = _solver.pseudoEigenvectors().col(first).cast<double>();
+    vector.imag().setZero();
+    if (im != 0) vector.imag() = _solver.pseudoEigenvectors().col(first + 1).cast<double>();
+    if (im < 0) vector = vector.conjugate().eval();
+    return vector.normalized();
+  }
+
+ private:
+  Eigen::EigenSolver<QuadMatrix> _solver;
+};
+
+class Spectrum {
+ public:
+  explicit Spectrum(const QuadMatrix& jacobian) : _a(balanced(jacobian, _scale)), _right(_a), _left(_a.transpose()) {
+    _moduli = _a.cwiseAbs().cast<double>();
+    _rounding = entry_rounding * _moduli.norm();
+    for (Eigen::Index i = 0; i < _right.size(); ++i) _values.push_back(_right.value(i));
   }
 
   /// Groups that rounding tells apart, and in `undecided` those of which it does not.
@@ -219,8 +248,11 @@ class Spectrum {
     for (const Value& value : group.members) spread = std::max(spread, distance(value, group.mean));
     double defect_right = 0.0;
     double defect_left = 0.0;
-    group.right = kernel(_a, group.mean, group.count(), defect_right);
-    const Eigen::MatrixXcd left = kernel(_a.transpose(), {group.mean.re, -group.mean.im}, group.count(), defect_left);
+    const Value conjugate{group.mean.re, -group.mean.im};
+    const bool simple = group.count() == 1;
+    group.right = simple ? _right.vector_of(group.mean) : kernel(_a, group.mean, group.count(), defect_right);
+    const Eigen::MatrixXcd left =
+        simple ? _left.vector_of(conjugate) : kernel(_a.transpose(), conjugate, group.count(), defect_left);
     const Eigen::VectorXd overlap = Eigen::JacobiSVD<Eigen::MatrixXcd>(left.adjoint() * group.right).singularValues();
     const double overlapping = overlap(overlap.size() - 1);
     const double weight = (left.cwiseAbs().transpose() * _moduli * group.right.cwiseAbs()).norm();
@@ -236,6 +268,8 @@ class Spectrum {
 
   QuadVector _scale;
   QuadMatrix _a;
+  Eigenpairs _right;
+  Eigenpairs _left;  ///< those of the transpose
   Eigen::MatrixXd _moduli;
   double _rounding = 0.0;
   std::vector<Value> _values;

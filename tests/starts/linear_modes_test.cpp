@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <map>
 #include <numbers>
 #include <string>
@@ -106,6 +107,36 @@ TEST(LinearModes, InMilliseconds) {
   const double each = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() / times;
   RecordProperty("seconds", fmt::format("{:.3e}", each));
   EXPECT_LT(each, 0.05) << "a millisecond where nothing else runs";
+}
+
+/// Zeros of Laguerre's polynomial of degree n, ascending: eigenvalues of its recurrence (Golub and Welsch 1969).
+Eigen::VectorXd zeros_of_laguerre(int n) {
+  using Real = long double;
+  Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> recurrence = decltype(recurrence)::Zero(n, n);
+  for (int k = 0; k < n; ++k) {
+    recurrence(k, k) = 2 * k + 1;
+    if (k > 0) recurrence(k, k - 1) = recurrence(k - 1, k) = k;
+  }
+  return Eigen::SelfAdjointEigenSolver<decltype(recurrence)>(recurrence).eigenvalues().cast<double>();
+}
+
+TEST(LinearModes, OfSixtyFourCoordinatesInSeconds) {
+  constexpr int links = 32;
+  const auto system = systems::make_system("pendulum_chain", {{"links", links}});
+  const std::clock_t began = std::clock();
+  const LinearModes modes = linear_modes(*system, std::vector<double>(2 * links, 0.0));
+  const double seconds = static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC;
+  RecordProperty("seconds", fmt::format("{:.2f}", seconds));
+  EXPECT_LT(seconds, 6.0) << "0.4 where nothing else runs; 13 with a kernel for each mode";
+  const Eigen::VectorXd zeros = zeros_of_laguerre(links);
+  ASSERT_EQ(modes.oscillations.size(), static_cast<std::size_t>(links));
+  for (int n = 0; n < links; ++n) {
+    const Oscillation& mode = modes.oscillations[static_cast<std::size_t>(n)];
+    const double period = 2.0 * pi / std::sqrt(zeros(n));
+    EXPECT_NEAR(mode.period, period, 1e-12 * period) << n;
+    EXPECT_EQ(mode.kernel.cols(), 1) << n;
+    EXPECT_LT(mode.residual, 1e-12 * zeros(links - 1)) << n;
+  }
 }
 
 /// dz/dt = A z.

@@ -16,11 +16,15 @@ struct SmallOscillation {
                             ///< 0: any
 };
 
+/// The number of families, or of places, where nothing in the range depends on it: neither is known.
+inline constexpr int not_counted = -1;
+
 /// Families with one period that keep their places: outside the range, or not found, for which there is a sentence.
 struct LeftOut {
   double period = 0.0;
   int place = 0;  ///< of the first
-  int families = 1;
+  int families =
+      1;  ///< or `not_counted`: several oscillations share the period, or do behind those of which that holds
   bool is_told = false;  ///< what their eigenvalues are, or where families leave, is not known, or none leaves
 };
 
@@ -45,7 +49,7 @@ struct SmallOscillations {
   std::vector<LeftOut> left_out;                    ///< longest period first
   std::vector<OscillationKernel> kernels;           ///< in the range
   std::vector<starts::RejectedDip> without_family;  ///< kernels in the range along which none was found
-  int count = 0;                                    ///< of all places
+  int count = 0;                                    ///< of all places, or `not_counted`
 };
 
 /// The families of small oscillations at an equilibrium, by a sweep with loops of `cutoff` harmonics: its simple modes,

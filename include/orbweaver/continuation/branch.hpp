@@ -64,6 +64,9 @@ struct Options {
   /// Whether the first orbit is so far from the start that something may lie in between, which nothing but the orbit
   /// may decide. Then a nearer one is taken, down to 1e-6 of `start_amplitude` or as near as rounding allows.
   std::function<bool(const Orbit& first)> too_far{};
+  /// The start is a guess that may be far from any orbit: where the corrector fails, it is brought nearer by damped
+  /// steps of Newton's method first (collocation only).
+  bool base_is_far = false;
   double smallest_jump = 1e-7;  ///< steps below this arclength are not asked: families as near as that cross
 };
 

@@ -19,10 +19,11 @@ namespace {
 void require_one_quantity(const systems::System& system) {
   const std::vector<std::string>& conserved = system.structure().conserved;
   if (conserved.size() > 1)
-    throw core::InputError(
-        fmt::format("expected a system that conserves one quantity, got {} with {}: surveys with several are not "
-                    "built yet, so choose parameters or effects that leave one",
-                    system.info().name, fmt::join(conserved, ", ")));
+    throw core::InputError(fmt::format(
+        "expected a system that conserves one quantity, got {} with {}: surveys with several are not "
+        "built, so choose parameters or effects that leave one, or take the others out of the equations, as "
+        "three_bodies does (docs/systems.md)",
+        system.info().name, fmt::join(conserved, ", ")));
 }
 
 /// The power of two at or below the largest of its value and its finite limits; 1 where all are 0.

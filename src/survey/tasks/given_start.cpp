@@ -34,8 +34,8 @@ constexpr double same_energy = 1e-9;
 /// Orbits on the way to the energy of a return: one that is further away along its family is another orbit. Not
 /// measured; most take one or two.
 constexpr int most_steps_to_energy = 30;
-/// How far from the guess of a return a correction begins along the energy's gradient, in |dz(0)|: a branch's first
-/// orbit needs a way from its base. Far less than a return misses.
+/// How far from the guess a correction begins along the energy's gradient, in |dz(0)|: a branch's first
+/// orbit needs a way from its base. Far less than a guess misses.
 constexpr double beside_guess = 1e-7;
 /// A repetition must be exact to this share of the amplitude (bifurcation::same_family has the same).
 constexpr double repeated = 1e-6;
@@ -67,12 +67,26 @@ void close_by_symmetry(const systems::Structure& structure, const GivenStart& gi
   }
 }
 
-/// The trajectory from a state as a loop: over a period, or over one for each time that it goes on as its image.
+/// States of the trajectory through `state`, at equal times over `period`, the last one included; `before` of them
+/// before it.
+std::vector<std::vector<double>> trajectory_through(const systems::System& system, const std::vector<double>& state,
+                                                    double period, int samples, int before) {
+  std::vector<std::vector<double>> states{state};
+  for (int j = 0; j < before; ++j)
+    states.push_back(certificate::integrate(system, states.back(), -period / samples, guess_tolerance));
+  std::reverse(states.begin(), states.end());
+  for (int j = before; j < samples; ++j)
+    states.push_back(certificate::integrate(system, states.back(), period / samples, guess_tolerance));
+  return states;
+}
+
+/// The trajectory of a given start as a loop. That of a return runs from its state over a period, and over one more for
+/// each time that it goes on as its image. That through a state runs half a period to either side: where an orbit is
+/// unstable errors grow over half the time only. Backwards from what damps they would grow more.
 loop::Loop trajectory_of(const systems::System& system, const std::vector<double>& point, const GivenStart& given) {
   const int samples = samples_of_guess / given.order;
-  std::vector<std::vector<double>> states{point};
-  for (int j = 0; j < samples; ++j)
-    states.push_back(certificate::integrate(system, states.back(), given.period / samples, guess_tolerance));
+  const int before = given.is_return() || system.structure().dissipative ? 0 : samples / 2;
+  std::vector<std::vector<double>> states = trajectory_through(system, point, given.period, samples, before);
   if (given.is_return()) close_by_symmetry(system.structure(), given, states);
   return starts::loop_through(system.structure(), std::move(states), given.period * given.order);
 }
@@ -140,10 +154,10 @@ std::optional<continuation::Orbit> at_energy(const std::shared_ptr<const systems
   return std::nullopt;
 }
 
-/// The orbit near the guess of a return, found with its energy held to first order (the change is orthogonal to the
-/// energy's gradient) where the guess's period has no orbit near.
-std::optional<continuation::Orbit> beside_energy(const std::shared_ptr<const systems::System>& system,
-                                                 const loop::Loop& guess, continuation::Options options) {
+/// The branch from the guess with its energy held to first order (the change is orthogonal to the energy's gradient),
+/// for where its period has no orbit near.
+continuation::Branch beside_energy(const std::shared_ptr<const systems::System>& system, const loop::Loop& guess,
+                                   continuation::Options options) {
   loop::TimeSamples samples = loop::time_samples(guess, 2 * guess.cutoff + 2);
   const auto d = static_cast<std::size_t>(guess.dimension);
   const auto count = static_cast<std::size_t>(samples.count);
@@ -161,7 +175,7 @@ std::optional<continuation::Orbit> beside_energy(const std::shared_ptr<const sys
   start.base = guess;
   start.direction = {loop::with_cutoff(loop::interpolant(samples), guess.cutoff).modes, {0.0}};
   options.start_amplitude = beside_guess;
-  return continuation::Branch(system, start, options).advance();
+  return {system, start, std::move(options)};
 }
 
 /// The orbit once around.
@@ -170,10 +184,51 @@ loop::Loop once_around(const loop::Loop& orbit) {
   return times > 1 ? loop::without_repetition(orbit, times) : orbit;
 }
 
-/// The orbit that Newton's method finds near the guess; none with the reason in `why`.
-std::optional<continuation::Orbit> corrected(const scene::Scene& scene,
-                                             const std::shared_ptr<const systems::System>& system,
-                                             const SweepWork& work, core::Team* team, std::string& why) {
+/// What a correction came to: an orbit, or why there is none.
+struct Correction {
+  std::optional<continuation::Orbit> orbit;
+  std::string why;
+  bool is_beyond_limits = false;  ///< there is one, which the scene's limits leave out
+};
+
+/// The first orbit of a branch; an equilibrium, which is an orbit of every period, is none.
+Correction first_of(continuation::Branch branch) {
+  Correction found{branch.advance(), {}, false};
+  if (!found.orbit) {
+    const continuation::Ending ending = branch.ending().value();
+    using continuation::EndReason;
+    found.why = ending.text();
+    found.is_beyond_limits = !ending.failed() && ending.reason != EndReason::cutoff_limit;
+    return found;
+  }
+  const loop::Loop& orbit = found.orbit->loop;
+  const bool winds = std::any_of(orbit.winding.begin(), orbit.winding.end(), [](double n) { return n != 0.0; });
+  if (winds || loop::rms_amplitude(orbit) >= at_rest * (1.0 + loop::rms_size(orbit))) return found;
+  found.orbit.reset();
+  found.why = "the orbit found rests: an equilibrium";
+  return found;
+}
+
+/// The orbit with the energy at which the trajectory of a return runs, from the guess with its period or its energy.
+Correction return_at_energy(const std::shared_ptr<const systems::System>& system, const loop::Loop& guess,
+                            double energy, Correction found, const continuation::Options& options) {
+  for (const bool by_energy : {false, true}) {
+    if (by_energy) found = first_of(beside_energy(system, guess, options));
+    if (!found.orbit) continue;
+    if (std::optional<continuation::Orbit> there = at_energy(system, *found.orbit, energy, options))
+      return {std::move(there), {}, false};
+    found.why =
+        fmt::format("the orbit with T = {:.9g} has another energy, {:.9g}, and none with the trajectory's lies near",
+                    found.orbit->loop.period * system->scales().time, found.orbit->energy * system->scales().energy());
+  }
+  found.orbit.reset();
+  return found;
+}
+
+/// The orbit that Newton's method finds near the guess with its period; where it finds none, as beside an equilibrium,
+/// where all orbits of a family have nearly one period, with its energy.
+Correction corrected(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
+                     const SweepWork& work, core::Team* team) {
   const loop::Loop guess = guess_of(*system, work);
   continuation::Options options = branch_options(scene, team);
   const bool is_return = work.given.front().is_return();
@@ -181,19 +236,15 @@ std::optional<continuation::Orbit> corrected(const scene::Scene& scene,
     options.energy_from = -std::numeric_limits<double>::infinity();
     options.energy_to = std::numeric_limits<double>::infinity();
   }
-  continuation::Branch branch(system, start_at(guess, 1.0), options);
-  std::optional<continuation::Orbit> orbit = branch.advance();
-  if (!orbit) why = branch.ending().value().text();
-  if (!is_return || !system->structure().conservative() || !system->family_scalars().free.empty()) return orbit;
-  const double energy = system->conserved(0, work.point);
-  for (const bool by_energy : {false, true}) {
-    if (by_energy) orbit = beside_energy(system, guess, options);
-    if (!orbit) continue;
-    if (std::optional<continuation::Orbit> found = at_energy(system, *orbit, energy, options)) return found;
-    why = fmt::format("the orbit with T = {:.9g} has another energy, {:.9g}, and none with the trajectory's lies near",
-                      orbit->loop.period * system->scales().time, orbit->energy * system->scales().energy());
-  }
-  return std::nullopt;
+  options.base_is_far = !is_return;  // of returns there are many, most near no orbit
+  Correction found = first_of(continuation::Branch(system, start_at(guess, 1.0), options));
+  if (!system->structure().conservative() || !system->family_scalars().free.empty()) return found;
+  if (is_return) return return_at_energy(system, guess, system->conserved(0, work.point), std::move(found), options);
+  if (found.orbit || found.is_beyond_limits) return found;
+  Correction with_energy = first_of(beside_energy(system, guess, options));
+  if (!with_energy.orbit && !with_energy.is_beyond_limits)
+    with_energy.why = fmt::format("{}; with the energy held instead: {}", found.why, with_energy.why);
+  return with_energy;
 }
 
 }  // namespace
@@ -207,26 +258,17 @@ loop::Tangent along_last_scalar(const loop::Loop& base) {
 
 SweepOutcome given_start(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
                          const SweepWork& work, core::Team* team) {
-  const bool is_return = work.given.front().is_return();
   SweepOutcome outcome;
   outcome.index = work.index;
   outcome.point = work.point;
-  std::string why;
-  const std::optional<continuation::Orbit> orbit = corrected(scene, system, work, team, why);
-  if (!orbit && !is_return) throw core::NumericalError(why);
-  if (!orbit) {
-    outcome.rejected.push_back(why);
+  const Correction correction = corrected(scene, system, work, team);
+  if (!correction.orbit) {
+    if (!work.given.front().is_return()) throw core::NumericalError(correction.why);
+    outcome.rejected.push_back(correction.why);
     return outcome;
   }
   FoundMode found;
-  found.base = at_reversor(system->structure(), once_around(orbit->loop));
-  const bool winds =
-      std::any_of(found.base.winding.begin(), found.base.winding.end(), [](double n) { return n != 0.0; });
-  if (!winds && loop::rms_amplitude(found.base) < at_rest * (1.0 + loop::rms_size(found.base))) {
-    if (!is_return) throw core::NumericalError("the orbit found rests: an equilibrium");
-    outcome.rejected.emplace_back("the orbit found rests: an equilibrium");
-    return outcome;
-  }
+  found.base = at_reversor(system->structure(), once_around(correction.orbit->loop));
   found.isotropy = loop::find_isotropy(system->structure(), found.base, loop::symmetry_tolerance);
   if (!loop::is_invariant(found.base.time_map, found.isotropy)) found.base = loop::evenly_in_time(found.base);
   found.period = found.base.period;

@@ -10,6 +10,7 @@
 #include "end_text.hpp"
 #include "given_starts.hpp"
 #include "numbered_starts.hpp"
+#include "orbweaver/bifurcation/small_oscillations.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
@@ -25,6 +26,7 @@ namespace {
 
 void check_names(const scene::Scene& scene, const systems::System& system, const SweepOutcome& found) {
   const std::size_t given = names_given(scene, system, found.point);
+  if (found.families == bifurcation::not_counted) return;  // names of families that are left out may be any
   if (given > static_cast<std::size_t>(found.families))
     throw core::InputError(fmt::format(
         "starts.fixed_points.names: expected at most {} for the equilibrium at {}, a name for each family of small "
@@ -40,7 +42,9 @@ std::string left_out_text(const scene::Scene& scene, const systems::System& syst
     std::vector<std::string> names;
     for (int n = 0; n < mode.families; ++n)
       names.push_back(base_family_name(scene, system, found.point, found.index, mode.place + n));
-    modes.push_back(fmt::format("{} with T = {:.9g}", fmt::join(names, ", "), mode.period * unit));
+    const std::string who =
+        mode.families == bifurcation::not_counted ? "oscillations" : fmt::to_string(fmt::join(names, ", "));
+    modes.push_back(fmt::format("{} with T = {:.9g}", who, mode.period * unit));
   }
   return fmt::format("left out at {}: {}, outside starts.sweep.period [{:g}, {:g}]", point_text(system, found.point),
                      fmt::join(modes, "; "), found.period_from * unit, found.period_to * unit);

@@ -92,8 +92,8 @@ struct KernelRecord {
 /// Families with a period outside the range of the sweep.
 struct LeftOutMode {
   double period = 0.0;
-  int place = 0;  ///< of the first
-  int families = 1;
+  int place = 0;     ///< of the first
+  int families = 1;  ///< or bifurcation::not_counted
 
   static constexpr int wire_version = 1;
   template <class Archive>
@@ -132,7 +132,7 @@ struct SweepOutcome {
   std::vector<std::string> rejected;  ///< a sentence a dip
   std::vector<LeftOutMode> left_out;  ///< longest period first
   std::vector<KernelRecord> kernels;  ///< in the range
-  int families = 0;                   ///< of the equilibrium, those left out and undecided included
+  int families = 0;                   ///< of the equilibrium, those left out and undecided included, or `not_counted`
   double period_from = 0.0;           ///< the range swept
   double period_to = 0.0;
   std::vector<EquilibriumPlace> equilibria;  ///< along the curve where there is one

@@ -1,0 +1,26 @@
+# same_on_ranks(<name> RANKS <ranks ...> SCENE <scene> [SAYS <text of run_program.cmake>] [PROGRESS <the same of stderr>]
+#   [OPTIONS <options of survey ...>]): the survey system.<name>.ranks<n> on each number of ranks, which sets up the fixture
+# <name><n>, and system.<name>.same_archive: their archives are the same.
+function(same_on_ranks name)
+  cmake_parse_arguments(PARSE_ARGV 1 given "" "SCENE;SAYS;PROGRESS" "RANKS;OPTIONS")
+  set(says "0 contradictions|, 0 failed|archive: ")
+  if(given_SAYS)
+    string(PREPEND says "${given_SAYS}|")
+  endif()
+  set(progress "")
+  if(given_PROGRESS)
+    set(progress "ERR=${given_PROGRESS}")
+  endif()
+  set(archives "")
+  set(required "")
+  foreach(ranks IN LISTS given_RANKS)
+    set(folder "${runs}/system.${name}.ranks${ranks}/out")
+    system_test(${name}.ranks${ranks} ${ranks} 0 "OUT=${says}" ${progress} "FRESH=${folder}" "HAS=${folder}/atlas.h5"
+      survey "${given_SCENE}" -o out ${given_OPTIONS})
+    set_tests_properties(system.${name}.ranks${ranks} PROPERTIES FIXTURES_SETUP "${name}${ranks}")
+    list(APPEND archives "${folder}/atlas.h5")
+    list(APPEND required "${name}${ranks}")
+  endforeach()
+  orbweaver_add_ctest(system.${name}.same_archive 1 system 60 $<TARGET_FILE:compare_archives> ${archives})
+  set_tests_properties(system.${name}.same_archive PROPERTIES FIXTURES_REQUIRED "${required}")
+endfunction()
