@@ -438,8 +438,8 @@ TEST(Detector, CountsTellWhatSignsDoNot) {
     EXPECT_EQ(bracket.passed, family.functions[bracket.function].sector.q <= 2);
 }
 
-// In one step two real multipliers pass mu_1 mu_2 = 1, which is nothing, and a complex pair the unit circle: the product
-// has one sign at both ends, and only its dip between tells.
+// In one step two real multipliers pass mu_1 mu_2 = 1, which is nothing, and a complex pair the unit circle: the
+// product has one sign at both ends, and only its dip between tells.
 TEST(Detector, ATorusPointBesideANeutralSaddleIsBracketed) {
   systems::Structure structure;
   structure.dimension = 5;

@@ -110,7 +110,7 @@ class Point {
     };
     if (kind == CrossingKind::period_doubling) return singular(-1.0);
     if (kind != CrossingKind::torus) return singular(1.0);
-    // By sum and product, which are smooth where the two coincide: at strong resonances each is known to half the digits.
+    // By sum and product, which are smooth where the two coincide: there each is known to half the digits.
     double least = std::numeric_limits<double>::infinity();
     const Eigen::VectorXcd mu = Eigen::ComplexEigenSolver<Eigen::MatrixXcd>(map).eigenvalues();
     for (Eigen::Index n = 0; n < mu.size(); ++n)
