@@ -28,7 +28,7 @@ constexpr int samples = 8;
 /// long as orbits are found and lie within 30 degrees of the kernel and the family, by the first of the factors that
 /// serves.
 constexpr double first[] = {0.01, 0.003, 0.001, 0.0003};
-constexpr double growths[] = {1.4, 1.1};
+constexpr double growths[] = {1.4, 1.1, 1.03};
 /// Orbits behind one another that a guess for the next is made from, besides the base.
 constexpr std::size_t remembered = 4;
 /// Orbits of a circle that a guess between two of them is made from.
@@ -161,9 +161,11 @@ std::optional<Circle> held_circle(const Plane& plane, double amplitude, std::vec
   return out;
 }
 
-/// Circles at these angles, up to the first that `is_far`, or as near to that as orbits are found.
+/// Circles at these angles, up to the first that `is_far`, or as near to that as orbits are found. None is larger than
+/// `largest`.
 template <class IsFar>
-std::vector<Circle> grown(const Plane& plane, double scale, const std::vector<double>& angles, const IsFar& is_far) {
+std::vector<Circle> grown(const Plane& plane, double scale, const std::vector<double>& angles, const IsFar& is_far,
+                          double largest = std::numeric_limits<double>::infinity()) {
   std::vector<Circle> circles;
   for (const double part : first) {
     auto circle =
@@ -175,7 +177,7 @@ std::vector<Circle> grown(const Plane& plane, double scale, const std::vector<do
   while (!circles.empty() && circles.size() < most_circles && !is_far(circles.back())) {
     std::optional<Circle> next;
     for (const double factor : growths) {
-      const double amplitude = factor * circles.back().amplitude;
+      const double amplitude = std::min(factor * circles.back().amplitude, largest);
       next =
           held_circle(plane, amplitude, angles, [&](std::size_t a) { return plane.continued(circles, a, amplitude); });
       if (next) break;
@@ -205,8 +207,8 @@ std::optional<Circle> completed(const Plane& plane, const Circle& circle, double
   for (std::size_t n = 1; n < angles.size(); ++n) {
     std::optional<Held> held = turned_to(plane, out.orbits.back(), out.angles.back(), angles[n], out.amplitude);
     if (!held) {
-      std::vector<Circle> circles =
-          grown(plane, scale, angles, [&](const Circle& c) { return growths[1] * c.amplitude > circle.amplitude; });
+      std::vector<Circle> circles = grown(
+          plane, scale, angles, [&](const Circle& c) { return c.amplitude == circle.amplitude; }, circle.amplitude);
       if (circles.empty()) return std::nullopt;
       return std::move(circles.back());
     }

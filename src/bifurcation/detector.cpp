@@ -142,17 +142,21 @@ std::vector<TestPoint> Detector::subdivided(const TestPoint& next, const Probe& 
   return {grid.begin() + known, grid.end()};
 }
 
-/// Closes in on the minimum of |value| between two nodes of one sign.
+/// Closes in on the minimum of |value| between two nodes of one sign: a bracket where it may be zero.
 void Detector::examine(std::size_t function, const Node& left, const Node& right, const Probe& probe,
                        std::vector<Bracket>& found) {
   const int sign = left.reading.sign();
   std::vector<Node> nodes{left, right};
   bool crossed = false;
+  std::optional<double> without_point;
   const auto size = [&](double position) {
     if (position == right.position) return std::abs(right.reading.value);
     if (crossed) return 0.0;
     const std::optional<TestPoint> point = probed(probe, position);
-    if (!point) return std::nan("");
+    if (!point) {
+      without_point = position;
+      return std::nan("");
+    }
     const Reading& reading = point->readings[function];
     nodes.push_back({position, reading});
     crossed = reading.sign() == -sign;
@@ -164,6 +168,14 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
   double& examined_to = _state.watches[function].examined_to;
   if (crossed) {
     add_sign_changes(function, nodes, found);
+    examined_to = right.position;
+    return;
+  }
+  // Orbits are lost where they are not isolated, as on a zero: what the minimum is, its location is to say.
+  if (without_point) {
+    const auto after =
+        std::find_if(nodes.begin(), nodes.end(), [&](const Node& node) { return node.position > *without_point; });
+    found.push_back({function, std::prev(after)->position, after->position, true, false, true});
     examined_to = right.position;
     return;
   }
@@ -195,6 +207,9 @@ void Detector::count(std::size_t function, const Node& left, const Node& right, 
   const std::size_t before = found.size();
   const bool is_shown = left.reading.sign() != right.reading.sign();
   if (!is_shown) examine(function, left, right, probe, found);
+  found.erase(std::remove_if(found.begin() + static_cast<std::ptrdiff_t>(before), found.end(),
+                             [](const Bracket& bracket) { return bracket.lost; }),
+              found.end());
   for (std::size_t n = before; n < found.size(); ++n) found[n].passed = found[n].tangency && passed == 1;
   if (found.size() > before) _state.watches[function].examined_to = right.position;
   const auto bracketed = static_cast<int>(found.size() - before) + (is_shown ? 1 : 0);

@@ -29,8 +29,38 @@ std::vector<Bounded> indices_of(const systems::Structure& system, const spectrum
   return indices;
 }
 
-/// Roundings of a product, a factor: four operations each.
+/// Roundings of a factor: four operations.
 constexpr double roundings_a_factor = 4.0 * std::numeric_limits<double>::epsilon();
+
+/// The harmonic mean of `modulus` of the factors, 0 where one is not above 0.
+template <class Modulus>
+double harmonic_mean(const std::vector<Bounded>& factors, const Modulus& modulus) {
+  double inverse = 0.0;
+  for (const Bounded& factor : factors) inverse += 1.0 / std::max(0.0, modulus(std::abs(factor.value), factor.error));
+  return static_cast<double>(factors.size()) / inverse;
+}
+
+/// The harmonic mean of the moduli with the sign of the product, which is real: smooth, and near a zero of one factor
+/// proportional to that one. A product of many factors would be far below each of them: its zeros in pairs would not be
+/// told from what it is between them.
+Reading signed_mean(const std::vector<Bounded>& factors) {
+  if (factors.size() == 1) return {factors.front().value.real(), factors.front().error};
+  std::complex<double> direction{1.0, 0.0};
+  for (const Bounded& factor : factors) {
+    const double size = std::abs(factor.value);
+    if (std::isnan(size + factor.error)) return {size + factor.error, std::numeric_limits<double>::infinity()};
+    if (size > 0.0) direction *= factor.value / size;
+  }
+  const double size = harmonic_mean(factors, [](double modulus, double) { return modulus; });
+  const double least = harmonic_mean(factors, [](double modulus, double error) { return modulus - error; });
+  const double most = harmonic_mean(factors, [](double modulus, double error) { return modulus + error; });
+  if (least > 0.0) return {std::copysign(size, direction.real()), std::max(size - least, most - size)};
+  // Of factors within their bounds the signs are open.
+  const double flipped = harmonic_mean(
+      factors, [](double modulus, double error) { return modulus > error ? modulus + error : error - modulus; });
+  return {std::copysign(size, direction.real()), std::max(size + flipped, most - size)};
+}
+
 const Rule& checked_rule(const TestFunction& function, const systems::Structure& system) {
   const Rule& rule = rule_of(function.kind);
   if (!rule.applies(system, count_of(system), function.sector))
@@ -90,10 +120,9 @@ std::vector<TestFunction> test_functions(const systems::Structure& system, int f
 Reading evaluate(const TestFunction& function, const systems::Structure& system, const spectrum::Stability& stability) {
   const Rule& rule = checked_rule(function, system);
   const std::vector<Bounded> factors = rule.factors(system, function.sector, indices_of(system, stability));
-  Bounded result{1.0, 0.0};
-  for (const Bounded& factor : factors) result = product(result, factor);
-  const double rounding = roundings_a_factor * static_cast<double>(factors.size());
-  return {result.value.real(), result.error + rounding};
+  Reading reading = signed_mean(factors);
+  reading.error += roundings_a_factor * static_cast<double>(factors.size());
+  return reading;
 }
 
 double zeros_passed(const TestFunction& function, const spectrum::Stability& stability) {

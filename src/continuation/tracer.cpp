@@ -41,6 +41,9 @@ constexpr double least_of_longest = 0.1;
 /// A prediction that is wrong by so many times the wanted error (0.3 rad) has met another family: errors of one family
 /// change by factors from step to step, not by this. Not measured.
 constexpr double wrong_prediction = 100.0;
+/// Of the wanted error of predictions: where one is wrong by less and the equations are not solved, a shorter step
+/// helps less than a finer resolution.
+constexpr double well_foreseen = 0.1;
 /// Halvings of one step from which it goes along the family's direction: the polynomial may point back after a bend.
 constexpr int polynomial_attempts = 3;
 /// A fixed step of z(s = 0) may take so many times the largest step where z(s = 0) moves less than the loop.
@@ -230,6 +233,7 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
   _stepper.begin();
   const double longest = std::min(std::max(length_to_try(), least), at_most);
   double length = longest;
+  bool doubled = false;
   for (int halved = 0;; ++halved) {
     if (halved >= polynomial_attempts) _stepper.use_tangent();
     Trial trial = _stepper.step(length);
@@ -255,6 +259,13 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
       _frontier.on_guard_limit = -1;
     }
     _frontier.problem.factor_point.clear();
+    const bool is_foreseen =
+        trial.converged && !trial.is_orbit && !jumped && trial.prediction_error < well_foreseen * wanted;
+    if (is_foreseen && !doubled && resolve_twice()) {
+      doubled = true;
+      --halved;
+      continue;
+    }
     length *= 0.5;
     if (!(length >= least) && jumped && trial.converged && resolve_twice()) {
       length = longest;

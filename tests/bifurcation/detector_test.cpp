@@ -257,6 +257,20 @@ TEST(Detector, MinimumAboveZeroIsNoEvent) {
   }
 }
 
+// Orbits are not isolated on a zero: that is where none is to be had.
+TEST(Detector, MinimumWithoutAnOrbitIsLeftToItsLocation) {
+  for (const double least : {0.0, 1e-5}) {
+    Family family{{exact([=](double x) { return least + 0.05 * (x - 4.2) * (x - 4.2); })}};
+    std::vector<Bracket> found;
+    for (const double x : {0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0})
+      for (const Bracket& bracket : family.detector.advance(family.point(x), [&](double at) {
+             return std::abs(at - 4.2) < 0.01 ? std::nullopt : std::optional(family.point(at));
+           }))
+        found.push_back(bracket);
+    expect_events(found, {{0, 4.2, true}});
+  }
+}
+
 TEST(Detector, UncertainMinimumShowsNothing) {
   Family family{{exact([=](double x) { return 0.05 * (x - 4.2) * (x - 4.2); }, 1e-3)}};
   EXPECT_TRUE(family.run({0.5, 1, 2, 3, 4, 5, 6, 7, 8}).empty());
@@ -398,7 +412,7 @@ struct TurningFamily {
   }
   [[nodiscard]] int found(std::size_t f) const {
     return static_cast<int>(
-        std::count_if(brackets.begin(), brackets.end(), [&](const Bracket& b) { return b.function == f; }));
+        std::count_if(brackets.begin(), brackets.end(), [&](const Bracket& b) { return b.function == f && !b.lost; }));
   }
 };
 

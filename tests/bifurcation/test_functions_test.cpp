@@ -147,6 +147,21 @@ TEST(TestFunctions, ValuesStayWithinOne) {
     }
 }
 
+// As in a chain of ten pendulums: the detector judges values by absolute errors.
+TEST(TestFunctions, ManyFactorsLeaveAValueOfTheirOwnSize) {
+  const auto ten = test::structure_of(20, true, true);
+  std::vector<Complex> indices;
+  for (int n = 0; n < 9; ++n) indices.emplace_back(1.9 - 0.4 * n);
+  for (const TestFunction& function : test_functions(ten, 1, 2)) {
+    const double value = std::abs(evaluate(function, ten, stability_of(indices, 1e-12)).value);
+    EXPECT_GT(value, 0.02) << name_of(function.kind) << function.sector.q;
+  }
+  indices[4] = 2.0 + 1e-6;  // near a zero it is as steep as its factor, or steeper
+  const double beside = evaluate({Kind::sector, {1, 0}}, ten, stability_of(indices, 1e-12)).value;
+  EXPECT_GT(std::abs(beside), 1e-6 / 4.0);
+  EXPECT_LT(std::abs(beside), 9.0 * 1e-6 / 4.0);
+}
+
 TEST(TestFunctions, KreinChangesSignWhereTwoIndicesBecomeComplex) {
   const auto three = test::structure_of(8, true, true);
   const TestFunction krein{Kind::krein, {}};

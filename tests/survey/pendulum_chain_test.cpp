@@ -56,19 +56,24 @@ TEST(PendulumChain, ItsNormalModesAreFollowedFromRest) {
 // their error bounds, 3e-9 to 1e-8.
 TEST(PendulumChain, APairThatPassesOneToRoundingIsUndecided) {
   const core::Communicator comm;
-  const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/chain.yaml",
-                                         {"starts.sweep.period=[16, 18]", "limits.energy=[-.inf, -53.0]"});
-  const survey::Summary summary = test::run(comm, scene, "touching");
-  EXPECT_TRUE(survey::verify(comm, summary.atlas).objections.empty());
-  if (!comm.is_root()) return;
-  EXPECT_EQ(summary.failures, 0U);
-  EXPECT_THAT(summary.findings, testing::Contains(testing::AllOf(
-                                    testing::Field(&survey::FindingSummary::kind, survey::FindingKind::undecided_event),
-                                    testing::Field(&survey::FindingSummary::severity, survey::Severity::undecided),
-                                    testing::Field(&survey::FindingSummary::text, testing::HasSubstr("E = -53.300")))));
-  const test::Atlas atlas(summary.atlas);
-  EXPECT_EQ(atlas.families().rows(), 1U);
-  EXPECT_EQ(atlas.crossings().rows(), 0U) << "none is listed that is not told from none";
+  // By the limit, the search for the minimum ends on an orbit near the touch, or where none converges.
+  for (const std::string limit : {"-53.0", "-53.1", "-53.2"}) {
+    SCOPED_TRACE(limit);
+    const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/chain.yaml",
+                                           {"starts.sweep.period=[16, 18]", "limits.energy=[-.inf, " + limit + "]"});
+    const survey::Summary summary = test::run(comm, scene, "touching");
+    EXPECT_TRUE(survey::verify(comm, summary.atlas).objections.empty());
+    if (!comm.is_root()) continue;
+    EXPECT_EQ(summary.failures, 0U);
+    EXPECT_THAT(summary.findings,
+                testing::Contains(
+                    testing::AllOf(testing::Field(&survey::FindingSummary::kind, survey::FindingKind::undecided_event),
+                                   testing::Field(&survey::FindingSummary::severity, survey::Severity::undecided),
+                                   testing::Field(&survey::FindingSummary::text, testing::HasSubstr("T = 16.9")))));
+    const test::Atlas atlas(summary.atlas);
+    EXPECT_EQ(atlas.families().rows(), 1U);
+    EXPECT_EQ(atlas.crossings().rows(), 0U) << "none is listed that is not told from none";
+  }
 }
 
 }  // namespace

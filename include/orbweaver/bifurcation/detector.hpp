@@ -34,6 +34,7 @@ struct Bracket {
   double to;
   bool tangency;
   bool passed = false;  ///< a tangency that is one: counts say that a zero is passed there
+  bool lost = false;    ///< a tangency that may be one: where the minimum was looked for there was no orbit
 };
 
 /// Between `from` and `to` a function has more zeros than were bracketed, by so many.

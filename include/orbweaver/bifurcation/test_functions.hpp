@@ -57,10 +57,11 @@ struct TestFunction {
 [[nodiscard]] std::vector<TestFunction> test_functions(const systems::Structure& system, int fundamental_order,
                                                        int subharmonics);
 
-/// The function at an orbit with `stability.fundamental` (stability indices k_i, or multipliers mu_i):
-///   sector     prod_i (k_i - c)/(2 + |k_i|), c = 2 cos(2 pi j/q);  dissipative: prod_i (mu_i -+ 1)/(1 + |mu_i|)
-///   krein      prod_{i<j} (k_i - k_j)^2 / (8 + 2 |k_i|^2 + 2 |k_j|^2): real pairs apart > 0, one complex pair < 0
-///   torus      prod_{i<j} (mu_i mu_j - 1)/(1 + |mu_i mu_j|)
+/// The function at an orbit with `stability.fundamental` (stability indices k_i, or multipliers mu_i): the
+/// harmonic mean of the moduli, with the sign of the product, of
+///   sector     (k_i - c)/(2 + |k_i|), c = 2 cos(2 pi j/q);  dissipative: (mu_i -+ 1)/(1 + |mu_i|)
+///   krein      (k_i - k_j)^2 / (8 + 2 |k_i|^2 + 2 |k_j|^2), i < j: real pairs apart > 0, one complex pair < 0
+///   torus      (mu_i mu_j - 1)/(1 + |mu_i mu_j|), i < j
 /// with the error that follows from `fundamental_error`. A conserved energy's multiplier 1 is left out.
 /// Throws MisuseError if the number of multipliers is not the system's.
 [[nodiscard]] Reading evaluate(const TestFunction& function, const systems::Structure& system,

@@ -23,6 +23,9 @@ constexpr std::size_t orbits_beside = 3;
 constexpr double longest_way = 1.5;
 /// To either side of a place on a chord, in parts of it: where nearer orbits are looked for.
 constexpr double beside_place = 0.05;
+/// An orbit found to be the family's lies so far beyond the two that it is sought between, in parts of their chord, at
+/// most: beside one of them Newton's method may fail in the segment that holds it, and not in the next.
+constexpr double outside_segment = 0.1;
 
 continuation::Orbit orbit_of(const AtlasTree& tree, const TreeFamily& family, std::size_t orbit,
                              const systems::System& system) {
@@ -144,7 +147,8 @@ std::optional<double> LoopCheck::arclength_of(const loop::Loop& loop, const Atla
   orbit.energy = continuation::energy_of(*_system, loop);
   orbit.action = continuation::action_of(*_system, loop);
   const Between found = between_orbits(orbit, tree, beside, segment);
-  if (!found.answer.same || !(found.position >= 0.0 && found.position <= 1.0)) return std::nullopt;
+  const bool is_near = found.position >= -outside_segment && found.position <= 1.0 + outside_segment;
+  if (!found.answer.same || !is_near) return std::nullopt;
   const double from = beside.arclengths[segment];
   return from + found.position * (beside.arclengths[segment + 1] - from);
 }

@@ -150,12 +150,13 @@ class Location {
     return kind == CrossingKind::fold_energy ? Event::Kind::fold_energy : Event::Kind::fold_parameter;
   }
 
-  queue::TaskOutcome without_crossing(const bifurcation::NotLocated& why, const continuation::FamilyCurve& family) {
+  queue::TaskOutcome without_crossing(bifurcation::NotLocated why, const continuation::FamilyCurve& family) {
     queue::TaskOutcome done;
+    why.period *= Units(*_system).time;
     // Only minima that come near zero, and functions that vanish for other reasons, may turn out to be nothing.
     done.failed = !_event.tangency && why.reason != bifurcation::NotLocated::Reason::no_event;
     _outcome.remark = to_text(why);
-    _outcome.undecided = _event.passed;
+    _outcome.undecided = _event.passed || (_event.tangency && why.reason != bifurcation::NotLocated::Reason::no_event);
     if (done.failed)
       if (const std::string hidden = hidden_in(family); !hidden.empty()) {
         done.failed = false;

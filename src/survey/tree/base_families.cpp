@@ -32,15 +32,18 @@ void check_names(const scene::Scene& scene, const systems::System& system, const
         found.families, point_text(system, found.point), given));
 }
 
-std::string left_out_text(const scene::Scene& scene, const systems::System& system, const SweepOutcome& found,
-                          const LeftOutMode& mode) {
-  std::vector<std::string> names;
-  for (int n = 0; n < mode.families; ++n)
-    names.push_back(base_family_name(scene, system, found.point, found.index, mode.place + n));
+/// Small oscillations about one equilibrium of which no family was begun, in one note.
+std::string left_out_text(const scene::Scene& scene, const systems::System& system, const SweepOutcome& found) {
   const double unit = system.scales().time;
-  return fmt::format("left out at {}: {} with T = {:.9g}, outside starts.sweep.period [{:g}, {:g}]",
-                     point_text(system, found.point), fmt::join(names, ", "), mode.period * unit,
-                     found.period_from * unit, found.period_to * unit);
+  std::vector<std::string> modes;
+  for (const LeftOutMode& mode : found.left_out) {
+    std::vector<std::string> names;
+    for (int n = 0; n < mode.families; ++n)
+      names.push_back(base_family_name(scene, system, found.point, found.index, mode.place + n));
+    modes.push_back(fmt::format("{} with T = {:.9g}", fmt::join(names, ", "), mode.period * unit));
+  }
+  return fmt::format("left out at {}: {}, outside starts.sweep.period [{:g}, {:g}]", point_text(system, found.point),
+                     fmt::join(modes, "; "), found.period_from * unit, found.period_to * unit);
 }
 
 void remark_grid(const scene::Scene& scene, const systems::System& system, Summary& summary) {
@@ -213,9 +216,10 @@ BaseFamilies base_families(const scene::Scene& scene, const systems::System& sys
       summary.remarks.push_back(
           fmt::format("no small oscillations around {}{}", point_text(system, found.point), range));
     }
-    for (const LeftOutMode& mode : found.left_out) summary.remarks.push_back(left_out_text(scene, system, found, mode));
-    for (const std::string& reason : found.rejected)
-      summary.remarks.push_back(fmt::format("dip passed over at {}: {}", point_text(system, found.point), reason));
+    if (!found.left_out.empty()) summary.remarks.push_back(left_out_text(scene, system, found));
+    if (!found.rejected.empty())
+      summary.remarks.push_back(
+          fmt::format("dips passed over at {}: {}", point_text(system, found.point), fmt::join(found.rejected, "; ")));
     for (const FoundMode& mode : found.modes) {
       if (is_of_another(mode, found, all)) continue;
       const std::string name = name_of_start(scene, system, found, mode);

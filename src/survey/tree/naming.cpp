@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace orbweaver::survey {
 
@@ -14,6 +15,8 @@ namespace {
 constexpr double same_place = 1e-6;
 /// In radians or the coordinate's scale: printed as 0.
 constexpr double printed_as_zero = 1e-9;
+/// Of a point with more coordinates only those that are not 0 are told.
+constexpr std::size_t most_told = 4;
 
 bool is_at(const systems::System& system, const std::vector<double>& point, const std::vector<double>& given) {
   for (std::size_t i = 0; i < given.size(); ++i) {
@@ -50,15 +53,18 @@ std::string limited(std::string text) {
 }
 
 std::string point_text(const systems::System& system, const std::vector<double>& point) {
-  std::string text;
+  const bool only_others = point.size() > most_told;
+  std::vector<std::string> told;
   for (std::size_t i = 0; i < point.size(); ++i) {
-    const double told = point[i] * system.scales().coordinate(i);
-    const double value = system.structure().is_angle(i) ? told * 180.0 / std::numbers::pi : told;
-    text +=
-        fmt::format("{}{} = {:.6g}{}", i == 0 ? "" : ", ", system.info().state_names[i],
-                    std::abs(point[i]) < printed_as_zero ? 0.0 : value, system.structure().is_angle(i) ? " deg" : "");
+    const bool is_zero = std::abs(point[i]) < printed_as_zero;
+    if (is_zero && only_others) continue;
+    const bool is_angle = system.structure().is_angle(i);
+    const double value = point[i] * system.scales().coordinate(i) * (is_angle ? 180.0 / std::numbers::pi : 1.0);
+    told.push_back(
+        fmt::format("{} = {:.6g}{}", system.info().state_names[i], is_zero ? 0.0 : value, is_angle ? " deg" : ""));
   }
-  return text;
+  if (told.size() < point.size()) told.emplace_back(told.empty() ? "all coordinates 0" : "the others 0");
+  return fmt::format("{}", fmt::join(told, ", "));
 }
 
 }  // namespace orbweaver::survey

@@ -23,7 +23,7 @@ namespace orbweaver::survey {
 /// The text, cut to what the archive's text columns hold (4096 bytes) with room to spare.
 [[nodiscard]] std::string limited(std::string text);
 
-/// "(0, 180)" in degrees for angles: an equilibrium for people.
+/// "th1 = 0 deg, th2 = 180 deg, ...": an equilibrium for people. Of more than four coordinates those that are not 0.
 [[nodiscard]] std::string point_text(const systems::System& system, const std::vector<double>& point);
 
 }  // namespace orbweaver::survey
