@@ -42,9 +42,10 @@ constexpr double left_to_truncation = 0.3;
 /// so dense: a passage at the distance r takes r^(3/2) of time (docs/performance.md).
 constexpr int guarded_map_cells = 96;
 constexpr double guarded_density = 1e-6;
-/// Where time scales may be far apart, as beside slow manifolds of what conserves nothing. Van der Pol's orbits need
-/// three times the harmonics at mu = 5 without, and 16 times at mu = 75 (docs/mathematics.md, "Time map").
-constexpr int dissipative_map_cells = 192;
+/// Where time scales may be far apart, as beside slow manifolds of what conserves nothing. Van der Pol's orbits need 16
+/// times the harmonics at mu = 75 without (docs/mathematics.md, "Time map"). From fewer cells on multipliers cost more
+/// than is saved: their segments are long where s is slow.
+constexpr int dissipative_map_cells = 768;
 /// The residual between the places where the equations ask, in parts of that at them, from which on it is truncation's,
 /// and not the solver's or rounding's, which are alike at both. Truncation was seen at 900.
 constexpr double shows_truncation = 10.0;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "collocation_problem.hpp"
+#include "locus_limits.hpp"
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
@@ -66,11 +67,11 @@ class LocusTracer {
       if (static_cast<int>(_locus.points.size()) >= _options.branch.step_limit)
         return end(EndReason::step_limit, fmt::format("{} points", _locus.points.size()));
       if (!(length >= least_step * _options.largest_step))
-        return end(_why.first,
-                   fmt::format("at {} after {} points: {}", place_text(_last.loop), _locus.points.size(), _why.second));
+        return end(_why.first, fmt::format("at {} after {} points: {}", place_text(_system, _last.loop),
+                                           _locus.points.size(), _why.second));
       std::optional<Solved> next = solve(length);
       if (!next || turns_too_far(*next)) {
-        length *= 0.5;
+        if (!next || !turn_to_curve()) length *= 0.5;
         continue;
       }
       const double wanted = _options.branch.prediction_error * std::min(1.0, _state.amplitude);
@@ -204,14 +205,7 @@ class LocusTracer {
         return (void)end(EndReason::failure,
                          fmt::format("the test function does not change about the start: {}", _why.second)),
                false;
-      Vector along(_last.values.size(), 0.0);
-      Vector across(_last.values.size(), 0.0);
-      add(along, -side * b / slope, _last.along);
-      add(along, side * a / slope, _last.across);
-      add(across, a / slope, _last.along);
-      add(across, b / slope, _last.across);
-      _last.along = std::move(along);
-      _last.across = std::move(across);
+      turn_plane({a / slope, b / slope}, side);
       _last.slope = _test.projection ? -side * slope : slope;  // a determinant knows how the two directions are turned
       take_turn(*trial);
     } catch (const core::NumericalError& error) {
@@ -243,6 +237,32 @@ class LocusTracer {
       change += orbit ? sign * value(*orbit, there) : nan;
     }
     return change / (2.0 * difference);
+  }
+
+  /// The direction across becomes this one, in those that there were; the way is orthogonal to it, to one side.
+  void turn_plane(const std::array<double, 2>& to, int side) {
+    Vector along(_last.values.size(), 0.0);
+    Vector across(_last.values.size(), 0.0);
+    add(along, -side * to[1], _last.along);
+    add(along, side * to[0], _last.across);
+    add(across, to[0], _last.along);
+    add(across, to[1], _last.across);
+    _last.along = std::move(along);
+    _last.across = std::move(across);
+  }
+
+  /// Where the prediction's direction, extrapolated from points before, is not the curve's: turns the plane of the last
+  /// point to where the test function does not change, and forgets those before. False if that is done already.
+  bool turn_to_curve() {
+    if (_points.size() < 2) return false;
+    const double a = change_along(_last.along);
+    const double b = change_along(_last.across);
+    const double slope = std::copysign(std::hypot(a, b), _last.slope);
+    if (!(std::abs(slope) > 0.0)) return false;
+    turn_plane({a / slope, b / slope}, -1);
+    _last.slope = slope;
+    _points.erase(_points.begin(), _points.end() - 1);
+    return true;
   }
 
   /// At a fold: the direction in which neither of the two quantities changes, and how the test function changes along
@@ -440,53 +460,19 @@ class LocusTracer {
 
   /// The first limit that the step to `loop` passes, and where.
   std::optional<std::pair<Ending, double>> limit_within(const loop::Loop& loop, double length) {
-    struct Limit {
-      EndReason reason;
-      std::string name;
-      double value;
-      double unit;
-      std::function<double(const loop::Loop&)> of;
-      [[nodiscard]] Ending ending() const { return {reason, fmt::format("{} = {:.9g}", name, value * unit)}; }
-    };
-    const Options& o = _options.branch;
-    const systems::Scales& scales = _system.scales();
-    const std::vector<std::string>& free = _system.family_scalars().free;
-    const std::size_t q = free.size() - 1;
-    const auto parameter = [](std::size_t n) { return [n](const loop::Loop& l) { return l.parameters[n]; }; };
-    std::vector<Limit> limits{
-        {EndReason::period_limit, "T", o.period_limit, scales.time, [](const loop::Loop& l) { return l.period; }}};
-    for (const double value : {_options.from, _options.to})
-      limits.push_back({EndReason::parameter_limit, free[q], value, scales.parameter(q), parameter(q)});
-    if (q > 0)
-      for (const double value : {o.parameter_from, o.parameter_to})
-        limits.push_back({EndReason::parameter_limit, free[0], value, scales.parameter(0), parameter(0)});
-    for (const double value : {o.energy_from, o.energy_to})
-      limits.push_back({EndReason::energy_limit, "E", value, scales.energy(),
-                        [this](const loop::Loop& l) { return energy_of(_system, l); }});
     std::optional<std::pair<Ending, double>> first;
-    const auto look = [&](const Ending& ending, const auto& off) {
-      if (!(off(_last.loop) * off(loop) < 0.0)) return;
-      const auto place = place_where([&](const Last& there) { return off(there.loop); }, length, false);
-      if (place && (!first || place->first < first->second)) first = {ending, place->first};
-    };
-    for (const Limit& limit : limits)
-      if (std::isfinite(limit.value))
-        look(limit.ending(), [&](const loop::Loop& l) { return limit.of(l) - limit.value; });
-    for (const LocusBoundary& boundary : _test.boundaries) look(boundary.ending, boundary.inside);
+    for (const LocusLimit& limit : _limits) {
+      if (!(limit.off(_last.loop) * limit.off(loop) < 0.0)) continue;
+      const auto place = place_where([&](const Last& there) { return limit.off(there.loop); }, length, false);
+      if (place && (!first || place->first < first->second)) first = {limit.ending, place->first};
+    }
     return first;
-  }
-
-  [[nodiscard]] std::string place_text(const loop::Loop& loop) const {
-    const systems::Scales& scales = _system.scales();
-    std::string text = fmt::format("T = {:.9g}", loop.period * scales.time);
-    for (std::size_t n = 0; n < loop.parameters.size(); ++n)
-      text += fmt::format(", {} = {:.9g}", _system.family_scalars().free[n], loop.parameters[n] * scales.parameter(n));
-    return text;
   }
 
   const systems::System& _system;
   const LocusTest& _test;
   const LocusOptions& _options;
+  std::vector<LocusLimit> _limits = limits_of(_system, _options, _test);
   loop::Loop _base;
   loop::Isotropy _isotropy;
   ProblemState _state;

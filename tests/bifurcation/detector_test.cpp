@@ -452,6 +452,34 @@ TEST(Detector, CountsTellWhatSignsDoNot) {
     EXPECT_EQ(bracket.passed, family.functions[bracket.function].sector.q <= 2);
 }
 
+// In one step two real multipliers pass mu_1 mu_2 = 1, which is nothing, and a complex pair the unit circle: the
+// product has one sign at both ends, and only its dip between tells.
+TEST(Detector, ATorusPointBesideANeutralSaddleIsBracketed) {
+  systems::Structure structure;
+  structure.dimension = 5;
+  structure.driven = structure.dissipative = true;
+  constexpr double torus = 0.44;
+  for (const double steep : {10.0, 40.0, 400.0})
+    for (double saddle = 0.3013; saddle < 0.6; saddle += 0.0142) {
+      SCOPED_TRACE(fmt::format("{} {}", steep, saddle));
+      const auto point = [&](double x) {
+        spectrum::Stability stability;
+        const std::complex<double> pair = std::polar(std::exp(0.5 * (x - torus)), 1.9);
+        stability.fundamental = {2.0 * std::exp(steep * (x - saddle)), pair, std::conj(pair), 0.5};
+        stability.fundamental_error.assign(4, 1e-12);
+        return TestPoint{x, {evaluate({TestFunction::Kind::torus, {}}, structure, stability)}, {}};
+      };
+      Detector detector;
+      const auto probe = [&](double x) { return std::optional(point(x)); };
+      std::vector<Bracket> brackets;
+      for (double x = -0.68; x < 1.5; x += 0.2)
+        for (const Bracket& bracket : detector.advance(point(x), probe)) brackets.push_back(bracket);
+      EXPECT_EQ(brackets.size(), 2U);
+      EXPECT_TRUE(std::any_of(brackets.begin(), brackets.end(),
+                              [](const Bracket& b) { return !b.tangency && b.from < torus && torus < b.to; }));
+    }
+}
+
 TEST(Detector, CountedZerosThatCannotBeBracketedAreTold) {
   for (const double length : {0.2, 1.0, 6.3}) {
     TurningFamily family{[](double x) { return x; }};

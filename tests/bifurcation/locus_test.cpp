@@ -144,6 +144,37 @@ TEST(DuffingFolds, MeetInACusp) {
   EXPECT_NEAR(apart(near) / apart(nearer), 8.0, 0.1);
 }
 
+// Any function of the orbit has a curve where it vanishes. This one's is a hyperbola in the plane of the parameters: it
+// turns by a right angle within a step, so that points before do not tell the way.
+TEST(Locus, FollowsASharpBend) {
+  const auto surface = duffing({"drive_frequency", "drive_amplitude"}, 0.3);
+  constexpr double corner = 0.7;
+  const loop::Loop first = response(0.9, 0.3);
+  Found start{};
+  start.crossing.point = {0.0, first, {std::vector<double>(first.modes.size(), 0.0), {0.0, 1.0}}};
+  start.isotropy = loop::find_isotropy(surface->structure(), first, loop::symmetry_tolerance);
+  continuation::LocusOptions options;
+  options.branch.parameter_from = 0.5;
+  options.branch.parameter_to = 0.95;
+  options.from = 0.01;
+  options.to = 0.5;
+  for (const double width : {1e-2, 1e-3, 1e-5}) {
+    SCOPED_TRACE(width);
+    const auto amplitude_at = [width](double frequency) {
+      return 0.3 + std::hypot(frequency - corner, width) - std::hypot(0.9 - corner, width);
+    };
+    continuation::LocusTest test;
+    test.value = [&](const loop::Loop& l) { return l.parameters[1] - amplitude_at(l.parameters[0]); };
+    loop::Loop at = first;
+    at.parameters.push_back(0.3);
+    const continuation::Locus locus =
+        continuation::follow_locus(surface, start.isotropy, at, start.crossing.point.tangent, test, 1, options);
+    EXPECT_EQ(locus.ending.text(), "parameter limit (drive_frequency = 0.5)");
+    for (const LocusPoint& point : locus.points)
+      EXPECT_NEAR(point.loop.parameters[1], amplitude_at(point.loop.parameters[0]), 1e-10);
+  }
+}
+
 std::shared_ptr<const systems::System> pendulum_of(double m2, std::vector<std::string> free = {}) {
   return systems::make_system("double_pendulum", {{"m2", m2}}, {}, {std::move(free), {}});
 }

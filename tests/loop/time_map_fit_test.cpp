@@ -90,6 +90,23 @@ TEST(TimeMapFit, DrawsScalesFarApartWhereverALoopBegins) {
   }
 }
 
+// Jumps that begin anywhere: one pass needs 500 harmonics, and 190 where s may begin anywhere too. A loop that leaves
+// half its harmonics out has tails that truncation has made: counted to the tolerance they mislead the next pass.
+TEST(TimeMapFit, DrawsSharpJumpsApartInSomePasses) {
+  constexpr int every = 4800;
+  for (const double begun : {0.0, 0.3, 1.2}) {
+    SCOPED_TRACE(begun);
+    const Loop even = jumping(0.005, begun, every);
+    const int own = harmonics_above(even, tolerance);
+    EXPECT_GT(own, 2500);
+    const auto needed_under = [&](const Loop& seen) {
+      return harmonics_above(with_time_map(even, fit_scales(seen, {}, tolerance).map, 900), tolerance);
+    };
+    EXPECT_LT(needed_under(with_cutoff(even, own)), 150);
+    EXPECT_LT(needed_under(with_cutoff(even, own / 2)), 700);
+  }
+}
+
 TEST(TimeMapFit, IsInvariantUnderTheIsotropy) {
   const Isotropy group = of_pendulum();
   const Loop even = unmapped({4.0, {}}, group);

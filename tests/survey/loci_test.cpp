@@ -1,7 +1,10 @@
 // Surveys with loci: curves of crossings in two parameters as tasks of the queue, and what verify says of them.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <complex>
 #include <functional>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
@@ -12,7 +15,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
+#include <Eigen/Dense>
 
+#include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/survey/verify/verify.hpp"
 #include "survey/atlas.hpp"
 #include "survey/atlas_records.hpp"
@@ -175,6 +180,100 @@ TEST(Loci, TorusPointsOfADoubledFamily) {
   EXPECT_NEAR(curve.front().parameter, 1.4243, 1e-10);
   EXPECT_NEAR(curve.back().parameter, 1.4115, 1e-10);
   for (const Point& point : curve) EXPECT_NEAR(point.period, 4.0 * std::numbers::pi / 0.9, 1e-9) << "twice the drive's";
+}
+
+/// Near the end of a curve of torus points: a doubled orbit beside one of them, at `c1`.
+struct BesideTorus {
+  const char* state;
+  double amplitude, c1;
+  const char* amplitudes;
+  const char* range;
+};
+
+constexpr BesideTorus beside_one_to_one{"142.543227, 51.7950766, 0, 1.9202047, 793.885987", 2.03960946, 0.4396474,
+                                        "2.03, 2.041", "0.435, 0.445"};
+constexpr BesideTorus beside_one_to_two{"134.655271, 32.9582412, 0, 1.77260063, 92.6773591", 1.65352684, 0.1855684,
+                                        "1.645, 1.655", "0.181, 0.186"};
+
+scene::Scene torus_points(const BesideTorus& at, const std::string& amplitudes) {
+  return scene_of(
+      "damped_driven_double_pendulum.yaml",
+      {fmt::format("starts={{states: [{{state: [{}], period: {}}}]}}", at.state, 4.0 * std::numbers::pi / 0.9),
+       fmt::format("system.parameters.torque1_amplitude={}", at.amplitude),
+       fmt::format("system.parameters.c1={}", at.c1), fmt::format("limits.parameter=[{}]", amplitudes),
+       fmt::format("loci=[{{of: [torus], free: [c1], range: [{}]}}]", at.range), "survey.depth=0"});
+}
+
+/// Of the orbit, integrated: the two multipliers nearest to `resonant`, nearest first.
+std::array<std::complex<double>, 2> multipliers_near(const scene::Scene& scene, const Point& point, double resonant) {
+  std::map<std::string, double> values = scene::bound_system(scene.system)->parameters();
+  values["torque1_amplitude"] = point.parameter;
+  values["c1"] = point.second;
+  const auto system = scene::bound_system(scene.system)->with_parameters(values);
+  const std::vector<double> flow = certificate::transitions(*system, {point.state}, point.period, 1e-13).front();
+  const auto d = static_cast<Eigen::Index>(point.state.size());
+  const Eigen::MatrixXd map = Eigen::Map<const Eigen::MatrixXd>(flow.data(), d, d).topLeftCorner(d - 1, d - 1);
+  Eigen::VectorXcd all = Eigen::EigenSolver<Eigen::MatrixXd>(map).eigenvalues();  // without the phase, of multiplier 1
+  std::sort(all.begin(), all.end(), [resonant](std::complex<double> a, std::complex<double> b) {
+    return std::abs(a - resonant) < std::abs(b - resonant);
+  });
+  return {all(0), all(1)};
+}
+
+void expect_end_at(double resonant, const BesideTorus& beside, const std::string& name) {
+  const core::Communicator comm(MPI_COMM_SELF);
+  const scene::Scene scene = torus_points(beside, beside.amplitudes);
+  const survey::Summary summary = test::run(comm, scene, "resonant");
+  EXPECT_EQ(objections_to(comm, summary.atlas), "") << "multipliers that coincide are known to half the digits";
+  EXPECT_EQ(summary.failures, 0U);
+  const auto curves = loci_of(test::Atlas(summary.atlas), "torus");
+  ASSERT_EQ(curves.size(), 1U);
+  const Point& end = curves.front().back();
+  EXPECT_EQ(end.note, "strong resonance (" + name + ")");
+  const auto mu = multipliers_near(scene, end, resonant);
+  // Each moves away with the square root of what is left; their sum and product do not.
+  EXPECT_LT(std::abs(mu[0] + mu[1] - 2.0 * resonant), 1e-7);
+  EXPECT_LT(std::abs(mu[0] * mu[1] - 1.0), 1e-7);
+}
+
+TEST(Loci, OfTorusPointsEndWhereBothMultipliersAreOne) {
+  if (core::Communicator().size() != 1) GTEST_SKIP() << "it takes seconds; that ranks agree is asked below";
+  expect_end_at(1.0, beside_one_to_one, "1:1, both multipliers are 1");
+}
+
+TEST(Loci, OfTorusPointsEndWhereBothMultipliersAreMinusOne) {
+  if (!core::Communicator().is_root()) return;
+  expect_end_at(-1.0, beside_one_to_two, "1:2, both multipliers are -1");
+}
+
+TEST(Loci, OfTorusPointsHaveTheSameBytesResumedAndWithWiderLimits) {
+  const core::Communicator comm;
+  const BesideTorus& beside = beside_one_to_one;
+  const auto system = scene::bound_system(torus_points(beside, beside.amplitudes).system);
+  const auto survey_to = [&](const std::filesystem::path& folder, const std::string& amplitudes, bool resume,
+                             double walltime) {
+    return survey::run_survey(comm, torus_points(beside, amplitudes), system, folder,
+                              {survey::Display::none, resume, walltime});
+  };
+  constexpr double ever = std::numeric_limits<double>::infinity();
+  const auto other = test::fresh_folder("torus_whole", comm.get());
+  const survey::Summary whole = survey_to(other, beside.amplitudes, false, ever);
+  const auto folder = test::fresh_folder("torus_resumed", comm.get());
+  const survey::Summary narrow = survey_to(folder, "2.036, 2.0405", false, ever);
+  if (comm.is_root()) {
+    const auto curves = loci_of(test::Atlas(narrow.atlas), "torus");
+    ASSERT_EQ(curves.size(), 1U);
+    EXPECT_EQ(curves.front().back().note, "parameter limit (torque1_amplitude = 2.036)");
+  }
+  // Broken off again and again while the families or the curve go on.
+  survey::Summary summary = survey_to(folder, beside.amplitudes, true, 0.3);
+  int times = 1;
+  for (; summary.stopped_early && times < 8; ++times) summary = survey_to(folder, beside.amplitudes, true, 0.3 * times);
+  EXPECT_GT(times, 1);
+  summary = survey_to(folder, beside.amplitudes, true, ever);
+  EXPECT_FALSE(summary.stopped_early);
+  if (!comm.is_root()) return;
+  EXPECT_EQ(test::dataset_bytes(summary.atlas), test::dataset_bytes(whole.atlas));
 }
 
 TEST(Loci, HaveTheSameBytesOnAllRanksAndResumed) {

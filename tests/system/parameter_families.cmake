@@ -29,6 +29,23 @@ set_tests_properties(system.damped_driven_double_pendulum.show_crossings PROPERT
 set_tests_properties(system.lorenz.show PROPERTIES FIXTURES_REQUIRED lorenz1)
 set_tests_properties(system.duffing.show_crossings PROPERTIES FIXTURES_REQUIRED duffing1)
 
+# Orbits at a value of the parameter that moves, while the energy or T is held, to many digits. Those expected are Duffing's in closed form:
+# T = 4 K(m)/sqrt(alpha + x^2), m = x^2/(2 (alpha + x^2)), by arithmetic-geometric means.
+foreach(hold IN ITEMS energy period)
+  set(folder "${runs}/system.duffing.held_${hold}/out")
+  system_test(duffing.held_${hold} 1 0 "OUT=Spring|0 failed" "FRESH=${folder}" survey "${PROJECT_SOURCE_DIR}/drivers/scenes/duffing.yaml" -o out
+    --set "system={name: duffing, parameters: {alpha: 1, beta: 1}}" --set "continuation={free: alpha, hold: ${hold}}"
+    --set "starts={states: [{state: [1, 0], period: 4.768, name: Spring}]}" --set "limits={parameter: [0.8, 2]}")
+  set_tests_properties(system.duffing.held_${hold} PROPERTIES FIXTURES_SETUP duffing.held_${hold})
+  if(hold STREQUAL energy)
+    set(expected "energy             0.7499999649|period             4.34987723044207|x(0)               0.88954360032226")
+  else()
+    set(expected "held               alpha = 1.5, T = 4.76|energy             0.26306310775576|x(0)               0.56321405161816")
+  endif()
+  system_test(duffing.held_${hold}.refine 1 0 "OUT=${expected}" refine "${folder}/atlas.h5" Spring alpha=1.5 -n 25)
+  set_tests_properties(system.duffing.held_${hold}.refine PROPERTIES FIXTURES_REQUIRED duffing.held_${hold})
+endforeach()
+
 set(of_pendulum "${scene}")
 set(scene "${PROJECT_SOURCE_DIR}/drivers/scenes/lorenz.yaml")
 broken_off_test(lorenz.kills system 300 kills.sh 3 1 -- --set output.flush_seconds=0.1 --set output.flush_orbits=5)
