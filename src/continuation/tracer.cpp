@@ -233,7 +233,9 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
   _stepper.begin();
   const double longest = std::min(std::max(length_to_try(), least), at_most);
   double length = longest;
-  bool doubled = false;
+  const int least_size = _frontier.problem.least_size;
+  std::optional<Resolution> before_doubling;
+  bool may_double = true;
   for (int halved = 0;; ++halved) {
     if (halved >= polynomial_attempts) _stepper.use_tangent();
     Trial trial = _stepper.step(length);
@@ -241,13 +243,14 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
     const bool jumped =
         trial.prediction_error > wrong_prediction * wanted ||
         (trial.converged && (_problem->inverted(trial, _stepper.last()) || _stepper.turned_too_far(trial, length)));
-    if (!jumped && _stepper.needs_more_harmonics(trial)) {
+    const bool needs_more = !jumped && _stepper.needs_more_harmonics(trial);
+    if (needs_more && !before_doubling) {
       if (!_stepper.refine(trial))
         return end(EndReason::cutoff_limit, fmt::format("the next orbit needs more than K = {}", _options.cutoff_to));
       --halved;
       continue;
     }
-    if (trial.is_orbit && !jumped) {
+    if (trial.is_orbit && !jumped && !needs_more) {
       _frontier.next_length =
           std::min(next_step_length(length, trial.prediction_error, wanted, trial.order), _options.largest_step);
       Ending refused;
@@ -261,10 +264,17 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
     _frontier.problem.factor_point.clear();
     const bool is_foreseen =
         trial.converged && !trial.is_orbit && !jumped && trial.prediction_error < well_foreseen * wanted;
-    if (is_foreseen && !doubled && resolve_twice()) {
-      doubled = true;
-      --halved;
-      continue;
+    if (before_doubling) {  // it was not that
+      (void)_stepper.resolve(*std::exchange(before_doubling, std::nullopt));
+      _frontier.problem.least_size = least_size;
+    } else if (is_foreseen && may_double) {
+      may_double = false;
+      before_doubling = _problem->resolution();
+      if (resolve_twice()) {
+        --halved;
+        continue;
+      }
+      before_doubling.reset();
     }
     length *= 0.5;
     if (!(length >= least) && jumped && trial.converged && resolve_twice()) {

@@ -133,7 +133,10 @@ class Eigenpairs {
     vector.imag().setZero();
     if (im != 0) vector.imag() = _solver.pseudoEigenvectors().col(first + 1).cast<double>();
     if (im < 0) vector = vector.conjugate().eval();
-    return vector.normalized();
+    // In the phase in which its largest entry is real: those of a reversible system are real or imaginary then.
+    Eigen::Index largest = 0;
+    vector.cwiseAbs().maxCoeff(&largest);
+    return (vector / vector(largest)).normalized();
   }
 
  private:
