@@ -106,7 +106,10 @@ struct Group {
   [[nodiscard]] int count() const { return static_cast<int>(members.size()); }
 };
 
-/// Eigenvalues of a matrix, and its eigenvectors: all at once cost as much as the kernel of one.
+/// Of a matrix with more rows the vectors are found all at once: the kernel of one costs as much.
+constexpr Eigen::Index one_by_one = 24;
+
+/// Eigenvalues of a matrix, and its eigenvectors.
 class Eigenpairs {
  public:
   explicit Eigenpairs(const QuadMatrix& matrix) : _solver(matrix, true) {
@@ -252,7 +255,7 @@ class Spectrum {
     double defect_right = 0.0;
     double defect_left = 0.0;
     const Value conjugate{group.mean.re, -group.mean.im};
-    const bool simple = group.count() == 1;
+    const bool simple = group.count() == 1 && _a.rows() > one_by_one;
     group.right = simple ? _right.vector_of(group.mean) : kernel(_a, group.mean, group.count(), defect_right);
     const Eigen::MatrixXcd left =
         simple ? _left.vector_of(conjugate) : kernel(_a.transpose(), conjugate, group.count(), defect_left);
