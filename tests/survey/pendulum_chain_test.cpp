@@ -66,7 +66,7 @@ TEST(PendulumChain, WhatIsOutsideTheRangeIsNotSearched) {
   ASSERT_EQ(summary.families.size(), 1U);
   EXPECT_EQ(summary.families.front().name, "Equilibrium 1, mode 1");
   EXPECT_THAT(summary.remarks, testing::Contains(testing::HasSubstr(": Equilibrium 1, mode 2 with T = ")));
-  EXPECT_THAT(summary.remarks, testing::Contains(testing::HasSubstr(": oscillations with T = ")))
+  EXPECT_THAT(summary.remarks, testing::Contains(testing::HasSubstr("oscillations with T = ")))
       << "how many families these are, and so their names, is not known";
 }
 
