@@ -21,6 +21,13 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 /// function has none within.
 constexpr double off_ends = 1e-3;
 
+/// How far beside a located zero the function is looked at, in parts of the interval, and what of its value there may
+/// be left at the zero: of a smooth function it is about the share of the two distances, 1e-4 or less.
+constexpr double beside_zero = 1e-4;
+constexpr double left_at_zero = 0.1;
+/// What is left in error bounds, which are estimates.
+constexpr double error_margin = 10.0;
+
 double slope(const systems::System& system, Event::Kind kind, const continuation::CurvePoint& point) {
   if (kind == Event::Kind::fold_period) return period_slope(point);
   return kind == Event::Kind::fold_energy ? energy_slope(system, point) : parameter_slope(point);
@@ -107,6 +114,21 @@ std::optional<numerics::Located> extremum(const systems::System& system, continu
   return std::nullopt;
 }
 
+/// Whether the sign changes by a jump: at the zero the function is far more than its error bound, and about as large as
+/// beside it. Orbits on either side belong to two families then, or rounding makes them what they are. Over intervals
+/// as short as `smallest` nothing is asked: families as near as that count as crossing.
+bool is_discontinuous(EventFunction& function, const Crossing& zero, double from, double to, double smallest) {
+  const double value = std::abs(zero.reading.value);
+  if (!(value > error_margin * zero.reading.error) || to - from <= smallest) return false;
+  const double position = zero.point.position;
+  const double away = beside_zero * (to - from);
+  for (const double beside : {position - away, position + away}) {
+    if (beside < from || beside > to) continue;
+    if (value > left_at_zero * std::abs(function(beside))) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 double period_slope(const continuation::CurvePoint& point) { return point.tangent.period(); }
@@ -162,6 +184,11 @@ std::string to_text(const NotLocated& why) {
           "the multipliers of the orbit with T = {:.12g} at position {:.12g} are so large that the test "
           "function is not a number",
           why.period, why.position);
+    case NotLocated::Reason::no_crossing:
+      return fmt::format(
+          "at position {:.12g} (T = {:.12g}) the test function changes its sign by a jump: it comes no nearer to zero "
+          "than {:.2g}, and its error bound is {:.2g}; no family crosses there",
+          why.position, why.period, why.at_from, why.at_to);
     case NotLocated::Reason::no_event: return "two multipliers pass one another there: nothing leaves";
   }
   return "unknown";
@@ -192,6 +219,15 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
   std::optional<Crossing> crossing = function.at(located->position, true);
   if (!crossing) {
     why = function.without_value().value();
+    return std::nullopt;
+  }
+  const bool is_zero = event.kind == Event::Kind::test_function && !event.tangency && !event.passed;
+  if (is_zero && is_discontinuous(function, *crossing, from, to, family.options().smallest_jump)) {
+    why = {.reason = NotLocated::Reason::no_crossing,
+           .at_from = std::abs(crossing->reading.value),
+           .at_to = crossing->reading.error,
+           .position = located->position,
+           .period = crossing->point.loop.period};
     return std::nullopt;
   }
   if (event.kind == Event::Kind::test_function &&

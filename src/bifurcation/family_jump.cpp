@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/bifurcation/test_functions.hpp"
@@ -50,29 +52,46 @@ constexpr double beside_gap = 0.1;
 /// The shortest piece that is looked at, in parts of the chord: gaps narrower than four of them are not seen.
 constexpr double shortest_piece = 1e-3;
 
-/// Whether the orbits between the ends of the step are one curve: halves again and again what is longest.
+/// Pieces that are looked at in any case, the step halved three times: a gap beside which the families bend towards one
+/// another makes no half of the step much longer than the other.
+constexpr double longest_piece = 0.125;
+/// Of the length that a piece has for its part of the chord: by less the two halves of a smooth piece differ.
+constexpr double uneven = 0.2;
+
+/// Whether the orbits between the ends of the step are one curve: halves what is long, uneven, or the steepest.
 bool is_one_curve(continuation::FamilyCurve& step) {
   struct Piece {
     double from;
     double to;
     loop::Loop before;
     loop::Loop after;
-    double length;
+    double steepness;  // length, in parts of what it has of the chord
   };
-  const auto piece = [](double from, double to, loop::Loop before, loop::Loop after) {
-    const double length = continuation::arclength_between(before, after);
-    return Piece{from, to, std::move(before), std::move(after), length};
+  const double chord = continuation::arclength_between(step.known().front().loop, step.known().back().loop);
+  const auto piece = [&](double from, double to, const loop::Loop& before, const loop::Loop& after) {
+    return Piece{from, to, before, after, continuation::arclength_between(before, after) / ((to - from) * chord)};
   };
-  Piece longest = piece(0.0, 1.0, step.known().front().loop, step.known().back().loop);
-  const double chord = longest.length;
-  while (longest.to - longest.from > shortest_piece) {
-    const double middle = 0.5 * (longest.from + longest.to);
+  std::vector<Piece> pieces{piece(0.0, 1.0, step.known().front().loop, step.known().back().loop)};
+  double steepest = 0.0;  // of those that are settled
+  while (!pieces.empty()) {
+    const auto next = std::max_element(pieces.begin(), pieces.end(),
+                                       [](const Piece& a, const Piece& b) { return a.steepness < b.steepness; });
+    const Piece whole = std::move(*next);
+    pieces.erase(next);
+    const double middle = 0.5 * (whole.from + whole.to);
     const std::optional<continuation::CurvePoint> point = step.at(middle);
     if (!point) return false;
-    Piece first = piece(longest.from, middle, longest.before, point->loop);
-    Piece second = piece(middle, longest.to, point->loop, longest.after);
-    longest = first.length > second.length ? std::move(first) : std::move(second);
-    if (longest.length > torn * (longest.to - longest.from) * chord) return false;
+    const Piece halves[] = {piece(whole.from, middle, whole.before, point->loop),
+                            piece(middle, whole.to, point->loop, whole.after)};
+    const bool is_uneven = std::abs(halves[0].steepness - halves[1].steepness) > uneven * whole.steepness;
+    for (const Piece& half : halves) {
+      if (half.steepness > torn) return false;
+      const double width = half.to - half.from;
+      if (width >= longest_piece || (width > shortest_piece && (is_uneven || half.steepness > steepest)))
+        pieces.push_back(half);
+      else
+        steepest = std::max(steepest, half.steepness);
+    }
   }
   return true;
 }

@@ -7,6 +7,7 @@
 
 #include "continuation/families.hpp"
 #include "orbweaver/ad/derivatives.hpp"
+#include "orbweaver/bifurcation/crossing.hpp"
 #include "support/delegating_system.hpp"
 
 namespace {
@@ -179,6 +180,25 @@ TEST_P(FamilyJump, AFoldInTheEnergyIsNone) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Fields, FamilyJump, ::testing::Values(5e-13, 3.4e-11, 2.2e-9, 2.7e-8, 1e-6, 1e-5));
+
+// Planes across a chord over the gap meet the one family up to some place, and the other from there on: no index is 2.
+TEST(Jumps, AnIndexThatPassesTwoByAJumpIsNoCrossing) {
+  const auto system = std::make_shared<MagneticPendulum>(2.7e-8);
+  const Followed loose(system, in_phase_start(), false);
+  ASSERT_EQ(loose.passing_two().size(), 1U);
+  const std::size_t across = loose.passing_two()[0];
+  continuation::FamilyCurve curve(system, without_reversors(), loose.plain);
+  curve.add(0.0, loose.orbits[across - 3].loop);
+  curve.add(1.0, loose.orbits[across + 2].loop);
+  const bifurcation::Event event{bifurcation::Event::Kind::test_function,
+                                 {bifurcation::TestFunction::Kind::sector, {1, 0}}};
+  bifurcation::NotLocated why;
+  const auto crossing = bifurcation::locate(*system, curve, event, 0.0, 1.0, why);
+  EXPECT_FALSE(crossing) << "an index of 2 to " << crossing->reading.value << ", bound " << crossing->reading.error;
+  EXPECT_EQ(why.reason, bifurcation::NotLocated::Reason::no_crossing) << to_text(why);
+  EXPECT_GT(why.at_from, 1e-6);
+  EXPECT_NE(to_text(why).find("changes its sign by a jump"), std::string::npos);
+}
 
 TEST(Jumps, FamiliesThatCrossArePassedInTheEnd) {
   // With the reversors in the equations, though not in the subspace, the index passes 2 at the crossing itself.

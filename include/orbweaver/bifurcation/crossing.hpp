@@ -46,6 +46,7 @@ struct NotLocated {
     no_orbit,        ///< none converges at `position`
     no_multipliers,  ///< those of the orbit at `position` cannot be computed; `detail` says why
     no_value,        ///< the function of these multipliers is not a number at `position`
+    no_crossing,     ///< the sign changes by a jump: the function is `at_from` at `position`, its error bound `at_to`
     no_event,        ///< the function vanishes at `position` for another reason than the event that it stands for
   };
   Reason reason = Reason::no_zero;
@@ -61,8 +62,8 @@ struct NotLocated {
 
 /// Locates `event` between two positions of the family, every trial orbit converged anew. Positions are found to
 /// `tolerance` relative to 1 + |position|, to 1e-10 at least, since indices are to be right to |dk/ds| 1e-10
-/// (docs/mathematics.md, "Location"). None where the function has no zero there (`why` then
-/// says so).
+/// (docs/mathematics.md, "Location"). None where the function has no zero there, or changes its
+/// sign by a jump (`why` then says so).
 [[nodiscard]] std::optional<Crossing> locate(const systems::System& system, continuation::FamilyCurve& family,
                                              const Event& event, double from, double to, NotLocated& why,
                                              double tolerance = 1e-11);

@@ -109,6 +109,7 @@ class Location {
       } catch (const core::NumericalError& error) {  // the crossing itself is located, and stays
         fail(crossing, error.what());
       }
+    if (_event.tangency && _outcome.kernel_dimension < 0 && !_failure) untold(crossing);
     if (!_failure) add_loci(crossing);
     queue::TaskOutcome done;
     done.failed = _failure.has_value();
@@ -300,6 +301,22 @@ class Location {
         kernel.singular_values.empty() ? archive::not_computed : kernel.singular_values[0]);
   }
 
+  /// An index comes near its sector's value and turns back, and whether anything is flat there is not known: without a
+  /// kernel that is no crossing, unless the index is that value to rounding.
+  void untold(const bifurcation::Crossing& crossing) {
+    const bifurcation::Sector& sector = _event.function.sector;
+    const double away = bifurcation::index_deviation(_system->structure(), crossing.stability, sector).value;
+    const double error = stability_error(crossing.stability);
+    if (!_outcome.undecided && !(std::abs(away) > error_bounds * error)) return;
+    const Units units(*_system);
+    _outcome.kind.reset();
+    _outcome.remark = fmt::format(
+        "at T = {:.9g}, {} = {:.9g} an index turns {:.2g} from {:.6g} (error bound {:.2g}), and no kernel says whether "
+        "families cross there: {}",
+        _outcome.period * units.time, units.level_name(), _outcome.level() * units.level(), away,
+        sector.value(_system->structure().symplectic), error, _outcome.remark);
+  }
+
   void without_kernel(const bifurcation::Crossing& crossing, const bifurcation::Kernel& kernel,
                       continuation::FamilyCurve& family) {
     _outcome.remark = fmt::format("no flat direction besides the family's own (smallest singular value {:.2g})",
@@ -345,10 +362,12 @@ class Location {
     return slopes && slopes->first * slopes->second < 0.0;
   }
 
-  /// At the crossing itself, not only between the orbits beside it.
+  /// At the crossing itself, not only between the orbits beside it; on families whose index passes 2 at folds alone
+  /// one that lies between them is the crossing.
   [[nodiscard]] bool turns_at(const bifurcation::Crossing& crossing, continuation::FamilyCurve& family) const {
     const auto slopes = slopes_beside(family);
-    return slopes && slopes->first * slopes->second < 0.0 &&
+    if (!slopes || !(slopes->first * slopes->second < 0.0)) return false;
+    return bifurcation::passes_two_only_at_folds(_system->structure(), family.isotropy()) ||
            std::abs(slope_at(crossing.point)) <
                turning_slope * std::min(std::abs(slopes->first), std::abs(slopes->second));
   }
