@@ -34,6 +34,13 @@ void take(FoldWatch::Turn& turn, double position, double value, Fold::Quantity q
   turn.direction = direction;
 }
 
+/// Between the last two orbits that differ and `position`, the last one's, the slope there being `slope`.
+void take_end(const FoldWatch::Turn& turn, double position, double slope, Fold::Quantity quantity,
+              std::vector<Fold>& folds) {
+  if (turn.direction == 0 || !(std::abs(slope) * (position - turn.before) > visible * turn.scale)) return;
+  if (turned(turn, slope > 0.0 ? 1 : -1)) folds.push_back({quantity, turn.before, position});
+}
+
 }  // namespace
 
 std::vector<Fold> FoldWatch::advance(double at, double period_there, double energy_there, double parameter_there) {
@@ -42,6 +49,14 @@ std::vector<Fold> FoldWatch::advance(double at, double period_there, double ener
   take(energy, at, energy_there, Fold::Quantity::energy, folds);
   parameter.scale = std::max(parameter.scale, 1.0);  // that of the parameter, which may rest at 0
   take(parameter, at, parameter_there, Fold::Quantity::parameter, folds);
+  return folds;
+}
+
+std::vector<Fold> FoldWatch::finish(double at, const Slopes& slopes) const {
+  std::vector<Fold> folds;
+  take_end(period, at, slopes.period, Fold::Quantity::period, folds);
+  take_end(energy, at, slopes.energy, Fold::Quantity::energy, folds);
+  take_end(parameter, at, slopes.parameter, Fold::Quantity::parameter, folds);
   return folds;
 }
 

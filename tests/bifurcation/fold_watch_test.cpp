@@ -66,6 +66,29 @@ TEST(FoldWatch, PassesOverWhatIsNotThere) {
   EXPECT_EQ(folds[0].quantity, Fold::Quantity::period);
 }
 
+TEST(FoldWatch, SlopeAtTheLastOrbitTellsAFoldBeforeIt) {
+  const auto period = [](double x) { return 7.0 - (x - 0.45) * (x - 0.45); };
+  FoldWatch watch;
+  for (const double x : {0.0, 0.2, 0.4, 0.6}) EXPECT_TRUE(watch.advance(x, period(x), x).empty()) << x;
+  const auto folds = watch.finish(0.6, {.period = -2.0 * 0.15, .energy = 1.0});
+  ASSERT_EQ(folds.size(), 1u);  // T turns within, E does not
+  EXPECT_EQ(folds[0].quantity, Fold::Quantity::period);
+  EXPECT_DOUBLE_EQ(folds[0].from, 0.4);
+  EXPECT_DOUBLE_EQ(folds[0].to, 0.6);
+  EXPECT_TRUE(watch.finish(0.6, {.period = 0.1}).empty()) << "a slope like the last difference";
+  EXPECT_TRUE(watch.finish(0.6, {.period = -1e-10}).empty()) << "rounding";
+}
+
+TEST(FoldWatch, FoldThatDifferencesShowIsNotFoundAgainAtTheEnd) {
+  const auto period = [](double x) { return 7.0 - (x - 0.45) * (x - 0.45); };
+  FoldWatch watch;
+  std::size_t found = 0;
+  for (const double x : {0.0, 0.2, 0.4, 0.7}) found += watch.advance(x, period(x), x).size();
+  EXPECT_EQ(found, 1u);
+  EXPECT_TRUE(watch.finish(0.7, {.period = -0.5, .energy = 1.0}).empty());
+  EXPECT_TRUE(FoldWatch().finish(0.0, {.period = 1.0}).empty()) << "no orbit";
+}
+
 TEST(FoldWatch, RefusesPositionsThatDoNotIncrease) {
   FoldWatch watch;
   (void)watch.advance(1.0, 2.0, 3.0);

@@ -9,9 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "orbweaver/systems/registry.hpp"
-#include "support/delegating_system.hpp"
 #include "survey/atlas.hpp"
+#include "survey/rotator.hpp"
 #include "survey/same_tree.hpp"
 #include "survey/scenes.hpp"
 
@@ -61,49 +60,6 @@ TEST(FirstOrbits, FarOutNoFoldBesideABirthIsLost) {
   test::expect_same_tree(near, at("0.3"));
 }
 
-/// A rotator, state q, p: with I = (q^2 + p^2)/2 the circles turn at w(I) = 1 + I/10 - 5 I^2/2, fastest at I = 0.02.
-class Rotator final : public test::DelegatingSystem {
- public:
-  Rotator() : DelegatingSystem(systems::make_system("harmonic_oscillator")) {}
-
-  void field(std::size_t nodes, const double* z, double* f) const override {
-    for (std::size_t j = 0; j < nodes; ++j) {
-      const double w = rate(size_of(z[j], z[nodes + j]));
-      f[j] = w * z[nodes + j];
-      f[nodes + j] = -w * z[j];
-    }
-  }
-  void field_jacobian(std::size_t nodes, const double* z, double* f, double* jacobian) const override {
-    field(nodes, z, f);
-    for (std::size_t j = 0; j < nodes; ++j) {
-      const double q = z[j];
-      const double p = z[nodes + j];
-      const double size = size_of(q, p);
-      const double slope = 0.1 - 5.0 * size;
-      jacobian[j] = slope * q * p;
-      jacobian[nodes + j] = rate(size) + slope * p * p;
-      jacobian[2 * nodes + j] = -rate(size) - slope * q * q;
-      jacobian[3 * nodes + j] = -slope * q * p;
-    }
-  }
-  [[nodiscard]] double conserved(int, std::span<const double> z) const override {
-    const double size = size_of(z[0], z[1]);
-    return size + 0.05 * size * size - 2.5 / 3.0 * size * size * size;
-  }
-  void conserved_gradient(int, std::span<const double> z, std::span<double> gradient) const override {
-    const double w = rate(size_of(z[0], z[1]));
-    gradient[0] = w * z[0];
-    gradient[1] = w * z[1];
-  }
-  [[nodiscard]] double action_density(std::span<const double> z) const override {
-    return rate(size_of(z[0], z[1])) * z[1] * z[1];
-  }
-
- private:
-  static double size_of(double q, double p) { return 0.5 * (q * q + p * p); }
-  static double rate(double size) { return 1.0 + 0.1 * size - 2.5 * size * size; }
-};
-
 TEST(FirstOrbits, FarOutNoFoldBesideAnEquilibriumIsLost) {
   const core::Communicator comm;
   for (const std::string start : {"0.01", "0.5"}) {
@@ -111,12 +67,15 @@ TEST(FirstOrbits, FarOutNoFoldBesideAnEquilibriumIsLost) {
     const scene::Scene scene = scene::parse(
         "system: {name: harmonic_oscillator, scales: {time: 1, q: 1, energy: 1}}\n"
         "starts: {fixed_points: {grid: [[0]]}, sweep: {period: [6, 6.5], step: 0.05}}\n"
-        "continuation: {start: " + start + "}\n"
-        "compute: {certificate: none}\n"
-        "limits: {energy: [-.inf, 0.2]}\n",
+        "continuation: {start: " +
+            start +
+            "}\n"
+            "compute: {certificate: none}\n"
+            "limits: {energy: [-.inf, 0.2]}\n",
         "rotator", {});
     const auto folder = test::fresh_folder("rotator", comm.get());
-    const survey::Summary summary = survey::run_survey(comm, scene, std::make_shared<const Rotator>(), folder, {});
+    const survey::Summary summary =
+        survey::run_survey(comm, scene, std::make_shared<const test::Rotator>(), folder, {});
     EXPECT_EQ(summary.failures, 0U) << testing::PrintToString(summary.failed_tasks);
     const test::Atlas atlas(summary.atlas);
     ASSERT_EQ(atlas.crossings().rows(), 1U);

@@ -23,6 +23,17 @@ class FoldWatch {
   [[nodiscard]] std::vector<Fold> advance(double position, double period, double energy,
                                           double parameter = std::numeric_limits<double>::quiet_NaN());
 
+  /// The slopes of the three along a family, towards larger positions; NaN for what is not asked.
+  struct Slopes {
+    double period = std::numeric_limits<double>::quiet_NaN();
+    double energy = std::numeric_limits<double>::quiet_NaN();
+    double parameter = std::numeric_limits<double>::quiet_NaN();
+  };
+
+  /// The folds before the family's last orbit that no orbit behind it shows: where the slope there and the last
+  /// difference have opposite signs. `position`: of that orbit.
+  [[nodiscard]] std::vector<Fold> finish(double position, const Slopes& slopes) const;
+
   /// One quantity's last two orbits that differ.
   struct Turn {
     double before = std::numeric_limits<double>::quiet_NaN();  ///< position of the earlier one

@@ -57,6 +57,10 @@ constexpr double settled = 1e-4;
 constexpr int most_on_the_way = 6;
 /// Where the corrector has slipped, so much of that way is left to look on. Not measured.
 constexpr double nearer = 0.5;
+/// Places at which slopes tell folds on the way to the meeting: each leaves so much less of the way before it, the last
+/// about 6e-5 of the way from the last orbit.
+constexpr int most_places_before = 7;
+constexpr double of_what_is_left = 0.75;
 /// The part is proportional to its signed part where it vanishes: its size may be so many times that, and so much more.
 /// A part that turns instead of vanishing keeps a size of about 1.
 constexpr double proportional = 2.0;
@@ -90,9 +94,9 @@ double distance_ahead(const bifurcation::SymmetryWatch& watch, const bifurcation
   return loop::mean_distance(from, to) / (1.0 - std::min(watch.signed_part(gain, from, to), 0.0));
 }
 
-std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuation::FamilyCurve& family,
-                                        const bifurcation::SymmetryWatch& watch, const bifurcation::SymmetryGain& gain,
-                                        const continuation::Orbit& from, const continuation::Orbit& to) {
+std::optional<Arrival> arrival_by(const systems::System& system, continuation::FamilyCurve& family,
+                                  const bifurcation::SymmetryWatch& watch, const bifurcation::SymmetryGain& gain,
+                                  const continuation::Orbit& from, const continuation::Orbit& to) {
   std::vector<Sample> samples;
   const auto add = [&](const loop::Loop& loop) {
     if (watch.relative_size(gain, from.loop, loop) < slipped) return;
@@ -146,13 +150,16 @@ std::optional<ArrivalRecord> arrival_by(const systems::System& system, continuat
       break;
     (part > 0.0 ? before : beyond) = {there, part};
   }
-  ArrivalRecord record;
+  Arrival arrival;
+  arrival.gain = gain;
+  arrival.position = before.position + before.part / (before.part - beyond.part) * (beyond.position - before.position);
+  ArrivalRecord& record = arrival.record;
   record.period = at_zero(samples, &Sample::period);
   record.level = at_zero(samples, &Sample::level);
   record.near = sketch_of(near);
   record.multiplicity = multiplicity_of(gain);
   record.ahead = distance_ahead(watch, gain, from.loop, near, to.loop);
-  return record;
+  return arrival;
 }
 
 /// Of several gains, those whose parts vanish on the way: there they are proportional to that of `from`. Beside an
@@ -198,15 +205,31 @@ loop::Loop sketch_of(const loop::Loop& loop, int cutoff) {
   return loop::with_cutoff(even, cutoff);
 }
 
-std::optional<ArrivalRecord> arrival_between(const systems::System& system, continuation::FamilyCurve& family,
-                                             const bifurcation::SymmetryWatch& watch, const continuation::Orbit& from,
-                                             const bifurcation::SymmetryWatch::SampledOrbit& from_sampled,
-                                             const continuation::Orbit& to,
-                                             const bifurcation::SymmetryWatch::SampledOrbit& to_sampled) {
+std::optional<Arrival> arrival_between(const systems::System& system, continuation::FamilyCurve& family,
+                                       const bifurcation::SymmetryWatch& watch, const continuation::Orbit& from,
+                                       const bifurcation::SymmetryWatch::SampledOrbit& from_sampled,
+                                       const continuation::Orbit& to,
+                                       const bifurcation::SymmetryWatch::SampledOrbit& to_sampled) {
   for (const bifurcation::SymmetryGain& gain :
        vanishing(watch.all_passed(from_sampled, to_sampled), family, watch, from, to))
-    if (auto record = arrival_by(system, family, watch, gain, from, to)) return record;
+    if (auto arrival = arrival_by(system, family, watch, gain, from, to)) return arrival;
   return std::nullopt;
+}
+
+std::vector<continuation::CurvePoint> places_before(const Arrival& arrival, continuation::FamilyCurve& family,
+                                                    const bifurcation::SymmetryWatch& watch,
+                                                    const continuation::CurvePoint& last) {
+  std::vector<continuation::CurvePoint> points{last};
+  double meeting = arrival.position;
+  for (int n = 0; n < most_places_before; ++n) {
+    const double place = points.back().position + of_what_is_left * (meeting - points.back().position);
+    auto point = family.at(place, true);
+    if (point && !point->tangent.empty() && watch.signed_part(arrival.gain, last.loop, point->loop) > slipped)
+      points.push_back(std::move(*point));
+    else  // beyond the meeting, or the corrector has slipped onto the family that is met
+      meeting = place;
+  }
+  return points;
 }
 
 bool locate_beneath(const std::shared_ptr<const systems::System>& system, const continuation::Options& options,

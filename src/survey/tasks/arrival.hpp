@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "orbweaver/bifurcation/symmetry_watch.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
@@ -11,13 +12,29 @@
 
 namespace orbweaver::survey {
 
+/// A meeting with a family of more symmetry.
+struct Arrival {
+  ArrivalRecord record;
+  bifurcation::SymmetryGain gain;  ///< what is gained there
+  double position = 0.0;           ///< of the meeting along the branch, nearly
+};
+
 /// Where the branch meets a family with more symmetry between two of its orbits, if it does. Beyond that point lie the
 /// images of the orbits before it, or, where the broken part is not turned by the symmetry, the other side of a
 /// crossing.
-[[nodiscard]] std::optional<ArrivalRecord> arrival_between(
-    const systems::System& system, continuation::FamilyCurve& family, const bifurcation::SymmetryWatch& watch,
-    const continuation::Orbit& from, const bifurcation::SymmetryWatch::SampledOrbit& from_sampled,
-    const continuation::Orbit& to, const bifurcation::SymmetryWatch::SampledOrbit& to_sampled);
+[[nodiscard]] std::optional<Arrival> arrival_between(const systems::System& system, continuation::FamilyCurve& family,
+                                                     const bifurcation::SymmetryWatch& watch,
+                                                     const continuation::Orbit& from,
+                                                     const bifurcation::SymmetryWatch::SampledOrbit& from_sampled,
+                                                     const continuation::Orbit& to,
+                                                     const bifurcation::SymmetryWatch::SampledOrbit& to_sampled);
+
+/// Orbits of the branch, with its directions, from `last`, its last one before the meeting, ever nearer to the meeting;
+/// `last` is the first of them.
+[[nodiscard]] std::vector<continuation::CurvePoint> places_before(const Arrival& arrival,
+                                                                  continuation::FamilyCurve& family,
+                                                                  const bifurcation::SymmetryWatch& watch,
+                                                                  const continuation::CurvePoint& last);
 
 /// Locates the crossing that the branch meets, as often around as it goes, near `last`, the branch's last orbit, and
 /// takes period and energy from there. False, and nothing changes, where `last` does not lie beside such a crossing.

@@ -9,6 +9,7 @@
 
 #include "arrival.hpp"
 #include "certified.hpp"
+#include "end_folds.hpp"
 #include "equilibrium_end.hpp"
 #include "executor.hpp"
 #include "orbit_row.hpp"
@@ -228,7 +229,8 @@ void BranchTask::limited_by(int limits, const continuation::Frontier& before) {
 
 /// What only the family's end shows, from the stored orbits alone, whatever was probed before.
 void BranchTask::finish() {
-  if (_curve.known().size() < orbits_from_birth) detect_from_birth();
+  if (_curve.known().size() < orbits_from_birth) look_before_first();
+  folds_at_end();
   _curve.forget_found();
   const auto probing = [this](double position) { return probe(position); };
   for (const bifurcation::Bracket& b : _detector.finish(probing))
@@ -252,7 +254,7 @@ bool BranchTask::take(const continuation::Orbit& orbit) {
     _before_first =
         _work.lineage.crossing.empty() ? 0.0 : continuation::arclength_in_units(*_system, _start.base, orbit.loop);
   _curve.add(orbit.arclength, orbit.loop, kept_orbits);
-  if (_outcome.orbits > 0 && _curve.known().size() == orbits_from_birth) detect_from_birth();
+  if (_outcome.orbits > 0 && _curve.known().size() == orbits_from_birth) look_before_first();
   if (arrive(orbit)) return false;
   // A fold may lie between this orbit and the next.
   if (!_last && _options.too_far && !(_work.amplitude > 0.0) && !_work.base_is_orbit)
@@ -378,9 +380,10 @@ bool BranchTask::arrive(const continuation::Orbit& orbit) {
   if (_last) {
     if (auto arrival = arrival_between(*_system, _curve, _symmetry, *_last, *_sampled, orbit, sampled)) {
       // The met family looks only for crossings of the orders that the scene asks for.
-      if (arrival->multiplicity > _scene.survey.subharmonics)
-        (void)locate_beneath(_system, _curve.options(), _last->loop, *arrival);
-      _outcome.arrival.push_back(std::move(*arrival));
+      if (arrival->record.multiplicity > _scene.survey.subharmonics)
+        (void)locate_beneath(_system, _curve.options(), _last->loop, arrival->record);
+      _outcome.arrival.push_back(arrival->record);
+      _arrival = std::move(*arrival);
     }
   }
   _sampled = std::move(sampled);
@@ -413,34 +416,50 @@ void BranchTask::detect(const continuation::Orbit& orbit, const std::optional<sp
   for (const bifurcation::Bracket& b : _detector.advance(test_point(orbit.arclength, stability), probing))
     add_event({Kind::test_function, _functions[b.function], b.tangency, b.passed}, b.from, b.to, _curve.known());
   // Where a parameter moves only it folds; T and the energy have extrema that say nothing.
-  using Quantity = bifurcation::Fold::Quantity;
   const bool moves = !orbit.loop.parameters.empty();
-  const std::vector<bifurcation::Fold> folds =
-      moves
-          ? _folds.advance(orbit.arclength, archive::not_computed, archive::not_computed, orbit.loop.parameters.front())
-          : _folds.advance(orbit.arclength, orbit.loop.period, orbit.energy);
+  add_folds(moves ? _folds.advance(orbit.arclength, archive::not_computed, archive::not_computed,
+                                   orbit.loop.parameters.front())
+                  : _folds.advance(orbit.arclength, orbit.loop.period, orbit.energy),
+            _curve.known());
+}
+
+void BranchTask::add_folds(const std::vector<bifurcation::Fold>& folds,
+                           const std::vector<continuation::FamilyCurve::Known>& known) {
+  using Kind = bifurcation::Event::Kind;
+  using Quantity = bifurcation::Fold::Quantity;
   for (const bifurcation::Fold& fold : folds) {
     const Kind kind = fold.quantity == Quantity::period   ? Kind::fold_period
                       : fold.quantity == Quantity::energy ? Kind::fold_energy
                                                           : Kind::fold_parameter;
-    add_event({kind, {}, false}, fold.from, fold.to, _curve.known());
+    add_event({kind, {}, false}, fold.from, fold.to, known);
   }
+}
+
+void BranchTask::look_before_first() {
+  detect_from_birth();
+  folds_at_start();
 }
 
 /// The first orbit may lie so far out that an index has passed the values of other sectors on the way from the crossing
 /// where the family is born.
 void BranchTask::detect_from_birth() {
-  if (_work.lineage.crossing.empty() || _curve.known().empty() || _functions.empty()) return;
+  if (_work.lineage.crossing.empty() || _curve.known().empty()) return;
   const continuation::FamilyCurve::Known& first = _curve.known().front();
-  std::optional<spectrum::Stability> birth = stability_of(*_system, _start.base, _start.isotropy, _team);
-  // Its value tells: its error bound is that of a place where orbits are not isolated.
-  if (birth) std::fill(birth->fundamental_error.begin(), birth->fundamental_error.end(), 0.0);
-  const auto at_birth = test_point(0.0, birth);
-  const auto at_first = test_point(0.0, stability_of(*_system, first.loop, _start.isotropy, _team));
   std::vector<continuation::FamilyCurve::Known> known{
       {first.position - continuation::arclength_between(_start.base, first.loop), _start.base,
        first.arclength - _before_first}};
   known.insert(known.end(), _curve.known().begin(), _curve.known().end());
+  if (_arrival && known.back().position > _last->arclength) known.pop_back();  // it lies beyond the meeting
+  if (!_functions.empty()) indices_from_birth(known);
+  folds_from_birth(known);
+}
+
+void BranchTask::indices_from_birth(const std::vector<continuation::FamilyCurve::Known>& known) {
+  std::optional<spectrum::Stability> birth = stability_of(*_system, _start.base, _start.isotropy, _team);
+  // Its value tells: its error bound is that of a place where orbits are not isolated.
+  if (birth) std::fill(birth->fundamental_error.begin(), birth->fundamental_error.end(), 0.0);
+  const auto at_birth = test_point(0.0, birth);
+  const auto at_first = test_point(0.0, stability_of(*_system, known[1].loop, _start.isotropy, _team));
   for (std::size_t f = 0; f < _functions.size(); ++f) {
     const double before = at_birth.readings[f].value;
     const int after = at_first.readings[f].sign();
@@ -453,50 +472,49 @@ void BranchTask::detect_from_birth() {
     if (_functions[f].sector.q > 2 && passed > 1.0)
       add_missed({f, known[0].position, known[1].position, static_cast<int>(passed) - (is_shown ? 1 : 0)});
   }
-  folds_from_birth(known);
 }
 
 /// Folds that the orbits from the first one on do not show: on the way from the birth to it, and on that to the second.
 void BranchTask::folds_from_birth(const std::vector<continuation::FamilyCurve::Known>& known) {
-  using Kind = bifurcation::Event::Kind;
-  if (known.size() < 3) return;
   continuation::FamilyCurve curve(_system, _start.isotropy, branch_options(_scene, _team));
   for (const continuation::FamilyCurve::Known& one : known) curve.add(one);
   const double birth = known[0].position;
-  std::vector<double> places{known[2].position, known[1].position};
-  while (places.size() < places_from_birth) places.push_back(birth + nearer_to_birth * (places.back() - birth));
-  std::vector<continuation::CurvePoint> points;  // from the second orbit towards the birth
-  for (const double place : places) {
+  WayToEnd way;
+  way.crossing = _start.base;
+  if (known.size() > 2) way.inner = known[2];
+  double place = known[1].position;
+  for (std::size_t n = 0; n < places_from_birth; ++n, place = birth + nearer_to_birth * (place - birth)) {
     auto point = curve.at(place, true);
     if (!point || point->tangent.empty()) break;
-    points.push_back(std::move(*point));
+    way.points.push_back(std::move(*point));
   }
-  const auto look = [&](Kind kind, const auto& slope, const auto& value) {
-    const double at_birth = value(known[0].loop);
-    const double visible = visible_change * std::abs(at_birth);
-    double beyond = 0.0;
-    for (std::size_t n = 0; n < points.size(); ++n) {
-      const double here = slope(points[n]);
-      // Beside the birth a tangent may hold a part of the other family's: the way from the birth must say the same.
-      const double way = std::copysign(1.0, here) * (value(points[n].loop) - at_birth);
-      if (!(std::abs(here) * (points[n].position - birth) > visible)) return;
-      if (here * beyond < 0.0) {
-        const auto hidden = [&](std::size_t one, std::size_t other) {
-          return !not_told_apart(*_system, points[one].loop, &points[other].loop, _start.isotropy, _team).empty();
-        };
-        if (!(way > visible) || hidden(n, n - 1) || hidden(n - 1, n)) return;
-        add_event({kind, {}, false}, points[n].position, points[n - 1].position, known);
-      }
-      beyond = here;
-    }
-  };
-  if (!_system->family_scalars().free.empty())
-    return look(Kind::fold_parameter, bifurcation::parameter_slope,
-                [](const loop::Loop& loop) { return loop.parameters.front(); });
-  look(Kind::fold_period, bifurcation::period_slope, [](const loop::Loop& loop) { return loop.period; });
-  look(
-      Kind::fold_energy, [&](const auto& point) { return bifurcation::energy_slope(*_system, point); },
-      [&](const loop::Loop& loop) { return continuation::energy_of(*_system, loop); });
+  add_folds(folds_on(*_system, _start.isotropy, way), known);
+}
+
+/// Of a family that goes on behind its first orbit, to the other side: a fold beside it shows on one of the two only.
+void BranchTask::folds_at_start() {
+  const std::vector<continuation::FamilyCurve::Known>& known = _curve.known();
+  if (!_work.base_is_orbit || known.size() < 2) return;
+  const auto first = _curve.at(known[0].position, true);
+  if (!first || first->tangent.empty()) return;
+  add_folds(folds_on(*_system, _start.isotropy, {known[1], {*first}, std::nullopt}), known);
+}
+
+/// Folds that no orbit behind the last one shows, also on the way from there to a meeting.
+void BranchTask::folds_at_end() {
+  if (!_last || _curve.known().size() < 2) return;
+  const auto last = _curve.at(_last->arclength, true);
+  if (!last || last->tangent.empty()) return;
+  add_folds(_folds.finish(last->position, slopes_at(*_system, *last)), _curve.known());
+  if (!_arrival) return;
+  WayToEnd way;
+  way.points = places_before(*_arrival, _curve, _symmetry, *last);
+  way.crossing = way.points.back().loop;
+  add_folds(folds_on(*_system, _start.isotropy, way), _curve.known());
+  continuation::Orbit near;
+  near.loop = way.points.back().loop;
+  near.arclength = way.points.back().position;
+  if (near.arclength > _last->arclength) solve_requested(near);
 }
 
 void BranchTask::add_event(const bifurcation::Event& event, double from, double to,

@@ -13,6 +13,7 @@
 #include "orbweaver/queue/executor.hpp"
 #include "orbweaver/scene/scene.hpp"
 #include "state/branch_state.hpp"
+#include "tasks/arrival.hpp"
 #include "tasks/given_orbit_watch.hpp"
 #include "tasks/payload/work.hpp"
 #include "tasks/units.hpp"
@@ -53,9 +54,15 @@ class BranchTask {
   void decide(continuation::Ending& ending) const;
   [[nodiscard]] continuation::Ending met() const;
   void detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability);
+  void look_before_first();
   void detect_from_birth();
+  void indices_from_birth(const std::vector<continuation::FamilyCurve::Known>& known);
   void add_missed(const bifurcation::MissedZeros& missed);
   void folds_from_birth(const std::vector<continuation::FamilyCurve::Known>& known);
+  void folds_at_start();
+  void folds_at_end();
+  void add_folds(const std::vector<bifurcation::Fold>& folds,
+                 const std::vector<continuation::FamilyCurve::Known>& known);
   void add_event(const bifurcation::Event& event, double from, double to,
                  std::vector<continuation::FamilyCurve::Known> known);
   void solve_requested(const continuation::Orbit& orbit);
@@ -83,6 +90,7 @@ class BranchTask {
   bifurcation::FoldWatch _folds;
   std::optional<continuation::Orbit> _last;
   std::optional<bifurcation::SymmetryWatch::SampledOrbit> _sampled;  // of the last orbit
+  std::optional<Arrival> _arrival;                                   // between the last orbit and the next
   std::optional<bifurcation::TestPoint> _at_rest;                    // of an oscillation that is next to nothing
   bool _may_arrive_ahead = false;                                    // no reversor holds the direction
   std::optional<spectrum::Stability> _last_stability;                // of the last orbit

@@ -1,0 +1,68 @@
+// Folds and requested orbits at a family's ends, and beside folds: the step decides nothing.
+#include <algorithm>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "survey/atlas.hpp"
+#include "survey/rotator.hpp"
+#include "survey/scenes.hpp"
+
+namespace {
+
+using namespace orbweaver;
+using testing::DoubleNear;
+
+/// The rotator's only family: T falls from 2 pi to 2 pi/1.001 at I = 0.02, and rises again.
+test::Atlas rotator(const std::vector<std::string>& overrides) {
+  const core::Communicator comm;
+  const scene::Scene scene = scene::parse(
+      "system: {name: harmonic_oscillator, scales: {time: 1, q: 1, energy: 1}}\n"
+      "starts: {fixed_points: {grid: [[0]]}, sweep: {period: [6, 6.5], step: 0.05}}\n"
+      "compute: {certificate: none}\n",
+      "rotator", overrides);
+  const auto folder = test::fresh_folder("rotator_ends", comm.get());
+  const survey::Summary summary = survey::run_survey(comm, scene, std::make_shared<const test::Rotator>(), folder, {});
+  EXPECT_EQ(summary.failures, 0U) << testing::PrintToString(summary.failed_tasks);
+  return test::Atlas(summary.atlas);
+}
+
+double energy_at(double action) { return action + 0.05 * action * action - 2.5 / 3.0 * action * action * action; }
+
+TEST(EndFolds, FoldShortlyBeforeALimitIsFoundOnceAtEveryStep) {
+  for (const double step : {0.2, 0.05, 0.02}) {
+    SCOPED_TRACE(step);
+    const test::Atlas atlas = rotator(
+        {fmt::format("limits.energy=[-.inf, {}]", energy_at(0.0205)), fmt::format("continuation.step={}", step)});
+    ASSERT_EQ(atlas.crossings().rows(), 1U);
+    EXPECT_EQ(atlas.crossings().texts("kind")[0], "fold-period");
+    EXPECT_NEAR(atlas.crossings().reals("period")[0], 2.0 * std::numbers::pi / 1.001, 1e-10);
+    EXPECT_NEAR(atlas.crossings().reals("energy")[0], energy_at(0.02), 1e-8);
+  }
+}
+
+TEST(EndFolds, PeriodThatIsPassedTwiceBetweenTwoOrbitsIsStoredTwice) {
+  // 1 + I/10 - 5 I^2/2 is the same at I = 0.02 - d and 0.02 + d.
+  constexpr double d = 0.001;
+  const double wanted = 2.0 * std::numbers::pi / (1.001 - 2.5 * d * d);
+  for (const double step : {0.2, 0.05, 0.005}) {
+    SCOPED_TRACE(step);
+    const test::Atlas atlas = rotator({"limits.energy=[-.inf, 0.1]", fmt::format("continuation.step={}", step),
+                                       fmt::format("events.periods=[{:.17g}]", wanted)});
+    std::vector<double> energies;
+    const std::vector<double>& periods = atlas.orbits().reals("period");
+    for (std::size_t n = 0; n < periods.size(); ++n)
+      if (std::abs(periods[n] - wanted) < 1e-12) energies.push_back(atlas.orbits().reals("energy")[n]);
+    EXPECT_THAT(energies,
+                testing::ElementsAre(DoubleNear(energy_at(0.02 - d), 1e-7), DoubleNear(energy_at(0.02 + d), 1e-7)));
+    const std::vector<double>& along = atlas.orbits().reals("arclength");
+    EXPECT_TRUE(std::is_sorted(along.begin(), along.end()));
+  }
+}
+
+}  // namespace
