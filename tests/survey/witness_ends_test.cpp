@@ -62,6 +62,39 @@ TEST_F(WitnessOf, EndsAtCrossingsThatDoNotExplainThem) {
                                 finding("contradiction", "unknown-direction"), finding("cut", "beyond-depth")));
 }
 
+// As many families at a crossing as it has sides: one may come back along the side that no other has.
+TEST_F(WitnessOf, AFamilyThatComesBackToItsBirth) {
+  if (world->is_root()) {
+    const auto births = atlas->families().integers("crossing");
+    const int born = static_cast<int>(births[atlas->row_of("StD")]);
+    add_crossing(born).sides = {DirectionFate::followed, DirectionFate::arrived};
+    EndEvidence& back = add_end("StD");
+    back.joined = true;
+    back.crossing = born;
+  }
+  if (const std::vector<Found> rows = found(); world->is_root()) {
+    EXPECT_THAT(rows, IsEmpty());
+  }
+}
+
+TEST_F(WitnessOf, AFamilyThatComesBackToItsBirthAsAnother) {
+  if (world->is_root()) {
+    const auto births = atlas->families().integers("crossing");
+    const int born = static_cast<int>(births[atlas->row_of("StD")]);
+    add_crossing(born).sides = {DirectionFate::followed, DirectionFate::arrived};
+    for (const char* name : {"StD", "LoD"}) {
+      EndEvidence& end = add_end(name);
+      end.joined = true;
+      end.crossing = born;
+    }
+  }
+  const std::vector<Found> rows = found();
+  if (!world->is_root()) return;
+  ASSERT_THAT(rows, ElementsAre(finding("contradiction", "taken-direction")));
+  EXPECT_EQ(rows[0].family, row_named("StD"));
+  EXPECT_THAT(rows[0].text, HasSubstr("3 families leave and arrive there, along 2 directions"));
+}
+
 TEST_F(WitnessOf, EndsWhereNoCrossingIsKnown) {
   if (world->is_root()) {
     // A family that comes to Straight gone around four times, one that comes to it twice, and one that comes nowhere.

@@ -109,6 +109,37 @@ TEST_F(WitnessOf, ACurveStoredTwice) {
   EXPECT_THAT(said.records[0].text, HasSubstr("Curved: the same orbits are stored in Again"));
 }
 
+// Another family with the same numbers, whose loops are others but for one of them, so that the orbit after it lies on
+// both; then with a crossing at that orbit.
+TEST_F(WitnessOf, OneOrbitOfTwoFamilies) {
+  for (const bool has_crossing : {false, true}) {
+    input = {};
+    if (world->is_root()) {
+      records = records_of(*atlas);
+      const auto orbits = orbits_of(key_named("Curved"));
+      add_family_like("Curved", "0000.9000").name = "Again";
+      remove_orbits(key_named("Curved"));
+      add_every_second(orbits, 0, key_named("Curved"));
+      add_every_second(orbits, 1, "0000.9000");
+      int n = 0;
+      for (archive::OrbitRecord& orbit : records.orbits)
+        if (orbit.family_key == "0000.9000" && n++ != 2) orbit.modes[0] += 0.3;
+      if (has_crossing) {
+        archive::CrossingRecord& crossing = records.crossings.emplace_back(records.crossings.front());
+        crossing.family_key = key_named("Curved");
+        crossing.multiplicity = 1;
+        crossing.period = orbits[6].period;
+        crossing.energy = orbits[6].energy;
+        crossing.arclength = orbits[6].arclength;
+      }
+    }
+    const std::vector<Found> rows = found();
+    if (!world->is_root()) continue;
+    EXPECT_THAT(rows, Contains(AllOf(finding(has_crossing ? "undecided" : "contradiction", "duplicate-curve"),
+                                     Field(&Found::text, HasSubstr("1 of 5 compared")))));
+  }
+}
+
 // Both ends of one curve, followed until they have run past one another: more steps bring each to the other's start.
 TEST_F(WitnessOf, ACurveStoredTwiceForWantOfSteps) {
   const std::string out_of_steps = "step limit";

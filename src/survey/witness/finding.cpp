@@ -50,6 +50,10 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
           "are orbits too, to rounding: which families leave there is not known",
           f.number);
     case FindingKind::unlisted_target: return "ends at a crossing that the archive does not have";
+    case FindingKind::taken_direction:
+      return fmt::format(
+          "comes back to the {} at which it was born: {} families leave and arrive there, along {} directions",
+          names.crossing, f.number, f.other_number);
     case FindingKind::unknown_direction:
       return fmt::format("ends near the {} of {}, along none of the directions found there", names.crossing,
                          names.other_family);
@@ -119,6 +123,7 @@ std::string_view name_of(FindingKind kind) {
     case FindingKind::base_birth: return "base-birth";
     case FindingKind::continuum: return "continuum";
     case FindingKind::unlisted_target: return "unlisted-target";
+    case FindingKind::taken_direction: return "taken-direction";
     case FindingKind::unknown_direction: return "unknown-direction";
     case FindingKind::higher_order: return "higher-order";
     case FindingKind::unlisted_crossing: return "unlisted-crossing";

@@ -37,6 +37,7 @@ enum class FindingKind {
   base_birth,            ///< does not begin at its equilibrium with the period of its oscillation
   continuum,             ///< number orbits found at an equilibrium are not isolated
   unlisted_target,       ///< ends at a crossing that the archive does not have
+  taken_direction,       ///< ends where it was born, at a crossing whose directions all have a family without that end
   unknown_direction,     ///< ends near the crossing, along none of its directions
   higher_order,          ///< ends on the other family gone around number times, more than survey.subharmonics
   unlisted_crossing,     ///< ends on the other family gone around number times, which has no crossing there

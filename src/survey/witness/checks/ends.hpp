@@ -55,7 +55,7 @@ class Ends final : public Check {
     if (end.met) {
       finding.period = end.period;
       finding.level = end.level;
-      if (end.joined && end.crossing >= 0) return std::nullopt;
+      if (end.joined && end.crossing >= 0) return come_back(evidence, end, finding);
       if (end.joined) {
         finding.kind = FindingKind::unlisted_target;
         finding.severity = Severity::contradiction;
@@ -74,6 +74,29 @@ class Ends final : public Check {
     finding.kind = FindingKind::limited_end;
     finding.severity = Severity::cut;
     finding.detail = end.end->text();
+    return finding;
+  }
+
+  // A closed curve through the crossing where it begins takes two directions there, and one side of a direction has one
+  // family: where more leave and arrive than there are sides, the branch has gone over to another one on the way.
+  static std::optional<Finding> come_back(const Evidence& evidence, const EndEvidence& end, Finding finding) {
+    if (evidence.family(finding.family).crossing != end.crossing) return std::nullopt;
+    int sides = 0;
+    for (const CrossingEvidence& crossing : evidence.known.tree.crossings)
+      if (crossing.crossing == end.crossing && !crossing.undecided) sides = static_cast<int>(crossing.sides.size());
+    int families = 0;
+    for (const EndEvidence& other : evidence.known.tree.ends) {
+      const int row = evidence.row_of(other.family);
+      if (row < 0) continue;
+      if (evidence.family(row).crossing == end.crossing) ++families;
+      if (other.joined && other.crossing == end.crossing) ++families;
+    }
+    if (sides == 0 || families <= sides) return std::nullopt;
+    finding.kind = FindingKind::taken_direction;
+    finding.severity = Severity::contradiction;
+    finding.crossing = end.crossing;
+    finding.number = families;
+    finding.other_number = sides;
     return finding;
   }
 

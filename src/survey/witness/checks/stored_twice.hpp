@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <utility>
@@ -48,6 +49,8 @@ class StoredTwice final : public Check {
   static constexpr std::size_t compared = 5;
   /// Of the floors of period and level: as two computations of one orbit differ.
   static constexpr double floors = 3.0;
+  /// How near, relative in period and level, a crossing is to an orbit that two families share there.
+  static constexpr double near_crossing = 1e-4;
   /// Segments beside an orbit that are its own.
   static constexpr std::size_t own_segments = 2;
 
@@ -111,6 +114,24 @@ class StoredTwice final : public Check {
                        [](const FamilyEnd& end) { return end.kind == EndKind::step_limit; });
   }
 
+  // Whether a crossing that one of the two lies on, is born at or ends at is this orbit.
+  static bool has_crossing_at(const Evidence& evidence, const Pair& pair, const Invariants& x) {
+    const auto is_here = [&](int row) {
+      if (row < 0) return false;
+      const TreeCrossing& crossing = evidence.crossing(row);
+      const double period = x.value(Invariant::period);
+      const double around = std::max(1.0, std::round(period / crossing.period));
+      return std::abs(around * crossing.period - period) <= near_crossing * period &&
+             !(std::abs(crossing.level - x.value(Invariant::level)) > near_crossing * x.scale_of(Invariant::level));
+    };
+    for (const int row : {pair.first, pair.second}) {
+      const TreeFamily& family = evidence.family(row);
+      if (is_here(family.crossing) || is_here(family.end_crossing)) return true;
+      if (std::any_of(family.crossings.begin(), family.crossings.end(), is_here)) return true;
+    }
+    return false;
+  }
+
   static void judge(const Evidence& evidence, const Pair& pair, std::span<const Answered> answered,
                     std::vector<Finding>& found) {
     const auto is_same = [](const Answered& a) { return a.reply.same; };
@@ -124,9 +145,9 @@ class StoredTwice final : public Check {
         evidence.family(shown.question.family).curve.points()[static_cast<std::size_t>(shown.question.orbit)];
     Finding finding;
     finding.kind = pair.first == pair.second ? FindingKind::retraced_curve : FindingKind::duplicate_curve;
-    finding.severity = is_cut(evidence, pair)                            ? Severity::cut
-                       : same >= static_cast<std::ptrdiff_t>(least_hits) ? Severity::contradiction
-                                                                         : Severity::undecided;
+    const bool is_told = same >= static_cast<std::ptrdiff_t>(least_hits) ||
+                         (same == 1 && pair.first != pair.second && !has_crossing_at(evidence, pair, x));
+    finding.severity = is_cut(evidence, pair) ? Severity::cut : is_told ? Severity::contradiction : Severity::undecided;
     finding.family = pair.first;
     finding.other_family = pair.first == pair.second ? -1 : pair.second;
     finding.period = x.value(Invariant::period);
