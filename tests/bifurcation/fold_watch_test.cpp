@@ -67,10 +67,10 @@ TEST(FoldWatch, PassesOverWhatIsNotThere) {
 }
 
 TEST(FoldWatch, SlopeAtTheLastOrbitTellsAFoldBeforeIt) {
-  const auto period = [](double x) { return 7.0 - (x - 0.45) * (x - 0.45); };
+  const auto period = [](double x) { return 7.0 - (x - 0.55) * (x - 0.55); };
   FoldWatch watch;
   for (const double x : {0.0, 0.2, 0.4, 0.6}) EXPECT_TRUE(watch.advance(x, period(x), x).empty()) << x;
-  const auto folds = watch.finish(0.6, {.period = -2.0 * 0.15, .energy = 1.0});
+  const auto folds = watch.finish(0.6, {.period = -2.0 * 0.05, .energy = 1.0});
   ASSERT_EQ(folds.size(), 1u);  // T turns within, E does not
   EXPECT_EQ(folds[0].quantity, Fold::Quantity::period);
   EXPECT_DOUBLE_EQ(folds[0].from, 0.4);

@@ -65,4 +65,24 @@ TEST(EndFolds, PeriodThatIsPassedTwiceBetweenTwoOrbitsIsStoredTwice) {
   }
 }
 
+// Where Cap is gone around three times the resonance is weak: an index is 2 to rounding on the way to the first orbit.
+TEST(EndFolds, FoldsBesideABirthAreFoundWhereverTheFirstOrbitIs) {
+  const core::Communicator comm;
+  for (const std::string start : {"0.001", "0.01", "0.1"}) {
+    SCOPED_TRACE(start);
+    const scene::Scene scene =
+        scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/swinging_spring.yaml",
+                    {"system.parameters.stiffness=4", "limits.energy=[-.inf, -0.85]", "continuation.start=" + start});
+    const survey::Summary summary = test::run(comm, scene, "weak_birth");
+    EXPECT_EQ(summary.failures, 0U) << testing::PrintToString(summary.failed_tasks);
+    const test::Atlas atlas(summary.atlas);
+    const std::string family = "Equilibrium 1, mode 1 T3-2";
+    const auto energy = atlas.crossing(family, "fold-energy", 23.36694657);
+    const auto period = atlas.crossing(family, "fold-period", 23.36694823);
+    ASSERT_TRUE(energy.has_value() && period.has_value());
+    EXPECT_NEAR(atlas.crossings().reals("energy")[*energy], -0.9163831662, 1e-9);
+    EXPECT_NEAR(atlas.crossings().reals("energy")[*period], -0.91638219, 1e-7);
+  }
+}
+
 }  // namespace
