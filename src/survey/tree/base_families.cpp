@@ -24,6 +24,9 @@ namespace orbweaver::survey {
 
 namespace {
 
+/// Dips of the Hessian's smallest eigenvalue that a note tells: `orbweaver sweep` lists all.
+constexpr std::size_t most_dips = 3;
+
 void check_names(const scene::Scene& scene, const systems::System& system, const SweepOutcome& found) {
   const std::size_t given = names_given(scene, system, found.point);
   if (found.families == bifurcation::not_counted) return;  // names of families that are left out may be any
@@ -221,9 +224,13 @@ BaseFamilies base_families(const scene::Scene& scene, const systems::System& sys
           fmt::format("no small oscillations around {}{}", point_text(system, found.point), range));
     }
     if (!found.left_out.empty()) summary.remarks.push_back(left_out_text(scene, system, found));
-    if (!found.rejected.empty())
-      summary.remarks.push_back(
-          fmt::format("dips passed over at {}: {}", point_text(system, found.point), fmt::join(found.rejected, "; ")));
+    if (!found.rejected.empty()) {
+      const auto end = found.rejected.begin() + static_cast<std::ptrdiff_t>(std::min(found.rejected.size(), most_dips));
+      const auto untold = found.rejected.end() - end;
+      summary.remarks.push_back(fmt::format("dips passed over at {}: {}{}", point_text(system, found.point),
+                                            fmt::join(found.rejected.begin(), end, "; "),
+                                            untold > 0 ? fmt::format("; and {} more", untold) : ""));
+    }
     for (const FoundMode& mode : found.modes) {
       if (is_of_another(mode, found, all)) continue;
       const std::string name = name_of_start(scene, system, found, mode);
