@@ -264,8 +264,9 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
     _frontier.problem.factor_point.clear();
     const bool is_foreseen =
         trial.converged && !trial.is_orbit && !jumped && trial.prediction_error < well_foreseen * wanted;
-    if (before_doubling) {  // it was not that
-      (void)_stepper.resolve(*std::exchange(before_doubling, std::nullopt));
+    const std::optional<Resolution> coarser = std::exchange(before_doubling, std::nullopt);
+    if (coarser && needs_more) {  // it was not that
+      (void)_stepper.resolve(*coarser);
       _frontier.problem.least_size = least_size;
     } else if (is_foreseen && may_double) {
       may_double = false;
