@@ -106,7 +106,8 @@ struct Group {
   [[nodiscard]] int count() const { return static_cast<int>(members.size()); }
 };
 
-/// Of a matrix with more rows the vectors are found all at once: the kernel of one costs as much.
+/// Of a matrix with more rows the vectors are found all at once: the kernel of one costs as much. With vectors found so
+/// a branch of the pendulum with m2 = 1e6, which rounding decides, ended at T = 10.3; one by one it goes to 10.4.
 constexpr Eigen::Index one_by_one = 24;
 
 /// Eigenvalues of a matrix, and its eigenvectors.

@@ -23,8 +23,8 @@ inline constexpr int not_counted = -1;
 struct LeftOut {
   double period = 0.0;
   int place = 0;  ///< of the first
-  int families =
-      1;  ///< or `not_counted`: several oscillations share the period, or do behind those of which that holds
+  /// Or `not_counted`: several oscillations share the period, or do behind those of which that holds.
+  int families = 1;
   bool is_told = false;  ///< what their eigenvalues are, or where families leave, is not known, or none leaves
 };
 

@@ -10,8 +10,8 @@
 
 namespace orbweaver::bifurcation {
 
-/// One kind of test function: a product of factors that the stability indices, or the multipliers of a dissipative
-/// system, give. Each kind is a header beside this one, named in rules.cpp.
+/// One kind of test function: the signed mean (test_functions.cpp) of factors that the stability indices, or the
+/// multipliers of a dissipative system, give. Each kind is a header beside this one, named in rules.cpp.
 class Rule {
  public:
   Rule() = default;
