@@ -143,11 +143,20 @@ class CrossingCheck {
     const auto after = std::lower_bound(steps.begin(), steps.end(), arclength,
                                         [&](std::size_t n, double s) { return _family.arclengths[n] < s; });
     std::size_t next = std::clamp<std::size_t>(static_cast<std::size_t>(after - steps.begin()), 1, steps.size() - 1);
-    // A branch that runs backwards has its orbits the other way round.
-    if (number[_family.first_orbit + steps[next]] < 0) {
+    // A branch that runs backwards has its orbits the other way round; neither side was given those of the other.
+    const bool backwards = number[_family.first_orbit + steps[next - 1]] < 0;
+    if (backwards) {
       std::reverse(steps.begin(), steps.end());
       next = steps.size() - next;
     }
+    // From a start both sides leave its orbit, step 0; at a birth each side has a first orbit of its own.
+    const std::int64_t begun_at = backwards && _family.parent >= 0 ? -1 : 0;
+    const auto begin = std::find_if(steps.begin(), steps.end(), [&](std::size_t n) {
+      const std::int64_t step = number[_family.first_orbit + n];
+      return backwards ? step <= begun_at : step >= begun_at;
+    });
+    next -= static_cast<std::size_t>(begin - steps.begin());
+    steps.erase(steps.begin(), begin);
     const std::size_t end = std::min(next + behind, steps.size());
     const std::size_t first = end > orbits_given ? end - orbits_given : 0;
     continuation::Options how = options();
