@@ -9,6 +9,7 @@
 #include "least_guard.hpp"
 #include "limit_orbit.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/symmetry/alignment.hpp"
 
 namespace orbweaver::continuation {
 
@@ -53,6 +54,16 @@ bool stays(const Frontier& frontier) {
          std::abs(last.parameters.front() - first.parameters.front()) <
              unmoved * (1.0 + std::abs(first.parameters.front())) &&
          std::abs(last.period - first.period) < unmoved * first.period;
+}
+
+/// A family may come back to its first orbit at another time of it: where no reversor holds the phase, one that drifts a
+/// little from orbit to orbit need not be the same after a circle.
+bool has_come_back(const Frontier& frontier, const systems::System& system, double near) {
+  const loop::Loop& last = frontier.orbit.loop;
+  if (arclength_between(frontier.first, last) < near) return true;
+  return last.winding == frontier.first.winding &&
+         arclength_between(frontier.first,
+                           loop::aligned(last, loop::align_in_time(system.structure(), last, frontier.first))) < near;
 }
 
 std::optional<Ending> collision_of(const Frontier& frontier, const systems::System& system, const std::string& detail) {
@@ -112,10 +123,11 @@ std::optional<Ending> end_at(const Frontier& frontier, const systems::System& sy
   if (amplitude < vanishing_amplitude * std::min(frontier.first_amplitude, options.start_amplitude))
     return Ending{EndReason::fixed_point, fmt::format("T = {:.9g}, amplitude {:.2e}", period, amplitude)};
   // Neither T nor the amplitude can be further apart than the loops are: a cheap look before the distance itself.
-  const double near = closing * frontier.last_increment;
+  // Orbits around one equilibrium are near each other by their size alone.
+  const double near = closing * std::min({frontier.last_increment, amplitude, frontier.first_amplitude});
   if (near < was_away * frontier.farthest &&
       std::abs(orbit.loop.period - frontier.first.period) < near * frontier.first.period &&
-      std::abs(amplitude - frontier.first_amplitude) < near && arclength_between(frontier.first, orbit.loop) < near)
+      std::abs(amplitude - frontier.first_amplitude) < near && has_come_back(frontier, system, near))
     return Ending{EndReason::closed_loop, fmt::format("T = {:.9g}, length {:.6g}", period, orbit.arclength)};
   return std::nullopt;
 }

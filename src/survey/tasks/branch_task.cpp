@@ -166,6 +166,7 @@ continuation::Ending BranchTask::follow() {
       if (ending.reason == continuation::EndReason::fixed_point) {
         const EquilibriumEnd end = equilibrium_end(_scene, *_system, _last->loop);
         _outcome.equilibrium = end.index;
+        _given.arrive(_work.lineage, _last->loop, _outcome.passed);
         ending.detail = fmt::format("{}; {}", end.text, ending.detail);
       }
       return ending;

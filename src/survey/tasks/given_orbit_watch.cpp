@@ -6,6 +6,7 @@
 #include "orbweaver/bifurcation/identity.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/loop/symmetry/alignment.hpp"
 
 namespace orbweaver::survey {
 
@@ -15,6 +16,9 @@ namespace {
 /// made along halves of the step, and of these once more. Not measured; most orbits are found along the whole.
 constexpr int most_halvings = 2;
 constexpr double near_step = 0.1;
+/// How far a small orbit may be from that of the linear motion, in parts of its amplitude. Not measured: those of one
+/// family differ in proportion to the amplitude, those of others are as far apart as they are large.
+constexpr double like_direction = 0.5;
 
 continuation::Orbit orbit_of(const systems::System& system, const loop::Loop& loop) {
   continuation::Orbit orbit;
@@ -28,7 +32,7 @@ continuation::Orbit orbit_of(const systems::System& system, const loop::Loop& lo
 
 GivenOrbitWatch::GivenOrbitWatch(std::shared_ptr<const systems::System> system, GivenOrbits given,
                                  continuation::Options options)
-    : _system(std::move(system)), _options(std::move(options)), _given(std::move(given.all)) {
+    : _system(std::move(system)), _options(std::move(options)), _given(std::move(given.all)), _small(std::move(given.small)) {
   for (const GivenOrbit& orbit : _given) _orbits.push_back(orbit_of(*_system, orbit.loop));
 }
 
@@ -41,12 +45,35 @@ void GivenOrbitWatch::watch(const Lineage& own, const loop::Isotropy& isotropy, 
     const bool is_known = std::any_of(passed.begin(), passed.end(),
                                       [&](const PassedStart& other) { return other.family == given.family; });
     if (is_known || !lies_between(from, to, isotropy, _orbits[n], most_halvings)) continue;
-    const bool in_parameter = !_system->family_scalars().free.empty();
-    const double level = continuation::level_of(*_system, given.loop);
-    const systems::Scales& units = _system->scales();
-    passed.push_back({given.family, given.name, given.told, given.loop.period * units.time,
-                      level * (in_parameter ? units.parameter(0) : units.energy())});
+    add({given.family, given.name, given.told}, given.loop, passed);
   }
+}
+
+void GivenOrbitWatch::arrive(const Lineage& own, const loop::Loop& last, std::vector<PassedStart>& passed) const {
+  if (own.depth > 0) return;
+  const double amplitude = loop::rms_amplitude(last);
+  double nearest = like_direction * amplitude;
+  const SmallFamily* found = nullptr;
+  for (const SmallFamily& family : _small) {
+    const double unit = loop::rms_amplitude(loop::moved(family.base, family.direction, 1.0));
+    const loop::Loop small = loop::moved(family.base, family.direction, amplitude / unit);
+    if (small.winding != last.winding) continue;
+    const loop::Loop there = loop::aligned(small, loop::align(_system->structure(), small, last));
+    const double distance = continuation::arclength_between(there, last);
+    if (!(distance < nearest)) continue;
+    nearest = distance;
+    found = &family;
+  }
+  if (found && found->family > own.family)
+    add({found->family, found->name, "small oscillations"}, found->base, passed);
+}
+
+void GivenOrbitWatch::add(PassedStart start, const loop::Loop& there, std::vector<PassedStart>& passed) const {
+  const bool in_parameter = !_system->family_scalars().free.empty();
+  const systems::Scales& units = _system->scales();
+  start.period = there.period * units.time;
+  start.level = continuation::level_of(*_system, there) * (in_parameter ? units.parameter(0) : units.energy());
+  passed.push_back(std::move(start));
 }
 
 bool GivenOrbitWatch::lies_between(const continuation::Orbit& from, const continuation::Orbit& to,

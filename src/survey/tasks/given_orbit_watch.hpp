@@ -12,7 +12,8 @@
 
 namespace orbweaver::survey {
 
-/// Watches which of the orbits that the scene gives a branch passes on its way: they lie on the branch's family.
+/// Watches which other base families begin on a branch: at orbits that the scene gives and the branch passes on its way,
+/// and small ones that it comes to where its orbits shrink to a point.
 class GivenOrbitWatch {
  public:
   GivenOrbitWatch() = default;
@@ -23,14 +24,19 @@ class GivenOrbitWatch {
   /// families that come after its own, each once. Only branches that base families consist of pass any.
   void watch(const Lineage& own, const loop::Isotropy& isotropy, const continuation::Orbit& from,
              const continuation::Orbit& to, std::vector<PassedStart>& passed) const;
+  /// The same of a family of small orbits, at the last orbit of a branch that has shrunk to a point. Appends none where
+  /// the orbit is not told to be of one of them: near no direction, or of a family that comes before its own.
+  void arrive(const Lineage& own, const loop::Loop& last, std::vector<PassedStart>& passed) const;
 
  private:
+  void add(PassedStart start, const loop::Loop& there, std::vector<PassedStart>& passed) const;
   [[nodiscard]] bool lies_between(const continuation::Orbit& from, const continuation::Orbit& to,
                                   const loop::Isotropy& isotropy, const continuation::Orbit& orbit, int halvings) const;
 
   std::shared_ptr<const systems::System> _system;
   continuation::Options _options;
   std::vector<GivenOrbit> _given;            // in the order of their families
+  std::vector<SmallFamily> _small;
   std::vector<continuation::Orbit> _orbits;  // theirs
 };
 

@@ -114,7 +114,8 @@ bool is_of_another(const FoundMode& mode, const SweepOutcome& of, const std::vec
 
 /// A family is followed to one side or, as one family or as two, to both.
 void add_tasks(const std::string& name, const std::string& branch_key, const std::vector<double>& point,
-               const FoundMode& mode, std::vector<queue::Task>& tasks) {
+               const FoundMode& mode, BaseFamilies& families) {
+  std::vector<queue::Task>& tasks = families.tasks;
   BranchWork work;
   work.key = work.lineage.family = branch_key;
   work.name = name;
@@ -123,25 +124,26 @@ void add_tasks(const std::string& name, const std::string& branch_key, const std
   work.amplitude = mode.amplitude;
   work.base = mode.base.modes.empty() ? loop::constant_loop(point, mode.period, mode.cutoff) : mode.base;
   work.base_is_orbit = mode.base_is_orbit;
-  if (mode.one_direction) {
+  const auto add = [&] {
     tasks.push_back(task_of(work));
-    return;
-  }
+    if (!mode.base_is_orbit)
+      families.given.small.push_back({work.lineage.family, work.name, work.base, work.direction});
+  };
+  if (mode.one_direction) return add();
   if (mode.base_is_orbit) {  // two sides of one family
     work.key = branch_key + "+";
-    tasks.push_back(task_of(work));
+    add();
     work.key = branch_key + "-";
     work.lineage.side = -1;
     work.direction *= -1.0;
-    tasks.push_back(task_of(work));
-    return;
+    return add();
   }
   work.key = work.lineage.family = branch_key + "+";
-  tasks.push_back(task_of(work));
+  add();
   work.key = work.lineage.family = branch_key + "-";
   work.name += " (other side)";
   work.direction *= -1.0;
-  tasks.push_back(task_of(work));
+  add();
 }
 
 }  // namespace
@@ -234,12 +236,12 @@ BaseFamilies base_families(const scene::Scene& scene, const systems::System& sys
     for (const FoundMode& mode : found.modes) {
       if (is_of_another(mode, found, all)) continue;
       const std::string name = name_of_start(scene, system, found, mode);
-      add_tasks(name, base_key(found.index, mode.place), found.point, mode, tasks);
+      add_tasks(name, base_key(found.index, mode.place), found.point, mode, families);
     }
   }
   for (const NumberedStart& start : numbered_starts(scene, system, std::move(given), summary.remarks)) {
     const std::string key = base_key(equilibria + start.number, 0);
-    add_tasks(start.name, key, {}, start.mode, tasks);
+    add_tasks(start.name, key, {}, start.mode, families);
     families.given.all.push_back({key, start.name, start.told, start.mode.base});
   }
   const auto allowed = static_cast<std::size_t>(scene.limits.families);

@@ -64,9 +64,9 @@ struct ArrivalRecord {
   }
 };
 
-/// A branch has passed an orbit that the scene gives, whose family comes after its own.
+/// A base family that comes after its own begins on a branch: at an orbit that the scene gives, or at its end.
 struct PassedStart {
-  std::string family;  ///< GivenOrbit::family, and what else it says
+  std::string family;  ///< that of GivenOrbit or SmallFamily, and what else it says
   std::string name;
   std::string told;
   double period = 0.0;  ///< in the units of the scene

@@ -5,6 +5,7 @@
 
 #include "orbweaver/core/serialization.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/curve/tangent.hpp"
 
 namespace orbweaver::survey {
 
@@ -22,16 +23,32 @@ struct GivenOrbit {
   }
 };
 
-/// All that the scene gives, each once, in the order of their families' keys. Known to every rank before it follows a
-/// branch, and the same whenever a survey goes on.
-struct GivenOrbits {
-  static constexpr const char* payload_name = "given orbits";
-  std::vector<GivenOrbit> all;
+/// A family that begins with small orbits around a constant loop.
+struct SmallFamily {
+  std::string family;  ///< its key
+  std::string name;    ///< its name
+  loop::Loop base;
+  loop::Tangent direction;  ///< of loops like `base`
 
   static constexpr int wire_version = 1;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, all);
+    core::serialize_members(archive, family, name, base, direction);
+  }
+};
+
+/// Where base families begin that others may come to: all orbits that the scene gives, each once, and the families of
+/// small oscillations, in the order of their keys. Known to every rank before it follows a branch, and the same whenever
+/// a survey goes on.
+struct GivenOrbits {
+  static constexpr const char* payload_name = "given orbits";
+  std::vector<GivenOrbit> all;
+  std::vector<SmallFamily> small;
+
+  static constexpr int wire_version = 2;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, all, small);
   }
 };
 
