@@ -21,8 +21,9 @@ constexpr int first_orbits = 3;
 constexpr double vanishing_amplitude = 0.5;
 /// How near the first orbit must be, in parts of the last step: the step that comes next would pass it.
 constexpr double closing = 0.5;
-/// A branch has come back only after it was so much further away. Not measured; it must only tell these two apart.
-constexpr double was_away = 0.25;
+/// A branch has come back only after so many times that length: it cannot turn on less. Not measured; circles near
+/// which nothing else lies are of some ten steps.
+constexpr double way_around = 6.0;
 /// How often the period must have grown, and how little of its range the energy may have moved over `period_window`,
 /// where the period diverges. Not measured; both decide only how an end is called.
 constexpr double grown_period = 2.0;
@@ -125,7 +126,7 @@ std::optional<Ending> end_at(const Frontier& frontier, const systems::System& sy
   // Neither T nor the amplitude can be further apart than the loops are: a cheap look before the distance itself.
   // Orbits around one equilibrium are near each other by their size alone.
   const double near = closing * std::min({frontier.last_increment, amplitude, frontier.first_amplitude});
-  if (near < was_away * frontier.farthest &&
+  if (way_around * near < orbit.arclength &&
       std::abs(orbit.loop.period - frontier.first.period) < near * frontier.first.period &&
       std::abs(amplitude - frontier.first_amplitude) < near && has_come_back(frontier, system, near))
     return Ending{EndReason::closed_loop, fmt::format("T = {:.9g}, length {:.6g}", period, orbit.arclength)};

@@ -428,8 +428,6 @@ void Tracer::keep(Orbit& orbit, double increment, double amplitude) {
   }
   keep_guards(orbit.loop);
   frontier.problem.amplitude = extent_of(orbit.loop, amplitude);
-  frontier.farthest = std::max({frontier.farthest, std::abs(amplitude - frontier.first_amplitude),
-                                std::abs(orbit.loop.period / frontier.first.period - 1.0)});
   frontier.orbit = orbit;
 }
 

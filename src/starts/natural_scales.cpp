@@ -1,5 +1,6 @@
 #include "orbweaver/starts/natural_scales.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -37,6 +38,9 @@ constexpr double least_amplitude = -60.0;
 constexpr double largest_amplitude = 60.0;
 constexpr double amplitude_step = 1.0;
 constexpr int bisections = 20;
+/// A coordinate along which the field departs at more than 2^this times the least amplitude of its component has no say:
+/// a weak term that depends on it alone (a magnetic field's on the momenta) would set the scale of all. Not measured.
+constexpr double late_departure = 3.0;
 /// Grid points at which scales for the search of equilibria are taken, spread over the grid.
 constexpr std::size_t most_grid_points = 64;
 
@@ -191,13 +195,15 @@ class LocalScales {
       if (!in(component, component)) continue;
       double amplitude = 0.0;
       if (!by_angle[static_cast<std::size_t>(component)]) {
+        std::vector<double> departs;
+        for (Index i = component; i < d; ++i)
+          if (in(i, component)) departs.push_back(departs_at(i, balanced, label));
+        const double soonest = *std::min_element(departs.begin(), departs.end());
         double sum = 0.0;
         double count = 0.0;
-        for (Index i = component; i < d; ++i) {
-          if (!in(i, component)) continue;
-          const double departs = departs_at(i, balanced, label);
-          if (!std::isfinite(departs)) continue;
-          sum += departs;
+        for (const double there : departs) {
+          if (!std::isfinite(there) || there > soonest + late_departure) continue;
+          sum += there;
           count += 1.0;
         }
         amplitude = sum / count;  // not a number where nothing departs

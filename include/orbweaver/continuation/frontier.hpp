@@ -77,21 +77,20 @@ struct Frontier {
   double first_amplitude = 0.0;
   double earlier_level = 0.0;  ///< that when the period was about a tenth smaller
   double earlier_period = 0.0;
-  double farthest = 0.0;           ///< largest change of amplitude or relative change of T from orbit 0 so far
-  bool on_energy_limit = false;    ///< `orbit` is the last one, at the scene's energy limit,
+  bool on_energy_limit = false;     ///< `orbit` is the last one, at the scene's energy limit,
   bool on_parameter_limit = false;  ///< or at that of the parameter
-  std::vector<GuardTrace> guards;  ///< one a guard of the structure
-  int on_guard_limit = -1;         ///< the guard at whose limit `orbit` is the last one
-  double threshold = 0.0;          ///< under which sqrt(loss) of `orbit` was accepted
-  std::vector<TracePoint> points;  ///< the last ones, oldest first; the start itself is the very first
+  std::vector<GuardTrace> guards;   ///< one a guard of the structure
+  int on_guard_limit = -1;          ///< the guard at whose limit `orbit` is the last one
+  double threshold = 0.0;           ///< under which sqrt(loss) of `orbit` was accepted
+  std::vector<TracePoint> points;   ///< the last ones, oldest first; the start itself is the very first
   ProblemState problem;
 
-  static constexpr int wire_version = 3;
+  static constexpr int wire_version = 4;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, orbit, tangent, next_length, last_increment, first, first_level, first_amplitude,
-                            earlier_level, earlier_period, farthest, on_energy_limit, on_parameter_limit, guards,
-                            on_guard_limit, threshold, points, problem);
+                            earlier_level, earlier_period, on_energy_limit, on_parameter_limit, guards, on_guard_limit,
+                            threshold, points, problem);
   }
 };
 

@@ -32,7 +32,10 @@ continuation::Orbit orbit_of(const systems::System& system, const loop::Loop& lo
 
 GivenOrbitWatch::GivenOrbitWatch(std::shared_ptr<const systems::System> system, GivenOrbits given,
                                  continuation::Options options)
-    : _system(std::move(system)), _options(std::move(options)), _given(std::move(given.all)), _small(std::move(given.small)) {
+    : _system(std::move(system)),
+      _options(std::move(options)),
+      _given(std::move(given.all)),
+      _small(std::move(given.small)) {
   for (const GivenOrbit& orbit : _given) _orbits.push_back(orbit_of(*_system, orbit.loop));
 }
 
@@ -64,8 +67,7 @@ void GivenOrbitWatch::arrive(const Lineage& own, const loop::Loop& last, std::ve
     nearest = distance;
     found = &family;
   }
-  if (found && found->family > own.family)
-    add({found->family, found->name, "small oscillations"}, found->base, passed);
+  if (found && found->family > own.family) add({found->family, found->name, "small oscillations"}, found->base, passed);
 }
 
 void GivenOrbitWatch::add(PassedStart start, const loop::Loop& there, std::vector<PassedStart>& passed) const {

@@ -35,7 +35,7 @@ class GivenOrbitWatch {
 
   std::shared_ptr<const systems::System> _system;
   continuation::Options _options;
-  std::vector<GivenOrbit> _given;            // in the order of their families
+  std::vector<GivenOrbit> _given;  // in the order of their families
   std::vector<SmallFamily> _small;
   std::vector<continuation::Orbit> _orbits;  // theirs
 };
