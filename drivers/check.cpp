@@ -24,6 +24,7 @@
 #include "orbweaver/systems/identities.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
+#include "orbweaver/systems/undeclared_symmetries.hpp"
 #include "structure_text.hpp"
 
 namespace orbweaver::drivers {
@@ -125,6 +126,8 @@ void print_simulated(const scene::Scene& scene, const systems::System& system,
   lines.emplace_back("dimension", fmt::format("{} coordinates", system.dimension()));
   const Lines holds = structure_lines(system.info(), system.structure());
   lines.insert(lines.end(), holds.begin(), holds.end());
+  for (const std::string& symmetry : systems::undeclared_symmetries(system, points))
+    lines.emplace_back("not declared", symmetry);
   if (!points.empty()) lines.emplace_back("price", price_text(system, points.front()));
   print_group("Simulated", lines);
 }

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "orbweaver/systems/registry.hpp"
+#include "support/magnetic_well.hpp"
 
 namespace orbweaver::starts {
 namespace {
@@ -75,6 +76,18 @@ TEST(NaturalScales, AreThatOfTheMotionsThemselves) {
     for (const double speed : {scales.coordinates[2], scales.coordinates[3]})
       EXPECT_THAT(speed, testing::AllOf(testing::Ge(0.25), testing::Le(2.0 * fast)));
   }
+}
+
+// A term that departs from its linear part late, along the momenta only.
+TEST(NaturalScales, AreNotThoseOfWeakTerms) {
+  const auto scales = [](double b) {
+    return natural_scales(*test::magnetic_well({{"k2", 9.0}, {"b", b}, {"e", 0.1}, {"q", 0.2}}), {{0.0}, {0.0}});
+  };
+  const systems::Scales without = scales(0.0);  // two oscillators, each with its own
+  const systems::Scales least = scales(1e-9);
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_THAT(least.coordinates[i] / without.coordinates[i], testing::AllOf(testing::Ge(0.25), testing::Le(4.0)));
+  for (const double b : {1e-6, 1e-3, 0.02}) EXPECT_EQ(scales(b).coordinates, least.coordinates) << b;
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
 #include "orbweaver/systems/identities.hpp"
+#include "orbweaver/systems/undeclared_symmetries.hpp"
 #include "tasks/payload/keys.hpp"
 #include "tasks/payload/work.hpp"
 
@@ -61,6 +62,17 @@ void remark_grid(const scene::Scene& scene, const systems::System& system, Summa
     summary.remarks.push_back(
         fmt::format("points of starts.fixed_points.grid passed over, where the field is not finite: {}, the first {}",
                     passed_over.size(), point_text(system, passed_over.front())));
+}
+
+/// Crossings that an undeclared symmetry forces look like accidents, and its circles are traced twice.
+void remark_undeclared(const systems::System& system, const std::vector<SweepOutcome>& equilibria, Summary& summary) {
+  std::vector<std::vector<double>> points;
+  for (const SweepOutcome& found : equilibria) points.push_back(found.point);
+  for (const std::string& symmetry : systems::undeclared_symmetries(system, points))
+    summary.remarks.push_back(
+        fmt::format("the field has {}, which the system does not declare: with it the survey is faster, and says which "
+                    "crossings it forces",
+                    symmetry));
 }
 
 /// What to do where a survey has found no family at all.
@@ -212,6 +224,7 @@ BaseFamilies base_families(const scene::Scene& scene, const systems::System& sys
     else
       given.push_back({std::move(work.given.front()), std::move(outcome)});
   }
+  remark_undeclared(system, all, summary);
   for (const SweepOutcome& found : all) {
     check_names(scene, system, found);
     if (found.modes.empty() && found.rejected.empty() && !system.family_scalars().free.empty()) {

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "orbweaver/systems/system.hpp"
+
+namespace orbweaver::systems {
+
+/// Symmetries z -> p + S (z - p) of the field that the structure of `system` does not declare and that no product of
+/// declared ones is, S a change of the signs of some coordinates and p one of `points` (sizes dimension): each as text,
+/// "the reversor (x, y, px, py) -> (x, y, -px, -py)". Reversors first, those with the fewest signs; of what these
+/// generate nothing more. Compared at random states around p to 1e-10 of the field's size there. Empty for systems of
+/// more than `most_sign_changes` coordinates, of which there are too many.
+[[nodiscard]] std::vector<std::string> undeclared_symmetries(const System& system,
+                                                             const std::vector<std::vector<double>>& points);
+
+inline constexpr int most_sign_changes = 10;
+
+}  // namespace orbweaver::systems

@@ -1,0 +1,63 @@
+// Surveys of a system that declares no symmetry, near resonances of its small oscillations.
+#include <map>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "orbweaver/scene/scene.hpp"
+#include "orbweaver/survey/run/survey.hpp"
+#include "support/magnetic_well.hpp"
+#include "survey/atlas.hpp"
+
+namespace {
+
+using namespace orbweaver;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+using Parameters = std::map<std::string, double>;
+
+survey::Summary survey_of(const core::Communicator& comm, const Parameters& parameters, const std::string& name) {
+  const scene::Scene scene =
+      scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/henon_heiles.yaml",
+                  {"starts.fixed_points.names={}", "starts.fixed_points.letters={}", "starts.sweep.period=auto",
+                   "limits.energy=[-.inf, 1.0]", "limits.period=40"});
+  const auto folder = test::fresh_folder(name + std::to_string(comm.size()), comm.get());
+  return survey::run_survey(comm, scene, test::magnetic_well(parameters), folder, {});
+}
+
+// One curve from one oscillation to the other, as both begin there. A family on it is a circle, along which no reversor
+// holds the phase.
+TEST(MagneticWell, OneCurveJoinsBothOscillations) {
+  const core::Communicator comm;
+  const Parameters parameters{{"k2", 0.99},  {"b", 0.0},    {"e", -0.178}, {"a1", -0.475}, {"a2", 0.224},
+                              {"a3", 0.115}, {"a4", 0.197}, {"q", 0.278},  {"c", 0.593}};
+  const survey::Summary summary = survey_of(comm, parameters, "joined");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  const test::Atlas atlas(summary.atlas);
+  EXPECT_THAT(atlas.families().texts("name"), ElementsAre("Equilibrium 1, mode 1", "Equilibrium 1, mode 1 B"));
+  EXPECT_LT(atlas.orbits().rows(), 300U);
+  EXPECT_THAT(summary.remarks, Contains(HasSubstr("the reversor (x, y, px, py) -> (x, y, -px, -py)")));
+  EXPECT_THAT(summary.remarks,
+              Contains(HasSubstr("Equilibrium 1, mode 2 lies on Equilibrium 1, mode 1, at T = 6.283185")));
+}
+
+// The slow family is born on the fast one gone around three times, and turns on the way: from first orbits beyond that
+// it was stored twice.
+TEST(MagneticWell, NearOneToThreeTheSlowFamilyEndsOnTheFastOne) {
+  const core::Communicator comm;
+  const Parameters parameters{{"k2", 9.0009}, {"b", 0.02},   {"e", -0.142}, {"a1", -0.097}, {"a2", 0.497},
+                              {"a3", -0.459}, {"a4", 0.497}, {"q", 0.237},  {"c", 0.692}};
+  const survey::Summary summary = survey_of(comm, parameters, "tripled");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  const test::Atlas atlas(summary.atlas);
+  EXPECT_THAT(atlas.families().texts("name"),
+              ElementsAre("Equilibrium 1, mode 1", "Equilibrium 1, mode 2", "Equilibrium 1, mode 2 T3"));
+  EXPECT_THAT(atlas.families().texts("end_reason")[0], HasSubstr("joined Equilibrium 1, mode 2 at T = 6.282749"));
+}
+
+}  // namespace

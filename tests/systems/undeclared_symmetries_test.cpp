@@ -1,0 +1,47 @@
+#include "orbweaver/systems/undeclared_symmetries.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "orbweaver/systems/registry.hpp"
+#include "support/magnetic_well.hpp"
+#include "support/translated_system.hpp"
+
+namespace orbweaver::systems {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+const std::vector<std::vector<double>> origin{{0.0, 0.0, 0.0, 0.0}};
+
+TEST(UndeclaredSymmetries, AreFound) {
+  std::map<std::string, double> well{{"b", 0.0}, {"k2", 3.0}};
+  EXPECT_THAT(undeclared_symmetries(*test::magnetic_well(well), origin),
+              ElementsAre("the reversor (x, y, px, py) -> (x, y, -px, -py)"));
+  for (const char* cubic : {"a1", "a2", "a3", "a4"}) well[cubic] = 0.0;
+  EXPECT_THAT(
+      undeclared_symmetries(*test::magnetic_well(well), origin),
+      ElementsAre("the reversor (x, y, px, py) -> (x, y, -px, -py)", "the reversor (x, y, px, py) -> (-x, y, px, -py)",
+                  "the reversor (x, y, px, py) -> (x, -y, -px, py)"));
+  well["b"] = 1e-6;
+  well["a1"] = 1e-6;
+  EXPECT_THAT(undeclared_symmetries(*test::magnetic_well(well), origin),
+              ElementsAre("the reversor (x, y, px, py) -> (x, -y, -px, py)"));
+}
+
+TEST(UndeclaredSymmetries, AreFoundAboutOtherPoints) {
+  const Eigen::Vector4d offset(2.0, 0.0, -1.0, 0.5);
+  const test::TranslatedSystem moved(test::magnetic_well({{"b", 0.0}}), offset);
+  EXPECT_THAT(undeclared_symmetries(moved, {{5.0, 5.0, 5.0, 5.0}, {2.0, 0.0, -1.0, 0.5}}),
+              ElementsAre("the reversor (x, y, px, py) -> (x, y, -2 - px, 1 - py)"));
+}
+
+TEST(UndeclaredSymmetries, AreNotWhatIsDeclared) {
+  for (const char* name : {"double_pendulum", "henon_heiles", "pcr3bp", "swinging_spring"})
+    EXPECT_THAT(undeclared_symmetries(*make_system(name), origin), IsEmpty()) << name;
+  EXPECT_THAT(undeclared_symmetries(*make_system("lorenz"), {{0.0, 0.0, 0.0}}), IsEmpty());
+}
+
+}  // namespace
+}  // namespace orbweaver::systems
