@@ -19,6 +19,9 @@ class Gatherer {
     for (const FamilySide branch : tree.kept) {
       _kept.insert(branch->first);
       if (const Meeting* meeting = tree.pruning.arrival(branch->first)) _arrived.insert(meeting->along);
+      const EndedBranch& ended = branch->second;
+      if (ended.outcome && ended.outcome->end.reason == continuation::EndReason::closed_loop)
+        _arrived.insert({ended.lineage.family, -ended.lineage.side});  // back at the crossing, from the other side
     }
   }
 

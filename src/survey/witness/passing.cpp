@@ -1,6 +1,7 @@
 #include "witness/passing.hpp"
 
-#include <cmath>
+#include <cstddef>
+#include <limits>
 
 namespace orbweaver::survey {
 
@@ -8,22 +9,19 @@ namespace {
 
 constexpr double near = 1e-3;
 
+/// Of the deviations that a fit allows, as an orbit's floor.
+constexpr double of_floor = 1.0 / 3.0;
+
 bool passes(const TreeFamily& family, std::size_t segment, const PlaceOfOrbit& place) {
-  const Invariants& a = family.curve.points()[segment];
-  const Invariants& b = family.curve.points()[segment + 1];
-  const auto change = [&](Invariant i) { return (b.value(i) - a.value(i)) / a.scale_of(i); };
-  const double in_period = change(Invariant::period);
-  const double in_level = change(Invariant::level);
-  const bool by_level = std::abs(in_level) > std::abs(in_period);
-  const double share = by_level
-                           ? (place.level - a.value(Invariant::level)) / a.scale_of(Invariant::level) / in_level
-                           : (place.period - a.value(Invariant::period)) / a.scale_of(Invariant::period) / in_period;
-  const auto is_near = [&](Invariant i, double value) {
-    const double between = a.value(i) + share * (b.value(i) - a.value(i));
-    return !(std::abs(value - between) > near * a.scale_of(i));
-  };
-  return is_near(Invariant::period, place.period) && is_near(Invariant::level, place.level) &&
-         is_near(Invariant::action, place.action);
+  Invariants x;
+  x.values.fill(std::numeric_limits<double>::quiet_NaN());
+  x.scale = family.curve.points()[segment].scale;
+  for (std::size_t i = 0; i < x.scale.size(); ++i) x.floor[i] = of_floor * near * x.scale[i];
+  const auto set = [&](Invariant i, double value) { x.values[static_cast<std::size_t>(i)] = value; };
+  set(Invariant::period, place.period);
+  set(Invariant::level, place.level);
+  set(Invariant::action, place.action);
+  return family.curve.fit_near(x, segment, 0).fits();
 }
 
 }  // namespace

@@ -126,6 +126,16 @@ class Ends final : public Check {
     finding.crossing = end.nearby.front();
     finding.kind = FindingKind::unknown_direction;
     finding.severity = Severity::contradiction;
+    for (const int nearby : end.nearby) {
+      const TreeCrossing& place = evidence.crossing(nearby);
+      if (place.multiplicity <= evidence.scene.survey.subharmonics) continue;
+      finding.crossing = -1;  // beneath the end of another branch: no directions were looked for
+      finding.kind = FindingKind::higher_order;
+      finding.severity = Severity::cut;
+      finding.other_family = place.family;
+      finding.number = place.multiplicity;
+      return finding;
+    }
     for (const int nearby : end.nearby)
       for (const CrossingEvidence& crossing : evidence.known.tree.crossings) {
         if (crossing.crossing != nearby) continue;
