@@ -14,6 +14,7 @@
 #include "failure.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/file_hash.hpp"
+#include "orbweaver/core/log/log.hpp"
 #include "orbweaver/core/process.hpp"
 #include "orbweaver/systems/plugins.hpp"
 #include "orbweaver/systems/registry.hpp"
@@ -126,7 +127,9 @@ int run(const BuildSystemOptions& options, const Invocation& invocation) {
   build.insert(build.end(), {fmt::format("-DORBWEAVER_PLUGIN_SOURCE=\"{}\"", hash),
                              "-DORBWEAVER_PLUGIN_VERSION=\"" ORBWEAVER_VERSION "\"", "-shared", "-fPIC", "-Wl,-z,lazy",
                              source.string(), "-o", unfinished.path().string()});
-  compile(build, options.model.empty() ? source.string() : "the combination");
+  const std::string what = options.model.empty() ? source.string() : "the combination";
+  core::log_info(fmt::format("compiling {} for all scalars: about half a minute", what));
+  compile(build, what);
   const systems::Plugin& plugin = systems::load_plugin(unfinished.path());
   fs::rename(unfinished.path(), options.output);
   print_result(fmt::format("{}: {}, source {}\n", options.output.string(), fmt::join(plugin.models, ", "), hash));

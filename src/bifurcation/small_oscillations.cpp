@@ -183,7 +183,8 @@ class Gatherer {
   }
 
   [[nodiscard]] OscillationKernel kernel_of(const starts::SharedPeriod& shared) const {
-    OscillationKernel kernel{shared.period, static_cast<int>(shared.kernel.cols()), shared.is_definite, 0, {}};
+    OscillationKernel kernel{shared.period,  static_cast<int>(shared.kernel.cols()), shared.is_definite, 0, {},
+                             shared.detuning};
     for (const Entry& entry : _entries) {
       const int repetitions = repetitions_in(entry, shared);
       if (repetitions == 0) continue;

@@ -49,7 +49,8 @@ class Neighbours {
       : _all(all),
         _amplitude(amplitude),
         _apart_below(all.size(), std::numeric_limits<double>::infinity()),
-        _together_from(all.size(), 0.0) {}
+        _together_from(all.size(), 0.0),
+        _detuning(all.size(), 0.0) {}
 
   bool share(std::size_t slow, std::size_t fast, int harmonic) {
     const double away = detuning(_all[slow], _all[fast], harmonic);
@@ -63,6 +64,7 @@ class Neighbours {
       return false;
     }
     if (may_turn && away > 0.0) _together_from[slow] = beyond_turns * least_apart;
+    _detuning[slow] = std::max(_detuning[slow], away);
     return true;
   }
 
@@ -79,6 +81,7 @@ class Neighbours {
     for (const SharedPeriod::Member& member : shared.members) {
       if (member.harmonic == 1) shared.apart_below = std::min(shared.apart_below, _apart_below[member.oscillation]);
       shared.together_from = std::max(shared.together_from, _together_from[member.oscillation]);
+      shared.detuning = std::max(shared.detuning, _detuning[member.oscillation]);
     }
   }
 
@@ -87,6 +90,7 @@ class Neighbours {
   double _amplitude;
   std::vector<double> _apart_below;    // as SharedPeriod, one an oscillation
   std::vector<double> _together_from;  // the same
+  std::vector<double> _detuning;       // the same
 };
 
 Eigen::MatrixXcd side_by_side(const Eigen::MatrixXcd& a, const Eigen::MatrixXcd& b) {

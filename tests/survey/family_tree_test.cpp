@@ -445,16 +445,28 @@ TEST_F(Families, BeyondTheLimitAreNotWanted) {
   scene.limits.families = 3;
   FamilyTree tree(scene, pendulum());
   for (const Ended& event :
-       {ended(base_work(), EndReason::closed_loop, 5, 12), located(p), located(q), located(r),
-        arrived(work_from(p, 0), 16, q, 0), ended(work_from(q, 0), EndReason::closed_loop, 18, 20)})
+       {ended(base_work(), EndReason::period_limit, 5, 12), located(p), located(q), located(r),
+        arrived(work_from(p, 0), 16, q, 0), ended(work_from(q, 0), EndReason::period_limit, 18, 20)})
     tree.add(event.task, event.outcome);
   // Q's family a is P's from the other end, and counts no more than if it had never run.
   EXPECT_TRUE(tree.wanted(task_of(work_from(q, 1))));
-  const Ended third = ended(work_from(q, 1), EndReason::closed_loop, 18, 30);
+  const Ended third = ended(work_from(q, 1), EndReason::period_limit, 18, 30);
   tree.add(third.task, third.outcome);
   EXPECT_FALSE(tree.wanted(task_of(work_from(r, 0))));
   EXPECT_TRUE(tree.wanted(task_of(work_from(p, 1)))) << "comes before Q's";
   EXPECT_TRUE(tree.wanted(task_of(work_from(q, 1, -1)))) << "the other side of a family that is kept";
+}
+
+TEST_F(Families, ThatAreCirclesHaveOneSide) {
+  FamilyTree tree(scene, pendulum());
+  for (const Ended& event : {ended(base_work(), EndReason::period_limit, 5, 12), located(p), located(q)})
+    tree.add(event.task, event.outcome);
+  EXPECT_TRUE(tree.wanted(task_of(work_from(q, 1, -1))));
+  const Ended circle = ended(work_from(q, 1), EndReason::closed_loop, 18, 30);
+  tree.add(circle.task, circle.outcome);
+  EXPECT_FALSE(tree.wanted(task_of(work_from(q, 1, -1))));
+  EXPECT_TRUE(tree.wanted(task_of(work_from(q, 1))));
+  EXPECT_TRUE(tree.wanted(task_of(work_from(q, 0))));
 }
 
 }  // namespace

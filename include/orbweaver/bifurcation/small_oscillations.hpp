@@ -42,6 +42,7 @@ struct OscillationKernel {
   bool is_definite = false;
   int not_isolated = 0;  ///< as EquilibriumDirections
   std::vector<KernelFamily> families;
+  double detuning = 0.0;  ///< starts::SharedPeriod::detuning
 };
 
 struct SmallOscillations {

@@ -33,6 +33,8 @@ struct SharedPeriod {
   double apart_below = std::numeric_limits<double>::infinity();
   /// Length in the kernel at which its families start at least: those nearer to the equilibrium are not told apart.
   double together_from = 0.0;
+  /// The largest of its members' detunings that count as none, in parts of the period; 0: rounding.
+  double detuning = 0.0;
 
   /// One oscillation, which shares its period with no other.
   [[nodiscard]] bool is_simple() const { return kernel.cols() == 1; }

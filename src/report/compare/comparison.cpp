@@ -88,7 +88,10 @@ Comparison compare(const archive::Archive& a, const archive::Archive& b, const C
       result.notes.push_back(
           fmt::format("scenes differ: {} is {} in A, {} in B", difference.key, difference.before, difference.now));
   } else {
-    result.notes.emplace_back("a scene is not one that this Orbweaver reads: loops are not compared");
+    result.notes.emplace_back(
+        "a scene is not one that this Orbweaver reads (the system of a plugin: give it with --plugin FILE): loops are "
+        "not "
+        "compared");
     if (a.header().scene != b.header().scene) result.notes.emplace_back("scenes differ");
   }
   if (a.header().orbweaver_version != b.header().orbweaver_version)

@@ -81,7 +81,12 @@ SweepOutcome Executor::small_oscillations(const SweepWork& work) const {
     outcome.modes.push_back(std::move(found));
   }
   for (const bifurcation::OscillationKernel& kernel : all.kernels) {
-    KernelRecord record{kernel.period, kernel.dimension, kernel.is_definite, kernel.not_isolated, {}, {}, {}};
+    KernelRecord record;
+    record.period = kernel.period;
+    record.dimension = kernel.dimension;
+    record.is_definite = kernel.is_definite;
+    record.not_isolated = kernel.not_isolated;
+    record.detuning = kernel.detuning;
     for (const bifurcation::KernelFamily& family : kernel.families) {
       record.places.push_back(family.place);
       record.images.push_back(family.images);

@@ -54,6 +54,17 @@ std::string left_out_text(const scene::Scene& scene, const systems::System& syst
                      fmt::join(modes, "; "), found.period_from * unit, found.period_to * unit);
 }
 
+/// Oscillations that are taken together although their periods are not quite in ratio: what they do nearer to the
+/// equilibrium depends on where their families start.
+void remark_resonances(const systems::System& system, const SweepOutcome& found, Summary& summary) {
+  for (const KernelRecord& kernel : found.kernels)
+    if (kernel.detuning > 0.0)
+      summary.remarks.push_back(fmt::format(
+          "a resonance at {}: {} oscillations share T = {:.9g} but for {:.2g} of it, which counts as none at the first "
+          "orbits; a smaller continuation.start may tell them apart, with what is born nearer to the equilibrium",
+          point_text(system, found.point), kernel.dimension, kernel.period * system.scales().time, kernel.detuning));
+}
+
 void remark_grid(const scene::Scene& scene, const systems::System& system, Summary& summary) {
   if (scene.fixed_points.grid.empty()) return;
   std::vector<std::vector<double>> passed_over;
@@ -239,6 +250,7 @@ BaseFamilies base_families(const scene::Scene& scene, const systems::System& sys
           fmt::format("no small oscillations around {}{}", point_text(system, found.point), range));
     }
     if (!found.left_out.empty()) summary.remarks.push_back(left_out_text(scene, system, found));
+    remark_resonances(system, found, summary);
     if (!found.rejected.empty()) {
       const auto end = found.rejected.begin() + static_cast<std::ptrdiff_t>(std::min(found.rejected.size(), most_dips));
       const auto untold = found.rejected.end() - end;

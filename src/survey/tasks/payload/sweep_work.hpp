@@ -81,11 +81,13 @@ struct KernelRecord {
   std::vector<int> places;
   std::vector<int> images;
   std::vector<int> repetitions;
+  double detuning = 0.0;
 
-  static constexpr int wire_version = 1;
+  static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, period, dimension, is_definite, not_isolated, places, images, repetitions);
+    core::serialize_members(archive, period, dimension, is_definite, not_isolated, places, images, repetitions,
+                            detuning);
   }
 };
 
