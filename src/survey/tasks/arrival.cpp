@@ -55,7 +55,7 @@ constexpr double on_the_way = 0.7;
 /// left of the way, a few times: a tenth of the window in which crossings are compared.
 constexpr double settled = 1e-4;
 constexpr int most_on_the_way = 6;
-/// Where the corrector has slipped, so much of that way is left to look on. Not measured.
+/// Where the corrector has slipped or failed, so much of that way is left to look on. Not measured.
 constexpr double nearer = 0.5;
 /// Places at which slopes tell folds on the way to the meeting: each leaves so much less of the way before it, the last
 /// about 6e-5 of the way from the last orbit.
@@ -125,13 +125,12 @@ std::optional<Arrival> arrival_by(const systems::System& system, continuation::F
     const double there =
         before.position + on_the_way * before.part / (before.part - beyond.part) * (beyond.position - before.position);
     const auto point = family.at(there);
-    if (!point) break;
-    const double part = watch.signed_part(gain, from.loop, point->loop);
-    const double size = watch.relative_size(gain, from.loop, point->loop);
-    if (size < slipped) {  // so has `to`, and the meeting point may lie nearer
+    const double size = point ? watch.relative_size(gain, from.loop, point->loop) : 0.0;
+    if (size < slipped) {  // so has `to`, or none converges there; the meeting point may lie nearer
       beyond = {before.position + nearer * (there - before.position), 0.0};
       continue;
     }
+    const double part = watch.signed_part(gain, from.loop, point->loop);
     const double off = not_proportional(part, size);
     if (off > std::max(still_vanishing, falling * off_before)) return std::nullopt;
     off_before = off;
