@@ -151,6 +151,7 @@ std::optional<Arrival> arrival_by(const systems::System& system, continuation::F
   }
   Arrival arrival;
   arrival.gain = gain;
+  arrival.near = near;
   arrival.position = before.position + before.part / (before.part - beyond.part) * (beyond.position - before.position);
   ArrivalRecord& record = arrival.record;
   record.period = at_zero(samples, &Sample::period);

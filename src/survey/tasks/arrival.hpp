@@ -17,6 +17,7 @@ struct Arrival {
   ArrivalRecord record;
   bifurcation::SymmetryGain gain;  ///< what is gained there
   double position = 0.0;           ///< of the meeting along the branch, nearly
+  loop::Loop near;                 ///< the orbit before it that was found nearest to it
 };
 
 /// Where the branch meets a family with more symmetry between two of its orbits, if it does. Beyond that point lie the

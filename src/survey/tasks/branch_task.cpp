@@ -382,7 +382,8 @@ bool BranchTask::arrive(const continuation::Orbit& orbit) {
     if (auto arrival = arrival_between(*_system, _curve, _symmetry, *_last, *_sampled, orbit, sampled)) {
       // The met family looks only for crossings of the orders that the scene asks for.
       if (arrival->record.multiplicity > _scene.survey.subharmonics)
-        (void)locate_beneath(_system, _curve.options(), _last->loop, arrival->record);
+        (void)(locate_beneath(_system, _curve.options(), arrival->near, arrival->record) ||
+               locate_beneath(_system, _curve.options(), _last->loop, arrival->record));
       _outcome.arrival.push_back(arrival->record);
       _arrival = std::move(*arrival);
     }
