@@ -51,10 +51,13 @@ constexpr double fixed_in_largest = 5.0;
 /// Keeps the quotient finite where z(s = 0) does not move; below any step that `fixed_in_largest` does not bound.
 constexpr double least_change = 1e-12;
 
+bool winds(const loop::Loop& loop) {
+  return std::any_of(loop.winding.begin(), loop.winding.end(), [](double n) { return n != 0.0; });
+}
+
 /// A loop that winds is not small, however little the rest of it moves.
 double extent_of(const loop::Loop& loop, double amplitude) {
-  const bool winds = std::any_of(loop.winding.begin(), loop.winding.end(), [](double n) { return n != 0.0; });
-  return winds ? std::max(1.0, amplitude) : amplitude;
+  return winds(loop) ? std::max(1.0, amplitude) : amplitude;
 }
 
 }  // namespace
@@ -242,7 +245,7 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
     const double wanted = _options.prediction_error * std::min(1.0, amplitude);
     const bool jumped =
         trial.prediction_error > wrong_prediction * wanted ||
-        (trial.converged && (_problem->inverted(trial, _stepper.last()) || _stepper.turned_too_far(trial, length)));
+        (trial.converged && (has_passed_rest(trial) || _stepper.turned_too_far(trial, length)));
     const bool needs_more = !jumped && _stepper.needs_more_harmonics(trial);
     if (needs_more && !before_doubling) {
       if (!_stepper.refine(trial))
@@ -292,6 +295,12 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
                  fmt::format("rounding leaves orbits open by {:.1e}; {}", trial.known_to, std::move(detail)));
     }
   }
+}
+
+/// Whether the step led across an equilibrium. Where an angle winds orbits are none, and the rest of the loop may pass
+/// through zero: the answer to a drive does where the drive has no strength.
+bool Tracer::has_passed_rest(const Trial& trial) {
+  return !winds(_start.base) && _problem->inverted(trial, _stepper.last());
 }
 
 /// Twice as finely from here on. Beside a resonance the cells' own error in the phase, which the preconditioner has,
