@@ -179,7 +179,7 @@ class LocusTracer {
 
   /// The start on the surface, which way the curve leaves it, and how the test function changes across.
   bool begin(const loop::Tangent& family, int side) {
-    _state.amplitude = loop::rms_amplitude(_base);
+    _state.amplitude = extent_of(_base.winding, loop::rms_amplitude(_base));
     _state.held_energy = energy_of(_system, _base);
     _problem->resolve(_problem->resolution_for(_base.cutoff, _base.time_map, _options.branch.cutoff_to));
     Prediction at;
@@ -425,7 +425,7 @@ class LocusTracer {
     _last.values = next.trial.values;
     _last.loop = next.trial.loop;
     if (!with_plane) return;
-    _state.amplitude = loop::rms_amplitude(next.trial.loop);
+    _state.amplitude = extent_of(next.trial.loop.winding, loop::rms_amplitude(next.trial.loop));
     _last.slope = next.slope;
     try {
       take_plane({_last.values, next.along, 1, next.across});
