@@ -111,11 +111,13 @@ std::optional<Ending> end_at(const Frontier& frontier, const systems::System& sy
   const double amplitude = frontier.problem.amplitude;
   if (amplitude < vanishing_amplitude * std::min(frontier.first_amplitude, options.start_amplitude))
     return Ending{EndReason::fixed_point, fmt::format("T = {:.9g}, amplitude {:.2e}", period, amplitude)};
-  // Neither T nor the amplitude can be further apart than the loops are: a cheap look before the distance itself.
+  // Neither T nor the amplitude can be further apart than the loops are: a cheap look before the distance itself. On
+  // the way around a closed family without a reversor s = 0 does not come back to where it was.
   const double near = closing * frontier.last_increment;
   if (near < was_away * frontier.farthest &&
       std::abs(orbit.loop.period - frontier.first.period) < near * frontier.first.period &&
-      std::abs(amplitude - frontier.first_amplitude) < near && arclength_between(frontier.first, orbit.loop) < near)
+      std::abs(amplitude - frontier.first_amplitude) < near &&
+      distance_between_orbits(system, frontier.first, orbit.loop) < near)
     return Ending{EndReason::closed_loop, fmt::format("T = {:.9g}, length {:.6g}", period, orbit.arclength)};
   return std::nullopt;
 }
