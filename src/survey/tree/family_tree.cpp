@@ -96,6 +96,9 @@ void FamilyTree::add_branch(const std::string& key, EndedBranch branch) {
   std::vector<std::string> passed;
   if (branch.outcome) {
     for (const PassedStart& start : branch.outcome->passed) passed.push_back(start.family);
+    // All around a closed curve one side comes to where the other begins.
+    if (branch.lineage.depth == 0 && branch.outcome->end.reason == continuation::EndReason::closed_loop)
+      passed.push_back(branch.lineage.family);
     branch.outcome->before_limit = {};  // a journal has it
     for (ArrivalRecord& arrival : branch.outcome->arrival) {
       meetings = _arrivals.add_branch(key, arrival);
