@@ -1,8 +1,14 @@
 #include "orbweaver/bifurcation/locus.hpp"
 
+#include <array>
 #include <limits>
+#include <memory>
+#include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
+#include "orbweaver/bifurcation/symmetry_watch.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
 
@@ -29,11 +35,29 @@ std::vector<continuation::LocusBoundary> strong_resonances(const systems::System
           {{EndReason::strong_resonance, "1:2, both multipliers are -1"}, inside(1.0)}};
 }
 
+std::string name_of(const SymmetryGain& gain) {
+  if (gain.reversing) return gain.name;
+  return fmt::format("{}@{}/{}", gain.name, gain.shift_numerator, gain.shift_denominator);
+}
+
+std::vector<continuation::LocusArrival> arrivals_between(const SymmetryWatch& watch, const loop::Loop& from,
+                                                         const loop::Loop& to) {
+  std::vector<continuation::LocusArrival> found;
+  for (const SymmetryGain& gain : watch.all_passed(SymmetryWatch::sampled(from), SymmetryWatch::sampled(to)))
+    found.push_back(
+        {name_of(gain), [&watch, gain, from](const loop::Loop& there) {
+           return std::array<double, 2>{watch.signed_part(gain, from, there), watch.relative_size(gain, from, there)};
+         }});
+  return found;
+}
+
 }  // namespace
 
 continuation::LocusTest locus_test(const systems::System& surface, const loop::Isotropy& isotropy, const Event& event,
                                    core::Team* team) {
   continuation::LocusTest test;
+  test.arrivals = [watch = std::make_shared<SymmetryWatch>(surface.structure(), isotropy)](
+                      const loop::Loop& from, const loop::Loop& to) { return arrivals_between(*watch, from, to); };
   if (event.kind == Event::Kind::test_function) {
     const auto stability_of = [&surface, isotropy, team](const loop::Loop& loop) {
       spectrum::FloquetOptions options;

@@ -74,7 +74,8 @@ corrector::Result orbit_at_period(const systems::System& system, const loop::Loo
                                                   options.corrector, pinned);
     const int larger = loop::next_cutoff(guess.cutoff);
     const bool tail_is_short =
-        loop::tail(result.loop) <= tail_limit(loop::rms_amplitude(result.loop), loop::rms_size(result.loop), options);
+        loop::tail(result.loop) <= tail_limit(loop::rms_amplitude(result.loop),
+                                              extent_of(result.loop.winding, loop::rms_size(result.loop)), options);
     const bool resolved = result.converged() ? tail_is_short : result.outcome != corrector::Outcome::under_resolved;
     if (resolved || larger > options.cutoff_to) return result;
     guess = loop::with_cutoff(guess, larger);

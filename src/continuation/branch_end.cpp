@@ -9,7 +9,6 @@
 #include "least_guard.hpp"
 #include "limit_orbit.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/loop/symmetry/alignment.hpp"
 
 namespace orbweaver::continuation {
 
@@ -55,16 +54,6 @@ bool stays(const Frontier& frontier) {
          std::abs(last.parameters.front() - first.parameters.front()) <
              unmoved * (1.0 + std::abs(first.parameters.front())) &&
          std::abs(last.period - first.period) < unmoved * first.period;
-}
-
-/// A family may come back to its first orbit at another time of it: where no reversor holds the phase, one that drifts a
-/// little from orbit to orbit need not be the same after a circle.
-bool has_come_back(const Frontier& frontier, const systems::System& system, double near) {
-  const loop::Loop& last = frontier.orbit.loop;
-  if (arclength_between(frontier.first, last) < near) return true;
-  return last.winding == frontier.first.winding &&
-         arclength_between(frontier.first,
-                           loop::aligned(last, loop::align_in_time(system.structure(), last, frontier.first))) < near;
 }
 
 std::optional<Ending> collision_of(const Frontier& frontier, const systems::System& system, const std::string& detail) {
@@ -123,12 +112,15 @@ std::optional<Ending> end_at(const Frontier& frontier, const systems::System& sy
   const double amplitude = frontier.problem.amplitude;
   if (amplitude < vanishing_amplitude * std::min(frontier.first_amplitude, options.start_amplitude))
     return Ending{EndReason::fixed_point, fmt::format("T = {:.9g}, amplitude {:.2e}", period, amplitude)};
-  // Neither T nor the amplitude can be further apart than the loops are: a cheap look before the distance itself.
-  // Orbits around one equilibrium are near each other by their size alone.
-  const double near = closing * std::min({frontier.last_increment, amplitude, frontier.first_amplitude});
+  // Neither T nor the amplitude can be further apart than the loops are: a cheap look before the distance itself. On
+  // the way around a circle without a reversor s = 0 does not come back to where it was; and orbits around one
+  // equilibrium are near each other by their size alone.
+  const double first_extent = extent_of(frontier.first.winding, frontier.first_amplitude);
+  const double near = closing * std::min({frontier.last_increment, amplitude, first_extent});
   if (way_around * near < orbit.arclength &&
       std::abs(orbit.loop.period - frontier.first.period) < near * frontier.first.period &&
-      std::abs(amplitude - frontier.first_amplitude) < near && has_come_back(frontier, system, near))
+      std::abs(amplitude - first_extent) < near &&
+      distance_between_orbits(system, frontier.first, orbit.loop) < near)
     return Ending{EndReason::closed_loop, fmt::format("T = {:.9g}, length {:.6g}", period, orbit.arclength)};
   return std::nullopt;
 }

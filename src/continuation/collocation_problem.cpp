@@ -371,7 +371,7 @@ void CollocationProblem::judge(Trial& trial) {
   trial.loss_rms = quality.loss_rms;
   trial.asked_rms = quality.asked;
   trial.amplitude = quality.amplitude;
-  trial.size = quality.size;
+  trial.size = extent_of(_winding, quality.size);
   double centre = 0.0;
   for (const double c : e.centre()) centre += c * c;
   const double size = std::sqrt(centre);

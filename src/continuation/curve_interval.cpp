@@ -62,7 +62,7 @@ CurveInterval::CurveInterval(const systems::System& system, const loop::Isotropy
       _to(known[last].position),
       _problem(make_point_problem({system, known[last].loop, isotropy}, options, _state)) {
   const loop::Loop& end = known[last].loop;
-  _state.amplitude = loop::rms_amplitude(end);
+  _state.amplitude = extent_of(end.winding, loop::rms_amplitude(end));
   _state.held_energy = energy_of(system, end);
   std::vector<loop::Loop> loops;
   int cutoff = 0;

@@ -17,6 +17,7 @@ std::string_view name_of(EndReason reason) {
     case EndReason::fixed_point: return "arrived at a fixed point";
     case EndReason::closed_loop: return "closed loop";
     case EndReason::strong_resonance: return "strong resonance";
+    case EndReason::more_symmetry: return "met orbits of more symmetry";
     case EndReason::stopped: return "stopped";
     case EndReason::undecided: return "undecided";
     case EndReason::failure: return "failure";

@@ -26,7 +26,8 @@ constexpr double difference = 1e-4;
 /// Of a place across the curve, and of a place along it where that is looked for: as of crossings.
 constexpr double place_tolerance = 1e-11;
 /// The zero across the curve is bracketed by its linear estimate times these: the second where the curve bends.
-constexpr std::array<double, 3> brackets{1.5, 4.0, 12.0};
+/// The last: on the way across orbits of more symmetry the slope changes its sign.
+constexpr std::array<double, 4> brackets{1.5, 4.0, 12.0, -1.5};
 /// The smallest linear estimate that is bracketed, in parts of the wanted error: below it the bracket would be as wide
 /// as the tolerance.
 constexpr double least_estimate = 1e-6;
@@ -65,10 +66,11 @@ class LocusTracer {
     double length = first_step * _options.largest_step;
     while (!ended()) {
       if (static_cast<int>(_locus.points.size()) >= _options.branch.step_limit)
-        return end(EndReason::step_limit, fmt::format("{} points", _locus.points.size()));
-      if (!(length >= least_step * _options.largest_step))
-        return end(_why.first, fmt::format("at {} after {} points: {}", place_text(_system, _last.loop),
-                                           _locus.points.size(), _why.second));
+        end(EndReason::step_limit, fmt::format("{} points", _locus.points.size()));
+      else if (!(length >= least_step * _options.largest_step))
+        end(_why.first, fmt::format("at {} after {} points: {}", place_text(_system, _last.loop), _locus.points.size(),
+                                    _why.second));
+      if (ended()) break;
       std::optional<Solved> next = solve(length);
       if (!next || turns_too_far(*next)) {
         if (!next || !turn_to_curve()) length *= 0.5;
@@ -117,10 +119,7 @@ class LocusTracer {
     for (double& x : v) x /= length;
   }
 
-  Locus end(EndReason reason, std::string detail) {
-    _locus.ending = {reason, std::move(detail)};
-    return std::move(_locus);
-  }
+  void end(EndReason reason, std::string detail) { _locus.ending = {reason, std::move(detail)}; }
   [[nodiscard]] bool ended() const { return !_locus.ending.detail.empty(); }
 
   /// More harmonics for everything that is kept; false where the options allow none.
@@ -179,7 +178,7 @@ class LocusTracer {
 
   /// The start on the surface, which way the curve leaves it, and how the test function changes across.
   bool begin(const loop::Tangent& family, int side) {
-    _state.amplitude = loop::rms_amplitude(_base);
+    _state.amplitude = extent_of(_base.winding, loop::rms_amplitude(_base));
     _state.held_energy = energy_of(_system, _base);
     _problem->resolve(_problem->resolution_for(_base.cutoff, _base.time_map, _options.branch.cutoff_to));
     Prediction at;
@@ -193,7 +192,7 @@ class LocusTracer {
       _conditions = _problem->conditions_at(at);
       trial = correct(at);
     } while (!trial && _needs_more && refine());
-    if (!trial) return (void)end(_why.first, fmt::format("at the start: {}", _why.second)), false;
+    if (!trial) return end(_why.first, fmt::format("at the start: {}", _why.second)), false;
     _last.values = trial->values;
     _last.loop = trial->loop;
     try {
@@ -202,14 +201,14 @@ class LocusTracer {
       const double b = change_along(_last.across);
       const double slope = std::hypot(a, b);
       if (!(slope > 0.0))
-        return (void)end(EndReason::failure,
-                         fmt::format("the test function does not change about the start: {}", _why.second)),
+        return end(EndReason::failure,
+                   fmt::format("the test function does not change about the start: {}", _why.second)),
                false;
       turn_plane({a / slope, b / slope}, side);
       _last.slope = _test.projection ? -side * slope : slope;  // a determinant knows how the two directions are turned
       take_turn(*trial);
     } catch (const core::NumericalError& error) {
-      return (void)end(EndReason::failure, fmt::format("at the start: {}", error.what())), false;
+      return end(EndReason::failure, fmt::format("at the start: {}", error.what())), false;
     }
     _points = {{_last.values, 0.0}};
     return true;
@@ -373,6 +372,8 @@ class LocusTracer {
       _locus.ending = std::move(limit->first);
       reach = limit->second;
     }
+    const auto met = arrival_between(_system, _test, _locus.points, _last.loop, next.trial.loop);
+    if (met && met->second * length < reach) return end(met->first.reason, met->first.detail);
     // Returns and cusps lie in their order along the curve.
     std::vector<std::pair<double, LocusPoint>> between;
     const auto off = [this](const loop::Loop& loop) { return loop.parameters.back() - _base.parameters.back(); };
@@ -381,7 +382,7 @@ class LocusTracer {
         between.emplace_back(at->first, LocusPoint{std::move(at->second), 0.0, false, true});
     if (reach != length || next.trial.values.size() != _last.values.size()) {
       std::optional<Solved> again = solve(reach);
-      if (!again) return (void)end(_why.first, "no orbit at the end of the last step: " + _why.second);
+      if (!again) return end(_why.first, "no orbit at the end of the last step: " + _why.second);
       next = std::move(*again);
     }
     move_to(std::move(next), true);
@@ -398,15 +399,13 @@ class LocusTracer {
       point.arclength = from + at / reach * whole;
       const bool is_start = point.is_return && closes(point.loop);
       _locus.points.push_back(std::move(point));
-      if (is_start) return (void)end(EndReason::closed_loop, "back at the start");
+      if (is_start) return end(EndReason::closed_loop, "back at the start");
     }
     _locus.points.push_back({_last.loop, _points.back().parameter});
   }
 
   [[nodiscard]] bool closes(const loop::Loop& loop) {
-    Vector away = _problem->from_loop(loop);
-    add(away, -1.0, _problem->from_loop(_base));
-    return std::sqrt(product(away, away)) < closed * _points.back().parameter;
+    return distance_between_orbits(_system, _base, loop) < closed * _points.back().parameter;
   }
 
   void go_back() {
@@ -425,7 +424,7 @@ class LocusTracer {
     _last.values = next.trial.values;
     _last.loop = next.trial.loop;
     if (!with_plane) return;
-    _state.amplitude = loop::rms_amplitude(next.trial.loop);
+    _state.amplitude = extent_of(next.trial.loop.winding, loop::rms_amplitude(next.trial.loop));
     _last.slope = next.slope;
     try {
       take_plane({_last.values, next.along, 1, next.across});

@@ -1,12 +1,47 @@
 #include "locus_limits.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "orbweaver/continuation/orbit.hpp"
+#include "orbweaver/numerics/lagrange.hpp"
 
 namespace orbweaver::continuation {
+
+namespace {
+
+/// What a broken part may have turned by, in parts of its size, where the symmetry is gained between two points: one
+/// that turns round without vanishing is all turned.
+constexpr double turned = 0.5;
+/// Points from which the place of an arrival is extrapolated, and how far apart the squares of their broken parts are.
+constexpr std::size_t most_points = 3;
+constexpr double apart = 1.3;
+
+/// T and parameters where the broken part vanishes: they are functions of its square.
+loop::Loop at_arrival(const LocusArrival& arrival, const std::vector<LocusPoint>& before, const loop::Loop& from) {
+  std::vector<double> squares{1.0};
+  std::vector<const loop::Loop*> loops{&from};
+  for (auto point = before.rbegin(); point != before.rend() && loops.size() < most_points; ++point) {
+    const double part = arrival.broken(point->loop)[0];
+    if (part * part < apart * squares.back()) continue;
+    squares.push_back(part * part);
+    loops.push_back(&point->loop);
+  }
+  const std::vector<double> weights = numerics::lagrange_weights(squares, 0.0).value;
+  loop::Loop there = from;
+  there.period = 0.0;
+  std::fill(there.parameters.begin(), there.parameters.end(), 0.0);
+  for (std::size_t n = 0; n < loops.size(); ++n) {
+    there.period += weights[n] * loops[n]->period;
+    for (std::size_t p = 0; p < there.parameters.size(); ++p)
+      there.parameters[p] += weights[n] * loops[n]->parameters[p];
+  }
+  return there;
+}
+
+}  // namespace
 
 std::vector<LocusLimit> limits_of(const systems::System& system, const LocusOptions& options, const LocusTest& test) {
   const Options& o = options.branch;
@@ -31,6 +66,20 @@ std::vector<LocusLimit> limits_of(const systems::System& system, const LocusOpti
         [&system](const loop::Loop& loop) { return energy_of(system, loop); });
   for (const LocusBoundary& boundary : test.boundaries) limits.push_back({boundary.ending, boundary.inside});
   return limits;
+}
+
+std::optional<std::pair<Ending, double>> arrival_between(const systems::System& system, const LocusTest& test,
+                                                         const std::vector<LocusPoint>& before, const loop::Loop& from,
+                                                         const loop::Loop& to) {
+  if (!test.arrivals) return std::nullopt;
+  for (const LocusArrival& arrival : test.arrivals(from, to)) {
+    const auto [part, size] = arrival.broken(to);
+    if (size * size - part * part > turned * turned * size * size) continue;
+    const std::string where = place_text(system, at_arrival(arrival, before, from));
+    return {{{EndReason::more_symmetry, fmt::format("{}, near {}", arrival.symmetry, where)},
+             1.0 / (1.0 - std::min(part, 0.0))}};
+  }
+  return std::nullopt;
 }
 
 std::string place_text(const systems::System& system, const loop::Loop& loop) {

@@ -259,7 +259,7 @@ Trial LoopProblem::solve(Prediction prediction, const std::vector<double>& condi
   trial.loop = std::move(result.loop);
   if (!trial.converged) return trial;
   trial.amplitude = loop::rms_amplitude(trial.loop);
-  trial.size = loop::rms_size(trial.loop);
+  trial.size = extent_of(trial.loop.winding, loop::rms_size(trial.loop));
   trial.prediction_error =
       std::hypot(loop::mean_distance(guess, trial.loop), trial.amplitude * (trial.loop.period / guess.period - 1.0));
   return trial;

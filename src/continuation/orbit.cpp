@@ -8,6 +8,7 @@
 #include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/curve/system_at.hpp"
+#include "orbweaver/loop/symmetry/shift_search.hpp"
 
 namespace orbweaver::continuation {
 
@@ -33,12 +34,34 @@ double action_of(const systems::System& system, const loop::Loop& loop) {
   return loop.period * sum;
 }
 
-double arclength_between(const loop::Loop& from, const loop::Loop& to) {
+namespace {
+
+/// What harmonics in time may leave out of a distance between orbits: a closed family is told by steps, a closed locus
+/// by 1e-6 of its length.
+constexpr double left_out = 1e-10;
+
+double with_scalars(double distance, const loop::Loop& from, const loop::Loop& to) {
   core::require(from.parameters.size() == to.parameters.size(), "a distance between loops of different families");
   double parameters = 0.0;
   for (std::size_t n = 0; n < from.parameters.size(); ++n)
     parameters = std::hypot(parameters, to.parameters[n] - from.parameters[n]);
-  return std::hypot(loop::mean_distance(from, to), (to.period - from.period) / from.period, parameters);
+  return std::hypot(distance, (to.period - from.period) / from.period, parameters);
+}
+
+}  // namespace
+
+double arclength_between(const loop::Loop& from, const loop::Loop& to) {
+  return with_scalars(loop::mean_distance(from, to), from, to);
+}
+
+double distance_between_orbits(const systems::System& system, const loop::Loop& from, const loop::Loop& to) {
+  const std::vector<int>& angles = system.structure().angles;
+  const loop::Loop y = loop::evenly_in_time(from, left_out);
+  const loop::Loop x = loop::evenly_in_time(to, left_out);
+  double least = std::numeric_limits<double>::infinity();
+  for (const loop::ShiftMinimum& minimum : loop::shift_minima(y, x, angles))
+    least = std::min(least, loop::rms_size(loop::difference_at(y, x, angles, minimum.shift)));
+  return with_scalars(least, from, to);
 }
 
 double arclength_in_units(const systems::System& system, const loop::Loop& from, const loop::Loop& to) {

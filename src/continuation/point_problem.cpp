@@ -38,6 +38,14 @@ double energy_left(const systems::System& family, const loop::Loop& loop) {
 
 }  // namespace
 
+bool winds(const std::vector<double>& winding) {
+  return std::any_of(winding.begin(), winding.end(), [](double n) { return n != 0.0; });
+}
+
+double extent_of(const std::vector<double>& winding, double size) {
+  return winds(winding) ? std::max(1.0, size) : size;
+}
+
 double tail_limit(double amplitude, double size, const Options& options) {
   // Every harmonic carries rounding of the size of the loop: no cutoff takes a tail below that.
   const double rounding = std::numeric_limits<double>::epsilon() * size;

@@ -36,11 +36,18 @@ struct Trial {
   double threshold = 0.0;
   double tolerance_met = 0.0;  ///< corrector::tolerance_met
   double amplitude = 0.0;      ///< rms distance from its mean, winding left out
-  double size = 0.0;           ///< rms size, winding left out
+  double size = 0.0;           ///< `extent_of` its rms size
   loop::Loop loop;             ///< set by `PointProblem::resolved`
 };
 
-/// What the last harmonics of a loop may weigh, by its rms distance from its mean and its rms size, without winding.
+/// Whether some angle turns over along a loop with these winding numbers: then it is no equilibrium.
+[[nodiscard]] bool winds(const std::vector<double>& winding);
+/// What tolerances and rounding are measured by, of a loop's rms distance from its mean or its rms size, winding left
+/// out: a loop that winds is not small, however little the rest of it moves.
+[[nodiscard]] double extent_of(const std::vector<double>& winding, double size);
+
+/// What the last harmonics of a loop may weigh, by its rms distance from its mean, without winding, and `extent_of` its
+/// rms size.
 [[nodiscard]] double tail_limit(double amplitude, double size, const Options& options);
 
 /// The orbits of one family near a base loop as points, vectors of numbers in which polynomials can run: how they are

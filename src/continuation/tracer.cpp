@@ -51,12 +51,6 @@ constexpr double fixed_in_largest = 5.0;
 /// Keeps the quotient finite where z(s = 0) does not move; below any step that `fixed_in_largest` does not bound.
 constexpr double least_change = 1e-12;
 
-/// A loop that winds is not small, however little the rest of it moves.
-double extent_of(const loop::Loop& loop, double amplitude) {
-  const bool winds = std::any_of(loop.winding.begin(), loop.winding.end(), [](double n) { return n != 0.0; });
-  return winds ? std::max(1.0, amplitude) : amplitude;
-}
-
 }  // namespace
 
 Tracer::Tracer(std::shared_ptr<const systems::System> system, Start start, Options options)
@@ -96,7 +90,7 @@ std::optional<Orbit> Tracer::first_orbit() {
                                              _options.cutoff_to));
   while (true) {
     // Beside an orbit everything is measured by the orbit, however near the first one of the family lies.
-    _frontier.problem.amplitude = extent_of(_start.base, std::max(amplitude, loop::rms_amplitude(_start.base)));
+    _frontier.problem.amplitude = extent_of(_start.base.winding, std::max(amplitude, loop::rms_amplitude(_start.base)));
     const std::vector<double> base = _problem->from_loop(_start.base);
     Prediction prediction{base, _problem->from_change(loop::perturbation(_start.base, direction)), 1};
     for (std::size_t n = 0; n < direction.scalars.size(); ++n)
@@ -158,7 +152,7 @@ std::optional<Orbit> Tracer::base_orbit() {
   const auto held = static_cast<std::size_t>(
       std::find_if(scalars.begin(), scalars.end(), [](double v) { return v != 0.0; }) - scalars.begin());
   _frontier.problem.held_energy = energy_of(*_system, _start.base);
-  _frontier.problem.amplitude = extent_of(_start.base, loop::rms_amplitude(_start.base));
+  _frontier.problem.amplitude = extent_of(_start.base.winding, loop::rms_amplitude(_start.base));
   _problem->resolve(_problem->resolution_for(std::max(_start.base.cutoff, _options.cutoff_from), _start.base.time_map,
                                              _options.cutoff_to));
   while (true) {
@@ -240,9 +234,8 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
     if (halved >= polynomial_attempts) _stepper.use_tangent();
     Trial trial = _stepper.step(length);
     const double wanted = _options.prediction_error * std::min(1.0, amplitude);
-    const bool jumped =
-        trial.prediction_error > wrong_prediction * wanted ||
-        (trial.converged && (_problem->inverted(trial, _stepper.last()) || _stepper.turned_too_far(trial, length)));
+    const bool jumped = trial.prediction_error > wrong_prediction * wanted ||
+                        (trial.converged && (has_passed_rest(trial) || _stepper.turned_too_far(trial, length)));
     const bool needs_more = !jumped && _stepper.needs_more_harmonics(trial);
     if (needs_more && !before_doubling) {
       if (!_stepper.refine(trial))
@@ -292,6 +285,12 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
                  fmt::format("rounding leaves orbits open by {:.1e}; {}", trial.known_to, std::move(detail)));
     }
   }
+}
+
+/// Whether the step led across an equilibrium. Where an angle winds orbits are none, and the rest of the loop may pass
+/// through zero: the answer to a drive does where the drive has no strength.
+bool Tracer::has_passed_rest(const Trial& trial) {
+  return !winds(_start.base.winding) && _problem->inverted(trial, _stepper.last());
 }
 
 /// Twice as finely from here on. Beside a resonance the cells' own error in the phase, which the preconditioner has,
@@ -427,7 +426,7 @@ void Tracer::keep(Orbit& orbit, double increment, double amplitude) {
     frontier.earlier_period = orbit.loop.period;
   }
   keep_guards(orbit.loop);
-  frontier.problem.amplitude = extent_of(orbit.loop, amplitude);
+  frontier.problem.amplitude = extent_of(orbit.loop.winding, amplitude);
   frontier.orbit = orbit;
 }
 

@@ -50,6 +50,7 @@ class Tracer {
   std::optional<Orbit> next_on_family();
   /// With a step of at most this length.
   std::optional<Orbit> next_orbit(double at_most);
+  [[nodiscard]] bool has_passed_rest(const Trial& trial);
   [[nodiscard]] bool resolve_twice();
   [[nodiscard]] double length_to_try();
   std::optional<Orbit> accept_within_limits(const Trial& trial, double length, Ending& refused);

@@ -175,6 +175,29 @@ TEST(Locus, FollowsASharpBend) {
   }
 }
 
+// A circle in the plane of the parameters.
+TEST(Locus, EndsWhereItBegan) {
+  const auto surface = duffing({"drive_frequency", "drive_amplitude"}, 0.3);
+  const loop::Loop first = response(0.9, 0.3);
+  const loop::Isotropy isotropy = loop::find_isotropy(surface->structure(), first, loop::symmetry_tolerance);
+  constexpr double radius = 0.1;
+  const auto radius_at = [](const loop::Loop& l) { return std::hypot(l.parameters[0] - 0.8, l.parameters[1] - 0.3); };
+  continuation::LocusTest test;
+  test.value = [&](const loop::Loop& l) { return radius_at(l) - radius; };
+  loop::Loop at = first;
+  at.parameters.push_back(0.3);
+  continuation::LocusOptions options;
+  options.largest_step = 0.05;
+  options.branch.step_limit = 100;
+  const continuation::Locus locus = continuation::follow_locus(
+      surface, isotropy, at, {std::vector<double>(first.modes.size(), 0.0), {0.0, 1.0}}, test, 1, options);
+  EXPECT_EQ(locus.ending.text(), "closed loop (back at the start)");
+  ASSERT_GT(locus.points.size(), 4U);
+  for (const LocusPoint& point : locus.points) EXPECT_NEAR(radius_at(point.loop), radius, 1e-10);
+  EXPECT_TRUE(locus.points.back().is_return);
+  EXPECT_NEAR(locus.points.back().loop.parameters[0], 0.9, 1e-9);
+}
+
 std::shared_ptr<const systems::System> pendulum_of(double m2, std::vector<std::string> free = {}) {
   return systems::make_system("double_pendulum", {{"m2", m2}}, {}, {std::move(free), {}});
 }

@@ -181,6 +181,59 @@ TEST(ParameterFamilies, DuffingFoldsWhereTrajectoriesJump) {
   EXPECT_GT(late_amplitude(states[1], frequencies[1] - beside), strong);
 }
 
+/// Subharmonic answers of order three: a closed curve, on which the phase of s = 0 goes on. One side is all of it.
+TEST(ParameterFamilies, AnIsolaIsAClosedLoopOnce) {
+  const core::Communicator comm;
+  const survey::Summary summary = test::run(
+      comm,
+      scene_of("duffing.yaml",
+               {"system.parameters.damping=0.05", "system.parameters.drive_amplitude=2",
+                "system.parameters.drive_frequency=3.8", "limits.parameter=[1, 12]",
+                "starts={states: [{state: [-0.45641065, -1.08432332, 0], period: 4.960409453036515, name: Sub}]}"}),
+      "isola");
+  EXPECT_TRUE(survey::verify(comm, summary.atlas).objections.empty());
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  ASSERT_EQ(summary.families.size(), 1U);
+  EXPECT_EQ(summary.families[0].end_reason.rfind("closed loop", 0), 0U) << summary.families[0].end_reason;
+  const test::Atlas atlas(summary.atlas);
+  ASSERT_EQ(atlas.crossings().rows(), 2U) << "each fold once";
+  EXPECT_NEAR(atlas.crossings().reals("parameter")[0], 6.007239331, 1e-8);
+  EXPECT_NEAR(atlas.crossings().reals("parameter")[1], 3.205566885, 1e-8);
+}
+
+/// Of a symmetric double well the answers in either well are images, and both are stored.
+TEST(ParameterFamilies, AnswersInTwoWellsAreImages) {
+  const core::Communicator comm;
+  const survey::Summary summary =
+      test::run(comm,
+                scene_of("duffing.yaml", {"system.parameters.alpha=-1", "system.parameters.damping=0.25",
+                                          "system.parameters.drive_amplitude=0", "system.parameters.drive_frequency=1",
+                                          "starts={fixed_points: {grid: [[-1, 0, 1]]}}",
+                                          "continuation.free=drive_amplitude", "limits.parameter=[0, 0.3]"}),
+                "wells");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  ASSERT_EQ(summary.families.size(), 3U);
+  EXPECT_EQ(test::Atlas(summary.atlas).crossings().rows(), 6U);
+}
+
+TEST(ParameterFamilies, AnswersGoThroughADriveOfNoStrength) {
+  const core::Communicator comm;
+  const survey::Summary summary = test::run(
+      comm,
+      scene_of("duffing.yaml", {"system.parameters.alpha=-1", "system.parameters.damping=0.25",
+                                "system.parameters.drive_amplitude=0.02", "system.parameters.drive_frequency=1",
+                                "starts={states: [{state: [1.02, 0, 0], period: 6.283185307179586, name: Right}]}",
+                                "continuation.free=drive_amplitude", "limits.parameter=[-0.2, 0.2]"}),
+      "through_zero");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  ASSERT_EQ(summary.families.size(), 1U);
+  EXPECT_EQ(summary.families[0].end_reason,
+            "forwards: parameter limit (drive_amplitude = 0.2); backwards: parameter limit (drive_amplitude = -0.2)");
+}
+
 /// The second vector beside the mirror image's branch point needs more harmonics than the orbit and the kernel.
 TEST(ParameterFamilies, BranchesOfADrivenFamilyHold) {
   const core::Communicator comm;

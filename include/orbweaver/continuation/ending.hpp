@@ -21,6 +21,7 @@ enum class EndReason {
   fixed_point,        ///< the amplitude shrank to nothing
   closed_loop,        ///< back at the first orbit
   strong_resonance,   ///< of a locus of torus points: the two multipliers are 1, or -1
+  more_symmetry,      ///< of a locus: its orbits come to the family that theirs was born on; beyond lie their images
   stopped,            ///< the observer asked for it
   undecided,          ///< the corrector failed where rounding does not tell an orbit from its neighbours
   failure,            ///< the corrector failed at the smallest step

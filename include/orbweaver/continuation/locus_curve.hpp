@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "orbweaver/continuation/branch.hpp"
@@ -22,6 +23,13 @@ struct LocusBoundary {
   std::function<double(const loop::Loop&)> inside{};  ///< positive before, zero there
 };
 
+/// Between two neighbouring points of a locus: an orbit that has a symmetry more.
+struct LocusArrival {
+  std::string symmetry;  ///< for people: "S@1/2"
+  /// The signed part of an orbit that breaks it, 1 at the first of the two and zero where none does, and its size.
+  std::function<std::array<double, 2>(const loop::Loop&)> broken{};
+};
+
 /// What vanishes along a locus. One of the first two is set.
 struct LocusTest {
   /// A test function of an orbit; NaN where it has no value.
@@ -30,6 +38,8 @@ struct LocusTest {
   /// the surface. The surface folds over their plane where the changes along two directions are parallel.
   std::function<std::array<double, 2>(const loop::Loop&, const loop::Tangent&)> projection{};
   std::vector<LocusBoundary> boundaries{};
+  /// The symmetries that an orbit between two neighbouring points may have and theirs lack.
+  std::function<std::vector<LocusArrival>(const loop::Loop&, const loop::Loop&)> arrivals{};
 };
 
 /// A point of a locus.

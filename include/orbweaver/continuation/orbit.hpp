@@ -45,6 +45,10 @@ struct Orbit {
 
 /// sqrt(mean |dz|^2 + (dT/T)^2 + |dp|^2) between neighbours, p being the parameters that move.
 [[nodiscard]] double arclength_between(const loop::Loop& from, const loop::Loop& to);
+
+/// The same between any two orbits that wind alike, wherever they begin: the least over the time shifts of one.
+[[nodiscard]] double distance_between_orbits(const systems::System& system, const loop::Loop& from,
+                                             const loop::Loop& to);
 /// The same in the units of the scene, for loops told in the system's scales: the archive's arclength.
 [[nodiscard]] double arclength_in_units(const systems::System& system, const loop::Loop& from, const loop::Loop& to);
 

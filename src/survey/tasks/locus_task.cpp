@@ -75,6 +75,7 @@ queue::TaskOutcome follow_locus(const scene::Scene& scene, const systems::System
   LocusOutcome outcome{work.crossing, work.entry, loci.free, work.kind, work.event, work.fundamental_order, {}, 0};
   LocusPointRecord first = record_of(*surface, start, isotropy);
   first.note = "start";
+  std::string failure;
   try {
     for (const int side : {-1, 1}) {
       const continuation::Locus locus =
@@ -91,6 +92,7 @@ queue::TaskOutcome follow_locus(const scene::Scene& scene, const systems::System
       LocusPointRecord& last = points.empty() ? first : points.back();
       last.note += (last.note.empty() ? "" : "; ") + locus.ending.text();
       outcome.limited_by |= limit_of(locus.ending.reason);
+      if (locus.ending.failed()) failure = locus.ending.text();
       if (side < 0) std::reverse(points.begin(), points.end());
       if (side > 0) outcome.points.push_back(first);
       outcome.points.insert(outcome.points.end(), points.begin(), points.end());
@@ -104,6 +106,8 @@ queue::TaskOutcome follow_locus(const scene::Scene& scene, const systems::System
   }
   queue::TaskOutcome done;
   done.payload = pack(outcome);
+  done.failed = !failure.empty();
+  done.reason = failure;
   return done;
 }
 

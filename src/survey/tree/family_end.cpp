@@ -33,6 +33,7 @@ std::string_view name_of(EndKind kind) {
     case EndKind::fixed_point: return continuation::name_of(EndReason::fixed_point);
     case EndKind::closed_loop: return continuation::name_of(EndReason::closed_loop);
     case EndKind::strong_resonance: return continuation::name_of(EndReason::strong_resonance);
+    case EndKind::more_symmetry: return continuation::name_of(EndReason::more_symmetry);
     case EndKind::stopped: return continuation::name_of(EndReason::stopped);
     case EndKind::undecided: return continuation::name_of(EndReason::undecided);
     case EndKind::failure: return continuation::name_of(EndReason::failure);

@@ -96,7 +96,7 @@ void FamilyTree::add_branch(const std::string& key, EndedBranch branch) {
   std::vector<std::string> passed;
   if (branch.outcome) {
     for (const PassedStart& start : branch.outcome->passed) passed.push_back(start.family);
-    // A circle has passed the other side of its first orbit.
+    // All around a circle one side comes to where the other begins.
     if (branch.outcome->end.reason == continuation::EndReason::closed_loop) passed.push_back(branch.lineage.family);
     branch.outcome->before_limit = {};  // a journal has it
     for (ArrivalRecord& arrival : branch.outcome->arrival) {

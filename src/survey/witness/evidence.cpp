@@ -72,7 +72,9 @@ bool Evidence::begins_at_image(const systems::AffineMap& map, int row, int other
   if (from.size() < d || from.size() != to.size()) return false;
   const Eigen::VectorXd image = map(Eigen::Map<const Eigen::VectorXd>(from.data(), static_cast<Eigen::Index>(d)));
   const double size = Eigen::Map<const Eigen::VectorXd>(to.data(), static_cast<Eigen::Index>(d)).norm();
-  double away = distance_between({image.data(), d}, {to.data(), d});
+  // A driven system rests at every phase of its drive: that of the symmetry does not count.
+  const std::size_t resting = system->structure().driven ? d - 1 : d;
+  double away = distance_between({image.data(), resting}, {to.data(), resting});
   for (std::size_t i = d; i < to.size(); ++i) away = std::fmax(away, std::abs(from[i] - to[i]));
   return away <= same_beginning * (1.0 + size);
 }

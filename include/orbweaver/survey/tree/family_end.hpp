@@ -18,7 +18,8 @@ enum class EndKind {
   collision,
   fixed_point,
   closed_loop,
-  strong_resonance,  ///< of loci only
+  strong_resonance,  ///< of loci only, as the next
+  more_symmetry,
   stopped,
   undecided,
   failure,

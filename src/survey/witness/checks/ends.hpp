@@ -41,6 +41,7 @@ class Ends final : public Check {
       case EndReason::fixed_point:
       case EndReason::closed_loop:
       case EndReason::strong_resonance:
+      case EndReason::more_symmetry:
       case EndReason::undecided:
       case EndReason::failure: break;
     }

@@ -90,7 +90,11 @@ class StoredTwice final : public Check {
     if (apart <= own_segments) return true;
     const bool closes = std::any_of(family.ends.begin(), family.ends.end(),
                                     [](const FamilyEnd& end) { return end.kind == EndKind::closed_loop; });
-    return closes && apart + own_segments >= family.orbits();
+    if (!closes) return false;
+    // The last orbit may lie beyond the first, by less than the last step: there the first steps are short.
+    const std::vector<double>& s = family.arclengths;
+    const double around = s[std::min(orbit, segment)] - s.front() + s.back() - s[std::max(orbit, segment + 1)];
+    return apart + own_segments >= family.orbits() || around <= s.back() - s[s.size() - 2];
   }
 
   // Whether they descend from families that begin at images of one another, and are not their own images.
