@@ -9,6 +9,7 @@
 #include "least_guard.hpp"
 #include "limit_orbit.hpp"
 #include "orbweaver/core/error.hpp"
+#include "point_problem.hpp"
 
 namespace orbweaver::continuation {
 
@@ -18,11 +19,11 @@ namespace {
 constexpr int first_orbits = 3;
 /// The end at a fixed point, of the first orbit's amplitude and the start's: steps there are of the amplitude's size.
 constexpr double vanishing_amplitude = 0.5;
-/// How near the first orbit must be, in parts of the last step: the step that comes next would pass it.
-constexpr double closing = 0.5;
-/// A branch has come back only after so many times that length: it cannot turn on less. Not measured; circles near
-/// which nothing else lies are of some ten steps.
-constexpr double way_around = 6.0;
+/// Of an amplitude: what is nearer than this is not near by its size alone.
+constexpr double by_size = 0.5;
+/// A branch has come back only after so many of its steps: it cannot turn on less. Not measured; circles are of some ten
+/// steps.
+constexpr double way_around = 3.0;
 /// How often the period must have grown, and how little of its range the energy may have moved over `period_window`,
 /// where the period diverges. Not measured; both decide only how an end is called.
 constexpr double grown_period = 2.0;
@@ -80,6 +81,17 @@ int guard_number(const systems::Structure& structure, const std::string& name) {
   return static_cast<int>(found - guards.begin());
 }
 
+/// Neither T nor the amplitude can be further apart than the loops are. Orbits around one equilibrium are near each
+/// other by their size alone.
+bool may_have_come_back(const Frontier& frontier, double near, const loop::Loop& loop, double amplitude) {
+  const double extent = extent_of(loop.winding, amplitude);
+  const double first = extent_of(frontier.first.winding, frontier.first_amplitude);
+  return frontier.orbit.step >= first_orbits && way_around * near < frontier.orbit.arclength &&
+         near < by_size * std::min(extent, first) &&
+         std::abs(loop.period - frontier.first.period) < near * frontier.first.period &&
+         std::abs(extent - first) < near;
+}
+
 std::optional<Ending> end_at(const Frontier& frontier, const systems::System& system, const Options& options) {
   const systems::Structure& structure = system.structure();
   const systems::Scales& units = system.scales();
@@ -112,15 +124,7 @@ std::optional<Ending> end_at(const Frontier& frontier, const systems::System& sy
   const double amplitude = frontier.problem.amplitude;
   if (amplitude < vanishing_amplitude * std::min(frontier.first_amplitude, options.start_amplitude))
     return Ending{EndReason::fixed_point, fmt::format("T = {:.9g}, amplitude {:.2e}", period, amplitude)};
-  // Neither T nor the amplitude can be further apart than the loops are: a cheap look before the distance itself. On
-  // the way around a circle without a reversor s = 0 does not come back to where it was; and orbits around one
-  // equilibrium are near each other by their size alone.
-  const double first_extent = extent_of(frontier.first.winding, frontier.first_amplitude);
-  const double near = closing * std::min({frontier.last_increment, amplitude, first_extent});
-  if (way_around * near < orbit.arclength &&
-      std::abs(orbit.loop.period - frontier.first.period) < near * frontier.first.period &&
-      std::abs(amplitude - first_extent) < near &&
-      distance_between_orbits(system, frontier.first, orbit.loop) < near)
+  if (frontier.has_come_back)
     return Ending{EndReason::closed_loop, fmt::format("T = {:.9g}, length {:.6g}", period, orbit.arclength)};
   return std::nullopt;
 }

@@ -20,6 +20,9 @@ inline constexpr double period_window = 1.1;
 /// clearly (docs/mathematics.md, "Ends").
 inline constexpr std::size_t earlier_guards = 5;
 
+/// A cheap look: whether a loop of the branch may lie within `near` of its first orbit, all around a circle.
+[[nodiscard]] bool may_have_come_back(const Frontier& frontier, double near, const loop::Loop& loop, double amplitude);
+
 /// The end that the last orbit is; none if the branch goes on.
 [[nodiscard]] std::optional<Ending> end_at(const Frontier& frontier, const systems::System& system,
                                            const Options& options);

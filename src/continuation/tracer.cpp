@@ -12,6 +12,7 @@
 #include "limit_orbit.hpp"
 #include "orbweaver/continuation/off_branch.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
+#include "orbweaver/loop/symmetry/alignment.hpp"
 #include "step_control.hpp"
 
 namespace orbweaver::continuation {
@@ -44,6 +45,9 @@ constexpr double wrong_prediction = 100.0;
 /// Of the wanted error of predictions: where one is wrong by less and the equations are not solved, a shorter step
 /// helps less than a finer resolution.
 constexpr double well_foreseen = 0.1;
+/// How far beside a step, in parts of it, the first orbit may lie: a step that turns by 0.3 rad leaves its chord by a
+/// twentieth.
+constexpr double beside_closing_step = 0.2;
 /// Halvings of one step from which it goes along the family's direction: the polynomial may point back after a bend.
 constexpr int polynomial_attempts = 3;
 /// A fixed step of z(s = 0) may take so many times the largest step where z(s = 0) moves less than the loop.
@@ -251,7 +255,7 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
       // The step may have gone over to another family, on which there is no such orbit.
       if (!refused.failed() || 0.5 * length < least) return end(refused.reason, std::move(refused.detail));
       trial.reason = std::move(refused.detail);
-      _frontier.on_energy_limit = _frontier.on_parameter_limit = false;
+      _frontier.on_energy_limit = _frontier.on_parameter_limit = _frontier.has_come_back = false;
       _frontier.on_guard_limit = -1;
     }
     _frontier.problem.factor_point.clear();
@@ -313,10 +317,40 @@ double Tracer::length_to_try() {
                   fixed_in_largest * _options.largest_step);
 }
 
+/// Of a branch that comes back to its first orbit on a step of `length` to `trial`: that orbit, where its last one is to
+/// lie. Between them nothing would be looked for, and beyond it everything twice.
+std::optional<Trial> Tracer::closing_orbit(const Trial& trial, double length) {
+  if (!may_have_come_back(_frontier, arclength_between(here(), trial.loop), trial.loop, trial.amplitude))
+    return std::nullopt;
+  const loop::Loop first =
+      loop::aligned(_frontier.first, loop::align_in_time(_system->structure(), _frontier.first, trial.loop));
+  const std::vector<double> there = _problem->from_loop(first);
+  const std::vector<double>& before = _stepper.last();
+  const double step = _problem->product(trial.values, before, trial.values, before);
+  const double way = _problem->product(there, before, there, before);
+  const double along = _problem->product(there, before, trial.values, before) / step;
+  if (!(along > 0.0 && along <= 1.0) || way - along * along * step > beside_closing_step * beside_closing_step * step)
+    return std::nullopt;
+  const auto past = [&](const Trial& other) {  // -1 at the last orbit, 0 at the first
+    const std::vector<double> at = _problem->from_loop(first);
+    const std::vector<double>& from = _stepper.last();
+    return _problem->product(other.values, at, at, from) / _problem->product(at, from, at, from);
+  };
+  if (!(past(trial) > 0.0)) return std::nullopt;
+  _frontier.has_come_back = true;
+  // The crossing at which a family was born lies beside its first orbit: there none may converge, and the circle's last
+  // orbit stays beyond.
+  return orbit_at_value(_stepper, {EndReason::closed_loop, "part of the step", 0.0, length, trial, 1.0, 1.0}, -1.0,
+                        past)
+      .trial;
+}
+
 /// The last orbit of a branch lies on the scene's limit, not beyond it; where a step passes two, on the first.
 /// None with the reason in `refused` where there is no such orbit.
-std::optional<Orbit> Tracer::accept_within_limits(const Trial& trial, double length, Ending& refused) {
+std::optional<Orbit> Tracer::accept_within_limits(const Trial& passed, double length, Ending& refused) {
   constexpr int period = 0;  // among the scalars
+  const std::optional<Trial> closing = closing_orbit(passed, length);
+  const Trial& trial = closing ? *closing : passed;
   const double value = energy_of(*_system, trial.loop);
   const bool is_late = scalar(trial, period) > _options.period_limit;
   const bool is_outside = is_beyond_energies(value);

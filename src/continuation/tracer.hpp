@@ -53,7 +53,8 @@ class Tracer {
   [[nodiscard]] bool has_passed_rest(const Trial& trial);
   [[nodiscard]] bool resolve_twice();
   [[nodiscard]] double length_to_try();
-  std::optional<Orbit> accept_within_limits(const Trial& trial, double length, Ending& refused);
+  std::optional<Trial> closing_orbit(const Trial& trial, double length);
+  std::optional<Orbit> accept_within_limits(const Trial& passed, double length, Ending& refused);
   std::optional<Orbit> accept_within_guards(Trial trial, double length, Ending& refused);
   Orbit accept(const Trial& trial);
   /// Makes `orbit`, whose loop and numbers are set, the frontier's; `increment`: arclength from the one before.

@@ -77,7 +77,8 @@ struct Frontier {
   double first_amplitude = 0.0;
   double earlier_level = 0.0;  ///< that when the period was about a tenth smaller
   double earlier_period = 0.0;
-  bool on_energy_limit = false;     ///< `orbit` is the last one, at the scene's energy limit,
+  bool has_come_back = false;    ///< `orbit` is the first one again, of a circle, or lies beyond it by less than a step
+  bool on_energy_limit = false;  ///< `orbit` is the last one, at the scene's energy limit,
   bool on_parameter_limit = false;  ///< or at that of the parameter
   std::vector<GuardTrace> guards;   ///< one a guard of the structure
   int on_guard_limit = -1;          ///< the guard at whose limit `orbit` is the last one
@@ -89,8 +90,8 @@ struct Frontier {
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, orbit, tangent, next_length, last_increment, first, first_level, first_amplitude,
-                            earlier_level, earlier_period, on_energy_limit, on_parameter_limit, guards, on_guard_limit,
-                            threshold, points, problem);
+                            earlier_level, earlier_period, has_come_back, on_energy_limit, on_parameter_limit, guards,
+                            on_guard_limit, threshold, points, problem);
   }
 };
 
