@@ -218,20 +218,20 @@ TEST(ParameterFamilies, AnswersInTwoWellsAreImages) {
   EXPECT_EQ(test::Atlas(summary.atlas).crossings().rows(), 6U);
 }
 
-TEST(ParameterFamilies, AnswersGoThroughADriveOfNoStrength) {
+TEST(ParameterFamilies, AnswersComeToADriveOfNoStrength) {
   const core::Communicator comm;
   const survey::Summary summary = test::run(
       comm,
       scene_of("duffing.yaml", {"system.parameters.alpha=-1", "system.parameters.damping=0.25",
                                 "system.parameters.drive_amplitude=0.02", "system.parameters.drive_frequency=1",
                                 "starts={states: [{state: [1.02, 0, 0], period: 6.283185307179586, name: Right}]}",
-                                "continuation.free=drive_amplitude", "limits.parameter=[-0.2, 0.2]"}),
+                                "continuation.free=drive_amplitude", "limits.parameter=[0, 0.2]"}),
       "through_zero");
   if (!comm.is_root()) return;
   EXPECT_EQ(summary.failures, 0U);
   ASSERT_EQ(summary.families.size(), 1U);
   EXPECT_EQ(summary.families[0].end_reason,
-            "forwards: parameter limit (drive_amplitude = 0.2); backwards: parameter limit (drive_amplitude = -0.2)");
+            "forwards: parameter limit (drive_amplitude = 0.2); backwards: parameter limit (drive_amplitude = 0)");
 }
 
 /// The second vector beside the mirror image's branch point needs more harmonics than the orbit and the kernel.
