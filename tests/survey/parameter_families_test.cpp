@@ -234,6 +234,25 @@ TEST(ParameterFamilies, AnswersComeToADriveOfNoStrength) {
             "forwards: parameter limit (drive_amplitude = 0.2); backwards: parameter limit (drive_amplitude = 0)");
 }
 
+/// From where it began on a limit: beyond a wider one lies its other side.
+TEST(ParameterFamilies, ARestHasAnotherSideBeyondAWiderLimit) {
+  const core::Communicator comm;
+  const auto scene = [](const char* limits) {
+    return scene_of("duffing.yaml",
+                    {"system.parameters.drive_amplitude=0", "system.parameters.drive_frequency=1",
+                     "starts={fixed_points: {grid: [[0]]}}", std::string("limits.parameter=") + limits});
+  };
+  const auto system = scene::bound_system(scene("[0.5, 2]").system);
+  const auto folder = test::fresh_folder(fmt::format("rest{}", comm.size()), comm.get());
+  const survey::Summary narrow = survey::run_survey(comm, scene("[1, 2]"), system, folder, {survey::Display::none});
+  const survey::Summary wide =
+      survey::run_survey(comm, scene("[0.5, 2]"), system, folder, {survey::Display::none, true});
+  if (!comm.is_root()) return;
+  EXPECT_EQ(narrow.families.at(0).end_reason, "parameter limit (drive_frequency = 2)");
+  EXPECT_EQ(wide.families.at(0).end_reason,
+            "forwards: parameter limit (drive_frequency = 2); backwards: parameter limit (drive_frequency = 0.5)");
+}
+
 /// The second vector beside the mirror image's branch point needs more harmonics than the orbit and the kernel.
 TEST(ParameterFamilies, BranchesOfADrivenFamilyHold) {
   const core::Communicator comm;
