@@ -329,7 +329,9 @@ class LocusTracer {
     out.slope = _last.slope;
     if (here != 0.0) {
       std::optional<numerics::Located> zero;
+      const loop::Loop middle = last->loop;
       for (const double factor : brackets) {
+        if (factor < 0.0 && !arrival_between(_system, _test, _locus.points, _last.loop, middle)) break;
         const numerics::Place from{0.0, here};
         const numerics::Place to{factor * estimate, test_at(factor * estimate)};
         if (!last || std::isnan(to.value)) return std::nullopt;

@@ -7,6 +7,7 @@
 
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/numerics/lagrange.hpp"
+#include "point_problem.hpp"
 
 namespace orbweaver::continuation {
 
@@ -18,6 +19,19 @@ constexpr double turned = 0.5;
 /// Points from which the place of an arrival is extrapolated, and how far apart the squares of their broken parts are.
 constexpr std::size_t most_points = 3;
 constexpr double apart = 1.3;
+
+/// The oscillation of a loop along that of `from`, in parts of it: below zero where the way from one to the other leads
+/// across an equilibrium.
+double oscillation_along(const loop::Loop& from, const loop::Loop& there) {
+  const std::size_t both = std::min(from.modes.size(), there.modes.size());
+  double product = 0.0;
+  double square = 0.0;
+  for (auto n = static_cast<std::size_t>(from.dimension); n < both; ++n) {
+    product += from.modes[n] * there.modes[n];
+    square += from.modes[n] * from.modes[n];
+  }
+  return product / square;
+}
 
 /// T and parameters where the broken part vanishes: they are functions of its square.
 loop::Loop at_arrival(const LocusArrival& arrival, const std::vector<LocusPoint>& before, const loop::Loop& from) {
@@ -71,6 +85,14 @@ std::vector<LocusLimit> limits_of(const systems::System& system, const LocusOpti
 std::optional<std::pair<Ending, double>> arrival_between(const systems::System& system, const LocusTest& test,
                                                          const std::vector<LocusPoint>& before, const loop::Loop& from,
                                                          const loop::Loop& to) {
+  const double oscillation = oscillation_along(from, to);
+  if (!winds(from.winding) && oscillation < 0.0) {
+    const LocusArrival vanishing{"", [&](const loop::Loop& there) {
+                                   return std::array<double, 2>{oscillation_along(from, there), 0.0};
+                                 }};
+    return {{{EndReason::fixed_point, fmt::format("near {}", place_text(system, at_arrival(vanishing, before, from)))},
+             1.0 / (1.0 - oscillation)}};
+  }
   if (!test.arrivals) return std::nullopt;
   for (const LocusArrival& arrival : test.arrivals(from, to)) {
     const auto [part, size] = arrival.broken(to);

@@ -20,9 +20,9 @@ struct LocusLimit {
 [[nodiscard]] std::vector<LocusLimit> limits_of(const systems::System& system, const LocusOptions& options,
                                                 const LocusTest& test);
 
-/// The end at orbits of more symmetry between two neighbouring points, of which none is sought: the surface is even in
-/// what breaks the symmetry, so that they are zeros of the test function as well, whatever it is. Its text has the
-/// place, extrapolated from the points `before`; with it comes how far it is, in parts of the way to `to`.
+/// The end at an equilibrium, or at orbits of more symmetry, between two neighbouring points, of which none is sought:
+/// the surface is even in what breaks the symmetry, so that they are zeros of the test function as well. Its text has
+/// the place, extrapolated from the points `before`; with it comes how far it is, in parts of the way to `to`.
 [[nodiscard]] std::optional<std::pair<Ending, double>> arrival_between(const systems::System& system,
                                                                        const LocusTest& test,
                                                                        const std::vector<LocusPoint>& before,

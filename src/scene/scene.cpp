@@ -48,6 +48,7 @@ Scene read_scene(const Field& root, const std::optional<std::filesystem::path>& 
   if (!scene.compute.stability && scene.survey.depth > 0)
     keys.find("compute")->fail("`stability: true`, as branches are found by multipliers",
                                fmt::format("false, with survey.depth {}", scene.survey.depth), "leave one of them out");
+  keep_to_model(scene.system, system, scene.limits);
   if (const auto field = keys.find("limits")) read_limits(*field, system, scene.limits);
   if (const auto field = keys.find("events")) read_events(*field, scene.events);
   if (const auto field = keys.find("section")) read_section(*field, system, scene.section);

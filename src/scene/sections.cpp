@@ -124,6 +124,13 @@ void read_guards(const Field& field, const systems::System& system, std::map<std
 
 }  // namespace
 
+void keep_to_model(const SystemChoice& choice, const systems::System& system, Limits& limits) {
+  if (system.family_scalars().free.empty()) return;
+  for (const systems::Parameter& parameter : known_parameters(systems::model_info(choice.name), choice))
+    if (parameter.name == system.family_scalars().free.front())
+      std::tie(limits.parameter_from, limits.parameter_to) = std::pair(parameter.lower, parameter.upper);
+}
+
 void read_limits(const Field& field, const systems::System& system, Limits& limits) {
   const Keys keys(field, {"period", "energy", "parameter", "guards", "families", "steps", "time", "task_time"},
                   "limits: {period: 30}");
@@ -135,7 +142,16 @@ void read_limits(const Field& field, const systems::System& system, Limits& limi
     if (system.family_scalars().free.empty())
       parameter->fail("no such key, as no parameter moves", parameter->got(),
                       "name one with `continuation: {free: ...}`");
-    std::tie(limits.parameter_from, limits.parameter_to) = parameter->range({.infinite = true, .example = "[0, 0.5]"});
+    const auto [from, to] = parameter->range({.infinite = true, .example = "[0, 0.5]"});
+    const bool is_within = !(std::isfinite(from) && from < limits.parameter_from) &&
+                           !(std::isfinite(to) && to > limits.parameter_to) && to > limits.parameter_from &&
+                           from < limits.parameter_to;
+    if (!is_within)
+      parameter->fail(fmt::format("a range within [{:g}, {:g}], the values that {} may have", limits.parameter_from,
+                                  limits.parameter_to, system.family_scalars().free.front()),
+                      parameter->got(), "change the range");
+    limits.parameter_from = std::max(limits.parameter_from, from);
+    limits.parameter_to = std::min(limits.parameter_to, to);
   }
   if (const auto guards = keys.find("guards")) read_guards(*guards, system, limits.guards);
   if (const auto families = keys.find("families")) limits.families = families->integer({.lower = 1, .example = "1000"});

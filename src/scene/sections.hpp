@@ -17,6 +17,8 @@ void read_continuation(const Field& field, const systems::System& system, Contin
 void read_family_scalars(const std::optional<Field>& field, SystemChoice& choice);
 void read_survey(const Field& field, Survey& survey);
 void read_compute(const Field& field, Compute& compute);
+/// Families end at the least and the greatest value that the model allows the parameter that moves.
+void keep_to_model(const SystemChoice& choice, const systems::System& system, Limits& limits);
 void read_limits(const Field& field, const systems::System& system, Limits& limits);
 void read_events(const Field& field, Events& events);
 void read_section(const Field& field, const systems::System& system, Section& section);

@@ -39,7 +39,7 @@ const std::map<std::string, Case> cases{
     {"system.parameters.l2", {"1", "0.5"}},
     {"system.parameters.g", {"1", "9.81"}},
     {"system.effects", {"[]", ""}},  // brings parameters: tested below
-    {"system.plugin", {"", ""}},  // tests/package/own_system.sh
+    {"system.plugin", {"", ""}},     // tests/package/own_system.sh
     {"system.plugin_abi", {"", ""}},
     {"system.plugin_source", {"", ""}},
     {"system.scales.time", {"auto", "2"}},
@@ -163,8 +163,8 @@ TEST(Differences, OfFamiliesInAParameterAreFound) {
     return found;
   };
   const std::string free = "continuation.free=m2";
-  EXPECT_THAT(keys({}, {free}),
-              testing::UnorderedElementsAre("continuation.free", "continuation.hold", "system.scales.m2"));
+  EXPECT_THAT(keys({}, {free}), testing::UnorderedElementsAre("continuation.free", "continuation.hold",
+                                                              "limits.parameter", "system.scales.m2"));
   EXPECT_THAT(keys({free}, {free, "continuation.hold=period"}), testing::ElementsAre("continuation.hold"));
   EXPECT_THAT(keys({free}, {free, "limits.parameter=[0.5, 2]"}), testing::ElementsAre("limits.parameter"));
   EXPECT_THAT(keys({free, "limits.parameter=[0.5, 2]"}, {free, "limits.parameter=[0.5, 3]"}),

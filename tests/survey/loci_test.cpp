@@ -141,6 +141,43 @@ TEST(Loci, DoublingsOfDuffingLieWhereTheyAreLocated) {
   EXPECT_GE(compared, 5);
 }
 
+/// A damped double pendulum shaken upwards, which hangs still until its rest doubles the drive's period: by Floquet's
+/// theory of the linear equations (integrated by scipy) at these frequencies. On either side the rest is followed. The
+/// fold of the doubled orbits ends where they come to rest, on the curve of the doublings themselves.
+TEST(Loci, OfAShakenPendulumEndWhereItRests) {
+  const core::Communicator comm;
+  if (comm.size() != 2) GTEST_SKIP() << "it takes seconds";
+  const survey::Summary summary = test::run(
+      comm,
+      scene_of("damped_driven_double_pendulum.yaml",
+               {"system={name: double_pendulum, effects: [damping, pivot_drive], parameters: {c1: 0.05, c2: 0.05, "
+                "pivot_amplitude: 0.1, drive_frequency: 1.5}}",
+                "starts={fixed_points: {grid: [[0], [0]]}}", "continuation.free=drive_frequency", "survey.depth=1",
+                "limits.parameter=[0.9, 1.7]", "limits.period=80",
+                "loci=[{of: [fold-parameter], free: [pivot_amplitude], range: [0, 0.2]}]"}),
+      "shaken");
+  EXPECT_EQ(objections_to(comm, summary.atlas), "");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  const test::Atlas atlas(summary.atlas);
+  std::vector<double> found;
+  for (std::size_t row = 0; row < atlas.crossings().rows(); ++row)
+    if (atlas.crossings().texts("kind")[row] == "period-doubling")
+      found.push_back(atlas.crossings().reals("parameter")[row]);
+  std::sort(found.begin(), found.end());
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_NEAR(found[0], 1.44976620424, 1e-9);
+  EXPECT_NEAR(found[1], 1.63026204936, 1e-9);
+  const auto curves = loci_of(atlas, "fold-parameter");
+  ASSERT_EQ(curves.size(), 1U);
+  const auto at_rest = std::find_if(curves[0].begin(), curves[0].end(), [](const Point& point) {
+    return point.note.rfind("met orbits of more symmetry (1@1/2", 0) == 0;
+  });
+  ASSERT_NE(at_rest, curves[0].end());
+  EXPECT_NEAR(at_rest->parameter, 1.53067, 0.02) << "a step before";
+  for (const Point& point : curves[0]) EXPECT_NE(point.note, "cusp") << point.parameter;
+}
+
 TEST(Loci, OfThePendulumInPeriodAndMass) {
   const core::Communicator comm;
   const survey::Summary summary = test::run(

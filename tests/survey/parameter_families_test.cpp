@@ -218,20 +218,39 @@ TEST(ParameterFamilies, AnswersInTwoWellsAreImages) {
   EXPECT_EQ(test::Atlas(summary.atlas).crossings().rows(), 6U);
 }
 
-TEST(ParameterFamilies, AnswersGoThroughADriveOfNoStrength) {
+TEST(ParameterFamilies, AnswersComeToADriveOfNoStrength) {
   const core::Communicator comm;
   const survey::Summary summary = test::run(
       comm,
       scene_of("duffing.yaml", {"system.parameters.alpha=-1", "system.parameters.damping=0.25",
                                 "system.parameters.drive_amplitude=0.02", "system.parameters.drive_frequency=1",
                                 "starts={states: [{state: [1.02, 0, 0], period: 6.283185307179586, name: Right}]}",
-                                "continuation.free=drive_amplitude", "limits.parameter=[-0.2, 0.2]"}),
+                                "continuation.free=drive_amplitude", "limits.parameter=[0, 0.2]"}),
       "through_zero");
   if (!comm.is_root()) return;
   EXPECT_EQ(summary.failures, 0U);
   ASSERT_EQ(summary.families.size(), 1U);
   EXPECT_EQ(summary.families[0].end_reason,
-            "forwards: parameter limit (drive_amplitude = 0.2); backwards: parameter limit (drive_amplitude = -0.2)");
+            "forwards: parameter limit (drive_amplitude = 0.2); backwards: parameter limit (drive_amplitude = 0)");
+}
+
+/// From where it began on a limit: beyond a wider one lies its other side.
+TEST(ParameterFamilies, ARestHasAnotherSideBeyondAWiderLimit) {
+  const core::Communicator comm;
+  const auto scene = [](const char* limits) {
+    return scene_of("duffing.yaml",
+                    {"system.parameters.drive_amplitude=0", "system.parameters.drive_frequency=1",
+                     "starts={fixed_points: {grid: [[0]]}}", std::string("limits.parameter=") + limits});
+  };
+  const auto system = scene::bound_system(scene("[0.5, 2]").system);
+  const auto folder = test::fresh_folder(fmt::format("rest{}", comm.size()), comm.get());
+  const survey::Summary narrow = survey::run_survey(comm, scene("[1, 2]"), system, folder, {survey::Display::none});
+  const survey::Summary wide =
+      survey::run_survey(comm, scene("[0.5, 2]"), system, folder, {survey::Display::none, true});
+  if (!comm.is_root()) return;
+  EXPECT_EQ(narrow.families.at(0).end_reason, "parameter limit (drive_frequency = 2)");
+  EXPECT_EQ(wide.families.at(0).end_reason,
+            "forwards: parameter limit (drive_frequency = 2); backwards: parameter limit (drive_frequency = 0.5)");
 }
 
 /// The second vector beside the mirror image's branch point needs more harmonics than the orbit and the kernel.

@@ -49,4 +49,11 @@ endforeach()
 set(of_pendulum "${scene}")
 set(scene "${PROJECT_SOURCE_DIR}/drivers/scenes/lorenz.yaml")
 broken_off_test(lorenz.kills system 300 kills.sh 3 1 -- --set output.flush_seconds=0.1 --set output.flush_orbits=5)
+# A curve of torus points to a strong resonance, killed and resumed on its way.
+set(scene "${PROJECT_SOURCE_DIR}/drivers/scenes/damped_driven_double_pendulum.yaml")
+set(beside_torus "{state: [142.543227, 51.7950766, 0, 1.9202047, 793.885987], period: 13.962634015954636}")
+broken_off_test(torus_loci.kills "system;long" 300 kills.sh 3 1 -- --set "starts={states: [${beside_torus}]}"
+  --set system.parameters.torque1_amplitude=2.03960946 --set system.parameters.c1=0.4396474 --set survey.depth=0
+  --set "limits.parameter=[2.03,2.041]" --set "loci=[{of: [torus], free: [c1], range: [0.435,0.445]}]"
+  --set output.flush_seconds=0.1)
 set(scene "${of_pendulum}")

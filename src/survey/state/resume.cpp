@@ -199,13 +199,21 @@ bool begins_again(const scene::Scene& scene, const systems::Scales& scales, cons
   measured.parameters = scales.parameters;
   if (!(measured == scales)) return false;  // which is refused
   if (!(checkpoint.scales == scales)) return true;
-  const auto has_curve = [](const EndedTask& entry) {
-    return kind_of(entry.task) == TaskKind::sweep && !entry.outcome.payload.empty() &&
-           unpack_sweep_outcome(entry.outcome.payload).equilibria.size() > 1;
+  // A family from a rest at a limit had one side only.
+  const auto has_another_side = [&](const FoundMode& mode) {
+    if (!mode.base_is_orbit || !mode.one_direction) return false;
+    const double here = mode.base.parameters.back() * scales.parameter(0);
+    return (here <= before.limits.parameter_from) != (here <= scene.limits.parameter_from) ||
+           (here >= before.limits.parameter_to) != (here >= scene.limits.parameter_to);
+  };
+  const auto starts_otherwise = [&](const EndedTask& entry) {
+    if (kind_of(entry.task) != TaskKind::sweep || entry.outcome.payload.empty()) return false;
+    const SweepOutcome sweep = unpack_sweep_outcome(entry.outcome.payload);
+    return sweep.equilibria.size() > 1 || std::any_of(sweep.modes.begin(), sweep.modes.end(), has_another_side);
   };
   return std::any_of(checkpoint.journals.begin(), checkpoint.journals.end(), [&](const JournalFile& journal) {
     const std::vector<EndedTask> entries = read_journal(folder, journal);
-    return std::any_of(entries.begin(), entries.end(), has_curve);
+    return std::any_of(entries.begin(), entries.end(), starts_otherwise);
   });
 }
 

@@ -23,8 +23,8 @@ struct Found {
 [[nodiscard]] Found find_checkpoint(const core::Communicator& comm, const std::filesystem::path& folder);
 
 /// Whether nothing of the survey stays under `scene`, measured in `scales`: limits.parameter is wider, and its unit
-/// another with it, or curves of equilibria were followed within it: the numbers of their Hopf points are others. On
-/// rank 0 only.
+/// another with it, or curves of equilibria were followed within it: the numbers of their Hopf points are others,
+/// or a family that began at a limit has another side now. On rank 0 only.
 [[nodiscard]] bool begins_again(const scene::Scene& scene, const systems::Scales& scales,
                                 const std::filesystem::path& folder, const Checkpoint& checkpoint);
 

@@ -49,7 +49,7 @@ queue::TaskOutcome Executor::sweep(const SweepWork& work) const {
   else if (_system->family_scalars().free.empty())
     done.payload = pack(small_oscillations(work));
   else if (_system->structure().driven)
-    done.payload = pack(drive_start(*_system, work));
+    done.payload = pack(drive_start(_scene, *_system, work));
   else if (!_system->structure().conservative())
     done.payload = pack(hopf_starts(_scene, *_system, work));
   return done;

@@ -46,7 +46,7 @@ SweepOutcome hopf_starts(const scene::Scene& scene, const systems::System& syste
   return outcome;
 }
 
-SweepOutcome drive_start(const systems::System& system, const SweepWork& work) {
+SweepOutcome drive_start(const scene::Scene& scene, const systems::System& system, const SweepWork& work) {
   SweepOutcome outcome;
   outcome.index = work.index;
   outcome.point = work.point;
@@ -62,6 +62,11 @@ SweepOutcome drive_start(const systems::System& system, const SweepWork& work) {
   found.isotropy = loop::find_isotropy(system.structure(), found.base, loop::symmetry_tolerance);
   found.base_is_orbit = true;
   found.direction = along_last_scalar(found.base);
+  const double here = found.base.parameters.back();
+  const bool is_least = here <= scene.limits.parameter_from;
+  const bool is_largest = here >= scene.limits.parameter_to;
+  found.one_direction = is_least || is_largest;
+  if (is_largest) found.direction *= -1.0;
   outcome.modes.push_back(std::move(found));
   outcome.families = 1;
   outcome.equilibria = {equilibrium_place(system, work.point, starts::linear_modes(system, work.point))};

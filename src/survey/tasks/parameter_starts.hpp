@@ -13,7 +13,8 @@ namespace orbweaver::survey {
 [[nodiscard]] SweepOutcome hopf_starts(const scene::Scene& scene, const systems::System& system, const SweepWork& work);
 
 /// The equilibrium `work.point` of a driven system whose drive is at zero, while the phase turns once: the drive is
-/// raised from there.
-[[nodiscard]] SweepOutcome drive_start(const systems::System& system, const SweepWork& work);
+/// raised from there. Or where it rests under the drive, as when it is shaken along its own direction. The family goes
+/// on to both sides of the parameter's value, unless that is a limit.
+[[nodiscard]] SweepOutcome drive_start(const scene::Scene& scene, const systems::System& system, const SweepWork& work);
 
 }  // namespace orbweaver::survey
