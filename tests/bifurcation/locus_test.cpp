@@ -15,7 +15,7 @@
 #include "orbweaver/continuation/locus_curve.hpp"
 #include "orbweaver/systems/registry.hpp"
 
-namespace orbweaver::test {
+namespace orbweaver::test::locus_tests {
 namespace {
 
 using bifurcation::Event;
@@ -225,4 +225,4 @@ TEST(InPhase, FirstDoublingInPeriodAndMass) {
 }
 
 }  // namespace
-}  // namespace orbweaver::test
+}  // namespace orbweaver::test::locus_tests

@@ -10,7 +10,7 @@
 
 #include "orbweaver/systems/registry.hpp"
 
-namespace orbweaver::starts {
+namespace orbweaver::starts::natural_scales_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -78,4 +78,4 @@ TEST(NaturalScales, AreThatOfTheMotionsThemselves) {
 }
 
 }  // namespace
-}  // namespace orbweaver::starts
+}  // namespace orbweaver::starts::natural_scales_test

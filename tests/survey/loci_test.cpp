@@ -22,6 +22,7 @@
 #include "survey/atlas.hpp"
 #include "survey/atlas_records.hpp"
 
+namespace loci_test {
 namespace {
 
 using namespace orbweaver;
@@ -316,3 +317,4 @@ TEST(Loci, ChangedNumbersAreFound) {
 }
 
 }  // namespace
+}  // namespace loci_test

@@ -17,6 +17,7 @@
 #include "orbweaver/survey/verify/verify.hpp"
 #include "survey/atlas.hpp"
 
+namespace undamped_driven_test {
 namespace {
 
 using namespace orbweaver;
@@ -215,3 +216,4 @@ TEST(UndampedDriven, ShakenPendulumHasOneAndTwoPairs) {
 }
 
 }  // namespace
+}  // namespace undamped_driven_test

@@ -136,8 +136,8 @@ double polished(const TimeMap& map, const TimeMap& other, double s, double round
 constexpr int most_common_steps = 8;
 const double last_step = std::ldexp(1.0, 1 - newton_bits);
 
-// The parameters in [0, 2 pi] of these phases, at most `parameters_together`; `density` takes the densities there, `converged`
-// which of them are right.
+// The parameters in [0, 2 pi] of these phases, at most `parameters_together`; `density` takes the densities there,
+// `converged` which of them are right.
 void invert_together(const TimeMap& map, const double* wanted, std::size_t count, double* s, double* density,
                      bool* converged) {
   std::copy(wanted, wanted + count, s);
