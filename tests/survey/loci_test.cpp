@@ -18,6 +18,7 @@
 #include <Eigen/Dense>
 
 #include "orbweaver/certificate/integrate.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/survey/verify/verify.hpp"
 #include "survey/atlas.hpp"
 #include "survey/atlas_records.hpp"

@@ -14,6 +14,7 @@
 #include "orbweaver/archive/read/loop_of.hpp"
 #include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/loop/curve/system_at.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/survey/verify/verify.hpp"
 #include "survey/atlas.hpp"
 
