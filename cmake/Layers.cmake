@@ -5,6 +5,12 @@ set(ORBWEAVER_LAYERS
 
 # g++ 12 reports its own AVX-512 intrinsics as maybe-uninitialized wherever Eigen inlines them.
 set(ORBWEAVER_WARNING_FLAGS -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wno-maybe-uninitialized)
+# In a unity build the helpers of one source are global to the next, and no source is the main file; with more inlined, g++ 12 warns
+# of bounds within strings of the standard library where there is nothing wrong. Other builds warn of all.
+set(ORBWEAVER_NO_WARNINGS_OF_BOUNDS -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
+if(ORBWEAVER_UNITY_BUILD)
+  list(APPEND ORBWEAVER_WARNING_FLAGS -Wno-shadow -Wshadow=local -Wno-subobject-linkage ${ORBWEAVER_NO_WARNINGS_OF_BOUNDS})
+endif()
 if(ORBWEAVER_WARNINGS_AS_ERRORS)
   list(APPEND ORBWEAVER_WARNING_FLAGS -Werror)
 endif()
@@ -53,6 +59,13 @@ function(orbweaver_precompiled_headers target)
   endif()
 endfunction()
 
+# Several sources of a target in one translation unit (docs/building.md): what they share is read and instantiated once.
+function(orbweaver_unity_build target)
+  if(ORBWEAVER_UNITY_BUILD)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  endif()
+endfunction()
+
 # orbweaver_layer(<name> [EXCEPT folder ...] [DEPENDS layer-or-library ...])
 # One static library a layer: target orbweaver_<name>, alias orbweaver::<name>, of every .cpp in the layer's folder and its
 # subfolders. Private headers are named by their path from that folder.
@@ -68,6 +81,7 @@ function(orbweaver_layer name)
     set(scope PUBLIC)
     target_link_libraries(orbweaver_${name} PRIVATE $<BUILD_INTERFACE:orbweaver_build_flags>)
     orbweaver_precompiled_headers(orbweaver_${name})
+    orbweaver_unity_build(orbweaver_${name})
     target_include_directories(orbweaver_${name} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}")
   else()
     add_library(orbweaver_${name} INTERFACE)

@@ -55,7 +55,7 @@ int shared_order(const loop::Isotropy& group, const std::vector<int>& angles) {
 }
 
 // m: the greatest common divisor of the harmonics (and windings) that the loop has; 0 for a constant loop.
-int repetitions(const loop::Loop& loop, double tolerance) {
+int divisor_of_harmonics(const loop::Loop& loop, double tolerance) {
   int divisor = 0;
   for (int k = 1; k <= loop.cutoff; ++k) {
     double weight = 0.0;
@@ -119,7 +119,7 @@ KernelActions::KernelActions(const systems::Structure& system, const loop::Loop&
   }
   core::require((_kernel.transpose() * _kernel - Eigen::MatrixXd::Identity(n, n)).norm() < orthonormal,
                 "kernel vectors must be orthonormal");
-  const int times = repetitions(base, options.symmetry_tolerance);
+  const int times = divisor_of_harmonics(base, options.symmetry_tolerance);
   _constant = times == 0;
   const loop::Isotropy spatial = loop::SymmetryGroup::of_space(system).elements();
   _denominator = shared_order(spatial, system.angles) * std::max(times, 1);

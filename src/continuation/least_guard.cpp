@@ -15,7 +15,7 @@ namespace orbweaver::continuation {
 namespace {
 
 /// Of the distance between nodes, for the place of a minimum: its value is then right to the square of that.
-constexpr double place_tolerance = 1e-8;
+constexpr double least_place_tolerance = 1e-8;
 
 /// z(s), windings included.
 std::vector<double> state_at_parameter(const loop::Loop& loop, double s) {
@@ -63,7 +63,7 @@ double least_guard(const systems::System& family, int guard, const loop::Loop& l
     const double s = spacing * static_cast<double>(j);
     const auto minimum =
         numerics::locate_minimum([&](double at) { return system.guard(guard, state_at_parameter(loop, at)); },
-                                 s - spacing, s + spacing, place_tolerance * spacing);
+                                 s - spacing, s + spacing, least_place_tolerance * spacing);
     if (minimum) least = std::min(least, minimum->value);
   }
   return least;

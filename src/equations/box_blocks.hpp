@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "box_scheme.hpp"
+#include "index.hpp"
 
 namespace orbweaver::equations {
 
@@ -24,8 +25,6 @@ inline Packet square_root(Packet v) {
   return v;
 }
 inline double sum_of(const Packet& v) { return (v[0] + v[2]) + (v[1] + v[3]); }
-
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Vectors of d numbers and matrices of d rows as rows of packets, the same for both storages of a BoxScheme. `Scalar`
 /// is a Packet of one number of each of four stretches, or a double. A vector, or a column of a matrix, is one packet a

@@ -4,25 +4,24 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <numbers>
 #include <string>
 #include <utility>
 
 #include "box_scheme.hpp"
 #include "dense_factor.hpp"
 #include "fitted_cells.hpp"
+#include "index.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/equations/anderson.hpp"
 #include "orbweaver/loss/linearization.hpp"
+#include "orbweaver/numerics/two_pi.hpp"
 
 namespace orbweaver::equations {
 
 namespace {
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using numerics::two_pi;
 
 }  // namespace
 

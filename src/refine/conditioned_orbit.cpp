@@ -26,7 +26,7 @@ constexpr double longest_step = 0.3;
 constexpr double arrived = 1e-12;
 constexpr double nearly_arrived = 1e-9;
 /// An orbit that is further from the guess than this part of the guess's extent is another one, or an equilibrium.
-constexpr double farthest = 0.5;
+constexpr double farthest_of_extent = 0.5;
 /// Of the diagonal of R: below this an iteration with the factors in double gains fewer than four digits.
 constexpr double singular = 1e-11;
 /// An iteration in extended arithmetic gains at least so many digits.
@@ -130,7 +130,7 @@ void ConditionedOrbit::require_near(const Points<double>& points, const Points<d
       extent = std::max(extent, std::abs(guess.nodes[m][i] - guess.nodes.front()[i]) / scale);
       distance = std::max(distance, std::abs(points.nodes[m][i] - guess.nodes[m][i]) / scale);
     }
-  if (distance > farthest * extent)
+  if (distance > farthest_of_extent * extent)
     throw core::NumericalError(
         fmt::format("Newton's method came to an orbit that is {:.2g} away from the guess, whose extent is {:.2g}",
                     distance, extent));

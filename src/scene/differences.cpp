@@ -235,10 +235,10 @@ bool is_inside(const std::string& path, const std::string& outer) {
   return path.starts_with(outer) && (path.size() == outer.size() || path[outer.size()] == '.');
 }
 
-std::string written(const YAML::Node& node) {
-  if (node.IsSequence()) return list_text(node, written);
+std::string value_text(const YAML::Node& node) {
+  if (node.IsSequence()) return list_text(node, value_text);
   if (node.IsMap())
-    return list_text(node, [](const auto& entry) { return written(entry.first) + ": " + written(entry.second); });
+    return list_text(node, [](const auto& entry) { return value_text(entry.first) + ": " + value_text(entry.second); });
   if (!node.IsScalar()) return "";
   const auto number = parse_number(node.Scalar());
   return number ? text_of(*number) : node.Scalar();
@@ -248,13 +248,13 @@ std::string written(const YAML::Node& node) {
 void add_unknown(const YAML::Node& node, const std::string& path, const std::vector<Value>& known,
                  std::vector<Value>& unknown) {
   for (const auto& entry : node) {
-    const std::string key = (path.empty() ? "" : path + ".") + written(entry.first);
+    const std::string key = (path.empty() ? "" : path + ".") + value_text(entry.first);
     if (std::any_of(known.begin(), known.end(), [&](const Value& value) { return is_inside(key, value.key); }))
       continue;
     if (entry.second.IsMap())
       add_unknown(entry.second, key, known, unknown);
     else
-      unknown.push_back({key, written(entry.second)});
+      unknown.push_back({key, value_text(entry.second)});
   }
 }
 

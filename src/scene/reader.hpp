@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <string>
@@ -12,6 +13,9 @@
 #include "source.hpp"
 
 namespace orbweaver::scene {
+
+/// Characters of the name of a file.
+constexpr std::size_t longest_path = 4096;
 
 /// What a number may be. `example` stands in messages.
 struct NumberRule {

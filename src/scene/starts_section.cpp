@@ -15,8 +15,6 @@ namespace orbweaver::scene {
 
 namespace {
 
-constexpr std::size_t longest_path = 4096;
-
 std::vector<double> read_state(const Field& state, const systems::System& system) {
   const auto d = static_cast<std::size_t>(system.dimension());
   const std::vector<Field> numbers = state.list("[0.1, 0]");

@@ -131,8 +131,6 @@ std::vector<std::string> scale_names(const systems::System& system) {
 
 namespace {
 
-constexpr std::size_t longest_path = 4096;
-
 /// The plugin of a scene that is a file: it lies beside it. That of a stored scene has been loaded, or is the one that
 /// was given on the command line.
 const systems::Plugin& plugin_of(const Field& file, const Field* source,

@@ -11,7 +11,7 @@ namespace {
 
 /// Segments are joined while the norm of their product stays below this: the correction then loses less than two
 /// digits.
-constexpr double joined_norm = 30.0;
+constexpr double joined_segment_norm = 30.0;
 /// Weight of the period in the least squares: along a conservative family the orbit of (nearly) the same period is
 /// meant.
 constexpr double period_weight = 1e-3;
@@ -42,7 +42,7 @@ std::vector<Link> links_of(const Chain& chain) {
     own.col(0) = chain.defects.col(m);
     own.col(1) = chain.fields.col(m + 1) * chain.steps[m];
     if (m > begin) next.noalias() = transition * product;
-    if (m > begin && next.norm() > joined_norm) {
+    if (m > begin && next.norm() > joined_segment_norm) {
       links.push_back({begin, m, product, forcing});
       begin = m;
     }

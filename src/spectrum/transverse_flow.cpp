@@ -64,7 +64,8 @@ Eigen::Matrix<double, D, rest(D, C)> basis_at(const Chain& chain, Eigen::Index m
 
 using ad::Lanes;
 using Lanes4 = std::array<Lanes, 4>;
-constexpr double never_zero = 1e-300;
+/// Below the squares of all vectors: unused lanes hold zeros.
+constexpr double least_square = 1e-300;
 
 Lanes dot(const Lanes4& a, const Lanes4& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]; }
 
@@ -75,11 +76,10 @@ void reflect(const Lanes4& reflector, Lanes twice, Lanes4& vector) {
 }
 
 /// Adds the length of the vector to its entry `first`, away from zero; returns 2 / |.|^2 of the result.
-/// `never_zero`: unused lanes hold zeros.
 Lanes make_reflector(Lanes4& vector, std::size_t first) {
   const Lanes length = sqrt(dot(vector, vector));
   vector[first] = vector[first] + Lanes(vector[first].packed < 0.0 ? -length.packed : length.packed);
-  return 2.0 / (dot(vector, vector) + never_zero);
+  return 2.0 / (dot(vector, vector) + least_square);
 }
 
 /// The same bases for four dimensions and C = 2, several nodes at a time: column m holds that of t_m.

@@ -13,12 +13,14 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/interruption.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
+#include "orbweaver/numerics/two_pi.hpp"
 
 namespace orbweaver::starts {
 
 namespace {
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
+using numerics::two_pi;
+
 constexpr double same_point = 1e-7;
 /// Newton's step that no longer changes a point, and its field, relative to 1 + |df/dz|, that is rounding with room: a
 /// start that leads elsewhere leaves a field of order 1.

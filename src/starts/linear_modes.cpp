@@ -32,7 +32,7 @@ constexpr double longest_polishing = 1e-6;
 /// Parlett and Reinsch 1969 (doi:10.1007/BF02165404): a scaling is worth it if it shortens row and column by 5 %.
 constexpr double worth_scaling = 0.95;
 /// Rounding of the coordinates of a fixed point, where it is asked whether a reversor leaves it alone.
-constexpr double same_point = 1e-9;
+constexpr double kept_point = 1e-9;
 /// Largest whole ratio of two frequencies that is a resonance: harmonics beyond it carry nothing that double sees.
 constexpr double highest_ratio = 4096.0;
 
@@ -291,7 +291,7 @@ bool has_pairs(const systems::System& system, std::span<const double> point) {
   return std::any_of(structure.reversors.begin(), structure.reversors.end(), [&](const systems::Symmetry& r) {
     Eigen::VectorXd gap = r.map(z) - z;
     for (const int i : structure.angles) gap(i) = std::remainder(gap(i), 2.0 * std::numbers::pi);
-    return gap.norm() < same_point * (1.0 + z.norm());
+    return gap.norm() < kept_point * (1.0 + z.norm());
   });
 }
 

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <utility>
 
 #include <boost/math/interpolators/makima.hpp>
@@ -10,12 +9,14 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/curve/time_samples.hpp"
+#include "orbweaver/numerics/two_pi.hpp"
 
 namespace orbweaver::starts {
 
 namespace {
 
-constexpr double turn = 2.0 * std::numbers::pi;
+using numerics::two_pi;
+
 /// States that a spline is evaluated at.
 constexpr std::size_t samples_of_spline = 4 * static_cast<std::size_t>(loop::time_sample_count);
 /// Of a guess's harmonics, relative to its size: smaller ones are left out.
@@ -39,7 +40,7 @@ loop::Loop loop_through(const systems::Structure& structure, std::vector<std::ve
   samples.winding.assign(d, 0.0);
   for (std::size_t i = 0; i < d; ++i) {
     const double gap = states[count][i] - states[0][i];
-    if (structure.is_angle(i)) samples.winding[i] = std::round(gap / turn);
+    if (structure.is_angle(i)) samples.winding[i] = std::round(gap / two_pi);
     for (std::size_t j = 0; j < count; ++j)
       samples.states[i * count + j] = states[j][i] - static_cast<double>(j) / static_cast<double>(count) * gap;
   }
@@ -58,7 +59,7 @@ loop::Loop loop_through(const systems::Structure& structure, const std::vector<d
   const std::size_t d = states.front().size();
   // An angle runs on from one to the next.
   const auto next_to = [&](double value, double before, std::size_t i) {
-    return structure.is_angle(i) ? before + std::remainder(value - before, turn) : value;
+    return structure.is_angle(i) ? before + std::remainder(value - before, two_pi) : value;
   };
   for (std::size_t j = 1; j < states.size(); ++j)
     for (std::size_t i = 0; i < d; ++i) states[j][i] = next_to(states[j][i], states[j - 1][i], i);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -10,6 +9,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/interruption.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
+#include "orbweaver/numerics/two_pi.hpp"
 #include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/taylor/flow.hpp"
 
@@ -17,7 +17,8 @@ namespace orbweaver::starts {
 
 namespace {
 
-constexpr double turn = 2.0 * std::numbers::pi;
+using numerics::two_pi;
+
 /// Radians by which the field may turn from one sample to the next, rms: returns are told by the sign of a product of
 /// a distance and the field.
 constexpr double turn_a_sample = 0.1;
@@ -118,7 +119,7 @@ std::vector<Minimum> minima(const Trajectory& trajectory, const std::vector<doub
     double slope = 0.0;
     for (std::size_t i = 0; i < d; ++i) {
       double away = z[i] - image[i];
-      if (angle[i] != 0) away -= turn * std::nearbyint(away / turn);
+      if (angle[i] != 0) away -= two_pi * std::nearbyint(away / two_pi);
       square += away * away;
       slope += away * f[i];
     }

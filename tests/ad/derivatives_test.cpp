@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+namespace derivatives_test {
 namespace {
 
 namespace ad = orbweaver::ad;
@@ -140,3 +141,4 @@ TEST(Derivatives, OneDimensionWorks) {
 }
 
 }  // namespace
+}  // namespace derivatives_test

@@ -11,6 +11,7 @@
 
 #include "orbweaver/ad/dual.hpp"
 
+namespace lanes_test {
 namespace {
 
 using orbweaver::ad::Dual;
@@ -204,3 +205,4 @@ TEST(Dual, PowersAtZero) {
 }
 
 }  // namespace
+}  // namespace lanes_test

@@ -7,7 +7,7 @@
 
 #include "orbweaver/ad/derivatives.hpp"
 
-namespace orbweaver::ad {
+namespace orbweaver::ad::tape_test {
 namespace {
 
 /// All functions of the scalar at once.
@@ -74,4 +74,4 @@ TEST(Tape, IsWrittenWithinOneRecording) {
 }
 
 }  // namespace
-}  // namespace orbweaver::ad
+}  // namespace orbweaver::ad::tape_test

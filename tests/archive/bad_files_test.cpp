@@ -13,6 +13,7 @@
 #include "orbweaver/archive/write/segment.hpp"
 #include "orbweaver/core/error.hpp"
 
+namespace bad_files_test {
 namespace {
 
 using namespace orbweaver;
@@ -269,3 +270,4 @@ TEST_F(BadFiles, ATornSegmentIsToldFromAWholeOne) {
 }
 
 }  // namespace
+}  // namespace bad_files_test

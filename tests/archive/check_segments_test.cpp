@@ -9,6 +9,7 @@
 #include "orbweaver/archive/read/check_segments.hpp"
 #include "orbweaver/core/mpi/communicator.hpp"
 
+namespace check_segments_test {
 namespace {
 
 using namespace orbweaver;
@@ -160,3 +161,4 @@ TEST_F(CheckSegments, AFingerprintIsThatOfTheRowsInAnyOrder) {
 }
 
 }  // namespace
+}  // namespace check_segments_test

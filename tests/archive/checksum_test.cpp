@@ -16,6 +16,7 @@
 #include "orbweaver/core/error.hpp"
 #include "schema/row_checksum.hpp"
 
+namespace checksum_test {
 namespace {
 
 using namespace orbweaver;
@@ -216,3 +217,4 @@ TEST_F(Checksums, AChangedByteOfASegmentIsFoundWhenItIsReadAgain) {
 }
 
 }  // namespace
+}  // namespace checksum_test

@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+namespace crossing_kind_test {
 namespace {
 
 using namespace orbweaver::archive;
@@ -32,3 +33,4 @@ TEST(CrossingKinds, OnlySomeHaveASector) {
 }
 
 }  // namespace
+}  // namespace crossing_kind_test

@@ -15,6 +15,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/communicator.hpp"
 
+namespace failures_test {
 namespace {
 
 using namespace orbweaver;
@@ -243,3 +244,4 @@ TEST_F(Failures, SegmentsThatDoNotFitTogetherAreRefusedByAllRanks) {
 }
 
 }  // namespace
+}  // namespace failures_test

@@ -6,6 +6,7 @@
 #include "orbweaver/archive/write/segment.hpp"
 #include "orbweaver/core/mpi/communicator.hpp"
 
+namespace findings_test {
 namespace {
 
 using namespace orbweaver;
@@ -77,3 +78,4 @@ TEST_F(Findings, RowsOfCrossingsAreThoseOfTheFile) {
 }
 
 }  // namespace
+}  // namespace findings_test

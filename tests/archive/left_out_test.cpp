@@ -9,6 +9,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/communicator.hpp"
 
+namespace left_out_test {
 namespace {
 
 using namespace orbweaver;
@@ -167,3 +168,4 @@ TEST_F(LeftOut, ATreeOfFamiliesComesBackWithAllItsReferences) {
 }
 
 }  // namespace
+}  // namespace left_out_test

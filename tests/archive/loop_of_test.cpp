@@ -9,7 +9,7 @@
 #include "loop/samples.hpp"
 #include "orbweaver/core/error.hpp"
 
-namespace orbweaver::archive {
+namespace orbweaver::archive::loop_of_test {
 namespace {
 
 constexpr double period = 1234.5;  // as no orbit of the sample has it
@@ -100,4 +100,4 @@ TEST(LoopOf, RefusesWhatIsNoLoop) {
 }
 
 }  // namespace
-}  // namespace orbweaver::archive
+}  // namespace orbweaver::archive::loop_of_test

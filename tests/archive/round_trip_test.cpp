@@ -9,6 +9,7 @@
 #include "orbweaver/archive/write/consolidate.hpp"
 #include "orbweaver/archive/write/segment.hpp"
 
+namespace round_trip_test {
 namespace {
 
 using namespace orbweaver;
@@ -203,3 +204,4 @@ TEST(RoundTrip, OrbitsLargerThanAStageArePassedOnInPieces) {
 }
 
 }  // namespace
+}  // namespace round_trip_test

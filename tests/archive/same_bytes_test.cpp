@@ -11,6 +11,7 @@
 #include "orbweaver/archive/write/segment.hpp"
 #include "orbweaver/core/mpi/communicator.hpp"
 
+namespace same_bytes_test {
 namespace {
 
 using namespace orbweaver;
@@ -100,3 +101,4 @@ TEST(SameBytes, TheOrderOfFamiliesAndCrossingsDoesNotMatter) {
 }
 
 }  // namespace
+}  // namespace same_bytes_test

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 
+namespace schema_test {
 namespace {
 
 using namespace orbweaver::archive;
@@ -55,3 +56,4 @@ TEST(Schema, RowsOfVectorColumnsAreAsWideAsTheHeaderSays) {
 }
 
 }  // namespace
+}  // namespace schema_test

@@ -8,6 +8,7 @@
 #include "archive/sample.hpp"
 #include "orbweaver/core/error.hpp"
 
+namespace sealed_file_test {
 namespace {
 
 using namespace orbweaver;
@@ -99,3 +100,4 @@ TEST(SealedFile, SaysWhereItCannotBeWritten) {
 }
 
 }  // namespace
+}  // namespace sealed_file_test

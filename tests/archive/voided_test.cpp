@@ -7,6 +7,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/communicator.hpp"
 
+namespace voided_test {
 namespace {
 
 using namespace orbweaver;
@@ -142,3 +143,4 @@ TEST_F(Voided, SegmentsOfAnEarlierSceneAreTakenWhereItIsListed) {
 }
 
 }  // namespace
+}  // namespace voided_test

@@ -7,7 +7,7 @@
 #include "bifurcation/symmetry_gain.hpp"
 #include "orbweaver/bifurcation/symmetry_watch.hpp"
 
-namespace orbweaver::bifurcation {
+namespace orbweaver::bifurcation::arrival_test {
 namespace {
 
 using test::Branching;
@@ -53,4 +53,4 @@ TEST(Arrival, OfTheBaseFamilyThereIsNone) {
 }
 
 }  // namespace
-}  // namespace orbweaver::bifurcation
+}  // namespace orbweaver::bifurcation::arrival_test

@@ -9,6 +9,7 @@
 #include "bifurcation/sweep.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
 
+namespace closed_forms_test {
 namespace {
 
 using namespace orbweaver;
@@ -195,3 +196,4 @@ TEST(ClosedForms, CycleWithATurningPlaneGrowsATorus) {
 }
 
 }  // namespace
+}  // namespace closed_forms_test

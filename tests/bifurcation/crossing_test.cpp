@@ -11,6 +11,7 @@
 #include "orbweaver/loop/curve/measures.hpp"
 #include "support/delegating_system.hpp"
 
+namespace crossing_test {
 namespace {
 
 using namespace orbweaver;
@@ -183,3 +184,4 @@ TEST(FamilyCurve, NothingBeyondItsEnds) {
 }
 
 }  // namespace
+}  // namespace crossing_test

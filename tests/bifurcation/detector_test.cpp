@@ -14,6 +14,7 @@
 #include "orbweaver/numerics/locate.hpp"
 #include "orbweaver/numerics/random.hpp"
 
+namespace detector_test {
 namespace {
 
 using namespace orbweaver;
@@ -496,3 +497,4 @@ TEST(Detector, CountedZerosThatCannotBeBracketedAreTold) {
 }
 
 }  // namespace
+}  // namespace detector_test

@@ -9,7 +9,7 @@
 #include "orbweaver/certificate/certificate.hpp"
 #include "orbweaver/systems/registry.hpp"
 
-namespace orbweaver::bifurcation {
+namespace orbweaver::bifurcation::directions_test {
 namespace {
 
 constexpr double in_phase_doubling = 8.442930704977588;
@@ -191,4 +191,4 @@ TEST(Directions, TwinsOfOneReversorDoNotHangOnTheStart) {
 }
 
 }  // namespace
-}  // namespace orbweaver::bifurcation
+}  // namespace orbweaver::bifurcation::directions_test

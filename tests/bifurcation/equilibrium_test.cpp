@@ -10,7 +10,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "spectrum/point_systems.hpp"
 
-namespace orbweaver::bifurcation {
+namespace orbweaver::bifurcation::equilibrium_test {
 namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
@@ -214,4 +214,4 @@ TEST(Equilibrium, ASingleOscillation) {
 }
 
 }  // namespace
-}  // namespace orbweaver::bifurcation
+}  // namespace orbweaver::bifurcation::equilibrium_test

@@ -10,6 +10,7 @@
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "support/delegating_system.hpp"
 
+namespace family_jump_test {
 namespace {
 
 using namespace orbweaver;
@@ -341,3 +342,4 @@ TEST(FamilyJump, AFastPhaseThatPassesWholeTurnsDoesNotStopTheBranch) {
 }
 
 }  // namespace
+}  // namespace family_jump_test

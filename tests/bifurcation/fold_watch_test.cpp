@@ -8,6 +8,7 @@
 #include "orbweaver/bifurcation/fold_watch.hpp"
 #include "orbweaver/core/error.hpp"
 
+namespace fold_watch_test {
 namespace {
 
 using namespace orbweaver;
@@ -96,3 +97,4 @@ TEST(FoldWatch, RefusesPositionsThatDoNotIncrease) {
 }
 
 }  // namespace
+}  // namespace fold_watch_test

@@ -9,7 +9,7 @@
 #include "loop/samples.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
 
-namespace orbweaver::bifurcation {
+namespace orbweaver::bifurcation::identity_test {
 namespace {
 
 using continuation::Orbit;
@@ -207,4 +207,4 @@ TEST(Identity, InvariantsRejectWithoutSolving) {
 }
 
 }  // namespace
-}  // namespace orbweaver::bifurcation
+}  // namespace orbweaver::bifurcation::identity_test

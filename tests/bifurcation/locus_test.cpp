@@ -16,7 +16,7 @@
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/systems/registry.hpp"
 
-namespace orbweaver::test {
+namespace orbweaver::test::locus_tests {
 namespace {
 
 using bifurcation::Event;
@@ -259,4 +259,4 @@ TEST(InPhase, FirstDoublingInPeriodAndMass) {
 }
 
 }  // namespace
-}  // namespace orbweaver::test
+}  // namespace orbweaver::test::locus_tests

@@ -14,6 +14,7 @@
 #include "orbweaver/loop/symmetry/alignment.hpp"
 #include "support/stated_system.hpp"
 
+namespace near_resonance_test {
 namespace {
 
 using namespace orbweaver;
@@ -141,3 +142,4 @@ TEST(NearResonance, AStepOverAWideGapBesideAFoldIsTakenBack) {
 }
 
 }  // namespace
+}  // namespace near_resonance_test

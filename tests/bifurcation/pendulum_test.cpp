@@ -6,6 +6,7 @@
 #include "continuation/families.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
 
+namespace pendulum_test {
 namespace {
 
 using namespace orbweaver;
@@ -61,3 +62,4 @@ TEST(PendulumCrossings, DownUpHasNone) { expect_crossings(test::down_up(), {}); 
 TEST(PendulumCrossings, UpDownHasNone) { expect_crossings(test::up_down(), {}); }
 
 }  // namespace
+}  // namespace pendulum_test

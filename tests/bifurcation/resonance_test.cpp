@@ -12,7 +12,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "spectrum/point_systems.hpp"
 
-namespace orbweaver::bifurcation {
+namespace orbweaver::bifurcation::resonance_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -290,4 +290,4 @@ TEST(Resonance, FamiliesOfTheDoublePendulumByShooting) {
 }
 
 }  // namespace
-}  // namespace orbweaver::bifurcation
+}  // namespace orbweaver::bifurcation::resonance_test

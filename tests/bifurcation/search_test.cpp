@@ -14,7 +14,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "pushed_system.hpp"
 
-namespace orbweaver::bifurcation {
+namespace orbweaver::bifurcation::search_test {
 namespace {
 
 using test::Crossing;
@@ -392,4 +392,4 @@ TEST(Search, GoesFurtherOutWhereTheAngleIsHardlyFixed) {
 }
 
 }  // namespace
-}  // namespace orbweaver::bifurcation
+}  // namespace orbweaver::bifurcation::search_test

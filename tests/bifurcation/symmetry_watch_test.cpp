@@ -11,7 +11,7 @@
 #include "orbweaver/core/error.hpp"
 #include "support/stated_system.hpp"
 
-namespace orbweaver::bifurcation {
+namespace orbweaver::bifurcation::symmetry_watch_test {
 namespace {
 
 using test::element_of;
@@ -262,4 +262,4 @@ TEST(SymmetryWatch, SeesThroughATimeMap) {
 }
 
 }  // namespace
-}  // namespace orbweaver::bifurcation
+}  // namespace orbweaver::bifurcation::symmetry_watch_test

@@ -11,6 +11,7 @@
 #include "orbweaver/core/error.hpp"
 #include "support/stated_system.hpp"
 
+namespace test_functions_test {
 namespace {
 
 using namespace orbweaver;
@@ -247,3 +248,4 @@ TEST(Isolated, IsAnOrbitWhoseIndicesDifferFromTwoByMoreThanTheirErrors) {
 }
 
 }  // namespace
+}  // namespace test_functions_test

@@ -4,7 +4,7 @@
 
 #include "orbweaver/systems/registry.hpp"
 
-namespace orbweaver::bifurcation {
+namespace orbweaver::bifurcation::twin_order_test {
 namespace {
 
 TEST(TwinOrder, NumbersAsNearAsRoundingDoNotDecide) {
@@ -50,4 +50,4 @@ TEST(TwinOrder, SymmetricInstantsAreOneWhereverALoopStarts) {
 }
 
 }  // namespace
-}  // namespace orbweaver::bifurcation
+}  // namespace orbweaver::bifurcation::twin_order_test

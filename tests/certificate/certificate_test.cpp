@@ -12,7 +12,7 @@
 #include "orbweaver/systems/scaled_system.hpp"
 #include "spectrum/point_systems.hpp"
 
-namespace orbweaver::certificate {
+namespace orbweaver::certificate::certificate_test {
 namespace {
 
 using testing::AllOf;
@@ -249,4 +249,4 @@ TEST(Certificate, MisuseIsRefused) {
 }
 
 }  // namespace
-}  // namespace orbweaver::certificate
+}  // namespace orbweaver::certificate::certificate_test

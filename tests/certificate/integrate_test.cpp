@@ -12,7 +12,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/registry.hpp"
 
-namespace orbweaver::certificate {
+namespace orbweaver::certificate::integrate_test {
 namespace {
 
 using testing::AllOf;
@@ -171,4 +171,4 @@ TEST(Integrate, MisuseIsRefused) {
 }
 
 }  // namespace
-}  // namespace orbweaver::certificate
+}  // namespace orbweaver::certificate::integrate_test

@@ -7,7 +7,7 @@
 
 #include "orbweaver/systems/registry.hpp"
 
-namespace orbweaver::certificate {
+namespace orbweaver::certificate::verdict_test {
 namespace {
 
 /// Of an orbit of size 1, some 2 from the origin, along which |dH/dz| is 3 at most.
@@ -151,4 +151,4 @@ TEST(Verdict, TheCertificateSaysHowFarAndHowSteep) {
 }
 
 }  // namespace
-}  // namespace orbweaver::certificate
+}  // namespace orbweaver::certificate::verdict_test

@@ -16,7 +16,7 @@
 #include "point_problem.hpp"
 #include "support/delegating_system.hpp"
 
-namespace orbweaver::continuation {
+namespace orbweaver::continuation::ends_test {
 namespace {
 
 using testing::HasSubstr;
@@ -361,4 +361,4 @@ TEST(Ends, MisuseThrows) {
 }
 
 }  // namespace
-}  // namespace orbweaver::continuation
+}  // namespace orbweaver::continuation::ends_test

@@ -12,7 +12,7 @@
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loss/linearization.hpp"
 
-namespace orbweaver::continuation {
+namespace orbweaver::continuation::families_test {
 namespace {
 
 class Families : public testing::TestWithParam<test::PendulumMode> {
@@ -274,4 +274,4 @@ TEST(FamilyCurves, AnOrbitHasOnePlace) {
 }
 
 }  // namespace
-}  // namespace orbweaver::continuation
+}  // namespace orbweaver::continuation::families_test

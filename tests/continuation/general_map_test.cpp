@@ -8,7 +8,7 @@
 #include "orbweaver/loop/grid/time_map_fit.hpp"
 #include "orbweaver/loss/linearization.hpp"
 
-namespace orbweaver::continuation {
+namespace orbweaver::continuation::general_map_test {
 namespace {
 
 /// The out-phase family as if it had no more symmetry than its reversor, or none.
@@ -69,4 +69,4 @@ INSTANTIATE_TEST_SUITE_P(Continuation, GeneralMaps, testing::Bool(),
                          [](const auto& tested) { return tested.param ? "Reversor" : "WholeLoop"; });
 
 }  // namespace
-}  // namespace orbweaver::continuation
+}  // namespace orbweaver::continuation::general_map_test

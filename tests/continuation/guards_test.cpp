@@ -16,7 +16,7 @@
 #include "continuation/families.hpp"
 #include "orbweaver/core/error.hpp"
 
-namespace orbweaver::continuation {
+namespace orbweaver::continuation::guards_test {
 namespace {
 
 using testing::HasSubstr;
@@ -232,4 +232,4 @@ TEST(Collisions, AreToldFromOtherEnds) {
 }
 
 }  // namespace
-}  // namespace orbweaver::continuation
+}  // namespace orbweaver::continuation::guards_test

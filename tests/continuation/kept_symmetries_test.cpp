@@ -8,7 +8,7 @@
 #include "continuation/families.hpp"
 #include "spectrum/point_systems.hpp"
 
-namespace orbweaver::continuation {
+namespace orbweaver::continuation::kept_symmetries_test {
 namespace {
 
 constexpr double coupling = 0.1;
@@ -102,4 +102,4 @@ INSTANTIATE_TEST_SUITE_P(Methods, KeptSymmetries,
                          });
 
 }  // namespace
-}  // namespace orbweaver::continuation
+}  // namespace orbweaver::continuation::kept_symmetries_test

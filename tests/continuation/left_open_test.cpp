@@ -5,6 +5,7 @@
 
 #include "families.hpp"
 
+namespace left_open_test {
 namespace {
 
 using namespace orbweaver;
@@ -32,3 +33,4 @@ TEST(LeftOpen, IsNotKnownOfOrbitsThatCollocationDoesNotTake) {
 }
 
 }  // namespace
+}  // namespace left_open_test

@@ -8,7 +8,7 @@
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loss/linearization.hpp"
 
-namespace orbweaver::continuation {
+namespace orbweaver::continuation::long_families_test {
 namespace {
 
 const test::Trace& family_to_thirty(const test::PendulumMode& mode) {
@@ -75,4 +75,4 @@ TEST(LongFamilies, SaddleFamiliesToThirty) {
 }
 
 }  // namespace
-}  // namespace orbweaver::continuation
+}  // namespace orbweaver::continuation::long_families_test

@@ -5,7 +5,7 @@
 #include "orbweaver/loop/grid/time_map_fit.hpp"
 #include "support/best_pulse.hpp"
 
-namespace orbweaver::continuation {
+namespace orbweaver::continuation::mapped_test {
 namespace {
 
 TEST(MappedOrbit, HasTheSameEnergyActionAndArclength) {
@@ -40,4 +40,4 @@ TEST(MappedOrbit, NeedsFewerHarmonics) {
 }
 
 }  // namespace
-}  // namespace orbweaver::continuation
+}  // namespace orbweaver::continuation::mapped_test

@@ -13,7 +13,7 @@
 #include "spectrum/matrices.hpp"
 #include "support/off_branch_triplets.hpp"
 
-namespace orbweaver::continuation {
+namespace orbweaver::continuation::off_branch_test {
 namespace {
 
 /// An orbit of a family with the direction in which the family goes on.
@@ -208,4 +208,4 @@ TEST(OffBranchEigenvalue, IsStoredWithEveryOrbitIfAsked) {
 }
 
 }  // namespace
-}  // namespace orbweaver::continuation
+}  // namespace orbweaver::continuation::off_branch_test

@@ -9,7 +9,7 @@
 #include "support/lorenz_equations.hpp"
 #include "support/van_der_pol.hpp"
 
-namespace orbweaver::test {
+namespace orbweaver::test::parameter_test {
 namespace {
 
 using continuation::EndReason;
@@ -64,4 +64,4 @@ TEST(LorenzFamily, GoesFromTheHopfPointToTheHomoclinicOrbit) {
 }
 
 }  // namespace
-}  // namespace orbweaver::test
+}  // namespace orbweaver::test::parameter_test

@@ -7,7 +7,7 @@
 #include "continuation/families.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 
-namespace orbweaver::continuation {
+namespace orbweaver::continuation::steps_test {
 namespace {
 
 constexpr double half_degree = 0.5 * std::numbers::pi / 180.0;
@@ -185,4 +185,4 @@ TEST(Frontiers, TangentPointsAlongTheFamily) {
 }
 
 }  // namespace
-}  // namespace orbweaver::continuation
+}  // namespace orbweaver::continuation::steps_test

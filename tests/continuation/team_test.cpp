@@ -11,7 +11,7 @@
 #include "orbweaver/spectrum/floquet.hpp"
 #include "support/chain_start.hpp"
 
-namespace orbweaver::continuation {
+namespace orbweaver::continuation::team_test {
 namespace {
 
 std::shared_ptr<const test::OscillatorChain> chain() { return std::make_shared<const test::OscillatorChain>(8); }
@@ -93,4 +93,4 @@ TEST(Teams, FindTheSameSingularTriplets) {
 }
 
 }  // namespace
-}  // namespace orbweaver::continuation
+}  // namespace orbweaver::continuation::team_test

@@ -9,7 +9,7 @@
 #include "orbweaver/core/petsc/check.hpp"
 #include "orbweaver/core/petsc/handle.hpp"
 
-namespace orbweaver::core {
+namespace orbweaver::core::callback_test {
 namespace {
 
 // A matrix-free operator whose product throws while `broken`, and copies otherwise.
@@ -87,4 +87,4 @@ TEST(CallbackGuard, success_returns_zero_and_stores_nothing) {
 }
 
 }  // namespace
-}  // namespace orbweaver::core
+}  // namespace orbweaver::core::callback_test

@@ -10,7 +10,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/petsc/handle.hpp"
 
-namespace orbweaver::core {
+namespace orbweaver::core::check_test {
 namespace {
 
 using ::testing::AllOf;
@@ -77,4 +77,4 @@ TEST(CheckMpi, message_holds_the_call_mpis_text_and_the_place) {
 }
 
 }  // namespace
-}  // namespace orbweaver::core
+}  // namespace orbweaver::core::check_test

@@ -13,7 +13,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/communicator.hpp"
 
-namespace orbweaver::core {
+namespace orbweaver::core::collective_test {
 namespace {
 
 /// Type and text of what `body` throws on this rank.
@@ -151,4 +151,4 @@ TEST(Collective, NobodyWaitsForARankWithoutMemory) {
 }
 
 }  // namespace
-}  // namespace orbweaver::core
+}  // namespace orbweaver::core::collective_test

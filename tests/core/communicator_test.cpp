@@ -9,7 +9,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/petsc/check.hpp"
 
-namespace orbweaver::core {
+namespace orbweaver::core::communicator_test {
 namespace {
 
 int world_rank() {
@@ -147,4 +147,4 @@ TEST(Communicator, cannot_be_copied) {
 }
 
 }  // namespace
-}  // namespace orbweaver::core
+}  // namespace orbweaver::core::communicator_test

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace orbweaver::core {
+namespace orbweaver::core::error_test {
 namespace {
 
 using ::testing::AllOf;
@@ -66,4 +66,4 @@ TEST(Misuse, location_defaults_to_the_call_of_require) {
 TEST(Misuse, a_condition_that_holds_throws_nothing) { EXPECT_NO_THROW(require(true, "never")); }
 
 }  // namespace
-}  // namespace orbweaver::core
+}  // namespace orbweaver::core::error_test

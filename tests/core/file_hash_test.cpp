@@ -6,7 +6,7 @@
 
 #include "orbweaver/core/error.hpp"
 
-namespace orbweaver::core {
+namespace orbweaver::core::file_hash_test {
 namespace {
 
 // The examples of FIPS 180-1, appendices A and B.
@@ -20,4 +20,4 @@ TEST(FileHash, IsSha1OfTheContentsInTheirOrder) {
 }
 
 }  // namespace
-}  // namespace orbweaver::core
+}  // namespace orbweaver::core::file_hash_test

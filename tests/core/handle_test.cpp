@@ -12,7 +12,7 @@
 
 #include "orbweaver/core/petsc/check.hpp"
 
-namespace orbweaver::core {
+namespace orbweaver::core::handle_test {
 namespace {
 
 void create(Vec* vec) { check(VecCreateSeq(PETSC_COMM_SELF, 3, vec), "VecCreateSeq"); }
@@ -150,4 +150,4 @@ TEST(Handle, resetting_an_empty_one_does_nothing) {
 }
 
 }  // namespace
-}  // namespace orbweaver::core
+}  // namespace orbweaver::core::handle_test

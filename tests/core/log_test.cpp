@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <mpi.h>
 
-namespace orbweaver::core {
+namespace orbweaver::core::log_test {
 namespace {
 
 std::string stderr_of(const std::function<void()>& body) {
@@ -74,4 +74,4 @@ TEST(Log, each_real_rank_prefixes_its_own_lines) {
 }
 
 }  // namespace
-}  // namespace orbweaver::core
+}  // namespace orbweaver::core::log_test

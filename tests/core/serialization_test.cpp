@@ -9,6 +9,7 @@
 #include "orbweaver/core/layout.hpp"
 #include "support/serialized.hpp"
 
+namespace serialization_test {
 namespace {
 
 using namespace orbweaver;
@@ -156,3 +157,4 @@ TEST(Completeness, ItShowsAtDepthAndWhereAnotherIsListedTwice) {
 }
 
 }  // namespace
+}  // namespace serialization_test

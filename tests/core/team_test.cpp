@@ -8,6 +8,7 @@
 
 #include "orbweaver/core/mpi/team.hpp"
 
+namespace team_test {
 namespace {
 
 namespace core = orbweaver::core;
@@ -188,3 +189,4 @@ TEST(SeveralMembers, DivideNothingWhereItDoesNotPay) {
 }
 
 }  // namespace
+}  // namespace team_test

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+namespace text_test {
 namespace {
 
 using namespace orbweaver::core;
@@ -37,3 +38,4 @@ TEST(Shortened, EndsAtAWholeCharacter) {
 }
 
 }  // namespace
+}  // namespace text_test

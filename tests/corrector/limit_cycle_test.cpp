@@ -14,7 +14,7 @@
 #include "orbweaver/loss/linearization.hpp"
 #include "support/van_der_pol.hpp"
 
-namespace orbweaver::corrector {
+namespace orbweaver::corrector::limit_cycle_test {
 namespace {
 
 using loss::Scalar;
@@ -186,4 +186,4 @@ TEST(LimitCycleEquations, HaveTheColumnsOfTheirScalars) {
 }
 
 }  // namespace
-}  // namespace orbweaver::corrector
+}  // namespace orbweaver::corrector::limit_cycle_test

@@ -9,7 +9,7 @@
 #include "orbweaver/loop/grid/fourier.hpp"
 #include "orbweaver/systems/registry.hpp"
 
-namespace orbweaver::corrector {
+namespace orbweaver::corrector::mapped_test {
 namespace {
 
 std::vector<loop::TimeMap> maps() { return {{1.6, {}}, {0.8, {}}, {1.2, {0.0, 0.0, 0.1, 0.0}}}; }
@@ -129,4 +129,4 @@ TEST(MappedThreshold, IsThatOfTheCurve) {
 }
 
 }  // namespace
-}  // namespace orbweaver::corrector
+}  // namespace orbweaver::corrector::mapped_test

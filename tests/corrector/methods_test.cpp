@@ -8,7 +8,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 
-namespace orbweaver::corrector {
+namespace orbweaver::corrector::methods_test {
 namespace {
 
 constexpr std::array all_methods = {Method::automatic, Method::collocation, Method::newton_krylov,
@@ -159,4 +159,4 @@ TEST(Corrector, NamesRoundTrip) {
 }
 
 }  // namespace
-}  // namespace orbweaver::corrector
+}  // namespace orbweaver::corrector::methods_test

@@ -9,7 +9,7 @@
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/systems/registry.hpp"
 
-namespace orbweaver::corrector {
+namespace orbweaver::corrector::newton_krylov_test {
 namespace {
 
 /// An in-phase loop corrected in the subspace of some of its symmetries; the time shift is held where the subspace has
@@ -97,4 +97,4 @@ TEST(NewtonKrylov, RefusesAProblemThatIsNotSquare) {
 }
 
 }  // namespace
-}  // namespace orbweaver::corrector
+}  // namespace orbweaver::corrector::newton_krylov_test

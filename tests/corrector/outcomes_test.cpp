@@ -12,7 +12,7 @@
 #include "corrector/oscillator.hpp"
 #include "orbweaver/core/error.hpp"
 
-namespace orbweaver::corrector {
+namespace orbweaver::corrector::outcomes_test {
 namespace {
 
 using testing::HasSubstr;
@@ -164,4 +164,4 @@ TEST(Outcomes, HaveDifferentNames) {
 }
 
 }  // namespace
-}  // namespace orbweaver::corrector
+}  // namespace orbweaver::corrector::outcomes_test

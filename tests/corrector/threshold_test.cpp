@@ -9,7 +9,7 @@
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/systems/registry.hpp"
 
-namespace orbweaver::corrector {
+namespace orbweaver::corrector::threshold_test {
 namespace {
 
 double threshold_of(const systems::System& system, const loop::Loop& loop, double tolerance,
@@ -103,4 +103,4 @@ INSTANTIATE_TEST_SUITE_P(
                     Tiny{test::up_down(), 1e-4, 1e-7, 1e-7}, Tiny{test::up_down(), 1e-8, 2e-6, 1e-5}));
 
 }  // namespace
-}  // namespace orbweaver::corrector
+}  // namespace orbweaver::corrector::threshold_test

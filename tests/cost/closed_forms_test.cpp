@@ -9,6 +9,7 @@
 #include "setting.hpp"
 #include "spring_scene.hpp"
 
+namespace closed_forms_test {
 namespace {
 
 using namespace orbweaver;
@@ -84,3 +85,4 @@ TEST(Setting, NamesTheFamiliesToChooseFrom) {
 }
 
 }  // namespace
+}  // namespace closed_forms_test

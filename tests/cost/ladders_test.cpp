@@ -7,6 +7,7 @@
 #include "orbweaver/cost/ladders.hpp"
 #include "spring_scene.hpp"
 
+namespace ladders_test {
 namespace {
 
 using namespace orbweaver;
@@ -82,3 +83,4 @@ TEST(Ladders, AWrongNameNamesThemAll) {
 }
 
 }  // namespace
+}  // namespace ladders_test

@@ -7,6 +7,7 @@
 
 #include "orbweaver/core/interruption.hpp"
 
+namespace timing_test {
 namespace {
 
 using namespace orbweaver;
@@ -52,3 +53,4 @@ TEST(Timing, GivesUpWhatOutlastsItsPatience) {
 }
 
 }  // namespace
+}  // namespace timing_test

@@ -5,7 +5,7 @@
 #include "box_problem.hpp"
 #include "orbweaver/core/error.hpp"
 
-namespace orbweaver::equations {
+namespace orbweaver::equations::box_scheme_test {
 namespace {
 
 using Shape = test::BoxProblem::Shape;
@@ -75,4 +75,4 @@ TEST(BoxScheme, MisuseIsRefused) {
 }
 
 }  // namespace
-}  // namespace orbweaver::equations
+}  // namespace orbweaver::equations::box_scheme_test

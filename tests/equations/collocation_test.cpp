@@ -14,7 +14,7 @@
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/systems/registry.hpp"
 
-namespace orbweaver::equations {
+namespace orbweaver::equations::collocation_test {
 namespace {
 
 const systems::System& pendulum() {
@@ -305,4 +305,4 @@ TEST(OrbitSolver, SaysWhereItFails) {
 }
 
 }  // namespace
-}  // namespace orbweaver::equations
+}  // namespace orbweaver::equations::collocation_test

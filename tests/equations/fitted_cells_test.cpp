@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+namespace fitted_cells_test {
 namespace {
 
 using orbweaver::equations::fitted_cells;
@@ -55,3 +56,4 @@ TEST(FittedCells, AreFittedOneByOne) {
 }
 
 }  // namespace
+}  // namespace fitted_cells_test

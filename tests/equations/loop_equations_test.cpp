@@ -15,7 +15,7 @@
 #include "spectrum/matrices.hpp"
 #include "spectrum/pendulum_loops.hpp"
 
-namespace orbweaver::equations {
+namespace orbweaver::equations::loop_equations_test {
 namespace {
 
 using namespace loss;
@@ -213,4 +213,4 @@ TEST(LoopEquations, AreSquareWithAnUnfoldingOnlyWhereEnergyIsConserved) {
 }
 
 }  // namespace
-}  // namespace orbweaver::equations
+}  // namespace orbweaver::equations::loop_equations_test

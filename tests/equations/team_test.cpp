@@ -10,7 +10,7 @@
 #include "orbweaver/equations/loop_solver.hpp"
 #include "support/oscillator_chain.hpp"
 
-namespace orbweaver::equations {
+namespace orbweaver::equations::team_test {
 namespace {
 
 using namespace loss;
@@ -119,4 +119,4 @@ TEST_F(WithTeam, MembersHaveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace orbweaver::equations
+}  // namespace orbweaver::equations::team_test

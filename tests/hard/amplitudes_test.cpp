@@ -8,6 +8,7 @@
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
 
+namespace amplitudes_test {
 namespace {
 
 using namespace orbweaver;
@@ -121,3 +122,4 @@ TEST(Amplitudes, ToALargeOne) {
 }
 
 }  // namespace
+}  // namespace amplitudes_test

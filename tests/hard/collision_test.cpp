@@ -11,6 +11,7 @@
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/starts/sweep.hpp"
 
+namespace collision_test {
 namespace {
 
 using namespace orbweaver;
@@ -120,3 +121,4 @@ TEST(Collision, IsCalledOne) {
 }
 
 }  // namespace
+}  // namespace collision_test

@@ -15,6 +15,7 @@
 #include "orbweaver/loop/curve/measures.hpp"
 #include "survey/atlas.hpp"
 
+namespace crossings_test {
 namespace {
 
 using namespace orbweaver;
@@ -333,3 +334,4 @@ TEST(Collisions, OfATorus) {
 }
 
 }  // namespace
+}  // namespace crossings_test

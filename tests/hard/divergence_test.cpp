@@ -8,6 +8,7 @@
 #include "hard/plane_pendulum.hpp"
 #include "hard/reference.hpp"
 
+namespace divergence_test {
 namespace {
 
 using namespace orbweaver;
@@ -113,3 +114,4 @@ TEST_P(Divergence, TheUsualFirstStep) {
 INSTANTIATE_TEST_SUITE_P(Hard, Divergence, testing::Values(30.0, 60.0));
 
 }  // namespace
+}  // namespace divergence_test

@@ -12,6 +12,7 @@
 #include "orbweaver/loop/curve/loop.hpp"
 #include "survey/atlas.hpp"
 
+namespace gaps_test {
 namespace {
 
 using namespace orbweaver;
@@ -129,3 +130,4 @@ TEST(Gaps, NoneJumpsToItsNeighbour) {
 }
 
 }  // namespace
+}  // namespace gaps_test

@@ -7,6 +7,7 @@
 #include "hard/hard_case.hpp"
 #include "hard/reference.hpp"
 
+namespace guesses_test {
 namespace {
 
 using namespace orbweaver;
@@ -52,3 +53,4 @@ TEST_P(Guesses, ThirtyPercentOff) {
 INSTANTIATE_TEST_SUITE_P(Hard, Guesses, testing::ValuesIn(test::pendulum_modes()));
 
 }  // namespace
+}  // namespace guesses_test

@@ -13,6 +13,7 @@
 #include "orbweaver/bifurcation/small_oscillations.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 
+namespace kernels_test {
 namespace {
 
 using namespace orbweaver;
@@ -88,3 +89,4 @@ TEST(Kernels, OfTwoOscillationsOfOnePeriod) {
 }
 
 }  // namespace
+}  // namespace kernels_test

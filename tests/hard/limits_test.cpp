@@ -10,6 +10,7 @@
 #include "hard/reference.hpp"
 #include "spectrum/point_systems.hpp"
 
+namespace limits_test {
 namespace {
 
 using namespace orbweaver;
@@ -156,3 +157,4 @@ TEST_P(Tolerances, BelowRounding) {
 INSTANTIATE_TEST_SUITE_P(Hard, Tolerances, testing::Values(1e-13, 1e-14, 1e-16, 1e-20));
 
 }  // namespace
+}  // namespace limits_test

@@ -12,6 +12,7 @@
 #include "orbweaver/spectrum/floquet.hpp"
 #include "spectrum/point_systems.hpp"
 
+namespace multipliers_test {
 namespace {
 
 using namespace orbweaver;
@@ -129,3 +130,4 @@ TEST_P(Multipliers, BesideASaddle) {
 INSTANTIATE_TEST_SUITE_P(Hard, Multipliers, testing::Values(18.0, 100.0, 300.0, 320.0, 700.0));
 
 }  // namespace
+}  // namespace multipliers_test

@@ -14,6 +14,7 @@
 #include "orbweaver/starts/linear_modes.hpp"
 #include "support/delegating_system.hpp"
 
+namespace not_finite_test {
 namespace {
 
 using namespace orbweaver;
@@ -138,3 +139,4 @@ TEST(NotFiniteNode, OnceDoesNotChangeAFamily) {
 }
 
 }  // namespace
+}  // namespace not_finite_test

@@ -10,6 +10,7 @@
 #include "hard/reference.hpp"
 #include "orbweaver/bifurcation/directions.hpp"
 
+namespace periods_test {
 namespace {
 
 using namespace orbweaver;
@@ -128,3 +129,4 @@ TEST(Periods, StraightOrbitsOfHenonAndHeiles) {
 }
 
 }  // namespace
+}  // namespace periods_test

@@ -12,6 +12,7 @@
 #include "orbweaver/archive/read/loop_of.hpp"
 #include "survey/atlas.hpp"
 
+namespace ratios_test {
 namespace {
 
 using namespace orbweaver;
@@ -80,3 +81,4 @@ INSTANTIATE_TEST_SUITE_P(
     name_of);
 
 }  // namespace
+}  // namespace ratios_test

@@ -13,6 +13,7 @@
 #include "orbweaver/continuation/orbit.hpp"
 #include "spectrum/point_systems.hpp"
 
+namespace resonances_test {
 namespace {
 
 using namespace orbweaver;
@@ -180,3 +181,4 @@ INSTANTIATE_TEST_SUITE_P(Hard, Resonances,
                                          Resonance{3, -1e-6}));
 
 }  // namespace
+}  // namespace resonances_test

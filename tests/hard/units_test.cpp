@@ -11,6 +11,7 @@
 #include "survey/atlas.hpp"
 #include "survey/scenes.hpp"
 
+namespace units_test {
 namespace {
 
 using namespace orbweaver;
@@ -125,3 +126,4 @@ TEST(Units, OfAPendulum) { expect_scaled("double pendulum", pendulum); }
 TEST(Units, OfASpring) { expect_scaled("swinging spring", spring); }
 
 }  // namespace
+}  // namespace units_test

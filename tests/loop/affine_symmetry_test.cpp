@@ -15,7 +15,7 @@
 #include "support/stated_system.hpp"
 #include "support/translated_system.hpp"
 
-namespace orbweaver::loop {
+namespace orbweaver::loop::affine_symmetry_test {
 namespace {
 
 using test::element_of;
@@ -137,4 +137,4 @@ TEST(AffineSymmetry, OffsetsOfAnglesThatWind) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loop
+}  // namespace orbweaver::loop::affine_symmetry_test

@@ -10,7 +10,7 @@
 #include "orbweaver/loop/curve/time_samples.hpp"
 #include "support/stated_system.hpp"
 
-namespace orbweaver::loop {
+namespace orbweaver::loop::alignment_test {
 namespace {
 
 using test::element_of;
@@ -242,4 +242,4 @@ TEST(AlignmentInTime, SeesWhatPassesFastUnderItsTimeMap) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loop
+}  // namespace orbweaver::loop::alignment_test

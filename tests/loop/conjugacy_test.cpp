@@ -7,7 +7,7 @@
 #include "orbweaver/systems/system.hpp"
 #include "support/stated_system.hpp"
 
-namespace orbweaver::loop {
+namespace orbweaver::loop::conjugacy_test {
 namespace {
 
 const systems::Structure& pendulum() { return test::structure_of("double_pendulum"); }
@@ -51,4 +51,4 @@ TEST(Conjugacy, AllowsASymmetryOfTheSystem) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loop
+}  // namespace orbweaver::loop::conjugacy_test

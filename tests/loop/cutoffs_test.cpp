@@ -3,7 +3,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
 
-namespace orbweaver::loop {
+namespace orbweaver::loop::cutoffs_test {
 namespace {
 
 bool has_only_factors_3_5_7(int n) {
@@ -50,4 +50,4 @@ TEST(Cutoffs, FindTheNeighboursOfAnyNumber) {
 TEST(Cutoffs, EndSomewhere) { EXPECT_THROW(static_cast<void>(allowed_cutoff_at_least(1 << 24)), core::MisuseError); }
 
 }  // namespace
-}  // namespace orbweaver::loop
+}  // namespace orbweaver::loop::cutoffs_test

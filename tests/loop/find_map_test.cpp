@@ -5,7 +5,7 @@
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "support/stated_system.hpp"
 
-namespace orbweaver::loop {
+namespace orbweaver::loop::find_map_test {
 namespace {
 
 using test::element_of;
@@ -74,4 +74,4 @@ TEST(FindMap, FindsNoneWhereThereIsNone) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loop
+}  // namespace orbweaver::loop::find_map_test

@@ -7,7 +7,7 @@
 #include "loop/samples.hpp"
 #include "orbweaver/core/error.hpp"
 
-namespace orbweaver::loop {
+namespace orbweaver::loop::fourier_test {
 namespace {
 
 using test::random_loop;
@@ -146,4 +146,4 @@ TEST(FourierGridMisuse, IsRefused) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loop
+}  // namespace orbweaver::loop::fourier_test

@@ -9,7 +9,7 @@
 #include "orbweaver/core/error.hpp"
 #include "support/stated_system.hpp"
 
-namespace orbweaver::loop {
+namespace orbweaver::loop::isotropy_test {
 namespace {
 
 using test::element_of;
@@ -146,4 +146,4 @@ TEST(Isotropy, TransformedLoopIsTheElementsImage) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loop
+}  // namespace orbweaver::loop::isotropy_test

@@ -10,7 +10,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 
-namespace orbweaver::loop {
+namespace orbweaver::loop::loop_test {
 namespace {
 
 using test::direct_sum;
@@ -199,4 +199,4 @@ TEST(LoopMisuse, ChangesAndDistances) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loop
+}  // namespace orbweaver::loop::loop_test

@@ -9,7 +9,7 @@
 #include "orbweaver/loop/curve/measures.hpp"
 #include "support/stated_system.hpp"
 
-namespace orbweaver::loop {
+namespace orbweaver::loop::mapped_loop_test {
 namespace {
 
 using test::two_pi;
@@ -181,4 +181,4 @@ TEST(MappedLoopMisuse, BadMapsAreRefused) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loop
+}  // namespace orbweaver::loop::mapped_loop_test

@@ -8,7 +8,7 @@
 #include "loop/samples.hpp"
 #include "orbweaver/core/error.hpp"
 
-namespace orbweaver::loop {
+namespace orbweaver::loop::passages_test {
 namespace {
 
 using test::two_pi;
@@ -89,4 +89,4 @@ TEST(Passages, RefuseACoordinateThatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loop
+}  // namespace orbweaver::loop::passages_test

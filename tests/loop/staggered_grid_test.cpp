@@ -12,7 +12,7 @@
 #include "orbweaver/loop/symmetry/subspace.hpp"
 #include "support/stated_system.hpp"
 
-namespace orbweaver::loop {
+namespace orbweaver::loop::staggered_grid_test {
 namespace {
 
 /// Isotropies with signs (S, R of the pendulum) and one that mixes coordinates (a threefold rotation with a mirror).
@@ -187,4 +187,4 @@ TEST(Domain, TooFewCellsAreRefused) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loop
+}  // namespace orbweaver::loop::staggered_grid_test

@@ -9,7 +9,7 @@
 #include "orbweaver/loop/curve/measures.hpp"
 #include "support/stated_system.hpp"
 
-namespace orbweaver::loop {
+namespace orbweaver::loop::standard_phase_test {
 namespace {
 
 using test::element_of;
@@ -92,4 +92,4 @@ TEST(StandardPhase, WithoutReversorIsTheMaximumOfTheFirstAngle) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loop
+}  // namespace orbweaver::loop::standard_phase_test

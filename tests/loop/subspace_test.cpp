@@ -11,7 +11,7 @@
 #include "orbweaver/core/error.hpp"
 #include "support/stated_system.hpp"
 
-namespace orbweaver::loop {
+namespace orbweaver::loop::subspace_test {
 namespace {
 
 using test::element_of;
@@ -262,4 +262,4 @@ TEST(SubspaceMisuse, IsRefused) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loop
+}  // namespace orbweaver::loop::subspace_test

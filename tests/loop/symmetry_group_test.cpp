@@ -12,7 +12,7 @@
 #include "orbweaver/loop/symmetry/subspace.hpp"
 #include "support/stated_system.hpp"
 
-namespace orbweaver::loop {
+namespace orbweaver::loop::symmetry_group_test {
 namespace {
 
 using systems::AffineMap;
@@ -122,4 +122,4 @@ TEST(SymmetryGroup, OffsetsOfAnglesCountModuloWholeTurns) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loop
+}  // namespace orbweaver::loop::symmetry_group_test

@@ -9,6 +9,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 
+namespace tangent_test {
 namespace {
 
 using namespace orbweaver;
@@ -88,3 +89,4 @@ TEST(Tangent, GoesAroundWithItsLoop) {
 }
 
 }  // namespace
+}  // namespace tangent_test

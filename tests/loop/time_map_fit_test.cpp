@@ -13,7 +13,7 @@
 #include "support/best_pulse.hpp"
 #include "support/stated_system.hpp"
 
-namespace orbweaver::loop {
+namespace orbweaver::loop::time_map_fit_test {
 namespace {
 
 constexpr double tolerance = 1e-11;
@@ -166,4 +166,4 @@ TEST(TimeMapFit, FollowsARateOfWideRange) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loop
+}  // namespace orbweaver::loop::time_map_fit_test

@@ -8,7 +8,7 @@
 #include "loop/samples.hpp"
 #include "orbweaver/core/error.hpp"
 
-namespace orbweaver::loop {
+namespace orbweaver::loop::time_map_test {
 namespace {
 
 using test::two_pi;
@@ -209,4 +209,4 @@ TEST(TimeMap, ManyAtOnceAreThoseOneByOne) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loop
+}  // namespace orbweaver::loop::time_map_test

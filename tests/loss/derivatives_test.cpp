@@ -7,7 +7,7 @@
 #include "loss/cases.hpp"
 #include "orbweaver/loss/linearization.hpp"
 
-namespace orbweaver::loss {
+namespace orbweaver::loss::derivatives_test {
 namespace {
 
 using test::Case;
@@ -137,4 +137,4 @@ INSTANTIATE_TEST_SUITE_P(Cases, LossDerivatives, ::testing::ValuesIn(test::case_
                          [](const auto& param) { return param.param; });
 
 }  // namespace
-}  // namespace orbweaver::loss
+}  // namespace orbweaver::loss::derivatives_test

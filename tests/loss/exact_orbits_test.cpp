@@ -8,7 +8,7 @@
 #include "orbweaver/loss/linearization.hpp"
 #include "orbweaver/systems/registry.hpp"
 
-namespace orbweaver::loss {
+namespace orbweaver::loss::exact_orbits_test {
 namespace {
 
 using test::two_pi;
@@ -86,4 +86,4 @@ TEST(ExactOrbits, LossOfAWrongPeriod) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loss
+}  // namespace orbweaver::loss::exact_orbits_test

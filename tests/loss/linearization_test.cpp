@@ -10,7 +10,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/registry.hpp"
 
-namespace orbweaver::loss {
+namespace orbweaver::loss::linearization_test {
 namespace {
 
 using test::Case;
@@ -141,4 +141,4 @@ TEST(LinearizationMisuse, WrongSizesAreRefused) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loss
+}  // namespace orbweaver::loss::linearization_test

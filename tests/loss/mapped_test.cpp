@@ -10,7 +10,7 @@
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/systems/registry.hpp"
 
-namespace orbweaver::loss {
+namespace orbweaver::loss::mapped_test {
 namespace {
 
 using Order = Linearization::Order;
@@ -126,4 +126,4 @@ TEST(MappedLossMisuse, LoopsUnderDifferentMapsHaveNoDifference) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loss
+}  // namespace orbweaver::loss::mapped_test

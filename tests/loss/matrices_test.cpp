@@ -13,7 +13,7 @@
 #include "orbweaver/core/petsc/check.hpp"
 #include "orbweaver/loss/dense.hpp"
 
-namespace orbweaver::loss {
+namespace orbweaver::loss::matrices_test {
 namespace {
 
 using test::Case;
@@ -122,4 +122,4 @@ TEST(DenseVectors, AreCopiedBothWays) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loss
+}  // namespace orbweaver::loss::matrices_test

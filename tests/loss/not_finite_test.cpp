@@ -11,7 +11,7 @@
 #include "orbweaver/loss/linearization.hpp"
 #include "support/stated_system.hpp"
 
-namespace orbweaver::loss {
+namespace orbweaver::loss::not_finite_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -113,4 +113,4 @@ TEST(NotFinite, IsANumericalError) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loss
+}  // namespace orbweaver::loss::not_finite_test

@@ -8,7 +8,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loss/dense.hpp"
 
-namespace orbweaver::loss {
+namespace orbweaver::loss::slice_test {
 namespace {
 
 Eigen::MatrixXd random_matrix(int rows, int columns, std::uint64_t seed) {
@@ -134,4 +134,4 @@ TEST(SliceMisuse, WrongSizesAreRefused) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loss
+}  // namespace orbweaver::loss::slice_test

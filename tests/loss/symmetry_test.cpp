@@ -11,7 +11,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "support/stated_system.hpp"
 
-namespace orbweaver::loss {
+namespace orbweaver::loss::symmetry_test {
 namespace {
 
 using loop::Isotropy;
@@ -135,4 +135,4 @@ TEST(Symmetry, LossIsTheSameForEveryImage) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loss
+}  // namespace orbweaver::loss::symmetry_test

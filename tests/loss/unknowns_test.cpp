@@ -7,7 +7,7 @@
 #include "orbweaver/loop/curve/measures.hpp"
 #include "support/stated_system.hpp"
 
-namespace orbweaver::loss {
+namespace orbweaver::loss::unknowns_test {
 namespace {
 
 using loop::Loop;
@@ -109,4 +109,4 @@ TEST(UnknownsMisuse, WrongSizesAreRefused) {
 }
 
 }  // namespace
-}  // namespace orbweaver::loss
+}  // namespace orbweaver::loss::unknowns_test

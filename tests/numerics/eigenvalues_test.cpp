@@ -8,7 +8,7 @@
 
 #include "orbweaver/numerics/eigenvalues.hpp"
 
-namespace orbweaver::numerics {
+namespace orbweaver::numerics::eigenvalues_test {
 namespace {
 
 // 2 cos(2 pi 0.8853) and 2 cos(2 pi 0.2), each twice to rounding. Eigen's QR iteration of real matrices does not end
@@ -58,4 +58,4 @@ TEST(Eigenvalues, OfWhatIsNotFiniteAreNone) {
 }
 
 }  // namespace
-}  // namespace orbweaver::numerics
+}  // namespace orbweaver::numerics::eigenvalues_test

@@ -4,7 +4,7 @@
 
 #include "orbweaver/core/error.hpp"
 
-namespace orbweaver::numerics {
+namespace orbweaver::numerics::extended_test {
 namespace {
 
 TEST(Extended, HasTheWorkingDigits) {
@@ -48,4 +48,4 @@ TEST(Extended, IsPrintedRounded) {
 }
 
 }  // namespace
-}  // namespace orbweaver::numerics
+}  // namespace orbweaver::numerics::extended_test

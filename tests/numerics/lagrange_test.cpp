@@ -5,6 +5,7 @@
 
 #include "orbweaver/numerics/lagrange.hpp"
 
+namespace lagrange_test {
 namespace {
 
 using namespace orbweaver;
@@ -37,3 +38,4 @@ TEST(LagrangeWeights, AreOneAndZeroAtANode) {
 }
 
 }  // namespace
+}  // namespace lagrange_test

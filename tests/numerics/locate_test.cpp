@@ -6,6 +6,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/numerics/locate.hpp"
 
+namespace locate_test {
 namespace {
 
 using namespace orbweaver;
@@ -112,3 +113,4 @@ TEST(LocateMinimum, SaysWhereThereIsNone) {
 }
 
 }  // namespace
+}  // namespace locate_test

@@ -4,7 +4,7 @@
 
 #include "orbweaver/core/error.hpp"
 
-namespace orbweaver::prove {
+namespace orbweaver::prove::ball_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -97,4 +97,4 @@ TEST(BallMatrix, HoldsInversesAndGrowth) {
 }
 
 }  // namespace
-}  // namespace orbweaver::prove
+}  // namespace orbweaver::prove::ball_test

@@ -11,7 +11,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/registry.hpp"
 
-namespace orbweaver::prove {
+namespace orbweaver::prove::enclosed_flow_test {
 namespace {
 
 using ad::Recorded;
@@ -178,4 +178,4 @@ TEST(EnclosedFlow, RefusesFunctionsWhoseBranchesItDoesNotKnow) {
 }
 
 }  // namespace
-}  // namespace orbweaver::prove
+}  // namespace orbweaver::prove::enclosed_flow_test

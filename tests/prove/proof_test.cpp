@@ -12,7 +12,7 @@
 #include "orbweaver/prove/proof_file.hpp"
 #include "orbweaver/systems/registry.hpp"
 
-namespace orbweaver::prove {
+namespace orbweaver::prove::proof_test {
 namespace {
 
 using numerics::Extended;
@@ -243,4 +243,4 @@ TEST(ProofFile, GivesBackWhatWasWritten) {
 }
 
 }  // namespace
-}  // namespace orbweaver::prove
+}  // namespace orbweaver::prove::proof_test

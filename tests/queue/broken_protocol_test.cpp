@@ -4,6 +4,7 @@
 #include "orbweaver/queue/message.hpp"
 #include "queue/synthetic.hpp"
 
+namespace broken_protocol_test {
 namespace {
 
 using namespace synthetic;
@@ -170,3 +171,4 @@ TEST_F(BrokenProtocol, AtAWorkerThatStandsStill) {
 }
 
 }  // namespace
+}  // namespace broken_protocol_test

@@ -3,6 +3,7 @@
 
 #include "queue/synthetic.hpp"
 
+namespace broken_run_test {
 namespace {
 
 using namespace synthetic;
@@ -134,3 +135,4 @@ TEST_F(BrokenRun, AfterABrokenRunTheNextOneIsWhole) {
 }
 
 }  // namespace
+}  // namespace broken_run_test

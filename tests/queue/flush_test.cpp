@@ -2,6 +2,7 @@
 
 #include "queue/synthetic.hpp"
 
+namespace flush_test {
 namespace {
 
 using namespace synthetic;
@@ -202,3 +203,4 @@ TEST(Flush, AlsoBetweenTasksThatNeverReport) {
 }
 
 }  // namespace
+}  // namespace flush_test

@@ -13,6 +13,7 @@
 #include "orbweaver/queue/message.hpp"
 #include "support/serialized.hpp"
 
+namespace message_test {
 namespace {
 
 using namespace orbweaver::queue;
@@ -176,3 +177,4 @@ TEST(Message, TagsHaveNames) {
 }
 
 }  // namespace
+}  // namespace message_test

@@ -3,6 +3,7 @@
 #include "orbweaver/queue/stop.hpp"
 #include "queue/synthetic.hpp"
 
+namespace run_for_outcomes_test {
 namespace {
 
 using namespace synthetic;
@@ -56,3 +57,4 @@ TEST(RunForOutcomes, AStopLeavesNoneOnAnyRank) {
 }
 
 }  // namespace
+}  // namespace run_for_outcomes_test

@@ -7,6 +7,7 @@
 
 #include "queue/synthetic.hpp"
 
+namespace run_test {
 namespace {
 
 using namespace synthetic;
@@ -285,3 +286,4 @@ TEST(Run, OptionsOutOfRangeAreRefusedOnEveryRank) {
 }
 
 }  // namespace
+}  // namespace run_test

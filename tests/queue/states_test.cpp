@@ -9,6 +9,7 @@
 #include "orbweaver/queue/stop.hpp"
 #include "queue/synthetic.hpp"
 
+namespace states_test {
 namespace {
 
 using namespace synthetic;
@@ -193,3 +194,4 @@ TEST(States, AStoppedTaskWaitsWithItsState) {
 }
 
 }  // namespace
+}  // namespace states_test

@@ -6,6 +6,7 @@
 #include "orbweaver/queue/stop.hpp"
 #include "queue/synthetic.hpp"
 
+namespace stop_test {
 namespace {
 
 using namespace synthetic;
@@ -125,3 +126,4 @@ TEST_F(Stop, AWorkerPassesItsOwnRequestOn) {
 }
 
 }  // namespace
+}  // namespace stop_test

@@ -8,6 +8,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/queue/task_queue.hpp"
 
+namespace task_queue_test {
 namespace {
 
 using orbweaver::core::MisuseError;
@@ -133,3 +134,4 @@ TEST(TaskQueue, MisuseIsRefused) {
 }
 
 }  // namespace
+}  // namespace task_queue_test

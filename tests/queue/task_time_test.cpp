@@ -4,6 +4,7 @@
 
 #include "queue/synthetic.hpp"
 
+namespace task_time_test {
 namespace {
 
 using namespace synthetic;
@@ -117,3 +118,4 @@ TEST(TaskTime, ATaskThatEndsBeforeItsNextReportHasEnded) {
 }
 
 }  // namespace
+}  // namespace task_time_test

@@ -1,5 +1,6 @@
 #include "queue/synthetic.hpp"
 
+namespace two_runs_test {
 namespace {
 
 using namespace synthetic;
@@ -26,3 +27,4 @@ TEST(TwoRuns, EveryWorkerWorksInEachOfManyRuns) {
 }
 
 }  // namespace
+}  // namespace two_runs_test

@@ -6,6 +6,7 @@
 
 #include "queue/synthetic.hpp"
 
+namespace waiting_test {
 namespace {
 
 using namespace synthetic;
@@ -89,3 +90,4 @@ TEST(Waiting, NoRankSpinsBeforeAFlushThatOneKeepsWaiting) {
 }
 
 }  // namespace
+}  // namespace waiting_test

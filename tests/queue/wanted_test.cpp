@@ -6,6 +6,7 @@
 
 #include "queue/synthetic.hpp"
 
+namespace wanted_test {
 namespace {
 
 using namespace synthetic;
@@ -155,3 +156,4 @@ TEST_F(Wanted, NothingWantedEndsWithOneFlush) {
 }
 
 }  // namespace
+}  // namespace wanted_test

@@ -10,6 +10,7 @@
 #include "orbweaver/refine/stored_family.hpp"
 #include "survey/atlas.hpp"
 
+namespace atlas_test {
 namespace {
 
 using namespace orbweaver;
@@ -151,3 +152,4 @@ TEST_F(RefineAtlas, FindsCrossings) {
 }
 
 }  // namespace
+}  // namespace atlas_test

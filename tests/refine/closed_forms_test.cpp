@@ -10,7 +10,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "support/stated_system.hpp"
 
-namespace orbweaver::refine {
+namespace orbweaver::refine::closed_forms_test {
 namespace {
 
 using numerics::Extended;
@@ -259,4 +259,4 @@ TEST(RefineOrbit, RefusesWhatItCannotDo) {
 }
 
 }  // namespace
-}  // namespace orbweaver::refine
+}  // namespace orbweaver::refine::closed_forms_test

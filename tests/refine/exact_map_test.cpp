@@ -9,7 +9,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 
-namespace orbweaver::refine {
+namespace orbweaver::refine::exact_map_test {
 namespace {
 
 using numerics::Extended;
@@ -57,4 +57,4 @@ TEST(ExactMatrix, LeavesOtherNumbersAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace orbweaver::refine
+}  // namespace orbweaver::refine::exact_map_test

@@ -3,6 +3,7 @@
 
 #include "report/small_trees.hpp"
 
+namespace comparison_crossings_test {
 namespace {
 
 using namespace orbweaver;
@@ -163,3 +164,4 @@ TEST(Comparison, EndsAreAtACrossing) {
 }
 
 }  // namespace
+}  // namespace comparison_crossings_test

@@ -11,6 +11,7 @@
 #include "orbweaver/report/compare/comparison_text.hpp"
 #include "report/small_trees.hpp"
 
+namespace comparison_test {
 namespace {
 
 using namespace orbweaver;
@@ -313,3 +314,4 @@ TEST(Comparison, IsPrinted) {
 }
 
 }  // namespace
+}  // namespace comparison_test

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+namespace cost_report_test {
 namespace {
 
 using namespace orbweaver;
@@ -55,3 +56,4 @@ TEST(CostReport, APictureForEachPanelWithTheNumbersThatHaveAPlaceOnLogarithmicAx
 }
 
 }  // namespace
+}  // namespace cost_report_test

@@ -14,6 +14,7 @@
 #include "page/page_index.hpp"
 #include "page/thinned_loop.hpp"
 
+namespace page_test {
 namespace {
 
 using namespace orbweaver;
@@ -250,3 +251,4 @@ TEST_F(Page, TellsTheSystemInItsIndex) {
 }
 
 }  // namespace
+}  // namespace page_test

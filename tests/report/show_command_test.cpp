@@ -11,6 +11,7 @@
 #include "orbweaver/core/text.hpp"
 #include "orbweaver/report/show.hpp"
 
+namespace show_command_test {
 namespace {
 
 using namespace orbweaver;
@@ -95,3 +96,4 @@ TEST_F(ShowCommand, AFullOutputIsAnEnvironmentFailure) {
 }
 
 }  // namespace
+}  // namespace show_command_test

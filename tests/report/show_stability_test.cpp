@@ -7,6 +7,7 @@
 
 #include "archive/sample.hpp"
 
+namespace show_stability_test {
 namespace {
 
 using namespace orbweaver;
@@ -73,3 +74,4 @@ TEST(ShowStability, ASingleMultiplierOutOfRangeIsToldByTheVolume) {
 }
 
 }  // namespace
+}  // namespace show_stability_test

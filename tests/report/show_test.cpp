@@ -11,6 +11,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/report/show.hpp"
 
+namespace show_test {
 namespace {
 
 using namespace orbweaver;
@@ -360,3 +361,4 @@ TEST(Show, AnUnknownTableIsTheUsersError) {
 }
 
 }  // namespace
+}  // namespace show_test

@@ -2,6 +2,7 @@
 
 #include "orbweaver/report/summary_text.hpp"
 
+namespace summary_text_test {
 namespace {
 
 using namespace orbweaver;
@@ -96,3 +97,4 @@ TEST(SummaryText, AnArchiveOfManyFamiliesIsListedInPart) {
 }
 
 }  // namespace
+}  // namespace summary_text_test

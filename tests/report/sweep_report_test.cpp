@@ -6,6 +6,7 @@
 #include <numbers>
 #include <sstream>
 
+namespace sweep_report_test {
 namespace {
 
 using namespace orbweaver;
@@ -176,3 +177,4 @@ TEST(SweepReport, ModesOfAResonance) {
 }
 
 }  // namespace
+}  // namespace sweep_report_test

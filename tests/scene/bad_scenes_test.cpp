@@ -15,6 +15,7 @@
 
 // bad/messages.txt holds one line a scene of bad/: the whole message, which begins with the scene's file name;
 // <systems> stands for the names of all systems.
+namespace bad_scenes_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -99,3 +100,4 @@ TEST(BadScenes, AListThatHoldsItselfIsRefused) {
 }
 
 }  // namespace
+}  // namespace bad_scenes_test

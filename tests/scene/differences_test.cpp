@@ -11,6 +11,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/scene/differences.hpp"
 
+namespace differences_test {
 namespace {
 
 namespace scene = orbweaver::scene;
@@ -345,3 +346,4 @@ TEST(Differences, ASceneComesBackFromItsTextAsItWas) {
 }
 
 }  // namespace
+}  // namespace differences_test

@@ -11,6 +11,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/scene/scene.hpp"
 
+namespace document_test {
 namespace {
 
 namespace scene = orbweaver::scene;
@@ -113,3 +114,4 @@ TEST(Document, TheLongestScenesTakeLittleTime) {
 }
 
 }  // namespace
+}  // namespace document_test

@@ -6,6 +6,7 @@
 
 #include "orbweaver/core/error.hpp"
 
+namespace duration_test {
 namespace {
 
 using namespace orbweaver;
@@ -31,3 +32,4 @@ TEST(Duration, RefusesEverythingElse) {
 }
 
 }  // namespace
+}  // namespace duration_test

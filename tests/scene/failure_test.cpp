@@ -4,6 +4,7 @@
 
 #include "orbweaver/core/error.hpp"
 
+namespace failure_test {
 namespace {
 
 namespace core = orbweaver::core;
@@ -79,3 +80,4 @@ TEST(RunOnRanks, AloneAnExceptionPassesThrough) {
 }
 
 }  // namespace
+}  // namespace failure_test

@@ -9,6 +9,7 @@
 
 #include "orbweaver/scene/scene.hpp"
 
+namespace good_scenes_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -224,3 +225,4 @@ TEST(SceneFolder, TheDeepAndTheHalfDegreeSceneDifferWhereTheySay) {
 }
 
 }  // namespace
+}  // namespace good_scenes_test

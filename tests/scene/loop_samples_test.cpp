@@ -9,7 +9,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/registry.hpp"
 
-namespace orbweaver::scene {
+namespace orbweaver::scene::loop_samples_test {
 namespace {
 
 using testing::ElementsAre;
@@ -68,4 +68,4 @@ TEST(LoopSamples, AreRefusedWithFileAndLine) {
 }
 
 }  // namespace
-}  // namespace orbweaver::scene
+}  // namespace orbweaver::scene::loop_samples_test

@@ -8,6 +8,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/scene/scene.hpp"
 
+namespace overrides_test {
 namespace {
 
 namespace scene = orbweaver::scene;
@@ -135,3 +136,4 @@ TEST(OverrideErrors, DoNotFillAnEmptyScene) {
 }
 
 }  // namespace
+}  // namespace overrides_test

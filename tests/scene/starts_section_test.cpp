@@ -11,6 +11,7 @@
 #include "orbweaver/scene/differences.hpp"
 #include "orbweaver/scene/scene.hpp"
 
+namespace starts_section_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -123,3 +124,4 @@ TEST(StartsSection, TakesAllKindsTogether) {
 }
 
 }  // namespace
+}  // namespace starts_section_test

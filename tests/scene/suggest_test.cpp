@@ -2,6 +2,7 @@
 
 #include "suggest.hpp"
 
+namespace suggest_test {
 namespace {
 
 using namespace orbweaver::scene;
@@ -30,3 +31,4 @@ TEST(Suggest, AlternativesReadAsASentence) {
 }
 
 }  // namespace
+}  // namespace suggest_test

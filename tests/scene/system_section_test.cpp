@@ -9,7 +9,7 @@
 #include "document.hpp"
 #include "orbweaver/core/error.hpp"
 
-namespace orbweaver::scene {
+namespace orbweaver::scene::system_section_test {
 namespace {
 
 using testing::AllOf;
@@ -56,4 +56,4 @@ TEST(SystemSection, AParameterWithoutItsEffectIsSaidToBeOne) {
 }
 
 }  // namespace
-}  // namespace orbweaver::scene
+}  // namespace orbweaver::scene::system_section_test

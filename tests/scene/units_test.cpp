@@ -5,6 +5,7 @@
 
 #include "units.hpp"
 
+namespace units_test {
 namespace {
 
 using namespace orbweaver::scene;
@@ -46,3 +47,4 @@ TEST(Units, RightAnglesAreExact) {
 }
 
 }  // namespace
+}  // namespace units_test

@@ -10,7 +10,7 @@
 #include "orbweaver/core/error.hpp"
 #include "spectrum/matrices.hpp"
 
-namespace orbweaver::spectrum {
+namespace orbweaver::spectrum::eigenpairs_test {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -143,4 +143,4 @@ TEST(Eigenpairs, ZeroMatrix) {
 }
 
 }  // namespace
-}  // namespace orbweaver::spectrum
+}  // namespace orbweaver::spectrum::eigenpairs_test

@@ -18,6 +18,7 @@
 #include "support/relative_error.hpp"
 #include "transverse_flow.hpp"
 
+namespace floquet_pendulum_test {
 namespace {
 
 using namespace orbweaver;
@@ -206,3 +207,4 @@ TEST(PendulumIndex, FundamentalMapIsSymplectic) {
 }
 
 }  // namespace
+}  // namespace floquet_pendulum_test

@@ -18,6 +18,7 @@
 #include "spectrum/point_systems.hpp"
 #include "support/relative_error.hpp"
 
+namespace floquet_test {
 namespace {
 
 using namespace orbweaver;
@@ -349,3 +350,4 @@ TEST(Floquet, RefusesWhatIsNoOrbit) {
 }
 
 }  // namespace
+}  // namespace floquet_test

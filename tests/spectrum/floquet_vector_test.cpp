@@ -10,6 +10,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "pendulum_loops.hpp"
 
+namespace floquet_vector_test {
 namespace {
 
 using namespace orbweaver;
@@ -66,3 +67,4 @@ TEST(FloquetVector, IsContinuedByTheSymmetry) {
 TEST(FloquetVector, SaysWhereTooManyAreNeeded) { EXPECT_GT(needed(1000.0, 1e-3, 50), 50); }
 
 }  // namespace
+}  // namespace floquet_vector_test

@@ -14,7 +14,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "spectrum/matrices.hpp"
 
-namespace orbweaver::spectrum {
+namespace orbweaver::spectrum::loop_triplets_test {
 namespace {
 
 constexpr double crossing = 10.416773281973249;  // of the in-phase family with one of the same period
@@ -320,4 +320,4 @@ TEST(LoopTriplets, RefuseWhatTheyCannotFind) {
 }
 
 }  // namespace
-}  // namespace orbweaver::spectrum
+}  // namespace orbweaver::spectrum::loop_triplets_test

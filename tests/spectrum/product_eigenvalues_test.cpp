@@ -10,6 +10,7 @@
 
 #include "orbweaver/numerics/decompositions.hpp"
 
+namespace product_eigenvalues_test {
 namespace {
 
 using namespace orbweaver;
@@ -50,3 +51,4 @@ TEST(ProductEigenvalues, OfTwoPairsOnTheCircleAreFoundWhateverTheirFrame) {
 }
 
 }  // namespace
+}  // namespace product_eigenvalues_test

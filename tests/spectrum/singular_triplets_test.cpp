@@ -10,7 +10,7 @@
 #include "orbweaver/spectrum/eigenpairs.hpp"
 #include "spectrum/matrices.hpp"
 
-namespace orbweaver::spectrum {
+namespace orbweaver::spectrum::singular_triplets_test {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -106,4 +106,4 @@ TEST(SingularTriplets, MisuseAndNotFinite) {
 }
 
 }  // namespace
-}  // namespace orbweaver::spectrum
+}  // namespace orbweaver::spectrum::singular_triplets_test

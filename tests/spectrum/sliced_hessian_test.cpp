@@ -13,7 +13,7 @@
 #include "spectrum/matrices.hpp"
 #include "spectrum/pendulum_loops.hpp"
 
-namespace orbweaver::spectrum {
+namespace orbweaver::spectrum::sliced_hessian_test {
 namespace {
 
 std::span<const double> view(const Eigen::VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
@@ -128,4 +128,4 @@ TEST(SlicedHessian, FactorsASingularHessianWithAShiftThatItReports) {
 }
 
 }  // namespace
-}  // namespace orbweaver::spectrum
+}  // namespace orbweaver::spectrum::sliced_hessian_test

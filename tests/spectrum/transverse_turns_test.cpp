@@ -16,6 +16,7 @@
 #include "spectrum/point_systems.hpp"
 #include "support/turned_system.hpp"
 
+namespace transverse_turns_test {
 namespace {
 
 using namespace orbweaver;
@@ -152,3 +153,4 @@ TEST(TransverseTurns, AreTheSameInOtherUnits) {
 }
 
 }  // namespace
+}  // namespace transverse_turns_test

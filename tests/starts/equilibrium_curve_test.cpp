@@ -9,7 +9,7 @@
 #include "support/lorenz_equations.hpp"
 #include "support/van_der_pol.hpp"
 
-namespace orbweaver::starts {
+namespace orbweaver::starts::equilibrium_curve_test {
 namespace {
 
 /// With sigma = 10, beta = 8/3: Hopf points at rho = sigma (sigma + beta + 3)/(sigma - beta - 1) = 470/19, with
@@ -58,4 +58,4 @@ TEST(EquilibriumCurve, NeedsAParameterThatMovesAndAnEquilibrium) {
 }
 
 }  // namespace
-}  // namespace orbweaver::starts
+}  // namespace orbweaver::starts::equilibrium_curve_test

@@ -13,7 +13,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/scaled_system.hpp"
 
-namespace orbweaver::starts {
+namespace orbweaver::starts::fixed_points_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -151,4 +151,4 @@ TEST(FixedPoints, TheOneNearAState) {
 }
 
 }  // namespace
-}  // namespace orbweaver::starts
+}  // namespace orbweaver::starts::fixed_points_test

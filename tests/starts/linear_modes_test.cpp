@@ -17,7 +17,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "spectrum/point_systems.hpp"
 
-namespace orbweaver::starts {
+namespace orbweaver::starts::linear_modes_test {
 namespace {
 
 using numerics::Quad;
@@ -277,4 +277,4 @@ TEST(LinearModes, Misuse) {
 }
 
 }  // namespace
-}  // namespace orbweaver::starts
+}  // namespace orbweaver::starts::linear_modes_test

@@ -7,7 +7,7 @@
 
 #include "orbweaver/systems/registry.hpp"
 
-namespace orbweaver::starts {
+namespace orbweaver::starts::loop_guess_test {
 namespace {
 
 constexpr double turn = 2.0 * std::numbers::pi;
@@ -70,4 +70,4 @@ TEST(LoopGuess, SpreadsWhatATrajectoryMissesOfClosing) {
 }
 
 }  // namespace
-}  // namespace orbweaver::starts
+}  // namespace orbweaver::starts::loop_guess_test

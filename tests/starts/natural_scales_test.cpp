@@ -11,7 +11,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "support/magnetic_well.hpp"
 
-namespace orbweaver::starts {
+namespace orbweaver::starts::natural_scales_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -91,4 +91,4 @@ TEST(NaturalScales, AreNotThoseOfWeakTerms) {
 }
 
 }  // namespace
-}  // namespace orbweaver::starts
+}  // namespace orbweaver::starts::natural_scales_test

@@ -8,7 +8,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/registry.hpp"
 
-namespace orbweaver::starts {
+namespace orbweaver::starts::near_returns_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -66,4 +66,4 @@ TEST(NearReturns, AreRefusedWhereTheyTakeTooLong) {
 }
 
 }  // namespace
-}  // namespace orbweaver::starts
+}  // namespace orbweaver::starts::near_returns_test

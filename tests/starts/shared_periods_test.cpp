@@ -9,7 +9,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "spectrum/point_systems.hpp"
 
-namespace orbweaver::starts {
+namespace orbweaver::starts::shared_periods_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -133,4 +133,4 @@ TEST(SharedPeriods, Misuse) {
 }
 
 }  // namespace
-}  // namespace orbweaver::starts
+}  // namespace orbweaver::starts::shared_periods_test

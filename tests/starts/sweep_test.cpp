@@ -22,7 +22,7 @@
 #include "spectrum/pendulum_loops.hpp"
 #include "spectrum/point_systems.hpp"
 
-namespace orbweaver::starts {
+namespace orbweaver::starts::sweep_test {
 namespace {
 
 using testing::HasSubstr;
@@ -342,4 +342,4 @@ TEST(Sweep, Misuse) {
 }
 
 }  // namespace
-}  // namespace orbweaver::starts
+}  // namespace orbweaver::starts::sweep_test

@@ -12,7 +12,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "spectrum/pendulum_loops.hpp"
 
-namespace orbweaver::starts {
+namespace orbweaver::starts::table_one_test {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
@@ -75,4 +75,4 @@ INSTANTIATE_TEST_SUITE_P(Paper, TableOne,
                          });
 
 }  // namespace
-}  // namespace orbweaver::starts
+}  // namespace orbweaver::starts::table_one_test

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 #include "support/delegating_system.hpp"
 
 namespace orbweaver::test {

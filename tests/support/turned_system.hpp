@@ -10,6 +10,7 @@
 
 #include <Eigen/Dense>
 
+#include "orbweaver/numerics/decompositions.hpp"
 #include "support/delegating_system.hpp"
 
 namespace orbweaver::test {

@@ -13,6 +13,7 @@
 #include "survey/scenes.hpp"
 #include "tasks/executor.hpp"
 
+namespace branch_state_test {
 namespace {
 
 using namespace orbweaver;
@@ -163,3 +164,4 @@ TEST_F(BranchStates, ABranchAtALimitGoesOn) {
 }
 
 }  // namespace
+}  // namespace branch_state_test

@@ -5,6 +5,7 @@
 
 #include "survey/atlas.hpp"
 
+namespace bridges_test {
 namespace {
 
 using namespace orbweaver;
@@ -34,3 +35,4 @@ TEST(Bridges, TheFamilyBesideTheLongOneEndsAtTheNextResonance) {
 }
 
 }  // namespace
+}  // namespace bridges_test

@@ -13,6 +13,7 @@
 #include "survey/atlas.hpp"
 #include "verify/verified_atlas.hpp"
 
+namespace certified_test {
 namespace {
 
 using namespace orbweaver;
@@ -139,3 +140,4 @@ TEST(CertifiedSurvey, DoesWhatItsSceneAsks) {
 }
 
 }  // namespace
+}  // namespace certified_test

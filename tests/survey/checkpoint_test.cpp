@@ -12,6 +12,7 @@
 #include "survey/scenes.hpp"
 #include "tasks/payload/work.hpp"
 
+namespace checkpoint_test {
 namespace {
 
 using namespace orbweaver;
@@ -313,3 +314,4 @@ TEST(WidenedLimits, AreKnownByTheirKeys) {
 }
 
 }  // namespace
+}  // namespace checkpoint_test

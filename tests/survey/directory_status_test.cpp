@@ -7,6 +7,7 @@
 #include "archive/sample.hpp"
 #include "orbweaver/core/error.hpp"
 
+namespace directory_status_test {
 namespace {
 
 using namespace orbweaver;
@@ -126,3 +127,4 @@ TEST(Startable, ASurveyThereNeedsResume) {
 }
 
 }  // namespace
+}  // namespace directory_status_test

@@ -13,6 +13,7 @@
 #include "survey/rotator.hpp"
 #include "survey/scenes.hpp"
 
+namespace end_folds_test {
 namespace {
 
 using namespace orbweaver;
@@ -86,3 +87,4 @@ TEST(EndFolds, FoldsBesideABirthAreFoundWhereverTheFirstOrbitIs) {
 }
 
 }  // namespace
+}  // namespace end_folds_test

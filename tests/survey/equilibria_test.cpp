@@ -13,6 +13,7 @@
 #include "survey/atlas.hpp"
 #include "survey/atlas_records.hpp"
 
+namespace equilibria_test {
 namespace {
 
 using namespace orbweaver;
@@ -175,3 +176,4 @@ TEST(Equilibria, ChangedNumbersAreFound) {
 }
 
 }  // namespace
+}  // namespace equilibria_test

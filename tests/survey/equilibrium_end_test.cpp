@@ -10,6 +10,7 @@
 #include "survey/scenes.hpp"
 #include "tasks/executor.hpp"
 
+namespace equilibrium_end_test {
 namespace {
 
 using namespace orbweaver;
@@ -91,3 +92,4 @@ TEST(EquilibriumEnd, StandsInTheEndOfABranch) {
 }
 
 }  // namespace
+}  // namespace equilibrium_end_test

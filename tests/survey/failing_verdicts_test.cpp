@@ -18,6 +18,7 @@
 #include "support/delegating_system.hpp"
 #include "survey/atlas.hpp"
 
+namespace failing_verdicts_test {
 namespace {
 
 using namespace orbweaver;
@@ -174,3 +175,4 @@ TEST_F(FailingVerdicts, AreListedByTasksAndByVerifyWhereOrbitsAreOfAnotherSystem
 }
 
 }  // namespace
+}  // namespace failing_verdicts_test

@@ -16,6 +16,7 @@
 #include "support/delegating_system.hpp"
 #include "survey/scenes.hpp"
 
+namespace failures_test {
 namespace {
 
 using namespace orbweaver;
@@ -167,3 +168,4 @@ TEST_F(Failures, ASweepThatThrowsCostsItsFamiliesOnly) {
 }
 
 }  // namespace
+}  // namespace failures_test

@@ -5,6 +5,7 @@
 #include "orbweaver/continuation/ending.hpp"
 #include "tree/end_text.hpp"
 
+namespace family_end_test {
 namespace {
 
 using namespace orbweaver;
@@ -56,3 +57,4 @@ TEST(FamilyEnds, OtherTextsAreUnknown) {
 }
 
 }  // namespace
+}  // namespace family_end_test

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+namespace family_limit_test {
 namespace {
 
 using orbweaver::survey::FamilyLimit;
@@ -39,3 +40,4 @@ TEST(FamilyLimit, HasRoomForTheFirstFamiliesWhateverComesAndGoes) {
 }
 
 }  // namespace
+}  // namespace family_limit_test

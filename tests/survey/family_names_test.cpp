@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+namespace family_names_test {
 namespace {
 
 using namespace orbweaver::survey;
@@ -92,3 +93,4 @@ TEST_F(FamilyNames, ThatAreTakenAddTheKey) {
 }
 
 }  // namespace
+}  // namespace family_names_test

@@ -13,6 +13,7 @@
 #include "survey/scenes.hpp"
 #include "survey/tree_outcomes.hpp"
 
+namespace family_tree_test {
 namespace {
 
 using namespace orbweaver;
@@ -470,3 +471,4 @@ TEST_F(Families, ThatAreCirclesHaveOneSide) {
 }
 
 }  // namespace
+}  // namespace family_tree_test

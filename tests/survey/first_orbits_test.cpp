@@ -14,6 +14,7 @@
 #include "survey/same_tree.hpp"
 #include "survey/scenes.hpp"
 
+namespace first_orbits_test {
 namespace {
 
 using namespace orbweaver;
@@ -104,3 +105,4 @@ TEST(FirstOrbits, BelowRoundingAreToldOfOnceAFamily) {
 }
 
 }  // namespace
+}  // namespace first_orbits_test

@@ -17,6 +17,7 @@
 #include "orbweaver/survey/tree/expected_starts.hpp"
 #include "survey/atlas.hpp"
 
+namespace given_starts_test {
 namespace {
 
 using namespace orbweaver;
@@ -182,3 +183,4 @@ TEST(StartsOfRecurrences, LeadToOrbitsOfTheTrajectorysEnergyOnce) {
 }
 
 }  // namespace
+}  // namespace given_starts_test

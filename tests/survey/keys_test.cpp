@@ -6,6 +6,7 @@
 
 #include "orbweaver/core/error.hpp"
 
+namespace keys_test {
 namespace {
 
 using namespace orbweaver;
@@ -73,3 +74,4 @@ TEST(Keys, OfTasksSayWhatTheyAreAbout) {
 }
 
 }  // namespace
+}  // namespace keys_test

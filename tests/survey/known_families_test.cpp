@@ -15,6 +15,7 @@
 #include "orbweaver/loop/curve/loop.hpp"
 #include "survey/atlas.hpp"
 
+namespace known_families_test {
 namespace {
 
 using namespace orbweaver;
@@ -113,3 +114,4 @@ TEST_F(KnownFamilies, OfAStateTakeTheStatesThatLieOnThem) {
 }
 
 }  // namespace
+}  // namespace known_families_test

@@ -18,10 +18,12 @@
 #include <Eigen/Dense>
 
 #include "orbweaver/certificate/integrate.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/survey/verify/verify.hpp"
 #include "survey/atlas.hpp"
 #include "survey/atlas_records.hpp"
 
+namespace loci_test {
 namespace {
 
 using namespace orbweaver;
@@ -353,3 +355,4 @@ TEST(Loci, ChangedNumbersAreFound) {
 }
 
 }  // namespace
+}  // namespace loci_test

@@ -10,6 +10,7 @@
 #include "support/magnetic_well.hpp"
 #include "survey/atlas.hpp"
 
+namespace magnetic_well_test {
 namespace {
 
 using namespace orbweaver;
@@ -61,3 +62,4 @@ TEST(MagneticWell, NearOneToThreeTheSlowFamilyEndsOnTheFastOne) {
 }
 
 }  // namespace
+}  // namespace magnetic_well_test

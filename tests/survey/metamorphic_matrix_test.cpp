@@ -3,10 +3,12 @@
 
 #include "survey/metamorphic.hpp"
 
-namespace orbweaver::test {
+namespace orbweaver::test::metamorphic_matrix_test {
 namespace {
 
-TEST_P(Metamorphic, ByOtherFirstSteps) {
+class MetamorphicMatrix : public Metamorphic {};
+
+TEST_P(MetamorphicMatrix, ByOtherFirstSteps) {
   const auto plain = atlas("plain", {});
   for (const std::string& first : with().first) {
     SCOPED_TRACE(first);
@@ -15,7 +17,7 @@ TEST_P(Metamorphic, ByOtherFirstSteps) {
   }
 }
 
-TEST_P(Metamorphic, WithOtherTolerances) {
+TEST_P(MetamorphicMatrix, WithOtherTolerances) {
   const auto plain = atlas("plain", {});
   for (const std::string tolerance : {"1e-8", "1e-9", "1e-11", "1e-12"}) {
     SCOPED_TRACE(tolerance);
@@ -24,14 +26,14 @@ TEST_P(Metamorphic, WithOtherTolerances) {
   }
 }
 
-TEST_P(Metamorphic, OnOneRank) {
+TEST_P(MetamorphicMatrix, OnOneRank) {
   const auto all = atlas("all", {});
   if (!comm.is_root()) return;
   const core::Communicator alone(MPI_COMM_SELF);
   expect_same_tree(*atlas(alone, "alone", scene_of(with(), {})), *all);
 }
 
-TEST_P(Metamorphic, InOtherUnits) {
+TEST_P(MetamorphicMatrix, InOtherUnits) {
   const auto plain = atlas("plain", {});
   for (const auto& [length, time, mass] : {std::tuple(1e3, 1e-3, 1.0), {1e-6, 1e6, 1e6}, {1e6, 1e-6, 1e-6}}) {
     SCOPED_TRACE(fmt::format("length {} time {} mass {}", length, time, mass));
@@ -45,7 +47,7 @@ TEST_P(Metamorphic, InOtherUnits) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Systems, Metamorphic, testing::Range(std::size_t{0}, cases().size()), name_of_case);
+INSTANTIATE_TEST_SUITE_P(Systems, MetamorphicMatrix, testing::Range(std::size_t{0}, cases().size()), name_of_case);
 
 }  // namespace
-}  // namespace orbweaver::test
+}  // namespace orbweaver::test::metamorphic_matrix_test

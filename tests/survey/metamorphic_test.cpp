@@ -1,7 +1,7 @@
 // The same system told otherwise has the same tree: in other coordinates, by other steps.
 #include "survey/metamorphic.hpp"
 
-namespace orbweaver::test {
+namespace orbweaver::test::metamorphic_test {
 namespace {
 
 TEST_P(Metamorphic, InOtherCoordinates) {
@@ -23,4 +23,4 @@ TEST_P(Metamorphic, ByOtherSteps) {
 INSTANTIATE_TEST_SUITE_P(Systems, Metamorphic, testing::Range(std::size_t{0}, quick_cases), name_of_case);
 
 }  // namespace
-}  // namespace orbweaver::test
+}  // namespace orbweaver::test::metamorphic_test

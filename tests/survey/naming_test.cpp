@@ -7,6 +7,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 
+namespace naming_test {
 namespace {
 
 using namespace orbweaver;
@@ -70,3 +71,4 @@ TEST(Naming, LongTextsAreCutToWhatAColumnHolds) {
 }
 
 }  // namespace
+}  // namespace naming_test

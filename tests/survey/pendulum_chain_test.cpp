@@ -12,6 +12,7 @@
 #include "orbweaver/survey/verify/verify.hpp"
 #include "survey/atlas.hpp"
 
+namespace pendulum_chain_test {
 namespace {
 
 using namespace orbweaver;
@@ -95,3 +96,4 @@ TEST(PendulumChain, APairThatPassesOneToRoundingIsUndecided) {
 }
 
 }  // namespace
+}  // namespace pendulum_chain_test

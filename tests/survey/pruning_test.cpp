@@ -14,6 +14,7 @@
 
 #include "tasks/payload/keys.hpp"
 
+namespace pruning_test {
 namespace {
 
 using namespace orbweaver::survey;
@@ -297,3 +298,4 @@ TEST(Pruning, KeepsAndTellsWhatContradictsItself) {
 }
 
 }  // namespace
+}  // namespace pruning_test

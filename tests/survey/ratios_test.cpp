@@ -6,6 +6,7 @@
 
 #include "survey/atlas.hpp"
 
+namespace ratios_test {
 namespace {
 
 using namespace orbweaver;
@@ -126,3 +127,4 @@ TEST(Ratios, WhatAFastPhasePassesAndIsNotLocatedIsSaid) {
 }
 
 }  // namespace
+}  // namespace ratios_test

@@ -12,6 +12,7 @@
 #include "survey/atlas.hpp"
 #include "survey/scenes.hpp"
 
+namespace resonance_test {
 namespace {
 
 using namespace orbweaver;
@@ -173,3 +174,4 @@ TEST(Resonance, AlongASlowOscillationOfTheOtherSignNoneIsFollowed) {
 }
 
 }  // namespace
+}  // namespace resonance_test

@@ -15,6 +15,7 @@
 #include "survey/atlas.hpp"
 #include "survey/atlas_records.hpp"
 
+namespace restricted_problem_test {
 namespace {
 
 using namespace orbweaver;
@@ -231,3 +232,4 @@ TEST(RestrictedProblem, AFamilyThatCollidesSaysWithWhat) {
 }
 
 }  // namespace
+}  // namespace restricted_problem_test

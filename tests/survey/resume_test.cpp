@@ -8,6 +8,7 @@
 #include "orbweaver/core/error.hpp"
 #include "tasks/payload/work.hpp"
 
+namespace resume_test {
 namespace {
 
 using namespace orbweaver;
@@ -128,3 +129,4 @@ TEST_F(TwoCheckpoints, BesideOneOfANewerVersionNothingIsRemoved) {
 }
 
 }  // namespace
+}  // namespace resume_test

@@ -9,6 +9,7 @@
 
 #include "survey/atlas.hpp"
 
+namespace rotations_test {
 namespace {
 
 using namespace orbweaver;
@@ -82,3 +83,4 @@ TEST(Rotations, BecomeThoseOfFreeRods) {
 }
 
 }  // namespace
+}  // namespace rotations_test

@@ -8,6 +8,7 @@
 
 #include "survey/atlas.hpp"
 
+namespace rough_starts_test {
 namespace {
 
 using namespace orbweaver;
@@ -58,3 +59,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& rough) { return rough.param.name; });
 
 }  // namespace
+}  // namespace rough_starts_test

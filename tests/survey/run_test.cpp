@@ -15,6 +15,7 @@
 #include "support/stated_system.hpp"
 #include "survey/scenes.hpp"
 
+namespace run_test {
 namespace {
 
 using namespace orbweaver;
@@ -369,3 +370,4 @@ TEST(RunSurvey, AModelThatContradictsItsStructureIsRefusedOnEveryRank) {
 }
 
 }  // namespace
+}  // namespace run_test

@@ -16,6 +16,7 @@
 #include "survey/atlas.hpp"
 #include "survey/scenes.hpp"
 
+namespace scales_test {
 namespace {
 
 using namespace orbweaver;
@@ -175,3 +176,4 @@ TEST(Scales, ATaskIsReadInTheScalesItWasMadeIn) {
 }
 
 }  // namespace
+}  // namespace scales_test

@@ -38,6 +38,7 @@ void fill(test::Filler& filler, Loop& loop) {
 
 }  // namespace orbweaver::loop
 
+namespace serialization_test {
 namespace {
 
 using namespace orbweaver;
@@ -136,3 +137,4 @@ TEST(Travellers, LimitsAndEnumsThatAreNoneAreRefused) {
 }
 
 }  // namespace
+}  // namespace serialization_test

@@ -9,6 +9,7 @@
 
 #include "spectrum/point_systems.hpp"
 
+namespace stability_columns_test {
 namespace {
 
 using namespace orbweaver;
@@ -72,3 +73,4 @@ TEST(StabilityColumns, WhatCannotBeComputedIsNaN) {
 }
 
 }  // namespace
+}  // namespace stability_columns_test

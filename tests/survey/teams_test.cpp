@@ -16,6 +16,7 @@
 #include "support/oscillator_chain.hpp"
 #include "survey/atlas.hpp"
 
+namespace teams_test {
 namespace {
 
 using namespace orbweaver;
@@ -366,3 +367,4 @@ TEST(Teams, StopWithTheirLeaders) {
 }
 
 }  // namespace
+}  // namespace teams_test

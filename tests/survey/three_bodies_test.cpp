@@ -13,6 +13,7 @@
 #include "survey/atlas.hpp"
 #include "systems/inertial_bodies.hpp"
 
+namespace three_bodies_test {
 namespace {
 
 using namespace orbweaver;
@@ -191,3 +192,4 @@ TEST(ThreeBodies, EightsThatTurnHoldTheirEnergy) {
 }
 
 }  // namespace
+}  // namespace three_bodies_test

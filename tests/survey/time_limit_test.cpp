@@ -12,6 +12,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "survey/scenes.hpp"
 
+namespace time_limit_test {
 namespace {
 
 using namespace orbweaver;
@@ -75,3 +76,4 @@ TEST(TimeLimit, EndsASurveyWithAWholeArchive) {
 }
 
 }  // namespace
+}  // namespace time_limit_test

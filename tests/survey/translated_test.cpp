@@ -13,6 +13,7 @@
 #include "support/translated_system.hpp"
 #include "survey/atlas.hpp"
 
+namespace translated_test {
 namespace {
 
 using namespace orbweaver;
@@ -122,3 +123,4 @@ TEST(Resumed, AWrongModelIsRefused) {
 }
 
 }  // namespace
+}  // namespace translated_test

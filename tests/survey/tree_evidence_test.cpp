@@ -7,6 +7,7 @@
 #include "survey/tree_outcomes.hpp"
 #include "tree/family_tree.hpp"
 
+namespace tree_evidence_test {
 namespace {
 
 using namespace orbweaver;
@@ -138,3 +139,4 @@ TEST_F(Evidence, WhatABranchHasPassedAndNotFoundIsUndecided) {
 }
 
 }  // namespace
+}  // namespace tree_evidence_test

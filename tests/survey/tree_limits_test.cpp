@@ -4,6 +4,7 @@
 
 #include "survey/atlas.hpp"
 
+namespace tree_limits_test {
 namespace {
 
 using namespace orbweaver;
@@ -131,3 +132,4 @@ TEST(HenonHeiles, WiderLimitsBehindAStepThatMetOneAndWasTakenBack) {
 }
 
 }  // namespace
+}  // namespace tree_limits_test

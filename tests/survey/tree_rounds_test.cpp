@@ -7,6 +7,7 @@
 #include "tasks/recorders.hpp"
 #include "tree/family_tree.hpp"
 
+namespace tree_rounds_test {
 namespace {
 
 using namespace orbweaver;
@@ -85,3 +86,4 @@ TEST_F(TreeRounds, ACrossingWhoseKernelFailsKeepsItsRowAndIsAFailure) {
 }
 
 }  // namespace
+}  // namespace tree_rounds_test

@@ -6,6 +6,7 @@
 
 #include "survey/atlas.hpp"
 
+namespace tree_test {
 namespace {
 
 using namespace orbweaver;
@@ -145,3 +146,4 @@ TEST_F(Tree, StepsFollowOneAnotherAndArclengthGrows) {
 }
 
 }  // namespace
+}  // namespace tree_test

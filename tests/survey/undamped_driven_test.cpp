@@ -15,9 +15,11 @@
 #include "orbweaver/archive/read/loop_of.hpp"
 #include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/loop/curve/system_at.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/survey/verify/verify.hpp"
 #include "survey/atlas.hpp"
 
+namespace undamped_driven_test {
 namespace {
 
 using namespace orbweaver;
@@ -223,3 +225,4 @@ TEST(UndampedDriven, ShakenPendulumHasOneAndTwoPairs) {
 }
 
 }  // namespace
+}  // namespace undamped_driven_test

@@ -16,6 +16,7 @@
 #include "survey/atlas.hpp"
 #include "survey/atlas_records.hpp"
 
+namespace verify_test {
 namespace {
 
 using namespace orbweaver;
@@ -366,3 +367,4 @@ TEST_F(VerifyOf, OrbitsThatStandElsewhereAreFound) {
 }
 
 }  // namespace
+}  // namespace verify_test

@@ -1,6 +1,6 @@
 #include "survey/witness_of.hpp"
 
-namespace orbweaver::survey {
+namespace orbweaver::survey::witness_ends_test {
 namespace {
 
 TEST_F(WitnessOf, DirectionsThatAKernelHasAndNobodyFound) {
@@ -262,4 +262,4 @@ TEST(Findings, HaveNamesOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace orbweaver::survey
+}  // namespace orbweaver::survey::witness_ends_test

@@ -1,6 +1,6 @@
 #include "survey/witness_of.hpp"
 
-namespace orbweaver::survey {
+namespace orbweaver::survey::witness_test {
 namespace {
 
 TEST_F(WitnessOf, ATreeThatAddsUpSaysWhatTheLimitsCut) {
@@ -267,4 +267,4 @@ TEST_F(WitnessOf, AnIndexThatPassesWhereATaskFailed) {
 }
 
 }  // namespace
-}  // namespace orbweaver::survey
+}  // namespace orbweaver::survey::witness_test

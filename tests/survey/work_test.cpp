@@ -10,6 +10,7 @@
 #include "tasks/payload/payload.hpp"
 #include "tasks/payload/work.hpp"
 
+namespace work_test {
 namespace {
 
 using namespace orbweaver;
@@ -233,3 +234,4 @@ TEST(Work, WhatCrossesWithoutASectorHasAKindInTheArchive) {
 }
 
 }  // namespace
+}  // namespace work_test

@@ -6,6 +6,7 @@
 #include "archive/sample.hpp"
 #include "system/tree_problems.hpp"
 
+namespace check_tree_test {
 namespace {
 
 using namespace orbweaver;
@@ -182,3 +183,4 @@ TEST(CheckTree, CrossingsThatAreNotLocated) {
 }
 
 }  // namespace
+}  // namespace check_tree_test

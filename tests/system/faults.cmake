@@ -1,12 +1,14 @@
 # What a machine can do to a survey: each fault gives a message that says what, where and what to do, and the status of
 # the README, on any number of ranks; CTest's time limit ends a hang.
 set(fine_scene "${PROJECT_SOURCE_DIR}/drivers/scenes/double_pendulum_half_degree.yaml")
+# Some 400 orbits: enough for a dozen flushes.
+set(coarse --set continuation.step=2deg --set limits.period=12 --set starts.sweep.step=0.05 --set output.flush_seconds=0.2 --set output.flush_orbits=25)
 set(fine --set continuation.step=0.5deg --set limits.period=12 --set starts.sweep.step=0.01 --set output.flush_seconds=0.2 --set output.flush_orbits=100)
 
 # full_disk_test(<name> <ranks> <bytes> <segments> [KEY=value of run_program.cmake ...]): no file may grow beyond <bytes>
 # once <segments> segments stand.
 function(full_disk_test name ranks bytes segments)
-  set(command "$<TARGET_FILE:orbweaver>" survey "${fine_scene}" -o out ${fine} -q)
+  set(command "$<TARGET_FILE:orbweaver>" survey "${fine_scene}" -o out ${coarse} -q)
   if(ranks GREATER 1)
     set(command ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks} ${command})
   endif()
@@ -35,7 +37,7 @@ foreach(ranks IN ITEMS 1 2 3)
     "ERR=orbweaver: the run was ended on all ranks: |cannot |'out/segments/|.part': File too large. Check the folder, its permissions and the free space."
     "GONE=${folder}/segments/segment-000001.h5.part")
   set(folder "${runs}/system.full_disk_at_the_end.${tag}/out")
-  full_disk_test(full_disk_at_the_end.${tag} ${ranks} 5000000 0
+  full_disk_test(full_disk_at_the_end.${tag} ${ranks} 1300000 0
     "ERR=cannot reserve disk space for 'out/atlas.h5.part'|File too large|the free space"
     "HAS=${folder}/segments/segment-000001.h5" "GONE=${folder}/atlas.h5")
 endforeach()
@@ -46,13 +48,13 @@ set(broken "${runs}/system.broken_off")
 full_disk_test(broken_off 2 20000 2 "ERR=File too large|the free space" "HAS=${broken}/out/segments/checkpoint.previous"
   "GONE=${broken}/out/atlas.h5")
 set(whole "${runs}/system.not_broken_off/out")
-system_test(not_broken_off 1 0 "OUT=4 families" "FRESH=${whole}" survey "${fine_scene}" -o out ${fine})
+system_test(not_broken_off 1 0 "OUT=4 families" "FRESH=${whole}" survey "${fine_scene}" -o out ${coarse})
 set_tests_properties(system.broken_off system.not_broken_off PROPERTIES FIXTURES_SETUP broken_off)
 foreach(case IN ITEMS as_it_is part_files torn_last_segment deleted_last_segment torn_journal torn_checkpoint
     wrong_checksum torn_first_segment deleted_first_segment exchanged_segments no_checksum_holds newer_version newer_previous link_to_itself
     folder other_scene narrower)
   orbweaver_add_ctest(system.damaged.${case} 2 system 180 "${CMAKE_CURRENT_SOURCE_DIR}/damaged.sh" ${case}
-    $<TARGET_FILE:orbweaver> $<TARGET_FILE:compare_archives> "${broken}" "${whole}/atlas.h5" "${fine_scene}" ${fine})
+    $<TARGET_FILE:orbweaver> $<TARGET_FILE:compare_archives> "${broken}" "${whole}/atlas.h5" "${fine_scene}" ${coarse})
   set_tests_properties(system.damaged.${case} PROPERTIES FIXTURES_REQUIRED broken_off)
 endforeach()
 

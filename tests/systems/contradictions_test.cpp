@@ -14,7 +14,7 @@
 #include "support/stated_system.hpp"
 #include "systems/samples.hpp"
 
-namespace orbweaver::systems {
+namespace orbweaver::systems::contradictions_test {
 namespace {
 
 using testing::AllOf;
@@ -196,4 +196,4 @@ TEST(Contradictions, StatesAreOfTheSizeOfTheCoordinatesToo) {
 }
 
 }  // namespace
-}  // namespace orbweaver::systems
+}  // namespace orbweaver::systems::contradictions_test

@@ -10,7 +10,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "systems/samples.hpp"
 
-namespace orbweaver::systems {
+namespace orbweaver::systems::double_pendulum_test {
 namespace {
 
 struct Lagrangian {
@@ -107,4 +107,4 @@ TEST(DoublePendulum, EqualStatesModuloATurnHaveEqualFields) {
 }
 
 }  // namespace
-}  // namespace orbweaver::systems
+}  // namespace orbweaver::systems::double_pendulum_test

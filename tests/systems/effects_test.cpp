@@ -13,7 +13,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "systems/samples.hpp"
 
-namespace orbweaver::systems {
+namespace orbweaver::systems::effects_test {
 namespace {
 
 using testing::ElementsAre;
@@ -403,4 +403,4 @@ TEST(FieldCost, IsATime) {
 }
 
 }  // namespace
-}  // namespace orbweaver::systems
+}  // namespace orbweaver::systems::effects_test

@@ -11,7 +11,7 @@
 #include "orbweaver/systems/system.hpp"
 #include "systems/samples.hpp"
 
-namespace orbweaver::systems {
+namespace orbweaver::systems::formulas_test {
 namespace {
 
 /// A state and a matrix V as the tape's inputs.
@@ -81,4 +81,4 @@ TEST(Formulas, NameTheParameters) {
 }
 
 }  // namespace
-}  // namespace orbweaver::systems
+}  // namespace orbweaver::systems::formulas_test

@@ -14,7 +14,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "systems/samples.hpp"
 
-namespace orbweaver::systems {
+namespace orbweaver::systems::identities_test {
 namespace {
 
 using Complex = std::complex<double>;
@@ -352,4 +352,4 @@ INSTANTIATE_TEST_SUITE_P(AllSystems, Identities, testing::ValuesIn(all_built()),
                          [](const testing::TestParamInfo<Built>& test) { return test.param.title(); });
 
 }  // namespace
-}  // namespace orbweaver::systems
+}  // namespace orbweaver::systems::identities_test

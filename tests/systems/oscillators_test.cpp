@@ -13,7 +13,7 @@
 #include "orbweaver/taylor/flow.hpp"
 #include "systems/samples.hpp"
 
-namespace orbweaver::systems {
+namespace orbweaver::systems::oscillators_test {
 namespace {
 
 using Parameters = std::map<std::string, double>;
@@ -122,4 +122,4 @@ TEST(Lorenz, HasItsKnownOrbit) {
 }
 
 }  // namespace
-}  // namespace orbweaver::systems
+}  // namespace orbweaver::systems::oscillators_test

@@ -9,7 +9,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "systems/samples.hpp"
 
-namespace orbweaver::systems {
+namespace orbweaver::systems::pcr3bp_test {
 namespace {
 
 using Real = long double;
@@ -200,4 +200,4 @@ TEST(Pcr3bp, MassesOutOfRangeAreRefused) {
 }
 
 }  // namespace
-}  // namespace orbweaver::systems
+}  // namespace orbweaver::systems::pcr3bp_test

@@ -13,7 +13,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "systems/samples.hpp"
 
-namespace orbweaver::systems {
+namespace orbweaver::systems::pendulum_chain_test {
 namespace {
 
 using Complex = std::complex<double>;
@@ -195,4 +195,4 @@ TEST(PendulumChain, RefusesNumbersOfLinksThatAreNone) {
 }
 
 }  // namespace
-}  // namespace orbweaver::systems
+}  // namespace orbweaver::systems::pendulum_chain_test

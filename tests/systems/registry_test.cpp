@@ -12,7 +12,7 @@
 #include "orbweaver/systems/system.hpp"
 #include "systems/samples.hpp"
 
-namespace orbweaver::systems {
+namespace orbweaver::systems::registry_test {
 namespace {
 
 using testing::AllOf;
@@ -228,4 +228,4 @@ TEST(Registry, EffectsBringTheirParameters) {
 }
 
 }  // namespace
-}  // namespace orbweaver::systems
+}  // namespace orbweaver::systems::registry_test

@@ -9,7 +9,7 @@
 #include "orbweaver/systems/quad_system.hpp"
 #include "orbweaver/systems/registry.hpp"
 
-namespace orbweaver::systems {
+namespace orbweaver::systems::scaled_system_test {
 namespace {
 
 using testing::ElementsAre;
@@ -122,4 +122,4 @@ TEST(ScaledSystem, RefusesScalesThatMeanNothing) {
 }
 
 }  // namespace
-}  // namespace orbweaver::systems
+}  // namespace orbweaver::systems::scaled_system_test

@@ -12,7 +12,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "systems/samples.hpp"
 
-namespace orbweaver::systems {
+namespace orbweaver::systems::structure_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -214,7 +214,6 @@ TEST(AffineMap, IsTheSameModuloWholeTurnsOfAngles) {
 }
 
 }  // namespace
+}  // namespace orbweaver::systems::structure_test
 
-template struct Registered<Springs>;
-
-}  // namespace orbweaver::systems
+template struct orbweaver::systems::Registered<orbweaver::systems::structure_test::Springs>;

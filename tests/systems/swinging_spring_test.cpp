@@ -8,7 +8,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "systems/samples.hpp"
 
-namespace orbweaver::systems {
+namespace orbweaver::systems::swinging_spring_test {
 namespace {
 
 /// Accelerations from the Lagrangian in r and th (from the downward vertical),
@@ -77,4 +77,4 @@ TEST(SwingingSpring, IsInResonanceOneToTwo) {
 }
 
 }  // namespace
-}  // namespace orbweaver::systems
+}  // namespace orbweaver::systems::swinging_spring_test

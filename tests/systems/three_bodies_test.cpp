@@ -11,7 +11,7 @@
 #include "systems/inertial_bodies.hpp"
 #include "systems/samples.hpp"
 
-namespace orbweaver::systems {
+namespace orbweaver::systems::three_bodies_test {
 namespace {
 
 using test::Inertial;
@@ -92,4 +92,4 @@ TEST(ThreeBodies, SymmetriesAreThoseOfTheParametersAndOfWhatMoves) {
 }
 
 }  // namespace
-}  // namespace orbweaver::systems
+}  // namespace orbweaver::systems::three_bodies_test

@@ -7,7 +7,7 @@
 #include "support/magnetic_well.hpp"
 #include "support/translated_system.hpp"
 
-namespace orbweaver::systems {
+namespace orbweaver::systems::undeclared_symmetries_test {
 namespace {
 
 using testing::ElementsAre;
@@ -44,4 +44,4 @@ TEST(UndeclaredSymmetries, AreNotWhatIsDeclared) {
 }
 
 }  // namespace
-}  // namespace orbweaver::systems
+}  // namespace orbweaver::systems::undeclared_symmetries_test

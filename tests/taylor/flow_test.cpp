@@ -9,7 +9,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 
-namespace orbweaver::taylor {
+namespace orbweaver::taylor::flow_test {
 namespace {
 
 using numerics::Extended;
@@ -157,4 +157,4 @@ TEST(Flow, SaysWhereThereIsNoSolution) {
 }
 
 }  // namespace
-}  // namespace orbweaver::taylor
+}  // namespace orbweaver::taylor::flow_test

@@ -20,8 +20,8 @@ constexpr int first_exponent = 4;  // of the tolerances 1e-4 to 1e-13
 constexpr int last_exponent = 13;
 constexpr int quick_stride = 3;
 
-const std::vector<int> rungs{15, 30, 50};
-const std::vector<int> quick_rungs{15};
+const std::vector<int> crossing_digits{15, 30, 50};
+const std::vector<int> quick_crossing_digits{15};
 /// Of the crossing that others are held against.
 constexpr int reference_digits = 20;
 constexpr double of_tail = 1e-2;  // as branches have it by default
@@ -31,7 +31,7 @@ refine::CrossingCondition condition_of(const bifurcation::Event& event) {
   return {archive::CrossingKind::subharmonic, event.function.sector.j, event.function.sector.q};
 }
 
-void measure(const Setting& setting, const Take& take) {
+void measure_crossing(const Setting& setting, const Take& take) {
   Table table{"crossing",
               fmt::format("{}: digits of its first crossing against time", setting.family()),
               {{"by"}, {"setting"}, {"time", "s"}, {"period"}, {"relative error"}, {"digits"}},
@@ -76,7 +76,7 @@ void measure(const Setting& setting, const Take& take) {
     const auto off = static_cast<double>(numerics::Extended(abs(numerics::Extended(at) - truth.period.value)));
     add("location", options.corrector.tolerance, timing.seconds, at, off / period);
   }
-  for (const int digits : setting.quick() ? quick_rungs : rungs) {
+  for (const int digits : setting.quick() ? quick_crossing_digits : crossing_digits) {
     refine::RefinedOrbit found;
     const Timing timing =
         timing_of([&] { found = refine::refine_crossing(guess, condition_of(best->event), digits); }, setting.budget());
@@ -90,6 +90,6 @@ void measure(const Setting& setting, const Take& take) {
 
 }  // namespace
 
-const Ladder crossing_ladder{"crossing", "digits of the first crossing against time", measure};
+const Ladder crossing_ladder{"crossing", "digits of the first crossing against time", measure_crossing};
 
 }  // namespace orbweaver::cost

@@ -12,15 +12,15 @@ namespace orbweaver::cost {
 
 namespace {
 
-const std::vector<int> rungs{15, 30, 50, 100};
-const std::vector<int> quick_rungs{15, 30};
+const std::vector<int> orbit_digits{15, 30, 50, 100};
+const std::vector<int> quick_orbit_digits{15, 30};
 
 /// Correct digits of a number by its bound.
 double digits_of(const refine::Number& number) {
   return numerics::log10_abs(number.value) - numerics::log10_abs(number.error);
 }
 
-void measure(const Setting& setting, const Take& take) {
+void measure_digits(const Setting& setting, const Take& take) {
   Table table{"digits",
               fmt::format("{}: digits of an orbit by `orbweaver refine` against time", setting.family()),
               {{"orbit"},
@@ -37,7 +37,7 @@ void measure(const Setting& setting, const Take& take) {
   const double unit = setting.system()->scales().time;
   for (const Probe& probe : setting.probes()) {
     const TrueOrbit& truth = setting.truth_of(probe);
-    for (const int digits : setting.quick() ? quick_rungs : rungs) {
+    for (const int digits : setting.quick() ? quick_orbit_digits : orbit_digits) {
       refine::RefinedOrbit orbit;
       const Timing timing =
           timing_of([&] { orbit = refine::refine_orbit(truth.guess(), truth.held(), digits); }, setting.budget());
@@ -54,6 +54,6 @@ void measure(const Setting& setting, const Take& take) {
 
 }  // namespace
 
-const Ladder digits_ladder{"digits", "digits of an orbit by refine against time", measure};
+const Ladder digits_ladder{"digits", "digits of an orbit by refine against time", measure_digits};
 
 }  // namespace orbweaver::cost

@@ -86,7 +86,7 @@ std::vector<double> orbit_seconds(const Setting& setting, const std::vector<std:
   return medians;
 }
 
-void measure(const Setting& setting, const Take& take) {
+void measure_features(const Setting& setting, const Take& take) {
   Table table{"features",
               fmt::format("{}: the price of what a scene can ask for", setting.family()),
               {{"what"}, {"T"}, {"K"}, {"time", "s"}, {"orbits"}, {"remark"}},
@@ -168,7 +168,8 @@ void measure(const Setting& setting, const Take& take) {
 
 }  // namespace
 
-const Ladder features_ladder{
-    "features", "the price of stability, certificate, off-branch eigenvalue, location, kernel, section", measure};
+const Ladder features_ladder{"features",
+                             "the price of stability, certificate, off-branch eigenvalue, location, kernel, section",
+                             measure_features};
 
 }  // namespace orbweaver::cost

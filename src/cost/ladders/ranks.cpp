@@ -102,7 +102,7 @@ void add_speedups(Table& table) {
         row[4] = first[3].number / row[3].number * row[2].number / first[2].number;
 }
 
-void measure(const Setting& setting, const Take& take) {
+void measure_ranks(const Setting& setting, const Take& take) {
   Table table{"ranks",
               fmt::format("{}: ranks for a survey, teams for one orbit", setting.family()),
               {{"what"}, {"ranks"}, {"orbits or K"}, {"time", "s"}, {"times quicker"}},
@@ -127,6 +127,6 @@ void measure(const Setting& setting, const Take& take) {
 
 }  // namespace
 
-const Ladder ranks_ladder{"ranks", "ranks for a survey, teams for one orbit", measure, true};
+const Ladder ranks_ladder{"ranks", "ranks for a survey, teams for one orbit", measure_ranks, true};
 
 }  // namespace orbweaver::cost

@@ -60,7 +60,7 @@ std::vector<Grid> grids_for(const Setting& setting, const Probe& probe) {
   return grids;
 }
 
-void measure(const Setting& setting, const Take& take) {
+void measure_resolution(const Setting& setting, const Take& take) {
   Table table{"resolution",
               fmt::format("{}: error of an orbit against its time as the harmonics K grow", setting.family()),
               {{"orbit"}, {"T"}, {"space"}, {"time map"}, {"K"}, {"unknowns"}, {"time", "s"}, {"error"}},
@@ -130,6 +130,6 @@ void measure(const Setting& setting, const Take& take) {
 
 }  // namespace
 
-const Ladder resolution_ladder{"resolution", "error of an orbit against its time as K grows", measure};
+const Ladder resolution_ladder{"resolution", "error of an orbit against its time as K grows", measure_resolution};
 
 }  // namespace orbweaver::cost

@@ -160,7 +160,7 @@ std::vector<Solver> solvers_for(const Setting& setting, const TrueOrbit& truth, 
   return solvers;
 }
 
-void measure(const Setting& setting, const Take& take) {
+void measure_solvers(const Setting& setting, const Take& take) {
   Table all{
       "solvers",
       fmt::format("{}: solvers from one guess, error against time", setting.family()),
@@ -210,6 +210,6 @@ void measure(const Setting& setting, const Take& take) {
 
 }  // namespace
 
-const Ladder solvers_ladder{"solvers", "the solvers on the same orbits to the same true error", measure};
+const Ladder solvers_ladder{"solvers", "the solvers on the same orbits to the same true error", measure_solvers};
 
 }  // namespace orbweaver::cost

@@ -40,7 +40,7 @@ double worst_error(const Setting& setting, const std::vector<loop::Loop>& loops,
   return worst;
 }
 
-void measure(const Setting& setting, const Take& take) {
+void measure_tolerance(const Setting& setting, const Take& take) {
   Table table{"tolerance",
               fmt::format("{}: the whole family against the tolerance on sqrt(loss)", setting.family()),
               {{"solver"},
@@ -97,6 +97,6 @@ void measure(const Setting& setting, const Take& take) {
 
 }  // namespace
 
-const Ladder tolerance_ladder{"tolerance", "a whole family against the tolerance, 1e-4 to 1e-13", measure};
+const Ladder tolerance_ladder{"tolerance", "a whole family against the tolerance, 1e-4 to 1e-13", measure_tolerance};
 
 }  // namespace orbweaver::cost

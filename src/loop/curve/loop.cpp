@@ -3,20 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 
 #include "orbweaver/ad/lanes.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/interruption.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
+#include "orbweaver/numerics/two_pi.hpp"
 #include "resampled.hpp"
 
 namespace orbweaver::loop {
 
 namespace {
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
+using numerics::two_pi;
 
 double harmonic_norm_squared(const Loop& loop, int k) {
   double sum = 0.0;

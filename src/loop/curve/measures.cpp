@@ -4,17 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
+#include "orbweaver/numerics/two_pi.hpp"
 #include "resampled.hpp"
 
 namespace orbweaver::loop {
 
 namespace {
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
+using numerics::two_pi;
 
 double squared_norm(std::span<const double> values) {
   double sum = 0.0;
@@ -22,7 +22,7 @@ double squared_norm(std::span<const double> values) {
   return sum;
 }
 
-double harmonic_norm_squared(const Loop& loop, int k) {
+double squared_norm_of_harmonic(const Loop& loop, int k) {
   const auto d = static_cast<std::size_t>(loop.dimension);
   return squared_norm(std::span(loop.modes).subspan((2 * static_cast<std::size_t>(k) - 1) * d, 2 * d));
 }
@@ -138,7 +138,7 @@ double rms_speed(const Loop& loop) {
   const double rate = two_pi / loop.period;
   if (loop.time_map.is_identity()) {
     double sum = 0.0;
-    for (int k = loop.cutoff; k >= 1; --k) sum += 0.5 * k * k * harmonic_norm_squared(loop, k);
+    for (int k = loop.cutoff; k >= 1; --k) sum += 0.5 * k * k * squared_norm_of_harmonic(loop, k);
     return rate * std::sqrt(sum + squared_norm(loop.winding));
   }
   const int nodes = nodes_for(loop);
@@ -164,7 +164,7 @@ std::vector<double> mean_state(const Loop& loop) {
 double rms_amplitude(const Loop& loop) {
   if (loop.time_map.is_identity()) {
     double sum = 0.0;
-    for (int k = loop.cutoff; k >= 1; --k) sum += 0.5 * harmonic_norm_squared(loop, k);
+    for (int k = loop.cutoff; k >= 1; --k) sum += 0.5 * squared_norm_of_harmonic(loop, k);
     return std::sqrt(sum);
   }
   const Samples samples = oscillation_of(loop);

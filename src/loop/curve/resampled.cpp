@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <span>
+
+#include "orbweaver/numerics/two_pi.hpp"
 
 namespace orbweaver::loop {
 
 namespace {
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
+using numerics::two_pi;
 
 // Nodes taken together: what they need stays in the first cache while all harmonics are added.
 constexpr std::size_t block = 32;

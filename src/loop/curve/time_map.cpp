@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <utility>
 
 #include <boost/math/policies/error_handling.hpp>
@@ -11,14 +10,16 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
+#include "orbweaver/numerics/two_pi.hpp"
 
 namespace orbweaver::loop {
 
 namespace {
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
-constexpr double below_rounding = 1e-17;  // of a density of mean 1
-constexpr int most_steps = 200;           // of Newton's method: bisection alone needs 53
+using numerics::two_pi;
+
+constexpr double below_rounding = 1e-17;   // of a density of mean 1
+constexpr int most_inversion_steps = 200;  // of Newton's method: bisection alone needs 53
 // Newton's method within a bracket, since the slope is at hand: 5 to 6 values, where TOMS 748 takes 9 to 10 and 1.5 to
 // 3 times as long. A step of 2^-29 is the last: its square is rounding.
 constexpr int newton_bits = 30;
@@ -74,15 +75,16 @@ std::pair<Real, Real> phase_and_density(const TimeMap& map, Real s) {
 }
 
 // Parameters whose harmonics are added side by side: what that takes stays in the first cache.
-constexpr std::size_t block = 32;
+constexpr std::size_t parameters_together = 32;
 
-// Both at up to `block` parameters.
+// Both at up to `parameters_together` parameters.
 struct PhasesAndDensities {
-  double phase[block];
-  double density[block];
+  double phase[parameters_together];
+  double density[parameters_together];
 
   PhasesAndDensities(const TimeMap& map, const double* s, std::size_t count) {
-    double sine[block] = {}, cosine[block] = {}, wave_sine[block], wave_cosine[block];
+    double sine[parameters_together] = {}, cosine[parameters_together] = {}, wave_sine[parameters_together],
+           wave_cosine[parameters_together];
     for (std::size_t j = 0; j < count; ++j) {
       sine[j] = std::sin(s[j]);
       cosine[j] = std::cos(s[j]);
@@ -93,14 +95,14 @@ struct PhasesAndDensities {
           std::atan2((map.kappa - 1.0) * sine[j] * cosine[j], cosine[j] * cosine[j] + map.kappa * sine[j] * sine[j]);
       density[j] = pulse_density(map.kappa, cosine[j], sine[j]);
     }
-    std::fill(phase + count, phase + block, 0.0);
-    std::fill(density + count, density + block, 1.0);
-    std::copy(sine, sine + block, wave_sine);
-    std::copy(cosine, cosine + block, wave_cosine);
+    std::fill(phase + count, phase + parameters_together, 0.0);
+    std::fill(density + count, density + parameters_together, 1.0);
+    std::copy(sine, sine + parameters_together, wave_sine);
+    std::copy(cosine, cosine + parameters_together, wave_cosine);
     for (std::size_t n = 0; 2 * n + 1 < map.coefficients.size(); ++n) {
       const double c = map.coefficients[2 * n];
       const double d = map.coefficients[2 * n + 1];
-      for (std::size_t j = 0; j < block; ++j) {
+      for (std::size_t j = 0; j < parameters_together; ++j) {
         phase[j] += (c * wave_sine[j] + d * (1.0 - wave_cosine[j])) / static_cast<double>(n + 1);
         density[j] += c * wave_cosine[j] + d * wave_sine[j];
         const double next = wave_cosine[j] * cosine[j] - wave_sine[j] * sine[j];
@@ -134,8 +136,8 @@ double polished(const TimeMap& map, const TimeMap& other, double s, double round
 constexpr int most_common_steps = 8;
 const double last_step = std::ldexp(1.0, 1 - newton_bits);
 
-// The parameters in [0, 2 pi] of these phases, at most `block`; `density` takes the densities there, `converged` which
-// of them are right.
+// The parameters in [0, 2 pi] of these phases, at most `parameters_together`; `density` takes the densities there,
+// `converged` which of them are right.
 void invert_together(const TimeMap& map, const double* wanted, std::size_t count, double* s, double* density,
                      bool* converged) {
   std::copy(wanted, wanted + count, s);
@@ -163,7 +165,7 @@ double inverse_between_signs(const TimeMap& map, double wanted) {
   const double at_end = excess(two_pi);
   if (at_start >= 0.0) return 0.0;
   if (at_end <= 0.0) return two_pi;
-  std::uintmax_t steps = most_steps;
+  std::uintmax_t steps = most_inversion_steps;
   const auto [lower, upper] = boost::math::tools::toms748_solve(
       excess, 0.0, two_pi, at_start, at_end, boost::math::tools::eps_tolerance<double>(bracket_bits), steps);
   return 0.5 * (lower + upper);
@@ -176,10 +178,10 @@ double inverse_in_a_turn(const TimeMap& map, double wanted) {
     auto [here, slope] = phase_and_density(map, s);
     return std::pair(here - wanted, slope);
   };
-  std::uintmax_t steps = most_steps;
+  std::uintmax_t steps = most_inversion_steps;
   try {
     const double s = boost::math::tools::newton_raphson_iterate(excess, wanted, 0.0, two_pi, newton_bits, steps);
-    if (steps < most_steps) return s;
+    if (steps < most_inversion_steps) return s;
   } catch (const boost::math::evaluation_error&) {  // it knows no other way to say so
   }
   return inverse_between_signs(map, wanted);
@@ -207,8 +209,8 @@ double TimeMap::parameter_at(const TimeMap& other, double s) const {
 
 std::vector<double> TimeMap::phases(std::span<const double> s) const {
   std::vector<double> out(s.size());
-  for (std::size_t first = 0; first < s.size(); first += block) {
-    const std::size_t count = std::min(block, s.size() - first);
+  for (std::size_t first = 0; first < s.size(); first += parameters_together) {
+    const std::size_t count = std::min(parameters_together, s.size() - first);
     const PhasesAndDensities here(*this, s.data() + first, count);
     std::copy(here.phase, here.phase + count, out.begin() + static_cast<std::ptrdiff_t>(first));
   }
@@ -222,10 +224,11 @@ std::vector<double> TimeMap::parameters_at(const TimeMap& other, std::span<const
     for (double& each : out) each = inverse(each);
     return out;
   }
-  double wanted[block], turns[block], found[block], density[block];
-  bool converged[block];
-  for (std::size_t first = 0; first < s.size(); first += block) {
-    const std::size_t count = std::min(block, s.size() - first);
+  double wanted[parameters_together], turns[parameters_together], found[parameters_together],
+      density[parameters_together];
+  bool converged[parameters_together];
+  for (std::size_t first = 0; first < s.size(); first += parameters_together) {
+    const std::size_t count = std::min(parameters_together, s.size() - first);
     for (std::size_t j = 0; j < count; ++j) {
       turns[j] = std::floor(out[first + j] / two_pi);
       wanted[j] = out[first + j] - two_pi * turns[j];

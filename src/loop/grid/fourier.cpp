@@ -6,17 +6,11 @@
 
 #include <fftw3.h>
 
+#include "grid/long_transform.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/interruption.hpp"
 
 namespace orbweaver::loop {
-
-namespace {
-
-/// Nodes whose transform takes a tenth of a millisecond or more: before each the work may be given up.
-constexpr int long_transform = 1 << 14;
-
-}  // namespace
 
 struct FourierGrid::Plans {
   double* real = nullptr;

@@ -9,6 +9,7 @@
 #include <fftw3.h>
 
 #include "folded_filters.hpp"
+#include "grid/long_transform.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/interruption.hpp"
 
@@ -18,8 +19,6 @@ namespace {
 
 /// Dense filters are faster up to 96 cells, times sqrt(copies) (measured: docs/performance.md).
 constexpr int most_dense_cells = 96;
-/// Nodes whose transforms take a tenth of a millisecond or more: before each the work may be given up.
-constexpr int long_transform = 1 << 14;
 /// Entries of symmetry matrices: exact up to products of a few rounded sines and cosines.
 constexpr double same_entry = 1e-12;
 /// Nodal arrays are padded to whole vector registers of four doubles.

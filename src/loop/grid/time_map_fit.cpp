@@ -8,12 +8,14 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
+#include "orbweaver/numerics/two_pi.hpp"
 
 namespace orbweaver::loop {
 
 namespace {
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
+using numerics::two_pi;
+
 /// Below the squares of all derivatives: keeps logarithms finite.
 constexpr double tiny_square = 1e-300;
 /// Coefficients of a density of mean 1 that differ by less are rounding.

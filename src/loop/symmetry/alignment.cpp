@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
@@ -11,13 +10,15 @@
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/loop/symmetry/shift_search.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
+#include "orbweaver/numerics/two_pi.hpp"
 #include "symmetry/mapped_shift.hpp"
 
 namespace orbweaver::loop {
 
 namespace {
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
+using numerics::two_pi;
+
 /// Distances of loops that differ by less are equal but for rounding.
 constexpr double equally_close = 1e-12;
 /// Squares of distances come from differences of large numbers, of the size of the loop's square: minima that agree to

@@ -14,7 +14,7 @@ using Eigen::MatrixXd;
 
 /// Entries of declared matrices are exact; those of products, singular values and shifts are good to some roundings.
 /// What is not zero, or not the same, is of order 1: three orders more or less make no difference.
-constexpr double same_entry = 1e-12;
+constexpr double zero_entry = 1e-12;
 constexpr double same = 1e-9;
 
 /// Rows that vanish exactly on the fixed space of `matrix`: sparse where the matrix is diagonal, orthonormal otherwise.
@@ -26,9 +26,9 @@ MatrixXd conditions_of_fixed_space(const MatrixXd& matrix) {
     rows.conservativeResize(rows.rows() + 1, Eigen::NoChange);
     rows.row(rows.rows() - 1) = row;
   };
-  if (moved.isDiagonal(same_entry)) {
+  if (moved.isDiagonal(zero_entry)) {
     for (Eigen::Index i = 0; i < d; ++i)
-      if (std::abs(moved(i, i)) > same_entry) add(Eigen::RowVectorXd::Unit(d, i));
+      if (std::abs(moved(i, i)) > zero_entry) add(Eigen::RowVectorXd::Unit(d, i));
     return rows;
   }
   const Eigen::JacobiSVD<MatrixXd> svd(moved, Eigen::ComputeFullV);

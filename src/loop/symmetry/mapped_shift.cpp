@@ -2,22 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "curve/resampled.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
+#include "orbweaver/numerics/two_pi.hpp"
 
 namespace orbweaver::loop {
 
 namespace {
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
+using numerics::two_pi;
+
 /// Steps: each leaves the part of the last that the loops' slopes differ by.
-constexpr int most_steps = 30;
+constexpr int most_shift_steps = 30;
 /// Of the distance, what the loop moves in the last step: the distance changes by the square of that.
-constexpr double settled = 1e-6;
+constexpr double settled_distance = 1e-6;
 constexpr double rounding = 1e-15;  // of a shift
 
 }  // namespace
@@ -40,7 +41,7 @@ double mapped_shift_near(const Loop& y, const Loop& x, const std::vector<int>& a
       speed += slope[i * n + j] * slope[i * n + j] / density[j] / nodes;
     }
   if (!(speed > 0.0)) return shift;
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < most_shift_steps; ++step) {
     std::vector<double> gap = resampled(time_shifted(y, shift), x.time_map, nodes);
     double along = 0.0;
     double square = 0.0;
@@ -57,7 +58,7 @@ double mapped_shift_near(const Loop& y, const Loop& x, const std::vector<int>& a
     }
     const double change = along / speed;  // of 2 pi psi
     shift -= change / two_pi;
-    if (std::abs(change) < rounding || change * change * speed <= settled * settled * square) break;
+    if (std::abs(change) < rounding || change * change * speed <= settled_distance * settled_distance * square) break;
   }
   return shift;
 }

@@ -2,22 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/grid/fourier.hpp"
+#include "orbweaver/numerics/two_pi.hpp"
 
 namespace orbweaver::loop {
 
 namespace {
 
+using numerics::two_pi;
+
 constexpr double settled = 1e-15;   // a step in the shift that no longer changes it
 constexpr int most_steps = 30;      // of Newton's method from a grid finer than the harmonics: it needs three or four
 constexpr double deep_share = 0.1;  // of the range of D^2: shallower minima are no candidates for the closest
 constexpr double largest_move = 0.05;  // of a period: how far the minimum near a given shift may lie
-
-constexpr double two_pi = 2.0 * std::numbers::pi;
 
 // D^2 as a function of theta = 2 pi psi with its first two derivatives.
 class Correlation {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <vector>
 
 #include "orbweaver/loop/curve/measures.hpp"
@@ -11,16 +10,19 @@
 #include "orbweaver/loop/grid/fourier.hpp"
 #include "orbweaver/loop/symmetry/shift_search.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
+#include "orbweaver/numerics/two_pi.hpp"
 
 namespace orbweaver::loop {
 
 namespace {
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
+using numerics::two_pi;
+
 /// Coordinates of two instants that are nearer, relative to 1 + the loop's size, are the same: the next one decides.
 constexpr double same_coordinate = 1e-9;
-constexpr double settled = 1e-15;  // a step in s that no longer changes it
-constexpr int most_steps = 30;     // of Newton's method from a grid finer than the harmonics: it needs three or four
+constexpr double settled_instant = 1e-15;  // a step in s that no longer changes it
+constexpr int most_instant_steps =
+    30;  // of Newton's method from a grid finer than the harmonics: three or four are needed
 
 // The state at a point of a reversor's fixed set, angles that wind within [-pi/2, 3 pi/2): on such a set they are 0 or
 // pi.
@@ -52,7 +54,7 @@ double turns_of_maximum(const Loop& even, int i) {
   const double spacing = two_pi / nodes;
   const double start = spacing * static_cast<double>(highest);
   double s = start;
-  for (int n = 0; n < most_steps; ++n) {  // Newton's method on dz/ds, within the neighbouring nodes
+  for (int n = 0; n < most_instant_steps; ++n) {  // Newton's method on dz/ds, within the neighbouring nodes
     double slope = 0.0;
     double curvature = 0.0;
     for (int k = even.cutoff; k >= 1; --k) {
@@ -65,7 +67,7 @@ double turns_of_maximum(const Loop& even, int i) {
     const double next = std::clamp(s + slope / std::abs(curvature), start - spacing, start + spacing);
     const double step = std::abs(next - s);
     s = next;
-    if (step < settled) break;
+    if (step < settled_instant) break;
   }
   return s / two_pi;
 }

@@ -26,8 +26,6 @@ constexpr std::size_t most_asked = 8;
 constexpr std::size_t most_segments = 4;
 constexpr double loop_tolerance = bifurcation::IdentityOptions{}.tolerance;
 
-std::size_t index(int row) { return static_cast<std::size_t>(row); }
-
 std::string orbit_text(const TreeFamily& family, std::size_t orbit) {
   const Invariants& x = family.curve.points()[orbit];
   if (std::isnan(x.value(Invariant::level))) return fmt::format("T = {:.12g}", x.value(Invariant::period));

@@ -31,8 +31,6 @@ struct Share {
   double excess = 0.0;
 };
 
-std::size_t index(int row) { return static_cast<std::size_t>(row); }
-
 // Orbits beyond the ends of the other family say nothing; those are the ones at the ends whose period and energy lie
 // outside.
 bool is_in_range(const InvariantCurve& curve, const Invariants& x) {

@@ -20,6 +20,9 @@ using survey::LoopCheck;
 using survey::TreeCrossing;
 using survey::TreeFamily;
 
+/// The place of a row in an array.
+[[nodiscard]] constexpr std::size_t index(int row) { return static_cast<std::size_t>(row); }
+
 /// What two atlases have in common. Rows of families and crossings; -1: nothing.
 struct TreeMatch {
   std::vector<int> family_of_a;  ///< row in B of each family of A

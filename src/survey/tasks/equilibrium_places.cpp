@@ -78,7 +78,7 @@ void count_as_zero(LinearModes& modes) {
   std::sort(modes.rest.begin(), modes.rest.end(), comes_before);
 }
 
-starts::LinearStability stability_of(LinearModes modes, bool driven) {
+starts::LinearStability stability_if_driven(LinearModes modes, bool driven) {
   if (driven) {
     const auto phase = std::find(modes.rest.begin(), modes.rest.end(), Complex());
     if (phase != modes.rest.end()) modes.rest.erase(phase);
@@ -102,7 +102,7 @@ EquilibriumPlace equilibrium_place(const systems::System& system, const std::vec
       free.empty() ? nothing : system.parameters().at(free.front()) / system.parameter_scale(free.front());
   place.state = point;
   place.energy = structure.conservative() ? system.conserved(0, point) : nothing;
-  place.stability = stability_of(modes, structure.driven);
+  place.stability = stability_if_driven(modes, structure.driven);
   for (const Complex& value : eigenvalues_of(modes)) {
     place.eigenvalues.push_back(value.real());
     place.eigenvalues.push_back(value.imag());

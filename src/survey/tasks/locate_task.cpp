@@ -10,6 +10,7 @@
 #include "arrival.hpp"
 #include "crossing_outcome.hpp"
 #include "executor.hpp"
+#include "interrupted.hpp"
 #include "orbit_row.hpp"
 #include "orbweaver/archive/schema/records.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
@@ -45,9 +46,6 @@ constexpr double apart_indices = 4.0;
 
 /// Of a kernel vector that the family's symmetries leave as it is, they keep all but what it is wrong by, 1e-6.
 constexpr double in_symmetric_space = 0.99;
-
-/// The run is to stop.
-struct Interrupted {};
 
 class Location {
  public:

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "executor.hpp"
+#include "interrupted.hpp"
 #include "orbweaver/bifurcation/locus.hpp"
 #include "orbweaver/continuation/locus_curve.hpp"
 #include "orbweaver/continuation/orbit.hpp"
@@ -15,9 +16,6 @@
 namespace orbweaver::survey {
 
 namespace {
-
-/// The run is to stop.
-struct Interrupted {};
 
 int limit_of(continuation::EndReason reason) {
   switch (reason) {

@@ -28,7 +28,7 @@ constexpr double integration = 1e-13;
 constexpr double closes = 1e-9;
 /// The orbit converged anew, from the state, in parts of 1 + the state: locations are good to 1e-10 of the length, and
 /// beside a fold the closure sees a change along the family only squared.
-constexpr double same_place = 1e-6;
+constexpr double same_converged = 1e-6;
 /// A singular value that is zero, in parts of the largest: what locations leave of a test function, times its slope.
 constexpr double zero = 1e-6;
 
@@ -58,7 +58,8 @@ class Point {
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
     solver.setThreshold(zero);
     const Eigen::VectorXd step = solver.compute(linear).solve(-gap);
-    claims.below("state", step.norm(), same_place * size, "the distance of the state from the orbit converged anew");
+    claims.below("state", step.norm(), same_converged * size,
+                 "the distance of the state from the orbit converged anew");
     if (_system->structure().conservative())
       claims.agree("energy", real("energy"), _system->conserved(0, std::span(_state.data(), _state.size())),
                    1e-9 * (1.0 + std::abs(real("energy"))));

@@ -36,7 +36,7 @@ constexpr double sum_rounding = 256.0;
 constexpr double held_period = 1e-14;
 constexpr double held_state = 1e-10;
 /// Of a stability value besides the two bounds.
-constexpr double index_rounding = 1e-13;
+constexpr double stored_index_rounding = 1e-13;
 /// Of the bound computed again, where that of the stored values is not stored.
 constexpr double both_bounds = 4.0;
 /// Of a stability value: with a bound as large it is not told, and may come out as anything of its size.
@@ -188,7 +188,7 @@ class OrbitCheck {
       for (std::size_t i = 0; i < values.size(); ++i) {
         const double stored = _orbits.reals(column)[_row * values.size() + i];
         const double size = allowed >= untold * std::abs(stored) ? std::abs(stored) : 0.0;
-        _claims.agree(column, stored, values[i], allowed + size + index_rounding * (1.0 + std::abs(values[i])));
+        _claims.agree(column, stored, values[i], allowed + size + stored_index_rounding * (1.0 + std::abs(values[i])));
       }
     };
     double fundamental = 0.0;
@@ -205,7 +205,7 @@ class OrbitCheck {
       largest = std::max(largest, std::abs(_orbits.reals("stability")[_row * found.stability.size() + i]));
     if (!(real("stability_error") >= no_digit * largest))
       _claims.agree_within(are_indices ? bounds_factor : probes_factor, "stability_error", real("stability_error"),
-                           found.stability_error, index_rounding + (are_indices ? 0.0 : well_told * largest));
+                           found.stability_error, stored_index_rounding + (are_indices ? 0.0 : well_told * largest));
   }
 
   /// At the level of the scene; of what is stored, since the multipliers' differences have been told.
