@@ -14,9 +14,9 @@ set(ORBWEAVER_TEST_ENVIRONMENT
   "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/cmake/lsan.supp")
 
 # Half of a test's compile time is optimisation, for code that runs once. Not -O0: the linker may take a template of Eigen that a test
-# has compiled for the libraries too. For the same reason a test that decomposes a matrix includes
-# orbweaver/numerics/decompositions.hpp: with a decomposition compiled here two surveys beside it ended otherwise. g++ 12 then warns of
-# bounds within strings of the standard library where there is nothing wrong.
+# has compiled for the libraries too. For the same reason all tests see orbweaver/numerics/decompositions.hpp: with a decomposition
+# compiled here two surveys beside it ended otherwise. g++ 12 then warns of bounds within strings of the standard library where there is
+# nothing wrong.
 set(ORBWEAVER_TEST_OPTIMISATION
   "$<$<CONFIG:Release>:-O1;${ORBWEAVER_NO_WARNINGS_OF_BOUNDS}>")
 
