@@ -21,8 +21,8 @@ constexpr int first_orbits = 3;
 constexpr double vanishing_amplitude = 0.5;
 /// Of an amplitude: what is nearer than this is not near by its size alone.
 constexpr double by_size = 0.5;
-/// A branch has come back only after so many of its steps: it cannot turn on less. Not measured; circles are of some ten
-/// steps.
+/// A branch has come back only after so many of its steps: it cannot turn on less. Not measured; circles are of some
+/// ten steps.
 constexpr double way_around = 3.0;
 /// How often the period must have grown, and how little of its range the energy may have moved over `period_window`,
 /// where the period diverges. Not measured; both decide only how an end is called.

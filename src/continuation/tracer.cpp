@@ -317,8 +317,8 @@ double Tracer::length_to_try() {
                   fixed_in_largest * _options.largest_step);
 }
 
-/// Of a branch that comes back to its first orbit on a step of `length` to `trial`: that orbit, where its last one is to
-/// lie. Between them nothing would be looked for, and beyond it everything twice.
+/// Of a branch that comes back to its first orbit on a step of `length` to `trial`: that orbit, where its last one is
+/// to lie. Between them nothing would be looked for, and beyond it everything twice.
 std::optional<Trial> Tracer::closing_orbit(const Trial& trial, double length) {
   if (!may_have_come_back(_frontier, arclength_between(here(), trial.loop), trial.loop, trial.amplitude))
     return std::nullopt;

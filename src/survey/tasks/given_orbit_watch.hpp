@@ -12,8 +12,8 @@
 
 namespace orbweaver::survey {
 
-/// Watches which other base families begin on a branch: at orbits that the scene gives and the branch passes on its way,
-/// and small ones that it comes to where its orbits shrink to a point.
+/// Watches which other base families begin on a branch: at orbits that the scene gives and the branch passes on its
+/// way, and small ones that it comes to where its orbits shrink to a point.
 class GivenOrbitWatch {
  public:
   GivenOrbitWatch() = default;

@@ -38,8 +38,8 @@ struct SmallFamily {
 };
 
 /// Where base families begin that others may come to: all orbits that the scene gives, each once, and the families of
-/// small oscillations, in the order of their keys. Known to every rank before it follows a branch, and the same whenever
-/// a survey goes on.
+/// small oscillations, in the order of their keys. Known to every rank before it follows a branch, and the same
+/// whenever a survey goes on.
 struct GivenOrbits {
   static constexpr const char* payload_name = "given orbits";
   std::vector<GivenOrbit> all;
