@@ -39,7 +39,8 @@ constexpr double largest_amplitude = 60.0;
 constexpr double amplitude_step = 1.0;
 constexpr int bisections = 20;
 /// A coordinate along which the field departs at more than 2^this times the least amplitude of its component has no
-/// say: a weak term that depends on it alone (a magnetic field's on the momenta) would set the scale of all. Not measured.
+/// say: a weak term that depends on it alone (a magnetic field's on the momenta) would set the scale of all. Not
+/// measured.
 constexpr double late_departure = 3.0;
 /// Grid points at which scales for the search of equilibria are taken, spread over the grid.
 constexpr std::size_t most_grid_points = 64;

@@ -12,8 +12,8 @@
 namespace orbweaver::test {
 
 /// A particle of mass 1 in a magnetic field b (1 + e x) across the plane and a well k x^2/2 + k2 y^2/2 + a cubic with
-/// the coefficients a1 .. a4 + q (x^4 + y^4 + 2 c x^2 y^2)/4, k = 1, in canonical momenta. It declares no symmetry; without
-/// the magnetic field it has a reversor all the same.
+/// the coefficients a1 .. a4 + q (x^4 + y^4 + 2 c x^2 y^2)/4, k = 1, in canonical momenta. It declares no symmetry;
+/// without the magnetic field it has a reversor all the same.
 class MagneticWell {
  public:
   static constexpr int dimension = 4;
