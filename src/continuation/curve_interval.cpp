@@ -8,6 +8,7 @@
 
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/numerics/lagrange.hpp"
+#include "under_map.hpp"
 
 namespace orbweaver::continuation {
 
@@ -15,25 +16,10 @@ namespace {
 
 /// An orbit further than this from its prediction, in parts of the chord, belongs to another family.
 constexpr double largest_correction = 0.2;
-/// Of a loop's harmonics, under another time map: one that needs more is better solved anew. Not measured.
-constexpr int most_harmonics = 4;
 /// Nearest orbits that a prediction takes, a cubic, and how far apart in parts of the interval: at 1e-4 an orbit's
 /// rounding is multiplied by 1e4, still below what the corrector removes.
 constexpr std::size_t used_orbits = 4;
 constexpr double apart = 1e-4;
-
-/// The loop under another time map, with enough harmonics for it.
-loop::Loop under_map(const loop::Loop& loop, const loop::TimeMap& map) {
-  if (loop.time_map == map) return loop;
-  const double allowed = std::max(loop::negligible_harmonic, 2.0 * loop::tail(loop));
-  int k = loop.cutoff;
-  loop::Loop out = loop::with_time_map(loop, map, k);
-  while (loop::tail(out) > allowed && k < most_harmonics * loop.cutoff) {
-    k = loop::next_cutoff(loop::allowed_cutoff_at_least(k));
-    out = loop::with_time_map(loop, map, k);
-  }
-  return out;
-}
 
 /// Up to four nodes, nearest to `position` first, well apart so that their rounding is not amplified: what is nearer
 /// than `apart` of the interval's `length` is not.

@@ -14,6 +14,7 @@
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
 #include "step_control.hpp"
+#include "under_map.hpp"
 
 namespace orbweaver::continuation {
 
@@ -324,7 +325,8 @@ std::optional<Trial> Tracer::closing_orbit(const Trial& trial, double length) {
     return std::nullopt;
   const loop::Loop first =
       loop::aligned(_frontier.first, loop::align_in_time(_system->structure(), _frontier.first, trial.loop));
-  const std::vector<double> there = _problem->from_loop(first);
+  const auto values_there = [&] { return _problem->from_loop(under_map(first, _problem->resolution().time_map)); };
+  const std::vector<double> there = values_there();
   const std::vector<double>& before = _stepper.last();
   const double step = _problem->product(trial.values, before, trial.values, before);
   const double way = _problem->product(there, before, there, before);
@@ -332,7 +334,7 @@ std::optional<Trial> Tracer::closing_orbit(const Trial& trial, double length) {
   if (!(along > 0.0 && along <= 1.0) || way - along * along * step > beside_closing_step * beside_closing_step * step)
     return std::nullopt;
   const auto past = [&](const Trial& other) {  // -1 at the last orbit, 0 at the first
-    const std::vector<double> at = _problem->from_loop(first);
+    const std::vector<double> at = values_there();
     const std::vector<double>& from = _stepper.last();
     return _problem->product(other.values, at, at, from) / _problem->product(at, from, at, from);
   };

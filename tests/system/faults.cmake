@@ -34,7 +34,7 @@ foreach(ranks IN ITEMS 1 2 3)
   # A disk that is full at the first flush, and one that holds the segments but not the atlas made of them.
   set(folder "${runs}/system.full_disk.${tag}/out")
   full_disk_test(full_disk.${tag} ${ranks} 20000 0
-    "ERR=orbweaver: the run was ended on all ranks: |cannot |'out/segments/|.part': File too large. Check the folder, its permissions and the free space."
+    "ERR=orbweaver: the run was ended on all ranks: |cannot |'out/segments/|.part'|File too large|Check the folder, its permissions and the free space."
     "GONE=${folder}/segments/segment-000001.h5.part")
   set(folder "${runs}/system.full_disk_at_the_end.${tag}/out")
   full_disk_test(full_disk_at_the_end.${tag} ${ranks} 1300000 0

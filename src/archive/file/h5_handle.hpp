@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 #include <hdf5.h>
 
@@ -19,8 +20,11 @@ void quiet_h5();
 /// when `result`, an hid_t, herr_t or htri_t, is negative; otherwise returns it. `what` says what was being done.
 template <class Failure = core::EnvironmentError, class Result>
 Result check_h5(Result result, std::string_view what) {
-  if (result < 0) [[unlikely]]
-    throw Failure(std::string(what) + ": HDF5 says: " + h5_error_text());
+  if (result < 0) [[unlikely]] {
+    constexpr bool is_own = std::is_same_v<Failure, core::EnvironmentError>;
+    throw Failure(std::string(what) + ": HDF5 says: " + h5_error_text() +
+                  (is_own ? ". Check the folder, its permissions and the free space." : ""));
+  }
   return result;
 }
 
