@@ -74,7 +74,7 @@ std::vector<SymmetryGain> ordered(std::vector<std::pair<std::size_t, SymmetryGai
   return out;
 }
 
-bool generates(const loop::Isotropy& group, const SymmetryGain& gain, const std::vector<int>& angles) {
+bool contains(const loop::Isotropy& group, const SymmetryGain& gain, const std::vector<int>& angles) {
   return std::any_of(group.begin(), group.end(), [&](const loop::SymmetryElement& e) {
     return !e.reversing && e.shift_numerator == gain.shift_numerator && e.shift_denominator == gain.shift_denominator &&
            e.map.is_same(gain.map, angles);
@@ -110,7 +110,7 @@ SymmetryWatch::SymmetryWatch(const systems::Structure& system, const loop::Isotr
       for (int p = is_identity ? 1 : 0; p < (is_identity ? 2 : q); ++p) {
         SymmetryGain candidate{s.name, false, s.map, p, q, 0.0};
         const bool is_new = is_identity || std::gcd(p, q) == 1;
-        if (is_new && !generates(group, candidate, system.angles)) shifted.candidates.push_back(std::move(candidate));
+        if (is_new && !contains(group, candidate, system.angles)) shifted.candidates.push_back(std::move(candidate));
       }
     _equivariances.push_back(std::move(shifted));
   }
@@ -263,12 +263,19 @@ class SymmetryWatch::Correlation {
   Eigen::VectorXd _plain;  // of the loops themselves, for repetitions
 };
 
-// Elements of the group that `gain` and the own isotropy generate; a reversor doubles it, whatever its phase.
-std::size_t SymmetryWatch::generated_with(const SymmetryGain& gain) const {
-  if (gain.reversing) return 2 * loop::SymmetryGroup(_system, _own).elements().size();
+loop::Isotropy SymmetryWatch::group_with(const SymmetryGain& gain) const {
   loop::Isotropy generators = _own;
   generators.push_back({gain.name, false, gain.map, gain.shift_numerator, gain.shift_denominator});
-  return loop::SymmetryGroup(_system, generators).elements().size();
+  return loop::SymmetryGroup(_system, generators).elements();
+}
+
+// Elements of the group that `gain` and the own isotropy generate; a reversor doubles it, whatever its phase.
+std::size_t SymmetryWatch::generated_with(const SymmetryGain& gain) const {
+  return gain.reversing ? 2 * loop::SymmetryGroup(_system, _own).elements().size() : group_with(gain).size();
+}
+
+bool SymmetryWatch::generates(const SymmetryGain& gain, const SymmetryGain& power) const {
+  return !gain.reversing && !power.reversing && contains(group_with(gain), power, _system.angles);
 }
 
 std::vector<SymmetryGain> SymmetryWatch::nearly_gained(const SampledOrbit& from, const SampledOrbit& to) const {

@@ -29,6 +29,11 @@ void FamilyCurve::add(const Known& known, std::size_t keep) {
   _intervals.clear();
 }
 
+void FamilyCurve::drop_behind(double position) {
+  while (!_known.empty() && _known.back().position > position) _known.pop_back();
+  _intervals.clear();
+}
+
 void FamilyCurve::forget_found() { _intervals.clear(); }
 
 std::size_t FamilyCurve::interval_of(double position) const {

@@ -3,9 +3,11 @@
 . "$(dirname "$0")/survey_runs.sh"
 begin_anew
 
-# Whether a process blocks or catches SIGTERM, as the program does from its first line on; until then its shared libraries are loaded.
+# Whether a process is the program, no longer the shell that begins it, and blocks or catches SIGTERM, as the program does from its first
+# line on; until then its shared libraries are loaded.
 keeps_signals() {
   local blocked caught
+  [ "$(readlink -f "/proc/$1/exe" 2> /dev/null)" = "$(readlink -f "$program")" ] || return 1
   blocked=$(sed -n 's/^SigBlk:\t*//p' "/proc/$1/status" 2> /dev/null)
   caught=$(sed -n 's/^SigCgt:\t*//p' "/proc/$1/status" 2> /dev/null)
   [ -n "$blocked" ] && [ -n "$caught" ] && (((0x$blocked | 0x$caught) & 0x4000))

@@ -63,6 +63,8 @@ class SymmetryWatch {
   /// |c(at)| / |c(a)|: small where `gain` holds. At a root of the signed part where the broken part has only turned,
   /// it is not.
   [[nodiscard]] double relative_size(const SymmetryGain& gain, const loop::Loop& a, const loop::Loop& at) const;
+  /// Whether `power`, a gain without a reversor, is in the group that `gain` generates with the own isotropy.
+  [[nodiscard]] bool generates(const SymmetryGain& gain, const SymmetryGain& power) const;
 
  private:
   struct Products;
@@ -74,6 +76,7 @@ class SymmetryWatch {
   struct Resolved;
   /// The same with as many harmonics as the broken parts ask for; the phase of a reversor moves along.
   [[nodiscard]] Products compare_resolved(SymmetryGain& gain, Resolved& orbits) const;
+  [[nodiscard]] loop::Isotropy group_with(const SymmetryGain& gain) const;
   [[nodiscard]] std::size_t generated_with(const SymmetryGain& gain) const;
 
   systems::Structure _system;

@@ -42,6 +42,9 @@ class FamilyCurve {
   struct Known;
   void add(const Known& known, std::size_t keep = 5);
 
+  /// Known orbits behind a position are no longer known.
+  void drop_behind(double position);
+
   /// Forgets the orbits found in between, which later ones are sought from: as after `add`.
   void forget_found();
 

@@ -163,7 +163,8 @@ std::optional<Arrival> arrival_by(const systems::System& system, continuation::F
 }
 
 /// Of several gains, those whose parts vanish on the way: there they are proportional to that of `from`. Beside an
-/// orbit of a higher symmetry the sign of a part turns for those too that come near to it.
+/// orbit of a higher symmetry the sign of a part turns for those too that come near to it. What a gain breaks and its
+/// powers do not (1@1/4: the harmonics 2, 6, 10 ... of an orbit four times around) is of second order, and may be larger.
 std::vector<bifurcation::SymmetryGain> vanishing(std::vector<bifurcation::SymmetryGain> gains,
                                                  continuation::FamilyCurve& family,
                                                  const bifurcation::SymmetryWatch& watch,
@@ -179,9 +180,15 @@ std::vector<bifurcation::SymmetryGain> vanishing(std::vector<bifurcation::Symmet
     off.push_back(not_proportional(part, size));
   }
   const double most = as_proportional * *std::min_element(off.begin(), off.end()) + proportion_rounding;
+  const auto proportional_too = [&](std::size_t n) {
+    if (off[n] <= most) return true;
+    for (std::size_t power = 0; power < gains.size(); ++power)
+      if (off[n] <= still_vanishing && off[power] <= most && watch.generates(gains[n], gains[power])) return true;
+    return false;
+  };
   std::vector<bifurcation::SymmetryGain> kept;
   for (std::size_t n = 0; n < gains.size(); ++n)
-    if (off[n] <= most) kept.push_back(std::move(gains[n]));
+    if (proportional_too(n)) kept.push_back(gains[n]);
   return kept;
 }
 

@@ -231,7 +231,7 @@ void BranchTask::limited_by(int limits, const continuation::Frontier& before) {
 /// What only the family's end shows, from the stored orbits alone, whatever was probed before.
 void BranchTask::finish() {
   if (_curve.known().size() < orbits_from_birth) look_before_first();
-  folds_at_end();
+  look_behind_last();
   _curve.forget_found();
   const auto probing = [this](double position) { return probe(position); };
   for (const bifurcation::Bracket& b : _detector.finish(probing))
@@ -412,11 +412,15 @@ std::optional<bifurcation::TestPoint> BranchTask::probe(double position) {
   return test_point(position, stability_of(*_system, point->loop, _start.isotropy, _team));
 }
 
-void BranchTask::detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability) {
-  using Kind = bifurcation::Event::Kind;
+void BranchTask::detect_zeros(const bifurcation::TestPoint& point) {
   const auto probing = [this](double position) { return probe(position); };
-  for (const bifurcation::Bracket& b : _detector.advance(test_point(orbit.arclength, stability), probing))
-    add_event({Kind::test_function, _functions[b.function], b.tangency, b.passed}, b.from, b.to, _curve.known());
+  for (const bifurcation::Bracket& b : _detector.advance(point, probing))
+    add_event({bifurcation::Event::Kind::test_function, _functions[b.function], b.tangency, b.passed}, b.from, b.to,
+              _curve.known());
+}
+
+void BranchTask::detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability) {
+  detect_zeros(test_point(orbit.arclength, stability));
   // Where a parameter moves only it folds; T and the energy have extrema that say nothing.
   const bool moves = !orbit.loop.parameters.empty();
   add_folds(moves ? _folds.advance(orbit.arclength, archive::not_computed, archive::not_computed,
@@ -502,8 +506,8 @@ void BranchTask::folds_at_start() {
   add_folds(folds_on(*_system, _start.isotropy, {known[1], {*first}, std::nullopt}), known);
 }
 
-/// Folds that no orbit behind the last one shows, also on the way from there to a meeting.
-void BranchTask::folds_at_end() {
+/// Folds that no orbit behind the last one shows; on the way from there to a meeting zeros of test functions too.
+void BranchTask::look_behind_last() {
   if (!_last || _curve.known().size() < 2) return;
   const auto last = _curve.at(_last->arclength, true);
   if (!last || last->tangent.empty()) return;
@@ -511,12 +515,40 @@ void BranchTask::folds_at_end() {
   if (!_arrival) return;
   WayToEnd way;
   way.points = places_before(*_arrival, _curve, _symmetry, *last);
+  add_behind(way.points);
+  std::vector<continuation::Orbit> behind = orbits_to_zeros(way.points);
   way.crossing = way.points.back().loop;
   add_folds(folds_on(*_system, _start.isotropy, way), _curve.known());
-  continuation::Orbit near;
-  near.loop = way.points.back().loop;
-  near.arclength = way.points.back().position;
-  if (near.arclength > _last->arclength) solve_requested(near);
+  if (way.points.size() > 1) {
+    const continuation::Orbit near = orbit_of(*_system, way.points.back().loop, way.points.back().position);
+    for (continuation::Orbit& wanted : requested_orbits(_scene, *_system, _curve, *_last, near, _outcome.remarks))
+      behind.push_back(std::move(wanted));
+  }
+  std::sort(behind.begin(), behind.end(), [](const auto& x, const auto& y) { return x.arclength < y.arclength; });
+  for (const continuation::Orbit& orbit : behind) store(orbit, asked_stability(orbit.loop));
+}
+
+/// The places behind the last orbit become known orbits, as if the branch had stepped to them.
+void BranchTask::add_behind(std::vector<continuation::CurvePoint>& places) {
+  _curve.drop_behind(_last->arclength);
+  for (std::size_t n = 1; n < places.size(); ++n) {
+    places[n].position = places[n - 1].position + continuation::arclength_between(places[n - 1].loop, places[n].loop);
+    _curve.add(places[n].position, places[n].loop, kept_orbits + n);
+  }
+}
+
+/// Of the places behind the last orbit those up to the last zero of a test function: crossings lie within families.
+std::vector<continuation::Orbit> BranchTask::orbits_to_zeros(const std::vector<continuation::CurvePoint>& places) {
+  std::vector<continuation::Orbit> orbits;
+  for (std::size_t n = 1; n < places.size(); ++n) {
+    const int known = _events;
+    detect_zeros(test_point(places[n].position, asked_stability(places[n].loop)));
+    while (_events > known && orbits.size() < n) {
+      const continuation::CurvePoint& place = places[orbits.size() + 1];
+      orbits.push_back(orbit_of(*_system, place.loop, place.position));
+    }
+  }
+  return orbits;
 }
 
 void BranchTask::add_event(const bifurcation::Event& event, double from, double to,

@@ -53,6 +53,7 @@ class BranchTask {
   bool arrives_ahead();
   void decide(continuation::Ending& ending) const;
   [[nodiscard]] continuation::Ending met() const;
+  void detect_zeros(const bifurcation::TestPoint& point);
   void detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability);
   void look_before_first();
   void detect_from_birth();
@@ -60,7 +61,9 @@ class BranchTask {
   void add_missed(const bifurcation::MissedZeros& missed);
   void folds_from_birth(const std::vector<continuation::FamilyCurve::Known>& known);
   void folds_at_start();
-  void folds_at_end();
+  void look_behind_last();
+  void add_behind(std::vector<continuation::CurvePoint>& places);
+  [[nodiscard]] std::vector<continuation::Orbit> orbits_to_zeros(const std::vector<continuation::CurvePoint>& places);
   void add_folds(const std::vector<bifurcation::Fold>& folds,
                  const std::vector<continuation::FamilyCurve::Known>& known);
   void add_event(const bifurcation::Event& event, double from, double to,

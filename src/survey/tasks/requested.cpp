@@ -91,6 +91,8 @@ class Search {
   double _width;
 };
 
+}  // namespace
+
 continuation::Orbit orbit_of(const systems::System& system, const loop::Loop& loop, double arclength) {
   continuation::Orbit orbit;
   orbit.loop = loop;
@@ -101,8 +103,6 @@ continuation::Orbit orbit_of(const systems::System& system, const loop::Loop& lo
   orbit.tail = loop::tail(loop);
   return orbit;
 }
-
-}  // namespace
 
 std::vector<continuation::Orbit> requested_orbits(const scene::Scene& scene, const systems::System& system,
                                                   continuation::FamilyCurve& family, const continuation::Orbit& from,

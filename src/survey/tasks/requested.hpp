@@ -10,6 +10,9 @@
 
 namespace orbweaver::survey {
 
+/// A loop on a family, with what tells of an orbit; `arclength`: its position.
+[[nodiscard]] continuation::Orbit orbit_of(const systems::System& system, const loop::Loop& loop, double arclength);
+
 /// The orbits between two neighbours of a family that have the scene's requested periods (exactly) and energies (to
 /// rounding), in their order along the family. A remark is made of each one that
 /// cannot be had.
