@@ -35,7 +35,7 @@ class Strobe {
   /// det(1 + M) of the orbit that Newton's method finds from `state` with the amplitude `amplitude`; it becomes `state`.
   [[nodiscard]] double distance_of_multipliers(double amplitude, std::vector<double>& state) const {
     constexpr int most = 12;
-    constexpr double converged = 1e-11;
+    constexpr double converged = 1e-9;  // quadratically: what is left is rounding, which the doubled orbits amplify
     std::map<std::string, double> values = _system->parameters();
     values["torque1_amplitude"] = amplitude;
     const std::shared_ptr<const systems::System> system = _system->with_parameters(values);
@@ -67,7 +67,7 @@ class Strobe {
 
 /// Where a multiplier is -1, by the secant method from `near`.
 double doubling_near(const Strobe& strobe, double near, std::vector<double> state) {
-  constexpr double beside = 1e-6;
+  constexpr double beside = 1e-8;  // of the orbits doubled twice Newton's method finds none from 1e-6 beside
   double before = near + beside;
   double here = near - beside;
   double value_before = strobe.distance_of_multipliers(before, state);
