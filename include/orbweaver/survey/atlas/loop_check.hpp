@@ -76,6 +76,10 @@ class LoopCheck {
   /// Whether `orbit`, once around, lies on `beside` between its orbits `segment` and the next.
   [[nodiscard]] Between between_orbits(const continuation::Orbit& orbit, const AtlasTree& tree,
                                        const TreeFamily& beside, std::size_t segment) const;
+  /// Whether the orbit at a crossing, which is not known, lies not between the orbits `segment` and the next of
+  /// `beside`: those stored on either side of the crossing lie further away than it may be from them.
+  [[nodiscard]] bool passes_by(const AtlasTree& tree, std::size_t crossing, const TreeFamily& beside,
+                               std::size_t segment) const;
   /// The orbit at a crossing, from those beside it, the one where the family is born among them.
   [[nodiscard]] std::optional<loop::Loop> orbit_at(const AtlasTree& tree, std::size_t crossing) const;
 
