@@ -45,7 +45,8 @@ class LoopCheck {
   [[nodiscard]] LoopAnswer ask(const OrbitBeside& x) const;
 
   /// Whether the orbit at a crossing of the atlas, gone around as what is born there, lies on `beside` between its
-  /// orbits `segment` and the next. Not decided where it cannot be converged between its family's orbits.
+  /// orbits `segment` and the next. Not decided where it cannot be converged between its family's orbits, and these
+  /// are not far from the segment.
   [[nodiscard]] LoopAnswer ask_crossing(const AtlasTree& tree, std::size_t crossing, const TreeFamily& beside,
                                         std::size_t segment) const;
 
