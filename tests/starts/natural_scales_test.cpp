@@ -78,7 +78,8 @@ TEST(NaturalScales, AreThatOfTheMotionsThemselves) {
   }
 }
 
-/// x'' + x' / 10 + x + stiffening x^3 = drive cos(phase): the drive's strength does not matter where the spring stiffens.
+/// x'' + x' / 10 + x + stiffening x^3 = drive cos(phase): how strong the drive is does not matter where the spring
+/// stiffens.
 systems::Scales driven_spring(double stiffening, double drive) {
   return natural_scales(
       *systems::make_system(

@@ -32,7 +32,7 @@ class Strobe {
 
   [[nodiscard]] double period() const { return _period; }
 
-  /// det(1 + M) of the orbit that Newton's method finds from `state` with the amplitude `amplitude`; it becomes `state`.
+  /// det(1 + M) of the orbit that Newton's method finds from `state`, which becomes that orbit's, at this amplitude.
   [[nodiscard]] double distance_of_multipliers(double amplitude, std::vector<double>& state) const {
     constexpr int most = 12;
     constexpr double converged = 1e-9;  // quadratically: what is left is rounding, which the doubled orbits amplify
