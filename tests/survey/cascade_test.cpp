@@ -4,24 +4,47 @@
 #include <memory>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
-
-#include <Eigen/Dense>
 
 #include <gtest/gtest.h>
 
 #include "orbweaver/certificate/integrate.hpp"
-#include "orbweaver/numerics/decompositions.hpp"
 #include "survey/atlas.hpp"
 
 namespace cascade_test {
 namespace {
 
 using namespace orbweaver;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+using Vector = std::vector<double>;
+using Matrix = std::vector<Vector>;  // rows
 
 constexpr double tolerance = 1e-13;  // of integrations
+
+/// Gauss's elimination: x becomes the solution of m x = x; the determinant of m. By hand, since a decomposition of Eigen
+/// compiled here may be taken for the libraries' own (cmake/Tests.cmake).
+double eliminate(Matrix m, Vector& x) {
+  double determinant = 1.0;
+  for (std::size_t k = 0; k < m.size(); ++k) {
+    std::size_t pivot = k;
+    for (std::size_t i = k + 1; i < m.size(); ++i)
+      if (std::abs(m[i][k]) > std::abs(m[pivot][k])) pivot = i;
+    if (pivot != k) {
+      std::swap(m[k], m[pivot]);
+      std::swap(x[k], x[pivot]);
+      determinant = -determinant;
+    }
+    determinant *= m[k][k];
+    for (std::size_t i = 0; i < m.size(); ++i) {
+      if (i == k) continue;
+      const double factor = m[i][k] / m[k][k];
+      for (std::size_t l = k; l < m.size(); ++l) m[i][l] -= factor * m[k][l];
+      x[i] -= factor * x[k];
+    }
+  }
+  for (std::size_t k = 0; k < m.size(); ++k) x[k] /= m[k][k];
+  return determinant;
+}
 
 /// What `turns` periods of the drive do to the other coordinates, the drive's phase being the same again.
 class Strobe {
@@ -39,22 +62,29 @@ class Strobe {
     std::map<std::string, double> values = _system->parameters();
     values["torque1_amplitude"] = amplitude;
     const std::shared_ptr<const systems::System> system = _system->with_parameters(values);
-    const auto d = static_cast<Eigen::Index>(state.size());
+    const std::size_t d = state.size();
     for (int n = 0; n < most; ++n) {
-      const std::vector<double> end = certificate::integrate(*system, state, _period, tolerance);
-      const std::vector<double> flow = certificate::transitions(*system, {state}, _period, tolerance).front();
-      using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-      const MatrixXd map = Eigen::Map<const RowMajor>(flow.data(), d, d).topLeftCorner(d - 1, d - 1);
-      const MatrixXd one = MatrixXd::Identity(d - 1, d - 1);
-      VectorXd gap(d - 1);
-      for (Eigen::Index i = 0; i < d - 1; ++i) {
-        const auto place = static_cast<std::size_t>(i);
-        gap(i) = end[place] - state[place];
-        if (system->structure().is_angle(place)) gap(i) = std::remainder(gap(i), 2.0 * std::numbers::pi);
+      const Vector end = certificate::integrate(*system, state, _period, tolerance);
+      const Vector flow = certificate::transitions(*system, {state}, _period, tolerance).front();
+      Matrix returns(d - 1, Vector(d - 1));  // 1 - M
+      Matrix doubles(d - 1, Vector(d - 1));  // 1 + M
+      Vector step(d - 1);
+      for (std::size_t i = 0; i + 1 < d; ++i) {
+        for (std::size_t l = 0; l + 1 < d; ++l) {
+          const double one = i == l ? 1.0 : 0.0;
+          returns[i][l] = one - flow[i * d + l];
+          doubles[i][l] = one + flow[i * d + l];
+        }
+        step[i] = end[i] - state[i];
+        if (system->structure().is_angle(i)) step[i] = std::remainder(step[i], 2.0 * std::numbers::pi);
       }
-      const VectorXd step = (one - map).partialPivLu().solve(gap);
-      for (Eigen::Index i = 0; i < d - 1; ++i) state[static_cast<std::size_t>(i)] += step(i);
-      if (step.norm() < converged) return (one + map).determinant();
+      (void)eliminate(returns, step);
+      double square = 0.0;
+      for (std::size_t i = 0; i + 1 < d; ++i) {
+        state[i] += step[i];
+        square += step[i] * step[i];
+      }
+      if (std::sqrt(square) < converged) return eliminate(doubles, step);
     }
     ADD_FAILURE() << "no orbit of T = " << _period << " at " << amplitude;
     return std::nan("");
