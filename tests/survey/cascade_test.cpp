@@ -21,8 +21,8 @@ using Matrix = std::vector<Vector>;  // rows
 
 constexpr double tolerance = 1e-13;  // of integrations
 
-/// Gauss's elimination: x becomes the solution of m x = x; the determinant of m. By hand, since a decomposition of Eigen
-/// compiled here may be taken for the libraries' own (cmake/Tests.cmake).
+/// Gauss's elimination: of m and x, which becomes m^-1 x; the determinant of m. By hand, since a decomposition of Eigen
+/// that is compiled here may be taken for the libraries' own (cmake/Tests.cmake).
 double eliminate(Matrix m, Vector& x) {
   double determinant = 1.0;
   for (std::size_t k = 0; k < m.size(); ++k) {
