@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include "drive_averaged.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/numerics/eigenvalues.hpp"
@@ -54,6 +55,7 @@ struct LogScales {
 /// The Jacobian at one state, in balanced coordinates.
 class LocalScales {
  public:
+  /// Of a driven system the mean over its drive.
   LocalScales(const systems::System& system, VectorXd point)
       : _system(system), _point(std::move(point)), _first(systems::mixed_coordinates(system.structure())) {}
 
@@ -64,22 +66,23 @@ class LocalScales {
     if (!jacobian) return std::nullopt;
     _log = VectorXd::Zero(d);
     balance(jacobian->cwiseAbs2(), false);
-    MatrixXd balanced = without_rounding(in_scales(*jacobian));
-    const double rate = mean_rate(balanced);
+    const MatrixXd balanced = without_rounding(in_scales(*jacobian));
+    const Index own = _system.structure().driven ? d - 1 : d;  // a drive's phase has no rate of its own
+    const double rate = mean_rate(balanced.topLeftCorner(own, own));
     LogScales out;
     out.coordinates = VectorXd::Constant(d, std::numeric_limits<double>::quiet_NaN());
     if (!(rate > 0.0)) return out;
     out.time = -std::log2(rate);
     // What time does forwards and backwards counts alike: fast and slow modes have the same say.
     MatrixXd weights = (balanced / rate).cwiseAbs2();
-    const Eigen::PartialPivLU<MatrixXd> factors(balanced);
-    const MatrixXd inverse = factors.inverse();
-    if (_invertible && inverse.allFinite()) weights += (without_rounding(inverse) * rate).cwiseAbs2();
+    const MatrixXd inverse = Eigen::PartialPivLU<MatrixXd>(balanced.topLeftCorner(own, own)).inverse();
+    if (_invertible && inverse.allFinite())
+      weights.topLeftCorner(own, own) += (without_rounding(inverse) * rate).cwiseAbs2();
     for (Index i = 0; i < d; ++i)  // back in the units
       for (Index l = 0; l < d; ++l) weights(i, l) *= std::exp2(2.0 * (_log(i) - _log(l)));
     for (const int angle : _system.structure().angles) _log(angle) = 0.0;
     balance(weights, true);
-    find_amplitudes(without_rounding(in_scales(*jacobian)), out.coordinates);
+    find_amplitudes(without_rounding(in_scales(*jacobian)), rate, out.coordinates);
     return out;
   }
 
@@ -172,8 +175,9 @@ class LocalScales {
     return label;
   }
 
-  /// Scales of the components that have an angle as balanced, those of the others by where the field is no more linear.
-  void find_amplitudes(const MatrixXd& balanced, VectorXd& scales) {
+  /// Scales of the components that have an angle as balanced, those of the others by where the field is no more linear,
+  /// or where it is so everywhere, by how far its drive pushes it.
+  void find_amplitudes(const MatrixXd& balanced, double rate, VectorXd& scales) {
     const Index d = _log.size();
     const std::vector<Index> label = components(balanced);
     const auto in = [&](Index i, Index component) { return label[static_cast<std::size_t>(i)] == component; };
@@ -208,10 +212,24 @@ class LocalScales {
           count += 1.0;
         }
         amplitude = sum / count;  // not a number where nothing departs
+        if (count == 0.0) amplitude = std::log2(pushed([&](Index i) { return in(i, component); }) / rate);
       }
       for (Index i = component; i < d; ++i)
         if (in(i, component)) scales(i) = _log(i) + amplitude;
     }
+  }
+
+  /// How far a drive takes the field from its mean, over the coordinates of a component as balanced; not a number
+  /// without a drive, or with one of no strength.
+  template <class In>
+  [[nodiscard]] double pushed(const In& in) const {
+    const auto* driven = dynamic_cast<const DriveAveraged*>(&_system);
+    if (driven == nullptr) return std::numeric_limits<double>::quiet_NaN();
+    const VectorXd departure = driven->departure(_point);
+    double square = 0.0;
+    for (Index i = 0; i < departure.size(); ++i)
+      if (in(i)) square += std::pow(departure(i) * std::exp2(-_log(i)), 2);
+    return square > 0.0 ? std::sqrt(square) : std::numeric_limits<double>::quiet_NaN();
   }
 
   /// log2 of the amplitude along coordinate i at which the linear field of a component, averaged on the way there, has
@@ -351,10 +369,14 @@ std::vector<std::vector<double>> grid_in_scales(std::vector<std::vector<double>>
 systems::Scales natural_scales(const systems::System& system, const std::vector<std::vector<double>>& grid) {
   const auto d = static_cast<std::size_t>(system.dimension());
   core::require(grid.size() <= d, "more grid lists than coordinates");
+  // With the drive's mean in its place, a driven system rests whatever the drive's strength.
+  const std::unique_ptr<const DriveAveraged> mean =
+      system.structure().driven ? std::make_unique<const DriveAveraged>(system) : nullptr;
+  const systems::System& steady = mean ? static_cast<const systems::System&>(*mean) : system;
   // A view of the system, which outlives this call.
-  const std::shared_ptr<const systems::System> view(std::shared_ptr<const systems::System>(), &system);
+  const std::shared_ptr<const systems::System> view(std::shared_ptr<const systems::System>(), &steady);
   // Newton's method bounds its steps: what it finds must not depend on units either.
-  const systems::Scales rough = scales_at(system, grid_points(d, grid));
+  const systems::Scales rough = scales_at(steady, grid_points(d, grid));
   std::vector<VectorXd> equilibria;
   for (const std::vector<double>& point :
        find_fixed_points(*systems::scaled(view, rough), grid_in_scales(grid, rough))) {
@@ -362,7 +384,8 @@ systems::Scales natural_scales(const systems::System& system, const std::vector<
     for (std::size_t i = 0; i < d; ++i) z(static_cast<Index>(i)) = point[i] * rough.coordinate(i);
     equilibria.push_back(std::move(z));
   }
-  return scales_at(system, equilibria);
+  // A torque that no rest withstands: what its neighbourhood is like, the points of the grid say as well.
+  return mean && equilibria.empty() ? rough : scales_at(steady, equilibria);
 }
 
 }  // namespace orbweaver::starts

@@ -78,6 +78,50 @@ TEST(NaturalScales, AreThatOfTheMotionsThemselves) {
   }
 }
 
+/// x'' + x' / 10 + x + stiffening x^3 = drive cos(phase): how strong the drive is does not matter where the spring
+/// stiffens.
+systems::Scales driven_spring(double stiffening, double drive) {
+  return natural_scales(
+      *systems::make_system(
+          "duffing", {{"beta", stiffening}, {"damping", 0.1}, {"drive_amplitude", drive}, {"drive_frequency", 2.0}},
+          {"damping", "drive"}),
+      {{0.0}});
+}
+
+TEST(NaturalScales, OfDrivenSystemsAreThoseOfTheirMeanOverTheDrive) {
+  const systems::Scales metres = driven_spring(1.0, 0.0);
+  EXPECT_THAT(metres.coordinates, ElementsAre(1.0, 1.0, 1.0));
+  for (const double drive : {0.3, 20.0}) EXPECT_EQ(driven_spring(1.0, drive), metres) << drive;
+  for (const double drive : {0.0, 0.3 * 0x1p17, 20.0}) {
+    const systems::Scales far = driven_spring(0x1p-34, drive);
+    EXPECT_EQ(far.time, 1.0);
+    EXPECT_THAT(far.coordinates, ElementsAre(0x1p17, 0x1p17, 1.0)) << drive;
+  }
+}
+
+TEST(NaturalScales, OfALinearSystemAreThoseOfWhatDrivesIt) {
+  EXPECT_THAT(driven_spring(0.0, 0x1p17).coordinates, ElementsAre(0x1p17, 0x1p17, 1.0));
+  EXPECT_TRUE(driven_spring(0.0, 0.0).are_one());
+}
+
+/// 3 N m hold no pendulum of 1 kg and 1 m at g = 1 m/s^2 up: it rests nowhere. Its time is still that of its weight.
+TEST(NaturalScales, OfADrivenSystemWithoutRestAreThoseOfTheGrid) {
+  const auto turned = [](double gravity) {
+    return natural_scales(*systems::make_system("double_pendulum",
+                                                {{"g", gravity},
+                                                 {"c1", 0.2 * std::sqrt(gravity)},
+                                                 {"c2", 0.2 * std::sqrt(gravity)},
+                                                 {"torque1", 3.0 * gravity},
+                                                 {"torque1_amplitude", gravity},
+                                                 {"drive_frequency", 0.9 * std::sqrt(gravity)}},
+                                                {"damping", "joint_torque"}),
+                          {});
+  };
+  EXPECT_TRUE(turned(1.0).are_one());
+  EXPECT_EQ(turned(0x1p20).time, 0x1p-10);
+  EXPECT_THAT(turned(0x1p20).coordinates, ElementsAre(1.0, 1.0, 0x1p10, 0x1p10, 1.0));
+}
+
 // A term that departs from its linear part late, along the momenta only.
 TEST(NaturalScales, AreNotThoseOfWeakTerms) {
   const auto scales = [](double b) {

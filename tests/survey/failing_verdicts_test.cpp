@@ -25,9 +25,11 @@ using namespace orbweaver;
 using certificate::Verdict;
 using ::testing::AllOf;
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::Field;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::StartsWith;
 
 /// 1 in the middle of a sector around th2 = 1.85 into which up to T = 7.5 Up-Down alone takes the outer rod; smooth,
 /// and 0 outside.
@@ -172,6 +174,25 @@ TEST_F(FailingVerdicts, AreListedByTasksAndByVerifyWhereOrbitsAreOfAnotherSystem
   for (const survey::Objection& objection : found.objections)
     if (objection.text.find("its certificate contradicts it") != std::string::npos) rows.insert(objection.row);
   EXPECT_EQ(static_cast<std::int64_t>(rows.size()), found.orbits);
+}
+
+// Of masses up to the largest numbers there are: no step of the curve in (T, m2) can be told from none.
+TEST_F(FailingVerdicts, ACurveOfCrossingsWithoutAStepIsAFailure) {
+  const survey::Summary summary = test::run(
+      world,
+      test::quick_scene({"starts.fixed_points.grid=[[0], [0]]", "starts.sweep.period=[8, 8.5]", "limits.period=8.6",
+                         "survey.subharmonics=2", "loci=[{of: [period-doubling], free: [m2], range: [0.5, 1e308]}]"}),
+      "locus");
+  EXPECT_EQ(summary.failures, 1U);
+  EXPECT_EQ(drivers::status_of(summary), core::ExitStatus::goal_missed);
+  if (!world.is_root()) return;
+  EXPECT_THAT(summary.failed_tasks,
+              ElementsAre(AllOf(StartsWith("locus 0000.0000/000.q4.j1:0: "), HasSubstr("at the start"))));
+  const test::Atlas atlas(summary.atlas);
+  ASSERT_EQ(atlas.loci().rows(), 1U) << "the crossing itself";
+  EXPECT_THAT(atlas.loci().texts("note").front(), HasSubstr("failure ("));
+  EXPECT_THAT(summary.findings, Contains(AllOf(Field(&survey::FindingSummary::kind, survey::FindingKind::failed_task),
+                                               Field(&survey::FindingSummary::text, HasSubstr("locus ")))));
 }
 
 }  // namespace

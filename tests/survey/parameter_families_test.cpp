@@ -106,35 +106,6 @@ TEST(ParameterFamilies, OrbitsOfOneParameterAndPeriodAreNotFollowed) {
       << summary.families.front().end_reason;
 }
 
-TEST(ParameterFamilies, LorenzGoesFromItsHopfPointsToTheHomoclinicOrbits) {
-  constexpr double hopf = 470.0 / 19.0;
-  constexpr double homoclinic = 13.926557407;
-  const core::Communicator comm;
-  // With one equilibrium given the Hopf point of the other is found on the same curve.
-  for (const std::string grid : {"[[-8, 0, 8], [-8, 0, 8], [0, 27]]", "[[-8], [-8], [27]]"}) {
-    SCOPED_TRACE(grid);
-    const survey::Summary summary =
-        test::run(comm, scene_of("lorenz.yaml", {"starts.fixed_points.grid=" + grid}), "lorenz");
-    if (!comm.is_root()) continue;
-    EXPECT_EQ(summary.failures, 0U);
-    ASSERT_EQ(summary.families.size(), 2U);
-    const bool both = grid.size() > 20;
-    EXPECT_EQ(summary.families[0].name, "Equilibrium 1, Hopf point 1");
-    EXPECT_EQ(summary.families[1].name, both ? "Equilibrium 3, Hopf point 1" : "Equilibrium 1, Hopf point 2");
-    const test::Atlas atlas(summary.atlas);
-    for (const survey::FamilySummary& family : summary.families) {
-      const std::vector<double> rho = atlas.column("parameter", family.name);
-      const std::vector<double> period = atlas.column("period", family.name);
-      const double amplitude = hopf - rho.front();  // rho leaves with the square of the amplitude
-      EXPECT_GT(amplitude, 0.0);
-      EXPECT_LT(amplitude, 2e-3);
-      EXPECT_NEAR(period.front(), 2.0 * std::numbers::pi / std::sqrt(8.0 / 3.0 * (hopf + 10.0)), 1e-3);
-      EXPECT_EQ(period.back(), 30.0);
-      EXPECT_NEAR(rho.back(), homoclinic, 1e-8);
-    }
-  }
-}
-
 /// x'' + 0.1 x' + x + x^3 = 0.3 cos(frequency t) by the classical Runge-Kutta method from (x, v, phase): the largest
 /// |x| of the last 100 of 3000 time units.
 double late_amplitude(std::array<double, 3> state, double frequency) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "survey/atlas.hpp"
@@ -12,6 +13,8 @@ namespace rough_starts_test {
 namespace {
 
 using namespace orbweaver;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 struct Rough {
   std::string name;
@@ -57,6 +60,30 @@ INSTANTIATE_TEST_SUITE_P(
                     Rough{"halo", "name: cr3bp", "0.925, -0.004, 0.078, -0.003, -0.347, -0.005", 2.784, 2.7783971,
                           -1.5324011, -1.5866}),
     [](const auto& rough) { return rough.param.name; });
+
+/// What a scene whose only state leads to no orbit is told.
+std::string told(const std::string& scene) {
+  const core::Communicator comm;
+  const survey::Summary summary = test::run(comm, scene::parse(scene + "survey: {depth: 0}\n", "far.yaml"), "far");
+  EXPECT_EQ(summary.failures, 1U);
+  EXPECT_EQ(summary.failed_tasks.size(), 1U);
+  return summary.failed_tasks.empty() ? "" : summary.failed_tasks.front();
+}
+
+TEST(FarStarts, AreToldWhatToTry) {
+  const std::string driven = told(
+      "system: {name: duffing, effects: [damping, drive], parameters: {damping: 0.1, drive_amplitude: 0.3, "
+      "drive_frequency: 0.5}}\nstarts: {states: [{state: [5, 3, 0], period: 12.566}]}\n"
+      "continuation: {free: drive_frequency}\nlimits: {parameter: [0.3, 3]}\n");
+  EXPECT_THAT(driven, HasSubstr("after the given period the trajectory is "));
+  EXPECT_THAT(driven, HasSubstr("the period should be a multiple of the drive's, 12.5663706"));
+  EXPECT_THAT(driven, HasSubstr("a state at which a trajectory has settled"));
+  const std::string conservative =
+      told("system: {name: swinging_spring}\nstarts: {states: [{state: [0.3, -1, 2, 4], period: 1.5}]}\n");
+  EXPECT_THAT(conservative, HasSubstr("after the given period the trajectory is "));
+  EXPECT_THAT(conservative, HasSubstr("let starts.recurrences look for some (docs/starts.md"));
+  EXPECT_THAT(conservative, Not(HasSubstr("drive")));
+}
 
 }  // namespace
 }  // namespace rough_starts_test

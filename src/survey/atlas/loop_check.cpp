@@ -127,12 +127,33 @@ std::optional<loop::Loop> LoopCheck::orbit_at(const AtlasTree& tree, std::size_t
   return there ? std::optional(there->loop) : std::nullopt;
 }
 
+bool LoopCheck::passes_by(const AtlasTree& tree, std::size_t crossing, const TreeFamily& beside,
+                          std::size_t segment) const {
+  const systems::Structure& system = _system->structure();
+  const TreeFamily& family = tree.families[static_cast<std::size_t>(tree.crossings[crossing].family)];
+  const double position = tree.atlas.crossings().reals("arclength")[crossing];
+  const auto after = std::upper_bound(family.arclengths.begin(), family.arclengths.end(), position);
+  if (after == family.arclengths.begin() || after == family.arclengths.end()) return false;
+  const auto next = static_cast<std::size_t>(after - family.arclengths.begin());
+  const auto born_beside = [&](std::size_t n) {
+    return born_loop(tree, crossing, orbit_of(tree, family, n, *_system).loop);
+  };
+  const auto apart = [&](const loop::Loop& x, const loop::Loop& y) { return loop::align(system, x, y).distance; };
+  const loop::Loop near = born_beside(next - 1);
+  const double reach = longest_way * apart(near, born_beside(next));
+  const loop::Loop a = orbit_of(tree, beside, segment, *_system).loop;
+  const loop::Loop b = orbit_of(tree, beside, segment + 1, *_system).loop;
+  return apart(near, a) + apart(near, b) - 2.0 * reach > longest_way * loop::mean_distance(a, b);
+}
+
 LoopAnswer LoopCheck::ask_crossing(const AtlasTree& tree, std::size_t crossing, const TreeFamily& beside,
                                    std::size_t segment) const {
-  LoopAnswer undecided;
-  undecided.decided = false;
   const std::optional<loop::Loop> there = orbit_at(tree, crossing);
-  if (!there) return undecided;
+  if (!there) {
+    LoopAnswer unknown;
+    unknown.decided = passes_by(tree, crossing, beside, segment);
+    return unknown;
+  }
   continuation::Orbit orbit;
   orbit.loop = born_loop(tree, crossing, *there);
   orbit.energy = continuation::energy_of(*_system, orbit.loop);

@@ -247,6 +247,43 @@ Correction corrected(const scene::Scene& scene, const std::shared_ptr<const syst
   return with_energy;
 }
 
+/// How far the trajectory is from `state` after `time`, in the survey's scales, as a text; empty where it does not get
+/// there.
+std::string missed_text(const systems::System& system, const std::vector<double>& state, double time) {
+  std::vector<double> end;
+  try {
+    end = certificate::integrate(system, state, time, guess_tolerance);
+  } catch (const core::NumericalError&) {
+    return "";
+  }
+  double square = 0.0;
+  for (std::size_t i = 0; i < end.size(); ++i) {
+    const double away = end[i] - state[i];
+    square += std::pow(system.structure().is_angle(i) ? std::remainder(away, 2.0 * std::numbers::pi) : away, 2);
+  }
+  return fmt::format(
+      "; after the given period the trajectory is {:.2g} away from the given state (in the survey's scales)",
+      std::sqrt(square));
+}
+
+/// What is to be done where a given state leads to no orbit; empty for other starts.
+std::string advice_for(const systems::System& system, const SweepWork& work) {
+  const GivenStart& given = work.given.front();
+  if (given.from != GivenStart::From::state) return "";
+  const systems::Structure& structure = system.structure();
+  std::string text = missed_text(system, work.point, given.period);
+  if (structure.driven) {
+    std::vector<double> field(work.point.size());
+    system.field(1, work.point.data(), field.data());
+    text += fmt::format("; the period should be a multiple of the drive's, {:.9g}",
+                        2.0 * std::numbers::pi / field.back() * system.scales().time);
+  }
+  text += structure.dissipative
+              ? "; give a state at which a trajectory has settled, or one to which it comes back nearer"
+              : "; give a state to which the trajectory comes back nearer, or let starts.recurrences look for some";
+  return text + " (docs/starts.md, \"How good a state must be\")";
+}
+
 }  // namespace
 
 loop::Tangent along_last_scalar(const loop::Loop& base) {
@@ -263,7 +300,8 @@ SweepOutcome given_start(const scene::Scene& scene, const std::shared_ptr<const 
   outcome.point = work.point;
   const Correction correction = corrected(scene, system, work, team);
   if (!correction.orbit) {
-    if (!work.given.front().is_return()) throw core::NumericalError(correction.why);
+    if (!work.given.front().is_return())
+      throw core::NumericalError(correction.why + (correction.is_beyond_limits ? "" : advice_for(*system, work)));
     outcome.rejected.push_back(correction.why);
     return outcome;
   }

@@ -231,9 +231,9 @@ FamilyTree::Result FamilyTree::resolve() const {
   add_families(
       families, _crossings, rows, _units, [this](const std::string& key) { return _pruning.arrival(key); }, result);
   add_loci(_loci, _crossings, rows, _units, result);
-  result.evidence =
-      evidence_of({_branches, _crossings, _failures, _undecided, _pruning, _arrivals, kept, rows, _units,
-                   [this](const std::string& branch, const Lineage& lineage) { return fate_of(branch, lineage); }});
+  result.evidence = evidence_of(
+      {_branches, _crossings, _failures, _locus_failures, _undecided, _pruning, _arrivals, kept, rows, _units,
+       [this](const std::string& branch, const Lineage& lineage) { return fate_of(branch, lineage); }});
   std::unordered_set<std::string> kept_families;
   for (const Family& family : families) kept_families.insert(family.key);
   std::set<std::string> left_out;

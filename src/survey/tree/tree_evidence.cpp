@@ -1,6 +1,7 @@
 #include "tree_evidence.hpp"
 
 #include <set>
+#include <string_view>
 #include <unordered_set>
 #include <utility>
 
@@ -35,18 +36,20 @@ class Gatherer {
       for (const std::string& passed : branch->second.outcome->unlocated)
         evidence.undecided.push_back({branch->second.lineage.family, passed});
     }
-    add_locations(_tree.failed_locations, evidence.failures);
-    add_locations(_tree.undecided_events, evidence.undecided);
+    add_tasks("locate", _tree.failed_locations, evidence.failures);
+    add_tasks("locus", _tree.failed_loci, evidence.failed_loci);
+    add_tasks("locate", _tree.undecided_events, evidence.undecided);
     for (const std::string& key : _tree.pruning.disputed())
       if (_kept.contains(key)) evidence.disputed.push_back(_tree.branches.at(key).lineage.family);
     return evidence;
   }
 
  private:
-  void add_locations(const std::map<std::string, std::string>& reasons, std::vector<FailureEvidence>& to) const {
+  void add_tasks(std::string_view kind, const std::map<std::string, std::string>& reasons,
+                 std::vector<FailureEvidence>& to) const {
     for (const auto& [key, reason] : reasons)
       if (_kept.contains(branch_of(key)))
-        to.push_back({_tree.branches.at(branch_of(key)).lineage.family, fmt::format("locate {}: {}", key, reason)});
+        to.push_back({_tree.branches.at(branch_of(key)).lineage.family, fmt::format("{} {}: {}", kind, key, reason)});
   }
 
   [[nodiscard]] DirectionFate fate_of(const LocateOutcome& crossing, const LeavingRecord& leaving, int side) const {

@@ -59,8 +59,9 @@ struct TreeEvidence {
   std::vector<CrossingEvidence> crossings;
   std::vector<EndEvidence> ends;
   std::vector<FailureEvidence> failures;
+  std::vector<FailureEvidence> failed_loci;  ///< what is known of the families stays as it is
   std::vector<FailureEvidence> undecided;  ///< events that rounding keeps from being located, or that were not found
-  std::vector<std::string> disputed;  ///< keys of families
+  std::vector<std::string> disputed;       ///< keys of families
 };
 
 /// What a tree has to tell. `fate_of_unknown`: of the side of a direction whose branch has not ended.
@@ -68,6 +69,7 @@ struct TreeSources {
   const EndedBranches& branches;
   const Crossings& crossings;
   const std::map<std::string, std::string>& failed_locations;  ///< reasons by the crossing's key
+  const std::map<std::string, std::string>& failed_loci;       ///< by the crossing's key and the scene's entry
   const std::map<std::string, std::string>& undecided_events;  ///< the same of events that rounding hides
   const Pruning& pruning;
   const Arrivals& arrivals;

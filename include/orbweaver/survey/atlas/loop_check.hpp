@@ -45,7 +45,8 @@ class LoopCheck {
   [[nodiscard]] LoopAnswer ask(const OrbitBeside& x) const;
 
   /// Whether the orbit at a crossing of the atlas, gone around as what is born there, lies on `beside` between its
-  /// orbits `segment` and the next. Not decided where it cannot be converged between its family's orbits.
+  /// orbits `segment` and the next. Not decided where it cannot be converged between its family's orbits, and these
+  /// are not far from the segment.
   [[nodiscard]] LoopAnswer ask_crossing(const AtlasTree& tree, std::size_t crossing, const TreeFamily& beside,
                                         std::size_t segment) const;
 
@@ -76,6 +77,10 @@ class LoopCheck {
   /// Whether `orbit`, once around, lies on `beside` between its orbits `segment` and the next.
   [[nodiscard]] Between between_orbits(const continuation::Orbit& orbit, const AtlasTree& tree,
                                        const TreeFamily& beside, std::size_t segment) const;
+  /// Whether the orbit at a crossing, which is not known, lies not between the orbits `segment` and the next of
+  /// `beside`: those stored on either side of the crossing lie further away than it may be from them.
+  [[nodiscard]] bool passes_by(const AtlasTree& tree, std::size_t crossing, const TreeFamily& beside,
+                               std::size_t segment) const;
   /// The orbit at a crossing, from those beside it, the one where the family is born among them.
   [[nodiscard]] std::optional<loop::Loop> orbit_at(const AtlasTree& tree, std::size_t crossing) const;
 

@@ -19,8 +19,9 @@ class FailedTasks final : public Check {
     };
     for (const std::string& failure : evidence.known.failures)
       add(FindingKind::failed_task, Severity::failure, "", failure);
-    for (const FailureEvidence& failure : evidence.known.tree.failures)
-      add(FindingKind::failed_task, Severity::failure, failure.family, failure.reason);
+    for (const auto* failures : {&evidence.known.tree.failures, &evidence.known.tree.failed_loci})
+      for (const FailureEvidence& failure : *failures)
+        add(FindingKind::failed_task, Severity::failure, failure.family, failure.reason);
     for (const FailureEvidence& event : evidence.known.tree.undecided)
       add(FindingKind::undecided_event, Severity::undecided, event.family, event.reason);
     for (const std::string& family : evidence.known.tree.disputed)
