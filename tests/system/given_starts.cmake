@@ -29,12 +29,16 @@ set_tests_properties(system.rotations.few_steps PROPERTIES FIXTURES_SETUP rotati
 set_tests_properties(system.rotations.more_steps PROPERTIES FIXTURES_REQUIRED rotations.few_steps FIXTURES_SETUP rotations.more_steps)
 set_tests_properties(system.rotations.same_after_more_steps PROPERTIES FIXTURES_REQUIRED "rotations1;rotations.more_steps")
 set(scene "${of_pendulum}")
-# The chain and the figure-eight in short forms, of a chain of four links its modes: the same archive on 1, 2 and 3 ranks.
+# The chain and the figure-eight in short forms, of a chain of four links its modes: the same archive on 1, 2 and 3 ranks, and with the long
+# tests after kills.
 set(short.chain --set system.parameters.links=4 --set "starts.sweep.period=[1.5,12]" --set "limits.energy=[-.inf,-9.5]")
 set(says.chain "4 families, 10 crossings, ")
 set(short.three_bodies_figure_eight --set "limits.parameter=[0.9995,1.001]")
 set(says.three_bodies_figure_eight "2 families, 2 crossings|  Eight B ")
 foreach(name IN ITEMS chain three_bodies_figure_eight)
-  same_on_ranks(${name} RANKS 1 2 3 SCENE "${PROJECT_SOURCE_DIR}/drivers/scenes/${name}.yaml" SAYS "${says.${name}}"
-    OPTIONS ${short.${name}})
+  set(scene "${PROJECT_SOURCE_DIR}/drivers/scenes/${name}.yaml")
+  same_on_ranks(${name} RANKS 1 2 3 SCENE "${scene}" SAYS "${says.${name}}" OPTIONS ${short.${name}})
+  broken_off_test(${name}.kills "system;long" 600 kills.sh 5 1 -- ${short.${name}} --set output.flush_seconds=0.1
+    --set output.flush_orbits=5)
 endforeach()
+set(scene "${of_pendulum}")
