@@ -29,8 +29,9 @@ struct ColumnText {
   const char* meaning = "";
 };
 
-/// One column of a table: its name, the member of the record that a row is taken from, its meaning, and the shape of a row. The
-/// lists below are the only place where a column is defined; the schema, the segments and the atlas follow from them.
+/// One column of a table: its name, the member of the record that a row is taken from, its meaning, and the shape of a
+/// row. The lists below are the only place where a column is defined; the schema, the segments and the atlas follow
+/// from them.
 template <class Record>
 struct ColumnDefinition {
   using Member =

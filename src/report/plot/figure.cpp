@@ -39,8 +39,9 @@ Page page_of(PlotStyle style) {
 
 constexpr double tic_characters = 6.5;  // room for a number along an axis
 constexpr double lines_a_tic = 2.2;
-constexpr double line_of_legend = 0.35;  // cm, of a paper
-constexpr double entries_a_line = 2.5;   // of the legend of a paper
+constexpr double line_of_legend = 0.35;    // cm, of a paper
+constexpr double lower_with_panels = 1.6;  // cm, of a paper: two frames beside each other are lower
+constexpr double entries_a_line = 2.5;     // of the legend of a paper
 
 /// How many lines the legend takes, about.
 double lines_of_legend(const std::vector<Figure>& panels) {
@@ -145,7 +146,7 @@ std::string squeezed_tics(const Range& range) {
 
 /// Multiples of 1, 2 or 5 times a power of ten, at most so many.
 std::string linear_tics(const Range& range, double most) {
-  const double least = (range.second - range.first) / std::max(1.0, most);
+  const double least = (range.second - range.first) / std::max(2.0, most);
   const double power = std::pow(10.0, std::floor(std::log10(least)));
   for (const double digit : {1.0, 2.0, 5.0})
     if (digit * power >= least) return fmt::format("{:.10g}", digit * power);
@@ -194,6 +195,34 @@ std::string data_of(const Figure& figure, std::size_t panel) {
     text += "END\n";
   }
   return text;
+}
+
+constexpr double top_of_panels = 0.97;  // of the page
+constexpr double top_below_title = 0.88;
+
+/// Parts of the page that the legend of several panels takes.
+double height_of_legend(const std::vector<Figure>& panels, const Page& page) {
+  return lines_of_legend(panels) * character_height * page.font / points_an_inch * inch / page.height;
+}
+
+/// One legend and one title for several panels.
+std::string side_by_side(const std::vector<Figure>& panels, const Page& page, PlotStyle style) {
+  const std::string title = style == PlotStyle::slide
+                                ? fmt::format(" title {} noenhanced", gnuplot_text(panels.front().title))
+                                : std::string();
+  return fmt::format("set key at screen 0.5,{:.4f} center top vertical maxrows {:.0f}\nset multiplot{}\n",
+                     height_of_legend(panels, page) + 0.01, lines_of_legend(panels), title);
+}
+
+std::string place_of_panel(std::size_t n, const std::vector<Figure>& panels, const Page& page, PlotStyle style) {
+  const double width = 1.0 / static_cast<double>(panels.size());
+  const double line = character_height * page.font / points_an_inch * inch / page.height;
+  return fmt::format(
+      "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset bmargin at screen {:.4f}\nset tmargin at screen "
+      "{:.4f}\n{}",
+      (static_cast<double>(n) + 0.24) * width, (static_cast<double>(n) + 0.97) * width,
+      height_of_legend(panels, page) + 3.6 * line, style == PlotStyle::slide ? top_below_title : top_of_panels,
+      n == 0 ? "" : "unset key\n");
 }
 
 /// Curves and points of a figure in parts of its frame.
@@ -245,6 +274,7 @@ std::string figure_script(const std::vector<Figure>& panels, PlotStyle style, Pl
                           const std::string& output) {
   Page page = page_of(style);
   if (style == PlotStyle::paper) page.height += line_of_legend * std::max(0.0, lines_of_legend(panels) - 2.0);
+  if (style == PlotStyle::paper && panels.size() > 1) page.height -= lower_with_panels;
   const double dots = style == PlotStyle::paper ? dots_an_inch : 1920.0 / (page.width / inch);
   double font = page.font;
   if (format == PlotFormat::svg) font *= screen_dots / points_an_inch;
@@ -256,7 +286,7 @@ std::string figure_script(const std::vector<Figure>& panels, PlotStyle style, Pl
       "set minussign\nset tics nomirror scale 0.6\nset xlabel offset 0,0.3\n"
       "set key below center reverse Left horizontal noenhanced samplen 1.5 width -1 height 0.4 font ',{:.3g}'\n",
       terminal_of(page, format, dots), gnuplot_text(output), 0.85 * font);
-  if (panels.size() > 1) script += fmt::format("set multiplot layout 1,{}\n", panels.size());
+  if (panels.size() > 1) script += side_by_side(panels, page, style);
   for (std::size_t n = 0; n < panels.size(); ++n) {
     const Figure& figure = panels[n];
     const Range xs = range_of(figure, figure.x, [](const PlotPoint& p) { return p.x; });
@@ -269,7 +299,9 @@ std::string figure_script(const std::vector<Figure>& panels, PlotStyle style, Pl
               tics_of('y', figure.y, ys, frame.height / (lines_a_tic * character_height * em));
     script += fmt::format("set xlabel {} noenhanced\nset ylabel {} noenhanced\n", gnuplot_text(figure.x.title),
                           gnuplot_text(figure.y.title));
-    if (style == PlotStyle::slide) script += fmt::format("set title {} noenhanced\n", gnuplot_text(figure.title));
+    if (panels.size() > 1) script += place_of_panel(n, panels, page, style);
+    if (panels.size() == 1 && style == PlotStyle::slide)
+      script += fmt::format("set title {} noenhanced\n", gnuplot_text(figure.title));
     script += figure.equal_scales ? "set size ratio -1\n" : "set size noratio\n";
     script += labels_of(figure, page, frame, font, xs, ys);
     const char* before = "plot ";

@@ -16,9 +16,9 @@ struct CharacterSize {
   double height;
 };
 
-/// Places for the names of curves, in parts of the frame: near their ends, else along them, where a name covers no other
-/// name and few points of curves. What finds no place is left out; curves without a name are
-/// only not to be covered. `curves`: in parts of the frame. Deterministic.
+/// Places for the names of curves, in parts of the frame: near their ends, else along them, where a name covers no
+/// other name and few points of curves. What finds no place is left out; curves without a name are only not to be
+/// covered. `curves`: in parts of the frame. Deterministic.
 [[nodiscard]] std::vector<PlotLabel> label_places(const std::vector<NamedCurve>& curves,
                                                   const std::vector<PlotPoint>& others, CharacterSize size);
 

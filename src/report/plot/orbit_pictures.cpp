@@ -126,7 +126,9 @@ Figure empty_panel(const archive::Archive& atlas, std::size_t family, std::pair<
 }
 
 /// Equilibria, and the bodies of a restricted problem, where they lie in the picture.
-void add_fixed_places(Figure& figure, const archive::Archive& atlas, std::pair<std::size_t, std::size_t> panel) {
+/// In the legend with `keys`.
+void add_fixed_places(Figure& figure, const archive::Archive& atlas, std::pair<std::size_t, std::size_t> panel,
+                      bool keys) {
   double low_x = std::numeric_limits<double>::infinity();
   double high_x = -low_x;
   double low_y = low_x;
@@ -145,12 +147,12 @@ void add_fixed_places(Figure& figure, const archive::Archive& atlas, std::pair<s
   };
   const archive::Header& header = atlas.header();
   const std::size_t dimension = header.state_names.size();
-  Series rests{"equilibrium", Look::marks, "#000000", {}, 1, 1.2};
+  Series rests{keys ? "equilibrium" : "", Look::marks, "#000000", {}, 1, 1.2};
   for (std::size_t row = 0; row < atlas.equilibria().rows(); ++row)
     if (atlas.equilibria().integers("step")[row] == 0)
       add(rests, atlas.equilibria().reals("state")[row * dimension + panel.first],
           atlas.equilibria().reals("state")[row * dimension + panel.second]);
-  Series bodies{"body", Look::marks, soft, {}, 7, 1.6};
+  Series bodies{keys ? "body" : "", Look::marks, soft, {}, 7, 1.6};
   const auto mu = std::find(header.parameter_names.begin(), header.parameter_names.end(), "mu");
   if ((header.system == "pcr3bp" || header.system == "cr3bp") && mu != header.parameter_names.end()) {
     const double mass = header.parameter_values[static_cast<std::size_t>(mu - header.parameter_names.begin())];
@@ -159,6 +161,20 @@ void add_fixed_places(Figure& figure, const archive::Archive& atlas, std::pair<s
   }
   if (!rests.points.empty()) figure.series.push_back(std::move(rests));
   if (!bodies.points.empty()) figure.series.push_back(std::move(bodies));
+}
+
+/// Whether the vertical coordinate of a panel rests, as z in the plane, but for rounding.
+bool is_flat(const Figure& figure) {
+  constexpr double rounding = 1e-9;
+  double most_x = 0.0;
+  double most_y = 0.0;
+  for (const Series& series : figure.series)
+    for (const PlotPoint& point : series.points) {
+      if (std::isnan(point.x)) continue;
+      most_x = std::max(most_x, std::abs(point.x - figure.series.front().points.front().x));
+      most_y = std::max(most_y, std::abs(point.y - figure.series.front().points.front().y));
+    }
+  return most_y <= rounding * most_x;
 }
 
 using Rods = std::vector<PlotPoint>;
@@ -225,7 +241,8 @@ std::vector<Figure> orbit_figures(const archive::Archive& atlas, const PlotReque
       figure.series.push_back({key, Look::solid, orbits.size() == 1 ? plot_colours[0] : steps_of_colour[n],
                                path_of(archive::loop_of(atlas, orbits[n], angles), panel)});
     }
-    add_fixed_places(figure, atlas, panel);
+    if (!panels.empty() && is_flat(figure)) continue;
+    add_fixed_places(figure, atlas, panel, panels.empty());
     panels.push_back(std::move(figure));
   }
   return panels;
@@ -251,7 +268,8 @@ std::vector<Figure> strobe_figures(const archive::Archive& atlas, const PlotRequ
       places.points.push_back({at(panel.first), at(panel.second)});
     }
     figure.series.push_back(std::move(places));
-    add_fixed_places(figure, atlas, panel);
+    if (!panels.empty() && is_flat(figure)) continue;
+    add_fixed_places(figure, atlas, panel, panels.empty());
     panels.push_back(std::move(figure));
   }
   return panels;

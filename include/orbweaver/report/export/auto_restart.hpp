@@ -10,10 +10,10 @@ namespace orbweaver::report {
 
 /// Periodic solutions in the format in which AUTO-07p restarts (its fort.8, or s.NAME): orbits of one family, in the
 /// order of their steps, with the labels 1, 2, ... Each has its mesh (intervals of equal s, so many that the piecewise
-/// polynomials of AUTO deviate by less than 1e-6 of a coordinate's range; four points each), the states, the direction of the family
-/// there (from the neighbouring orbits; that of the period alone where there are none), and PAR: the period at PAR(11),
-/// 0 at PAR(10), the unfolding of a conservative system; the parameters as auto_parameter numbers them, and behind
-/// them the conserved quantity. Throws InputError as export_csv, and without a family.
+/// polynomials of AUTO deviate by less than 1e-6 of a coordinate's range; four points each), the states, the direction
+/// of the family there (from the neighbouring orbits; that of the period alone where there are none), and PAR: the
+/// period at PAR(11), 0 at PAR(10), the unfolding of a conservative system; the parameters as auto_parameter numbers
+/// them, and behind them the conserved quantity. Throws InputError as export_csv, and without a family.
 void export_auto(std::ostream& out, const archive::Archive& atlas, const ExportSelection& selection);
 
 /// The equations file for it, Fortran 90: FUNC, with PAR(10) times the gradient of the conserved quantity added to the

@@ -28,14 +28,14 @@ struct PlotRequest {
 /// The format that a file's ending asks for. Throws InputError for another ending.
 [[nodiscard]] PlotFormat plot_format_of(const std::filesystem::path& path);
 
-/// gnuplot's commands and numbers for a static picture, written into `output` in gnuplot's working folder. All text from
-/// the archive is quoted and without markup. Throws InputError for a family or step that is not there, and where
+/// gnuplot's commands and numbers for a static picture, written into `output` in gnuplot's working folder. All text
+/// from the archive is quoted and without markup. Throws InputError for a family or step that is not there, and where
 /// the archive has nothing to draw.
 [[nodiscard]] std::string plot_script(const archive::Archive& atlas, const PlotRequest& request,
                                       const std::string& output);
 
-/// Has gnuplot draw it in `folder`, which is there: the path of the picture. Throws as plot_script, and EnvironmentError
-/// where gnuplot is not installed or fails.
+/// Has gnuplot draw it in `folder`, which is there: the path of the picture. Throws as plot_script, and
+/// EnvironmentError where gnuplot is not installed or fails.
 [[nodiscard]] std::filesystem::path draw_plot(const archive::Archive& atlas, const PlotRequest& request,
                                               const std::filesystem::path& folder);
 
