@@ -35,10 +35,7 @@ int run(const ExportOptions& options) {
   if (!options.equations.empty() && options.format != "auto")
     throw core::InputError("expected --equations with --format auto: they are Fortran for AUTO-07p");
   const archive::Archive atlas(options.atlas);
-  if (!options.equations.empty()) {
-    const std::string equations = report::auto_equations(atlas);
-    write_output_file(options.equations, [&](std::ostream& file) { file << equations; });
-  }
+  const std::string equations = options.equations.empty() ? std::string() : report::auto_equations(atlas);
   if (options.output.empty()) {
     ResultStream out;
     write_orbits(out, atlas, options);
@@ -46,6 +43,7 @@ int run(const ExportOptions& options) {
   } else {
     write_output_file(options.output, [&](std::ostream& file) { write_orbits(file, atlas, options); });
   }
+  if (!options.equations.empty()) write_output_file(options.equations, [&](std::ostream& file) { file << equations; });
   return static_cast<int>(core::ExitStatus::done);
 }
 

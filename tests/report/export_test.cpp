@@ -129,6 +129,18 @@ TEST_F(Export, WhatIsNotThereIsNamed) {
   EXPECT_THAT(error_of([&] { report::export_json(out, empty, {}); }), HasSubstr("has no orbits"));
 }
 
+TEST_F(Export, AutoGetsNoOrbitsThatTurnOver) {
+  archive::Records records = test::sample_records(header);
+  for (archive::OrbitRecord& orbit : records.orbits) orbit.winding = {orbit.step == 2 ? -1.0 : 0.0};
+  const archive::Archive turning(test::write_sample_atlas(test::fresh_folder("turning"), header, records));
+  std::ostringstream out;
+  EXPECT_THAT(error_of([&] {
+                report::export_auto(out, turning, {"In-Phase", {}});
+              }),
+              HasSubstr("step 2 turns over (n1 = -1)"));
+  EXPECT_EQ(out.str(), "");
+}
+
 TEST(AutoParameters, LeaveOutThoseThatAutoKeeps) {
   EXPECT_EQ(report::auto_parameter(0), 1);
   EXPECT_EQ(report::auto_parameter(8), 9);

@@ -221,6 +221,16 @@ std::string solution_text(const archive::Archive& atlas, const FamilyLoops& loop
   return text + lines_of(par);
 }
 
+/// AUTO asks for U(0) = U(1), which an angle that turns over does not keep.
+void require_no_turns(const archive::Archive& atlas, std::size_t orbit) {
+  const std::vector<std::string>& names = atlas.header().winding_names;
+  for (std::size_t n = 0; n < names.size(); ++n)
+    if (const double turns = atlas.orbits().reals("winding")[orbit * names.size() + n]; turns != 0.0)
+      throw core::InputError(
+          fmt::format("step {} turns over ({} = {}), which AUTO's periodic orbits cannot: export it as csv or json",
+                      atlas.orbits().integers("step")[orbit], names[n], turns));
+}
+
 /// A Fortran subroutine's declarations of U and PAR, and the lines of code.
 std::string body_of(const systems::FortranCode& code) {
   std::string text = fmt::format("  DOUBLE PRECISION v({})\n", code.lines.size() + 1);
@@ -234,6 +244,7 @@ void export_auto(std::ostream& out, const archive::Archive& atlas, const ExportS
   if (selection.family.empty())
     throw core::InputError("expected --family: a file of AUTO has the orbits of one family");
   const std::vector<std::size_t> rows = exported_rows(atlas, selection);
+  for (const std::size_t orbit : rows) require_no_turns(atlas, orbit);
   const FamilyLoops loops(atlas);
   int label = 0;
   for (const std::size_t orbit : rows) out << solution_text(atlas, loops, orbit, ++label);

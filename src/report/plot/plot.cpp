@@ -23,17 +23,19 @@ Panels alone(Figure (*figure)(const archive::Archive&, const PlotRequest&)) {
   };
 }
 
+struct PictureKind {
+  std::string name;
+  Panels panels;
+  bool of_a_step = false;  ///< a step of the family may be asked for
+};
+
 /// What can be drawn: to add one, a line.
-const std::vector<std::pair<std::string, Panels>>& pictures() {
-  static const std::vector<std::pair<std::string, Panels>> all{
-      {"tree", alone(tree_figure)},
-      {"energy-period", alone(energy_period_figure)},
-      {"stability", alone(stability_figure)},
-      {"off-branch", alone(off_branch_figure)},
-      {"orbit", orbit_figures},
-      {"strobe", strobe_figures},
-      {"section", section_figures},
-      {"spectrum", spectrum_figures},
+const std::vector<PictureKind>& pictures() {
+  static const std::vector<PictureKind> all{
+      {"tree", alone(tree_figure)},           {"energy-period", alone(energy_period_figure)},
+      {"stability", alone(stability_figure)}, {"off-branch", alone(off_branch_figure)},
+      {"orbit", orbit_figures, true},         {"strobe", strobe_figures, true},
+      {"section", section_figures},           {"spectrum", spectrum_figures, true},
   };
   return all;
 }
@@ -42,7 +44,7 @@ const std::vector<std::pair<std::string, Panels>>& pictures() {
 
 std::vector<std::string> plot_names() {
   std::vector<std::string> names;
-  for (const auto& [name, panels] : pictures()) names.push_back(name);
+  for (const PictureKind& kind : pictures()) names.push_back(kind.name);
   return names;
 }
 
@@ -54,8 +56,12 @@ PlotFormat plot_format_of(const std::filesystem::path& path) {
 }
 
 std::string plot_script(const archive::Archive& atlas, const PlotRequest& request, const std::string& output) {
-  for (const auto& [name, panels] : pictures())
-    if (name == request.what) return figure_script(panels(atlas, request), request.style, request.format, output);
+  for (const PictureKind& kind : pictures()) {
+    if (kind.name != request.what) continue;
+    if (request.step && !kind.of_a_step)
+      throw core::InputError(fmt::format("expected no --step for `{}`: it draws whole families", request.what));
+    return figure_script(kind.panels(atlas, request), request.style, request.format, output);
+  }
   throw core::InputError(fmt::format("expected one of {}, got `{}`", fmt::join(plot_names(), ", "), request.what));
 }
 

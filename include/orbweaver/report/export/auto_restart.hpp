@@ -13,7 +13,8 @@ namespace orbweaver::report {
 /// polynomials of AUTO deviate by less than 1e-6 of a coordinate's range; four points each), the states, the direction
 /// of the family there (from the neighbouring orbits; that of the period alone where there are none), and PAR: the
 /// period at PAR(11), 0 at PAR(10), the unfolding of a conservative system; the parameters as auto_parameter numbers
-/// them, and behind them the conserved quantity. Throws InputError as export_csv, and without a family.
+/// them, and behind them the conserved quantity. Throws InputError as export_csv, without a family, and for orbits that
+/// turn over, which AUTO's boundary conditions do not allow.
 void export_auto(std::ostream& out, const archive::Archive& atlas, const ExportSelection& selection);
 
 /// The equations file for it, Fortran 90: FUNC, with PAR(10) times the gradient of the conserved quantity added to the
