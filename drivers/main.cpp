@@ -25,9 +25,10 @@ std::vector<Command> add_commands(CLI::App& program) {
   return {
       make_build_system_command(program), make_check_command(program),       make_compare_command(program),
       make_completion_command(program),   make_consolidate_command(program), make_cost_command(program),
-      make_manual_command(program),       make_page_command(program),        make_refine_command(program),
-      make_show_command(program),         make_survey_command(program),      make_sweep_command(program),
-      make_systems_command(program),      make_verify_command(program),
+      make_export_command(program),       make_manual_command(program),      make_page_command(program),
+      make_plot_command(program),         make_refine_command(program),      make_show_command(program),
+      make_survey_command(program),       make_sweep_command(program),       make_systems_command(program),
+      make_verify_command(program),
   };
 }
 

@@ -1,7 +1,6 @@
 #include "orbweaver/report/page/page.hpp"
 
 #include <filesystem>
-#include <fstream>
 #include <memory>
 
 #include <fmt/format.h>
@@ -10,6 +9,7 @@
 #include "common_options.hpp"
 #include "failure.hpp"
 #include "orbweaver/core/error.hpp"
+#include "output_file.hpp"
 #include "page/page_template.hpp"
 
 namespace orbweaver::drivers {
@@ -21,24 +21,12 @@ struct PageOptions {
   std::filesystem::path output;
 };
 
-void publish(const std::filesystem::path& part, const std::filesystem::path& path) {
-  std::error_code error;
-  std::filesystem::rename(part, path, error);
-  if (error) throw core::EnvironmentError(fmt::format("cannot write {}: {}", path.string(), error.message()));
-}
-
 int run(const PageOptions& options) {
   const archive::Archive atlas(options.atlas);
   const std::string_view page = page_template();
   if (page.empty()) throw core::EnvironmentError(fmt::format("cannot make a page: {}", missing_page_reason()));
-  std::filesystem::path part = options.output;
-  part += ".part";
-  std::ofstream file(part, std::ios::binary);
-  if (!file) throw core::EnvironmentError(fmt::format("cannot write {}: is there such a folder?", part.string()));
-  const report::PageSummary summary = report::write_page(file, atlas, page);
-  file.close();
-  if (!file) throw core::EnvironmentError(fmt::format("cannot write {}: is the disk full?", part.string()));
-  publish(part, options.output);
+  report::PageSummary summary;
+  write_output_file(options.output, [&](std::ostream& file) { summary = report::write_page(file, atlas, page); });
   const auto megabytes = [](std::size_t bytes) { return static_cast<double>(bytes) / 1e6; };
   print_result(fmt::format("{}: {:.1f} MB, {} families, {} orbits\n", options.output.string(), megabytes(summary.bytes),
                            summary.families, summary.orbits));

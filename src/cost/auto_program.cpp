@@ -9,14 +9,15 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
-#include "orbweaver/ad/tape.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/process.hpp"
 #include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/refine/guess.hpp"
+#include "orbweaver/systems/fortran.hpp"
 
 namespace orbweaver::cost {
 
@@ -29,42 +30,6 @@ constexpr double least_tolerance = 1e-12;  // Newton's method reaches no less
 std::filesystem::path auto_folder() {
   const char* given = std::getenv("AUTO_DIR");
   return given != nullptr ? given : "/usr/lib/auto-07p";
-}
-
-std::string literal(double x) {
-  std::string text = fmt::format("({:.17e})", x);
-  std::replace(text.begin(), text.end(), 'e', 'd');
-  return text;
-}
-
-std::string expression(const ad::Tape::Node& node, int dimension, const std::vector<double>& parameters) {
-  using ad::Operation;
-  const auto of = [&](const char* function) { return fmt::format("{}(v({}))", function, node.first); };
-  const auto two = [&](char sign) { return fmt::format("v({}){}v({})", node.first, sign, node.second); };
-  switch (node.operation) {
-    case Operation::input: {
-      if (node.first < dimension) return fmt::format("U({})", node.first + 1);
-      const int entry = node.first - dimension;  // of the identity
-      return entry / dimension == entry % dimension ? "1d0" : "0d0";
-    }
-    case Operation::parameter: return literal(parameters[static_cast<std::size_t>(node.first)]);
-    case Operation::constant: return literal(node.value);
-    case Operation::add: return two('+');
-    case Operation::subtract: return two('-');
-    case Operation::multiply: return two('*');
-    case Operation::divide: return two('/');
-    case Operation::negate: return fmt::format("-v({})", node.first);
-    case Operation::sqrt: return of("SQRT");
-    case Operation::exp: return of("EXP");
-    case Operation::sine: return of("SIN");
-    case Operation::cosine: return of("COS");
-    case Operation::log: return of("LOG");
-    case Operation::asin: return of("ASIN");
-    case Operation::acos: return of("ACOS");
-    case Operation::atan: return of("ATAN");
-    case Operation::power: return fmt::format("v({})**{}", node.first, literal(node.value));
-  }
-  throw core::MisuseError("an operation that Fortran does not have");
 }
 
 constexpr const char* subroutines = R"(
@@ -120,24 +85,31 @@ END SUBROUTINE FOPT
 
 std::string source(const systems::Formulas& formulas) {
   const int d = formulas.dimension;
+  std::vector<int> outputs = formulas.field;
+  const std::vector<int>& gradient = formulas.conserved_gradients.front();
+  outputs.insert(outputs.end(), gradient.begin(), gradient.end());
+  outputs.insert(outputs.end(), formulas.variations.begin(), formulas.variations.end());
+  const auto input = [d](int number) -> std::string {
+    if (number < d) return fmt::format("U({})", number + 1);
+    return (number - d) / d == (number - d) % d ? "1d0" : "0d0";  // an entry of the identity
+  };
+  const auto parameter = [&](int number) {
+    return systems::fortran_literal(formulas.values[static_cast<std::size_t>(number)]);
+  };
+  const systems::FortranCode code = systems::fortran_code(formulas.tape, outputs, input, parameter);
+  const auto result = [&](int i) { return code.results[static_cast<std::size_t>(i)]; };
   std::string text = fmt::format(
       "SUBROUTINE FUNC(NDIM,U,ICP,PAR,IJAC,F,DFDU,DFDP)\n  IMPLICIT NONE\n"
       "  INTEGER, INTENT(IN) :: NDIM, IJAC, ICP(*)\n  DOUBLE PRECISION, INTENT(IN) :: U(NDIM), PAR(*)\n"
       "  DOUBLE PRECISION, INTENT(OUT) :: F(NDIM)\n  DOUBLE PRECISION, INTENT(INOUT) :: DFDU(NDIM,*), DFDP(NDIM,*)\n"
-      "  DOUBLE PRECISION v(0:{})\n",
-      formulas.tape.nodes.size());
-  for (std::size_t n = 0; n < formulas.tape.nodes.size(); ++n)
-    text += fmt::format("  v({})={}\n", n, expression(formulas.tape.nodes[n], d, formulas.values));
-  const std::vector<int>& gradient = formulas.conserved_gradients.front();
-  const auto at = [](int i) { return static_cast<std::size_t>(i); };
-  for (int i = 0; i < d; ++i)
-    text += fmt::format("  F({})=v({})+PAR(1)*v({})\n", i + 1, formulas.field[at(i)], gradient[at(i)]);
+      "  DOUBLE PRECISION v({})\n  {}\n",
+      code.lines.size() + 1, fmt::join(code.lines, "\n  "));
+  for (int i = 0; i < d; ++i) text += fmt::format("  F({})={}+PAR(1)*{}\n", i + 1, result(i), result(d + i));
   text += "  IF(IJAC==0)RETURN\n";
   for (int i = 0; i < d; ++i)
-    for (int c = 0; c < d; ++c)
-      text += fmt::format("  DFDU({},{})=v({})\n", i + 1, c + 1, formulas.variations[at(i * d + c)]);
+    for (int c = 0; c < d; ++c) text += fmt::format("  DFDU({},{})={}\n", i + 1, c + 1, result(2 * d + i * d + c));
   text += "  IF(IJAC==1)RETURN\n";
-  for (int i = 0; i < d; ++i) text += fmt::format("  DFDP({},1)=v({})\n", i + 1, gradient[at(i)]);
+  for (int i = 0; i < d; ++i) text += fmt::format("  DFDP({},1)={}\n", i + 1, result(d + i));
   text += "END SUBROUTINE FUNC\n";
   return text + subroutines;
 }

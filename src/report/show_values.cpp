@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "csv_text.hpp"
 #include "json_text.hpp"
 #include "text_grid.hpp"
 
@@ -13,15 +14,7 @@ namespace orbweaver::report {
 
 namespace {
 
-std::string csv_number(double value) { return std::isnan(value) ? "nan" : fmt::format("{:.17g}", value); }
 std::string short_number(double value) { return std::isnan(value) ? "-" : fmt::format("{:.10g}", value); }
-
-std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + '"';
-}
 
 // Writes the values of a row of a column through the three printers.
 template <class Number>

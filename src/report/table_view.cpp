@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "family_row.hpp"
+
 namespace orbweaver::report {
 
 namespace {
@@ -38,12 +40,7 @@ Shown named_column(const archive::Header& header, const archive::Table& table, c
 
 std::vector<std::size_t> rows_of_family(const archive::Archive& atlas, const archive::Table& table,
                                         const std::string& family) {
-  const std::vector<std::string>& names = atlas.families().texts("name");
-  const auto found = std::find(names.begin(), names.end(), family);
-  if (found == names.end())
-    throw core::InputError(
-        fmt::format("no family `{}` in {}: `orbweaver show ATLAS families` lists them", family, atlas.path().string()));
-  const auto row = static_cast<std::size_t>(found - names.begin());
+  const std::size_t row = family_row(atlas, family);
   if (&table == &atlas.families()) return {row};
   const auto has = [](const Column& column) { return column.spec.name == "family"; };
   if (std::none_of(table.columns().begin(), table.columns().end(), has))

@@ -34,8 +34,10 @@ TEST(Schema, EveryColumnIsDescribedInTheFileFormat) {
   for (const TableSpec& table : {families_spec(), orbits_spec(header), crossings_spec(header), sections_spec(header),
                                  loci_spec(header), equilibria_spec(header), findings_spec()}) {
     const std::string section = section_of(table.name);
-    for (const ColumnSpec& column : table.columns)
+    for (const ColumnSpec& column : table.columns) {
       EXPECT_THAT(section, ::testing::HasSubstr("`" + column.name + "`")) << "column of /" << table.name;
+      EXPECT_STRNE(column.meaning, "") << column.name << " of /" << table.name;
+    }
   }
 }
 

@@ -13,6 +13,7 @@
 #include "page/encoding.hpp"
 #include "page/page_index.hpp"
 #include "page/thinned_loop.hpp"
+#include "stored_system.hpp"
 
 namespace page_test {
 namespace {

@@ -37,7 +37,7 @@ foreach(ranks IN ITEMS 1 2 3)
     "ERR=orbweaver: the run was ended on all ranks: |cannot |'out/segments/|.part'|File too large|Check the folder, its permissions and the free space."
     "GONE=${folder}/segments/segment-000001.h5.part")
   set(folder "${runs}/system.full_disk_at_the_end.${tag}/out")
-  full_disk_test(full_disk_at_the_end.${tag} ${ranks} 1300000 0
+  full_disk_test(full_disk_at_the_end.${tag} ${ranks} 1800000 0
     "ERR=cannot reserve disk space for 'out/atlas.h5.part'|File too large|the free space"
     "HAS=${folder}/segments/segment-000001.h5" "GONE=${folder}/atlas.h5")
 endforeach()

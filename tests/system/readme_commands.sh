@@ -37,6 +37,10 @@ fill() {
       FILE.so) words+=(DIR/model.so) ;;
       FILE.html) words+=(DIR/atlas.html) ;;
       FILE.txt) words+=(DIR/refined.txt) ;;
+      FILE.svg) words+=(DIR/picture.svg) ;;
+      FILE.csv) words+=(DIR/orbits.csv) ;;
+      FILE.f90) words+=(DIR/equations.f90) ;;
+      FILE.auto) words+=(DIR/s.family) ;;
       PROOFS.h5) words+=(DIR/proofs.h5) ;;
       *) words+=("$word") ;;
     esac
@@ -55,6 +59,10 @@ while IFS= read -r line; do
   fi
   # A program that was built without Node has no page, and says so.
   if [[ "${words[1]}" == page ]] && ! command -v npm >/dev/null; then
+    try 3 "${words[@]}"
+    continue
+  fi
+  if [[ "${words[1]}" == plot ]] && ! command -v gnuplot >/dev/null; then
     try 3 "${words[@]}"
     continue
   fi

@@ -1,6 +1,7 @@
 #include "layout_file.hpp"
 
 #include <algorithm>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -97,20 +98,32 @@ class Layout {
     const hid_t id =
         H5Dcreate2(_file.get(), name.c_str(), type.get(), space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT);
     const H5Handle dataset(check_h5(id, fmt::format("cannot create /{} in '{}'", name, _path)), H5Dclose);
+    describe(dataset, "unit", spec.unit);
+    describe(dataset, "meaning", spec.meaning);
   }
 
   void close() { _file.close(fmt::format("cannot close '{}'", _path)); }
 
  private:
   void write_attribute(const char* name, const H5Handle& type, const H5Handle& space, const void* data) {
+    write_attribute(_file, name, type, space, data);
+  }
+
+  void write_attribute(const H5Handle& object, const char* name, const H5Handle& type, const H5Handle& space,
+                       const void* data) {
     const std::string doing = fmt::format("cannot write attribute '{}' of '{}'", name, _path);
-    const hid_t id = H5Acreate2(_file.get(), name, type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT);
+    const hid_t id = H5Acreate2(object.get(), name, type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT);
     const H5Handle attribute(check_h5(id, doing), H5Aclose);
     check_h5(H5Awrite(attribute.get(), type.get(), data), doing);
   }
 
   void write_text(const char* name, const std::string& text) {
     write_attribute(name, h5_text_type(std::max<std::size_t>(text.size(), 1)), scalar_space(), text.c_str());
+  }
+
+  void describe(const H5Handle& dataset, const char* name, std::string_view text) {
+    if (text.empty()) return;
+    write_attribute(dataset, name, h5_text_type(text.size()), scalar_space(), text.data());
   }
 
   void write_numbers(const char* name, const std::vector<double>& numbers) {
@@ -145,7 +158,7 @@ void create_layout_file(const std::filesystem::path& path, const FileLayout& lay
   Layout file(path, Layout::Begin::anew);
   file.write_attributes(layout.format, layout.header);
   for (const auto& [table, rows] : layout.tables) file.create_table(table, rows);
-  for (const auto& [name, count] : layout.flats) file.create_dataset(name, {name, ColumnType::real, {}}, count);
+  for (const auto& [spec, count] : layout.flats) file.create_dataset(spec.name, spec, count);
   file.close();
   reserve_space(path, std::filesystem::file_size(path));
 }

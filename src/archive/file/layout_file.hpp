@@ -14,8 +14,8 @@ namespace orbweaver::archive {
 struct FileLayout {
   const char* format = "";
   Header header;
-  std::vector<std::pair<TableSpec, std::uint64_t>> tables;   ///< with their rows; text widths are set
-  std::vector<std::pair<std::string, std::uint64_t>> flats;  ///< float64 datasets of the root group with their lengths
+  std::vector<std::pair<TableSpec, std::uint64_t>> tables;  ///< with their rows; text widths are set
+  std::vector<std::pair<ColumnSpec, std::uint64_t>> flats;  ///< float64 datasets of the root group with their lengths
 
   /// Bytes of all datasets.
   [[nodiscard]] std::uint64_t bytes() const;

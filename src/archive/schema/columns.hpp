@@ -23,15 +23,23 @@ struct RowNumber {};
 /// A checksum (row_checksum.hpp): it is filled in when the row is complete, and -1 until then.
 struct Checksum {};
 
-/// One column of a table: its name, the member of the record that a row is taken from, and the shape of a row. The
-/// lists below are the only place where a column is defined; the schema, the segments and the atlas follow from them.
+/// What the file says of a column (its attributes `unit`, where there is one, and `meaning`).
+struct ColumnText {
+  const char* unit = "";
+  const char* meaning = "";
+};
+
+/// One column of a table: its name, the member of the record that a row is taken from, its meaning, and the shape of a
+/// row. The lists below are the only place where a column is defined; the schema, the segments and the atlas follow
+/// from them.
 template <class Record>
 struct ColumnDefinition {
-  using Member = std::variant<RowNumber, Checksum, int Record::*, double Record::*, std::string Record::*,
-                              CrossingKind Record::*, std::vector<double> Record::*,
-                              std::vector<std::int64_t> Record::*>;
+  using Member =
+      std::variant<RowNumber, Checksum, int Record::*, double Record::*, std::string Record::*, CrossingKind Record::*,
+                   std::vector<double> Record::*, std::vector<std::int64_t> Record::*>;
   const char* name;
   Member member = RowNumber{};
+  ColumnText text;
   RowShape shape = RowShape::one;
   int since = 0;  ///< ColumnSpec
 };

@@ -33,7 +33,7 @@ ColumnSpec spec_of(const ColumnDefinition<Record>& column, const Header& header)
   if (std::holds_alternative<double Record::*>(member)) type = ColumnType::real;
   if (std::holds_alternative<std::vector<double> Record::*>(member)) type = ColumnType::real;
   const int since = std::holds_alternative<Checksum>(member) ? checksums_since : column.since;
-  return {column.name, type, extents_of(column.shape, header), 0, since};
+  return {column.name, type, extents_of(column.shape, header), 0, since, column.text.unit, column.text.meaning};
 }
 
 template <class Record>
@@ -47,6 +47,21 @@ TableSpec spec_of(const char* name, const ColumnDefinitions<Record>& columns, co
 
 std::size_t ColumnSpec::width() const {
   return std::accumulate(row_shape.begin(), row_shape.end(), std::size_t{1}, std::multiplies<>());
+}
+
+ColumnSpec modes_spec() {
+  ColumnSpec spec{"modes", ColumnType::real, {}};
+  spec.unit = "state";
+  spec.meaning =
+      "Fourier coefficients of all orbits: of each (2 K + 1) x dimension, rows a0, a1, b1, a2, b2, ...; "
+      "z(s) = n s + a0 + sum of a_k cos ks + b_k sin ks";
+  return spec;
+}
+
+ColumnSpec time_maps_spec() {
+  ColumnSpec spec{"time_maps", ColumnType::real, {}};
+  spec.meaning = "kappa, c_1, d_1, c_2, d_2, ... of each orbit that has a time map t = T phi(s) (docs/file_format.md)";
+  return spec;
 }
 
 bool is_checksum(const ColumnSpec& spec) { return spec.name.ends_with("checksum"); }

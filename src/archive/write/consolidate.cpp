@@ -276,7 +276,7 @@ bool consolidate(MPI_Comm comm, const std::vector<std::filesystem::path>& segmen
                       {sections_spec(order.header), numbering.sections.size()},
                       {root.loci.spec(), loci},
                       {root.equilibria.spec(), equilibria}},
-                     {{"modes", numbering.modes_at.back()}, {"time_maps", numbering.maps_at.back()}}});
+                     {{modes_spec(), numbering.modes_at.back()}, {time_maps_spec(), numbering.maps_at.back()}}});
   file.write_table(root.families, 0);
   file.write_table(root.crossings, 0);
   file.write_table(root.loci, 0);

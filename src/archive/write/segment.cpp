@@ -154,7 +154,7 @@ WrittenSegment write_segment(MPI_Comm comm, const std::filesystem::path& path, c
                     {segment_format,
                      header,
                      {{orbits.spec(), orbit_rows.total}, {sections.spec(), section_rows.total}},
-                     {{"modes", modes.total}, {"time_maps", maps.total}}});
+                     {{modes_spec(), modes.total}, {time_maps_spec(), maps.total}}});
   file.write_table(orbits, orbit_rows.first);
   file.write_table(sections, section_rows.first);
   core::pause_point("write " + path.filename().string());

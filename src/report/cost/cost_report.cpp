@@ -1,18 +1,14 @@
 #include "orbweaver/report/cost/cost_report.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <fstream>
-#include <optional>
-#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "orbweaver/core/error.hpp"
-#include "orbweaver/core/process.hpp"
+#include "csv_text.hpp"
+#include "gnuplot.hpp"
 #include "text_grid.hpp"
 
 namespace orbweaver::report {
@@ -50,19 +46,7 @@ std::string csv_head(const Column& column) {
 
 std::string csv_cell(const Cell& cell) {
   if (cell.words.empty()) return std::isnan(cell.number) ? std::string() : fmt::format("{}", cell.number);
-  if (cell.words.find_first_of(",\"\n") == std::string::npos) return cell.words;
-  std::string quoted = "\"";
-  for (const char c : cell.words) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
-}
-
-std::string_view ending_of(PlotFormat format) {
-  switch (format) {
-    case PlotFormat::svg: return "svg";
-    case PlotFormat::pdf: return "pdf";
-    case PlotFormat::png: return "png";
-  }
-  return "";
+  return csv_text(cell.words);
 }
 
 std::string terminal_of(PlotFormat format) {
@@ -74,13 +58,6 @@ std::string terminal_of(PlotFormat format) {
   return "";
 }
 
-/// Text in gnuplot's single quotes, for a terminal without markup.
-std::string quoted(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
-  return out + "'";
-}
-
 std::string key_of(const Table& table, const std::vector<Cell>& row, const std::vector<std::size_t>& columns) {
   std::vector<std::string> parts;
   for (const std::size_t column : columns)
@@ -89,10 +66,6 @@ std::string key_of(const Table& table, const std::vector<Cell>& row, const std::
                         : cell_text(row[column]));
   return fmt::format("{}", fmt::join(parts, ", "));
 }
-
-/// Colours that stay apart in print and for most who see few colours (Okabe and Ito 2008), then dashes.
-constexpr std::array<const char*, 8> colours{"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                             "#E69F00", "#56B4E9", "#000000", "#999999"};
 
 struct Series {
   std::string key;
@@ -158,16 +131,16 @@ std::string script_of(const Table& table, const std::string& name, const std::st
       "set logscale xy\nset grid xtics ytics linetype 1 linecolor '#dddddd' linewidth 0.6\nset border 3\nset tics "
       "nomirror\n"
       "set key below horizontal height 1\nset xlabel offset 0,0.4\nset format x '{}'\nset format y '{}'\n",
-      terminal_of(format), quoted(fmt::format("{}.{}", name, ending_of(format))), quoted(title),
-      quoted(head_text(table.columns[plot.x])), quoted(head_text(table.columns[plot.y])),
+      terminal_of(format), gnuplot_text(fmt::format("{}.{}", name, ending_of(format))), gnuplot_text(title),
+      gnuplot_text(head_text(table.columns[plot.x])), gnuplot_text(head_text(table.columns[plot.y])),
       tics_of(all, [](const auto& point) { return point.first; }),
       tics_of(all, [](const auto& point) { return point.second; }));
   for (std::size_t n = 0; n < all.size(); ++n)
     script += fmt::format(
         "{}$data{} using 1:2 with linespoints title {} linecolor '{}' linewidth 1.6 dashtype {} pointtype {} pointsize "
         "0.7",
-        n == 0 ? "plot " : ", \\\n     ", n, quoted(all[n].key), colours[n % colours.size()], n / colours.size() + 1,
-        point_of(n));
+        n == 0 ? "plot " : ", \\\n     ", n, gnuplot_text(all[n].key), plot_colours[n % plot_colours.size()],
+        n / plot_colours.size() + 1, point_of(n));
   return script + "\n";
 }
 
@@ -224,17 +197,7 @@ std::vector<Picture> pictures_of(const Table& table, PlotFormat format) {
 }
 
 bool draw(const std::filesystem::path& folder, const Picture& picture) {
-  const std::filesystem::path script = folder / (picture.name + ".gnuplot");
-  std::ofstream file(script);
-  // The picture lies beside the script, from wherever that is run.
-  file << "cd " << quoted(std::filesystem::absolute(folder).string()) << "\n" << picture.script;
-  file.close();
-  if (!file) throw core::EnvironmentError(fmt::format("cannot write {}", script.string()));
-  const std::optional<int> status = core::run_program({"gnuplot", script.string()});
-  if (!status) return false;
-  if (*status != 0)
-    throw core::EnvironmentError(fmt::format("gnuplot could not draw {}; its messages are above", script.string()));
-  return true;
+  return run_gnuplot(folder, picture.name, picture.script);
 }
 
 }  // namespace orbweaver::report

@@ -13,6 +13,7 @@
 #include "page/page_columns.hpp"
 #include "page/page_index.hpp"
 #include "page/thinned_loop.hpp"
+#include "stored_system.hpp"
 
 namespace orbweaver::report {
 
@@ -146,17 +147,16 @@ PageSummary write_page(std::ostream& out, const archive::Archive& atlas, std::st
   summary.harmonics_stored = loops.harmonics_stored;
   summary.deviation = loops.deviation;
 
-  const std::string index = fmt::format(
-      R"({{"page":1,"orbits":{},"loops":{},"deviation":{},"harmonicsKept":{},"harmonicsStored":{},)"
-      R"("blocks":[{}],"columns":{},{}}})",
-      summary.orbits, summary.loops, json_number(summary.deviation), summary.harmonics_kept, summary.harmonics_stored,
-      fmt::join(loops.blocks, ","), columns.json(), index_members(atlas));
+  const std::string index =
+      fmt::format(R"({{"page":1,"orbits":{},"loops":{},"deviation":{},"harmonicsKept":{},"harmonicsStored":{},)"
+                  R"("blocks":[{}],"columns":{},{}}})",
+                  summary.orbits, summary.loops, json_number(summary.deviation), summary.harmonics_kept,
+                  summary.harmonics_stored, fmt::join(loops.blocks, ","), columns.json(), index_members(atlas));
 
   const std::string loop_element = element("atlas-loops", loops.bytes);
-  const std::string rest = element("atlas-index", deflated(bytes_of(index))) +
-                           element("atlas-columns", deflated(columns.bytes()));
-  out << page_template.substr(0, place) << rest << loop_element
-      << page_template.substr(place + place_of_data.size());
+  const std::string rest =
+      element("atlas-index", deflated(bytes_of(index))) + element("atlas-columns", deflated(columns.bytes()));
+  out << page_template.substr(0, place) << rest << loop_element << page_template.substr(place + place_of_data.size());
   summary.loop_bytes = loop_element.size();
   summary.bytes = page_template.size() - place_of_data.size() + rest.size() + loop_element.size();
   return summary;

@@ -15,8 +15,8 @@ inline constexpr int format_version = 1;
 /// Root attribute `format_minor`: it rises with every table, column or attribute that is added; older files of the
 /// version are read. 1: /findings, system, effects, parameters, scales. 2: checksums. 3: what certificates say. 4:
 /// /sections is filled. 5: the parameter at crossings and findings. 6: /loci. 7: /equilibria. 8:
-/// `log_volume` of /orbits.
-inline constexpr int format_minor = 8;
+/// `log_volume` of /orbits. 9: the attributes `unit` and `meaning` of datasets.
+inline constexpr int format_minor = 9;
 /// The first with checksums.
 inline constexpr int checksums_since = 2;
 /// The first with verdicts.
@@ -36,11 +36,17 @@ struct ColumnSpec {
   ColumnType type = ColumnType::real;
   std::vector<std::size_t> row_shape;
   std::size_t text_width = 0;  ///< bytes of a text; set when the column is written
-  int since = 0;  ///< the first format_minor that has it: read from an older file, it is NaN or -1 throughout
+  int since = 0;          ///< the first format_minor that has it: read from an older file, it is NaN or -1 throughout
+  const char* unit = "";  ///< attribute of the dataset: "time", "energy", "state"; empty: it has none
+  const char* meaning = "";  ///< attribute of the dataset: one phrase
 
   /// Values in one row.
   [[nodiscard]] std::size_t width() const;
 };
+
+/// The flat datasets of the root group, float64.
+[[nodiscard]] ColumnSpec modes_spec();
+[[nodiscard]] ColumnSpec time_maps_spec();
 
 /// A column that says nothing of the orbits: it is there to find changed bytes.
 [[nodiscard]] bool is_checksum(const ColumnSpec& spec);

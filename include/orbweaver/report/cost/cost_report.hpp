@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "orbweaver/cost/table.hpp"
+#include "orbweaver/report/plot_format.hpp"
 
 namespace orbweaver::report {
 
@@ -14,8 +15,6 @@ namespace orbweaver::report {
 /// As CSV (RFC 4180): heads "time_s" (blanks as underscores, the unit last), numbers with all of their digits, empty
 /// where there is none.
 [[nodiscard]] std::string table_csv(const cost::Table& table);
-
-enum class PlotFormat { svg, pdf, png };
 
 /// A picture: its file name without ending, and the script that makes gnuplot draw it, the numbers in it. One each
 /// panel.

@@ -1,0 +1,92 @@
+#include "orbweaver/report/plot/plot.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include "command.hpp"
+#include "common_options.hpp"
+#include "orbweaver/core/error.hpp"
+#include "output_file.hpp"
+
+namespace orbweaver::drivers {
+
+namespace {
+
+struct PlotOptions {
+  std::filesystem::path atlas;
+  report::PlotRequest request;
+  std::filesystem::path output;
+};
+
+/// A folder of this process, which goes with the object.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() : _path(std::filesystem::temp_directory_path() / fmt::format("orbweaver_plot_{}", getpid())) {
+    std::filesystem::create_directories(_path);
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(_path, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return _path; }
+
+ private:
+  std::filesystem::path _path;
+};
+
+int run(const PlotOptions& options) {
+  report::PlotRequest request = options.request;
+  request.format = report::plot_format_of(options.output);
+  const archive::Archive atlas(options.atlas);
+  const TemporaryFolder folder;
+  const std::filesystem::path picture = report::draw_plot(atlas, request, folder.path());
+  write_output_file(options.output, [&](std::ostream& file) {
+    std::ifstream drawn(picture, std::ios::binary);
+    if (!(file << drawn.rdbuf())) throw core::EnvironmentError("gnuplot has drawn nothing; its messages are above");
+  });
+  return static_cast<int>(core::ExitStatus::done);
+}
+
+}  // namespace
+
+Command make_plot_command(CLI::App& program) {
+  const auto options = std::make_shared<PlotOptions>();
+  CLI::App* parser = program.add_subcommand("plot", "A static picture of an atlas, for a paper or a slide");
+  parser->add_option("atlas", options->atlas, "The atlas.h5 of a survey")->required();
+  parser
+      ->add_option("what", options->request.what,
+                   fmt::format("What to draw: {}", fmt::join(report::plot_names(), ", ")))
+      ->required()
+      ->check(CLI::IsMember(report::plot_names()));
+  parser->add_option("-o,--output", options->output, "The file to write; its ending says how: svg, pdf or png")
+      ->required()
+      ->type_name("FILE")
+      ->check(named_path());
+  parser->add_option("--family", options->request.families, "Only this family (repeatable); one for orbits")
+      ->allow_extra_args(false)
+      ->take_all();
+  parser->add_option("--step", options->request.step, "Of orbit, strobe, spectrum: this step of the family");
+  const std::map<std::string, report::PlotStyle> styles{{"paper", report::PlotStyle::paper},
+                                                        {"slide", report::PlotStyle::slide}};
+  parser->add_option("--style", options->request.style, "paper: a column, 8.6 cm; slide: 25.4 cm, large letters")
+      ->transform(CLI::CheckedTransformer(styles))
+      ->type_name("paper|slide");
+  add_plugin_option(*parser);
+  add_examples(*parser, {"orbweaver plot out/double_pendulum/atlas.h5 tree -o tree.pdf",
+                         "orbweaver plot out/double_pendulum/atlas.h5 orbit --family In-Phase -o orbits.svg",
+                         "orbweaver plot out/double_pendulum/atlas.h5 strobe --family In-Phase --step 20 --style slide "
+                         "-o strobe.png"});
+  return {parser, [options](const Invocation&) { return run(*options); }};
+}
+
+}  // namespace orbweaver::drivers

@@ -1,0 +1,42 @@
+#include "gnuplot.hpp"
+
+#include <fstream>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/core/process.hpp"
+#include "orbweaver/core/text.hpp"
+
+namespace orbweaver::report {
+
+std::string gnuplot_text(std::string_view text) {
+  std::string out = "'";
+  for (const char c : core::printable(text)) out += c == '\'' ? std::string("''") : std::string(1, c);
+  return out + "'";
+}
+
+std::string_view ending_of(PlotFormat format) {
+  switch (format) {
+    case PlotFormat::svg: return "svg";
+    case PlotFormat::pdf: return "pdf";
+    case PlotFormat::png: return "png";
+  }
+  return "";
+}
+
+bool run_gnuplot(const std::filesystem::path& folder, const std::string& name, const std::string& script) {
+  const std::filesystem::path path = folder / (name + ".gnuplot");
+  std::ofstream file(path);
+  file << "cd " << gnuplot_text(std::filesystem::absolute(folder).string()) << "\n" << script;
+  file.close();
+  if (!file) throw core::EnvironmentError(fmt::format("cannot write {}", path.string()));
+  const std::optional<int> status = core::run_program({"gnuplot", path.string()});
+  if (!status) return false;
+  if (*status != 0)
+    throw core::EnvironmentError(fmt::format("gnuplot could not draw {}; its messages are above", path.string()));
+  return true;
+}
+
+}  // namespace orbweaver::report

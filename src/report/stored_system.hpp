@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "orbweaver/archive/read/reader.hpp"
+#include "orbweaver/systems/model_info.hpp"
+
+namespace orbweaver::report {
+
+/// What may be asked of the system of an archive; null where this program does not know it (a plugin that is not
+/// loaded).
+[[nodiscard]] const systems::ModelInfo* info_of(const archive::Header& header);
+
+/// One a parameter of the header; empty where it is not known.
+[[nodiscard]] std::vector<std::string> units_of(const archive::Header& header);
+
+/// The coordinates that may wind, in the order of the header's winding_names: those of the system, or the first ones
+/// where the program does not know it.
+[[nodiscard]] std::vector<int> angles_of(const archive::Header& header);
+
+}  // namespace orbweaver::report
