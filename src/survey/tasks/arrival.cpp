@@ -164,7 +164,8 @@ std::optional<Arrival> arrival_by(const systems::System& system, continuation::F
 
 /// Of several gains, those whose parts vanish on the way: there they are proportional to that of `from`. Beside an
 /// orbit of a higher symmetry the sign of a part turns for those too that come near to it. What a gain breaks and its
-/// powers do not (1@1/4: the harmonics 2, 6, 10 ... of an orbit four times around) is of second order, and may be larger.
+/// powers do not (1@1/4: the harmonics 2, 6, 10 ... of an orbit four times around) is of second order, and may be
+/// larger.
 std::vector<bifurcation::SymmetryGain> vanishing(std::vector<bifurcation::SymmetryGain> gains,
                                                  continuation::FamilyCurve& family,
                                                  const bifurcation::SymmetryWatch& watch,

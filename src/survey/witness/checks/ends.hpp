@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "orbweaver/loop/symmetry/isotropy_text.hpp"
+#include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "tasks/payload/task_kind.hpp"
 #include "witness/check.hpp"
 #include "witness/passing.hpp"
@@ -154,6 +157,12 @@ class Ends final : public Check {
     return finding;
   }
 
+  // Symmetries of a family's orbits: what is met has more of them, or is gone around more than once.
+  static std::size_t order_of(const Evidence& evidence, const TreeFamily& family) {
+    const systems::Structure& structure = evidence.system->structure();
+    return loop::SymmetryGroup(structure, loop::isotropy_of(structure, family.isotropy)).elements().size();
+  }
+
   // Where no crossing is known: a family that passes there, gone around some times.
   static Finding met_somewhere(const Evidence& evidence, const TreeFamily& family, const EndEvidence& end,
                                Finding finding) {
@@ -168,7 +177,7 @@ class Ends final : public Check {
       int met = -1;  // of several that are images, the one at the same equilibrium
       for (const auto& [other, segment] :
            passing(evidence.tree, evidence.index, {period, end.level, action / m, last.scale_of(Invariant::level)})) {
-        if (m == 1 && evidence.family(other).isotropy == family.isotropy) continue;  // itself, or its mirror image
+        if (m == 1 && order_of(evidence, evidence.family(other)) <= order_of(evidence, family)) continue;
         if (met < 0 || evidence.equilibrium_of(other) == evidence.equilibrium_of(finding.family)) met = other;
       }
       if (met < 0) continue;
