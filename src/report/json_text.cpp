@@ -29,4 +29,16 @@ std::string json_text(const std::string& text) {
   return quoted + '"';
 }
 
+std::string json_list(const std::vector<double>& values) {
+  std::vector<std::string> texts;
+  for (const double value : values) texts.push_back(json_number(value));
+  return fmt::format("[{}]", fmt::join(texts, ", "));
+}
+
+std::string json_list(const std::vector<std::string>& values) {
+  std::vector<std::string> texts;
+  for (const std::string& value : values) texts.push_back(json_text(value));
+  return fmt::format("[{}]", fmt::join(texts, ", "));
+}
+
 }  // namespace orbweaver::report

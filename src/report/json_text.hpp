@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace orbweaver::report {
 
@@ -9,5 +10,9 @@ namespace orbweaver::report {
 
 /// All digits; `null` for what is no finite number.
 [[nodiscard]] std::string json_number(double value);
+
+/// [.., ..] of numbers or of texts, each as above.
+[[nodiscard]] std::string json_list(const std::vector<double>& values);
+[[nodiscard]] std::string json_list(const std::vector<std::string>& values);
 
 }  // namespace orbweaver::report

@@ -21,7 +21,7 @@ std::string held_text(const Proof& proof) {
   return fmt::format("{} = {}", held.quantity == refine::HeldValue::Quantity::period ? "T" : "E", held.decimal);
 }
 
-std::string stability_text(const Proof& proof) {
+std::string multipliers_text(const Proof& proof) {
   const std::string index = proof.order == 1 ? "index" : fmt::format("index over T/{}", proof.order);
   switch (proof.stability) {
     case Stability::elliptic: return fmt::format("elliptic: |{}| < 2", index);
@@ -57,7 +57,7 @@ std::string to_text(const Proof& proof) {
     text += line("multiplier, real", proof.multiplier[0].text());
     text += line("imaginary", proof.multiplier[1].text());
   }
-  return text + line("stability", stability_text(proof));
+  return text + line("stability", multipliers_text(proof));
 }
 
 std::string proofs_table(const std::vector<Proof>& proofs, const std::vector<double>& seconds) {

@@ -23,7 +23,7 @@ std::string title_of(const Difference& difference) {
   return fmt::format("{} ({} in B)", difference.family_a, difference.family_b);
 }
 
-std::string json_list(const std::vector<std::string>& values) {
+std::string json_lines(const std::vector<std::string>& values) {
   return values.empty() ? "[]" : fmt::format("[\n    {}\n  ]", fmt::join(values, ",\n    "));
 }
 
@@ -89,7 +89,7 @@ void print_comparison_json(std::ostream& out, const Comparison& comparison) {
   out << fmt::format("  \"matched\": {{\"families\": {}, \"crossings\": {}, \"orbits\": {}, \"loops\": {}}},\n",
                      comparison.families, comparison.crossings, comparison.orbits, comparison.loops);
   out << fmt::format("  \"differences\": {},\n  \"renamed\": {},\n  \"notes\": {},\n  \"largest\": {}\n}}\n",
-                     json_list(differences), json_list(renamed), json_list(notes), json_list(largest));
+                     json_lines(differences), json_lines(renamed), json_lines(notes), json_lines(largest));
 }
 
 }  // namespace orbweaver::report

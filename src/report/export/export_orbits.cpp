@@ -40,18 +40,6 @@ std::vector<std::string> csv_heads(const archive::Archive& atlas) {
   return heads;
 }
 
-std::string json_list(const std::vector<double>& values) {
-  std::vector<std::string> texts;
-  for (const double value : values) texts.push_back(json_number(value));
-  return fmt::format("[{}]", fmt::join(texts, ", "));
-}
-
-std::string json_list(const std::vector<std::string>& values) {
-  std::vector<std::string> texts;
-  for (const std::string& value : values) texts.push_back(json_text(value));
-  return fmt::format("[{}]", fmt::join(texts, ", "));
-}
-
 std::string json_pairs(const std::vector<double>& values) {
   std::vector<std::string> pairs;
   for (std::size_t i = 0; i + 1 < values.size(); i += 2) pairs.push_back(json_list({values[i], values[i + 1]}));

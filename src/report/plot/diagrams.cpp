@@ -18,7 +18,6 @@ namespace orbweaver::report {
 namespace {
 
 constexpr const char* ink = "#000000";
-constexpr const char* soft = "#888888";
 constexpr double mark_size = 1.0;
 
 /// How a kind of crossing is marked; none for kinds that this program does not know.

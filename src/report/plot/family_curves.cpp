@@ -18,7 +18,6 @@ namespace {
 constexpr std::size_t family_colours = 6;  // of plot_colours: black and grey are for what belongs to no family
 constexpr std::size_t points_an_interval = 8;
 constexpr std::size_t orbits_of_a_polynomial = 4;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
@@ -138,7 +137,7 @@ std::vector<Series> FamilyCurves::drawn(std::size_t family, const Number& x, con
         if (n > 0 && curve[n - 1].look != look) series.points.push_back(curve[n - 1].point);  // no gap
         series.points.push_back(curve[n].point);
       } else if (!series.points.empty() && !std::isnan(series.points.back().x)) {
-        series.points.push_back({nan, nan});
+        series.points.push_back({no_value, no_value});
       }
     }
     if (!series.points.empty()) all.push_back(std::move(series));

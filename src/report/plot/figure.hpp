@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,13 +10,18 @@
 
 namespace orbweaver::report {
 
-/// In the axes' coordinates; NaN: the line is broken.
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+
+/// In the axes' coordinates; no_value: the line is broken.
 struct PlotPoint {
   double x;
   double y;
 };
 
 enum class Look { solid, dashed, dotted, thin, impulses, dots, marks };
+
+/// Colour of what is there for comparison.
+constexpr const char* soft = "#888888";
 
 /// One entry of a picture.
 struct Series {

@@ -24,8 +24,6 @@ namespace orbweaver::report {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr const char* soft = "#888888";
 constexpr std::size_t orbits_shown = 5;
 constexpr int instants = 32;  // of a strobe picture
 constexpr int points_a_harmonic = 12;
@@ -112,7 +110,7 @@ std::vector<PlotPoint> path_of(const loop::Loop& loop, std::pair<std::size_t, st
         (std::abs(point.x - points.back().x) > std::numbers::pi ||
          std::abs(point.y - points.back().y) > std::numbers::pi) &&
         (loop.winding[panel.first] != 0.0 || loop.winding[panel.second] != 0.0))
-      points.push_back({nan, nan});
+      points.push_back({no_value, no_value});
     points.push_back(point);
   }
   return points;
@@ -183,7 +181,7 @@ double parameter_of(const archive::Archive& atlas, const std::string& name) {
   const archive::Header& header = atlas.header();
   const auto found = std::find(header.parameter_names.begin(), header.parameter_names.end(), name);
   return found == header.parameter_names.end()
-             ? nan
+             ? no_value
              : header.parameter_values[static_cast<std::size_t>(found - header.parameter_names.begin())];
 }
 
@@ -208,7 +206,7 @@ Figure rod_figure(const archive::Archive& atlas, const OrbitChoice& choice, cons
   for (int n = 0; n < instants; ++n) {
     const Rods at = rods_of(atlas, loop::state_at(loop, loop.period * n / instants));
     rods.points.insert(rods.points.end(), at.begin(), at.end());
-    rods.points.push_back({nan, nan});
+    rods.points.push_back({no_value, no_value});
     bobs.resize(at.size() - 1);
     for (std::size_t i = 1; i < at.size(); ++i) bobs[i - 1].points.push_back(at[i]);
   }
