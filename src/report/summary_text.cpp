@@ -1,6 +1,7 @@
 #include "orbweaver/report/summary_text.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <fmt/format.h>
@@ -15,12 +16,20 @@ constexpr std::size_t most_listed = 60;
 /// Findings of one severity that it lists.
 constexpr std::size_t most_findings = 20;
 
+/// With a fixed number of decimals where these hold the value, whatever its unit; else in powers of ten.
+std::string number_text(double value, int width, int decimals) {
+  const double size = std::abs(value);
+  const bool is_held = size == 0.0 || (size >= std::pow(10.0, 4 - decimals) && size < 1e6);
+  return is_held ? fmt::format("{:>{}.{}f}", value, width, decimals) : fmt::format("{:>{}.6e}", value, width);
+}
+
 std::string line_of(const survey::FamilySummary& f, std::size_t width) {
   const std::string name = std::string(2 * static_cast<std::size_t>(f.depth), ' ') + f.name;
   const std::string end = f.doubts.empty() ? f.end_reason : fmt::format("{}; {}", f.end_reason, f.doubts);
   if (f.orbits == 0) return fmt::format("{:<{}}  {:>6}  {:>22}  {:>26}  {}\n", name, width, 0, "-", "-", f.end_reason);
-  return fmt::format("{:<{}}  {:>6}  {:>9.6f} .. {:>9.6f}  {:>11.8f} .. {:>11.8f}  {}\n", name, width, f.orbits,
-                     f.period_from, f.period_to, f.level_from, f.level_to, end);
+  return fmt::format("{:<{}}  {:>6}  {} .. {}  {} .. {}  {}\n", name, width, f.orbits, number_text(f.period_from, 9, 6),
+                     number_text(f.period_to, 9, 6), number_text(f.level_from, 11, 8), number_text(f.level_to, 11, 8),
+                     end);
 }
 
 /// What does not add up, and how much the limits cut; failed tasks have lines of their own.

@@ -177,10 +177,12 @@ double largest_coordinate(const Structure& structure, const std::vector<std::vec
   return size;
 }
 
+/// In the model's own units.
 std::string state_text(const System& system, const std::vector<double>& state) {
   std::string text;
   for (std::size_t i = 0; i < state.size(); ++i)
-    text += fmt::format("{}{} = {:.6g}", i == 0 ? "" : ", ", system.info().state_names[i], state[i]);
+    text += fmt::format("{}{} = {:.6g}", i == 0 ? "" : ", ", system.info().state_names[i],
+                        state[i] * system.scales().coordinate(i));
   return text;
 }
 

@@ -61,6 +61,15 @@ TEST(SummaryText, SaysWhatDoesNotAddUpAndCountsWhatLimitsCut) {
   EXPECT_THAT(report::to_text(summary), Not(HasSubstr("findings:"))) << "the witness looks at archives";
 }
 
+TEST(SummaryText, UnitsMayMakeNumbersSmallOrLarge) {
+  survey::Summary summary = sample_summary();
+  summary.families[0].period_from = 6.18012e-06;
+  summary.families[0].level_from = -1.25e-24;
+  summary.families[1].level_to = 2.5e9;
+  EXPECT_THAT(report::to_text(summary),
+              AllOf(HasSubstr("6.180120e-06 .. 30.000000"), HasSubstr("-1.250000e-24 .. "), HasSubstr("2.500000e+09")));
+}
+
 TEST(SummaryText, ColumnsAlign) {
   const std::string text = report::to_text(sample_summary());
   const std::string head = text.substr(0, text.find('\n'));

@@ -11,8 +11,8 @@
 
 namespace orbweaver::test {
 
-/// A particle of mass 1 in a magnetic field b (1 + e x) across the plane and a well k x^2/2 + k2 y^2/2 + a cubic with
-/// the coefficients a1 .. a4 + q (x^4 + y^4 + 2 c x^2 y^2)/4, k = 1, in canonical momenta. It declares no symmetry;
+/// A particle of mass 1 in a magnetic field b (1 + e x) across the plane and a well k1 x^2/2 + k2 y^2/2 + a cubic with
+/// the coefficients a1 .. a4 + q (x^4 + y^4 + 2 c x^2 y^2)/4, in canonical momenta. It declares no symmetry;
 /// without the magnetic field it has a reversor all the same.
 class MagneticWell {
  public:
@@ -27,7 +27,7 @@ class MagneticWell {
     info.state_names = {"x", "y", "px", "py"};
     info.winding_names = {"", "", "", ""};
     constexpr double any = std::numeric_limits<double>::infinity();
-    for (const char* name : {"k2", "b", "e", "a1", "a2", "a3", "a4", "q", "c"})
+    for (const char* name : {"k1", "k2", "b", "e", "a1", "a2", "a3", "a4", "q", "c"})
       info.parameters.push_back({name, 1.0, -any, any, false, "1", "coefficient"});
     return info;
   }
@@ -44,7 +44,8 @@ class MagneticWell {
   class With {
    public:
     explicit With(const systems::BoundTo<P>& bound)
-        : _k2(bound["k2"]),
+        : _k1(bound["k1"]),
+          _k2(bound["k2"]),
           _b(bound["b"]),
           _e(bound["e"]),
           _a1(bound["a1"]),
@@ -61,7 +62,7 @@ class MagneticWell {
       f[0] = z[2];
       f[1] = vy;
       f[2] = vy * (1.0 + x * _e) * _b -
-             (x + x * x * _a1 + x * y * _a2 * 2.0 + y * y * _a3 + (x * x * x + x * y * y * _c) * _q);
+             (x * _k1 + x * x * _a1 + x * y * _a2 * 2.0 + y * y * _a3 + (x * x * x + x * y * y * _c) * _q);
       f[3] = -(y * _k2 + x * x * _a2 + x * y * _a3 * 2.0 + y * y * _a4 + (y * y * y + x * x * y * _c) * _q);
     }
 
@@ -69,7 +70,7 @@ class MagneticWell {
     S conserved(const S* z) const {
       const S x = z[0], y = z[1];
       const S vy = speed_y(z);
-      return (z[2] * z[2] + vy * vy + x * x + y * y * _k2) * 0.5 + x * x * x * _a1 / 3.0 + x * x * y * _a2 +
+      return (z[2] * z[2] + vy * vy + x * x * _k1 + y * y * _k2) * 0.5 + x * x * x * _a1 / 3.0 + x * x * y * _a2 +
              x * y * y * _a3 + y * y * y * _a4 / 3.0 +
              (x * x * x * x + y * y * y * y + x * x * y * y * _c * 2.0) * _q * 0.25;
     }
@@ -85,7 +86,7 @@ class MagneticWell {
       return z[3] - (z[0] + z[0] * z[0] * _e * 0.5) * _b;
     }
 
-    P _k2, _b, _e, _a1, _a2, _a3, _a4, _q, _c;
+    P _k1, _k2, _b, _e, _a1, _a2, _a3, _a4, _q, _c;
   };
 };
 

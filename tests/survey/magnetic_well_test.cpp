@@ -1,6 +1,7 @@
 // Surveys of a system that declares no symmetry, near resonances of its small oscillations.
 #include <map>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,11 +21,12 @@ using testing::HasSubstr;
 
 using Parameters = std::map<std::string, double>;
 
-survey::Summary survey_of(const core::Communicator& comm, const Parameters& parameters, const std::string& name) {
-  const scene::Scene scene =
-      scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/henon_heiles.yaml",
-                  {"starts.fixed_points.names={}", "starts.fixed_points.letters={}", "starts.sweep.period=auto",
-                   "limits.energy=[-.inf, 1.0]", "limits.period=40"});
+survey::Summary survey_of(const core::Communicator& comm, const Parameters& parameters, const std::string& name,
+                          const std::vector<std::string>& settings = {}) {
+  std::vector<std::string> all{"starts.fixed_points.names={}", "starts.fixed_points.letters={}",
+                               "starts.sweep.period=auto", "limits.energy=[-.inf, 1.0]", "limits.period=40"};
+  all.insert(all.end(), settings.begin(), settings.end());
+  const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/henon_heiles.yaml", all);
   const auto folder = test::fresh_folder(name + std::to_string(comm.size()), comm.get());
   return survey::run_survey(comm, scene, test::magnetic_well(parameters), folder, {});
 }
@@ -59,6 +61,22 @@ TEST(MagneticWell, NearOneToThreeTheSlowFamilyEndsOnTheFastOne) {
   EXPECT_THAT(atlas.families().texts("name"),
               ElementsAre("Equilibrium 1, mode 1", "Equilibrium 1, mode 2", "Equilibrium 1, mode 2 T3"));
   EXPECT_THAT(atlas.families().texts("end_reason")[0], HasSubstr("joined Equilibrium 1, mode 2 at T = 6.282749"));
+}
+
+// A hill that the field holds: the family born where the fast one is tripled ends where that is quadrupled. There both
+// halves and all quarters of the branch's orbits become alike, and the quarters count.
+TEST(MagneticWell, AFamilyEndsOnAnOrbitFourTimesAround) {
+  const core::Communicator comm;
+  const Parameters parameters{{"k1", -0.22},  {"k2", -0.314}, {"b", 1.060281}, {"e", -0.194}, {"a1", 0.2752},
+                              {"a2", -0.075}, {"a3", 0.3088}, {"a4", -0.344},  {"q", 0.327},  {"c", -0.488}};
+  const survey::Summary summary = survey_of(
+      comm, parameters, "quadrupled",
+      {"survey.depth=1", "survey.subharmonics=3", "limits.energy=[-0.3, 0.3]", "starts.fixed_points.grid=[[0],[0]]"});
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  const test::Atlas atlas(summary.atlas);
+  EXPECT_THAT(atlas.families().texts("end_reason"),
+              Contains(HasSubstr("joined Equilibrium 1, mode 2 at T = 29.28057465")));
 }
 
 }  // namespace
