@@ -91,15 +91,15 @@ function(orbweaver_suites_of sources patterns)
   set(${patterns} "${found}" PARENT_SCOPE)
 endfunction()
 
-# orbweaver_test(<name> LAYER <layer> SOURCES ... [DEPENDS ...] [INCLUDES folder ...] [RANKS 1 2 3] [TIMEOUT seconds] [LABELS ...]
-#   [ONLY_ON ranks test ...] [LONG_TESTS ...] [LONG_RANKS ranks])
+# orbweaver_test(<name> LAYER <layer> SOURCES ... [DEPENDS ...] [INCLUDES folder ...] [RANKS 1 2 3] [LONG_ON ranks ...]
+#   [TIMEOUT seconds] [LABELS ...] [ONLY_ON ranks test ...] [LONG_TESTS ...] [LONG_RANKS ranks])
 # The suites of GoogleTest in some sources, in the layer's program. Without RANKS they run alone; with RANKS they run under mpirun
-# once for each rank count. ONLY_ON: these tests (Suite.Test, or a pattern of them) on one of the rank counts only. LONG_TESTS run in
+# once for each rank count, those of LONG_ON (some of RANKS) with the label long. ONLY_ON: these tests (Suite.Test, or a pattern of them) on one of the rank counts only. LONG_TESTS run in
 # a CTest of their own, <name>.long, with the label long, on LONG_RANKS or the last of RANKS.
 # SESSION starts MPI, PETSc and SLEPc around the tests, as RANKS does; with WITHOUT_PETSC that is MPI only.
 function(orbweaver_test name)
   cmake_parse_arguments(TEST "SESSION;WITHOUT_PETSC" "LAYER;TIMEOUT;LONG_RANKS"
-    "SOURCES;DEPENDS;INCLUDES;RANKS;LABELS;ONLY_ON;LONG_TESTS" ${ARGN})
+    "SOURCES;DEPENDS;INCLUDES;RANKS;LONG_ON;LABELS;ONLY_ON;LONG_TESTS" ${ARGN})
   set(kind single)
   if(TEST_WITHOUT_PETSC AND TEST_RANKS)
     set(kind mpi)
@@ -146,7 +146,11 @@ function(orbweaver_test name)
       list(APPEND left_out ${TEST_ONLY_ON})
     endif()
     orbweaver_filter("${filter}" "${left_out}" filtered)
-    orbweaver_add_ctest(${name}.ranks${ranks} ${ranks} "${TEST_LAYER};mpi;${TEST_LABELS}" ${TEST_TIMEOUT}
+    set(labels ${TEST_LAYER} mpi ${TEST_LABELS})
+    if(ranks IN_LIST TEST_LONG_ON)
+      list(APPEND labels long)
+    endif()
+    orbweaver_add_ctest(${name}.ranks${ranks} ${ranks} "${labels}" ${TEST_TIMEOUT}
       ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks} $<TARGET_FILE:${target}> ${filtered})
   endforeach()
   if(TEST_LONG_TESTS)

@@ -70,6 +70,10 @@ foreach(ranks IN ITEMS 1 2)
   if(ranks GREATER 1)
     set(command ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks} ${command})
   endif()
-  orbweaver_add_ctest(system.memory.ranks${ranks} ${ranks} system 180
+  set(labels system)
+  if(ranks EQUAL 1)
+    list(APPEND labels long)
+  endif()
+  orbweaver_add_ctest(system.memory.ranks${ranks} ${ranks} "${labels}" 180
     "${CMAKE_CURRENT_SOURCE_DIR}/memory.sh" 20 ${command})
 endforeach()

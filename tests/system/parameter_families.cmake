@@ -48,7 +48,7 @@ endforeach()
 
 set(of_pendulum "${scene}")
 set(scene "${PROJECT_SOURCE_DIR}/drivers/scenes/lorenz.yaml")
-broken_off_test(lorenz.kills system 300 kills.sh 3 1 -- --set output.flush_seconds=0.1 --set output.flush_orbits=5)
+broken_off_test(lorenz.kills "system;long" 300 kills.sh 3 1 -- --set output.flush_seconds=0.1 --set output.flush_orbits=5)
 # A curve of torus points to a strong resonance, killed and resumed on its way.
 set(scene "${PROJECT_SOURCE_DIR}/drivers/scenes/damped_driven_double_pendulum.yaml")
 set(beside_torus "{state: [142.543227, 51.7950766, 0, 1.9202047, 793.885987], period: 13.962634015954636}")
