@@ -191,11 +191,13 @@ function(orbweaver_test_of_filters)
 endfunction()
 
 # orbweaver_add_ctest(<name> <ranks> <labels> <timeout> <command> [args...])
-# Any command as a CTest in the common environment. It is given a processor a worker: rank 0 sleeps while it waits.
+# Any command as a CTest in the common environment. Ranks wait for one another most of the time and rank 0 sleeps meanwhile: up to three of
+# them count as one processor, more as two. CTest starts a test only where as many are free, and others of one processor take each that
+# becomes free: what wants two would wait until the end, so its cost puts it first.
 function(orbweaver_add_ctest name ranks labels timeout)
-  math(EXPR processors "${ranks} - 1")
-  if(processors LESS 1)
-    set(processors 1)
+  set(processors 1)
+  if(ranks GREATER 3)
+    set(processors 2)
   endif()
   set(folder "${PROJECT_BINARY_DIR}/test_runs/${name}")
   file(MAKE_DIRECTORY "${folder}")
@@ -205,6 +207,6 @@ function(orbweaver_add_ctest name ranks labels timeout)
   add_test(NAME ${name} COMMAND ${ARGN} WORKING_DIRECTORY "${folder}")
   list(REMOVE_ITEM labels "")
   set_tests_properties(${name} PROPERTIES
-    PROCESSORS ${processors} LABELS "${labels}" TIMEOUT ${timeout}
+    PROCESSORS ${processors} COST ${processors} LABELS "${labels}" TIMEOUT ${timeout}
     ENVIRONMENT "${ORBWEAVER_TEST_ENVIRONMENT}")
 endfunction()
