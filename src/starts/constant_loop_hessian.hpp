@@ -10,7 +10,8 @@ namespace orbweaver::starts {
 
 /// The smallest eigenvalue of the Hessian of a constant loop at a fixed point with Jacobian A, over all coefficients up
 /// to harmonic `cutoff`, period held: the least of the squared singular values of i k (2 pi/T) - A, twice those for
-/// k = 0; or over the odd harmonics alone. It remembers values of nearby periods, which spare it most harmonics; the result does not depend on them.
+/// k = 0; or over the odd harmonics alone. It remembers values of nearby periods, which spare it most harmonics; the
+/// result does not depend on them.
 class ConstantLoopHessian {
  public:
   ConstantLoopHessian(const Eigen::MatrixXd& jacobian, int cutoff, Harmonics harmonics = Harmonics::all);

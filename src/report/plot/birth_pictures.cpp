@@ -151,7 +151,7 @@ std::vector<Figure> birth_figures(const archive::Archive& atlas, const PlotReque
   std::vector<PlotPoint> path = path_of(at_birth.states, plane, 1.0);
   for (PlotPoint& p : path) p = {p.x * scales[0], p.y * scales[1]};
   base.series.push_back({fmt::format("{}, T = {:.5g}{}", parent_name, atlas.crossings().reals("period")[crossing],
-                                     times > 1 ? fmt::format(", {} times around", times) : std::string()),
+                                     times > 1 ? fmt::format(" (× {})", times) : std::string()),
                          Look::solid, ink, path});
   Figure perturbation = panel();
   perturbation.x.title = change_of(atlas, plane.first);

@@ -24,7 +24,7 @@ namespace orbweaver::report {
 namespace {
 
 /// Iterations after which a first-order method is given up, and how much further each look at it is than the last.
-constexpr int most_iterations = 5000;
+constexpr int most_iterations = 3000;
 constexpr double further = 1.15;
 
 /// An orbit of a family as a problem for the correctors: through a guess, across the family.

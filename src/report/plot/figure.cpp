@@ -234,11 +234,13 @@ std::string side_by_side(const std::vector<Figure>& panels, const Page& page, Pl
 
 std::string place_of_panel(std::size_t n, const std::vector<Figure>& panels, const Page& page, PlotStyle style) {
   const double width = 1.0 / static_cast<double>(panels.size());
-  const double line = character_height * page.font / points_an_inch * inch / page.height;
+  const double em = page.font / points_an_inch * inch;
+  const double line = character_height * em / page.height;
+  const double room = (tic_characters + 3.0) * character_width * em / page.width;  // for numbers and a title
   return fmt::format(
       "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset bmargin at screen {:.4f}\nset tmargin at screen "
       "{:.4f}\n{}",
-      (static_cast<double>(n) + 0.24) * width, (static_cast<double>(n) + 0.97) * width,
+      static_cast<double>(n) * width + room, (static_cast<double>(n) + 0.97) * width,
       height_of_legend(panels, page) + 3.6 * line, style == PlotStyle::slide ? top_below_title : top_of_panels,
       n == 0 ? "" : "unset key\n");
 }

@@ -111,6 +111,8 @@ Figure section_panel(const archive::Archive& atlas, const FamilyCurves& curves, 
         series.points.push_back({value(row, plane.first), value(row, plane.second)});
     }
     if (series.points.empty()) continue;
+    constexpr std::size_t many = 500;  // points that make a line
+    if (series.points.size() > many) series.size = 0.9;
     if (known_colours.insert(series.colour).second)
       series.key = cut(curves.name(family), longest_plot_name);
     else

@@ -45,7 +45,7 @@ std::vector<EquilibriumReport> asked_for(const archive::Archive& atlas, const Pl
 /// "th1 = 0, th2 = 180 deg": the configuration, where nothing moves.
 std::string place_of(const archive::Archive& atlas, const EquilibriumReport& report) {
   const std::size_t d = report.point.size();
-  const auto moves = [](double velocity) { return velocity != 0.0; };
+  const auto moves = [](double velocity) { return std::abs(velocity) > 1e-9; };
   if (d < 4 || d % 2 != 0 ||
       std::any_of(report.point.begin() + static_cast<std::ptrdiff_t>(d / 2), report.point.end(), moves))
     return report.text;
@@ -61,7 +61,7 @@ std::string place_of(const archive::Archive& atlas, const EquilibriumReport& rep
 
 /// Points between those of a curve that falls steeply, so that names see it.
 std::vector<PlotPoint> denser(const std::vector<PlotPoint>& points) {
-  constexpr int parts = 16;
+  constexpr int parts = 6;
   std::vector<PlotPoint> all;
   for (std::size_t n = 0; n + 1 < points.size(); ++n)
     for (int part = 0; part < parts; ++part) {
