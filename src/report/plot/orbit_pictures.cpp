@@ -218,7 +218,8 @@ std::vector<Figure> section_figures(const archive::Archive& atlas, const PlotReq
   std::vector<Figure> panels;
   for (const Plane& plane : planes) panels.push_back(section_panel(atlas, curves, plane, scene.section.coordinate));
   if (panels.front().series.empty()) throw core::InputError("no orbit of these families passes the section");
-  for (std::size_t n = 0; n < planes.size(); ++n) add_fixed_places(panels[n], atlas, planes[n], n == 0);
+  for (std::size_t n = 0; n < planes.size(); ++n)
+    if (planes[n].second < dimension / 2) add_fixed_places(panels[n], atlas, planes[n], n == 0);
   return panels;
 }
 
