@@ -4,6 +4,7 @@
 #include <fstream>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -13,6 +14,7 @@
 #include "command.hpp"
 #include "common_options.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/petsc/session.hpp"
 #include "output_file.hpp"
 
 namespace orbweaver::drivers {
@@ -44,8 +46,10 @@ class TemporaryFolder {
   std::filesystem::path _path;
 };
 
-int run(const PlotOptions& options) {
+int run(const PlotOptions& options, const Invocation& invocation) {
   report::PlotRequest request = options.request;
+  std::optional<core::Session> session;
+  if (report::plot_computes(request.what)) session.emplace(invocation.petsc_options);
   request.format = report::plot_format_of(options.output);
   const archive::Archive atlas(options.atlas);
   const TemporaryFolder folder;
@@ -75,18 +79,21 @@ Command make_plot_command(CLI::App& program) {
   parser->add_option("--family", options->request.families, "Only this family (repeatable); one for orbits")
       ->allow_extra_args(false)
       ->take_all();
-  parser->add_option("--step", options->request.step, "Of orbit, strobe, spectrum: this step of the family");
-  const std::map<std::string, report::PlotStyle> styles{{"paper", report::PlotStyle::paper},
-                                                        {"slide", report::PlotStyle::slide}};
-  parser->add_option("--style", options->request.style, "paper: a column, 8.6 cm; slide: 25.4 cm, large letters")
+  parser->add_option("--step", options->request.step,
+                     "Of orbit, strobe, convergence, spectrum: this step of the family");
+  const std::map<std::string, report::PlotStyle> styles{
+      {"paper", report::PlotStyle::paper}, {"wide", report::PlotStyle::wide}, {"slide", report::PlotStyle::slide}};
+  parser
+      ->add_option("--style", options->request.style,
+                   "paper: a column, 8.6 cm; wide: both columns, 17.8 cm; slide: 25.4 cm, large letters")
       ->transform(CLI::CheckedTransformer(styles))
-      ->type_name("paper|slide");
+      ->type_name("paper|wide|slide");
   add_plugin_option(*parser);
   add_examples(*parser, {"orbweaver plot out/double_pendulum/atlas.h5 tree -o tree.pdf",
                          "orbweaver plot out/double_pendulum/atlas.h5 orbit --family In-Phase -o orbits.svg",
                          "orbweaver plot out/double_pendulum/atlas.h5 strobe --family In-Phase --step 20 --style slide "
                          "-o strobe.png"});
-  return {parser, [options](const Invocation&) { return run(*options); }};
+  return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
 }
 
 }  // namespace orbweaver::drivers

@@ -11,6 +11,7 @@
 #include "orbweaver/certificate/certificate.hpp"
 #include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
+#include "orbweaver/starts/sampled_eigenvalues.hpp"
 #include "orbweaver/survey/run/scaled_scene.hpp"
 #include "orbweaver/survey/tasks/sweep_options.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
@@ -55,7 +56,8 @@ std::string rest_text(const std::vector<std::complex<double>>& values) {
 void tell_in_units(EquilibriumReport& report, const systems::Scales& scales) {
   for (std::size_t i = 0; i < report.point.size(); ++i) report.point[i] *= scales.coordinate(i);
   starts::SweepResult& sweep = report.sweep;
-  for (starts::SweepPoint& sample : sweep.table) sample.period *= scales.time;
+  for (std::vector<starts::SweepPoint>* table : {&sweep.table, &report.odd})
+    for (starts::SweepPoint& sample : *table) sample.period *= scales.time;
   for (starts::RejectedDip& dip : sweep.rejected) dip.period *= scales.time;
   for (std::complex<double>& value : sweep.linear.rest) value /= scales.time;
   for (double* period : {&sweep.range.period_from, &sweep.range.period_to, &sweep.range.step}) *period *= scales.time;
@@ -84,6 +86,7 @@ std::vector<EquilibriumReport> sweep_report(const scene::Scene& scene) {
                              survey::point_text(*system, point),
                              system->structure().has_angles(),
                              starts::sweep(*system, point, options),
+                             starts::sampled_eigenvalues(*system, point, options, starts::Harmonics::odd),
                              {},
                              {}};
     const auto name = [&](int place) {

@@ -18,20 +18,21 @@ constexpr double room = 1.0 - 1e-12;
 
 }  // namespace
 
-ConstantLoopHessian::ConstantLoopHessian(const Eigen::MatrixXd& jacobian, int cutoff) : _a(jacobian) {
+ConstantLoopHessian::ConstantLoopHessian(const Eigen::MatrixXd& jacobian, int cutoff, Harmonics harmonics)
+    : _a(jacobian), _every(harmonics == Harmonics::odd ? 2 : 1) {
   core::require(cutoff >= 1, "a Hessian needs a harmonic");
   if (!std::isfinite(jacobian.squaredNorm()))
     throw core::NotFiniteError("the Hessian of the constant loop at a fixed point is not finite");
   const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(_a).singularValues();
-  _mean = values(values.size() - 1);
+  _mean = harmonics == Harmonics::odd ? std::numeric_limits<double>::infinity() : values(values.size() - 1);
   _largest = values(0);
-  _known.assign(static_cast<std::size_t>(cutoff), {0.0, 0.0});
+  _known.assign(static_cast<std::size_t>((cutoff + _every - 1) / _every), {0.0, 0.0});
 }
 
 ConstantLoopHessian::Smallest ConstantLoopHessian::smallest(double period) {
   Smallest out{2.0 * _mean * _mean, 0};
   for (std::size_t n = 0; n < _known.size(); ++n) {
-    const int k = static_cast<int>(n) + 1;
+    const int k = 1 + _every * static_cast<int>(n);
     const double rate = 2.0 * std::numbers::pi * k / period;
     // No singular value moves faster than the rate, and none is further from it than A is large.
     const double moved = _known[n].singular_value - std::abs(rate - _known[n].rate);

@@ -4,14 +4,17 @@
 
 #include <Eigen/Dense>
 
+#include "orbweaver/starts/sampled_eigenvalues.hpp"
+
 namespace orbweaver::starts {
 
 /// The smallest eigenvalue of the Hessian of a constant loop at a fixed point with Jacobian A, over all coefficients up
 /// to harmonic `cutoff`, period held: the least of the squared singular values of i k (2 pi/T) - A, twice those for
-/// k = 0. It remembers values of nearby periods, which spare it most harmonics; the result does not depend on them.
+/// k = 0; or over the odd harmonics alone. It remembers values of nearby periods, which spare it most harmonics; the
+/// result does not depend on them.
 class ConstantLoopHessian {
  public:
-  ConstantLoopHessian(const Eigen::MatrixXd& jacobian, int cutoff);
+  ConstantLoopHessian(const Eigen::MatrixXd& jacobian, int cutoff, Harmonics harmonics = Harmonics::all);
 
   struct Smallest {
     double eigenvalue;
@@ -30,9 +33,10 @@ class ConstantLoopHessian {
   [[nodiscard]] Eigen::MatrixXcd block(double rate) const;
 
   Eigen::MatrixXd _a;
-  double _mean;               // the smallest singular value of A
+  double _mean;               // the smallest singular value of A; infinite where k = 0 is left out
   double _largest;            // and the largest
-  std::vector<Known> _known;  // the last of each harmonic >= 1
+  int _every;                 // harmonics 1, 1 + every, ...
+  std::vector<Known> _known;  // the last of each of them
 };
 
 }  // namespace orbweaver::starts

@@ -14,6 +14,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/interruption.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/starts/sampled_eigenvalues.hpp"
 
 namespace orbweaver::starts {
 
@@ -66,10 +67,24 @@ loop::Isotropy isotropy_of(const systems::Structure& system, std::span<const dou
   return loop::find_isotropy(system, loop, loop::symmetry_tolerance);
 }
 
+Eigen::MatrixXd constant_jacobian(const systems::System& system, std::span<const double> point) {
+  const Eigen::Index d = system.dimension();
+  core::require(static_cast<Eigen::Index>(point.size()) == d, "a fixed point of another dimension");
+  Eigen::VectorXd f(d);
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> a(d, d);
+  system.field_jacobian(1, point.data(), f.data(), a.data());
+  return a;
+}
+
+/// The number of the last period in a range: period_from + n step.
+int last_sample(const SweepOptions& range) {
+  return static_cast<int>(std::floor((range.period_to - range.period_from) / range.step * (1.0 + at_range_end)));
+}
+
 class Sweep {
  public:
   Sweep(const systems::System& system, std::span<const double> fixed_point, const SweepOptions& options)
-      : _system(system), _hessian(jacobian(system, fixed_point), options.cutoff) {
+      : _system(system), _hessian(constant_jacobian(system, fixed_point), options.cutoff) {
     _result.fixed_point.assign(fixed_point.begin(), fixed_point.end());
     _result.range = options;
     _result.linear = linear_modes(system, fixed_point);
@@ -94,15 +109,6 @@ class Sweep {
     int harmonic;  // the one that carries the smallest eigenvector
   };
 
-  static Eigen::MatrixXd jacobian(const systems::System& system, std::span<const double> point) {
-    const Eigen::Index d = system.dimension();
-    core::require(static_cast<Eigen::Index>(point.size()) == d, "a fixed point of another dimension");
-    Eigen::VectorXd f(d);
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> a(d, d);
-    system.field_jacobian(1, point.data(), f.data(), a.data());
-    return a;
-  }
-
   [[nodiscard]] bool is_inside(double period) const {
     return period >= _result.range.period_from * (1.0 - at_range_end) &&
            period <= _result.range.period_to * (1.0 + at_range_end);
@@ -110,8 +116,7 @@ class Sweep {
 
   void take_samples() {
     const SweepOptions& range = _result.range;
-    const auto last =
-        static_cast<int>(std::floor((range.period_to - range.period_from) / range.step * (1.0 + at_range_end)));
+    const int last = last_sample(range);
     // One sample beyond each end, so that a dip at an end is seen; only roots within the range count.
     const int first = range.period_from > range.step ? -1 : 0;
     for (int n = first; n <= last + 1; ++n) {
@@ -219,11 +224,31 @@ SweepOptions automatic_range(const LinearModes& modes) {
   return range;
 }
 
+namespace {
+
+void require_range(const SweepOptions& range) {
+  core::require(range.step > 0.0 && range.period_from > 0.0 && range.period_to > range.period_from,
+                "a sweep needs 0 < period_from < period_to and a positive step");
+}
+
+}  // namespace
+
 SweepResult sweep(const systems::System& system, std::span<const double> fixed_point, const SweepOptions& options) {
   const core::LogStage stage(core::Stage::sweep);
-  core::require(options.step > 0.0 && options.period_from > 0.0 && options.period_to > options.period_from,
-                "a sweep needs 0 < period_from < period_to and a positive step");
+  require_range(options);
   return Sweep(system, fixed_point, options).run();
+}
+
+std::vector<SweepPoint> sampled_eigenvalues(const systems::System& system, std::span<const double> fixed_point,
+                                            const SweepOptions& range, Harmonics harmonics) {
+  require_range(range);
+  ConstantLoopHessian hessian(constant_jacobian(system, fixed_point), range.cutoff, harmonics);
+  std::vector<SweepPoint> table;
+  for (int n = 0; n <= last_sample(range); ++n) {
+    const double period = range.period_from + n * range.step;
+    table.push_back({period, hessian.smallest(period).eigenvalue});
+  }
+  return table;
 }
 
 }  // namespace orbweaver::starts

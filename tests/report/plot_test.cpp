@@ -73,6 +73,10 @@ TEST(Plot, WhatCannotBeDrawnIsNamed) {
   EXPECT_THAT(error_of({"tree", {"In-Phase"}, 1}), HasSubstr("expected no --step for `tree`"));
   EXPECT_THAT(error_of({"orbit", {}, {}}), HasSubstr("expected one --family for `orbit`"));
   EXPECT_THAT(error_of({"spectrum", {"In-Phase"}, 99}), HasSubstr("and no step 99"));
+  EXPECT_THAT(error_of({"birth", {"In-Phase"}, {}}), HasSubstr("`In-Phase` of "));
+  EXPECT_THAT(error_of({"birth", {"In-Phase"}, {}}), HasSubstr("was born at no crossing"));
+  EXPECT_THAT(error_of({"accuracy", {}, {}}), HasSubstr("expected one --family for `accuracy`"));
+  EXPECT_THAT(error_of({"convergence", {}, {}}), HasSubstr("expected one --family for `convergence`"));
   EXPECT_EQ(report::plot_format_of("a/b.pdf"), report::PlotFormat::pdf);
   EXPECT_THROW(static_cast<void>(report::plot_format_of("b.gif")), core::InputError);
 }
@@ -112,6 +116,22 @@ TEST(Figure, ScalesAndTheirTics) {
       report::figure_script({figure}, report::PlotStyle::paper, report::PlotFormat::pdf, "picture.pdf");
   EXPECT_THAT(script, HasSubstr("'10⁻²' -2"));
   EXPECT_THAT(script, HasSubstr("1 0\n\n3 -4\n"));  // nothing at 0, and a gap
+}
+
+TEST(Figure, ALegendHasTheLinesThatItsLongestEntryAsksFor) {
+  report::Figure figure{"", {"x"}, {"y"}};
+  for (int n = 0; n < 6; ++n)
+    figure.series.push_back({"T = 1", report::Look::solid, "#000000", {{0.0, 0.0}, {1.0, 1.0 + n}}});
+  const auto lines = [&](report::PlotStyle style) {
+    const std::string script = report::figure_script({figure, figure}, style, report::PlotFormat::svg, "picture.svg");
+    const std::string before = "vertical maxrows ";
+    return script.at(script.find(before) + before.size());
+  };
+  EXPECT_EQ(lines(report::PlotStyle::paper), '2');
+  EXPECT_EQ(lines(report::PlotStyle::wide), '1');
+  figure.series.front().key = "a name of thirty-one characters";
+  EXPECT_EQ(lines(report::PlotStyle::paper), '6');
+  EXPECT_EQ(lines(report::PlotStyle::wide), '2');
 }
 
 }  // namespace

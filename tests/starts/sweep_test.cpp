@@ -18,6 +18,7 @@
 #include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/spectrum/eigenpairs.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
+#include "orbweaver/starts/sampled_eigenvalues.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "spectrum/pendulum_loops.hpp"
 #include "spectrum/point_systems.hpp"
@@ -275,6 +276,37 @@ TEST(Sweep, HarmonicOscillatorWithItsMultiples) {
   EXPECT_NEAR(result.modes[0].period, pi, 1e-14);
   EXPECT_EQ(loop::to_text(result.modes[0].isotropy), "S@1/2 R@0");
   expect_rejected(result, {{2 * pi, "2 times around"}, {3 * pi, "3 times around"}});
+}
+
+/// The local minima of a table below a bound.
+std::vector<double> dips(const std::vector<SweepPoint>& table, double below) {
+  std::vector<double> periods;
+  for (std::size_t n = 1; n + 1 < table.size(); ++n)
+    if (table[n].eigenvalue < below && table[n].eigenvalue < table[n - 1].eigenvalue &&
+        table[n].eigenvalue <= table[n + 1].eigenvalue)
+      periods.push_back(table[n].period);
+  return periods;
+}
+
+// The paper's figure 5: twice around 3.40 is no loop of odd harmonics, three times around is one.
+TEST(Sweep, OddHarmonicsLeaveOutWhatGoesAroundTwice) {
+  const std::vector<double> down{0.0, 0.0, 0.0, 0.0};
+  const auto pendulum = systems::make_system("double_pendulum");
+  const auto all = sampled_eigenvalues(*pendulum, down, {}, Harmonics::all);
+  const auto odd = sampled_eigenvalues(*pendulum, down, {}, Harmonics::odd);
+  const std::vector<SweepPoint>& table = paper_sweep(down).table;
+  ASSERT_EQ(all.size(), table.size());
+  ASSERT_EQ(odd.size(), table.size());
+  for (std::size_t n = 0; n < table.size(); ++n) {
+    EXPECT_EQ(all[n].period, table[n].period);
+    EXPECT_EQ(all[n].eigenvalue, table[n].eigenvalue);
+    EXPECT_GE(odd[n].eigenvalue, all[n].eigenvalue);
+  }
+  using ::testing::DoubleNear;
+  EXPECT_THAT(dips(all, 1e-5), testing::ElementsAre(DoubleNear(3.40, 1e-9), DoubleNear(6.80, 1e-9),
+                                                    DoubleNear(8.21, 1e-9), DoubleNear(10.20, 1e-9)));
+  EXPECT_THAT(dips(odd, 1e-5),
+              testing::ElementsAre(DoubleNear(3.40, 1e-9), DoubleNear(8.21, 1e-9), DoubleNear(10.20, 1e-9)));
 }
 
 TEST(Sweep, AWholeRatioOfPeriodsIsSaid) {

@@ -34,7 +34,9 @@ draw() {
   drawn=$((drawn + 1))
 }
 for what in tree energy-period stability section; do draw $what.svg $what; done
-for what in orbit strobe spectrum; do draw $what.svg $what --family In-Phase; done
+for what in orbit strobe spectrum accuracy sweep; do draw $what.svg $what --family In-Phase; done
+draw sweep_all.svg sweep --style wide
+draw convergence.svg convergence --family In-Phase --step 3
 draw tree.pdf tree --family In-Phase --family Up-Down
 draw tree.png tree --style slide
 draw orbit.png orbit --family In-Phase --step 3
@@ -43,6 +45,10 @@ grep -q '>In-Phase<' tree.svg || fail "the tree does not name In-Phase"
 grep -q '>unstable<' tree.svg || fail "the tree does not say what is unstable"
 grep -q 'period T \[s\]' tree.svg || fail "the tree has no period"
 grep -q 'T = 8.2094' orbit.svg || fail "the orbits have no periods"
+grep -q '>Out-Phase 3.4004<' sweep.svg || fail "the sweep does not name Out-Phase"
+grep -q '>odd harmonics only<' sweep.svg || fail "the sweep has no odd harmonics"
+grep -q 'th1 = 180°, th2 = 0°' sweep_all.svg || fail "the sweep does not name equilibria"
+grep -qE '>Newton: [1-9]<' convergence.svg || fail "Newton's method takes no few iterations"
 status=0
 "$program" plot "$atlas" tree -o nowhere/tree.svg 2>said.txt || status=$?
 ((status == 3)) || fail "a folder that is not there: status $status: $(cat said.txt)"

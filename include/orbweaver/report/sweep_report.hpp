@@ -32,6 +32,8 @@ struct EquilibriumReport {
   std::string text;     ///< "th1 = 0 deg, ..."
   bool angles = false;  ///< deviations are in degrees
   starts::SweepResult sweep;
+  /// The same table over loops that are opposite to themselves half a period later: no oscillation goes around twice.
+  std::vector<starts::SweepPoint> odd;
   std::vector<ModeRow> modes;
   std::vector<LeftOutRow> left_out;
 };

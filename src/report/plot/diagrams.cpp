@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include <fmt/format.h>
 
 #include "family_row.hpp"
+#include "gnuplot.hpp"
+#include "orbweaver/scene/scene.hpp"
 #include "plot/axis_titles.hpp"
 #include "plot/family_curves.hpp"
 #include "plot/label_places.hpp"
+#include "plot/twice_around.hpp"
 #include "show_level.hpp"
 #include "text_grid.hpp"
 
@@ -17,7 +21,6 @@ namespace orbweaver::report {
 
 namespace {
 
-constexpr const char* ink = "#000000";
 constexpr double mark_size = 1.0;
 
 /// How a kind of crossing is marked; none for kinds that this program does not know.
@@ -117,6 +120,18 @@ void require_values(const archive::Archive& atlas, const FamilyCurves& curves, c
                                      atlas.path().string(), column, advice));
 }
 
+/// Crossings above the curves, by kind.
+void add_marks_above(Figure& figure, const FamilyCurves& curves, const char* column) {
+  double highest = 0.0;
+  for (const Series& series : figure.series)
+    for (const PlotPoint& point : series.points)
+      if (std::isfinite(point.y)) highest = std::max(highest, point.y);
+  constexpr double above = 4.0;  // on a logarithmic axis
+  add_marks(figure, curves, [&](std::size_t row) {
+    return PlotPoint{curves.atlas().crossings().reals(column)[row], above * highest};
+  });
+}
+
 /// A line across the picture at a height.
 void add_level(Figure& figure, double height, double from, double to) {
   figure.series.insert(figure.series.begin(), Series{"", Look::thin, soft, {{from, height}, {to, height}}});
@@ -168,8 +183,54 @@ Figure off_branch_figure(const archive::Archive& atlas, const PlotRequest& reque
   Figure figure{fmt::format("{}: smallest eigenvalue off the family's direction", system_title(atlas)),
                 abscissa.axis,
                 {"off-branch eigenvalue", Scale::logarithmic}};
-  add_families(figure, curves, curves.column(abscissa.column), curves.column("off_branch_eigenvalue"));
-  add_legend(figure, curves);
+  // Polynomials would swing beside a dip, which is infinitely deep as the axis has it.
+  const auto& xs = atlas.orbits().reals(abscissa.column);
+  const auto add = [&](const std::string& key, Look look, const std::string& colour, std::size_t family,
+                       const std::vector<double>& values, std::size_t first_value) {
+    Series series{key, look, colour, {}, 7, look == Look::thin ? 2.0 : 1.0};
+    const auto [first, count] = orbits_of(atlas, family);
+    for (std::size_t n = 0; n < count; ++n) series.points.push_back({xs[first + n], values[first_value + n]});
+    figure.named.push_back({key.empty() ? curves.name(family) : "", colour, series.points});
+    figure.series.push_back(std::move(series));
+  };
+  const std::vector<double>& once = atlas.orbits().reals("off_branch_eigenvalue");
+  if (request.families.size() == 1) {
+    const std::size_t family = curves.families().front();
+    add("once around", Look::solid, plot_colours[0], family, once, orbits_of(atlas, family).first);
+    add("twice around, odd harmonics", Look::dashed, plot_colours[1], family, eigenvalues_twice_around(atlas, family),
+        0);
+    add_marks_above(figure, curves, abscissa.column);
+  } else {
+    for (const std::size_t family : curves.families())
+      add("", Look::thin, curves.colour(family), family, once, orbits_of(atlas, family).first);
+    add_legend(figure, curves);
+  }
+  return figure;
+}
+
+Figure accuracy_figure(const archive::Archive& atlas, const PlotRequest& request) {
+  const FamilyCurves curves(atlas, request.families);
+  if (request.families.size() != 1)
+    throw core::InputError("expected one --family for `accuracy`: it draws several numbers of one");
+  const Abscissa abscissa = abscissa_of(atlas);
+  const std::size_t family = curves.families().front();
+  const auto [first, count] = orbits_of(atlas, family);
+  Figure figure{fmt::format("{}: {}", system_title(atlas), curves.name(family)),
+                abscissa.axis,
+                {"root of the loss; gaps", Scale::logarithmic}};
+  const std::tuple<const char*, const char*, Look> numbers[] = {{"loss_rms", "root of the loss", Look::solid},
+                                                                {"closure", "gap of pieces", Look::dashed},
+                                                                {"single_shot", "gap once around", Look::dotted}};
+  for (std::size_t n = 0; n < std::size(numbers); ++n) {
+    const auto& [column, key, look] = numbers[n];
+    Series series{key, look, plot_colours[n], {}};
+    for (std::size_t orbit = first; orbit < first + count; ++orbit)
+      series.points.push_back({atlas.orbits().reals(abscissa.column)[orbit], atlas.orbits().reals(column)[orbit]});
+    figure.series.push_back(std::move(series));
+  }
+  const auto [low, high] = range_along(curves, abscissa.column);
+  const scene::Scene scene = scene::parse(atlas.header().scene, atlas.path().string());
+  add_level(figure, scene.continuation.tolerance, low, high);
   return figure;
 }
 

@@ -8,6 +8,9 @@ namespace orbweaver::report {
 [[nodiscard]] Figure tree_figure(const archive::Archive& atlas, const PlotRequest& request);
 [[nodiscard]] Figure energy_period_figure(const archive::Archive& atlas, const PlotRequest& request);
 [[nodiscard]] Figure stability_figure(const archive::Archive& atlas, const PlotRequest& request);
+/// Of one family also once gone around twice, which is computed anew.
 [[nodiscard]] Figure off_branch_figure(const archive::Archive& atlas, const PlotRequest& request);
+/// Of one family: the loss, and the gaps that the independent integrator leaves.
+[[nodiscard]] Figure accuracy_figure(const archive::Archive& atlas, const PlotRequest& request);
 
 }  // namespace orbweaver::report

@@ -34,20 +34,38 @@ struct Page {
 };
 
 Page page_of(PlotStyle style) {
-  return style == PlotStyle::paper ? Page{8.6, 6.8, 8.0, 1.0, 1.0} : Page{25.4, 14.3, 18.0, 2.0, 2.2};
+  switch (style) {
+    case PlotStyle::paper: return {8.6, 6.8, 8.0, 1.0, 1.0};
+    case PlotStyle::wide: return {17.8, 9.5, 8.0, 1.0, 1.0};
+    case PlotStyle::slide: break;
+  }
+  return {25.4, 14.3, 18.0, 2.0, 2.2};
 }
+
+/// A slide has a title; a paper a caption.
+bool is_for_paper(PlotStyle style) { return style != PlotStyle::slide; }
 
 constexpr double tic_characters = 6.5;  // room for a number along an axis
 constexpr double lines_a_tic = 2.2;
 constexpr double line_of_legend = 0.35;    // cm, of a paper
 constexpr double lower_with_panels = 1.6;  // cm, of a paper: two frames beside each other are lower
-constexpr double entries_a_line = 2.5;     // of the legend of a paper
 
-/// How many lines the legend takes, about.
-double lines_of_legend(const std::vector<Figure>& panels) {
-  const auto entries = std::count_if(panels.front().series.begin(), panels.front().series.end(),
-                                     [](const Series& series) { return !series.key.empty(); });
-  return std::ceil(static_cast<double>(entries) / entries_a_line);
+constexpr double small_letters = 0.85;  // names and legends, beside the numbers of the axes
+constexpr double sample_characters = 6.0;
+
+/// How many lines the legend takes, in columns as wide as its longest entry.
+double lines_of_legend(const std::vector<Figure>& panels, const Page& page) {
+  std::size_t entries = 0;
+  std::size_t longest = 0;
+  for (const Series& series : panels.front().series) {
+    if (series.key.empty()) continue;
+    ++entries;
+    longest = std::max(longest, characters_of(series.key));
+  }
+  if (entries == 0) return 0.0;
+  const double character = small_letters * character_width * page.font / points_an_inch * inch;
+  const double columns = std::floor(page.width / (character * (static_cast<double>(longest) + sample_characters)));
+  return std::ceil(static_cast<double>(entries) / std::max(1.0, columns));
 }
 
 /// cm.
@@ -202,7 +220,7 @@ constexpr double top_below_title = 0.88;
 
 /// Parts of the page that the legend of several panels takes.
 double height_of_legend(const std::vector<Figure>& panels, const Page& page) {
-  return lines_of_legend(panels) * character_height * page.font / points_an_inch * inch / page.height;
+  return lines_of_legend(panels, page) * character_height * page.font / points_an_inch * inch / page.height;
 }
 
 /// One legend and one title for several panels.
@@ -211,16 +229,18 @@ std::string side_by_side(const std::vector<Figure>& panels, const Page& page, Pl
                                 ? fmt::format(" title {} noenhanced", gnuplot_text(panels.front().title))
                                 : std::string();
   return fmt::format("set key at screen 0.5,{:.4f} center top vertical maxrows {:.0f}\nset multiplot{}\n",
-                     height_of_legend(panels, page) + 0.01, lines_of_legend(panels), title);
+                     height_of_legend(panels, page) + 0.01, lines_of_legend(panels, page), title);
 }
 
 std::string place_of_panel(std::size_t n, const std::vector<Figure>& panels, const Page& page, PlotStyle style) {
   const double width = 1.0 / static_cast<double>(panels.size());
-  const double line = character_height * page.font / points_an_inch * inch / page.height;
+  const double em = page.font / points_an_inch * inch;
+  const double line = character_height * em / page.height;
+  const double room = (tic_characters + 3.0) * character_width * em / page.width;  // for numbers and a title
   return fmt::format(
       "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset bmargin at screen {:.4f}\nset tmargin at screen "
       "{:.4f}\n{}",
-      (static_cast<double>(n) + 0.24) * width, (static_cast<double>(n) + 0.97) * width,
+      static_cast<double>(n) * width + room, (static_cast<double>(n) + 0.97) * width,
       height_of_legend(panels, page) + 3.6 * line, style == PlotStyle::slide ? top_below_title : top_of_panels,
       n == 0 ? "" : "unset key\n");
 }
@@ -250,12 +270,12 @@ std::string labels_of(const Figure& figure, const Page& page, const Extent& fram
       others.insert(others.end(), marks.begin(), marks.end());
     }
   const double em = page.font / points_an_inch * inch;
-  constexpr double small = 0.85;  // names beside the numbers of the axes
-  const CharacterSize size{small * character_width * em / frame.width, small * character_height * em / frame.height};
+  const CharacterSize size{small_letters * character_width * em / frame.width,
+                           small_letters * character_height * em / frame.height};
   std::string text;
   for (const PlotLabel& label : label_places(curves, others, size))
     text += fmt::format("set label {} at graph {:.4f},{:.4f} left noenhanced font ',{:.3g}' textcolor rgb '{}' front\n",
-                        gnuplot_text(label.text), label.u, label.v, small * font, label.colour);
+                        gnuplot_text(label.text), label.u, label.v, small_letters * font, label.colour);
   return text;
 }
 
@@ -273,9 +293,10 @@ double placed(Scale scale, double value) {
 std::string figure_script(const std::vector<Figure>& panels, PlotStyle style, PlotFormat format,
                           const std::string& output) {
   Page page = page_of(style);
-  if (style == PlotStyle::paper) page.height += line_of_legend * std::max(0.0, lines_of_legend(panels) - 2.0);
-  if (style == PlotStyle::paper && panels.size() > 1) page.height -= lower_with_panels;
-  const double dots = style == PlotStyle::paper ? dots_an_inch : 1920.0 / (page.width / inch);
+  const double lines = lines_of_legend(panels, page);
+  if (is_for_paper(style)) page.height += line_of_legend * std::max(0.0, lines - 2.0);
+  if (is_for_paper(style) && panels.size() > 1) page.height -= lower_with_panels;
+  const double dots = is_for_paper(style) ? dots_an_inch : 1920.0 / (page.width / inch);
   double font = page.font;
   if (format == PlotFormat::svg) font *= screen_dots / points_an_inch;
   if (format == PlotFormat::png) font *= dots / screen_dots;
@@ -285,7 +306,7 @@ std::string figure_script(const std::vector<Figure>& panels, PlotStyle style, Pl
       "set terminal {} noenhanced\nset output {}\nset encoding utf8\nset border 15 linewidth 0.7\n"
       "set minussign\nset tics nomirror scale 0.6\nset xlabel offset 0,0.3\n"
       "set key below center reverse Left horizontal noenhanced samplen 1.5 width -1 height 0.4 font ',{:.3g}'\n",
-      terminal_of(page, format, dots), gnuplot_text(output), 0.85 * font);
+      terminal_of(page, format, dots), gnuplot_text(output), small_letters * font);
   if (panels.size() > 1) script += side_by_side(panels, page, style);
   for (std::size_t n = 0; n < panels.size(); ++n) {
     const Figure& figure = panels[n];

@@ -20,6 +20,8 @@ struct PlotPoint {
 
 enum class Look { solid, dashed, dotted, thin, impulses, dots, marks };
 
+/// Colour of what belongs to no family.
+constexpr const char* ink = "#000000";
 /// Colour of what is there for comparison.
 constexpr const char* soft = "#888888";
 

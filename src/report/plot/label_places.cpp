@@ -25,11 +25,6 @@ struct Box {
   [[nodiscard]] bool is_inside() const { return left >= 0.0 && low >= 0.0 && right <= 1.0 && high <= 1.0; }
 };
 
-std::size_t characters_of(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
 /// Boxes beside a point: right, left, above, below, and the four corners.
 std::array<Box, 8> boxes_at(const PlotPoint& p, double width, const CharacterSize& size) {
   const double gap = 0.6 * size.width;
@@ -45,6 +40,11 @@ std::array<Box, 8> boxes_at(const PlotPoint& p, double width, const CharacterSiz
 }
 
 }  // namespace
+
+std::size_t characters_of(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
 
 std::vector<PlotLabel> label_places(const std::vector<NamedCurve>& curves, const std::vector<PlotPoint>& others,
                                     CharacterSize size) {

@@ -10,6 +10,9 @@ namespace orbweaver::report {
 /// Characters of a name in a picture; what is longer is cut.
 inline constexpr std::size_t longest_plot_name = 24;
 
+/// Of a text in UTF-8.
+[[nodiscard]] std::size_t characters_of(const std::string& text);
+
 /// A character's size in parts of the frame.
 struct CharacterSize {
   double width;

@@ -1,10 +1,7 @@
 #include "plot/orbit_pictures.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <set>
 
 #include <fmt/format.h>
@@ -16,6 +13,7 @@
 #include "plot/axis_titles.hpp"
 #include "plot/family_curves.hpp"
 #include "plot/label_places.hpp"
+#include "plot/orbit_paths.hpp"
 #include "show_level.hpp"
 #include "stored_system.hpp"
 #include "text_grid.hpp"
@@ -24,36 +22,7 @@ namespace orbweaver::report {
 
 namespace {
 
-constexpr std::size_t orbits_shown = 5;
 constexpr int instants = 32;  // of a strobe picture
-constexpr int points_a_harmonic = 12;
-constexpr int fewest_points = 400;
-constexpr int most_points = 8000;
-/// From dark to light, even to the eye and to those who see few colours (viridis).
-constexpr std::array<const char*, orbits_shown> steps_of_colour{"#440154", "#3b528b", "#21918c", "#5ec962", "#e0c020"};
-
-struct OrbitChoice {
-  std::size_t family;
-  std::size_t orbit;
-};
-
-std::size_t chosen_family(const archive::Archive& atlas, const PlotRequest& request) {
-  if (request.families.size() != 1)
-    throw core::InputError(fmt::format("expected one --family for `{}`: it draws orbits of one family", request.what));
-  const std::size_t family = family_row(atlas, request.families.front());
-  if (orbits_of(atlas, family).count == 0)
-    throw core::InputError(
-        fmt::format("the family `{}` of {} has no orbits to draw", request.families.front(), atlas.path().string()));
-  return family;
-}
-
-/// The step that was asked for, else the one in the middle of the family.
-OrbitChoice chosen_orbit(const archive::Archive& atlas, const PlotRequest& request) {
-  const std::size_t family = chosen_family(atlas, request);
-  if (request.step) return {family, orbit_row(atlas, family, *request.step)};
-  const auto [first, count] = orbits_of(atlas, family);
-  return {family, first + count / 2};
-}
 
 std::string orbit_text(const archive::Archive& atlas, std::size_t orbit) {
   const Level level = level_of(atlas);
@@ -61,104 +30,6 @@ std::string orbit_text(const archive::Archive& atlas, std::size_t orbit) {
   std::string text = fmt::format("T = {:.5g}", atlas.orbits().reals("period")[orbit]);
   if (!std::isnan(value)) text += fmt::format(", {} = {:.5g}", level.title == "energy" ? "E" : level.title, value);
   return text;
-}
-
-/// What tells it from the other orbits of its family, in short.
-std::string short_text(const archive::Archive& atlas, std::size_t orbit) {
-  const std::string moving = atlas.moving_parameter();
-  return moving.empty() ? fmt::format("T = {:.5g}", atlas.orbits().reals("period")[orbit])
-                        : fmt::format("{} = {:.5g}", moving, atlas.orbits().reals("parameter")[orbit]);
-}
-
-std::string title_of(const archive::Archive& atlas, std::size_t family) {
-  return fmt::format("{}: {}", system_title(atlas), atlas.families().texts("name")[family]);
-}
-
-/// Pairs of coordinates for the panels: in the plane the first two; of three coordinates the first with each other.
-std::vector<std::pair<std::size_t, std::size_t>> panels_of(const archive::Header& header) {
-  const std::size_t dimension = header.state_names.size();
-  const std::size_t configuration = dimension >= 4 && dimension % 2 == 0 ? dimension / 2 : dimension;
-  if (dimension == 1) return {{0, 0}};
-  if (configuration == 3 && header.winding_names.empty()) return {{0, 1}, {0, 2}};
-  return {{0, 1}};
-}
-
-bool has_lengths(const archive::Header& header, std::pair<std::size_t, std::size_t> panel) {
-  const std::vector<int> angles = angles_of(header);
-  const auto is_angle = [&](std::size_t i) {
-    return std::find(angles.begin(), angles.end(), static_cast<int>(i)) != angles.end();
-  };
-  const bool both_positions = header.state_names.size() >= 4;
-  return both_positions && is_angle(panel.first) == is_angle(panel.second);
-}
-
-double turned_back(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
-
-/// A path in a plane of two coordinates; angles that turn over come back at the other side.
-std::vector<PlotPoint> path_of(const loop::Loop& loop, std::pair<std::size_t, std::size_t> panel) {
-  const int count = std::clamp(points_a_harmonic * loop.cutoff, fewest_points, most_points);
-  std::vector<PlotPoint> points;
-  const auto coordinate = [&](const std::vector<double>& state, std::size_t i) {
-    return loop.winding[i] != 0.0 ? turned_back(state[i]) : state[i];
-  };
-  for (int n = 0; n <= count; ++n) {
-    const double s = 2 * std::numbers::pi * n / count;
-    const double time = loop.period * loop.time_map.phase(s) / (2 * std::numbers::pi);
-    const std::vector<double> state = loop::state_at(loop, time);
-    const PlotPoint point{coordinate(state, panel.first), coordinate(state, panel.second)};
-    if (!points.empty() &&
-        (std::abs(point.x - points.back().x) > std::numbers::pi ||
-         std::abs(point.y - points.back().y) > std::numbers::pi) &&
-        (loop.winding[panel.first] != 0.0 || loop.winding[panel.second] != 0.0))
-      points.push_back({no_value, no_value});
-    points.push_back(point);
-  }
-  return points;
-}
-
-Figure empty_panel(const archive::Archive& atlas, std::size_t family, std::pair<std::size_t, std::size_t> panel) {
-  Figure figure{
-      title_of(atlas, family), {coordinate_title(atlas, panel.first)}, {coordinate_title(atlas, panel.second)}};
-  figure.equal_scales = has_lengths(atlas.header(), panel);
-  return figure;
-}
-
-/// Equilibria, and the bodies of a restricted problem, where they lie in the picture.
-/// In the legend with `keys`.
-void add_fixed_places(Figure& figure, const archive::Archive& atlas, std::pair<std::size_t, std::size_t> panel,
-                      bool keys) {
-  double low_x = std::numeric_limits<double>::infinity();
-  double high_x = -low_x;
-  double low_y = low_x;
-  double high_y = -low_x;
-  for (const Series& series : figure.series)
-    for (const PlotPoint& p : series.points) {
-      if (std::isnan(p.x)) continue;
-      low_x = std::min(low_x, p.x);
-      high_x = std::max(high_x, p.x);
-      low_y = std::min(low_y, p.y);
-      high_y = std::max(high_y, p.y);
-    }
-  const double more = 0.1 * std::max(high_x - low_x, high_y - low_y);
-  const auto add = [&](Series& series, double x, double y) {
-    if (x > low_x - more && x < high_x + more && y > low_y - more && y < high_y + more) series.points.push_back({x, y});
-  };
-  const archive::Header& header = atlas.header();
-  const std::size_t dimension = header.state_names.size();
-  Series rests{keys ? "equilibrium" : "", Look::marks, "#000000", {}, 1, 1.2};
-  for (std::size_t row = 0; row < atlas.equilibria().rows(); ++row)
-    if (atlas.equilibria().integers("step")[row] == 0)
-      add(rests, atlas.equilibria().reals("state")[row * dimension + panel.first],
-          atlas.equilibria().reals("state")[row * dimension + panel.second]);
-  Series bodies{keys ? "body" : "", Look::marks, soft, {}, 7, 1.6};
-  const auto mu = std::find(header.parameter_names.begin(), header.parameter_names.end(), "mu");
-  if ((header.system == "pcr3bp" || header.system == "cr3bp") && mu != header.parameter_names.end()) {
-    const double mass = header.parameter_values[static_cast<std::size_t>(mu - header.parameter_names.begin())];
-    add(bodies, -mass, 0.0);
-    add(bodies, 1.0 - mass, 0.0);
-  }
-  if (!rests.points.empty()) figure.series.push_back(std::move(rests));
-  if (!bodies.points.empty()) figure.series.push_back(std::move(bodies));
 }
 
 /// Whether the vertical coordinate of a panel rests, as z in the plane, but for rounding.
@@ -218,21 +89,49 @@ Figure rod_figure(const archive::Archive& atlas, const OrbitChoice& choice, cons
   return figure;
 }
 
+/// The points of the section in a plane of two coordinates.
+Figure section_panel(const archive::Archive& atlas, const FamilyCurves& curves, Plane plane,
+                     const std::string& coordinate) {
+  const archive::Header& header = atlas.header();
+  const std::size_t dimension = header.state_names.size();
+  const std::vector<int> angles = angles_of(header);
+  const auto value = [&](std::size_t row, std::size_t i) {
+    const double x = atlas.sections().reals("state")[row * dimension + i];
+    return std::find(angles.begin(), angles.end(), static_cast<int>(i)) != angles.end() ? turned_back(x) : x;
+  };
+  Figure figure{fmt::format("{}: section {}", system_title(atlas), coordinate),
+                {coordinate_title(atlas, plane.first)},
+                {coordinate_title(atlas, plane.second)}};
+  std::set<std::string> known_colours;
+  for (const std::size_t family : curves.families()) {
+    Series series{"", Look::dots, curves.colour(family), {}, 7, 1.6};
+    for (std::size_t row = 0; row < atlas.sections().rows(); ++row) {
+      const auto orbit = static_cast<std::size_t>(atlas.sections().integers("orbit")[row]);
+      if (atlas.orbits().integers("family")[orbit] == static_cast<std::int64_t>(family))
+        series.points.push_back({value(row, plane.first), value(row, plane.second)});
+    }
+    if (series.points.empty()) continue;
+    constexpr std::size_t many = 500;  // points that make a line
+    if (series.points.size() > many) series.size = 0.9;
+    if (known_colours.insert(series.colour).second)
+      series.key = cut(curves.name(family), longest_plot_name);
+    else
+      figure.named.push_back({curves.name(family), series.colour, series.points});
+    figure.named.push_back({"", series.colour, series.points});
+    figure.series.push_back(std::move(series));
+  }
+  return figure;
+}
+
 }  // namespace
 
 std::vector<Figure> orbit_figures(const archive::Archive& atlas, const PlotRequest& request) {
   const std::size_t family = chosen_family(atlas, request);
   const std::vector<int> angles = angles_of(atlas.header());
-  std::vector<std::size_t> orbits;
-  const auto [first, count] = orbits_of(atlas, family);
-  const std::size_t shown = std::min(orbits_shown, count);
-  if (request.step) {
-    orbits = {orbit_row(atlas, family, *request.step)};
-  } else {
-    for (std::size_t n = 0; n < shown; ++n) orbits.push_back(first + (shown == 1 ? 0 : n * (count - 1) / (shown - 1)));
-  }
+  const std::vector<std::size_t> orbits =
+      request.step ? std::vector<std::size_t>{orbit_row(atlas, family, *request.step)} : orbits_along(atlas, family);
   std::vector<Figure> panels;
-  for (const auto& panel : panels_of(atlas.header())) {
+  for (const auto& panel : planes_of(atlas.header())) {
     Figure figure = empty_panel(atlas, family, panel);
     for (std::size_t n = 0; n < orbits.size(); ++n) {
       const std::string key = panels.empty() ? short_text(atlas, orbits[n]) : "";
@@ -251,7 +150,7 @@ std::vector<Figure> strobe_figures(const archive::Archive& atlas, const PlotRequ
   const loop::Loop loop = archive::loop_of(atlas, choice.orbit, angles_of(atlas.header()));
   if (!rods_of(atlas, loop::state_at(loop, 0.0)).empty()) return {rod_figure(atlas, choice, loop)};
   std::vector<Figure> panels;
-  for (const auto& panel : panels_of(atlas.header())) {
+  for (const auto& panel : planes_of(atlas.header())) {
     Figure figure = empty_panel(atlas, choice.family, panel);
     figure.series.push_back({"", Look::thin, soft, path_of(loop, panel)});
     Series places{panels.empty() ? fmt::format("every T/{}, {}", instants, short_text(atlas, choice.orbit)) : "",
@@ -312,31 +211,16 @@ std::vector<Figure> section_figures(const archive::Archive& atlas, const PlotReq
   std::vector<std::size_t> rest;
   for (std::size_t i = 0; i < dimension; ++i)
     if (i != fixed) rest.push_back(i);
-  // Of two positions and their velocities: the other position and its own.
-  std::pair<std::size_t, std::size_t> panel{rest[0], rest.size() > 1 ? rest[1] : rest[0]};
-  if (dimension == 4) panel = {fixed % 2 == 0 ? 1 : 0, fixed % 2 == 0 ? 3 : 2};
-  const std::vector<int> angles = angles_of(header);
-  const auto value = [&](std::size_t row, std::size_t i) {
-    const double x = atlas.sections().reals("state")[row * dimension + i];
-    return std::find(angles.begin(), angles.end(), static_cast<int>(i)) != angles.end() ? turned_back(x) : x;
-  };
-  Figure figure{fmt::format("{}: section {}", system_title(atlas), scene.section.coordinate),
-                {coordinate_title(atlas, panel.first)},
-                {coordinate_title(atlas, panel.second)}};
-  std::set<std::string> known_colours;
-  for (const std::size_t family : curves.families()) {
-    Series series{"", Look::dots, curves.colour(family), {}, 7, 1.6};
-    for (std::size_t row = 0; row < atlas.sections().rows(); ++row) {
-      const auto orbit = static_cast<std::size_t>(atlas.sections().integers("orbit")[row]);
-      if (atlas.orbits().integers("family")[orbit] == static_cast<std::int64_t>(family))
-        series.points.push_back({value(row, panel.first), value(row, panel.second)});
-    }
-    if (series.points.empty()) continue;
-    if (known_colours.insert(series.colour).second) series.key = cut(curves.name(family), longest_plot_name);
-    figure.series.push_back(std::move(series));
-  }
-  if (figure.series.empty()) throw core::InputError("no orbit of these families passes the section");
-  return {figure};
+  // Of two positions and their velocities: the other position and its own; where a velocity is held both positions too.
+  std::vector<Plane> planes{{rest[0], rest.size() > 1 ? rest[1] : rest[0]}};
+  if (dimension == 4) planes = {{fixed % 2 == 0 ? 1 : 0, fixed % 2 == 0 ? 3 : 2}};
+  if (dimension == 4 && fixed >= 2) planes.insert(planes.begin(), {0, 1});
+  std::vector<Figure> panels;
+  for (const Plane& plane : planes) panels.push_back(section_panel(atlas, curves, plane, scene.section.coordinate));
+  if (panels.front().series.empty()) throw core::InputError("no orbit of these families passes the section");
+  for (std::size_t n = 0; n < planes.size(); ++n)
+    if (planes[n].second < dimension / 2) add_fixed_places(panels[n], atlas, planes[n], n == 0);
+  return panels;
 }
 
 }  // namespace orbweaver::report

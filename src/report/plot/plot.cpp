@@ -1,5 +1,6 @@
 #include "orbweaver/report/plot/plot.hpp"
 
+#include <algorithm>
 #include <functional>
 
 #include <fmt/format.h>
@@ -7,9 +8,12 @@
 
 #include "gnuplot.hpp"
 #include "orbweaver/core/error.hpp"
+#include "plot/birth_pictures.hpp"
+#include "plot/convergence_picture.hpp"
 #include "plot/diagrams.hpp"
 #include "plot/figure.hpp"
 #include "plot/orbit_pictures.hpp"
+#include "plot/sweep_picture.hpp"
 
 namespace orbweaver::report {
 
@@ -27,15 +31,24 @@ struct PictureKind {
   std::string name;
   Panels panels;
   bool of_a_step = false;  ///< a step of the family may be asked for
+  bool computes = false;   ///< with PETSc
 };
 
 /// What can be drawn: to add one, a line.
 const std::vector<PictureKind>& pictures() {
   static const std::vector<PictureKind> all{
-      {"tree", alone(tree_figure)},           {"energy-period", alone(energy_period_figure)},
-      {"stability", alone(stability_figure)}, {"off-branch", alone(off_branch_figure)},
-      {"orbit", orbit_figures, true},         {"strobe", strobe_figures, true},
-      {"section", section_figures},           {"spectrum", spectrum_figures, true},
+      {"tree", alone(tree_figure)},
+      {"energy-period", alone(energy_period_figure)},
+      {"stability", alone(stability_figure)},
+      {"off-branch", alone(off_branch_figure), false, true},
+      {"accuracy", alone(accuracy_figure)},
+      {"sweep", alone(sweep_figure), false, true},
+      {"orbit", orbit_figures, true},
+      {"strobe", strobe_figures, true},
+      {"birth", birth_figures},
+      {"convergence", alone(convergence_figure), true, true},
+      {"section", section_figures},
+      {"spectrum", spectrum_figures, true},
   };
   return all;
 }
@@ -46,6 +59,11 @@ std::vector<std::string> plot_names() {
   std::vector<std::string> names;
   for (const PictureKind& kind : pictures()) names.push_back(kind.name);
   return names;
+}
+
+bool plot_computes(const std::string& what) {
+  return std::any_of(pictures().begin(), pictures().end(),
+                     [&](const PictureKind& kind) { return kind.name == what && kind.computes; });
 }
 
 PlotFormat plot_format_of(const std::filesystem::path& path) {

@@ -10,8 +10,8 @@
 
 namespace orbweaver::report {
 
-/// A column of a paper (8.6 cm, 8 pt), or a slide (25.4 cm by 14.3 cm, 18 pt).
-enum class PlotStyle { paper, slide };
+/// A column of a paper (8.6 cm, 8 pt), both of its columns (17.8 cm), or a slide (25.4 cm by 14.3 cm, 18 pt).
+enum class PlotStyle { paper, wide, slide };
 
 /// What to draw of an archive.
 struct PlotRequest {
@@ -22,8 +22,11 @@ struct PlotRequest {
   PlotFormat format = PlotFormat::svg;
 };
 
-/// "tree", "energy-period", "stability", "off-branch", "orbit", "strobe", "section", "spectrum".
+/// "tree", "energy-period", "stability", "off-branch", "accuracy", "sweep", "orbit", "strobe", "birth", "convergence",
+/// "section", "spectrum".
 [[nodiscard]] std::vector<std::string> plot_names();
+/// Whether a picture of that name computes something anew, for which PETSc must be running (core::Session).
+[[nodiscard]] bool plot_computes(const std::string& what);
 
 /// The format that a file's ending asks for. Throws InputError for another ending.
 [[nodiscard]] PlotFormat plot_format_of(const std::filesystem::path& path);
