@@ -121,7 +121,7 @@ TEST(SummaryText, FamiliesLeftOutByLimitsAreCounted) {
                               "period limit (left out: begins at T = 21, beyond 20)", false});
   EXPECT_THAT(report::to_text(summary),
               AllOf(HasSubstr("period limit (left out: begins at T = 21, beyond 20)\n"),
-                    HasSubstr("\n3 families (1 of them left out by limits), 5 crossings, 37 orbits, 1 failed")));
+                    HasSubstr("3 families (1 of them left out by limits), 5 crossings, 37 orbits, 1 failed")));
 }
 
 TEST(SummaryText, ChildrenAreIndented) {

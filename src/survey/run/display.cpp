@@ -206,20 +206,26 @@ void ProgressDisplay::redraw() {
   // A line that wraps would spoil the redrawing, and so would one that fills the last column of some terminals.
   const std::size_t width = std::clamp(terminal.width, narrowest_line + 1, widest_line + 1) - 1;
   std::string text = _drawn > 0 ? fmt::format("\x1b[{}A\x1b[J", _drawn) : "";
-  int running = 0;
+  int running = 0;  // lines that will be drawn anew
   for (const auto& [key, family] : _families)
     if (!family.running)
       text += core::styled(family.failed ? core::Style::bad : core::Style::plain,
                            line_of(family, _units.level_name(), width), terminal.colours) +
               "\n";
-  text += core::styled(core::Style::heading, line_of(whole(), width, terminal.unicode), terminal.colours);
+  const WholeState all = whole();
+  if (all.known > 0) {
+    text += core::styled(core::Style::heading, line_of(all, width, terminal.unicode), terminal.colours) + "\n";
+    ++running;
+  }
   for (const auto& [key, family] : _families)
     if (family.running && running < most_live_lines) {
       ++running;
-      text += "\n" + core::styled(core::Style::faint, line_of(family, _units.level_name(), width), terminal.colours);
+      text +=
+          core::styled(core::Style::faint, line_of(family, _units.level_name(), width), terminal.colours) + "\n";
     }
-  _drawn = running + 1;
-  core::write_line(stderr, text);
+  _drawn = running;
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
 }
 
 }  // namespace orbweaver::survey
