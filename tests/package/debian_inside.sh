@@ -28,7 +28,7 @@ expect_status 0 'orbweaver page out/atlas.h5 -o atlas.html && head -c 15 atlas.h
 expect_status 3 'orbweaver plot out/atlas.h5 tree -o tree.svg' 'gnuplot'
 expect_status 3 'echo > nothing.cpp; orbweaver build-system nothing.cpp -o nothing.so' 'install it'
 gzip -dc /usr/share/man/man1/orbweaver.1.gz | grep -q 'SH COMMANDS' || fail "no manual page"
-[[ -s /usr/share/bash-completion/completions/orbweaver && -s /usr/share/fish/vendor_completions.d/orbweaver.fish ]] || fail "no completions"
+[[ -s /usr/share/bash-completion/completions/orbweaver && -s /usr/share/zsh/vendor-completions/_orbweaver && -s /usr/share/fish/vendor_completions.d/orbweaver.fish ]] || fail "no completions"
 gzip -dc /usr/share/doc/orbweaver/changelog.gz | grep -q "^orbweaver ($version)" || fail "no changelog"
 grep -q 'd3-contour' /usr/share/doc/orbweaver/copyright || fail "no notice of what the page contains"
 echo "the program alone: ok, $(dpkg-query -W | wc -l) packages"
