@@ -33,8 +33,8 @@ class Agreed : public std::exception {
 /// `who` stands out on a terminal, so that the error is found among lines of progress.
 void print_error(const std::string& who, const std::string& message) {
   const bool colours = core::terminal_of(STDERR_FILENO).colours;
-  core::write_line(
-      stderr, fmt::format("{} {}", core::styled(core::Style::bad, who, colours), core::printable_lines(message)));
+  core::write_line(stderr,
+                   fmt::format("{} {}", core::styled(core::Style::bad, who, colours), core::printable_lines(message)));
 }
 
 }  // namespace

@@ -83,7 +83,8 @@ int launch(const Launch& options, const std::vector<std::string>& words) {
   setenv("OMP_NUM_THREADS", "1", 0);
   setenv("OPENBLAS_NUM_THREADS", "1", 0);
   const Mark mark;
-  std::vector<std::string> all{"mpirun", "--quiet", "--oversubscribe", "-n", fmt::to_string(options.ranks), "/proc/self/exe"};
+  std::vector<std::string> all{"mpirun",        "--quiet", "--oversubscribe", "-n", fmt::to_string(options.ranks),
+                               "/proc/self/exe"};
   std::string self(4096, '\0');
   const ssize_t length = readlink("/proc/self/exe", self.data(), self.size());
   if (length > 0) all.back() = self.substr(0, static_cast<std::size_t>(length));
@@ -101,10 +102,12 @@ int launch(const Launch& options, const std::vector<std::string>& words) {
 
   const int ended = WIFEXITED(status) ? WEXITSTATUS(status) : signal_status + WTERMSIG(status);
   if (ended == no_such_program && mark.is_there())
-    throw core::EnvironmentError("--ranks starts ranks by mpirun, which is not there: install it (Debian: openmpi-bin)");
+    throw core::EnvironmentError(
+        "--ranks starts ranks by mpirun, which is not there: install it (Debian: openmpi-bin)");
   if (mark.is_there())
-    throw core::EnvironmentError(fmt::format("mpirun could not start {} ranks; it says why to `mpirun -n {} orbweaver --version`",
-                                             options.ranks, options.ranks));
+    throw core::EnvironmentError(
+        fmt::format("mpirun could not start {} ranks; it says why to `mpirun -n {} orbweaver --version`", options.ranks,
+                    options.ranks));
   if (ended > signal_status)
     throw core::EnvironmentError(
         fmt::format("signal {} ({}) has ended a rank{}", ended - signal_status, strsignal(ended - signal_status),

@@ -60,7 +60,8 @@ int run(std::vector<std::string> words) {
   CLI::App program("Orbweaver maps how the periodic orbits of a dynamical system hang together.", "orbweaver");
   program.set_version_flag("--version", "orbweaver " ORBWEAVER_VERSION);
   program.footer(
-      "Options for PETSc, SLEPc and TAO follow after `--`.\n\nExamples:\n  orbweaver --ranks 4 survey scene.yaml -o out\n  "
+      "Options for PETSc, SLEPc and TAO follow after `--`.\n\nExamples:\n  orbweaver --ranks 4 survey scene.yaml -o "
+      "out\n  "
       "orbweaver survey --help");
   program.require_subcommand(1);
   int ranks = 0;
@@ -90,8 +91,7 @@ int run(std::vector<std::string> words) {
   const bool launched = orbweaver::drivers::is_launched();
   if (ranks > 0 && !launched) {
     if (!chosen->takes_ranks)
-      throw orbweaver::core::InputError(
-          fmt::format("{} runs on one rank: drop --ranks", chosen->parser->get_name()));
+      throw orbweaver::core::InputError(fmt::format("{} runs on one rank: drop --ranks", chosen->parser->get_name()));
     return orbweaver::drivers::launch({ranks, chosen->stops_on_signals}, all_words);
   }
   if (!chosen->stops_on_signals) orbweaver::drivers::release_signals();

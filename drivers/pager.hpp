@@ -6,9 +6,10 @@
 
 namespace orbweaver::drivers {
 
-/// While it lives, what is written to the standard output of a terminal can be leafed through: by the program that PAGER
-/// names, or by `less`, which ends at once where all fits on the screen. Elsewhere, with PAGER empty or `cat`, and where
-/// there is no such program, nothing changes. Leaving the pager before the end ends the program with status 0.
+/// While it lives, what is written to the standard output of a terminal can be leafed through: by the program that
+/// PAGER names, or by `less`, which ends at once where all fits on the screen. Elsewhere, with PAGER empty or `cat`,
+/// and where there is no such program, nothing changes. Leaving the pager before the end ends the program with status
+/// 0.
 class Pager {
  public:
   Pager();

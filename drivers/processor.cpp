@@ -1,4 +1,4 @@
-// Compiled for any processor (drivers/CMakeLists.txt): it runs before all else, where the rest may end by an illegal instruction.
+// Compiled for any processor (drivers/CMakeLists.txt): it runs before all else, which may end by an illegal instruction.
 #include "processor.hpp"
 
 #if defined(__x86_64__) && defined(__GNUC__)

@@ -29,7 +29,8 @@ constexpr bool has_avx512f = false;
 #endif
 
 constinit const ProcessorExtension processor_extensions[] = {
-    {"avx", has_avx}, {"avx2", has_avx2}, {"fma", has_fma}, {"bmi2", has_bmi2}, {"avx512f", has_avx512f}, {nullptr, false},
+    {"avx", has_avx},   {"avx2", has_avx2},       {"fma", has_fma},
+    {"bmi2", has_bmi2}, {"avx512f", has_avx512f}, {nullptr, false},
 };
 
 }  // namespace orbweaver::drivers

@@ -42,7 +42,8 @@ struct SurveyOptions {
 
 survey::Display display_for(const SurveyOptions& options) {
   if (options.log.quiet) return survey::Display::none;
-  if (options.progress == "auto") return core::terminal_of(STDERR_FILENO).redraws ? survey::Display::live : survey::Display::lines;
+  if (options.progress == "auto")
+    return core::terminal_of(STDERR_FILENO).redraws ? survey::Display::live : survey::Display::lines;
   return options.progress == "live" ? survey::Display::live : survey::Display::lines;
 }
 
@@ -125,7 +126,9 @@ Command make_survey_command(CLI::App& program) {
   parser->add_option("--walltime", options->walltime,
                      "Stop before this time is over, resumable: seconds, M:SS or H:MM:SS");
   parser
-      ->add_option("--progress", options->progress, "live: a bar and a line a family, redrawn; lines: plain lines now and then; auto: live on a terminal")
+      ->add_option(
+          "--progress", options->progress,
+          "live: a bar and a line a family, redrawn; lines: plain lines now and then; auto: live on a terminal")
       ->check(CLI::IsMember({"auto", "live", "lines"}))
       ->capture_default_str();
   add_log_options(*parser, options->log);

@@ -97,7 +97,8 @@ int run(const SystemsOptions& options, const Invocation& invocation) {
 
 Command make_systems_command(CLI::App& program) {
   const auto options = std::make_shared<SystemsOptions>();
-  CLI::App* parser = program.add_subcommand("systems", "Systems, their parameters with units, their effects, and scenes of them");
+  CLI::App* parser =
+      program.add_subcommand("systems", "Systems, their parameters with units, their effects, and scenes of them");
   parser->add_option("name", options->name, "One system; none: all")->type_name("SYSTEM");
   add_plugin_option(*parser);
   add_examples(*parser, {"orbweaver systems double_pendulum"});

@@ -23,8 +23,8 @@ std::string_view variable(const char* name) {
 
 bool is_rank() { return !variable("OMPI_COMM_WORLD_RANK").empty(); }
 
-/// The terminal that mpirun, which started this rank, writes its stream to; empty: none. The rank's own stream, a pipe or
-/// a terminal that mpirun has made, says nothing of it.
+/// The terminal that mpirun, which started this rank, writes its stream to; empty: none. The rank's own stream, a pipe
+/// or a terminal that mpirun has made, says nothing of it.
 std::string terminal_of_mpirun(int stream) {
   struct stat own {};
   if (isatty(stream) == 0 && (fstat(stream, &own) != 0 || !S_ISFIFO(own.st_mode))) return "";

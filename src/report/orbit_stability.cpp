@@ -58,7 +58,8 @@ double OrbitStability::log10_growth(std::size_t orbit) const {
       return _multipliers && _pairs == 1 ? _log_volumes[orbit] / std::numbers::ln10 : archive::not_computed;
     // mu + 1/mu = k: the root that does not cancel, and its inverse.
     const std::complex<double> root = std::sqrt(k - 2.0) * std::sqrt(k + 2.0);
-    const std::complex<double> mu = _multipliers ? k : 0.5 * (std::abs(k + root) > std::abs(k - root) ? k + root : k - root);
+    const std::complex<double> mu =
+        _multipliers ? k : 0.5 * (std::abs(k + root) > std::abs(k - root) ? k + root : k - root);
     growth = std::max(growth, std::log10(std::abs(mu)));
   }
   return growth;

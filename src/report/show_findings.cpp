@@ -12,7 +12,8 @@ namespace orbweaver::report {
 namespace {
 
 core::Style style_of(const std::string& severity) {
-  if (severity == survey::name_of(survey::Severity::contradiction) || severity == survey::name_of(survey::Severity::failure))
+  if (severity == survey::name_of(survey::Severity::contradiction) ||
+      severity == survey::name_of(survey::Severity::failure))
     return core::Style::bad;
   return severity == survey::name_of(survey::Severity::undecided) ? core::Style::warning : core::Style::plain;
 }

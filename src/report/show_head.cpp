@@ -59,8 +59,7 @@ void print_head(std::ostream& out, const archive::Archive& atlas, std::size_t wi
   if (info != nullptr) out << fmt::format(": {}", info->title);
   if (!header.effects.empty()) out << fmt::format(", with {}", fmt::join(header.effects, ", "));
   out << '\n';
-  if (!header.parameter_names.empty())
-    print_labelled(out, "parameters", parameter_texts(header), width);
+  if (!header.parameter_names.empty()) print_labelled(out, "parameters", parameter_texts(header), width);
   print_labelled(out, "units", units_texts(header), width);
 }
 

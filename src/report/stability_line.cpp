@@ -20,7 +20,8 @@ std::optional<std::size_t> height_of(const OrbitStability& stability, std::size_
   if (!is_stable) return std::nullopt;
   if (*is_stable) return 0;
   const double growth = stability.log10_growth(orbit);
-  return 1 + static_cast<std::size_t>(std::distance(steps.begin(), std::upper_bound(steps.begin(), steps.end(), growth)));
+  return 1 +
+         static_cast<std::size_t>(std::distance(steps.begin(), std::upper_bound(steps.begin(), steps.end(), growth)));
 }
 
 }  // namespace

@@ -187,7 +187,8 @@ TEST(Show, StabilityIsDrawnByTheLargestMultiplier) {
   for (OrbitRecord& orbit : records.orbits) orbit.stability_error = 1e-9;
   const Archive atlas(test::write_sample_atlas(test::fresh_folder("drawn"), header, records));
   EXPECT_THAT(families_for(atlas, {}), HasSubstr("  .:-=+*#_?\n"));
-  EXPECT_THAT(families_for(atlas, {.unicode = true}), HasSubstr("  \u2582\u2583\u2584\u2585\u2586\u2587\u2588\u2581?\n"));
+  EXPECT_THAT(families_for(atlas, {.unicode = true}),
+              HasSubstr("  \u2582\u2583\u2584\u2585\u2586\u2587\u2588\u2581?\n"));
 }
 
 TEST(Show, TheHeadHasTheSystemItsParametersAndUnits) {
@@ -202,9 +203,11 @@ TEST(Show, TheHeadHasTheSystemItsParametersAndUnits) {
   header.parameter_names = {"c1", "c2", "g", "l1", "l2", "m1", "m2"};
   header.parameter_values = {0.25, 0.5, 9.81, 1, 1, 1, 2};
   std::ostringstream known;
-  print_table_head(known, Archive(test::write_sample_atlas(test::fresh_folder("head_known"), header, {})), {.width = 60});
-  EXPECT_THAT(known.str(), HasSubstr("double_pendulum: Ideal double pendulum, with damping\nparameters   c1 = 0.25 N m s/rad, c2 "
-                                     "= 0.5 N m s/rad,\n             g = 9.81 m/s^2, l1 = 1 m,"));
+  print_table_head(known, Archive(test::write_sample_atlas(test::fresh_folder("head_known"), header, {})),
+                   {.width = 60});
+  EXPECT_THAT(known.str(),
+              HasSubstr("double_pendulum: Ideal double pendulum, with damping\nparameters   c1 = 0.25 N m s/rad, c2 "
+                        "= 0.5 N m s/rad,\n             g = 9.81 m/s^2, l1 = 1 m,"));
 }
 
 TEST(Show, FindingsALineEach) {

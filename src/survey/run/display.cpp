@@ -220,8 +220,7 @@ void ProgressDisplay::redraw() {
   for (const auto& [key, family] : _families)
     if (family.running && running < most_live_lines) {
       ++running;
-      text +=
-          core::styled(core::Style::faint, line_of(family, _units.level_name(), width), terminal.colours) + "\n";
+      text += core::styled(core::Style::faint, line_of(family, _units.level_name(), width), terminal.colours) + "\n";
     }
   _drawn = running;
   std::fwrite(text.data(), 1, text.size(), stderr);
