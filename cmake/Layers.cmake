@@ -23,10 +23,13 @@ add_library(orbweaver_machine INTERFACE)
 set(ORBWEAVER_MACHINE_FLAGS "")
 if(ORBWEAVER_NATIVE)
   list(APPEND ORBWEAVER_MACHINE_FLAGS -march=native)
-  # g++ 12 with AVX-512 compiles some vector constants wrongly ({c, c, 0, 0} becomes {c, c, c, c}).
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-    list(APPEND ORBWEAVER_MACHINE_FLAGS -mno-avx512f)
-  endif()
+elseif(ORBWEAVER_BASELINE)
+  list(APPEND ORBWEAVER_MACHINE_FLAGS "-march=${ORBWEAVER_BASELINE}")
+endif()
+# g++ 12 with AVX-512 compiles some vector constants wrongly ({c, c, 0, 0} becomes {c, c, c, c}).
+if(ORBWEAVER_MACHINE_FLAGS AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU"
+    AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  list(APPEND ORBWEAVER_MACHINE_FLAGS -mno-avx512f)
 endif()
 target_compile_options(orbweaver_machine INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:${ORBWEAVER_MACHINE_FLAGS}>")
 install(TARGETS orbweaver_machine EXPORT OrbweaverTargets)

@@ -9,16 +9,17 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "build_settings.hpp"
 #include "command.hpp"
 #include "common_options.hpp"
 #include "failure.hpp"
+#include "installed_files.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/file_hash.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/core/process.hpp"
 #include "orbweaver/systems/plugins.hpp"
 #include "orbweaver/systems/registry.hpp"
-#include "plugin_flags.hpp"
 
 namespace orbweaver::drivers {
 
@@ -33,25 +34,12 @@ struct BuildSystemOptions {
   fs::path output;
 };
 
-/// Where the headers and the models of this program lie: below its prefix, or in its source tree.
-struct Headers {
-  std::string package;
-  std::string models;
-};
-
-Headers headers() {
-  const fs::path program = fs::read_symlink("/proc/self/exe");
-  if (program.string().starts_with(plugin_build_folder + "/")) return {plugin_headers, plugin_models};
-  const fs::path prefix = program.parent_path().parent_path();
-  return {(prefix / plugin_installed_headers).string(), (prefix / plugin_installed_models).string()};
-}
-
-std::vector<std::string> compiler_words(const Headers& at) {
+std::vector<std::string> compiler_words(const InstalledFiles& at) {
   std::vector<std::string> words{plugin_compiler, "-std=c++20", "-O3", "-DNDEBUG", "-DFMT_SHARED", "-Wall", "-Wextra"};
   for (const std::string& flag : plugin_machine_flags)
     if (!flag.empty()) words.push_back(flag);
-  for (const std::string& folder : {at.package, at.models})
-    if (!folder.empty()) words.insert(words.end(), {"-isystem", folder});
+  for (const fs::path& folder : {at.headers, at.models})
+    if (!folder.empty()) words.insert(words.end(), {"-isystem", folder.string()});
   for (const std::string& folder : plugin_packages) words.insert(words.end(), {"-isystem", folder});
   return words;
 }
@@ -120,7 +108,7 @@ int run(const BuildSystemOptions& options, const Invocation& invocation) {
   }
   if (!fs::is_regular_file(source)) throw core::InputError(fmt::format("there is no file '{}'", source.string()));
 
-  const std::vector<std::string> words = compiler_words(headers());
+  const std::vector<std::string> words = compiler_words(installed_files());
   const std::string hash = core::file_hash(sources_of(source, words, options.output));
   const ScratchFile unfinished(fs::path(options.output).concat(".part"));
   std::vector<std::string> build = words;

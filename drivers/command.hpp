@@ -19,6 +19,7 @@ struct Command {
   CLI::App* parser = nullptr;
   std::function<int(const Invocation&)> run;
   bool stops_on_signals = false;  ///< `run` calls stop_on_signals; until then signals wait
+  bool takes_ranks = false;       ///< ranks share its work: --ranks may start them
 };
 
 // One function a subcommand, each in the file of its name. To add one: write drivers/<name>.cpp, name it here, in the

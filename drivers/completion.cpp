@@ -38,7 +38,7 @@ std::string quoted(std::string text) {  // for a shell, in single quotes
   return "'" + text + "'";
 }
 
-/// Options of the command behind a `-`, else files. Bash and zsh read it alike.
+/// Options of the command behind a `-`, else files. The command may stand behind `--ranks N`.
 std::string bash_text(const CLI::App& program) {
   std::vector<std::string> names;
   std::string cases;
@@ -48,9 +48,10 @@ std::string bash_text(const CLI::App& program) {
   }
   return fmt::format(
       "_orbweaver() {{\n"
-      "  local word=${{COMP_WORDS[COMP_CWORD]}} options={}\n"
-      "  [[ $COMP_CWORD -gt 1 ]] && case ${{COMP_WORDS[1]}} in\n{}  esac\n"
-      "  if [[ $COMP_CWORD -eq 1 || $word == -* ]]; then\n"
+      "  local word=${{COMP_WORDS[COMP_CWORD]}} options={} at=1\n"
+      "  [[ ${{COMP_WORDS[1]}} == --ranks && $COMP_CWORD -gt 2 ]] && at=3\n"
+      "  [[ $COMP_CWORD -gt $at ]] && case ${{COMP_WORDS[at]}} in\n{}  esac\n"
+      "  if [[ $COMP_CWORD -eq $at || $word == -* ]]; then\n"
       "    COMPREPLY=($(compgen -W \"$options\" -- \"$word\"))\n"
       "  else\n"
       "    COMPREPLY=($(compgen -f -- \"$word\"))\n"
@@ -58,6 +59,47 @@ std::string bash_text(const CLI::App& program) {
       "}}\n"
       "complete -o filenames -F _orbweaver orbweaver\n",
       quoted(fmt::format("{} {}", fmt::join(names, " "), joined_words(program))), cases);
+}
+
+/// 'WORD:what it does', as _describe of zsh takes it.
+std::string described(const std::string& word, const std::string& text) {
+  return quoted(fmt::format("{}:{}", word, text.substr(0, text.find('\n'))));
+}
+
+std::string described_options(const CLI::App& app) {
+  std::string text;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& word : words_of(*option)) text += " " + described(word, option->get_description());
+  return text;
+}
+
+/// As bash_text, with descriptions. Works sourced, and as the file _orbweaver on zsh's fpath.
+std::string zsh_text(const CLI::App& program) {
+  std::string commands;
+  std::string cases;
+  for (const CLI::App* command : commands_of(program)) {
+    commands += "    " + described(command->get_name(), command->get_description()) + "\n";
+    cases += fmt::format("    {}) options=({}) ;;\n", command->get_name(), described_options(*command));
+  }
+  return fmt::format(
+      "#compdef orbweaver\n"
+      "_orbweaver() {{\n"
+      "  local at=2\n"
+      "  local -a commands options\n"
+      "  commands=(\n{}  )\n"
+      "  options=({})\n"
+      "  [[ ${{words[2]}} == --ranks && $CURRENT -gt 3 ]] && at=4\n"
+      "  (( CURRENT > at )) && case ${{words[at]}} in\n{}  esac\n"
+      "  if [[ $PREFIX == -* ]]; then\n"
+      "    _describe -o option options\n"
+      "  elif (( CURRENT == at )); then\n"
+      "    _describe command commands\n"
+      "  else\n"
+      "    _files\n"
+      "  fi\n"
+      "}}\n"
+      "if [[ ${{funcstack[1]}} == _orbweaver ]]; then _orbweaver \"$@\"; else compdef _orbweaver orbweaver; fi\n",
+      commands, described_options(program), cases);
 }
 
 std::string fish_text(const CLI::App& program) {
@@ -82,8 +124,7 @@ std::string fish_text(const CLI::App& program) {
 
 int print_completion(const CLI::App& program, const std::string& shell) {
   ResultStream out;
-  if (shell == "zsh") out << "autoload -U +X bashcompinit && bashcompinit\n";
-  out << (shell == "fish" ? fish_text(program) : bash_text(program));
+  out << (shell == "fish" ? fish_text(program) : shell == "zsh" ? zsh_text(program) : bash_text(program));
   out.finish();
   return 0;
 }

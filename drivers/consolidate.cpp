@@ -9,6 +9,7 @@
 #include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/report/summary_text.hpp"
 #include "orbweaver/survey/run/survey.hpp"
+#include "result_stream.hpp"
 #include "summary_status.hpp"
 #include "unused_options.hpp"
 
@@ -25,7 +26,10 @@ int consolidate_on(const core::Communicator& comm, const ConsolidateOptions& opt
   const survey::Summary summary =
       alike_on_all_ranks(comm, [&] { return survey::archive_survey(comm, options.directory); });
   agree(comm, [&] {
-    if (comm.is_root()) print_result(report::to_text(summary));
+    if (!comm.is_root()) return;
+    ResultStream out;
+    report::print(out, summary, options.log.verbose ? report::Detail::all : report::Detail::brief);
+    out.finish();
   });
   return static_cast<int>(status_of(summary));
 }
@@ -55,7 +59,7 @@ Command make_consolidate_command(CLI::App& program) {
   add_log_options(*parser, options->log);
   add_plugin_option(*parser);
   add_examples(*parser, {"mpirun -n 2 orbweaver consolidate out/double_pendulum"});
-  return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
+  return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }, false, true};
 }
 
 }  // namespace orbweaver::drivers

@@ -4,11 +4,14 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/interruption.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
+#include "orbweaver/core/styled.hpp"
+#include "orbweaver/core/terminal.hpp"
 #include "orbweaver/core/text.hpp"
 
 namespace orbweaver::drivers {
@@ -26,6 +29,13 @@ class Agreed : public std::exception {
  private:
   std::exception_ptr _cause;
 };
+
+/// `who` stands out on a terminal, so that the error is found among lines of progress.
+void print_error(const std::string& who, const std::string& message) {
+  const bool colours = core::terminal_of(STDERR_FILENO).colours;
+  core::write_line(stderr,
+                   fmt::format("{} {}", core::styled(core::Style::bad, who, colours), core::printable_lines(message)));
+}
 
 }  // namespace
 
@@ -57,15 +67,15 @@ int report_failure(const std::exception_ptr& error) {
   } catch (const ReportedElsewhere&) {
     return failure.status;
   } catch (...) {
-    core::write_line(stderr, core::printable_lines(fmt::format("orbweaver: {}", failure.message)));
+    print_error("orbweaver:", failure.message);
   }
   return failure.status;
 }
 
-void print_result(const std::string& text) {
-  const std::string escaped = core::printable_lines(text);
-  const bool written =
-      std::fwrite(escaped.data(), 1, escaped.size(), stdout) == escaped.size() && std::fflush(stdout) == 0;
+void print_result(const std::string& text) { print_as_it_is(core::printable_lines(text)); }
+
+void print_as_it_is(const std::string& text) {
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
   if (written) return;
   std::clearerr(stdout);
   throw core::EnvironmentError("cannot write to the standard output: is the disk full, or the output closed?");
@@ -88,8 +98,7 @@ int run_on_ranks(const core::Communicator& comm, const std::function<int()>& bod
   } catch (...) {
     if (comm.size() == 1) throw;
     const Failure failure = describe_failure(std::current_exception());
-    core::write_line(stderr,
-                     core::printable_lines(fmt::format("orbweaver: rank {}: {}", comm.rank(), failure.message)));
+    print_error(fmt::format("orbweaver: rank {}:", comm.rank()), failure.message);
     std::fflush(nullptr);
     MPI_Abort(comm.get(), failure.status);
     return failure.status;

@@ -36,6 +36,9 @@ int report_failure(const std::exception_ptr& error);
 /// cannot be written.
 void print_result(const std::string& text);
 
+/// The same without escaping: what is printed escapes its parts itself.
+void print_as_it_is(const std::string& text);
+
 /// Collective over `comm`. Runs `stage` on every rank. If it throws on any, all throw before anyone enters the next
 /// collective: the lowest failing rank what main reports as the original error, the others ReportedElsewhere with the
 /// same status. `stage` itself must not be collective: it is for reading and validating input.

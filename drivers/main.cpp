@@ -11,6 +11,7 @@
 
 #include "command.hpp"
 #include "failure.hpp"
+#include "launch.hpp"
 #include "orbweaver/core/blas_kernels.hpp"
 #include "orbweaver/core/error.hpp"
 #include "signals.hpp"
@@ -19,6 +20,8 @@ namespace {
 
 using orbweaver::drivers::Command;
 using orbweaver::drivers::Invocation;
+
+constexpr int most_ranks = 100000;
 
 std::vector<Command> add_commands(CLI::App& program) {
   using namespace orbweaver::drivers;
@@ -56,9 +59,17 @@ void open_standard_streams() {
 int run(std::vector<std::string> words) {
   CLI::App program("Orbweaver maps how the periodic orbits of a dynamical system hang together.", "orbweaver");
   program.set_version_flag("--version", "orbweaver " ORBWEAVER_VERSION);
-  program.footer("Options for PETSc, SLEPc and TAO follow after `--`.");
+  program.footer(
+      "Options for PETSc, SLEPc and TAO follow after `--`.\n\nExamples:\n  orbweaver --ranks 4 survey scene.yaml -o "
+      "out\n  "
+      "orbweaver survey --help");
   program.require_subcommand(1);
+  int ranks = 0;
+  program.add_option("--ranks", ranks, "Before survey, verify or consolidate: start this many MPI ranks (by mpirun)")
+      ->type_name("N")
+      ->check(CLI::Range(1, most_ranks));
   const std::vector<Command> commands = add_commands(program);
+  const std::vector<std::string> all_words = words;
   const Invocation invocation = take_petsc_options(words);
   const auto word = std::find_if(words.begin(), words.end(), [](const std::string& w) { return !w.starts_with('-'); });
   const std::string got = word != words.end() ? *word : words.empty() ? "" : words.front();
@@ -77,6 +88,12 @@ int run(std::vector<std::string> words) {
   }
   const auto chosen =
       std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.parser->parsed(); });
+  const bool launched = orbweaver::drivers::is_launched();
+  if (ranks > 0 && !launched) {
+    if (!chosen->takes_ranks)
+      throw orbweaver::core::InputError(fmt::format("{} runs on one rank: drop --ranks", chosen->parser->get_name()));
+    return orbweaver::drivers::launch({ranks, chosen->stops_on_signals}, all_words);
+  }
   if (!chosen->stops_on_signals) orbweaver::drivers::release_signals();
   return chosen->run(invocation);
 }

@@ -3,12 +3,17 @@
 #include <memory>
 #include <ostream>
 
+#include "orbweaver/core/terminal.hpp"
+
 namespace orbweaver::drivers {
 
-/// A stream whose whole lines go to the standard output through print_result, for results too long for one text. Throws
-/// EnvironmentError where they cannot be written.
+/// A stream whose whole lines go to the standard output, escaped (core::printable_lines), for results too long for one
+/// text. On a terminal with colours it shows styles (core/styled.hpp). Throws EnvironmentError where lines cannot be
+/// written.
 class ResultStream : public std::ostream {
  public:
+  /// `terminal` is that of the standard output, before a pager takes its place.
+  explicit ResultStream(const core::Terminal& terminal);
   ResultStream();
   ~ResultStream() override;
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -7,11 +8,14 @@
 #include "command.hpp"
 #include "common_options.hpp"
 #include "orbweaver/report/show.hpp"
+#include "pager.hpp"
 #include "result_stream.hpp"
 
 namespace orbweaver::drivers {
 
 namespace {
+
+constexpr std::size_t narrowest = 40;  // columns that lines have at least, whatever the terminal says
 
 struct ShowOptions {
   std::filesystem::path atlas;
@@ -28,11 +32,17 @@ struct ShowOptions {
 
 int show(const ShowOptions& options) {
   const archive::Archive atlas(options.atlas);
-  ResultStream out;
-  if (options.table.empty())
-    report::print_summary(out, atlas);
-  else
-    report::print_table(out, atlas, options.table, options.format(), options.selection);
+  const Pager pager;
+  const core::Terminal& terminal = pager.terminal();
+  report::Layout layout{.unicode = terminal.unicode};
+  if (terminal.reached) layout.width = std::clamp(terminal.width, narrowest, layout.width);
+  ResultStream out(terminal);
+  if (options.table.empty()) {
+    report::print_summary(out, atlas, layout);
+  } else {
+    if (options.format() == report::TextFormat::readable) report::print_table_head(out, atlas, layout);
+    report::print_table(out, atlas, options.table, options.format(), options.selection, layout);
+  }
   out.finish();
   return 0;
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "command.hpp"
 #include "common_options.hpp"
@@ -14,15 +15,16 @@
 #include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/core/mpi/communicator.hpp"
 #include "orbweaver/core/petsc/session.hpp"
+#include "orbweaver/core/terminal.hpp"
 #include "orbweaver/report/summary_text.hpp"
 #include "orbweaver/survey/run/expected_work.hpp"
 #include "orbweaver/survey/run/survey.hpp"
 #include "orbweaver/survey/state/directory_status.hpp"
 #include "orbweaver/systems/registry.hpp"
+#include "result_stream.hpp"
 #include "same_input.hpp"
 #include "signals.hpp"
 #include "summary_status.hpp"
-#include "terminal.hpp"
 #include "unused_options.hpp"
 
 namespace orbweaver::drivers {
@@ -40,7 +42,8 @@ struct SurveyOptions {
 
 survey::Display display_for(const SurveyOptions& options) {
   if (options.log.quiet) return survey::Display::none;
-  if (options.progress == "auto") return stderr_reaches_terminal() ? survey::Display::live : survey::Display::lines;
+  if (options.progress == "auto")
+    return core::terminal_of(STDERR_FILENO).redraws ? survey::Display::live : survey::Display::lines;
   return options.progress == "live" ? survey::Display::live : survey::Display::lines;
 }
 
@@ -82,8 +85,10 @@ int survey_on(const core::Communicator& comm, const SurveyOptions& options) {
       alike_on_all_ranks(comm, [&] { return survey::run_survey(comm, scene, system, options.directory, run_options); });
   agree(comm, [&] {
     if (!comm.is_root()) return;
-    print_result(report::to_text(summary));
-    if (summary.stopped_early) print_result(how_to_go_on(options));
+    ResultStream out;
+    report::print(out, summary, options.log.verbose ? report::Detail::all : report::Detail::brief);
+    if (summary.stopped_early) out << how_to_go_on(options);
+    out.finish();
   });
   return static_cast<int>(status_of(summary));
 }
@@ -121,14 +126,16 @@ Command make_survey_command(CLI::App& program) {
   parser->add_option("--walltime", options->walltime,
                      "Stop before this time is over, resumable: seconds, M:SS or H:MM:SS");
   parser
-      ->add_option("--progress", options->progress, "live: a line a family, redrawn; lines: a plain line now and then")
+      ->add_option(
+          "--progress", options->progress,
+          "live: a bar and a line a family, redrawn; lines: plain lines now and then; auto: live on a terminal")
       ->check(CLI::IsMember({"auto", "live", "lines"}))
       ->capture_default_str();
   add_log_options(*parser, options->log);
   add_examples(*parser, {"mpirun -n 2 orbweaver survey drivers/scenes/double_pendulum.yaml -o out/double_pendulum",
                          "mpirun -n 2 orbweaver survey drivers/scenes/double_pendulum.yaml -o out/double_pendulum "
                          "--resume --set limits.period=20"});
-  return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }, true};
+  return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }, true, true};
 }
 
 }  // namespace orbweaver::drivers

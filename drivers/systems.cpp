@@ -8,9 +8,12 @@
 
 #include "command.hpp"
 #include "common_options.hpp"
-#include "failure.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/styled.hpp"
 #include "orbweaver/systems/registry.hpp"
+#include "pager.hpp"
+#include "result_stream.hpp"
+#include "shipped_scenes.hpp"
 #include "structure_text.hpp"
 
 namespace orbweaver::drivers {
@@ -36,7 +39,28 @@ std::string parameters_text(const std::vector<systems::Parameter>& parameters, c
   return text;
 }
 
-std::string system_text(const std::string& name) {
+std::string scenes_text(const std::string& system, const std::vector<ShippedScene>& scenes) {
+  std::string text;
+  for (const ShippedScene& scene : scenes) {
+    if (scene.system != system) continue;
+    if (text.empty()) text = fmt::format("  scenes, in {}\n", scene.file.parent_path().string());
+    text += fmt::format("    {}: {}\n", scene.file.filename().string(), scene.title);
+  }
+  return text.empty() ? "  scenes        none\n" : text;
+}
+
+std::string effects_text(const std::string& name, const systems::ModelInfo& info) {
+  if (info.effects.empty()) return "  effects       none\n";
+  std::string text = "  effects\n";
+  for (const systems::Effect& effect : info.effects)
+    text += fmt::format("    {}: {}\n{}", effect.name, effect.meaning, parameters_text(effect.parameters, "      "));
+  std::vector<std::string> combinations;
+  for (const std::vector<std::string>& effects : systems::built_effects(name))
+    if (!effects.empty()) combinations.push_back(fmt::format("[{}]", fmt::join(effects, ", ")));
+  return text + fmt::format("  compiled with {}\n", fmt::join(combinations, ", "));
+}
+
+std::string system_text(const std::string& name, const std::vector<ShippedScene>& scenes) {
   const systems::ModelInfo& info = systems::model_info(name);
   const auto ideal = systems::make_system(name);
   std::string text = fmt::format("{}: {}\n  {}\n  coordinates   {}\n", name, info.title, info.meaning,
@@ -46,14 +70,7 @@ std::string system_text(const std::string& name) {
   text += info.parameters.empty()
               ? "  parameters    none\n"
               : "  parameters, with their standard values and ranges\n" + parameters_text(info.parameters, "    ");
-  if (info.effects.empty()) return text + "  effects       none\n";
-  text += "  effects\n";
-  for (const systems::Effect& effect : info.effects)
-    text += fmt::format("    {}: {}\n{}", effect.name, effect.meaning, parameters_text(effect.parameters, "      "));
-  std::vector<std::string> combinations;
-  for (const std::vector<std::string>& effects : systems::built_effects(name))
-    if (!effects.empty()) combinations.push_back(fmt::format("[{}]", fmt::join(effects, ", ")));
-  return text + fmt::format("  compiled with {}\n", fmt::join(combinations, ", "));
+  return text + effects_text(name, info) + scenes_text(name, scenes);
 }
 
 int run(const SystemsOptions& options, const Invocation& invocation) {
@@ -61,13 +78,18 @@ int run(const SystemsOptions& options, const Invocation& invocation) {
     throw core::InputError(
         fmt::format("systems: expected no PETSc options, got `{}`; it follows no family, so drop `--` and what follows",
                     fmt::join(invocation.petsc_options, " ")));
-  std::string text;
-  if (!options.name.empty()) {
-    text = system_text(options.name);
-  } else {
-    for (const std::string& name : systems::system_names()) text += (text.empty() ? "" : "\n") + system_text(name);
+  const std::vector<std::string> names =
+      options.name.empty() ? systems::system_names() : std::vector<std::string>{options.name};
+  const std::vector<ShippedScene> scenes = shipped_scenes();
+  std::vector<std::string> texts;
+  for (const std::string& name : names) texts.push_back(system_text(name, scenes));
+  const Pager pager;
+  ResultStream out(pager.terminal());
+  for (std::size_t n = 0; n < texts.size(); ++n) {
+    const std::size_t end = texts[n].find('\n');
+    out << (n == 0 ? "" : "\n") << core::Styled{core::Style::heading, texts[n].substr(0, end)} << texts[n].substr(end);
   }
-  print_result(text);
+  out.finish();
   return 0;
 }
 
@@ -75,7 +97,8 @@ int run(const SystemsOptions& options, const Invocation& invocation) {
 
 Command make_systems_command(CLI::App& program) {
   const auto options = std::make_shared<SystemsOptions>();
-  CLI::App* parser = program.add_subcommand("systems", "Systems, their parameters with units, and their effects");
+  CLI::App* parser =
+      program.add_subcommand("systems", "Systems, their parameters with units, their effects, and scenes of them");
   parser->add_option("name", options->name, "One system; none: all")->type_name("SYSTEM");
   add_plugin_option(*parser);
   add_examples(*parser, {"orbweaver systems double_pendulum"});

@@ -132,7 +132,7 @@ Command make_verify_command(CLI::App& program) {
   add_plugin_option(*parser);
   add_examples(*parser, {"mpirun -n 2 orbweaver verify out/double_pendulum/atlas.h5",
                          "orbweaver verify out/double_pendulum/atlas.h5 --prove In-Phase T=9 -o proofs.h5"});
-  return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
+  return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }, false, true};
 }
 
 }  // namespace orbweaver::drivers

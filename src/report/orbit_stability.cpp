@@ -1,6 +1,9 @@
 #include "orbit_stability.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 namespace orbweaver::report {
 
@@ -45,6 +48,21 @@ std::optional<bool> OrbitStability::by_volume(std::size_t orbit) const {
   const double logarithm = _log_volumes[orbit];
   if (!_multipliers || _pairs != 1 || !(std::abs(logarithm) > largest_error)) return std::nullopt;
   return logarithm < 0.0;
+}
+
+double OrbitStability::log10_growth(std::size_t orbit) const {
+  double growth = -std::numeric_limits<double>::infinity();
+  for (std::size_t pair = 0; pair < _pairs; ++pair) {
+    const std::complex<double> k = value(orbit, pair);
+    if (std::isnan(k.real()) || std::isnan(k.imag()))
+      return _multipliers && _pairs == 1 ? _log_volumes[orbit] / std::numbers::ln10 : archive::not_computed;
+    // mu + 1/mu = k: the root that does not cancel, and its inverse.
+    const std::complex<double> root = std::sqrt(k - 2.0) * std::sqrt(k + 2.0);
+    const std::complex<double> mu =
+        _multipliers ? k : 0.5 * (std::abs(k + root) > std::abs(k - root) ? k + root : k - root);
+    growth = std::max(growth, std::log10(std::abs(mu)));
+  }
+  return growth;
 }
 
 std::complex<double> OrbitStability::value(std::size_t orbit, std::size_t pair) const {

@@ -22,6 +22,9 @@ class OrbitStability {
   /// the error exceeds 1e-3 and leaves it open whether they are.
   [[nodiscard]] std::optional<bool> of(std::size_t orbit) const;
 
+  /// The decimal logarithm of the largest multiplier's absolute value; NaN where it is not known.
+  [[nodiscard]] double log10_growth(std::size_t orbit) const;
+
  private:
   [[nodiscard]] std::optional<bool> by_volume(std::size_t orbit) const;
   [[nodiscard]] std::complex<double> value(std::size_t orbit, std::size_t pair) const;

@@ -9,6 +9,7 @@
 #include "show_equilibria.hpp"
 #include "show_families.hpp"
 #include "show_findings.hpp"
+#include "show_head.hpp"
 #include "show_level.hpp"
 #include "show_loci.hpp"
 #include "show_values.hpp"
@@ -27,7 +28,7 @@ const archive::Table& shown_table(const archive::Archive& atlas, const std::stri
       "cannot show '{}': the tables of an atlas are families, orbits, crossings, loci, equilibria and findings", name));
 }
 
-void print_summary(std::ostream& out, const archive::Archive& atlas) {
+void print_summary(std::ostream& out, const archive::Archive& atlas, const Layout& layout) {
   const archive::Header& header = atlas.header();
   const auto whole_range = [&](const char* column) {
     return range_text(atlas.orbits().reals(column), 0, atlas.orbits().rows());
@@ -35,6 +36,7 @@ void print_summary(std::ostream& out, const archive::Archive& atlas) {
   const std::uint64_t bytes = atlas.mode_values() * sizeof(double);
   out << fmt::format("{}: {} {}, written by Orbweaver {}\n", atlas.path().string(), archive::atlas_format,
                      archive::format_version, header.orbweaver_version);
+  print_head(out, atlas, layout.width);
   out << fmt::format("coordinates  {}\n", fmt::join(header.state_names, ", "));
   out << fmt::format("families     {}\n", atlas.families().rows());
   out << fmt::format("orbits       {}\n", atlas.orbits().rows());
@@ -54,11 +56,16 @@ void print_summary(std::ostream& out, const archive::Archive& atlas) {
   out << fmt::format("{:<12} {}\n", level.title, whole_range(level.column));
   if (atlas.families().rows() == 0) return;
   out << '\n';
-  print_families(out, atlas);
+  print_families(out, atlas, layout);
+}
+
+void print_table_head(std::ostream& out, const archive::Archive& atlas, const Layout& layout) {
+  print_head(out, atlas, layout.width);
+  out << '\n';
 }
 
 void print_table(std::ostream& out, const archive::Archive& atlas, const std::string& name, TextFormat format,
-                 const Selection& selection) {
+                 const Selection& selection, const Layout& layout) {
   const archive::Table& table = shown_table(atlas, name);
   if (format == TextFormat::csv)
     print_csv(out, atlas.header(), view_of(atlas, table, selection));
@@ -69,7 +76,7 @@ void print_table(std::ostream& out, const archive::Archive& atlas, const std::st
     if (selection.columns.empty()) drop_unread_columns(view);
     print_readable(out, atlas, view);
   } else if (name == "families")
-    print_families(out, atlas);
+    print_families(out, atlas, layout);
   else if (name == "crossings")
     print_crossings(out, atlas);
   else if (name == "loci")

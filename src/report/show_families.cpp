@@ -5,11 +5,13 @@
 
 #include <fmt/format.h>
 
+#include "orbweaver/core/styled.hpp"
 #include "orbweaver/survey/tree/family_end.hpp"
 #include "show_crossings.hpp"
 #include "show_level.hpp"
 #include "show_stability.hpp"
 #include "show_verdicts.hpp"
+#include "stability_line.hpp"
 #include "text_grid.hpp"
 
 namespace orbweaver::report {
@@ -17,6 +19,7 @@ namespace orbweaver::report {
 namespace {
 
 constexpr std::size_t longest_name = 36;
+constexpr std::size_t stability_cells = 16;
 constexpr std::size_t longest_reason = 250;
 constexpr std::size_t deepest_indentation = 12;  // levels; a survey follows 16 at most, and a third of a name is left
 
@@ -88,6 +91,12 @@ std::string details(const archive::Archive& atlas, std::size_t family) {
   return text + end_text(atlas, family);
 }
 
+core::Style style_of(const archive::Archive& atlas, std::size_t family) {
+  const std::vector<survey::EndKind> ends = survey::ends_in(atlas.families().texts("end_reason")[family]);
+  if (std::find(ends.begin(), ends.end(), survey::EndKind::failure) != ends.end()) return core::Style::bad;
+  return doubts_text(atlas, family).empty() ? core::Style::faint : core::Style::warning;
+}
+
 std::string range_of(const archive::Archive& atlas, const char* column, std::size_t family) {
   return range_text(atlas.orbits().reals(column),
                     static_cast<std::size_t>(atlas.families().integers("first_orbit")[family]),
@@ -106,9 +115,10 @@ std::string range_text(const std::vector<double>& values, std::size_t first, std
   return std::isnan(low) ? "-" : fmt::format("{:.6g} .. {:.6g}", low, high);
 }
 
-void print_families(std::ostream& out, const archive::Archive& atlas) {
+void print_families(std::ostream& out, const archive::Archive& atlas, const Layout& layout) {
   const Tree tree(atlas.families().integers("parent"));
-  std::vector<std::string> names, born, orbits, periods, levels;
+  std::vector<std::string> names, born, orbits, periods, levels, stabilities;
+  const OrbitStability stability(atlas);
   const Level level = level_of(atlas);
   for (const auto& [family, depth] : tree.nodes()) {
     names.push_back(cut(std::string(indentation(depth), ' ') + atlas.families().texts("name")[family], longest_name));
@@ -116,20 +126,41 @@ void print_families(std::ostream& out, const archive::Archive& atlas) {
     orbits.push_back(std::to_string(atlas.families().integers("orbit_count")[family]));
     periods.push_back(range_of(atlas, "period", family));
     levels.push_back(range_of(atlas, level.column, family));
+    stabilities.push_back(stability_line(atlas, stability, family, stability_cells, layout.unicode));
   }
-  TextGrid grid;
-  grid.add_column("family", std::move(names), false);
-  grid.add_column("born at", std::move(born), false);
-  grid.add_column("orbits", std::move(orbits));
-  grid.add_column("period", std::move(periods));
-  grid.add_column(level.title, std::move(levels));
+  // What does not fit beside the numbers stands before the details.
+  std::vector<std::string> before(tree.nodes().size());
+  const auto prepend = [&before](const std::vector<std::string>& texts, const char* head, const char* tail) {
+    for (std::size_t i = 0; i < before.size(); ++i)
+      if (!texts[i].empty() && texts[i] != "-") before[i] = head + texts[i] + tail + before[i];
+  };
+  const auto grid_of = [&](bool with_birth) {
+    TextGrid grid;
+    grid.add_column("family", names, false);
+    if (with_birth) grid.add_column("born at", born, false);
+    grid.add_column("orbits", orbits);
+    grid.add_column("period", periods);
+    grid.add_column(level.title, levels);
+    return grid;
+  };
+  TextGrid grid = grid_of(true);
+  if (grid.width() > layout.width) {
+    grid = grid_of(false);
+    prepend(born, "", "; ");
+  }
+  const bool has_stability =
+      std::any_of(stabilities.begin(), stabilities.end(), [](const std::string& line) { return !line.empty(); });
+  if (has_stability && grid.width() + 2 + stability_cells <= layout.width)
+    grid.add_column("stability", stabilities, false);
+  else
+    prepend(stabilities, "", " ");
   const std::vector<std::string> lines = grid.lines();
-  out << lines.front() << '\n';
+  out << core::Styled{core::Style::heading, lines.front()} << '\n';
   for (std::size_t i = 0; i < tree.nodes().size(); ++i) {
     const auto& [family, depth] = tree.nodes()[i];
     out << lines[i + 1] << '\n';
-    for (const std::string& line : wrap(details(atlas, family), line_width, indentation(depth) + 4))
-      out << line << '\n';
+    for (const std::string& line : wrap(before[i] + details(atlas, family), layout.width, indentation(depth) + 4))
+      out << core::Styled{style_of(atlas, family), line} << '\n';
   }
 }
 

@@ -18,8 +18,11 @@ std::vector<std::string> units_of(const archive::Header& header) {
   std::vector<std::string> units(header.parameter_names.size());
   const systems::ModelInfo* info = info_of(header);
   if (info == nullptr) return units;
+  std::vector<systems::Parameter> parameters = info->parameters;
+  for (const systems::Effect& effect : info->effects)
+    parameters.insert(parameters.end(), effect.parameters.begin(), effect.parameters.end());
   for (std::size_t i = 0; i < units.size(); ++i)
-    for (const systems::Parameter& parameter : info->parameters)
+    for (const systems::Parameter& parameter : parameters)
       if (parameter.name == header.parameter_names[i]) units[i] = parameter.unit;
   return units;
 }

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "orbweaver/core/styled.hpp"
+
 namespace orbweaver::report {
 
 namespace {
@@ -53,7 +55,17 @@ std::vector<std::string> TextGrid::lines() const {
 }
 
 void TextGrid::print(std::ostream& out) const {
-  for (const std::string& line : lines()) out << line << '\n';
+  core::Style style = core::Style::heading;
+  for (const std::string& line : lines()) {
+    out << core::Styled{style, line} << '\n';
+    style = core::Style::plain;
+  }
+}
+
+std::size_t TextGrid::width() const {
+  std::size_t width = 0;
+  for (const std::string& line : lines()) width = std::max(width, width_of(line));
+  return width;
 }
 
 std::vector<std::string> cells_of(const std::vector<double>& values, const char* format) {

@@ -18,6 +18,8 @@ class TextGrid {
   /// The head line and a line a row, without line ends; none without columns.
   [[nodiscard]] std::vector<std::string> lines() const;
   void print(std::ostream& out) const;
+  /// Of the longest line.
+  [[nodiscard]] std::size_t width() const;
 
  private:
   struct GridColumn {

@@ -23,7 +23,7 @@ struct Outcome {
 };
 
 Outcome run_show(const std::string& arguments) {
-  const std::string command = std::string(ORBWEAVER_PROGRAM) + " 2>&1 show " + arguments;
+  const std::string command = "LC_ALL=C " + std::string(ORBWEAVER_PROGRAM) + " 2>&1 show " + arguments;
   std::FILE* pipe = popen(command.c_str(), "r");
   Outcome outcome;
   for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) outcome.out += static_cast<char>(c);
@@ -48,6 +48,7 @@ TEST_F(ShowCommand, PrintsWhatTheArchiveLayerFormats) {
          {std::pair{"", report::TextFormat::readable}, std::pair{" --csv", report::TextFormat::csv},
           std::pair{" --json", report::TextFormat::json}}) {
       std::ostringstream expected;
+      if (format == report::TextFormat::readable) report::print_table_head(expected, read);
       report::print_table(expected, read, table, format);
       const Outcome outcome = run_show(atlas + ' ' + table + option);
       EXPECT_EQ(outcome.status, 0);

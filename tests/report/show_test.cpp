@@ -144,18 +144,70 @@ TEST(Show, FamiliesReadablyAsATree) {
   records.crossings[1].multiplicity = 2;
   const Archive atlas(test::write_sample_atlas(test::fresh_folder("readable"), header, records));
   EXPECT_EQ(shown(atlas, "families", TextFormat::readable),
-            R"(family             born at                     orbits          period              energy
-In-Phase           -                               12    3.125 .. 4.5    -2.4375 .. -1.75
+            R"(family             born at                     orbits          period              energy  stability
+In-Phase           -                               12    3.125 .. 4.5    -2.4375 .. -1.75  --==========
     S@1/2 R@0; unstable; ended: the period reached the scene's limit
-  ID1              period-doubling T 6.5, m 1       3     5.25 .. 5.5     -1.375 .. -1.25
+  ID1              period-doubling T 6.5, m 1       3     5.25 .. 5.5     -1.375 .. -1.25  ===
       S@1/2 R@0; unstable; ended: the period reached the scene's limit
 Up-Down            -                                0               -                   -
     S@1/2 R@0; ended: no first orbit could be found – the Newton iteration stalled
-Out-Phase          -                                9          2 .. 3          -3 .. -2.5
+Out-Phase          -                                9          2 .. 3          -3 .. -2.5  ___:-----
     S@1/2 R@0; stable T 2 .. 2.25; ended: the period reached the scene's limit
-  Ästhetik "B", 1  branch-point T 5.5, m 2          5  4.625 .. 5.125  -1.6875 .. -1.4375
+  Ästhetik "B", 1  branch-point T 5.5, m 2          5  4.625 .. 5.125  -1.6875 .. -1.4375  =====
       S@1/2 R@0; unstable; ended: the period reached the scene's limit -> ID1 at fold-energy T 4.5
 )");
+}
+
+std::string families_for(const Archive& atlas, const Layout& layout) {
+  std::ostringstream out;
+  print_table(out, atlas, "families", TextFormat::readable, {}, layout);
+  return out.str();
+}
+
+TEST(Show, NarrowLinesHaveBirthAndStabilityBeforeTheDetails) {
+  const Archive atlas = sample_atlas("narrow", test::sample_header());
+  const std::string text = families_for(atlas, {.width = 76});
+  for (const std::string& line : lines_of(text)) EXPECT_LE(line.size(), 77U) << line;  // one letter has two bytes
+  EXPECT_THAT(text, HasSubstr("\n  ID1              "));
+  EXPECT_THAT(text, HasSubstr("\n      === period-doubling T 6.5, m 1; S@1/2 R@0; unstable; ended: the period"));
+}
+
+TEST(Show, StabilityIsDrawnByTheLargestMultiplier) {
+  const Header header = test::sample_header();
+  Records records = test::sample_records(header);
+  records.crossings.clear();
+  records.families = {records.families[1]};
+  records.sections.clear();
+  const std::vector<double> multipliers{1.5, 2.5, 5.0, 50.0, 500.0, 5000.0, 50000.0};
+  records.orbits.resize(multipliers.size() + 2);
+  for (std::size_t i = 0; i < multipliers.size(); ++i)
+    records.orbits[i].stability = {(i % 2 == 0 ? 1 : -1) * (multipliers[i] + 1.0 / multipliers[i])};
+  records.orbits[7].stability = {1.0};
+  records.orbits[8].stability = {not_computed};
+  for (OrbitRecord& orbit : records.orbits) orbit.stability_error = 1e-9;
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("drawn"), header, records));
+  EXPECT_THAT(families_for(atlas, {}), HasSubstr("  .:-=+*#_?\n"));
+  EXPECT_THAT(families_for(atlas, {.unicode = true}),
+              HasSubstr("  \u2582\u2583\u2584\u2585\u2586\u2587\u2588\u2581?\n"));
+}
+
+TEST(Show, TheHeadHasTheSystemItsParametersAndUnits) {
+  Header header = test::sample_header();
+  std::ostringstream unknown;
+  print_table_head(unknown, sample_atlas("head_unknown", header));
+  EXPECT_EQ(unknown.str(),
+            "made_up, with friction\nparameters   m = 0.1, g = 9.81\n"
+            "units        times, energies and states in the units of the parameters\n\n");
+  header.system = "double_pendulum";
+  header.effects = {"damping"};
+  header.parameter_names = {"c1", "c2", "g", "l1", "l2", "m1", "m2"};
+  header.parameter_values = {0.25, 0.5, 9.81, 1, 1, 1, 2};
+  std::ostringstream known;
+  print_table_head(known, Archive(test::write_sample_atlas(test::fresh_folder("head_known"), header, {})),
+                   {.width = 60});
+  EXPECT_THAT(known.str(),
+              HasSubstr("double_pendulum: Ideal double pendulum, with damping\nparameters   c1 = 0.25 N m s/rad, c2 "
+                        "= 0.5 N m s/rad,\n             g = 9.81 m/s^2, l1 = 1 m,"));
 }
 
 TEST(Show, FindingsALineEach) {
@@ -214,7 +266,7 @@ TEST(Show, LinesOfTheTreeStayWithin120Characters) {
   const Archive atlas(test::write_sample_atlas(test::fresh_folder("long"), header, records));
   const std::string text = shown(atlas, "families", TextFormat::readable);
   for (const std::string& line : lines_of(text)) EXPECT_LE(line.size(), 121U) << line;  // one letter has two bytes
-  EXPECT_THAT(text, HasSubstr("\n    reason 3,"));
+  EXPECT_THAT(text, HasSubstr("\n    reason 2,"));
   EXPECT_THAT(text, HasSubstr("...\n  ID1 "));
   EXPECT_THAT(text, HasSubstr("nnnnn... "));
   EXPECT_THAT(shown(atlas, "families", TextFormat::csv), HasSubstr("and reason 199"));

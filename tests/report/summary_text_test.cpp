@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <vector>
+
 #include <gmock/gmock.h>
 
 #include "orbweaver/report/summary_text.hpp"
@@ -61,6 +64,33 @@ TEST(SummaryText, SaysWhatDoesNotAddUpAndCountsWhatLimitsCut) {
   EXPECT_THAT(report::to_text(summary), Not(HasSubstr("findings:"))) << "the witness looks at archives";
 }
 
+TEST(SummaryText, WhatMattersComesFirst) {
+  using survey::FindingKind;
+  using survey::Severity;
+  survey::Summary summary = sample_summary();
+  summary.findings = {{Severity::undecided, FindingKind::unknown_family, "C: ends on a family"},
+                      {Severity::contradiction, FindingKind::duplicate_curve, "A: the same orbits"}};
+  summary.passed_over = {"dips passed over at the bottom: T = 6", "dips passed over at the top: T = 7"};
+  const std::string text = report::to_text(summary);
+  std::vector<std::size_t> places;
+  for (const char* said : {"2 families, 5 crossings", "failed: 0001", "findings: 1", "contradiction: A", "undecided: C",
+                           "note: no small", "passed over at 2 equilibria", "family  ", "In-Phase", "archive: "})
+    places.push_back(text.find(said));
+  EXPECT_THAT(places, ::testing::Each(::testing::Ne(std::string::npos)));
+  EXPECT_TRUE(std::is_sorted(places.begin(), places.end())) << text;
+  EXPECT_EQ(places.front(), 0u);
+  EXPECT_THAT(text, Not(HasSubstr("T = 6")));
+  EXPECT_THAT(report::to_text(summary, report::Detail::all),
+              AllOf(HasSubstr("note: dips passed over at the bottom: T = 6\n"), Not(HasSubstr("2 equilibria"))));
+}
+
+TEST(SummaryText, ManyNotesAreListedInPart) {
+  survey::Summary summary = sample_summary();
+  summary.remarks.assign(30, "again");
+  EXPECT_THAT(report::to_text(summary), HasSubstr("note: again\n... and 18 more: --verbose\n"));
+  EXPECT_THAT(report::to_text(summary, report::Detail::all), Not(HasSubstr("more: --verbose")));
+}
+
 TEST(SummaryText, UnitsMayMakeNumbersSmallOrLarge) {
   survey::Summary summary = sample_summary();
   summary.families[0].period_from = 6.18012e-06;
@@ -71,7 +101,8 @@ TEST(SummaryText, UnitsMayMakeNumbersSmallOrLarge) {
 }
 
 TEST(SummaryText, ColumnsAlign) {
-  const std::string text = report::to_text(sample_summary());
+  std::string text = report::to_text(sample_summary());
+  text.erase(0, text.find("family  "));
   const std::string head = text.substr(0, text.find('\n'));
   const std::string first = text.substr(head.size() + 1, text.find('\n', head.size() + 1) - head.size() - 1);
   EXPECT_EQ(head.find("ended by"), first.find("period limit"));
@@ -90,7 +121,7 @@ TEST(SummaryText, FamiliesLeftOutByLimitsAreCounted) {
                               "period limit (left out: begins at T = 21, beyond 20)", false});
   EXPECT_THAT(report::to_text(summary),
               AllOf(HasSubstr("period limit (left out: begins at T = 21, beyond 20)\n"),
-                    HasSubstr("\n3 families (1 of them left out by limits), 5 crossings, 37 orbits, 1 failed")));
+                    HasSubstr("3 families (1 of them left out by limits), 5 crossings, 37 orbits, 1 failed")));
 }
 
 TEST(SummaryText, ChildrenAreIndented) {

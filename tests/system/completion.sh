@@ -20,6 +20,29 @@ expect "$(completed survey --res)" "--resume"
 expect "$(completed show --res)" ""
 expect "$(completed survey scene_)" "scene_a.yaml scene_b.yaml"
 
+expect "$(completed --ranks 2 sur)" "survey"
+expect "$(completed --ranks 2 survey --res)" "--resume"
+
+for command in $(completed ""); do
+  [[ $command == -* ]] || "$program" "$command" --help | grep -q '^Example' || fail "$command --help has no example"
+done
+
+# What zsh's own functions would be given.
+if command -v zsh > /dev/null; then
+  cat > completed.zsh << 'ZSH'
+compdef() { : }
+_describe() { local -a found=(${(P)${@[-1]}}); print -l -- ${(M)found:#$PREFIX*} }
+_files() { print files }
+source completion.zsh
+words=(orbweaver "$@") CURRENT=$(( $# + 1 )) PREFIX=${@[-1]}
+_orbweaver
+ZSH
+  "$program" completion zsh > completion.zsh
+  expect "$(zsh -f completed.zsh co | cut -d: -f1 | paste -sd' ')" "compare completion consolidate cost"
+  expect "$(zsh -f completed.zsh survey --res | cut -d: -f1)" "--resume"
+  expect "$(zsh -f completed.zsh --ranks 2 sur | cut -d: -f1)" "survey"
+  expect "$(zsh -f completed.zsh survey scene_)" "files"
+fi
 for shell in zsh fish; do
   "$program" completion $shell > completion.$shell
   ! command -v $shell > /dev/null || $shell -n completion.$shell || fail "$shell cannot read its completion"

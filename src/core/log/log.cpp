@@ -6,7 +6,10 @@
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
+#include "orbweaver/core/styled.hpp"
+#include "orbweaver/core/terminal.hpp"
 #include "orbweaver/core/text.hpp"
 
 namespace orbweaver::core {
@@ -54,7 +57,11 @@ void log_debug(std::string_view message) {
   if (logs_debug()) logger().debug(printable_lines(message));
 }
 void log_info(std::string_view message) { logger().info(printable_lines(message)); }
-void log_warning(std::string_view message) { logger().warn(printable_lines(message)); }
-void log_error(std::string_view message) { logger().error(printable_lines(message)); }
+void log_warning(std::string_view message) {
+  logger().warn(styled(Style::warning, printable_lines(message), terminal_of(STDERR_FILENO).colours));
+}
+void log_error(std::string_view message) {
+  logger().error(styled(Style::bad, printable_lines(message), terminal_of(STDERR_FILENO).colours));
+}
 
 }  // namespace orbweaver::core

@@ -1,9 +1,14 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
+#include <deque>
+#include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "orbweaver/queue/observer.hpp"
 #include "orbweaver/survey/run/survey.hpp"
@@ -19,34 +24,73 @@ struct FamilyState {
   double level = 0.0;  // energy or parameter
   int cutoff = 0;
   bool running = true;
-  long printed = 0;  // orbits at the last plain line
+  bool failed = false;
+  bool resumed = false;  // its first report counts orbits of an earlier run
+  long printed = 0;      // orbits at the last plain line
   std::string end;
   std::chrono::steady_clock::time_point began = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point changed = began;
 };
 
-/// Shows progress on stderr: a line a family, redrawn in place on a terminal, or a plain line now and then.
+/// Where the survey stands as a whole.
+struct WholeState {
+  std::size_t done = 0;   ///< tasks, those that failed among them
+  std::size_t known = 0;  ///< with those that wait or run
+  std::size_t failed = 0;
+  long orbits = 0;  ///< of this run
+  double orbits_a_second = 0.0;
+  double seconds = 0.0;
+  std::optional<double> left{};  ///< seconds; only where that can be said
+  bool at_most = false;          ///< `left` is when a limit of time ends the run
+};
+
+/// The family in at most `width` columns: what has the least to say is left out first, then its name is cut.
+[[nodiscard]] std::string line_of(const FamilyState& family, const std::string& level, std::size_t width);
+
+/// The whole in at most `width` columns: what has the least to say is left out. With a bar where there is room.
+[[nodiscard]] std::string text_of(const WholeState& whole, std::size_t width);
+[[nodiscard]] std::string line_of(const WholeState& whole, std::size_t width, bool unicode);
+
+/// Shows progress on stderr: a bar for the whole and a line a family, redrawn in place on a terminal and within its
+/// width, or a plain line now and then.
 class ProgressDisplay : public queue::Observer {
  public:
-  /// `units` are those of the outcomes' numbers.
-  explicit ProgressDisplay(Display style, Units units = {}) : _style(style), _units(std::move(units)) {}
+  /// `units` are those of the outcomes' numbers; `allowed` the seconds after which a limit of time ends the run.
+  explicit ProgressDisplay(Display style, Units units = {}, double allowed = no_limit)
+      : _style(style), _units(std::move(units)), _allowed(allowed) {}
+  ~ProgressDisplay() override { finish(); }
+  ProgressDisplay(const ProgressDisplay&) = delete;
+  ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
   void started(const queue::Task& task, int rank) override;
   void progress(const queue::Task& task, const queue::Progress& progress, int rank) override;
   void finished(const queue::Task& task, const queue::TaskOutcome& outcome) override;
   void failed(const queue::Task& task, const queue::TaskOutcome& outcome) override;
   void tick(const queue::TaskCounts& counts) override;
+  /// Clears the bar and the lines of what runs; a later tick draws them again.
+  void finish() noexcept;
 
  private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr double no_limit = std::numeric_limits<double>::infinity();
+
   void ended(const queue::Task& task, const queue::TaskOutcome& outcome);
+  void count(FamilyState& family, long orbits);
+  [[nodiscard]] WholeState whole();
   void redraw();
   void print_line(FamilyState& family);
 
   Display _style;
   Units _units;
+  double _allowed;
   std::map<std::string, FamilyState> _families;
+  queue::TaskCounts _counts;
+  bool _sweeping = false;
+  long _orbits = 0;
+  std::deque<std::pair<Clock::time_point, long>> _lately;  // orbits at times
   int _drawn = 0;
-  std::chrono::steady_clock::time_point _last = std::chrono::steady_clock::now();
+  Clock::time_point _began = Clock::now();
+  Clock::time_point _last = _began;
 };
 
 }  // namespace orbweaver::survey

@@ -1,5 +1,6 @@
 #include "orbweaver/survey/run/survey.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -74,7 +75,7 @@ class Run {
         _header(header_of(scene, *_system)),
         _member(scaled.scene(), _system, _rows, team),
         _executor(team, _member),
-        _display(options.display, Units(*_system)),
+        _display(options.display, Units(*_system), std::min(scene.limits.time, options.walltime)),
         _time(scene.limits.time, options.walltime),
         _tree(scaled.scene(), _system->structure(), Units(*_system)) {
     _queue_options.flush_seconds = scene.output.flush_seconds;
@@ -208,6 +209,7 @@ class Run {
   }
 
   void end() {
+    _display.finish();
     // After a signal or the wall time others wait for the machine.
     _summary.archived = core::agreed(_comm.get(), !_summary.stopped_early || _time.reached_scene());
     write_archive(_comm, _scene, _system, _keeper->last(), _tree, _sweeps_ended, _summary);

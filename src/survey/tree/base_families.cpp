@@ -254,9 +254,9 @@ BaseFamilies base_families(const scene::Scene& scene, const systems::System& sys
     if (!found.rejected.empty()) {
       const auto end = found.rejected.begin() + static_cast<std::ptrdiff_t>(std::min(found.rejected.size(), most_dips));
       const auto untold = found.rejected.end() - end;
-      summary.remarks.push_back(fmt::format("dips passed over at {}: {}{}", point_text(system, found.point),
-                                            fmt::join(found.rejected.begin(), end, "; "),
-                                            untold > 0 ? fmt::format("; and {} more", untold) : ""));
+      summary.passed_over.push_back(fmt::format("dips passed over at {}: {}{}", point_text(system, found.point),
+                                                fmt::join(found.rejected.begin(), end, "; "),
+                                                untold > 0 ? fmt::format("; and {} more", untold) : ""));
     }
     for (const FoundMode& mode : found.modes) {
       if (is_of_another(mode, found, all)) continue;

@@ -38,12 +38,13 @@ struct FindingSummary {
 
 /// What a survey came to; complete on rank 0, `failures` and `stopped_early` on all ranks.
 struct Summary {
-  std::vector<FamilySummary> families;    ///< by depth, then key
-  std::string parameter{};                ///< that moves along the families; empty: none, and their level is the energy
-  std::vector<std::string> remarks;       ///< equilibria without oscillations, rejected dips, limits that cut
-  std::vector<std::string> failed_tasks;  ///< key and reason
-  std::vector<FindingSummary> findings;   ///< by severity; empty where no archive was made
-  std::size_t failures = 0;               ///< failed tasks and contradictions
+  std::vector<FamilySummary> families;  ///< by depth, then key
+  std::string parameter{};              ///< that moves along the families; empty: none, and their level is the energy
+  std::vector<std::string> remarks;     ///< equilibria without oscillations, limits that cut
+  std::vector<std::string> passed_over{};  ///< dips of sweeps that begin no family: repetitions of oscillations
+  std::vector<std::string> failed_tasks;   ///< key and reason
+  std::vector<FindingSummary> findings;    ///< by severity; empty where no archive was made
+  std::size_t failures = 0;                ///< failed tasks and contradictions
   bool stopped_early = false;
   bool archived = false;  ///< whether `atlas` was written
   long orbits = 0;

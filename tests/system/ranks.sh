@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# ranks.sh PROGRAM SCENE: `--ranks` starts ranks by mpirun. A status other than 0 is followed by nothing of mpirun's, a signal reaches the
+# ranks, and what has ended a rank is told.
+set -euo pipefail
+program=$1 scene=$2
+quick=(--set limits.period=8.5 --set starts.sweep.step=0.1 --set survey.depth=0)
+fail() { echo "ranks.sh: $*" >&2; exit 1; }
+has() { grep -qF -- "$2" "$1" || fail "$1 lacks '$2': $(tail -5 "$1")"; }
+lacks() { ! grep -qF -- "$2" "$1" || fail "$1 has '$2': $(grep -F -- "$2" "$1" | head -3)"; }
+
+rm -rf out
+status=0
+"$program" --ranks 2 survey "$scene" -o out --set limits.families=1 "${quick[@]}" -- -collocation_tao_gatol 1e-30 -collocation_rounding 1e-30 >missed.txt 2>&1 || status=$?
+((status == 1)) || fail "a missed goal: status $status: $(tail -3 missed.txt)"
+has missed.txt '1 failed'
+lacks missed.txt mpirun
+lacks missed.txt -----
+
+# Signals: SIGINT stops a survey so that it can be resumed; a rank that is killed is told.
+survey_in_background() {
+  rm -rf out
+  "$program" --ranks 2 survey "$scene" -o out >background.txt 2>&1 &
+  launcher=$!
+  for ((n = 0; n < 600; ++n)); do
+    ! grep -q 'In-Phase .* orbits' background.txt || return 0
+    sleep 0.1
+  done
+  fail "no progress: $(cat background.txt)"
+}
+survey_in_background
+status=0
+kill -INT $launcher
+wait $launcher || status=$?
+((status == 4)) || fail "SIGINT: status $status: $(tail -3 background.txt)"
+has background.txt 'the survey goes on'
+lacks background.txt mpirun
+survey_in_background
+status=0
+kill -KILL "$(pgrep -P "$(pgrep -P $launcher)" | tail -1)"
+wait $launcher || status=$?
+((status == 3)) || fail "a killed rank: status $status: $(tail -3 background.txt)"
+has background.txt 'orbweaver: signal 9 (Killed) has ended a rank'
+status=0
+PATH=$PWD/nothing "$program" --ranks 2 survey "$scene" -o nowhere >no_mpirun.txt 2>&1 || status=$?
+((status == 3)) && grep -q 'install it (Debian: openmpi-bin)' no_mpirun.txt || fail "without mpirun: status $status: $(cat no_mpirun.txt)"
+status=0
+"$program" --ranks 2 systems >no_ranks.txt 2>&1 || status=$?
+((status == 2)) && grep -q 'systems runs on one rank' no_ranks.txt || fail "systems on ranks: status $status: $(cat no_ranks.txt)"
