@@ -12,59 +12,59 @@ command_words+='|source|export|export_[a-z]+|doxygen|[A-Z_]+=[^ ]*)'
 is_command() { [[ "$1" =~ ^$command_words(\ |$) ]]; }
 
 read_document() {
-  local number=0 kind='' name='' text='' first=0 line stripped before='' has_commands='' other=0 other_line=''
-  local pending='' pending_line=0
+  # Names of their own: the functions that are called see them.
+  local rd_number=0 rd_kind='' rd_file='' rd_text='' rd_first=0 rd_line rd_stripped rd_has_commands='' rd_other=0 rd_other_line=''
+  local rd_pending='' rd_pending_line=0
   # A command, or the first part of one.
   take() {
-    [[ -n "$pending" ]] || pending_line=$number
-    pending+=$1
-    if [[ "$pending" == *\\ ]]; then
-      pending=${pending%\\}
+    [[ -n "$rd_pending" ]] || rd_pending_line=$rd_number
+    rd_pending+=$1
+    if [[ "$rd_pending" == *\\ ]]; then
+      rd_pending=${rd_pending%\\}
     else
-      on_command "$pending_line" "$pending"
-      pending=''
+      on_command "$rd_pending_line" "$rd_pending"
+      rd_pending=''
     fi
   }
-  while IFS= read -r line || [[ -n "$line" ]]; do
-    number=$((number + 1))
-    if [[ -n "$kind" ]]; then
-      if [[ "$line" == '```' ]]; then
-        if [[ "$kind" == file ]]; then
-          on_file "$first" "$name" "$text"
-          [[ "$name" != *.py ]] || on_command "$first" "python3 $name"
+  while IFS= read -r rd_line || [[ -n "$rd_line" ]]; do
+    rd_number=$((rd_number + 1))
+    if [[ -n "$rd_kind" ]]; then
+      if [[ "$rd_line" == '```' ]]; then
+        if [[ "$rd_kind" == file ]]; then
+          on_file "$rd_first" "$rd_file" "$rd_text"
+          [[ "$rd_file" != *.py ]] || on_command "$rd_first" "python3 $rd_file"
         fi
-        kind=''
-      elif [[ "$kind" == file ]]; then
-        text+=$line$'\n'
-      elif [[ "$kind" == sh && -n "$line" && "$line" != '#'* ]]; then
-        take "$line"
+        rd_kind=''
+      elif [[ "$rd_kind" == file ]]; then
+        rd_text+=$rd_line$'\n'
+      elif [[ "$rd_kind" == sh && -n "$rd_line" && "$rd_line" != '#'* ]]; then
+        take "$rd_line"
       fi
       continue
     fi
-    case "$line" in
-      '```sh') kind=sh ;;
-      '```text') kind=text ;;
-      '```'[a-z]*' '*) kind=file name=${line##* } text='' first=$number ;;
-      '```'*) kind=text && on_fault "$number" "a block without a language: write \`\`\`sh, \`\`\`text or \`\`\`LANGUAGE NAME" ;;
+    case "$rd_line" in
+      '```sh') rd_kind=sh ;;
+      '```text') rd_kind=text ;;
+      '```'[a-z]*' '*) rd_kind=file rd_file=${rd_line##* } rd_text='' rd_first=$rd_number ;;
+      '```'*) rd_kind=text && on_fault "$rd_number" "a block without a language: write \`\`\`sh, \`\`\`text or \`\`\`LANGUAGE NAME" ;;
       '    '*)
-        stripped=${line#"${line%%[![:space:]]*}"}
-        if [[ -n "$pending" ]]; then
-          take "$stripped"
-        elif is_command "$stripped"; then
-          has_commands=yes
-          take "$stripped"
-        elif [[ "$stripped" != '#'* ]]; then
-          other=$number other_line=$stripped
+        rd_stripped=${rd_line#"${rd_line%%[![:space:]]*}"}
+        if [[ -n "$rd_pending" ]]; then
+          take "$rd_stripped"
+        elif is_command "$rd_stripped"; then
+          rd_has_commands=yes
+          take "$rd_stripped"
+        elif [[ "$rd_stripped" != '#'* ]]; then
+          rd_other=$rd_number rd_other_line=$rd_stripped
         fi
         ;;
     esac
-    if [[ "$line" != '    '* && -n "$line" ]]; then
-      has_commands='' other=0
+    if [[ "$rd_line" != '    '* && -n "$rd_line" ]]; then
+      rd_has_commands='' rd_other=0
     fi
-    if [[ -n "$has_commands" && $other != 0 ]]; then
-      on_fault "$other" "beside commands: '$other_line' (is it a command? tests/documents/read.sh lists with what one begins)"
-      other=0
+    if [[ -n "$rd_has_commands" && $rd_other != 0 ]]; then
+      on_fault "$rd_other" "beside commands: '$rd_other_line' (is it a command? tests/documents/read.sh lists with what one begins)"
+      rd_other=0
     fi
-    before=$line
   done <"$1"
 }
