@@ -137,7 +137,7 @@ Command make_manual_command(CLI::App& program) {
       ->add_option("WHAT", *what,
                    "page: all of it, for man; scene: every key of a scene; programs: commands and options")
       ->check(CLI::IsMember({"page", "scene", "programs"}));
-  add_examples(*parser, {"orbweaver manual | man -l -", "orbweaver manual scene"});
+  add_examples(*parser, {"orbweaver manual | man -l -", "orbweaver manual scene", "orbweaver manual programs"});
   return {
       parser, [&program, what](const Invocation&) {
         ResultStream out;

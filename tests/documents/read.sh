@@ -4,7 +4,7 @@
 #   on_command LINE COMMAND   for a command: a line of a block ```sh; a line of an indented block that begins with one of the words
 #                             below; `python3 NAME` behind a block ```python NAME. What follows a backslash at its end belongs to it.
 #   on_file LINE NAME TEXT    for a block ```LANGUAGE NAME: a file that the commands after it find
-#   on_fault LINE WHAT        for a block ``` of no language, and for a line beside commands that is neither a command nor a comment
+#   on_fault LINE WHAT        for a block ``` of no language, and for a line beside commands that is neither a command, a comment, nor a title ending in a colon
 # Blocks ```text are no commands; nor is an indented block in which no line begins so (tables, scenes, formulas).
 command_words='(\./quickstart|orbweaver|build/release/[^ ]+|BUILD/[^ ]+|tests/[^ ]+|mpirun|cmake|ctest|bash|sh|python3|valgrind|sbatch|srun|salloc'
 command_words+='|squeue|scancel|sudo|apt-get|apt|dpkg|dpkg-deb|dpkg-query|docker|podman|spack|git|cd|cp|mkdir|rm|tar|make|ninja|g\+\+|gnuplot|h5dump|npm|node|man'
@@ -54,12 +54,12 @@ read_document() {
         elif is_command "$rd_stripped"; then
           rd_has_commands=yes
           take "$rd_stripped"
-        elif [[ "$rd_stripped" != '#'* ]]; then
+        elif [[ "$rd_stripped" != '#'* && "$rd_stripped" != *: ]]; then # no comment, no title
           rd_other=$rd_number rd_other_line=$rd_stripped
         fi
         ;;
     esac
-    if [[ "$rd_line" != '    '* && -n "$rd_line" ]]; then
+    if [[ "$rd_line" != '    '* ]]; then
       rd_has_commands='' rd_other=0
     fi
     if [[ -n "$rd_has_commands" && $rd_other != 0 ]]; then
