@@ -12,7 +12,7 @@ namespace orbweaver::scene {
 struct KnownKey {
   std::string_view path;   ///< "limits.period"; `[]` stands for any entry of a list: "loci[].of"
   std::string_view value;  ///< what it takes, in the words of a refusal
-  /// Its default: YAML in backticks, with what is to be said of it behind; text without backticks where no YAML says it.
+  /// Its default: YAML in backticks, with what is to be said of it behind; text without backticks where YAML cannot.
   std::string_view standard;
   std::string_view unit;
   std::string_view meaning;
