@@ -117,6 +117,18 @@ std::string price_text(const systems::System& system, std::vector<double> point)
                      cost.field_and_jacobian, least.field, least.field_and_jacobian);
 }
 
+/// What moves along the scene's families, and what is held.
+std::string families_text(const systems::System& system) {
+  const systems::FamilyScalars& moving = system.family_scalars();
+  const std::string kind = family_kind_text(system.structure());
+  if (moving.free.empty()) return kind;
+  if (moving.hold == systems::FamilyScalars::Hold::nothing) return fmt::format("{}: {}", kind, moving.free.front());
+  const bool holds_energy = moving.hold == systems::FamilyScalars::Hold::energy;
+  return fmt::format("conservative, in a parameter: {} and {} move along a family of one {}",
+                     holds_energy ? "the period" : "the energy", moving.free.front(),
+                     holds_energy ? "energy" : "period");
+}
+
 void print_simulated(const scene::Scene& scene, const systems::System& system,
                      const std::vector<std::vector<double>>& points) {
   Lines lines{{"terms", system.info().meaning}};
@@ -124,7 +136,7 @@ void print_simulated(const scene::Scene& scene, const systems::System& system,
     if (std::count(scene.system.effects.begin(), scene.system.effects.end(), effect.name) > 0)
       lines.emplace_back("", fmt::format("{}: {}", effect.name, effect.meaning));
   lines.emplace_back("dimension", fmt::format("{} coordinates", system.dimension()));
-  const Lines holds = structure_lines(system.info(), system.structure());
+  const Lines holds = structure_lines(system.info(), system.structure(), families_text(system));
   lines.insert(lines.end(), holds.begin(), holds.end());
   for (const std::string& symmetry : systems::undeclared_symmetries(system, points))
     lines.emplace_back("not declared", symmetry);
@@ -266,11 +278,19 @@ std::string task_time_text(double seconds) {
   return std::isinf(seconds) ? "any" : fmt::format("tasks that take more than {} s are put aside", seconds);
 }
 
-void print_limits(const scene::Scene& scene, const systems::Structure& structure) {
+std::string parameter_range_text(const scene::Limits& limits, const std::vector<std::string>& free) {
+  if (free.empty()) return "none moves";
+  const bool any = std::isinf(limits.parameter_from) && std::isinf(limits.parameter_to);
+  return any ? fmt::format("{} any", free.front())
+             : fmt::format("{} from {} to {}", free.front(), limits.parameter_from, limits.parameter_to);
+}
+
+void print_limits(const scene::Scene& scene, const systems::System& system) {
   const scene::Limits& limits = scene.limits;
   print_group("Limits", {{"period", std::isinf(limits.period) ? "any" : fmt::format("up to {}", limits.period)},
                          {"energy", energy_text(limits)},
-                         {"guards", guards_text(limits, structure)},
+                         {"parameter", parameter_range_text(limits, system.family_scalars().free)},
+                         {"guards", guards_text(limits, system.structure())},
                          {"families", fmt::format("at most {}", limits.families)},
                          {"steps", fmt::format("at most {} a family", limits.steps)},
                          {"time", time_text(limits.time)},
@@ -357,7 +377,7 @@ int check(const SceneOptions& options, const Invocation& invocation) {
   print_starts(scene, bound);
   print_continuation(scene, system);
   print_survey(scene);
-  print_limits(scene, system.structure());
+  print_limits(scene, system);
   print_events(scene);
   print_outputs(scene, system);
   print_cost(scene, system);

@@ -126,6 +126,7 @@ Command make_refine_command(CLI::App& program) {
   parser->add_option("-o,--output", options->output, "A file for the text too")->check(named_path());
   add_plugin_option(*parser);
   add_examples(*parser, {"orbweaver refine out/double_pendulum/atlas.h5 In-Phase T=9 -n 50",
+                         "orbweaver refine out/double_pendulum/atlas.h5 In-Phase E=-0.76 -o orbit.txt",
                          "orbweaver refine out/double_pendulum/atlas.h5 --crossing 0"});
   return {parser, [options](const Invocation&) { return refine_command(*options); }};
 }

@@ -71,7 +71,9 @@ Command make_show_command(CLI::App& program) {
   add_plugin_option(*parser);
   add_examples(*parser, {"orbweaver show out/double_pendulum/atlas.h5 families",
                          "orbweaver show out/double_pendulum/atlas.h5 orbits --family In-Phase --columns "
-                         "step,period,energy --sort=-period"});
+                         "step,period,energy --sort=-period",
+                         "orbweaver show out/double_pendulum/atlas.h5 crossings --csv",
+                         "orbweaver show out/double_pendulum/atlas.h5 findings"});
   return {parser, [options](const Invocation&) { return show(*options); }};
 }
 

@@ -54,12 +54,13 @@ std::string family_kind_text(const systems::Structure& structure) {
 }
 
 std::vector<std::pair<std::string, std::string>> structure_lines(const systems::ModelInfo& info,
-                                                                 const systems::Structure& structure) {
+                                                                 const systems::Structure& structure,
+                                                                 const std::string& families) {
   const auto& conserved = structure.conserved;
   return {{"conserved", conserved.empty() ? "nothing" : fmt::format("{}", fmt::join(conserved, ", "))},
           {"symmetries", symmetries_text(info.state_names, structure.equivariances)},
           {"reversors", symmetries_text(info.state_names, structure.reversors)},
-          {"families", family_kind_text(structure)}};
+          {"families", families}};
 }
 
 std::string parameter_text(const systems::Parameter& parameter, double value) {

@@ -54,7 +54,8 @@ Command make_sweep_command(CLI::App& program) {
   add_scene_options(*parser, options->scene);
   parser->add_flag("--table", options->table, "Print the smallest eigenvalue at every period of the sweep");
   parser->add_option("--csv", options->csv, "Write that table to a CSV file")->check(named_path());
-  add_examples(*parser, {"orbweaver sweep drivers/scenes/double_pendulum.yaml --csv sweep.csv"});
+  add_examples(*parser, {"orbweaver sweep drivers/scenes/double_pendulum.yaml",
+                         "orbweaver sweep drivers/scenes/double_pendulum.yaml --csv sweep.csv"});
   return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
 }
 

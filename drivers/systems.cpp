@@ -65,7 +65,7 @@ std::string system_text(const std::string& name, const std::vector<ShippedScene>
   const auto ideal = systems::make_system(name);
   std::string text = fmt::format("{}: {}\n  {}\n  coordinates   {}\n", name, info.title, info.meaning,
                                  fmt::join(info.state_names, ", "));
-  for (const auto& [label, line] : structure_lines(info, ideal->structure()))
+  for (const auto& [label, line] : structure_lines(info, ideal->structure(), family_kind_text(ideal->structure())))
     text += fmt::format("  {:<14}{}\n", label, line);
   text += info.parameters.empty()
               ? "  parameters    none\n"

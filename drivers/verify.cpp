@@ -131,7 +131,8 @@ Command make_verify_command(CLI::App& program) {
   add_log_options(*parser, options->log);
   add_plugin_option(*parser);
   add_examples(*parser, {"mpirun -n 2 orbweaver verify out/double_pendulum/atlas.h5",
-                         "orbweaver verify out/double_pendulum/atlas.h5 --prove In-Phase T=9 -o proofs.h5"});
+                         "orbweaver verify out/double_pendulum/atlas.h5 --prove In-Phase T=9 -o proofs.h5",
+                         "orbweaver verify proofs.h5"});
   return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }, false, true};
 }
 

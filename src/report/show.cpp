@@ -71,14 +71,14 @@ void print_table(std::ostream& out, const archive::Archive& atlas, const std::st
     print_csv(out, atlas.header(), view_of(atlas, table, selection));
   else if (format == TextFormat::json)
     print_json(out, view_of(atlas, table, selection));
+  else if (name == "crossings" && selection.columns.empty())
+    print_crossings(out, atlas, view_of(atlas, table, selection).rows);
   else if (name == "orbits" || !selection.empty()) {
     TableView view = view_of(atlas, table, selection);
     if (selection.columns.empty()) drop_unread_columns(view);
     print_readable(out, atlas, view);
   } else if (name == "families")
     print_families(out, atlas, layout);
-  else if (name == "crossings")
-    print_crossings(out, atlas);
   else if (name == "loci")
     print_loci(out, atlas);
   else if (name == "equilibria")

@@ -1,5 +1,8 @@
 #include "show_crossings.hpp"
 
+#include <cstdint>
+#include <numeric>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -39,9 +42,12 @@ std::string crossing_text(const archive::Archive& atlas, std::size_t crossing) {
       parameter.empty() ? "" : fmt::format(", {} {:.6g}", parameter, crossings.reals("parameter")[crossing]));
 }
 
-void print_crossings(std::ostream& out, const archive::Archive& atlas) {
+void print_crossings(std::ostream& out, const archive::Archive& atlas, const std::vector<std::size_t>& rows) {
   const archive::Table& crossings = atlas.crossings();
+  std::vector<std::int64_t> numbers(crossings.rows());
+  std::iota(numbers.begin(), numbers.end(), std::int64_t{0});
   TextGrid grid;
+  grid.add_column("row", cells_of(numbers));
   grid.add_column("family", families_of(atlas), false);
   grid.add_column("period", cells_of(crossings.reals("period"), "{:.10g}"));
   const Level level = level_of(atlas);
@@ -54,7 +60,9 @@ void print_crossings(std::ostream& out, const archive::Archive& atlas) {
   grid.add_column("residual", cells_of(crossings.reals("residual"), "{:.1e}"));
   grid.add_column("test value", cells_of(crossings.reals("test_value"), "{:.8g}"));
   grid.add_column("born there", born_at(atlas), false);
-  grid.print(out);
+  const std::vector<std::string> lines = grid.lines();
+  out << lines.front() << '\n';
+  for (const std::size_t row : rows) out << lines[row + 1] << '\n';
 }
 
 }  // namespace orbweaver::report

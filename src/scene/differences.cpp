@@ -244,14 +244,17 @@ std::string value_text(const YAML::Node& node) {
   return number ? text_of(*number) : node.Scalar();
 }
 
-// What stands in the text outside the keys in `known`.
+// What stands in the text outside the keys in `known`. `scales: auto` says what the keys within it say.
 void add_unknown(const YAML::Node& node, const std::string& path, const std::vector<Value>& known,
                  std::vector<Value>& unknown) {
   for (const auto& entry : node) {
     const std::string key = (path.empty() ? "" : path + ".") + value_text(entry.first);
-    if (std::any_of(known.begin(), known.end(), [&](const Value& value) { return is_inside(key, value.key); }))
+    const bool is_map = entry.second.IsMap();
+    if (std::any_of(known.begin(), known.end(), [&](const Value& value) {
+          return is_inside(key, value.key) || (!is_map && is_inside(value.key, key));
+        }))
       continue;
-    if (entry.second.IsMap())
+    if (is_map)
       add_unknown(entry.second, key, known, unknown);
     else
       unknown.push_back({key, value_text(entry.second)});

@@ -153,7 +153,7 @@ void read_letters(const Field& field, FixedPoints& points) {
 }  // namespace
 
 void read_fixed_points(const Field& field, const systems::System& system, FixedPoints& points) {
-  const Keys keys(field, {"grid", "names", "letters"}, "fixed_points: {grid: [[0, 180], [0, 180]]}");
+  const Keys keys(field, "fixed_points: {grid: [[0, 180], [0, 180]]}");
   if (const auto grid = keys.find("grid")) read_grid(*grid, system, points);
   if (const auto names = keys.find("names")) read_names(*names, system, points);
   if (const auto letters = keys.find("letters")) read_letters(*letters, points);

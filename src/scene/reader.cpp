@@ -4,11 +4,13 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "orbweaver/core/text.hpp"
+#include "orbweaver/scene/known_keys.hpp"
 #include "suggest.hpp"
 #include "units.hpp"
 
@@ -207,17 +209,21 @@ std::vector<Field::Entry> Field::entries(std::string_view example, bool complex_
   return result;
 }
 
+Keys::Keys(const Field& field, std::string_view example) : Keys(field, names_of_keys(field.path()), example) {}
+
 Keys::Keys(const Field& field, std::vector<std::string> known, std::string_view example)
-    : _entries(field.entries(example)) {
+    : _known(std::move(known)), _entries(field.entries(example)) {
   for (const Field::Entry& entry : _entries) {
     const std::string name = entry.key.path().substr(field.path().empty() ? 0 : field.path().size() + 1);
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    entry.key.fail(fmt::format("unknown key, expected {}{}, got {}; {}", known.size() > 1 ? "one of " : "",
-                               alternatives(known), entry.key.got(), advice_for(name, known)));
+    if (std::find(_known.begin(), _known.end(), name) != _known.end()) continue;
+    entry.key.fail(fmt::format("unknown key, expected {}{}, got {}; {}", _known.size() > 1 ? "one of " : "",
+                               alternatives(_known), entry.key.got(), advice_for(name, _known)));
   }
 }
 
 std::optional<Field> Keys::find(std::string_view key) const {
+  if (std::find(_known.begin(), _known.end(), key) == _known.end())
+    throw std::logic_error(fmt::format("`{}` is read, but is no known key", key));
   const auto entry = std::find_if(_entries.begin(), _entries.end(), [&](const Field::Entry& e) {
     return e.key.path() == key || e.key.path().ends_with(fmt::format(".{}", key));
   });

@@ -93,13 +93,16 @@ struct Field::Entry {
 /// A map whose keys are known beforehand.
 class Keys {
  public:
-  /// Refuses every key of `field` that is not in `known`, naming the nearest.
+  /// Refuses every key of `field` that is none of its known_keys, naming the nearest.
+  Keys(const Field& field, std::string_view example);
+  /// The same with names that depend on the system.
   Keys(const Field& field, std::vector<std::string> known, std::string_view example);
 
-  /// The value of `key`, if the scene has it.
+  /// The value of `key`, if the scene has it. Throws std::logic_error for a key that is not known.
   [[nodiscard]] std::optional<Field> find(std::string_view key) const;
 
  private:
+  std::vector<std::string> _known;
   std::vector<Field::Entry> _entries;
 };
 

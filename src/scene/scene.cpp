@@ -29,10 +29,7 @@ Field require_key(const Keys& keys, const Field& root, const std::string& key, s
 }
 
 Scene read_scene(const Field& root, const std::optional<std::filesystem::path>& folder) {
-  const Keys keys(root,
-                  {"name", "system", "starts", "continuation", "survey", "compute", "limits", "events", "section",
-                   "loci", "output"},
-                  smallest_scene);
+  const Keys keys(root, smallest_scene);
   Scene scene;
   read_system(require_key(keys, root, "system", "system: {name: double_pendulum}"), folder, scene.system);
   read_family_scalars(keys.find("continuation"), scene.system);

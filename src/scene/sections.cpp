@@ -13,7 +13,7 @@
 namespace orbweaver::scene {
 
 void read_sweep(const Field& field, Sweep& sweep) {
-  const Keys keys(field, {"period", "step"}, "sweep: {period: [1, 12], step: 0.01}");
+  const Keys keys(field, "sweep: {period: [1, 12], step: 0.01}");
   const auto step = keys.find("step");
   if (step && step->plain_scalar() != "auto")
     sweep.step = step->number({.lower = 0, .lower_open = true, .example = "0.01"});
@@ -31,8 +31,7 @@ void read_sweep(const Field& field, Sweep& sweep) {
 
 void read_continuation(const Field& field, const systems::System& system, Continuation& continuation) {
   const bool angles = system.structure().has_angles();
-  const Keys keys(field, {"step", "start", "tolerance", "cutoff", "corrector", "free", "hold"},
-                  "continuation: {step: adaptive}");
+  const Keys keys(field, "continuation: {step: adaptive}");
   if (const auto step = keys.find("step"); step && step->plain_scalar() != "adaptive")
     continuation.fixed_step = step->length(angles, "`adaptive` or ");
   if (const auto start = keys.find("start"); start && start->plain_scalar() != "auto") {
@@ -71,8 +70,7 @@ void read_family_scalars(const std::optional<Field>& field, SystemChoice& choice
   std::optional<Field> free;
   std::optional<Field> hold;
   if (field) {
-    const Keys keys(*field, {"step", "start", "tolerance", "cutoff", "corrector", "free", "hold"},
-                    "continuation: {free: m2, hold: energy}");
+    const Keys keys(*field, "continuation: {free: m2, hold: energy}");
     free = keys.find("free");
     hold = keys.find("hold");
   }
@@ -88,7 +86,7 @@ void read_family_scalars(const std::optional<Field>& field, SystemChoice& choice
 }
 
 void read_survey(const Field& field, Survey& survey) {
-  const Keys keys(field, {"depth", "subharmonics", "spectrum", "team_size"}, "survey: {depth: 2, subharmonics: 4}");
+  const Keys keys(field, "survey: {depth: 2, subharmonics: 4}");
   if (const auto depth = keys.find("depth")) survey.depth = depth->integer({.lower = 0, .upper = 16, .example = "2"});
   if (const auto most = keys.find("subharmonics"))
     survey.subharmonics = most->integer({.lower = 1, .upper = 16, .example = "4"});
@@ -99,7 +97,7 @@ void read_survey(const Field& field, Survey& survey) {
 }
 
 void read_compute(const Field& field, Compute& compute) {
-  const Keys keys(field, {"stability", "certificate"}, "compute: {certificate: full}");
+  const Keys keys(field, "compute: {certificate: full}");
   if (const auto stability = keys.find("stability")) compute.stability = stability->choice({"true", "false"}) == "true";
   if (const auto certificate = keys.find("certificate")) {
     const std::string level = certificate->choice({"automatic", "none", "closure", "full"});
@@ -132,8 +130,7 @@ void keep_to_model(const SystemChoice& choice, const systems::System& system, Li
 }
 
 void read_limits(const Field& field, const systems::System& system, Limits& limits) {
-  const Keys keys(field, {"period", "energy", "parameter", "guards", "families", "steps", "time", "task_time"},
-                  "limits: {period: 30}");
+  const Keys keys(field, "limits: {period: 30}");
   if (const auto period = keys.find("period"))
     limits.period = period->number({.lower = 0, .lower_open = true, .infinite = true, .example = "30"});
   if (const auto energy = keys.find("energy"))
@@ -163,14 +160,14 @@ void read_limits(const Field& field, const systems::System& system, Limits& limi
 }
 
 void read_events(const Field& field, Events& events) {
-  const Keys keys(field, {"periods", "energies"}, "events: {periods: [10], energies: [0]}");
+  const Keys keys(field, "events: {periods: [10], energies: [0]}");
   if (const auto periods = keys.find("periods"))
     events.periods = periods->numbers({.lower = 0, .lower_open = true, .example = "10"});
   if (const auto energies = keys.find("energies")) events.energies = energies->numbers({.example = "0.5"});
 }
 
 void read_section(const Field& field, const systems::System& system, Section& section) {
-  const Keys keys(field, {"coordinate", "value"}, "section: {coordinate: w1, value: 0}");
+  const Keys keys(field, "section: {coordinate: w1, value: 0}");
   const std::vector<std::string>& names = system.info().state_names;
   const auto coordinate = keys.find("coordinate");
   if (!coordinate)
@@ -244,7 +241,7 @@ void read_loci(const Field& field, Scene& scene, const systems::System& system) 
   std::vector<std::string> kinds;
   for (int n = 0; n <= static_cast<int>(last_of(Loci::Of{})); ++n) kinds.push_back(name_of(static_cast<Loci::Of>(n)));
   for (const Field& entry : field.list(example)) {
-    const Keys keys(entry, {"of", "free", "range"}, example);
+    const Keys keys(entry, example);
     const auto of = keys.find("of");
     const auto free = keys.find("free");
     if (!of || !free) entry.fail("an `of` and a `free`", entry.got(), fmt::format("for example {}", example));
@@ -277,7 +274,7 @@ void read_loci(const Field& field, Scene& scene, const systems::System& system) 
 }
 
 void read_output(const Field& field, Output& output) {
-  const Keys keys(field, {"flush_seconds", "flush_orbits"}, "output: {flush_seconds: 5}");
+  const Keys keys(field, "output: {flush_seconds: 5}");
   if (const auto seconds = keys.find("flush_seconds"))
     output.flush_seconds = seconds->number({.lower = 0, .lower_open = true, .example = "5"});
   if (const auto orbits = keys.find("flush_orbits"))

@@ -3,6 +3,7 @@
 # order in which they stand, with the package installed at PREFIX. Then what a plugin is refused for.
 set -euo pipefail
 document=$1 prefix=$2
+here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
 export PATH="$prefix/bin:$PATH"
 rm -rf own && mkdir own && cd own
 
@@ -10,25 +11,16 @@ fail() {
   echo "own_system.sh: $*" >&2
   exit 1
 }
-kind='' file=''
 ran=0
-while IFS= read -r line; do
-  case "$line" in
-    '```sh') kind=command ;;
-    '```'*\ *) kind=file file=${line##* } && : >"$file" ;;
-    '```') kind='' ;;
-    *)
-      case "$kind" in
-        file) printf '%s\n' "$line" >>"$file" ;;
-        command)
-          echo "== $line"
-          bash -c "$line" </dev/null || fail "'$line' ended with status $?"
-          ran=$((ran + 1))
-          ;;
-      esac
-      ;;
-  esac
-done <"$document"
+. "$here/../documents/read.sh"
+on_file() { printf '%s' "$3" >"$2"; }
+on_fault() { fail "$document:$1: $2"; }
+on_command() {
+  echo "== $2"
+  bash -c "$2" </dev/null || fail "'$2' ended with status $?"
+  ran=$((ran + 1))
+}
+read_document "$document"
 ((ran >= 7)) || fail "only $ran commands found in $document"
 orbweaver show out/atlas.h5 >shown.txt
 grep -q 'q1, q2, p1, p2' shown.txt || fail "the archive does not name the coordinates"

@@ -62,8 +62,8 @@ struct TableSpec {
 /// real.
 [[nodiscard]] bool has_complex_stability(const Header& header);
 
-/// Doubles in OrbitRecord::stability and ::fundamental_stability: pairs, or 2 pairs (re, im, re, im, ...) where
-/// complex.
+/// Doubles in OrbitRecord::stability and OrbitRecord::fundamental_stability: pairs, or 2 pairs (re, im, re, im, ...)
+/// where complex.
 [[nodiscard]] std::size_t stability_width(const Header& header);
 
 /// The tables of an atlas (docs/file_format.md). Widths of vector columns come from the header.

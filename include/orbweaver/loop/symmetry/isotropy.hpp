@@ -11,8 +11,8 @@
 namespace orbweaver::loop {
 
 /// One spatio-temporal symmetry of a loop, acting modulo whole turns of the angles.
-/// Equivariance S@p/q: z(t + T p/q) = S z(t). Reversor R@p/q: z(T p/q - t) = R z(t). The maps are affine; perturbations
-/// of the loop, and what stands relative to a point that they map to itself, see their matrices only.
+/// Equivariance `S@p/q`: z(t + T p/q) = S z(t). Reversor `R@p/q`: z(T p/q - t) = R z(t). The maps are affine;
+/// perturbations of the loop, and what stands relative to a point that they map to itself, see their matrices only.
 struct SymmetryElement {
   std::string name;
   bool reversing = false;

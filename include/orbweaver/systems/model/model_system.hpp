@@ -29,13 +29,13 @@ namespace orbweaver::systems {
 ///   static ModelInfo info();
 ///   static Structure structure(const Bound& bound);           // what holds with these parameters and effects
 ///   static std::vector<EffectRules> effects();                // composed into it (effects/composition.hpp), if any
-///   template <class P> class With;                            // the model with parameters of type P
+///   `template <class P> class With;`                          // the model with parameters of type P
 /// and With<P>, P being double or (to differentiate by a parameter, in quadruple precision, and in formulas) the scalar
 /// S of the field, has
 ///   explicit With(const BoundTo<P>& bound);
-///   template <class S> void field(const S* z, S* f) const;
-///   template <int K, class S> S conserved(const S* z) const;  // quantity K of the structure, K < quantities
-///   template <class S> S action_density(const S* z) const;    // NaN where there is none
+///   `template <class S> void field(const S* z, S* f) const;`
+///   `template <int K, class S> S conserved(const S* z) const;` // quantity K of the structure, K < quantities
+///   `template <class S> S action_density(const S* z) const;`   // NaN where there is none
 /// and, if its structure may name guards,
 ///   double guard(int k, const double* z) const;
 /// Constants are doubles; what none is exactly (1/3) is written as S(1.0) / 3.0, so that more digits than those of a
