@@ -178,7 +178,7 @@ TEST(Show, FindingsALineEach) {
               "In-Phase: a multiplier passes");
 }
 
-TEST(Show, CrossingsReadablyWithTheFamiliesBornThere) {
+TEST(Show, CrossingsReadablyWithTheFamiliesBornAndEndingThere) {
   const Header header = test::sample_header();
   Records records = test::sample_records(header);
   records.families[0].crossing = 0;
@@ -191,16 +191,16 @@ TEST(Show, CrossingsReadablyWithTheFamiliesBornThere) {
   records.crossings[2].kernel_dimension = -1;
   const Archive atlas(test::write_sample_atlas(test::fresh_folder("crossings"), header, records));
   EXPECT_EQ(shown(atlas, "crossings", TextFormat::readable),
-            R"(row  family     period  energy  kind             m  q  j  kernel  residual  test value  born there
-  0  In-Phase      4.5       -  fold-energy      1  1  0       -         -           -  -
-  1  In-Phase      6.5   -1.25  period-doubling  2  4  1       2  -3.5e-12          -2  ID1, Ästhetik "B", 1
-  2  Out-Phase     5.5       -  branch-point     1  1  0       2         -           -  -
+            R"(row  family     period  energy  kind             m  q  j  kernel  residual  test value  born there            end there
+  0  In-Phase      4.5       -  fold-energy      1  1  0       -         -           -  -                     Ästhetik "B", 1
+  1  In-Phase      6.5   -1.25  period-doubling  2  4  1       2  -3.5e-12          -2  ID1, Ästhetik "B", 1  -
+  2  Out-Phase     5.5       -  branch-point     1  1  0       2         -           -  -                     -
 )");
   std::ostringstream out;
   print_table(out, atlas, "crossings", TextFormat::readable, {.family = "Out-Phase"});
   EXPECT_EQ(out.str(),
-            R"(row  family     period  energy  kind             m  q  j  kernel  residual  test value  born there
-  2  Out-Phase     5.5       -  branch-point     1  1  0       2         -           -  -
+            R"(row  family     period  energy  kind             m  q  j  kernel  residual  test value  born there            end there
+  2  Out-Phase     5.5       -  branch-point     1  1  0       2         -           -  -                     -
 )");
 }
 

@@ -29,13 +29,13 @@ void print_summary(std::ostream& out, const archive::Archive& atlas);
 
 /// One table, or a selection of it. Readable: aligned columns with ten digits and the families' names, unless columns
 /// are chosen without those that have no value and those that say where modes lie in the archive; crossings, unless
-/// columns are chosen, with their rows, names in place of indices and who is born there; without a selection loci with
-/// names in place of indices; equilibria with their periods; findings in a line each, as sentences; families as the
-/// tree in lines of at most 120 characters, children indented behind their parent, each with the crossing it was born
-/// at (kind, period, m), its ranges of period and energy, isotropy, intervals of stability, and why it ended, cut where
-/// it is long. CSV: a head line, then full precision (%.17g), vector columns spread out as column_coordinate, what was
-/// not computed as `nan`. JSON: one array of objects with full precision, vector columns as arrays, what was not
-/// computed as `null`. Throws InputError for a table, family or column that is not there.
+/// columns are chosen, with their rows, names in place of indices, who is born and who ends there; without a selection
+/// loci with names in place of indices; equilibria with their periods; findings in a line each, as sentences; families
+/// as the tree in lines of at most 120 characters, children indented behind their parent, each with the crossing it was
+/// born at (kind, period, m), its ranges of period and energy, isotropy, intervals of stability, and why it ended, cut
+/// where it is long. CSV: a head line, then full precision (%.17g), vector columns spread out as column_coordinate,
+/// what was not computed as `nan`. JSON: one array of objects with full precision, vector columns as arrays, what was
+/// not computed as `null`. Throws InputError for a table, family or column that is not there.
 void print_table(std::ostream& out, const archive::Archive& atlas, const std::string& name, TextFormat format,
                  const Selection& selection = {});
 
