@@ -20,10 +20,10 @@ std::vector<std::string> families_of(const archive::Archive& atlas) {
   return cells;
 }
 
-// Names of the families born at each crossing.
-std::vector<std::string> born_at(const archive::Archive& atlas) {
+// Names of the families whose `column` is each crossing: those born there, those that end there.
+std::vector<std::string> families_at(const archive::Archive& atlas, const std::string& column) {
   std::vector<std::vector<std::string>> names(atlas.crossings().rows());
-  const auto& crossings = atlas.families().integers("crossing");
+  const auto& crossings = atlas.families().integers(column);
   for (std::size_t row = 0; row < crossings.size(); ++row)
     if (crossings[row] >= 0)
       names[static_cast<std::size_t>(crossings[row])].push_back(atlas.families().texts("name")[row]);
@@ -59,7 +59,8 @@ void print_crossings(std::ostream& out, const archive::Archive& atlas, const std
   grid.add_column("kernel", cells_of(crossings.integers("kernel_dimension")));
   grid.add_column("residual", cells_of(crossings.reals("residual"), "{:.1e}"));
   grid.add_column("test value", cells_of(crossings.reals("test_value"), "{:.8g}"));
-  grid.add_column("born there", born_at(atlas), false);
+  grid.add_column("born there", families_at(atlas, "crossing"), false);
+  grid.add_column("end there", families_at(atlas, "end_crossing"), false);
   const std::vector<std::string> lines = grid.lines();
   out << lines.front() << '\n';
   for (const std::size_t row : rows) out << lines[row + 1] << '\n';

@@ -1,7 +1,7 @@
 # Sourced: reads a document's commands and files, in the order in which they stand.
 #
 # read_document DOCUMENT calls
-#   on_command LINE COMMAND   for a command: a line of a block ```sh; a line of an indented block that begins with one of the words
+#   on_command LINE COMMAND   for a command: a line of a block ```sh; what stands behind `$ ` in a block ```console, with what it prints; a line of an indented block that begins with one of the words
 #                             below; `python3 NAME` behind a block ```python NAME. What follows a backslash at its end belongs to it.
 #   on_file LINE NAME TEXT    for a block ```LANGUAGE NAME: a file that the commands after it find
 #   on_fault LINE WHAT        for a block ``` of no language, and for a line beside commands that is neither a command, a comment, nor a title ending in a colon
@@ -39,12 +39,15 @@ read_document() {
         rd_text+=$rd_line$'\n'
       elif [[ "$rd_kind" == sh && -n "$rd_line" && "$rd_line" != '#'* ]]; then
         take "$rd_line"
+      elif [[ "$rd_kind" == console && ( -n "$rd_pending" || "$rd_line" == '$ '* ) ]]; then
+        take "${rd_line#'$ '}"
       fi
       continue
     fi
     case "$rd_line" in
       '```sh') rd_kind=sh ;;
       '```text') rd_kind=text ;;
+      '```console') rd_kind=console ;;
       '```'[a-z]*' '*) rd_kind=file rd_file=${rd_line##* } rd_text='' rd_first=$rd_number ;;
       '```'*) rd_kind=text && on_fault "$rd_number" "a block without a language: write \`\`\`sh, \`\`\`text or \`\`\`LANGUAGE NAME" ;;
       '    '*)

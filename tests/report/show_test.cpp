@@ -230,7 +230,7 @@ TEST(Show, FindingsALineEach) {
               "In-Phase: a multiplier passes");
 }
 
-TEST(Show, CrossingsReadablyWithTheFamiliesBornThere) {
+TEST(Show, CrossingsReadablyWithTheFamiliesBornAndEndingThere) {
   const Header header = test::sample_header();
   Records records = test::sample_records(header);
   records.families[0].crossing = 0;
@@ -242,18 +242,17 @@ TEST(Show, CrossingsReadablyWithTheFamiliesBornThere) {
   records.crossings[0].test_value = -2;
   records.crossings[2].kernel_dimension = -1;
   const Archive atlas(test::write_sample_atlas(test::fresh_folder("crossings"), header, records));
-  EXPECT_EQ(shown(atlas, "crossings", TextFormat::readable),
-            R"(row  family     period  energy  kind             m  q  j  kernel  residual  test value  born there
-  0  In-Phase      4.5       -  fold-energy      1  1  0       -         -           -  -
-  1  In-Phase      6.5   -1.25  period-doubling  2  4  1       2  -3.5e-12          -2  ID1, Ästhetik "B", 1
-  2  Out-Phase     5.5       -  branch-point     1  1  0       2         -           -  -
-)");
+  const std::string head = "row  family     period  energy  kind             m  q  j  kernel  residual  test value  ";
+  const std::string of_two =
+      R"(  2  Out-Phase     5.5       -  branch-point     1  1  0       2         -           -  )";
+  EXPECT_EQ(shown(atlas, "crossings", TextFormat::readable), head + R"(born there            end there
+  0  In-Phase      4.5       -  fold-energy      1  1  0       -         -           -  )" +
+                                                                 R"(-                     Ästhetik "B", 1
+  1  In-Phase      6.5   -1.25  period-doubling  2  4  1       2  -3.5e-12          -2  ID1, Ästhetik "B", 1  -
+)" + of_two + "-                     -\n");
   std::ostringstream out;
   print_table(out, atlas, "crossings", TextFormat::readable, {.family = "Out-Phase"});
-  EXPECT_EQ(out.str(),
-            R"(row  family     period  energy  kind             m  q  j  kernel  residual  test value  born there
-  2  Out-Phase     5.5       -  branch-point     1  1  0       2         -           -  -
-)");
+  EXPECT_EQ(out.str(), head + "born there            end there\n" + of_two + "-                     -\n");
 }
 
 TEST(Show, AnEndThatNamesTheFamilyIsNotToldTwice) {

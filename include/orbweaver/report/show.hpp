@@ -39,11 +39,11 @@ void print_table_head(std::ostream& out, const archive::Archive& atlas, const La
 
 /// One table, or a selection of it. Readable: aligned columns with ten digits and the families' names, unless columns
 /// are chosen without those that have no value and those that say where modes lie in the archive; crossings, unless
-/// columns are chosen, with their rows, names in place of indices and who is born there; without a selection loci with
-/// names in place of indices; equilibria with their periods; findings in a line each, as sentences; families as the
-/// tree in lines of at most the layout's width, children indented behind their parent, each with the crossing it was
-/// born at (kind, period, m), its ranges of period and energy, stability along it drawn in a few characters where the
-/// width allows it, isotropy, intervals of stability, and why it ended, cut where it is long. CSV: a head line, then
+/// columns are chosen, with their rows, names in place of indices, who is born and who ends there; without a selection
+/// loci with names in place of indices; equilibria with their periods; findings in a line each, as sentences; families
+/// as the tree in lines of at most the layout's width, children indented behind their parent, each with the crossing it
+/// was born at (kind, period, m), its ranges of period and energy, stability along it drawn in a few characters where
+/// the width allows it, isotropy, intervals of stability, and why it ended, cut where it is long. CSV: a head line, then
 /// full precision (%.17g), vector columns spread out as column_coordinate, what was not computed as `nan`. JSON: one
 /// array of objects with full precision, vector columns as arrays, what was not computed as `null`. Throws InputError
 /// for a table, family or column that is not there.
