@@ -23,8 +23,7 @@ bool is_here(const char* name) {  // the built-in function takes literals only
 
 constexpr int environment_failed = 3;  // core::ExitStatus, whose header brings code of its own
 
-// 101: the first that a program may have.
-[[gnu::constructor(101)]] void require_extensions() {
+void require_extensions() {
   __builtin_cpu_init();
   for (const ProcessorExtension* extension = processor_extensions; extension->name != nullptr; ++extension) {
     if (!extension->compiled_in || is_here(extension->name)) continue;
@@ -34,6 +33,10 @@ constexpr int environment_failed = 3;  // core::ExitStatus, whose header brings 
     _exit(environment_failed);
   }
 }
+
+// Before the initialisers of shared libraries: these find templates of the standard library in the program, which exports
+// its symbols for plugins.
+[[gnu::section(".preinit_array"), gnu::used]] void (*const first)() = require_extensions;
 
 }  // namespace
 
