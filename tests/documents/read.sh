@@ -2,7 +2,8 @@
 #
 # read_document DOCUMENT calls
 #   on_command LINE COMMAND   for a command: a line of a block ```sh; what stands behind `$ ` in a block ```console, which has what it
-#                             prints too; a line of an indented block that begins with one of the words below; `python3 NAME` behind a block ```python NAME. What follows a backslash at its end belongs to it.
+#                             prints too; a line of an indented block that begins with one of the words below; `python3 NAME` behind a
+#                             block ```python NAME. What follows a backslash at its end belongs to it.
 #   on_file LINE NAME TEXT    for a block ```LANGUAGE NAME: a file that the commands after it find
 #   on_fault LINE WHAT        for a block ``` of no language, and for a line beside commands that is neither a command, a comment, nor a title ending in a colon
 # Blocks ```text are no commands; nor is an indented block in which no line begins so (tables, scenes, formulas).
