@@ -126,4 +126,29 @@ awk '
     print $0
   }' work/known work/ours >work/unknown
 [[ ! -s work/unknown ]] || fail "numbers of $results that no command of its blocks prints: $(tr '\n' ' ' <work/unknown)"
+
+# The curves of figure 7 have a dip each, sharper than thirty dots are high, below the mark of the crossing: that once around below the branch
+# point, that twice around below the doubling. `dip COLOUR MARK`: of the paths of this colour, and gnuplot's point.
+dip() {
+  awk -v colour="$1" -v mark="$2" '
+    /<path stroke=/ { on = index($0, "stroke=\x27" colour "\x27") > 0 }
+    on {
+      line = $0
+      while (match(line, /[0-9.]+,[0-9.]+ /)) {
+        split(substr(line, RSTART, RLENGTH), point, ",")
+        line = substr(line, RSTART + RLENGTH)
+        if (point[2] + 0 < bottom) { x[n] = point[1] + 0; y[n++] = point[2] + 0 }
+      }
+    }
+    /stroke=.black.*Z/ { if (match($0, /L[0-9.]+,[0-9.]+ /)) bottom = substr($0, index($0, "L") + index(substr($0, index($0, "L")), ",")) + 0 }
+    index($0, "href=\x27#" mark "\x27 transform=") && !at { match($0, /translate\([0-9.]+/); at = substr($0, RSTART + 10) + 0 }
+    END {
+      for (i = 10; i + 10 < n; i++)
+        if (y[i] >= y[i - 1] && y[i] > y[i + 1] && y[i] - y[i - 10] > 30 && y[i] - y[i + 10] > 30) { dips++; place = x[i] }
+      printf "%d dips, the last at %g; %s at %g\n", dips, place, mark, at
+      exit !(dips == 1 && place - at < 1.5 && at - place < 1.5)
+    }' "$figures/figure_7.svg"
+}
+dip "rgb(  0, 114, 178)" gpPt5 >work/once || fail "figure_7.svg, once around: $(cat work/once)"
+dip "rgb(213,  94,   0)" gpPt3 >work/twice || fail "figure_7.svg, twice around: $(cat work/twice)"
 echo "$(wc -l <work/files) files, $blocks commands, $(wc -l <work/ours) numbers"
