@@ -9,6 +9,7 @@
 
 #include "h5_types.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/text.hpp"
 #include "own_dataset.hpp"
 #include "posix_file.hpp"
 
@@ -150,7 +151,7 @@ TextTable read_text_table(const std::filesystem::path& path, const TextTable& ex
   const std::optional<std::string> format = text_attribute(file, "format");
   if (format != expected.format)
     throw core::InputError(fmt::format("'{}' has the format '{}'; '{}' was expected", path.string(),
-                                       format.value_or("unknown"), expected.format));
+                                       core::printable(format.value_or("unknown")), expected.format));
   std::int64_t version = 0;
   const H5Handle attribute(
       check_h5<core::InputError>(H5Aopen(file.get(), "format_version", H5P_DEFAULT), "format_version"), H5Aclose);
