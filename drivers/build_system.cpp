@@ -20,6 +20,7 @@
 #include "orbweaver/core/process.hpp"
 #include "orbweaver/systems/plugins.hpp"
 #include "orbweaver/systems/registry.hpp"
+#include "output_file.hpp"
 
 namespace orbweaver::drivers {
 
@@ -99,6 +100,7 @@ int run(const BuildSystemOptions& options, const Invocation& invocation) {
     throw core::InputError("expected either the source of a model, or --model and --effects");
   if (options.source.empty() == false && !options.effects.empty())
     throw core::InputError("--effects are those of a --model of the program; a source names its own");
+  require_output_file(options.output, options.source);
   std::unique_ptr<ScratchFile> generated;
   fs::path source = options.source;
   if (source.empty()) {

@@ -1,10 +1,13 @@
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "command.hpp"
 #include "common_options.hpp"
+#include "orbweaver/core/error.hpp"
 #include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/report/compare/comparison.hpp"
 #include "orbweaver/report/compare/comparison_text.hpp"
@@ -22,6 +25,10 @@ struct CompareOptions {
 };
 
 int compare(const CompareOptions& options, const Invocation& invocation) {
+  if (const double tolerance = options.compare.tolerance; !std::isfinite(tolerance) || tolerance <= 0.0)
+    throw core::InputError(fmt::format("--tolerance: expected a number above 0, got {}", tolerance));
+  if (options.compare.loops < 0)
+    throw core::InputError(fmt::format("--loops: expected a number from 0 on, got {}", options.compare.loops));
   const core::Session session(invocation.petsc_options);
   const archive::Archive a(options.a);
   const archive::Archive b(options.b);
@@ -40,11 +47,9 @@ Command make_compare_command(CLI::App& program) {
   parser->add_option("A", options->a, "The atlas.h5 of a survey")->required();
   parser->add_option("B", options->b, "Another one")->required();
   parser->add_option("--tolerance", options->compare.tolerance, "Relative deviation that does not count")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->capture_default_str();
   parser->add_option("--loops", options->compare.loops, "Orbits of each family whose loops are compared")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->capture_default_str();
   parser->add_flag("--strict-names", options->compare.strict_names, "Families with another name differ");
   parser->add_flag("--json", options->json, "As JSON");
   add_plugin_option(*parser);

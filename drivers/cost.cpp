@@ -1,5 +1,5 @@
+#include <exception>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
 
@@ -14,6 +14,8 @@
 #include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/cost/ladders.hpp"
 #include "orbweaver/report/cost/cost_report.hpp"
+#include "output_file.hpp"
+#include "same_input.hpp"
 #include "unused_options.hpp"
 
 namespace orbweaver::drivers {
@@ -28,36 +30,51 @@ struct CostOptions {
 };
 
 void write_csv(const std::filesystem::path& directory, const cost::Table& table) {
-  const std::filesystem::path path = directory / (table.name + ".csv");
-  std::ofstream file(path);
-  file << report::table_csv(table);
-  file.close();
-  if (!file) throw core::EnvironmentError(fmt::format("cannot write {}", path.string()));
+  write_output_file(directory / (table.name + ".csv"), [&](std::ostream& file) { file << report::table_csv(table); });
 }
 
-int run(const CostOptions& options, const Invocation& invocation) {
-  const scene::Scene scene = options.scene.load();
-  const core::Session session(invocation.petsc_options);
-  const core::Communicator comm;
-  if (!options.directory.empty() && comm.is_root()) {
-    std::error_code error;
-    std::filesystem::create_directories(options.directory, error);
-    if (error)
-      throw core::EnvironmentError(fmt::format("cannot make {}: {}", options.directory.string(), error.message()));
-  }
+void make_folder(const std::filesystem::path& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) throw core::EnvironmentError(fmt::format("cannot make {}: {}", directory.string(), error.message()));
+}
+
+void measure_on(const core::Communicator& comm, const CostOptions& options) {
+  scene::Scene scene;
+  agree(comm, [&] { scene = options.scene.load(); });
+  require_same_input(comm, scene.text);
+  agree(comm, [&] {
+    if (!options.directory.empty() && comm.is_root()) make_folder(options.directory);
+  });
   bool has_gnuplot = true;
-  cost::measure(comm, scene, options.cost, [&](const cost::Table& table) {
+  const auto take = [&](const cost::Table& table) {
     if (table.printed) print_result(report::table_text(table));
     if (options.directory.empty()) return;
     write_csv(options.directory, table);
     for (const report::Picture& picture : report::pictures_of(table, options.format))
       has_gnuplot = has_gnuplot && report::draw(options.directory, picture);
+  };
+  alike_on_all_ranks(comm, [&] {
+    cost::measure(comm, scene, options.cost, take);
+    return true;
   });
   if (!has_gnuplot)
     core::log_warning(
         "no pictures: gnuplot is not installed (apt-get install gnuplot-nox); the tables are there as CSV");
-  if (comm.is_root()) warn_of_unused_options(session, core::Communicator(MPI_COMM_SELF));
-  return static_cast<int>(core::ExitStatus::done);
+}
+
+int run(const CostOptions& options, const Invocation& invocation) {
+  const core::Session session(invocation.petsc_options);
+  const core::Communicator comm;
+  try {
+    return run_on_ranks(comm, [&] {
+      measure_on(comm, options);
+      if (comm.is_root()) warn_of_unused_options(session, core::Communicator(MPI_COMM_SELF));
+      return static_cast<int>(core::ExitStatus::done);
+    });
+  } catch (...) {  // as in survey.cpp
+    return report_failure(std::current_exception());
+  }
 }
 
 }  // namespace
@@ -67,7 +84,8 @@ Command make_cost_command(CLI::App& program) {
   CLI::App* parser = program.add_subcommand("cost", "What accuracy costs in time, on the scene's own families");
   add_scene_options(*parser, options->scene);
   parser->add_option("-o,--output", options->directory, "A folder for the tables (CSV) and their plots")
-      ->type_name("DIR");
+      ->type_name("DIR")
+      ->check(named_path());
   parser->add_option("--only", options->cost.only, "Some of the ladders, as a,b")->delimiter(',')->type_name("NAMES");
   parser->add_option("--family", options->cost.family, "The family to measure on (default: the scene's first)")
       ->type_name("NAME");

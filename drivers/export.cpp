@@ -34,6 +34,10 @@ void write_orbits(std::ostream& out, const archive::Archive& atlas, const Export
 int run(const ExportOptions& options) {
   if (!options.equations.empty() && options.format != "auto")
     throw core::InputError("expected --equations with --format auto: they are Fortran for AUTO-07p");
+  if (!options.equations.empty() && options.equations == options.output)
+    throw core::InputError("expected --equations in another file than -o");
+  for (const std::filesystem::path& file : {options.output, options.equations})
+    if (!file.empty()) require_output_file(file, options.atlas);
   const archive::Archive atlas(options.atlas);
   const std::string equations = options.equations.empty() ? std::string() : report::auto_equations(atlas);
   if (options.output.empty()) {

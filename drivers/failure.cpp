@@ -1,6 +1,7 @@
 #include "failure.hpp"
 
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 
 #include <fmt/format.h>
@@ -53,6 +54,11 @@ Failure describe_failure(const std::exception_ptr& error) {
   } catch (const core::Interrupted&) {
     return {static_cast<int>(core::ExitStatus::stopped_early),
             "stopped before the survey had begun: there is nothing to go on from"};
+  } catch (const std::filesystem::filesystem_error& e) {
+    constexpr std::size_t longest_path = 200;
+    if (e.path1().empty()) return {environment_failed, e.what()};
+    const std::string path = core::shortened(core::printable(e.path1().string()), longest_path);
+    return {environment_failed, fmt::format("{}: {}", path, e.code().message())};
   } catch (const std::exception& e) {
     return {environment_failed, e.what()};
   } catch (...) {

@@ -8,28 +8,72 @@
 
 namespace orbweaver::drivers {
 
-std::filesystem::path part_of(std::filesystem::path path) { return path += ".part"; }
+namespace {
 
-void publish_file(const std::filesystem::path& part, const std::filesystem::path& path) {
+namespace fs = std::filesystem;
+
+/// A file on its way; what is not published goes with the object.
+class Part {
+ public:
+  explicit Part(const fs::path& path) : _path(fs::path(path) += ".part") {}
+  ~Part() {
+    std::error_code ignored;
+    fs::remove(_path, ignored);
+  }
+  Part(const Part&) = delete;
+  Part& operator=(const Part&) = delete;
+
+  [[nodiscard]] const fs::path& path() const { return _path; }
+
+ private:
+  fs::path _path;
+};
+
+std::ofstream opened(const fs::path& path) {
+  std::ofstream file(path, std::ios::binary);
+  if (!file) throw core::EnvironmentError(fmt::format("cannot write {}: is there such a folder?", path.string()));
+  return file;
+}
+
+void finish(std::ofstream& file, const fs::path& path) {
+  file.close();
+  if (!file) throw core::EnvironmentError(fmt::format("cannot write {}: is the disk full?", path.string()));
+}
+
+/// Whether it is there and no file: something that keeps its place.
+bool is_device_or_pipe(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  if (fs::is_directory(status))
+    throw core::InputError(fmt::format("cannot write {}: it is a folder; name a file in it", path.string()));
+  return fs::exists(status) && !fs::is_regular_file(status);
+}
+
+}  // namespace
+
+void write_output_file(const fs::path& path, const std::function<void(std::ostream&)>& write) {
+  if (is_device_or_pipe(path)) {
+    std::ofstream file = opened(path);
+    write(file);
+    return finish(file, path);
+  }
+  const Part part(path);
+  std::ofstream file = opened(part.path());
+  write(file);
+  finish(file, part.path());
   std::error_code error;
-  std::filesystem::rename(part, path, error);
+  fs::rename(part.path(), path, error);
   if (error) throw core::EnvironmentError(fmt::format("cannot write {}: {}", path.string(), error.message()));
 }
 
-void write_output_file(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write) {
-  const std::filesystem::path part = part_of(path);
-  std::ofstream file(part, std::ios::binary);
-  if (!file) throw core::EnvironmentError(fmt::format("cannot write {}: is there such a folder?", part.string()));
-  try {
-    write(file);
-  } catch (...) {
-    std::error_code ignored;
-    std::filesystem::remove(part, ignored);
-    throw;
-  }
-  file.close();
-  if (!file) throw core::EnvironmentError(fmt::format("cannot write {}: is the disk full?", part.string()));
-  publish_file(part, path);
+void require_output_file(const fs::path& path, const fs::path& input) {
+  std::error_code ignored;
+  if (fs::equivalent(path, input, ignored))
+    throw core::InputError(
+        fmt::format("cannot write {}: it is the file that is read; give another name", path.string()));
+  if (is_device_or_pipe(path)) return;
+  const Part part(path);
+  static_cast<void>(opened(part.path()));
 }
 
 }  // namespace orbweaver::drivers

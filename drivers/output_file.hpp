@@ -6,14 +6,13 @@
 
 namespace orbweaver::drivers {
 
-/// Writes PATH.part and renames it: an older PATH stays until the new one is whole. Throws EnvironmentError where that
-/// cannot be done; what `write` throws passes through, and nothing is left.
+/// Writes PATH.part and renames it: an older PATH stays until the new one is whole. A device or a pipe (/dev/stdout) is
+/// written into as it is. Throws InputError where PATH is a folder, EnvironmentError where it cannot be written; what
+/// `write` throws passes through. Nothing is left of what was not finished.
 void write_output_file(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 
-/// Gives a whole file its name. Throws EnvironmentError.
-void publish_file(const std::filesystem::path& part, const std::filesystem::path& path);
-
-/// The name of a file until it is whole.
-[[nodiscard]] std::filesystem::path part_of(std::filesystem::path path);
+/// What write_output_file would refuse, before any work is done for it. Where the file is `input` too, which it would
+/// take the place of: InputError.
+void require_output_file(const std::filesystem::path& path, const std::filesystem::path& input);
 
 }  // namespace orbweaver::drivers

@@ -22,6 +22,7 @@ struct PageOptions {
 };
 
 int run(const PageOptions& options) {
+  require_output_file(options.output, options.atlas);
   const archive::Archive atlas(options.atlas);
   const std::string_view page = page_template();
   if (page.empty()) throw core::EnvironmentError(fmt::format("cannot make a page: {}", missing_page_reason()));

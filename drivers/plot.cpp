@@ -1,5 +1,8 @@
 #include "orbweaver/report/plot/plot.hpp"
 
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -9,7 +12,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include "command.hpp"
 #include "common_options.hpp"
@@ -30,8 +32,15 @@ struct PlotOptions {
 /// A folder of this process, which goes with the object.
 class TemporaryFolder {
  public:
-  TemporaryFolder() : _path(std::filesystem::temp_directory_path() / fmt::format("orbweaver_plot_{}", getpid())) {
-    std::filesystem::create_directories(_path);
+  TemporaryFolder() {
+    std::error_code code;
+    const std::filesystem::path where = std::filesystem::temp_directory_path(code);
+    if (code) throw core::EnvironmentError(fmt::format("TMPDIR names no folder: {}", code.message()));
+    std::string name = (where / "orbweaver_plot_XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr)
+      throw core::EnvironmentError(
+          fmt::format("cannot make the folder {}: {}; TMPDIR says where", name, std::strerror(errno)));
+    _path = name;
   }
   ~TemporaryFolder() {
     std::error_code ignored;
@@ -51,6 +60,7 @@ int run(const PlotOptions& options, const Invocation& invocation) {
   std::optional<core::Session> session;
   if (report::plot_computes(request.what)) session.emplace(invocation.petsc_options);
   request.format = report::plot_format_of(options.output);
+  require_output_file(options.output, options.atlas);
   const archive::Archive atlas(options.atlas);
   const TemporaryFolder folder;
   const std::filesystem::path picture = report::draw_plot(atlas, request, folder.path());

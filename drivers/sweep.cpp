@@ -1,16 +1,13 @@
 #include <filesystem>
-#include <fstream>
 #include <memory>
-
-#include <fmt/format.h>
 
 #include "command.hpp"
 #include "common_options.hpp"
 #include "failure.hpp"
-#include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/communicator.hpp"
 #include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/report/sweep_report.hpp"
+#include "output_file.hpp"
 #include "unused_options.hpp"
 
 namespace orbweaver::drivers {
@@ -23,24 +20,17 @@ struct SweepOptions {
   bool table = false;
 };
 
-void write_file(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path);
-  file << text;
-  file.close();
-  if (!file)
-    throw core::EnvironmentError(
-        fmt::format("cannot write {}: give --csv a file in a folder where you may write", path.string()));
-}
-
 int run(const SweepOptions& options, const Invocation& invocation) {
   const scene::Scene scene = options.scene.load();
   const core::Session session(invocation.petsc_options);
   const core::Communicator comm;
   if (!comm.is_root()) return 0;  // not distributed: under mpirun rank 0 does it
+  if (!options.csv.empty()) require_output_file(options.csv, options.scene.file);
   const auto reports = report::sweep_report(scene);
   print_result(report::to_text(reports));
   if (options.table) print_result("\n" + report::eigenvalue_table(reports));
-  if (!options.csv.empty()) write_file(options.csv, report::eigenvalue_csv(reports));
+  if (!options.csv.empty())
+    write_output_file(options.csv, [&](std::ostream& file) { file << report::eigenvalue_csv(reports); });
   warn_of_unused_options(session, core::Communicator(MPI_COMM_SELF));
   return 0;
 }

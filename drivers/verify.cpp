@@ -17,6 +17,7 @@
 #include "orbweaver/report/proof_text.hpp"
 #include "orbweaver/report/verify_text.hpp"
 #include "orbweaver/survey/verify/verify.hpp"
+#include "output_file.hpp"
 #include "same_input.hpp"
 
 namespace orbweaver::drivers {
@@ -50,6 +51,11 @@ void require_options_fit(const VerifyOptions& options) {
 
 /// Proves orbits of an archive, one after the other; what cannot be proven does not stop the others.
 bool prove_orbits(const VerifyOptions& options) {
+  if (!options.output.empty()) {
+    require_output_file(options.output, options.atlas);
+    if (std::filesystem::exists(options.output) && !std::filesystem::is_regular_file(options.output))
+      throw core::InputError(fmt::format("cannot write {}: proofs need a file", options.output.string()));
+  }
   const archive::Archive atlas(options.atlas);
   std::vector<prove::Proof> proofs;
   std::vector<double> seconds;
@@ -126,7 +132,8 @@ Command make_verify_command(CLI::App& program) {
   parser->add_option("ORBITS", options->orbits,
                      "With --prove: FAMILY T=PERIOD|E=ENERGY|PARAMETER=VALUE|STEP, for each orbit");
   parser->add_option("-n,--digits", options->digits, "With --prove: digits aimed at")->capture_default_str();
-  parser->add_option("-o,--output", options->output, "With --prove: a file for the proofs, which verify checks again");
+  parser->add_option("-o,--output", options->output, "With --prove: a file for the proofs, which verify checks again")
+      ->check(named_path());
   parser->add_flag("--margins", options->margins, "Say how near each column came to what is allowed");
   add_log_options(*parser, options->log);
   add_plugin_option(*parser);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <thread>
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@
 #include "ladders/tolerance.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/check_mpi.hpp"
+#include "orbweaver/core/mpi/collective.hpp"
 #include "setting.hpp"
 
 namespace orbweaver::cost {
@@ -60,22 +62,30 @@ std::vector<LadderInfo> known_ladders() {
 
 void measure(const core::Communicator& comm, const scene::Scene& scene, const Options& options,
              const std::function<void(const Table&)>& take) {
-  check_names(options.only);
-  const Setting setting(comm, scene, options);
+  std::optional<Setting> setting;
+  core::collectively(comm.get(), [&] {
+    check_names(options.only);
+    setting.emplace(comm, scene, options);
+  });
   for (const Ladder* ladder : ladders) {
     const bool wanted =
         options.only.empty() || std::find(options.only.begin(), options.only.end(), ladder->name) != options.only.end();
     if (!wanted) continue;
-    try {
-      if (comm.is_root() || ladder->collective) ladder->measure(setting, take);
-    } catch (const core::NumericalError& error) {  // the other ladders may still be climbed
-      take({std::string(ladder->name),
-            std::string(ladder->about),
-            {},
-            {},
-            {fmt::format("not measured: {}", error.what())}});
-    }
+    const core::Failure failure = core::attempt([&] {
+      try {
+        if (comm.is_root() || ladder->collective) ladder->measure(*setting, take);
+      } catch (const core::NumericalError& error) {  // the other ladders may still be climbed
+        if (!comm.is_root()) return;
+        take({std::string(ladder->name),
+              std::string(ladder->about),
+              {},
+              {},
+              {fmt::format("not measured: {}", error.what())}});
+      }
+    });
     wait_for_root(comm);
+    // A table that cannot be written ends the others too.
+    if (const auto shared = core::share(comm.get(), failure)) core::raise(shared->failure);
   }
 }
 

@@ -1,8 +1,11 @@
 #include "ball.hpp"
 
 #include <cmath>
+#include <sstream>
+#include <string>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/text.hpp"
 
 namespace orbweaver::prove {
 
@@ -10,6 +13,20 @@ namespace {
 
 constexpr long first_bits = 128;  // until WorkingBits says otherwise
 thread_local long bits_in_force = first_bits;
+
+constexpr std::size_t longest_echo = 200;
+
+/// Whether the exponents, the second and the fourth number, have no more hexadecimal digits than a computation's: the
+/// decimal digits of others would take all memory.
+bool has_usual_exponents(const std::string& text) {
+  constexpr std::size_t most_digits = 6;
+  std::istringstream words(text);
+  std::string mantissa;
+  std::string exponent;
+  while (words >> mantissa >> exponent)
+    if (exponent.size() > most_digits + (exponent.starts_with('-') ? 1 : 0)) return false;
+  return true;
+}
 
 double rounded_outwards(const arf_t x, arf_rnd_t way) { return arf_get_d(x, way); }
 
@@ -40,8 +57,9 @@ Ball Ball::of(const numerics::Extended& exact) {
 
 Ball Ball::of_exact_text(const std::string& text) {
   Ball result;
-  if (arb_load_str(result._ball, text.c_str()) != 0)
-    throw core::InputError("expected a ball as four whole numbers, got `" + text + "`");
+  if (!has_usual_exponents(text) || arb_load_str(result._ball, text.c_str()) != 0)
+    throw core::InputError("expected a ball as four whole numbers, got `" +
+                           core::shortened(core::printable(text), longest_echo) + "`");
   return result;
 }
 

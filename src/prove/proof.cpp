@@ -29,6 +29,7 @@ using Quantity = refine::HeldValue::Quantity;
 constexpr int centre_guard = 6;
 constexpr int step_guard = 6;
 constexpr int arithmetic_guard = 20;
+constexpr long most_bits = 20000;  // of any statement: an orbit that needs more is not proven
 constexpr double bits_a_digit = 3.3219280948873626;
 /// An instant for so many harmonics of the fundamental domain: boxes grow little in between.
 constexpr int harmonics_a_segment = 2;
@@ -274,8 +275,9 @@ Statement statement_about(const archive::Archive& atlas, const std::string& fami
 }
 
 Proof prove(const Statement& statement, std::optional<double> radius) {
-  if (statement.bits < 2 || statement.digits < 1 || statement.digits > most_proof_digits)
-    throw core::InputError("a statement without digits");
+  if (statement.bits < 2 || statement.bits > most_bits || statement.digits < 1 || statement.digits > most_proof_digits)
+    throw core::InputError(fmt::format("expected a statement of 1 to {} digits and 2 to {} bits, got {} and {}",
+                                       most_proof_digits, most_bits, statement.digits, statement.bits));
   const WorkingBits working(statement.bits);
   const ClosedOrbit orbit = closed_orbit_of(statement);
   BallVector centre = balls_of(statement.centre);

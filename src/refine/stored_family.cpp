@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -126,7 +127,7 @@ StoredFamily::Place StoredFamily::at_step(int step) const {
 }
 
 StoredFamily::Place StoredFamily::with(const HeldValue& value, std::optional<int> after) const {
-  const double wanted = std::stod(value.decimal);
+  const double wanted = std::strtod(value.decimal.c_str(), nullptr);  // of what no double is: infinity, or 0
   const std::vector<double> known = values(value.quantity);
   std::vector<std::size_t> places;
   for (std::size_t n = after ? index_of(*after) : 0; n < known.size(); ++n) {

@@ -18,6 +18,8 @@ namespace orbweaver::scene {
 
 namespace {
 
+constexpr double closest = 1e-9;          // of the period: nearer times no spline tells apart
+constexpr double farthest = 1e6;          // periods: beside later times these are not told apart either
 constexpr std::size_t longest_echo = 40;  // of a cell, in a message
 constexpr double largest = 1e100;         // squares of it and their sums are finite
 
@@ -108,6 +110,12 @@ LoopSamples parse_loop_samples(const std::string& text, const std::string& origi
     const double time = row.front();
     if (!samples.times.empty() && !(time > samples.times.back()))
       lines.fail(fmt::format("a time after {}", samples.times.back()), fmt::format("{}", time), "sort the rows by t");
+    if (std::abs(time) > farthest * period)
+      lines.fail(fmt::format("a time of {:g} periods at most", farthest), fmt::format("{}", time),
+                 "count t from the first row");
+    if (!samples.times.empty() && !(time - samples.times.back() > closest * period))
+      lines.fail(fmt::format("a time more than {:g} after {}", closest * period, samples.times.back()),
+                 fmt::format("{}", time), "leave one of the two rows out");
     if (!samples.times.empty() && time - samples.times.front() > period * (1.0 + same_period))
       lines.fail(fmt::format("times within one period, {}, from the first, {}", period, samples.times.front()),
                  fmt::format("{}", time), "cut the table, or correct the period");

@@ -138,8 +138,9 @@ const systems::Plugin& plugin_of(const Field& file, const Field* source,
   const std::string wanted = source != nullptr ? source->text("the hash that the archive's scene has") : "";
   const systems::Plugin* found = nullptr;
   if (folder) {
+    const std::string name = file.text("./my_system.so", longest_path);
     try {
-      found = &systems::load_plugin(*folder / file.text("./my_system.so", longest_path));
+      found = &systems::load_plugin(*folder / name);
     } catch (const core::InputError& error) {
       file.fail(error.what());
     }

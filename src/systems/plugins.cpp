@@ -9,8 +9,10 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/file_hash.hpp"
+#include "orbweaver/core/text.hpp"
 #include "orbweaver/systems/model/plugin_table.hpp"
 #include "registry_lines.hpp"
+#include "shared_library.hpp"
 
 namespace orbweaver::systems {
 
@@ -25,6 +27,13 @@ std::deque<Plugin>& plugins() {
   throw core::InputError(fmt::format("the plugin '{}': {}", file.string(), text));
 }
 
+constexpr std::size_t longest_echo = 60;
+
+bool is_hash(const std::string& text) {
+  constexpr std::size_t digits = 40;  // of SHA-1
+  return text.size() == digits && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
 constexpr std::string_view build_again = "build it again with this program's `orbweaver build-system`";
 
 // A library stays loaded also where it is refused: nothing of it is used.
@@ -35,6 +44,11 @@ void* opened(const std::filesystem::path& file, int mode) {
 }
 
 const PluginTable& table_of(const std::filesystem::path& file) {
+  try {
+    require_shared_library(file);
+  } catch (const core::InputError& error) {
+    refuse(file, fmt::format("cannot be loaded ({}); {}", error.what(), build_again));
+  }
   // Lazily first, so that a plugin for another version says so before a symbol of that version is missed.
   void* library = opened(file, RTLD_LAZY);
   const auto* table = static_cast<const PluginTable*>(dlsym(library, "orbweaver_plugin"));
@@ -66,6 +80,9 @@ const Plugin& load_plugin(const std::filesystem::path& file) {
     if (plugin.file == path) return plugin;
   const PluginTable& table = table_of(path);
   Plugin plugin{path, table.source, core::file_hash({path}), {}};
+  if (!plugin.source.empty() && !is_hash(plugin.source))
+    refuse(file, fmt::format("its source has the hash `{}`, which is none; {}",
+                             core::shortened(core::printable(plugin.source), longest_echo), build_again));
   if (plugin.source.empty()) plugin.source = plugin.build;
   const std::span lines(table.lines, table.line_count);
   for (const RegistryLine& line : lines) plugin.models.push_back(line.info().name);

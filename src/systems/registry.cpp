@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/text.hpp"
 #include "orbweaver/systems/model/checks.hpp"
 #include "pendulum_chain.hpp"
 #include "registry_lines.hpp"
@@ -89,6 +90,7 @@ bool are_one_model(const RegistryLine& a, const RegistryLine& b) {
 
 void require_new(const RegistryLine& line) {
   const ModelInfo& info = line.info();
+  require_description(info);
   const RegistryLine* known = find_line(info.name);
   if (known == nullptr) return;
   if (!are_one_model(line, *known))
@@ -112,6 +114,20 @@ void require_new(const RegistryLine& line) {
       name, joined(effects), joined(texts), name, fmt::join(effects, ",")));
 }
 
+/// A plugin's model that contradicts itself is wrong input, not a fault of the program.
+std::shared_ptr<const System> made(const RegistryLine& line, const Bound& bound) {
+  const bool is_built_in =
+      std::any_of(built_in.begin(), built_in.end(), [&](const RegistryLine& own) { return own.make == line.make; });
+  if (is_built_in) return line.make(bound);
+  try {
+    return line.make(bound);
+  } catch (const core::Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw core::InputError(fmt::format("the plugin's system '{}': {}", line.info().name, error.what()));
+  }
+}
+
 /// What stands between the outer brackets of a template's type.
 std::vector<std::string> template_arguments(const std::string& type) {
   std::vector<std::string> arguments;
@@ -133,6 +149,32 @@ std::vector<std::string> template_arguments(const std::string& type) {
 }  // namespace
 
 const std::vector<RegistryLine>& registry_lines() { return registry(); }
+
+void require_description(const ModelInfo& info) {
+  constexpr std::size_t longest = 200;
+  const auto require = [&](const char* what, const std::string& text, bool may_be_empty = false) {
+    if (text.size() > longest || core::printable(text) != text || (text.empty() && !may_be_empty))
+      throw core::InputError(fmt::format("its {} `{}`: expected one line of text with 1 to {} characters", what,
+                                         core::shortened(core::printable(text), longest), longest));
+  };
+  const auto require_parameters = [&](const std::vector<Parameter>& parameters) {
+    for (const Parameter& parameter : parameters) {
+      require("name of a parameter", parameter.name);
+      require("unit of a parameter", parameter.unit, true);
+      require("meaning of a parameter", parameter.meaning, true);
+    }
+  };
+  require("name", info.name);
+  require("title", info.title, true);
+  require("meaning", info.meaning, true);
+  for (const std::string& name : info.state_names) require("name of a coordinate", name);
+  for (const std::string& name : info.winding_names) require("name of a winding number", name, true);
+  require_parameters(info.parameters);
+  for (const Effect& effect : info.effects) {
+    require("name of an effect", effect.name);
+    require_parameters(effect.parameters);
+  }
+}
 
 void add_registry_lines(std::span<const RegistryLine> lines) {
   const std::size_t before = registry().size();
@@ -195,7 +237,7 @@ std::shared_ptr<const System> make_system(const std::string& name, const std::ma
   for (const RegistryLine& candidate : registry()) {
     if (candidate.info().name != name) continue;
     const std::vector<std::string>& has = candidate.effects();
-    if (std::set(has.begin(), has.end()) == asked) return candidate.make(bound);
+    if (std::set(has.begin(), has.end()) == asked) return made(candidate, bound);
   }
   refuse_combination(name, effects);
 }

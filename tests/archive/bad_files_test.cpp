@@ -5,6 +5,7 @@
 #include <random>
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include "archive/sample.hpp"
 #include "file/h5_handle.hpp"
@@ -215,6 +216,47 @@ TEST_F(BadFiles, FindingsThatPointNowhereAreNamed) {
   consolidate(MPI_COMM_SELF, {segment}, path, test::sample_header(),
               test::tables_of(test::sample_records(test::sample_header())), {}, witness);
   EXPECT_THAT(atlas_refusal(path), HasSubstr("/findings/family = 99"));
+}
+
+/// Another file may be a pipe, which is waited for, or one of this machine that is nobody's business.
+TEST_F(BadFiles, ValuesInOtherFilesAreRefused) {
+  const std::filesystem::path pipe = folder / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const std::string name = "orbits/period";
+  const auto creation_with = [](const std::function<void(hid_t, hid_t)>& set, hid_t space) {
+    H5Handle creation(check_h5(H5Pcreate(H5P_DATASET_CREATE), "H5Pcreate"), H5Pclose);
+    set(creation.get(), space);
+    return creation;
+  };
+  const auto created = [&](const std::function<void(hid_t, hid_t)>& set) {
+    return altered([&](hid_t file) {
+      const H5Handle old(check_h5(H5Dopen2(file, name.c_str(), H5P_DEFAULT), name), H5Dclose);
+      const H5Handle space(check_h5(H5Dget_space(old.get()), name), H5Sclose);
+      const H5Handle creation = creation_with(set, space.get());
+      check_h5(H5Ldelete(file, name.c_str(), H5P_DEFAULT), "H5Ldelete");
+      const H5Handle dataset(check_h5(H5Dcreate2(file, name.c_str(), H5T_NATIVE_DOUBLE, space.get(), H5P_DEFAULT,
+                                                 creation.get(), H5P_DEFAULT),
+                                      name),
+                             H5Dclose);
+    });
+  };
+  const auto refused = HasSubstr("lacks the dataset /orbits/period, or it is damaged or lies in another file");
+  EXPECT_THAT(created([&](hid_t creation, hid_t) {
+                check_h5(H5Pset_external(creation, pipe.c_str(), 0, H5F_UNLIMITED), "H5Pset_external");
+              }),
+              refused);
+  EXPECT_THAT(created([&](hid_t creation, hid_t space) {
+                check_h5(H5Pset_virtual(creation, space, pipe.c_str(), "/x", space), "H5Pset_virtual");
+              }),
+              refused);
+  for (const std::string& link : {name, std::string("orbits")})
+    EXPECT_THAT(altered([&](hid_t file) {
+                  check_h5(H5Ldelete(file, link.c_str(), H5P_DEFAULT), "H5Ldelete");
+                  check_h5(H5Lcreate_external(pipe.c_str(), "/x", file, link.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                           "H5Lcreate_external");
+                }),
+                HasSubstr("lies in another file"))
+        << link;
 }
 
 TEST_F(BadFiles, WrongLengthsShapesAndTypesAreNamed) {

@@ -9,8 +9,7 @@
 
 namespace orbweaver::fuzz {
 
-/// A kind of input from outside. A reader that comes (plugins) gets a
-/// function here and its line in main.cpp.
+/// A kind of input from outside. A reader that comes gets a function here and its line in main.cpp.
 struct Kind {
   std::function<std::string(Mutator&)> make;
   /// Reads it as the program would. Throws InputError, by which it ends with status 2, for what is refused, and
@@ -27,7 +26,8 @@ Kind grown_scenes();  ///< keys, values and structures put together
 Kind overrides();     ///< words behind --set, one a line
 Kind messages();      ///< of the queue, half of them with a right checksum
 
-Kind loops();  ///< in CSV, as starts
+Kind loops();         ///< in CSV, as starts
+Kind descriptions();  ///< names and meanings that a plugin's systems bring
 
 /// Files are written into `folder`, which exists and is empty.
 Kind archives(const std::filesystem::path& folder);
@@ -35,6 +35,8 @@ Kind segments(const std::filesystem::path& folder);
 Kind checkpoints(const std::filesystem::path& folder);  ///< half of them with a right checksum
 Kind journals(const std::filesystem::path& folder);     ///< the same
 
+Kind plugins(const std::filesystem::path& folder);         ///< what is looked at before one is loaded
+Kind proofs(const std::filesystem::path& folder);          ///< files of `verify --prove`
 Kind start_archives(const std::filesystem::path& folder);  ///< whose orbits a scene starts from
 
 [[nodiscard]] std::string bytes_of(const std::filesystem::path& file);

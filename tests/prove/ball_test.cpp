@@ -51,6 +51,9 @@ TEST(Ball, KeepsItsTextToTheLastBit) {
   EXPECT_TRUE(same.contains(pi) && pi.contains(same));
   EXPECT_THAT([] { static_cast<void>(Ball::of_exact_text("about 3")); },
               ThrowsMessage<core::InputError>(HasSubstr("expected a ball")));
+  // Whose decimal digits would take all memory.
+  EXPECT_THROW(static_cast<void>(Ball::of_exact_text("1 7fffffffffffffffff 0 0")), core::InputError);
+  EXPECT_THROW(static_cast<void>(Ball::of_exact_text("1 0 1 fffffffffffffff")), core::InputError);
 }
 
 // The square root of a rectangle about i lies off the cut; of one about -1 it meets it, as do powers and logarithms.

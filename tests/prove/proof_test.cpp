@@ -191,6 +191,9 @@ TEST(Prove, RefusesStatementsThatMakeNoSense) {
   wrong.centre.pop_back();
   EXPECT_THAT([&] { static_cast<void>(prove(wrong)); }, ThrowsMessage<core::InputError>(HasSubstr("unknowns")));
   wrong = right;
+  wrong.bits = 1L << 40;  // which no memory has
+  EXPECT_THAT([&] { static_cast<void>(prove(wrong)); }, ThrowsMessage<core::InputError>(HasSubstr("bits")));
+  wrong = right;
   wrong.start.pop_back();
   EXPECT_THAT([&] { static_cast<void>(prove(wrong)); }, ThrowsMessage<core::InputError>(HasSubstr("does not fit")));
   wrong = statement_about("Swing", {}, oscillator("R@0"), {Quantity::energy, "0.005"}, 10);

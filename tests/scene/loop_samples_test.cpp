@@ -51,6 +51,9 @@ TEST(LoopSamples, AreRefusedWithFileAndLine) {
             "loop.csv:5: expected a number of modulus 1e+100 at most, got `nan`; correct it");
   EXPECT_THAT(refusal(table(5, "5,1.5,2,1e300,4")), HasSubstr("loop.csv:5: expected a number"));
   EXPECT_EQ(refusal(table(5, "5,0.9,2,3,4")), "loop.csv:5: expected a time after 1, got 0.9; sort the rows by t");
+  EXPECT_EQ(refusal(table(5, "5,1.0000000001,2,3,4")),
+            "loop.csv:5: expected a time more than 4e-09 after 1, got 1.0000000001; leave one of the two rows out");
+  EXPECT_THAT(refusal(table(2, "5,-1e16,2,3,4")), HasSubstr("loop.csv:2: expected a time of 1e+06 periods at most"));
   EXPECT_THAT(refusal(table(5, "5,1.5,2,3")), HasSubstr("loop.csv:5: expected 5 numbers, one a column, got 4"));
   EXPECT_THAT(refusal(table(5, "")), HasSubstr("loop.csv:5: expected 5 numbers, one a column, got 1"));
   EXPECT_THAT(refusal(table(1, "t,th1,th2,w1")),

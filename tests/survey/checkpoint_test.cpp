@@ -64,6 +64,25 @@ TEST(Checkpoint, ComesBackWhole) {
   EXPECT_EQ(next_journal(read), 8U);
 }
 
+/// A stop behind a flush writes no second time what may have 300 MB.
+TEST(Checkpoint, WhatIsWrittenIsNotWrittenAgain) {
+  const auto folder = test::fresh_folder("unchanged");
+  Checkpoint checkpoint;
+  CheckpointMark newest = write_checkpoint(folder, checkpoint);
+  checkpoint.unfinished = {task("a")};
+  newest = write_checkpoint(folder, checkpoint, newest);
+  EXPECT_EQ(write_checkpoint(folder, checkpoint, newest), newest);
+  EXPECT_THAT(read_checkpoint(previous_checkpoint_path(folder)).unfinished, IsEmpty()) << "of the first one";
+  checkpoint.failures = 1;
+  EXPECT_NE(write_checkpoint(folder, checkpoint, newest), newest);
+  EXPECT_EQ(read_checkpoint(checkpoint_path(folder)).failures, 1U);
+  EXPECT_EQ(read_checkpoint(previous_checkpoint_path(folder)).unfinished.size(), 1U);
+  std::filesystem::remove(checkpoint_path(folder));
+  newest = write_checkpoint(folder, checkpoint, newest);
+  newest = write_checkpoint(folder, checkpoint, newest);
+  EXPECT_EQ(read_checkpoint(checkpoint_path(folder)).failures, 1U) << "somebody has taken it away";
+}
+
 TEST(Checkpoint, AJournalWithOtherEntriesIsRefused) {
   const auto folder = test::fresh_folder("journal");
   const JournalFile file = write_journal(folder, 1, {{task("a"), outcome("a"), true}});

@@ -27,7 +27,8 @@ struct LadderInfo {
 
 /// Measures on the scene's own families (docs/accuracy.md) and hands over each table as it is done, on rank 0.
 /// Collective over `comm`: other ranks than 0 take part in the ladder `ranks` only. Throws InputError for a scene
-/// that cannot be surveyed, a family or a ladder that there is not, or a system that cannot be refined.
+/// that cannot be surveyed, a family or a ladder that there is not, or a system that cannot be refined. What is thrown,
+/// by `take` too, is thrown on all ranks.
 void measure(const core::Communicator& comm, const scene::Scene& scene, const Options& options,
              const std::function<void(const Table&)>& take);
 

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -16,6 +17,8 @@
 namespace orbweaver::archive {
 
 namespace {
+
+constexpr std::size_t bytes_at_once = std::size_t{16} << 20;
 
 [[noreturn]] void throw_system_error(const char* doing, const std::filesystem::path& path) {
   const int code = errno;
@@ -71,12 +74,18 @@ void expect_writable(const std::filesystem::path& path) {
 
 void write_file(const std::filesystem::path& path, std::initializer_list<std::string_view> pieces) {
   const Descriptor file(path, O_WRONLY | O_CREAT | O_TRUNC, "create");
+  off_t begun = 0;  // what the disk was told to write, while the next piece is copied
+  off_t size = 0;
   for (std::string_view piece : pieces)
     while (!piece.empty()) {
-      const ssize_t written = write(file.get(), piece.data(), piece.size());
+      const ssize_t written = write(file.get(), piece.data(), std::min(piece.size(), bytes_at_once));
       if (written < 0 && errno == EINTR) continue;
       if (written <= 0) throw_system_error("write to", path);
       piece.remove_prefix(static_cast<std::size_t>(written));
+      size += written;
+      if (size - begun < static_cast<off_t>(bytes_at_once)) continue;
+      static_cast<void>(sync_file_range(file.get(), begun, size - begun, SYNC_FILE_RANGE_WRITE));
+      begun = size;
     }
   if (fsync(file.get()) != 0) throw_system_error("sync", path);
 }

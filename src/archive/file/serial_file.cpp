@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "h5_types.hpp"
+#include "own_dataset.hpp"
 #include "schema/row_checksum.hpp"
 
 namespace orbweaver::archive {
@@ -181,8 +182,8 @@ std::string SerialFile::single_text_attribute(const char* name) const {
 const H5Handle& SerialFile::dataset(const std::string& name) {
   const auto known = _datasets.find(name);
   if (known != _datasets.end()) return known->second;
-  const hid_t id = H5Dopen2(_file.get(), name.c_str(), H5P_DEFAULT);
-  if (id < 0) expect(false, fmt::format("lacks the dataset /{}, or it is damaged", name));
+  const hid_t id = open_own_dataset(_file.get(), name);
+  if (id < 0) expect(false, fmt::format("lacks the dataset /{}, or it is damaged or lies in another file", name));
   return _datasets[name] = {id, H5Dclose};
 }
 
@@ -218,9 +219,7 @@ std::string SerialFile::change_in_header() const {
   return holds ? "" : "has root attributes that were changed: they do not give the checksum stored with them";
 }
 
-bool SerialFile::has_table(const std::string& name) const {
-  return H5Lexists(_file.get(), name.c_str(), H5P_DEFAULT) > 0;
-}
+bool SerialFile::has_table(const std::string& name) const { return is_in_file(_file.get(), name); }
 
 std::uint64_t SerialFile::expect_table(TableSpec& spec) {
   std::vector<hsize_t> first_shape;

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 
 #include <fmt/format.h>
 #include <zlib.h>
 
 #include "h5_types.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/text.hpp"
+#include "own_dataset.hpp"
 #include "posix_file.hpp"
 
 namespace orbweaver::archive {
@@ -15,6 +18,7 @@ namespace orbweaver::archive {
 namespace {
 
 constexpr const char* checksum_column = "checksum";
+constexpr std::size_t longest_attribute = 1000;  // of those that this program reads
 
 /// Of the row's number and its texts, each with its length before it.
 std::string checksum_of(const TextTable& table, std::size_t row) {
@@ -60,11 +64,19 @@ void write_column(const H5Handle& file, const std::string& name, const std::vect
   if (rows > 0) check_h5(H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, block.data()), name);
 }
 
+/// Of an attribute: one value, as its reader takes.
+bool is_single(const H5Handle& attribute) {
+  const H5Handle space(check_h5<core::InputError>(H5Aget_space(attribute.get()), "H5Aget_space"), H5Sclose);
+  return H5Sget_simple_extent_npoints(space.get()) == 1;
+}
+
 std::optional<std::string> text_attribute(const H5Handle& file, const char* name) {
   if (H5Aexists(file.get(), name) <= 0) return std::nullopt;
   const H5Handle attribute(check_h5<core::InputError>(H5Aopen(file.get(), name, H5P_DEFAULT), name), H5Aclose);
   const H5Handle type(check_h5<core::InputError>(H5Aget_type(attribute.get()), name), H5Tclose);
-  if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0) return std::nullopt;
+  if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0 || !is_single(attribute) ||
+      H5Tget_size(type.get()) > longest_attribute)
+    return std::nullopt;
   std::string text(H5Tget_size(type.get()), '\0');
   check_h5<core::InputError>(H5Aread(attribute.get(), type.get(), text.data()), name);
   return text.substr(0, text.find_last_not_of('\0') + 1);
@@ -72,8 +84,7 @@ std::optional<std::string> text_attribute(const H5Handle& file, const char* name
 
 std::vector<std::string> read_column(const std::filesystem::path& path, const H5Handle& file, const std::string& name) {
   const std::string problem = fmt::format("'{}' lacks the column /{}, or it is damaged", path.string(), name);
-  const H5Handle dataset(check_h5<core::InputError>(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), problem),
-                         H5Dclose);
+  const H5Handle dataset(check_h5<core::InputError>(open_own_dataset(file.get(), name), problem), H5Dclose);
   const H5Handle type(check_h5<core::InputError>(H5Dget_type(dataset.get()), problem), H5Tclose);
   const H5Handle space(check_h5<core::InputError>(H5Dget_space(dataset.get()), problem), H5Sclose);
   if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0 ||
@@ -81,6 +92,9 @@ std::vector<std::string> read_column(const std::filesystem::path& path, const H5
     throw core::InputError(problem);
   const std::size_t width = H5Tget_size(type.get());
   const auto rows = static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space.get())));
+  if (rows > std::filesystem::file_size(path) / width)
+    throw core::InputError(fmt::format("'{}' claims {} rows of {} bytes in /{}, more than the file's {}", path.string(),
+                                       rows, width, name, std::filesystem::file_size(path)));
   std::string block(rows * width, '\0');
   if (rows > 0)
     check_h5<core::InputError>(H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, block.data()),
@@ -128,15 +142,21 @@ void write_text_table(const std::filesystem::path& path, const TextTable& table)
 
 TextTable read_text_table(const std::filesystem::path& path, const TextTable& expected) {
   quiet_h5();
-  if (!std::filesystem::exists(path)) throw core::InputError(fmt::format("'{}' does not exist", path.string()));
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored))
+    throw core::InputError(fmt::format("'{}' does not exist", path.string()));
+  if (!std::filesystem::is_regular_file(path, ignored))
+    throw core::InputError(fmt::format("'{}' is not a regular file", path.string()));
   const H5Handle file = opened(path);
   const std::optional<std::string> format = text_attribute(file, "format");
   if (format != expected.format)
     throw core::InputError(fmt::format("'{}' has the format '{}'; '{}' was expected", path.string(),
-                                       format.value_or("unknown"), expected.format));
+                                       core::printable(format.value_or("unknown")), expected.format));
   std::int64_t version = 0;
   const H5Handle attribute(
       check_h5<core::InputError>(H5Aopen(file.get(), "format_version", H5P_DEFAULT), "format_version"), H5Aclose);
+  if (!is_single(attribute))
+    throw core::InputError(fmt::format("'{}' has a format_version that is not one number", path.string()));
   check_h5<core::InputError>(H5Aread(attribute.get(), H5T_NATIVE_INT64, &version), "format_version");
   if (version > expected.version)
     throw core::NewerVersionError(fmt::format("'{}' has format_version {}; this Orbweaver reads versions up to {}",
@@ -160,8 +180,13 @@ TextTable read_text_table(const std::filesystem::path& path, const TextTable& ex
 
 std::optional<std::string> format_of(const std::filesystem::path& path) {
   quiet_h5();
-  if (!std::filesystem::is_regular_file(path) || H5Fis_hdf5(path.c_str()) <= 0) return std::nullopt;
-  return text_attribute(opened(path), "format");
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored) || H5Fis_hdf5(path.c_str()) <= 0) return std::nullopt;
+  try {
+    return text_attribute(opened(path), "format");
+  } catch (const core::InputError&) {
+    return std::nullopt;  // damaged, as who reads it will say
+  }
 }
 
 }  // namespace orbweaver::archive

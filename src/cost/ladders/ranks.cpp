@@ -14,6 +14,7 @@
 #include "correction.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/check_mpi.hpp"
+#include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/core/mpi/team.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
 #include "orbweaver/survey/run/survey.hpp"
@@ -111,11 +112,11 @@ void measure_ranks(const Setting& setting, const Take& take) {
               Plot{1, 3, {0}, {}}};
   for (int count = 1; count <= setting.comm().size(); ++count) {
     const std::optional<core::Communicator> part = first_ranks(setting.comm(), count);
-    if (part) {
+    core::collectively(setting.comm().get(), [&] {
+      if (!part) return;
       survey_with(setting, *part, count, table);
       team_with(setting, *part, count, table);
-    }
-    core::check_mpi(MPI_Barrier(setting.comm().get()), "MPI_Barrier");
+    });
   }
   if (!setting.comm().is_root()) return;
   add_speedups(table);

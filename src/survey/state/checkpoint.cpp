@@ -1,6 +1,8 @@
 #include "checkpoint.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -47,9 +49,13 @@ std::filesystem::path previous_checkpoint_path(const std::filesystem::path& fold
   return folder / "checkpoint.previous";
 }
 
-void write_checkpoint(const std::filesystem::path& folder, const Checkpoint& checkpoint) {
-  archive::write_sealed_keeping(checkpoint_path(folder), previous_checkpoint_path(folder), checkpoint_seal,
-                                to_payload(checkpoint));
+CheckpointMark write_checkpoint(const std::filesystem::path& folder, const Checkpoint& checkpoint,
+                                const CheckpointMark& newest) {
+  const std::string bytes = to_payload(checkpoint);
+  const CheckpointMark mark{bytes.size(), std::hash<std::string_view>()(bytes)};
+  if (mark == newest && std::filesystem::exists(checkpoint_path(folder))) return mark;
+  archive::write_sealed_keeping(checkpoint_path(folder), previous_checkpoint_path(folder), checkpoint_seal, bytes);
+  return mark;
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& path) { return unsealed<Checkpoint>(path, checkpoint_seal); }

@@ -73,8 +73,17 @@ struct Checkpoint {
 [[nodiscard]] std::filesystem::path checkpoint_path(const std::filesystem::path& folder);
 [[nodiscard]] std::filesystem::path previous_checkpoint_path(const std::filesystem::path& folder);
 
-/// Makes `checkpoint` the folder's newest; the one before stays as the previous one. Throws EnvironmentError.
-void write_checkpoint(const std::filesystem::path& folder, const Checkpoint& checkpoint);
+/// By which a checkpoint that is written is known again.
+struct CheckpointMark {
+  std::size_t bytes = 0;
+  std::size_t hash = 0;
+  friend bool operator==(const CheckpointMark&, const CheckpointMark&) = default;
+};
+
+/// Makes `checkpoint` the folder's newest; the one before stays as the previous one. One that is `newest`, which the
+/// folder's newest is, stays as it is: with a million harmonics it has 300 MB. Throws EnvironmentError.
+CheckpointMark write_checkpoint(const std::filesystem::path& folder, const Checkpoint& checkpoint,
+                                const CheckpointMark& newest = {});
 /// Throws InputError for a file that is absent, torn, damaged, or of a newer version.
 [[nodiscard]] Checkpoint read_checkpoint(const std::filesystem::path& path);
 

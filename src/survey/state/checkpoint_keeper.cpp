@@ -46,7 +46,7 @@ void CheckpointKeeper::commit(const std::vector<archive::WrittenSegment>& segmen
     _taken.clear();
   }
   _checkpoint.segments = segments;
-  write_checkpoint(_folder, _checkpoint);
+  _newest = write_checkpoint(_folder, _checkpoint, _newest);
   const std::size_t in_flight = _checkpoint.unfinished.size();
   // The queue has them; what is left is what an archive needs of branches that a stop has cut.
   std::erase_if(_checkpoint.unfinished, [](const queue::Task& task) { return task.state.empty(); });

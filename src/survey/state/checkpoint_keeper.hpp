@@ -33,6 +33,7 @@ class CheckpointKeeper {
  private:
   std::filesystem::path _folder;
   Checkpoint _checkpoint;
+  CheckpointMark _newest;         // written by this keeper
   std::vector<EndedTask> _ended;  // since the last state taken
   std::vector<EndedTask> _taken;  // belongs to it, and is not written yet
 };

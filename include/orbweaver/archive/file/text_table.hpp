@@ -24,7 +24,7 @@ void write_text_table(const std::filesystem::path& path, const TextTable& table)
 /// rows do not give their checksums, naming the row; NewerVersionError for one of a newer version.
 [[nodiscard]] TextTable read_text_table(const std::filesystem::path& path, const TextTable& expected);
 
-/// The root attribute `format` of an HDF5 file; none where there is no such file or attribute.
+/// The root attribute `format` of an HDF5 file; none where there is no such file or attribute, or it is damaged.
 [[nodiscard]] std::optional<std::string> format_of(const std::filesystem::path& path);
 
 }  // namespace orbweaver::archive

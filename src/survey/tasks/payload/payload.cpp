@@ -2,6 +2,8 @@
 
 #include <exception>
 #include <sstream>
+#include <streambuf>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -22,6 +24,35 @@ constexpr std::size_t longest_name = 40;
 constexpr const char* same_build =
     "all ranks, and whoever wrote the files of a survey, must be the same build of Orbweaver";
 
+/// Counts what is written, then keeps it in as many bytes: a state may have 300 MB, which a text that grows copies
+/// again and again.
+class PayloadBytes : public std::streambuf {
+ public:
+  void begin(bool counts) {
+    _counts = counts;
+    if (!counts) _bytes.reserve(_size);
+  }
+  std::string take() { return std::move(_bytes); }
+
+ private:
+  int_type overflow(int_type character) override {
+    const char byte = traits_type::to_char_type(character);
+    xsputn(&byte, 1);
+    return traits_type::not_eof(character);
+  }
+  std::streamsize xsputn(const char* data, std::streamsize size) override {
+    if (_counts)
+      _size += static_cast<std::size_t>(size);
+    else
+      _bytes.append(data, static_cast<std::size_t>(size));
+    return size;
+  }
+
+  bool _counts = true;
+  std::size_t _size = 0;
+  std::string _bytes;
+};
+
 void expect(const PayloadType& type, boost::archive::binary_iarchive& archive) {
   std::string name;
   int version = 0;
@@ -41,15 +72,16 @@ void expect(const PayloadType& type, boost::archive::binary_iarchive& archive) {
 }  // namespace
 
 std::string write_payload(const PayloadType& type, const std::function<void(boost::archive::binary_oarchive&)>& write) {
-  std::ostringstream stream;
-  {
-    boost::archive::binary_oarchive archive(stream, archive_flags);
+  PayloadBytes bytes;
+  for (const bool counts : {true, false}) {
+    bytes.begin(counts);
+    boost::archive::binary_oarchive archive(bytes, archive_flags);
     std::string name = type.name;
     core::serialize_member(archive, name);
     archive << type.version << type.layout;
     write(archive);
   }
-  return std::move(stream).str();
+  return bytes.take();
 }
 
 void read_payload(const PayloadType& type, const std::string& bytes,

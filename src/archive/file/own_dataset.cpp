@@ -1,0 +1,30 @@
+#include "own_dataset.hpp"
+
+#include <cstddef>
+
+namespace orbweaver::archive {
+
+bool is_in_file(hid_t file, const std::string& name) {
+  for (std::size_t end = name.find('/');; end = name.find('/', end + 1)) {
+    const std::string part = name.substr(0, end);
+    H5L_info_t link{};
+    if (H5Lexists(file, part.c_str(), H5P_DEFAULT) <= 0 || H5Lget_info(file, part.c_str(), &link, H5P_DEFAULT) < 0 ||
+        link.type != H5L_TYPE_HARD)
+      return false;
+    if (end == std::string::npos) return true;
+  }
+}
+
+hid_t open_own_dataset(hid_t file, const std::string& name) {
+  if (!is_in_file(file, name)) return H5I_INVALID_HID;
+  const hid_t dataset = H5Dopen2(file, name.c_str(), H5P_DEFAULT);
+  if (dataset < 0) return dataset;
+  const hid_t creation = H5Dget_create_plist(dataset);
+  const bool is_own = creation >= 0 && H5Pget_layout(creation) != H5D_VIRTUAL && H5Pget_external_count(creation) == 0;
+  if (creation >= 0) H5Pclose(creation);
+  if (is_own) return dataset;
+  H5Dclose(dataset);
+  return H5I_INVALID_HID;
+}
+
+}  // namespace orbweaver::archive

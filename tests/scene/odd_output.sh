@@ -1,0 +1,77 @@
+#!/bin/bash
+# odd_output.sh PROGRAM SCENE: files to write that are those that are read, folders, devices, or nowhere. Each is refused before any
+# work is done, what was there stays as it was, and nothing is left.
+set -u
+program=$1 scene=$2
+export OMPI_MCA_rmaps_base_oversubscribe=1
+rm -rf work && mkdir work && cd work || exit 1
+
+fail() {
+  echo "odd_output.sh: $*"
+  cat -v said
+  exit 1
+}
+# ended STATUS TEXT WORDS...
+ended() {
+  local status=$1 text=$2 got=0
+  shift 2
+  timeout 30 "$program" "$@" > said 2>&1 || got=$?
+  ((got == status)) || fail "expected status $status, got $got: $(printf '%q ' "$@")"
+  [ -z "$text" ] || grep -qF -- "$text" said || fail "expected to be told '$text': $(printf '%q ' "$@")"
+}
+
+cp "$scene" scene.yaml
+"$program" survey scene.yaml -o out --quiet --set limits.period=5 --set survey.depth=0 > said 2>&1 || fail "no survey"
+cp out/atlas.h5 atlas.h5
+mkdir folder
+ln -s atlas.h5 link.svg
+echo 'int nothing;' > source.cpp
+sums=$(sha1sum atlas.h5 scene.yaml source.cpp)
+
+itself="it is the file that is read"
+ended 2 "$itself" export atlas.h5 --format csv -o atlas.h5
+ended 2 "$itself" export atlas.h5 --format csv -o link.svg
+ended 2 "$itself" export atlas.h5 --format auto --family Out-Phase -o s.out --equations ./atlas.h5
+ended 2 "$itself" plot atlas.h5 tree -o link.svg
+ended 2 "$itself" page atlas.h5 -o atlas.h5
+ended 2 "$itself" refine atlas.h5 Out-Phase 3 -o atlas.h5
+ended 2 "$itself" verify atlas.h5 --prove Out-Phase 3 -o atlas.h5
+ended 2 "$itself" sweep scene.yaml --csv scene.yaml
+ended 2 "$itself" build-system source.cpp -o source.cpp
+ended 2 "--equations in another file" export atlas.h5 --format auto --family Out-Phase -o s.out --equations s.out
+[ "$sums" = "$(sha1sum atlas.h5 scene.yaml source.cpp)" ] || fail "what was read is another now"
+
+for where in "it is a folder:2:folder" "is there such a folder?:3:nowhere/file"; do
+  IFS=: read -r text status path <<< "$where"
+  ended "$status" "$text" export atlas.h5 --format csv -o "$path"
+  ended "$status" "$text" page atlas.h5 -o "$path"
+  ended "$status" "$text" refine atlas.h5 Out-Phase 3 -o "$path"
+  ended "$status" "$text" verify atlas.h5 --prove Out-Phase 3 -o "$path" --quiet
+  ended "$status" "$text" sweep scene.yaml --csv "$path"
+  ended "$status" "$text" build-system source.cpp -o "$path"
+done
+mkdir folder/picture.svg
+ended 2 "it is a folder" plot atlas.h5 tree -o folder/picture.svg
+TMPDIR=/nowhere ended 3 "TMPDIR names no folder" plot atlas.h5 tree -o picture.svg
+
+# Devices stay where they are.
+ended 3 "is the disk full?" export atlas.h5 --format csv -o /dev/full
+ended 0 "Out-Phase" export atlas.h5 --format csv -o /dev/stdout
+ended 0 "" export atlas.h5 --format csv -o /dev/null
+[ -c /dev/full ] && [ -c /dev/null ] || fail "a device is gone"
+ended 2 "proofs need a file" verify atlas.h5 --prove Out-Phase 3 -o /dev/null
+
+long=$(printf 'x%.0s' {1..300})
+ended 3 ": File name too long" survey scene.yaml -o "$long"
+left=$(find . -name '*.part')
+[ -z "$left" ] || fail "left over: $left"
+
+# Numbers that are none, or that no double is.
+for number in 1e400 1e-400; do
+  ended 2 "has no orbit with T = $number" refine atlas.h5 Out-Phase T=$number
+done
+for tolerance in nan inf 1e400 0 -1; do
+  ended 2 "--tolerance: expected a number above 0" compare atlas.h5 atlas.h5 --tolerance=$tolerance
+done
+ended 2 "--loops: expected a number from 0 on" compare atlas.h5 atlas.h5 --loops=-1
+echo "all refused"
