@@ -23,7 +23,7 @@ TEST(Bridges, TheFamilyBesideTheLongOneEndsAtTheNextResonance) {
         {"continuation.start=" + first, "starts.fixed_points.grid=[[0.499], [0.866]]", "starts.sweep.period=[6, 80]",
          "starts.sweep.step=0.1", "survey.depth=1", "survey.subharmonics=13", "limits.period=120"});
     const survey::Summary summary = test::run(comm, scene, "beside");
-    EXPECT_EQ(summary.failures, 0U);
+    EXPECT_EQ(summary.failures, 0U) << testing::PrintToString(summary.failed_tasks);
     if (!comm.is_root()) continue;
     const test::Atlas atlas(summary.atlas);
     const std::string long_one = atlas.end_of("Long-4");

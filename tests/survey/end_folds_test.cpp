@@ -1,5 +1,6 @@
 // Folds and requested orbits at a family's ends, and beside folds: the step decides nothing.
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -9,6 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/even_well.hpp"
 #include "survey/atlas.hpp"
 #include "survey/rotator.hpp"
 #include "survey/scenes.hpp"
@@ -84,6 +86,58 @@ TEST(EndFolds, FoldsBesideABirthAreFoundWhereverTheFirstOrbitIs) {
     EXPECT_NEAR(atlas.crossings().reals("energy")[*energy], -0.9163831662, 1e-9);
     EXPECT_NEAR(atlas.crossings().reals("energy")[*period], -0.91638219, 1e-7);
   }
+}
+
+survey::Summary even_well(const std::map<std::string, double>& parameters, const std::vector<std::string>& overrides) {
+  const core::Communicator comm;
+  std::vector<std::string> all{"starts.fixed_points.names={}", "starts.fixed_points.letters={}",
+                               "starts.sweep.period=auto", "survey.subharmonics=3"};
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/henon_heiles.yaml", all);
+  const auto folder = test::fresh_folder("even_well", comm.get());
+  survey::Summary summary = survey::run_survey(comm, scene, test::even_well(parameters), folder, {});
+  EXPECT_EQ(summary.failures, 0U) << testing::PrintToString(summary.failed_tasks);
+  for (const survey::FindingSummary& line : summary.findings)
+    EXPECT_NE(line.severity, survey::Severity::contradiction) << line.text;
+  return summary;
+}
+
+const std::map<std::string, double> round_well{{"k1", 1.0}, {"k2", 1.0}, {"a", 1.0}, {"b", -0.2},
+                                               {"c", 0.1},  {"d", 0.05}, {"e", 0.2}};
+
+std::vector<double> energies_of(const test::Atlas& atlas, const std::string& family, const std::string& kind) {
+  std::vector<double> energies;
+  for (std::size_t row = 0; row < atlas.crossings().rows(); ++row)
+    if (atlas.crossings().integers("family")[row] == static_cast<std::int64_t>(atlas.row_of(family)) &&
+        atlas.crossings().texts("kind")[row] == kind)
+      energies.push_back(atlas.crossings().reals("energy")[row]);
+  return energies;
+}
+
+// From orbit to orbit T rises all the same where the first is near: between two of them it has risen by 4e-6 and fallen
+// by 7e-6.
+TEST(EndFolds, PairsThatStepsPassAreFound) {
+  for (const std::string start : {"0.003", "0.0087", "0.02"}) {
+    SCOPED_TRACE(start);
+    const survey::Summary summary = even_well(round_well, {"continuation.start=" + start, "survey.depth=1",
+                                                           "limits.energy=[-.inf, 0.37]", "limits.period=25"});
+    EXPECT_THAT(energies_of(test::Atlas(summary.atlas), "Equilibrium 1, mode 3 T3-1", "fold-period"),
+                testing::UnorderedElementsAre(DoubleNear(0.1527438498, 1e-9), DoubleNear(0.1529425093, 1e-9),
+                                              DoubleNear(0.2785292247, 1e-9)));
+  }
+}
+
+// An index is 2 to 1e-8 along a whole branch, and to rounding near its end: tangents turn to the family that is met.
+TEST(EndFolds, NoneWhereRoundingTellsNoSlopes) {
+  const survey::Summary summary =
+      even_well({{"k1", 1.0}, {"k2", 9.0}, {"a", 0.1}, {"b", 0.1}, {"c", 0.25}, {"d", 0.1}, {"e", 0.3}},
+                {"continuation.start=0.003", "survey.depth=2", "limits.energy=[-.inf, 27.53]", "limits.period=20",
+                 "starts.sweep.period=[6, 6.5]"});
+  const test::Atlas atlas(summary.atlas);
+  const std::string between = "Equilibrium 1, mode 1 T3-2aB";
+  EXPECT_EQ(atlas.end_of(between).find("joined Equilibrium 1, mode 1 T3-2b at T = 12.16217717"), 0U);
+  EXPECT_TRUE(energies_of(atlas, between, "fold-period").empty());
+  EXPECT_TRUE(energies_of(atlas, between, "fold-energy").empty());
 }
 
 }  // namespace

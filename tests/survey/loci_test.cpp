@@ -79,6 +79,41 @@ std::string objections_to(const core::Communicator& comm, const std::filesystem:
   return text;
 }
 
+/// The folds of the answer raised from rest at a frequency, in the drive's amplitude.
+std::vector<double> folds_at(const core::Communicator& comm, double frequency) {
+  const scene::Scene scene = scene_of(
+      "duffing.yaml",
+      {"system.parameters.drive_amplitude=0", fmt::format("system.parameters.drive_frequency={}", frequency),
+       "starts={fixed_points: {grid: [[0]]}}", "continuation.free=drive_amplitude", "limits.parameter=[0, 0.2]"});
+  const test::Atlas atlas(test::run(comm, scene, "beside_cusp").atlas);
+  std::vector<double> found;
+  for (std::size_t row = 0; row < atlas.crossings().rows(); ++row)
+    if (atlas.crossings().texts("kind")[row] == "fold-parameter")
+      found.push_back(atlas.crossings().reals("parameter")[row]);
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+/// The least cosine between neighbouring ways of a curve in the plane of the two parameters, each told in its range.
+double sharpest_turn(const std::vector<Point>& curve) {
+  const auto range = [&](double Point::*value) {
+    const auto [least, largest] = std::minmax_element(
+        curve.begin(), curve.end(), [value](const Point& a, const Point& b) { return a.*value < b.*value; });
+    return (*largest).*value - (*least).*value;
+  };
+  const double width = range(&Point::parameter);
+  const double height = range(&Point::second);
+  double least = 1.0;
+  for (std::size_t n = 2; n < curve.size(); ++n) {
+    const std::complex<double> before((curve[n - 1].parameter - curve[n - 2].parameter) / width,
+                                      (curve[n - 1].second - curve[n - 2].second) / height);
+    const std::complex<double> behind((curve[n].parameter - curve[n - 1].parameter) / width,
+                                      (curve[n].second - curve[n - 1].second) / height);
+    least = std::min(least, std::cos(std::arg(behind / before)));
+  }
+  return least;
+}
+
 TEST(Loci, FoldsOfDuffingAreOneCurveWithACusp) {
   const core::Communicator comm;
   const survey::Summary summary = test::run(comm, folds_of_duffing(), "folds");
@@ -89,7 +124,19 @@ TEST(Loci, FoldsOfDuffingAreOneCurveWithACusp) {
   const auto curves = loci_of(atlas, "fold-parameter");
   ASSERT_EQ(curves.size(), 1U) << "it comes to the other fold, where another would begin";
   const std::vector<Point>& curve = curves.front();
-  EXPECT_EQ(std::count_if(curve.begin(), curve.end(), [](const Point& p) { return p.note == "cusp"; }), 1);
+  const auto is_cusp = [](const Point& p) { return p.note == "cusp"; };
+  ASSERT_EQ(std::count_if(curve.begin(), curve.end(), is_cusp), 1);
+  const Point& cusp = *std::find_if(curve.begin(), curve.end(), is_cusp);
+  constexpr double beside = 5e-4;
+  const core::Communicator alone(MPI_COMM_SELF);
+  EXPECT_TRUE(folds_at(alone, cusp.parameter - beside).empty());
+  const std::vector<double> near = folds_at(alone, cusp.parameter + beside);
+  const std::vector<double> far = folds_at(alone, cusp.parameter + 4.0 * beside);
+  ASSERT_EQ(near.size(), 2U);
+  ASSERT_EQ(far.size(), 2U);
+  EXPECT_NEAR((4.0 * (near[0] + near[1]) - (far[0] + far[1])) / 6.0, cusp.second, 1e-5);
+  EXPECT_NEAR((far[1] - far[0]) / (near[1] - near[0]), 8.0, 0.2) << "the power 3/2 of the distance";
+  EXPECT_LT(sharpest_turn(curve), -0.9);
   const auto back = std::find_if(curve.begin(), curve.end(), [](const Point& p) { return p.note == "return"; });
   ASSERT_NE(back, curve.end());
   EXPECT_NEAR(back->parameter, atlas.crossings().reals("parameter")[1], 1e-9);
@@ -130,6 +177,7 @@ TEST(Loci, DoublingsOfDuffingLieWhereTheyAreLocated) {
   const auto curves = loci_of(atlas, "period-doubling");
   ASSERT_EQ(curves.size(), 1U);
   const std::vector<Point>& curve = curves.front();
+  EXPECT_GT(sharpest_turn(curve), 0.5) << "no cusp: no fold lies on it (docs/mathematics.md)";
   const core::Communicator alone(MPI_COMM_SELF);
   int compared = 0;
   for (std::size_t n = 1; n + 1 < curve.size(); n += curve.size() / 7) {

@@ -81,6 +81,14 @@ constexpr double telling = 1e-2;
 /// Of a part of the given size what is not proportional to that at the first orbit.
 double not_proportional(double part, double size) { return std::sqrt(std::max(0.0, size * size - part * part)); }
 
+/// Where the square of the part vanishes, which falls evenly with the way where the next orbit has slipped: the way to
+/// that is measured along the more symmetric family.
+double vanishes_at(const Place& one, const Place& other) {
+  const double from = one.part * one.part;
+  const double to = other.part * other.part;
+  return other.position + to / (from - to) * (other.position - one.position);
+}
+
 int multiplicity_of(const bifurcation::SymmetryGain& gain) {
   return gain.name == "1" && !gain.reversing ? gain.shift_denominator : 1;
 }
@@ -121,12 +129,14 @@ std::optional<Arrival> arrival_by(const systems::System& system, continuation::F
   Place before{from.arclength, 1.0};
   Place beyond{to.arclength, std::min(watch.signed_part(gain, from.loop, to.loop), 0.0)};
   double off_before = std::numeric_limits<double>::infinity();
+  double slipped_at = std::numeric_limits<double>::quiet_NaN();
   for (int n = 0; n < most_on_the_way; ++n) {
     const double there =
         before.position + on_the_way * before.part / (before.part - beyond.part) * (beyond.position - before.position);
     const auto point = family.at(there);
     const double size = point ? watch.relative_size(gain, from.loop, point->loop) : 0.0;
     if (size < slipped) {  // so has `to`, or none converges there; the meeting point may lie nearer
+      slipped_at = there;
       beyond = {before.position + nearer * (there - before.position), 0.0};
       continue;
     }
@@ -147,7 +157,11 @@ std::optional<Arrival> arrival_by(const systems::System& system, continuation::F
         (off <= still_vanishing && std::abs(at_zero(samples, &Sample::period) - period) <= settled * period &&
          !(std::abs(at_zero(samples, &Sample::level) - level) > settled * (1.0 + std::abs(level)))))
       break;
-    (part > 0.0 ? before : beyond) = {there, part};
+    const Place here{there, part};
+    // The place supposed where the corrector has slipped may be too near.
+    if (part > 0.0 && part < before.part && beyond.part == 0.0 && !std::isnan(slipped_at))
+      beyond.position = std::clamp(vanishes_at(before, here), beyond.position, slipped_at);
+    (part > 0.0 ? before : beyond) = here;
   }
   Arrival arrival;
   arrival.gain = gain;

@@ -12,6 +12,7 @@
 #include "end_folds.hpp"
 #include "equilibrium_end.hpp"
 #include "executor.hpp"
+#include "fold_pairs.hpp"
 #include "orbit_row.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/bifurcation/family_jump.hpp"
@@ -427,6 +428,12 @@ void BranchTask::detect(const continuation::Orbit& orbit, const std::optional<sp
                                    orbit.loop.parameters.front())
                   : _folds.advance(orbit.arclength, orbit.loop.period, orbit.energy),
             _curve.known());
+  if (const std::size_t known = _curve.known().size(); known > 2) add_paired_folds(known == 3 ? 0 : known - 3);
+}
+
+/// `way`: from this known orbit to the next.
+void BranchTask::add_paired_folds(std::size_t way) {
+  add_folds(paired_folds(_system, _start.isotropy, branch_options(_scene, _team), _curve.known(), way), _curve.known());
 }
 
 void BranchTask::add_folds(const std::vector<bifurcation::Fold>& folds,
@@ -511,13 +518,20 @@ void BranchTask::look_behind_last() {
   if (!_last || _curve.known().size() < 2) return;
   const auto last = _curve.at(_last->arclength, true);
   if (!last || last->tangent.empty()) return;
-  add_folds(_folds.finish(last->position, slopes_at(*_system, *last)), _curve.known());
-  if (!_arrival) return;
+  const std::vector<bifurcation::Fold> before_last = _folds.finish(last->position, slopes_at(*_system, *last));
   WayToEnd way;
-  way.points = places_before(*_arrival, _curve, _symmetry, *last);
+  way.points = {*last};
+  if (_arrival) {
+    way.points = places_before(*_arrival, _curve, _symmetry, *last);
+    if (way.points.size() > 1) way.crossing = way.points.back().loop;
+  }
+  add_folds(borne_out(*_system, _start.isotropy, before_last, way), _curve.known());
+  if (!_arrival) {
+    if (_curve.known().size() > 2) add_paired_folds(_curve.known().size() - 2);
+    return;
+  }
   add_behind(way.points);
   std::vector<continuation::Orbit> behind = orbits_to_zeros(way.points);
-  way.crossing = way.points.back().loop;
   add_folds(folds_on(*_system, _start.isotropy, way), _curve.known());
   if (way.points.size() > 1) {
     const continuation::Orbit near = orbit_of(*_system, way.points.back().loop, way.points.back().position);

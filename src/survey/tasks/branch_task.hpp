@@ -66,6 +66,7 @@ class BranchTask {
   [[nodiscard]] std::vector<continuation::Orbit> orbits_to_zeros(const std::vector<continuation::CurvePoint>& places);
   void add_folds(const std::vector<bifurcation::Fold>& folds,
                  const std::vector<continuation::FamilyCurve::Known>& known);
+  void add_paired_folds(std::size_t way);
   void add_event(const bifurcation::Event& event, double from, double to,
                  std::vector<continuation::FamilyCurve::Known> known);
   void solve_requested(const continuation::Orbit& orbit);

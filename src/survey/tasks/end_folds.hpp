@@ -21,6 +21,11 @@ struct WayToEnd {
 [[nodiscard]] std::vector<bifurcation::Fold> folds_on(const systems::System& system, const loop::Isotropy& isotropy,
                                                       const WayToEnd& way);
 
+/// Of folds between `inner` and the first of `points`, told by the slopes there, those that places nearer to the end
+/// bear out. Beside a crossing a tangent may hold a part of the other family's.
+[[nodiscard]] std::vector<bifurcation::Fold> borne_out(const systems::System& system, const loop::Isotropy& isotropy,
+                                                       std::vector<bifurcation::Fold> folds, const WayToEnd& way);
+
 /// The slopes of what may fold, at a place with a tangent.
 [[nodiscard]] bifurcation::FoldWatch::Slopes slopes_at(const systems::System& system,
                                                        const continuation::CurvePoint& point);

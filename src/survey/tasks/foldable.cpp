@@ -1,0 +1,67 @@
+#include "foldable.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "orbweaver/bifurcation/crossing.hpp"
+#include "orbweaver/continuation/left_open.hpp"
+#include "orbweaver/continuation/orbit.hpp"
+#include "orbweaver/loop/curve/system_at.hpp"
+
+namespace orbweaver::survey {
+
+using bifurcation::Fold;
+
+namespace {
+
+/// Relative to their size, of changes of T and E: ten times what a fold is seen by (bifurcation/fold_watch), for
+/// what differences of them are off.
+constexpr double visible_part = 1e-9;
+
+/// The largest change of a quantity with a length of orbits (that of continuation::arclength_between).
+double steepest(const systems::System& system, Fold::Quantity quantity, const loop::Loop& orbit) {
+  if (quantity == Fold::Quantity::parameter) return 1.0;
+  if (quantity == Fold::Quantity::period) return orbit.period;
+  std::vector<double> gradient(static_cast<std::size_t>(orbit.dimension));
+  loop::system_at(system, orbit)->conserved_gradient(0, loop::state_at(orbit, 0.0), gradient);
+  return std::sqrt(std::inner_product(gradient.begin(), gradient.end(), gradient.begin(), 0.0));
+}
+
+}  // namespace
+
+std::vector<Fold::Quantity> foldable(const systems::System& system) {
+  if (!system.family_scalars().free.empty()) return {Fold::Quantity::parameter};
+  if (!system.structure().conservative()) return {Fold::Quantity::period};
+  return {Fold::Quantity::period, Fold::Quantity::energy};
+}
+
+double value_of(const systems::System& system, Fold::Quantity quantity, const loop::Loop& loop) {
+  if (quantity == Fold::Quantity::period) return loop.period;
+  return quantity == Fold::Quantity::energy ? continuation::energy_of(system, loop) : loop.parameters.front();
+}
+
+double slope_of(const systems::System& system, Fold::Quantity quantity, const continuation::CurvePoint& point) {
+  if (quantity == Fold::Quantity::period) return bifurcation::period_slope(point);
+  return quantity == Fold::Quantity::energy ? bifurcation::energy_slope(system, point)
+                                            : bifurcation::parameter_slope(point);
+}
+
+double visible_change(Fold::Quantity quantity, double value) {
+  const double least = quantity == Fold::Quantity::parameter ? 1.0 : 0.0;  // a parameter may rest at 0
+  return visible_part * std::max(std::abs(value), least);
+}
+
+double moved_by_rounding(const systems::System& system, const loop::Isotropy& isotropy, Fold::Quantity quantity,
+                         const loop::Loop& orbit) {
+  return continuation::left_open_by_rounding(system, orbit, isotropy) * steepest(system, quantity, orbit);
+}
+
+bool are_hidden(const systems::System& system, const loop::Isotropy& isotropy, const loop::Loop& one,
+                const loop::Loop& other) {
+  const double apart = continuation::arclength_between(one, other);
+  return std::max(continuation::left_open_by_rounding(system, one, isotropy),
+                  continuation::left_open_by_rounding(system, other, isotropy)) > apart;
+}
+
+}  // namespace orbweaver::survey
