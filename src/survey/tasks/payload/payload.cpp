@@ -2,10 +2,12 @@
 
 #include <exception>
 #include <sstream>
+#include <streambuf>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "orbweaver/core/append_buffer.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/text.hpp"
 
@@ -41,15 +43,20 @@ void expect(const PayloadType& type, boost::archive::binary_iarchive& archive) {
 }  // namespace
 
 std::string write_payload(const PayloadType& type, const std::function<void(boost::archive::binary_oarchive&)>& write) {
-  std::ostringstream stream;
-  {
-    boost::archive::binary_oarchive archive(stream, archive_flags);
+  const auto write_to = [&](std::streambuf& buffer) {
+    boost::archive::binary_oarchive archive(buffer, archive_flags);
     std::string name = type.name;
     core::serialize_member(archive, name);
     archive << type.version << type.layout;
     write(archive);
-  }
-  return std::move(stream).str();
+  };
+  core::CountingBuffer count;  // a checkpoint's bytes, grown as they come, would be there three times
+  write_to(count);
+  std::string bytes;
+  bytes.reserve(count.bytes());
+  core::AppendBuffer buffer(bytes);
+  write_to(buffer);
+  return bytes;
 }
 
 void read_payload(const PayloadType& type, const std::string& bytes,
