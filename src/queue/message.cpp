@@ -10,6 +10,7 @@
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
 
+#include "orbweaver/core/append_buffer.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/queue/boost_serialization.hpp"
 
@@ -33,25 +34,6 @@ class ReadBuffer : public std::streambuf {
     setg(begin, begin, begin + bytes.size());
   }
   [[nodiscard]] std::size_t left() const { return static_cast<std::size_t>(egptr() - gptr()); }
-};
-
-/// Appends to a string: megabytes are copied once.
-class AppendBuffer : public std::streambuf {
- public:
-  explicit AppendBuffer(std::string& bytes) : _bytes(bytes) {}
-
- protected:
-  std::streamsize xsputn(const char* data, std::streamsize count) override {
-    _bytes.append(data, static_cast<std::size_t>(count));
-    return count;
-  }
-  int_type overflow(int_type c) override {
-    _bytes.push_back(traits_type::to_char_type(c));
-    return c;
-  }
-
- private:
-  std::string& _bytes;
 };
 
 template <class T>
@@ -146,7 +128,7 @@ std::string tag_name(int tag) {
 std::string pack(const Message& message) {
   std::string bytes(envelope_bytes, '\0');
   {
-    AppendBuffer buffer(bytes);
+    core::AppendBuffer buffer(bytes);
     boost::archive::binary_oarchive archive(buffer, archive_flags);
     std::visit([&archive](const auto& m) { archive << m; }, message);
   }

@@ -32,6 +32,14 @@ TEST(Cutoffs, StartWithOneHarmonic) {
   EXPECT_EQ(first, (std::vector<int>{1, 2, 3, 4, 7, 10, 13, 17}));
 }
 
+TEST(Cutoffs, AreTheFirstThatTheRatioAllows) {
+  for (int k = 7, next = next_cutoff(k); next < 200000; k = next, next = next_cutoff(k)) {
+    int first = 2 * k + 3;
+    while (first < 1.22 * (2 * k + 1) || !has_only_factors_3_5_7(first)) first += 2;
+    EXPECT_EQ(2 * next + 1, first) << k;
+  }
+}
+
 TEST(Cutoffs, NextAndPreviousAreNeighbours) {
   for (int k = 1; k < 5000; k = next_cutoff(k)) {
     EXPECT_EQ(allowed_cutoff_at_least(k), k);

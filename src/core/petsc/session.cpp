@@ -5,6 +5,7 @@
 
 #include <slepcsys.h>
 
+#include "mpi/open_mpi_defaults.hpp"
 #include "orbweaver/core/petsc/check.hpp"
 #include "petsc_log.hpp"
 
@@ -39,6 +40,7 @@ Session::Session(const std::vector<std::string>& petsc_options) : _options(petsc
   int initialized = 0;
   check_mpi(MPI_Initialized(&initialized), "MPI_Initialized");
   if (initialized == 0) {
+    set_open_mpi_defaults();
     check_mpi(MPI_Init(nullptr, nullptr), "MPI_Init");
     _owns_mpi = true;
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include "orbweaver/ad/lanes.hpp"
 #include "orbweaver/core/error.hpp"
@@ -178,15 +179,20 @@ double tail(const Loop& loop) {
 
 namespace {
 
-bool has_small_odd_factors(int n) {
-  for (const int p : {3, 5, 7})
-    while (n % p == 0) n /= p;
-  return n == 1;
-}
-
 // Steps of a fifth to two fifths: few Fourier plans, and an orbit never carries half again what it needs.
 constexpr double least_ratio = 1.22;
-constexpr int largest_nodes = 1 << 22;  // K about two million: 128 MiB of modes for four coordinates
+constexpr std::int64_t largest_nodes = 1 << 22;  // K about two million: 128 MiB of modes for four coordinates
+
+/// 3^a 5^b 7^c from 5 on, below the largest number of nodes, in order.
+std::vector<int> small_odd_factors() {
+  std::vector<int> numbers;
+  for (std::int64_t threes = 1; threes < largest_nodes; threes *= 3)
+    for (std::int64_t fives = threes; fives < largest_nodes; fives *= 5)
+      for (std::int64_t n = fives; n < largest_nodes; n *= 7)
+        if (n >= 5) numbers.push_back(static_cast<int>(n));
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
+}
 
 // Greedy: from one allowed 2K + 1 the next is the smallest with ratio >= 1.22 (ratios come out between 1.22 and 1.4).
 const std::vector<int>& allowed_cutoffs() {
@@ -194,8 +200,8 @@ const std::vector<int>& allowed_cutoffs() {
     std::vector<int> cutoffs;
     int last = 3;
     cutoffs.push_back(1);
-    for (int n = 5; n < largest_nodes; n += 2)
-      if (n >= least_ratio * last && has_small_odd_factors(n)) {
+    for (const int n : small_odd_factors())
+      if (n >= least_ratio * last) {
         cutoffs.push_back((n - 1) / 2);
         last = n;
       }

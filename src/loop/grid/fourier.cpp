@@ -6,6 +6,7 @@
 
 #include <fftw3.h>
 
+#include "grid/known_plans.hpp"
 #include "grid/long_transform.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/interruption.hpp"
@@ -18,15 +19,22 @@ struct FourierGrid::Plans {
   fftw_plan forward = nullptr;
   fftw_plan backward = nullptr;
 
-  // Each is made when it is first needed: planning takes a millisecond. FFTW_ESTIMATE leaves the arrays alone.
+  // Each is made when it is first needed: planning takes a millisecond where the plan is not known. FFTW_ESTIMATE
+  // leaves the arrays alone.
   void transform_forward(int nodes) {
     if (nodes >= long_transform) core::interruption_point();
-    if (forward == nullptr) forward = fftw_plan_dft_r2c_1d(nodes, real, complex, FFTW_ESTIMATE);
+    if (forward == nullptr) {
+      recall_plans(nodes);
+      forward = fftw_plan_dft_r2c_1d(nodes, real, complex, FFTW_ESTIMATE);
+    }
     fftw_execute(forward);
   }
   void transform_backward(int nodes) {
     if (nodes >= long_transform) core::interruption_point();
-    if (backward == nullptr) backward = fftw_plan_dft_c2r_1d(nodes, complex, real, FFTW_ESTIMATE);
+    if (backward == nullptr) {
+      recall_plans(nodes);
+      backward = fftw_plan_dft_c2r_1d(nodes, complex, real, FFTW_ESTIMATE);
+    }
     fftw_execute(backward);
   }
 };

@@ -9,6 +9,7 @@
 #include <fftw3.h>
 
 #include "folded_filters.hpp"
+#include "grid/known_plans.hpp"
 #include "grid/long_transform.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/interruption.hpp"
@@ -48,6 +49,7 @@ struct StaggeredGrid::Transforms {
     const int half = n / 2 + 1;
     real = fftw_alloc_real(static_cast<std::size_t>(n) * static_cast<std::size_t>(d));
     complex = fftw_alloc_complex(static_cast<std::size_t>(half) * static_cast<std::size_t>(d));
+    recall_plans(n);
     forward = fftw_plan_many_dft_r2c(1, &nodes, d, real, nullptr, 1, n, complex, nullptr, 1, half, FFTW_ESTIMATE);
     backward = fftw_plan_many_dft_c2r(1, &nodes, d, complex, nullptr, 1, half, real, nullptr, 1, n, FFTW_ESTIMATE);
   }

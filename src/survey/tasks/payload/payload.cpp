@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "orbweaver/core/append_buffer.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/text.hpp"
 
@@ -23,35 +24,6 @@ constexpr std::size_t longest_name = 40;
 
 constexpr const char* same_build =
     "all ranks, and whoever wrote the files of a survey, must be the same build of Orbweaver";
-
-/// Counts what is written, then keeps it in as many bytes: a state may have 300 MB, which a text that grows copies
-/// again and again.
-class PayloadBytes : public std::streambuf {
- public:
-  void begin(bool counts) {
-    _counts = counts;
-    if (!counts) _bytes.reserve(_size);
-  }
-  std::string take() { return std::move(_bytes); }
-
- private:
-  int_type overflow(int_type character) override {
-    const char byte = traits_type::to_char_type(character);
-    xsputn(&byte, 1);
-    return traits_type::not_eof(character);
-  }
-  std::streamsize xsputn(const char* data, std::streamsize size) override {
-    if (_counts)
-      _size += static_cast<std::size_t>(size);
-    else
-      _bytes.append(data, static_cast<std::size_t>(size));
-    return size;
-  }
-
-  bool _counts = true;
-  std::size_t _size = 0;
-  std::string _bytes;
-};
 
 void expect(const PayloadType& type, boost::archive::binary_iarchive& archive) {
   std::string name;
@@ -72,16 +44,20 @@ void expect(const PayloadType& type, boost::archive::binary_iarchive& archive) {
 }  // namespace
 
 std::string write_payload(const PayloadType& type, const std::function<void(boost::archive::binary_oarchive&)>& write) {
-  PayloadBytes bytes;
-  for (const bool counts : {true, false}) {
-    bytes.begin(counts);
-    boost::archive::binary_oarchive archive(bytes, archive_flags);
+  const auto write_to = [&](std::streambuf& buffer) {
+    boost::archive::binary_oarchive archive(buffer, archive_flags);
     std::string name = type.name;
     core::serialize_member(archive, name);
     archive << type.version << type.layout;
     write(archive);
-  }
-  return bytes.take();
+  };
+  core::CountingBuffer count;  // a checkpoint's bytes, grown as they come, would be there three times
+  write_to(count);
+  std::string bytes;
+  bytes.reserve(count.bytes());
+  core::AppendBuffer buffer(bytes);
+  write_to(buffer);
+  return bytes;
 }
 
 void read_payload(const PayloadType& type, const std::string& bytes,
