@@ -11,6 +11,7 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/text.hpp"
+#include "orbweaver/systems/reduced_system.hpp"
 #include "source.hpp"
 #include "units.hpp"
 
@@ -47,9 +48,11 @@ class Lines {
     return true;
   }
 
+  [[noreturn]] void fail(const std::string& message) const {
+    throw core::InputError(fmt::format("{}:{}: {}", _origin, std::max(_number, 1), message));
+  }
   [[noreturn]] void fail(const std::string& expected, const std::string& came, const std::string& advice) const {
-    throw core::InputError(
-        fmt::format("{}:{}: expected {}, got {}; {}", _origin, std::max(_number, 1), expected, came, advice));
+    fail(fmt::format("expected {}, got {}; {}", expected, came, advice));
   }
 
  private:
@@ -61,6 +64,12 @@ class Lines {
 std::string echo(std::string_view cell) {
   if (cell.empty()) return "nothing";
   return fmt::format("`{}`", core::printable(core::shortened(std::string(cell), longest_echo)));
+}
+
+/// The system whose coordinates a table has: of one without some of its coordinates it may be the whole one.
+const systems::System& told_by(const std::vector<std::string_view>& cells, const systems::System& system) {
+  const systems::System* whole = systems::whole_of(system);
+  return whole != nullptr && cells.size() == 1 + whole->info().state_names.size() ? *whole : system;
 }
 
 /// The place of each column's value: 0 for t, 1 + i for coordinate i.
@@ -94,7 +103,8 @@ LoopSamples parse_loop_samples(const std::string& text, const std::string& origi
   Lines lines(text, origin);
   std::vector<std::string_view> cells;
   if (!lines.next(cells)) lines.fail("a table in CSV", "an empty file", "begin with a line that names the columns");
-  const std::vector<std::size_t> places = read_header(lines, cells, system);
+  const systems::System& told = told_by(cells, system);
+  const std::vector<std::size_t> places = read_header(lines, cells, told);
   LoopSamples samples;
   while (lines.next(cells)) {
     if (cells.size() != places.size())
@@ -124,6 +134,12 @@ LoopSamples parse_loop_samples(const std::string& text, const std::string& origi
                  fmt::format("{} after {}", time, samples.times.back()), "give more of them");
     samples.times.push_back(time);
     samples.states.emplace_back(row.begin() + 1, row.end());
+    if (&told == &system) continue;
+    try {
+      samples.states.back() = systems::reduced_state(system, samples.states.back());
+    } catch (const core::InputError& error) {
+      lines.fail(error.what());
+    }
   }
   if (samples.times.size() < least_loop_rows)
     lines.fail(fmt::format("at least {} rows", least_loop_rows), fmt::format("{}", samples.times.size()),

@@ -8,6 +8,7 @@
 #include "fixed_points.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/file_hash.hpp"
+#include "orbweaver/systems/reduced_system.hpp"
 #include "sections.hpp"
 #include "units.hpp"
 
@@ -15,18 +16,34 @@ namespace orbweaver::scene {
 
 namespace {
 
-std::vector<double> read_state(const Field& state, const systems::System& system) {
-  const auto d = static_cast<std::size_t>(system.dimension());
-  const std::vector<Field> numbers = state.list("[0.1, 0]");
-  if (numbers.size() != d)
-    state.fail(fmt::format("{} numbers, for {}", d, fmt::join(system.info().state_names, ", ")), state.got(),
-               "give every coordinate at t = 0");
+/// Of all coordinates of `system`, angles in degrees.
+std::vector<double> state_of(const std::vector<Field>& numbers, const systems::System& system) {
   std::vector<double> values;
-  for (std::size_t i = 0; i < d; ++i) {
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
     const double value = numbers[i].number({.example = "0.1"});
     values.push_back(system.structure().is_angle(i) ? radians(value) : value);
   }
   return values;
+}
+
+/// Of a system without some of its coordinates the state may be that of the whole one.
+std::vector<double> read_state(const Field& state, const systems::System& system) {
+  const auto d = static_cast<std::size_t>(system.dimension());
+  const std::vector<Field> numbers = state.list("[0.1, 0]");
+  const systems::System* whole = systems::whole_of(system);
+  if (whole != nullptr && numbers.size() == whole->info().state_names.size()) {
+    try {
+      return systems::reduced_state(system, state_of(numbers, *whole));
+    } catch (const core::InputError& error) {
+      state.fail(error.what());
+    }
+  }
+  if (numbers.size() != d)
+    state.fail(
+        fmt::format("{} numbers, for {}{}", d, fmt::join(system.info().state_names, ", "),
+                    whole == nullptr ? "" : fmt::format(", or for {}", fmt::join(whole->info().state_names, ", "))),
+        state.got(), "give every coordinate at t = 0");
+  return state_of(numbers, system);
 }
 
 /// The keys that all must be there.

@@ -11,6 +11,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/text.hpp"
 #include "orbweaver/systems/model/checks.hpp"
+#include "orbweaver/systems/reduced_system.hpp"
 #include "pendulum_chain.hpp"
 #include "registry_lines.hpp"
 
@@ -237,7 +238,7 @@ std::shared_ptr<const System> make_system(const std::string& name, const std::ma
   for (const RegistryLine& candidate : registry()) {
     if (candidate.info().name != name) continue;
     const std::vector<std::string>& has = candidate.effects();
-    if (std::set(has.begin(), has.end()) == asked) return made(candidate, bound);
+    if (std::set(has.begin(), has.end()) == asked) return reduced(made(candidate, bound));
   }
   refuse_combination(name, effects);
 }

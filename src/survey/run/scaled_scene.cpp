@@ -9,6 +9,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/scene/in_scales.hpp"
 #include "orbweaver/starts/natural_scales.hpp"
+#include "orbweaver/systems/reduced_system.hpp"
 #include "orbweaver/systems/scaled_system.hpp"
 
 namespace orbweaver::survey {
@@ -19,11 +20,12 @@ namespace {
 void require_one_quantity(const systems::System& system) {
   const std::vector<std::string>& conserved = system.structure().conserved;
   if (conserved.size() > 1)
-    throw core::InputError(fmt::format(
-        "expected a system that conserves one quantity, got {} with {}: surveys with several are not "
-        "built, so choose parameters or effects that leave one, or take the others out of the equations, as "
-        "three_bodies does (docs/systems.md)",
-        system.info().name, fmt::join(conserved, ", ")));
+    throw core::InputError(
+        fmt::format("expected a system that conserves one quantity, got {} with {}; others than the energy are taken "
+                    "out where they are linear in the coordinates, but {}: choose coordinates in which they are, "
+                    "polar ones for an angular momentum, or take them out of the equations "
+                    "(docs/your_own_system.md, \"More conserved quantities\")",
+                    system.info().name, fmt::join(conserved, ", "), systems::why_not_reduced(system)));
 }
 
 /// The power of two at or below the largest of its value and its finite limits; 1 where all are 0.
