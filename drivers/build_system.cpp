@@ -39,8 +39,9 @@ std::vector<std::string> compiler_words(const InstalledFiles& at) {
   std::vector<std::string> words{plugin_compiler, "-std=c++20", "-O3", "-DNDEBUG", "-DFMT_SHARED", "-Wall", "-Wextra"};
   for (const std::string& flag : plugin_machine_flags)
     if (!flag.empty()) words.push_back(flag);
+  // Not /usr/include, where the compiler looks anyhow, and in which order matters to its own headers.
   for (const fs::path& folder : {at.headers, at.models})
-    if (!folder.empty()) words.insert(words.end(), {"-isystem", folder.string()});
+    if (!folder.empty() && folder != "/usr/include") words.insert(words.end(), {"-isystem", folder.string()});
   for (const std::string& folder : plugin_packages) words.insert(words.end(), {"-isystem", folder});
   return words;
 }

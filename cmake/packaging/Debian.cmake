@@ -22,12 +22,19 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "openmpi-bin")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "g++, gnuplot-nox, libeigen3-dev, libfmt-dev, libopenblas0-serial")
-set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "families of periodic orbits of dynamical systems
-Orbweaver finds the equilibria of a dynamical system and the small oscillations around
-them, continues each into a family of periodic orbits, follows the families that cross
-it, and leaves everything in one HDF5 file: alone, or on many MPI ranks.
+set(processor "any processor of this kind")
+if(ORBWEAVER_NATIVE)
+  set(processor "the machine that made the package and its like")
+elseif(ORBWEAVER_BASELINE)
+  set(processor "processors from ${ORBWEAVER_BASELINE} on")
+endif()
+# Behind the project's own line.
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "Orbweaver finds the equilibria of a dynamical system and the small
+oscillations around them, continues each into a family of periodic orbits,
+follows the families that cross it, and leaves everything in one HDF5 file:
+alone, or on many MPI ranks.
 .
-Compiled for processors with AVX2 (x86-64-v3: Intel since 2013, AMD since 2015).")
+Compiled for ${processor}.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME orbweaver-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
@@ -39,9 +46,9 @@ set(packages libopenmpi-dev petsc-dev slepc-dev libpetsc-real-dev libslepc-real-
 list(JOIN packages ", " packages)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "orbweaver (= ${PROJECT_VERSION}), ${packages}")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "cmake, g++")
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "families of periodic orbits, libraries
-The static libraries of Orbweaver, a target Orbweaver::LAYER for each of its layers, for
-programs that find_package(Orbweaver). The headers are in the package orbweaver.")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "The static libraries of Orbweaver, a target Orbweaver::LAYER for each of
+its layers, for programs that find_package(Orbweaver). The headers are in the
+package orbweaver.")
 include(CPack)
 
 # The section of CHANGELOG.md about this version, as a file of its own.
