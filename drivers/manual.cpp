@@ -89,15 +89,19 @@ std::string cell(std::string text) {
   return text;
 }
 
+std::string options_table(const CLI::App& app) {
+  std::string text = "| option | meaning |\n|---|---|\n";
+  for (const CLI::Option* option : app.get_options([](const CLI::Option* o) { return o->get_name() != "--help"; }))
+    text += fmt::format("| `{}`{} | {} |\n", cell(option_text(*option)), option->get_required() ? ", required" : "",
+                        cell(option->get_description()));
+  return text;
+}
+
 std::string programs_text(const CLI::App& program) {
-  std::string text;
+  std::string text = fmt::format("## orbweaver\n\nBefore a command.\n\n{}\n", options_table(program));
   for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
-    text += fmt::format("## orbweaver {}\n\n{}.\n\n| option | meaning |\n|---|---|\n", command->get_name(),
-                        command->get_description());
-    for (const CLI::Option* option :
-         command->get_options([](const CLI::Option* o) { return o->get_name() != "--help"; }))
-      text += fmt::format("| `{}`{} | {} |\n", cell(option_text(*option)), option->get_required() ? ", required" : "",
-                          cell(option->get_description()));
+    text += fmt::format("## orbweaver {}\n\n{}.\n\n{}", command->get_name(), command->get_description(),
+                        options_table(*command));
     std::string footer = command->get_footer();
     if (footer.starts_with(program.get_footer())) footer.erase(0, program.get_footer().size());
     footer.erase(0, footer.find_first_not_of('\n'));

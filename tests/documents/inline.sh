@@ -8,6 +8,8 @@ command=''
 while IFS= read -r line; do
   if [[ "$line" == '## orbweaver '* ]]; then
     command=${line#'## orbweaver '}
+  elif [[ "$line" == '## orbweaver' ]]; then
+    command=before
   elif [[ -n "$command" && "$line" == '| `'* ]]; then
     section_of[$command]+=" ${line%%'` '*} "
   fi
@@ -25,8 +27,12 @@ while IFS= read -r found; do
   count=$((count + 1))
   read -ra words <<<"${text//[^A-Za-z0-9=_. -]/ }"
   command=${words[1]-}
-  if [[ "$command" == -* ]]; then
-    [[ "$command" == --help || "$command" == --version ]] || say "$where: orbweaver has no $command"
+  if [[ "$command" == -* && "$command" != --help ]]; then
+    [[ "${section_of[before]}" =~ \`$command[\ \`] ]] || say "$where: orbweaver has no $command"
+    words=("${words[0]}" "${words[@]:3}") # the option and its value
+    command=${words[1]-}
+    [[ -n "$command" ]] || continue
+  elif [[ "$command" == --help ]]; then
     continue
   fi
   [[ -n "${section_of[$command]-}" || "$command" == COMMAND ]] || { say "$where: there is no command $command" && continue; }
