@@ -1,4 +1,4 @@
-// Compiled for any processor (drivers/CMakeLists.txt): it runs before all else, which may end by an illegal instruction.
+// Compiled for any processor (drivers/CMakeLists.txt), since it runs before all that may end by an illegal instruction.
 #include "processor.hpp"
 
 #if defined(__x86_64__) && defined(__GNUC__)
@@ -34,8 +34,8 @@ void require_extensions() {
   }
 }
 
-// Before the initialisers of shared libraries: these find templates of the standard library in the program, which exports
-// its symbols for plugins.
+// Before the initialisers of shared libraries: they find templates of the standard library in the program, whose
+// symbols are there for plugins.
 [[gnu::section(".preinit_array"), gnu::used]] void (*const first)() = require_extensions;
 
 }  // namespace
