@@ -40,9 +40,14 @@ void finish(std::ofstream& file, const fs::path& path) {
   if (!file) throw core::EnvironmentError(fmt::format("cannot write {}: is the disk full?", path.string()));
 }
 
-/// Whether it is there and no file: something that keeps its place.
+/// Whether it keeps its place: a device or a pipe, and what the system's folders hold, where /dev/stdout is the name of
+/// whatever the standard output goes to, a file too.
 bool is_device_or_pipe(const fs::path& path) {
   std::error_code ignored;
+  const std::string folder = fs::absolute(path, ignored).lexically_normal().string();
+  const bool is_system =
+      folder.starts_with("/proc/") || (folder.starts_with("/dev/") && !folder.starts_with("/dev/shm/"));
+  if (is_system) return fs::exists(path, ignored);
   const fs::file_status status = fs::status(path, ignored);
   if (fs::is_directory(status))
     throw core::InputError(fmt::format("cannot write {}: it is a folder; name a file in it", path.string()));

@@ -43,10 +43,10 @@ void print_table_head(std::ostream& out, const archive::Archive& atlas, const La
 /// loci with names in place of indices; equilibria with their periods; findings in a line each, as sentences; families
 /// as the tree in lines of at most the layout's width, children indented behind their parent, each with the crossing it
 /// was born at (kind, period, m), its ranges of period and energy, stability along it drawn in a few characters where
-/// the width allows it, isotropy, intervals of stability, and why it ended, cut where it is long. CSV: a head line, then
-/// full precision (%.17g), vector columns spread out as column_coordinate, what was not computed as `nan`. JSON: one
-/// array of objects with full precision, vector columns as arrays, what was not computed as `null`. Throws InputError
-/// for a table, family or column that is not there.
+/// the width allows it, isotropy, intervals of stability, and why it ended, cut where it is long. CSV: a head line,
+/// then full precision (%.17g), vector columns spread out as column_coordinate, what was not computed as `nan`. JSON:
+/// one array of objects with full precision, vector columns as arrays, what was not computed as `null`. Throws
+/// InputError for a table, family or column that is not there.
 void print_table(std::ostream& out, const archive::Archive& atlas, const std::string& name, TextFormat format,
                  const Selection& selection = {}, const Layout& layout = {});
 
