@@ -67,7 +67,7 @@ SweepOutcome Executor::small_oscillations(const SweepWork& work) const {
   outcome.families = all.count;
   outcome.equilibria = {equilibrium_place(*_system, work.point, result.linear)};
   for (const bifurcation::LeftOut& left_out : all.left_out)
-    if (!left_out.is_told)  // those are among the rejected
+    if (!left_out.is_told)  // those are among the ones without a family
       outcome.left_out.push_back({left_out.period, left_out.place, left_out.families});
   for (const bifurcation::SmallOscillation& family : all.families) {
     FoundMode found;
@@ -94,9 +94,11 @@ SweepOutcome Executor::small_oscillations(const SweepWork& work) const {
     }
     outcome.kernels.push_back(std::move(record));
   }
-  for (const auto* dips : {&result.rejected, &all.without_family})
-    for (const starts::RejectedDip& dip : *dips)
-      outcome.rejected.push_back(fmt::format("T = {:.9g}: {}", dip.period * _system->scales().time, dip.reason));
+  const auto sentence = [&](const starts::RejectedDip& dip) {
+    return fmt::format("T = {:.9g}: {}", dip.period * _system->scales().time, dip.reason);
+  };
+  for (const starts::RejectedDip& dip : result.rejected) outcome.rejected.push_back(sentence(dip));
+  for (const starts::RejectedDip& dip : all.without_family) outcome.without_family.push_back(sentence(dip));
   return outcome;
 }
 

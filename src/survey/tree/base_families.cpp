@@ -238,10 +238,11 @@ BaseFamilies base_families(const scene::Scene& scene, const systems::System& sys
   remark_undeclared(system, all, summary);
   for (const SweepOutcome& found : all) {
     check_names(scene, system, found);
-    if (found.modes.empty() && found.rejected.empty() && !system.family_scalars().free.empty()) {
+    const bool found_nothing = found.modes.empty() && found.rejected.empty() && found.without_family.empty();
+    if (found_nothing && !system.family_scalars().free.empty()) {
       summary.remarks.push_back(
           fmt::format("no Hopf point on the curve of equilibria through {}", point_text(system, found.point)));
-    } else if (found.modes.empty() && found.rejected.empty()) {
+    } else if (found_nothing) {
       const std::string range = scene.sweep.period
                                     ? fmt::format(" for T in [{:g}, {:g}]", found.period_from * system.scales().time,
                                                   found.period_to * system.scales().time)
@@ -251,6 +252,9 @@ BaseFamilies base_families(const scene::Scene& scene, const systems::System& sys
     }
     if (!found.left_out.empty()) summary.remarks.push_back(left_out_text(scene, system, found));
     remark_resonances(system, found, summary);
+    if (!found.without_family.empty())
+      summary.remarks.push_back(
+          fmt::format("at {}: {}", point_text(system, found.point), fmt::join(found.without_family, "; ")));
     if (!found.rejected.empty()) {
       const auto end = found.rejected.begin() + static_cast<std::ptrdiff_t>(std::min(found.rejected.size(), most_dips));
       const auto untold = found.rejected.end() - end;

@@ -130,20 +130,21 @@ struct SweepOutcome {
   static constexpr const char* payload_name = "sweep outcome";
   int index = 0;
   std::vector<double> point;
-  std::vector<FoundMode> modes;       ///< longest period first
-  std::vector<std::string> rejected;  ///< a sentence a dip
-  std::vector<LeftOutMode> left_out;  ///< longest period first
-  std::vector<KernelRecord> kernels;  ///< in the range
-  int families = 0;                   ///< of the equilibrium, those left out and undecided included, or `not_counted`
-  double period_from = 0.0;           ///< the range swept
+  std::vector<FoundMode> modes;             ///< longest period first
+  std::vector<std::string> rejected;        ///< a sentence a dip
+  std::vector<std::string> without_family;  ///< a sentence an oscillation in a resonance that no family leaves along
+  std::vector<LeftOutMode> left_out;        ///< longest period first
+  std::vector<KernelRecord> kernels;        ///< in the range
+  int families = 0;          ///< of the equilibrium, those left out and undecided included, or `not_counted`
+  double period_from = 0.0;  ///< the range swept
   double period_to = 0.0;
   std::vector<EquilibriumPlace> equilibria;  ///< along the curve where there is one
 
-  static constexpr int wire_version = 4;
+  static constexpr int wire_version = 5;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, index, point, modes, rejected, left_out, kernels, families, period_from, period_to,
-                            equilibria);
+    core::serialize_members(archive, index, point, modes, rejected, without_family, left_out, kernels, families,
+                            period_from, period_to, equilibria);
   }
 };
 
