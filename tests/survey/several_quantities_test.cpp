@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <numbers>
@@ -209,7 +210,7 @@ TEST(SeveralQuantities, TheAngularMomentumMovesAlongAFamily) {
 TEST(SeveralQuantities, LoopsMayBeToldInAllCoordinates) {
   const core::Communicator comm;
   const auto folder = test::fresh_folder("table" + std::to_string(comm.size()), comm.get());
-  const auto file = folder / "loop.csv";
+  const auto file = std::filesystem::absolute(folder / "loop.csv");
   if (comm.is_root()) {
     std::ofstream table(file);
     table << "t,p1,p2,p3,x1,x2,x3\n";
