@@ -29,9 +29,10 @@ class Part {
   fs::path _path;
 };
 
-std::ofstream opened(const fs::path& path) {
+/// `asked`: the file of the user's words.
+std::ofstream opened(const fs::path& path, const fs::path& asked) {
   std::ofstream file(path, std::ios::binary);
-  if (!file) throw core::EnvironmentError(fmt::format("cannot write {}: is there such a folder?", path.string()));
+  if (!file) throw core::EnvironmentError(fmt::format("cannot write {}: is there such a folder?", asked.string()));
   return file;
 }
 
@@ -58,14 +59,14 @@ bool is_device_or_pipe(const fs::path& path) {
 
 void write_output_file(const fs::path& path, const std::function<void(std::ostream&)>& write) {
   if (is_device_or_pipe(path)) {
-    std::ofstream file = opened(path);
+    std::ofstream file = opened(path, path);
     write(file);
     return finish(file, path);
   }
   const Part part(path);
-  std::ofstream file = opened(part.path());
+  std::ofstream file = opened(part.path(), path);
   write(file);
-  finish(file, part.path());
+  finish(file, path);
   std::error_code error;
   fs::rename(part.path(), path, error);
   if (error) throw core::EnvironmentError(fmt::format("cannot write {}: {}", path.string(), error.message()));
@@ -78,7 +79,7 @@ void require_output_file(const fs::path& path, const fs::path& input) {
         fmt::format("cannot write {}: it is the file that is read; give another name", path.string()));
   if (is_device_or_pipe(path)) return;
   const Part part(path);
-  static_cast<void>(opened(part.path()));
+  static_cast<void>(opened(part.path(), path));
 }
 
 }  // namespace orbweaver::drivers
