@@ -192,8 +192,7 @@ endfunction()
 
 # orbweaver_add_ctest(<name> <ranks> <labels> <timeout> <command> [args...])
 # Any command as a CTest in the common environment. Ranks wait for one another most of the time and rank 0 sleeps meanwhile: up to three of
-# them count as one processor, more as two. CTest starts a test only where as many are free, and others of one processor take each that
-# becomes free: what wants two would wait until the end, so its cost puts it first.
+# them count as one processor, more as two. What wants two begins when nothing else is left: those of one processor take each that is free.
 function(orbweaver_add_ctest name ranks labels timeout)
   set(processors 1)
   if(ranks GREATER 3)
@@ -207,6 +206,6 @@ function(orbweaver_add_ctest name ranks labels timeout)
   add_test(NAME ${name} COMMAND ${ARGN} WORKING_DIRECTORY "${folder}")
   list(REMOVE_ITEM labels "")
   set_tests_properties(${name} PROPERTIES
-    PROCESSORS ${processors} COST ${processors} LABELS "${labels}" TIMEOUT ${timeout}
+    PROCESSORS ${processors} LABELS "${labels}" TIMEOUT ${timeout}
     ENVIRONMENT "${ORBWEAVER_TEST_ENVIRONMENT}")
 endfunction()

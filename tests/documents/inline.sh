@@ -28,7 +28,7 @@ while IFS= read -r found; do
   read -ra words <<<"${text//[^A-Za-z0-9=_. -]/ }"
   command=${words[1]-}
   if [[ "$command" == -* && "$command" != --help ]]; then
-    [[ "${section_of[before]}" =~ \`$command[\ \`] ]] || say "$where: orbweaver has no $command"
+    [[ "${section_of[before]-}" =~ \`$command[\ \`] ]] || say "$where: orbweaver has no $command"
     words=("${words[0]}" "${words[@]:3}") # the option and its value
     command=${words[1]-}
     [[ -n "$command" ]] || continue

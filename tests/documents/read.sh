@@ -6,7 +6,7 @@
 #                             block ```python NAME. What follows a backslash at its end belongs to it.
 #   on_file LINE NAME TEXT    for a block ```LANGUAGE NAME: a file that the commands after it find
 #   on_fault LINE WHAT        for a block ``` of no language, and for a line beside commands that is neither a command, a comment, nor a title ending in a colon
-# Blocks ```text are no commands; nor is an indented block in which no line begins so (tables, scenes, formulas).
+# Other blocks (```text, ```cpp) are no commands; nor is an indented block in which no line begins so (tables, scenes, formulas).
 command_words='(\./quickstart|orbweaver|build/release/[^ ]+|BUILD/[^ ]+|tests/[^ ]+|mpirun|cmake|ctest|bash|sh|python3|valgrind|sbatch|srun|salloc'
 command_words+='|squeue|scancel|sudo|apt-get|apt|dpkg|dpkg-deb|dpkg-query|docker|podman|spack|git|cd|cp|mkdir|rm|tar|make|ninja|g\+\+|gnuplot|h5dump|npm|node|man'
 command_words+='|source|export|export_[a-z]+|doxygen|[A-Z_]+=[^ ]*)'
@@ -47,9 +47,9 @@ read_document() {
     fi
     case "$rd_line" in
       '```sh') rd_kind=sh ;;
-      '```text') rd_kind=text ;;
       '```console') rd_kind=console ;;
       '```'[a-z]*' '*) rd_kind=file rd_file=${rd_line##* } rd_text='' rd_first=$rd_number ;;
+      '```'[a-z]*) rd_kind=text ;;
       '```'*) rd_kind=text && on_fault "$rd_number" "a block without a language: write \`\`\`sh, \`\`\`text or \`\`\`LANGUAGE NAME" ;;
       '    '*)
         rd_stripped=${rd_line#"${rd_line%%[![:space:]]*}"}
