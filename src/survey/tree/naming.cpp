@@ -18,7 +18,7 @@ constexpr double printed_as_zero = 1e-9;
 /// Of a point with more coordinates only those that are not 0 are told.
 constexpr std::size_t most_told = 4;
 
-bool is_at(const systems::System& system, const std::vector<double>& point, const std::vector<double>& given) {
+bool is_named_point(const systems::System& system, const std::vector<double>& point, const std::vector<double>& given) {
   for (std::size_t i = 0; i < given.size(); ++i) {
     double difference = point[i] - given[i];
     if (system.structure().is_angle(i)) difference = std::remainder(difference, 2.0 * std::numbers::pi);
@@ -32,14 +32,14 @@ bool is_at(const systems::System& system, const std::vector<double>& point, cons
 std::size_t names_given(const scene::Scene& scene, const systems::System& system, const std::vector<double>& point) {
   std::size_t most = 0;
   for (const scene::FixedPoints::Names& entry : scene.fixed_points.names)
-    if (is_at(system, point, entry.point)) most = std::max(most, entry.names.size());
+    if (is_named_point(system, point, entry.point)) most = std::max(most, entry.names.size());
   return most;
 }
 
 std::string base_family_name(const scene::Scene& scene, const systems::System& system, const std::vector<double>& point,
                              int index, int mode) {
   for (const scene::FixedPoints::Names& entry : scene.fixed_points.names)
-    if (is_at(system, point, entry.point) && static_cast<std::size_t>(mode) < entry.names.size())
+    if (is_named_point(system, point, entry.point) && static_cast<std::size_t>(mode) < entry.names.size())
       return entry.names[static_cast<std::size_t>(mode)];
   return fmt::format("{}, mode {}", equilibrium_name(index), mode + 1);
 }
