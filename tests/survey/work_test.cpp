@@ -44,6 +44,7 @@ SweepOutcome sample_sweep_outcome() {
           {1.5},
           {sample_mode(), {}},
           {"T = 6.8: twice around", ""},
+          {"T = 7: no family"},
           {{0.5, 2, 3}},
           {{6.25, 2, true, 1, {0, 1}, {3, 2}, {1, 2}}},
           5,
