@@ -32,9 +32,6 @@ class BranchTask {
   [[nodiscard]] queue::TaskOutcome run();
 
  private:
-  /// Known orbits that a location gets along: the two around the event and their neighbours.
-  static constexpr std::size_t kept_orbits = 5;
-
   [[nodiscard]] Units units() const { return Units(*_system); }
   void begin(const std::string& state);
   [[nodiscard]] continuation::Ending follow();
@@ -47,6 +44,10 @@ class BranchTask {
   [[nodiscard]] std::optional<spectrum::Stability> asked_stability(const loop::Loop& loop) const;
   const std::optional<spectrum::Stability>& stability_at(const continuation::Orbit& orbit);
   bool jumped(const continuation::Orbit& from, const continuation::Orbit& to);
+  [[nodiscard]] bool is_too_far(const continuation::Orbit& first);
+  bool passes_index(const loop::Loop& small, const continuation::Orbit& first);
+  [[nodiscard]] bool has_requested(const continuation::Orbit& first) const;
+  [[nodiscard]] bool has_turned(const loop::Loop& small, const continuation::Orbit& first) const;
   bool arrive(const continuation::Orbit& orbit);
   [[nodiscard]] static bool is_nearly_two(const spectrum::Stability& stability);
   bool arrives_ahead();
@@ -54,7 +55,15 @@ class BranchTask {
   [[nodiscard]] continuation::Ending met() const;
   void detect_zeros(const bifurcation::TestPoint& point);
   void detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability);
+  void look_before_first();
+  void detect_from_birth();
+  void indices_from_birth(const std::vector<continuation::FamilyCurve::Known>& known);
   void add_missed(const bifurcation::MissedZeros& missed);
+  void folds_from_birth(const std::vector<continuation::FamilyCurve::Known>& known);
+  void folds_at_start();
+  void look_behind_last();
+  void add_behind(std::vector<continuation::CurvePoint>& places);
+  [[nodiscard]] std::vector<continuation::Orbit> orbits_to_zeros(const std::vector<continuation::CurvePoint>& places);
   void add_folds(const std::vector<bifurcation::Fold>& folds,
                  const std::vector<continuation::FamilyCurve::Known>& known);
   void add_paired_folds(std::size_t way);
@@ -65,22 +74,6 @@ class BranchTask {
   [[nodiscard]] bifurcation::TestPoint test_point(double position,
                                                   const std::optional<spectrum::Stability>& stability) const;
   [[nodiscard]] std::optional<bifurcation::TestPoint> probe(double position);
-
-  // branch_before_first.cpp
-  [[nodiscard]] bool is_too_far(const continuation::Orbit& first);
-  bool passes_index(const loop::Loop& small, const continuation::Orbit& first);
-  [[nodiscard]] bool has_requested(const continuation::Orbit& first) const;
-  [[nodiscard]] bool has_turned(const loop::Loop& small, const continuation::Orbit& first) const;
-  void look_before_first();
-  void detect_from_birth();
-  void indices_from_birth(const std::vector<continuation::FamilyCurve::Known>& known);
-  void folds_from_birth(const std::vector<continuation::FamilyCurve::Known>& known);
-  void folds_at_start();
-
-  // branch_behind_last.cpp
-  void look_behind_last();
-  void add_behind(std::vector<continuation::CurvePoint>& places);
-  [[nodiscard]] std::vector<continuation::Orbit> orbits_to_zeros(const std::vector<continuation::CurvePoint>& places);
 
   const scene::Scene& _scene;
   std::shared_ptr<const systems::System> _system;
