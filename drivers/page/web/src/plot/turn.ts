@@ -11,6 +11,12 @@ export class Turn {
     this.tilt = Math.max(-Math.PI / 2, Math.min(Math.PI / 2, this.tilt + tilt));
   }
 
+  /** Seen from where another is. */
+  from(other: Turn): void {
+    this.turn = other.turn;
+    this.tilt = other.tilt;
+  }
+
   project(place: Triple): [number, number] {
     const [x, y, z] = place.map((v, i) => v - this.centre[i]!) as Triple;
     const [c, s] = [Math.cos(this.turn), Math.sin(this.turn)];

@@ -72,7 +72,7 @@ export class OrbitView {
   constructor(private readonly store: Store) {
     const { atlas } = store;
     const names = atlas.index.stateNames;
-    this.picture = pictureOf(atlas.index.system, atlas.parameters(), names);
+    this.picture = this.makePicture(-1);
     const d = names.length;
     const half = d % 2 === 0 && d >= 2 ? d / 2 : Math.min(1, d - 1);
     this.planeAxes = d >= 4 ? [[0, 1], [0, half]] : [[0, Math.min(1, d - 1)], [0, d - 1]];
@@ -191,6 +191,11 @@ export class OrbitView {
     void this.show();
   }
 
+  private makePicture(orbit: number): Picture | null {
+    const { atlas } = this.store;
+    const parameters = orbit < 0 ? atlas.parameters() : atlas.parametersOf(orbit);
+    return pictureOf(atlas.index.system, parameters, atlas.index.stateNames);
+  }
   private get family() {
     const { orbit } = this.store.state;
     return orbit >= 0 ? this.store.atlas.family(orbit) : undefined;
@@ -246,6 +251,9 @@ export class OrbitView {
     const loop = drawn < 0 ? null : await atlas.loop(drawn);
     if (this.shown !== orbit) return;
     this.loop = loop;
+    const turn = this.picture?.turn;
+    this.picture = drawn < 0 ? this.picture : this.makePicture(drawn);
+    if (this.picture && turn) this.picture.turn?.from(turn);
     this.stand.hidden = drawn === orbit;
     this.stand.textContent = drawn < 0 ? 'This page has no loop of this family.' : `Drawn is step ${atlas.value('step', drawn)} of the family: of ${atlas.orbits} orbits the page has ${atlas.index.loops} loops.`;
     if (!loop) return;
