@@ -10,7 +10,7 @@ export const pendulumChain: MakePicture = ({ links = 3, l = 1 }) => {
     title: 'Rods and bobs',
     coordinates: lengths.map((_, i) => `th${i + 1}`),
     points: (state) => rodEnds(state, lengths),
-    extent: [[-reach / 3, 0.05 * reach], [reach / 3, -reach]],
+    extent: [[-reach / 3, 0.08 * reach], [reach / 3, -1.08 * reach]],
     figure(pen, state) {
       drawRods(pen, [0, 0], rodEnds(state, lengths), masses, reach);
     },
