@@ -491,7 +491,8 @@ await checkPage('an atlas without orbits says so', 'empty', {}, async (page) => 
   assert.match(await text(page, '.orbit h2'), /no orbits/);
 });
 
-for (const [file, title] of [['galaxy', /potential/i], ['spring', /spring/i], ['bodies', /turns with the bodies/i]])
+for (const [file, title] of [['galaxy', /potential/i], ['spring', /spring/i], ['bodies', /turns with the bodies/i],
+  ['chain', /rods and bobs/i], ['eight', /three masses/i], ['space', /turns with the bodies/i], ['shaken', /rods and bobs/i]])
   await checkPage(`the picture of ${file}`, file, { theme: 'dark' }, async (page) => {
     assert.match(await text(page, '.orbit details summary'), title);
     await pause(200);
@@ -503,6 +504,56 @@ for (const [file, title] of [['galaxy', /potential/i], ['spring', /spring/i], ['
     });
     assert.ok(inks > 20, `${inks} colours`);
   });
+
+/** The mean place, in pixels, of a colour of the page's picture; null where it is not. */
+const placeOf = (page, selector, colour) => page.$eval(selector, (c, name) => {
+  const hex = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const ink = [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
+  const copied = Object.assign(document.createElement('canvas'), { width: c.width, height: c.height }).getContext('2d', { willReadFrequently: true });
+  copied.drawImage(c, 0, 0);
+  const { data, width } = copied.getImageData(0, 0, c.width, c.height);
+  let [n, x, y] = [0, 0, 0];
+  for (let at = 0; at < data.length; at += 4)
+    if (ink.every((v, i) => Math.abs(data[at + i] - v) < 4)) [n, x, y] = [n + 1, x + ((at / 4) % width), y + Math.floor(at / 4 / width)];
+  return n ? [x / n, y / n] : null;
+}, colour);
+const scrubTo = (page, time) => page.$eval('.player input', (e, t) => {
+  e.value = t;
+  e.dispatchEvent(new Event('input'));
+}, String(time)).then(() => pause(150));
+
+await checkPage('the pivot is shaken, by the amplitude of the orbit that is drawn', 'shaken', {}, async (page) => {
+  await page.$eval('.along input', (e) => {
+    e.value = e.max;
+    e.dispatchEvent(new Event('input'));
+  });
+  await pause(300);
+  const places = [];
+  for (const time of [0, 0.5]) {
+    await scrubTo(page, time);
+    places.push(await placeOf(page, '.picture canvas', '--soft'));
+  }
+  assert.ok(Math.hypot(places[0][0] - places[1][0], places[0][1] - places[1][1]) > 2, `the pivot stands still: ${places}`);
+});
+
+await checkPage('dragging turns the picture of a system in space, and arrows do', 'space', {}, async (page) => {
+  const canvas = await page.$('.picture canvas');
+  await canvas.scrollIntoView();
+  await scrubTo(page, 0.2);
+  const seen = [await pixels(page, '.picture canvas')];
+  const box = await canvas.boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2 + 60, box.y + box.height / 2 + 20, { steps: 4 });
+  await page.mouse.up();
+  await pause(150);
+  seen.push(await pixels(page, '.picture canvas'));
+  await canvas.focus();
+  await page.keyboard.press('ArrowUp');
+  await pause(150);
+  seen.push(await pixels(page, '.picture canvas'));
+  assert.equal(new Set(seen).size, 3);
+});
 
 await checkPage('a dissipative system that nobody knows has phase planes, its parameter and its multipliers', 'unknown', {}, async (page) => {
   const axis = (name) => page.$eval(`[aria-label="${name}"]`, (e) => e.value);

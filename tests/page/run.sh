@@ -68,6 +68,14 @@ case "$part" in
     survey galaxy "$scenes/henon_heiles.yaml" --set survey.depth=0
     survey spring "$scenes/swinging_spring.yaml" --set survey.depth=0
     survey bodies "$scenes/pcr3bp_earth_moon.yaml" --set survey.depth=0 --set limits.period=7
+    survey chain "$scenes/chain.yaml" --set system.parameters.links=4 --set 'starts.sweep.period=[3,18]' --set 'limits.energy=[-.inf,-9.5]'
+    survey eight "$scenes/three_bodies_figure_eight.yaml" --set survey.depth=0 --set 'limits.parameter=[0.99,1.01]'
+    survey space "$scenes/cr3bp_earth_moon.yaml" --set 'starts.fixed_points.grid=[[0.837],[0],[0]]' --set 'starts.states=[]' \
+      --set survey.depth=0 --set limits.period=4
+    survey shaken "$scenes/damped_driven_double_pendulum.yaml" --set 'system.effects=[damping, pivot_drive]' \
+      --set 'system.parameters={c1: 0.2, c2: 0.2, pivot_amplitude: 0, pivot_direction: 30, drive_frequency: 0.9}' \
+      --set 'starts={fixed_points: {grid: [[0],[0]]}}' --set continuation.free=pivot_amplitude \
+      --set 'limits.parameter=[0,0.5]' --set survey.depth=0
     "$make_atlas" hostile "$folder/hostile.h5"
     page hostile
     "$make_atlas" empty "$folder/empty.h5"

@@ -185,6 +185,13 @@ export class Atlas {
   parameters(): Record<string, number> {
     return Object.fromEntries(this.index.parameterNames.map((name, i) => [name, this.index.parameterValues[i]!]));
   }
+  /** Those of an orbit: the one that moves along the families has the orbit's value. */
+  parametersOf(orbit: number): Record<string, number> {
+    const moved = /^\s*free:\s*(\w+)\s*(#.*)?$/m.exec(this.index.scene)?.[1];
+    const value = this.value('parameter', orbit);
+    const all = this.parameters();
+    return moved && moved in all && Number.isFinite(value) ? { ...all, [moved]: value } : all;
+  }
   winding(orbit: number): number[] {
     const turns = this.index.stateNames.map(() => 0);
     this.index.angles.forEach((coordinate, n) => {

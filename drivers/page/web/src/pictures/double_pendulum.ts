@@ -1,24 +1,28 @@
-import { disc, line, type MakePicture, type Point } from './picture';
+import type { MakePicture, Point } from './picture';
+import { line } from './picture';
+import { drawRods, rodEnds } from './rods';
 
-/** Rods and bobs; angles from the downward vertical. Bobs of the same density. */
-export const doublePendulum: MakePicture = ({ m1 = 1, m2 = 1, l1 = 1, l2 = 1 }) => {
-  const points = ([th1, th2]: number[]): Point[] => {
-    const inner: Point = [l1 * Math.sin(th1!), -l1 * Math.cos(th1!)];
-    return [inner, [inner[0] + l2 * Math.sin(th2!), inner[1] - l2 * Math.cos(th2!)]];
+/** Rods and bobs, on a pivot that may be shaken (the effect pivot_drive: along a direction in degrees from upwards). */
+export const doublePendulum: MakePicture = ({ m1 = 1, m2 = 1, l1 = 1, l2 = 1, pivot_amplitude: shaken = 0, pivot_direction: direction = 0 }) => {
+  const along: Point = [shaken * Math.sin((direction * Math.PI) / 180), shaken * Math.cos((direction * Math.PI) / 180)];
+  const pivot = (state: number[]): Point => {
+    const wave = shaken ? Math.cos(state[4] ?? 0) : 0;
+    return [wave * along[0], wave * along[1]];
   };
+  const points = (state: number[]): Point[] => rodEnds(state, [l1, l2], pivot(state));
   const reach = l1 + l2;
-  const largest = Math.cbrt(Math.max(m1, m2));
+  const side = reach + Math.abs(along[0]);
+  const up = reach + Math.abs(along[1]);
   return {
     title: 'Rods and bobs',
+    coordinates: shaken ? ['th1', 'th2', 'w1', 'w2', 'phase'] : ['th1', 'th2'],
     points,
-    extent: [[-reach, -reach], [reach, reach]],
+    extent: [[-side, -up], [side, up]],
+    background(pen) {
+      if (shaken) line(pen, [[-along[0], -along[1]], along], pen.theme.soft, 2);
+    },
     figure(pen, state) {
-      const [inner, outer] = points(state) as [Point, Point];
-      line(pen, [[0, 0], inner, outer], pen.theme.ink, 3);
-      const radius = Math.max(5, Math.min(13, 0.07 * reach * pen.unit));
-      disc(pen, [0, 0], 4, pen.theme.soft);
-      disc(pen, inner, (radius * Math.cbrt(m1)) / largest, pen.theme.families[0]!);
-      disc(pen, outer, (radius * Math.cbrt(m2)) / largest, pen.theme.families[1]!);
+      drawRods(pen, pivot(state), points(state), [m1, m2], reach);
     },
   };
 };

@@ -7,6 +7,7 @@ const saddle = 1 / 6;
 
 export const henonHeiles: MakePicture = () => ({
   title: 'In the potential',
+  coordinates: ['x', 'y'],
   axes: ['x', 'y'],
   points: ([x, y]) => [[x!, y!]],
   extent: [[-0.9, -0.55], [0.9, 1.02]],

@@ -1,3 +1,4 @@
+import type { Turn } from '../plot/turn';
 import type { Theme } from '../plot/theme';
 
 export type Point = [number, number];
@@ -20,6 +21,10 @@ export interface Pen {
 /** A system as one would see it: things that move in a plane. */
 export interface Picture {
   title: string;
+  /** The coordinates that it reads, which the states of an archive must begin with. */
+  coordinates: string[];
+  /** Set where it shows space: dragging turns it. */
+  turn?: Turn;
   /** Whether axes are drawn, with these labels. */
   axes?: [string, string];
   /** Places of what moves, whose paths are drawn; in the order of the colours. */

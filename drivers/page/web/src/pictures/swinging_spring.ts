@@ -7,6 +7,7 @@ export const swingingSpring: MakePicture = ({ mass = 1, stiffness = 3, length = 
   const rest = length + (mass * gravity) / stiffness;
   return {
     title: 'Spring and bob',
+    coordinates: ['x', 'y'],
     points: ([x, y]) => [[x!, y!]],
     extent: [[-rest * 0.5, 0.15 * rest], [rest * 0.5, -rest * 1.1]],
     figure(pen, state) {

@@ -46,6 +46,8 @@ export class Frame {
   onDraw: (frame: Frame) => void = () => {};
   /** What moves, drawn over a copy of the rest by tick(). */
   onOverlay: ((frame: Frame) => void) | null = null;
+  /** Where it is set, dragging and arrows turn what is shown, by such angles, and do not pan. */
+  onTurn: ((turn: number, tilt: number) => void) | null = null;
   onPick: (px: number, py: number) => void = () => {};
   onHover: (px: number, py: number) => void = () => {};
   onLeave: () => void = () => {};
@@ -382,7 +384,8 @@ export class Frame {
       this.drag.moved = true;
       if (this.drag.tool === 'pan') {
         this.moving();
-        this.pan(at.x - from.x, at.y - from.y);
+        if (this.onTurn) this.onTurn((at.x - from.x) * 0.01, (at.y - from.y) * 0.01);
+        else this.pan(at.x - from.x, at.y - from.y);
       } else {
         this.rubber = [this.drag.x, this.drag.y, at.x, at.y];
         this.draw();
@@ -418,10 +421,10 @@ export class Frame {
       const step = event.shiftKey ? 0.5 : 0.1;
       const { x0, x1, y0, y1 } = this.inner;
       const keys: Record<string, () => void> = {
-        ArrowLeft: () => this.pan((x1 - x0) * step, 0),
-        ArrowRight: () => this.pan(-(x1 - x0) * step, 0),
-        ArrowUp: () => this.pan(0, (y1 - y0) * step),
-        ArrowDown: () => this.pan(0, -(y1 - y0) * step),
+        ArrowLeft: () => (this.onTurn ? this.onTurn(-step, 0) : this.pan((x1 - x0) * step, 0)),
+        ArrowRight: () => (this.onTurn ? this.onTurn(step, 0) : this.pan(-(x1 - x0) * step, 0)),
+        ArrowUp: () => (this.onTurn ? this.onTurn(0, -step) : this.pan(0, (y1 - y0) * step)),
+        ArrowDown: () => (this.onTurn ? this.onTurn(0, step) : this.pan(0, -(y1 - y0) * step)),
         '+': () => this.zoom(0.7),
         '=': () => this.zoom(0.7),
         '-': () => this.zoom(1 / 0.7),

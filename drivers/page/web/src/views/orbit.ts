@@ -3,7 +3,7 @@ import { kindOf } from '../data/kinds';
 import type { Loop } from '../data/loop';
 import { exact, rounded } from '../data/quantities';
 import { copy, download, h, replaceChildren } from '../dom';
-import { pictures } from '../pictures';
+import { pictureOf } from '../pictures';
 import type { Pen, Picture, Point } from '../pictures/picture';
 import { Frame } from '../plot/frame';
 import { currentTheme, familyColour } from '../plot/theme';
@@ -62,7 +62,7 @@ export class OrbitView {
   private readonly stand = h('p', { class: 'soft', hidden: true });
   private readonly play = h('button', { type: 'button', class: 'icon' });
   private readonly scrub = h('input', { type: 'range', min: '0', max: '1', step: '0.001', value: '0', 'aria-label': 'Time in the period' });
-  private readonly picture: Picture | null;
+  private picture: Picture | null;
   private readonly frames: { picture: Frame; planes: Frame[]; time: Frame; spectrum: Frame; multipliers: Frame };
   private readonly planeAxes: [number, number][];
   private readonly hiddenCourses = new Set<number>();
@@ -72,8 +72,7 @@ export class OrbitView {
   constructor(private readonly store: Store) {
     const { atlas } = store;
     const names = atlas.index.stateNames;
-    const make = pictures[atlas.index.system];
-    this.picture = make ? make(atlas.parameters()) : null;
+    this.picture = this.makePicture(-1);
     const d = names.length;
     const half = d % 2 === 0 && d >= 2 ? d / 2 : Math.min(1, d - 1);
     this.planeAxes = d >= 4 ? [[0, 1], [0, half]] : [[0, Math.min(1, d - 1)], [0, d - 1]];
@@ -88,6 +87,12 @@ export class OrbitView {
     const f = this.frames;
     f.picture.onDraw = () => this.drawPicture();
     f.picture.onOverlay = () => this.drawFigure();
+    if (this.picture?.turn)
+      f.picture.onTurn = (turn, tilt) => {
+        this.picture!.turn!.rotate(turn, tilt);
+        if (this.loop) this.trace();
+        f.picture.draw();
+      };
     f.planes.forEach((frame, i) => {
       frame.onDraw = () => this.drawPlane(i);
       frame.onOverlay = () => this.drawPlaneDot(i);
@@ -186,6 +191,11 @@ export class OrbitView {
     void this.show();
   }
 
+  private makePicture(orbit: number): Picture | null {
+    const { atlas } = this.store;
+    const parameters = orbit < 0 ? atlas.parameters() : atlas.parametersOf(orbit);
+    return pictureOf(atlas.index.system, parameters, atlas.index.stateNames);
+  }
   private get family() {
     const { orbit } = this.store.state;
     return orbit >= 0 ? this.store.atlas.family(orbit) : undefined;
@@ -241,6 +251,9 @@ export class OrbitView {
     const loop = drawn < 0 ? null : await atlas.loop(drawn);
     if (this.shown !== orbit) return;
     this.loop = loop;
+    const turn = this.picture?.turn;
+    this.picture = drawn < 0 ? this.picture : this.makePicture(drawn);
+    if (this.picture && turn) this.picture.turn?.from(turn);
     this.stand.hidden = drawn === orbit;
     this.stand.textContent = drawn < 0 ? 'This page has no loop of this family.' : `Drawn is step ${atlas.value('step', drawn)} of the family: of ${atlas.orbits} orbits the page has ${atlas.index.loops} loops.`;
     if (!loop) return;
@@ -385,14 +398,22 @@ export class OrbitView {
 
   private traces: Point[][] = [];
 
-  private fitPicture(): void {
+  private trace(): void {
     const loop = this.loop!;
-    const frame = this.frames.picture;
-    const names = this.store.atlas.index.stateNames;
     const points = this.picture?.points ?? ((state: number[]): Point[] => [[state[0]!, state[1] ?? 0]]);
     this.traces = [];
     for (let j = 0; j < loop.times.length; ++j)
       points(loop.states.map((x) => x[j]!)).forEach((point, i) => (this.traces[i] ??= []).push(point));
+  }
+
+  private fitPicture(): void {
+    const loop = this.loop!;
+    const frame = this.frames.picture;
+    const names = this.store.atlas.index.stateNames;
+    const turn = this.picture?.turn;
+    if (turn)
+      turn.centre = [0, 1, 2].map((i) => (Math.min(...loop.states[i]!) + Math.max(...loop.states[i]!)) / 2) as typeof turn.centre;
+    this.trace();
     const paths = OrbitView.box(this.traces.flat());
     const box = OrbitView.box([...this.traces.flat(), ...(this.picture?.extent ?? [])]);
     if (!this.picture?.extent.length) {
@@ -407,7 +428,7 @@ export class OrbitView {
     frame.x.label = labelX;
     frame.y.label = labelY;
     frame.setWhole(box);
-    frame.describe(`${this.picture?.title ?? 'Moving'}: ${this.family!.name}, animated over its period ${rounded(this.period)}.`);
+    frame.describe(`${this.picture?.title ?? 'Moving'}: ${this.family!.name}, animated over its period ${rounded(this.period)}.${turn ? ' Arrows turn it.' : ''}`);
   }
 
   private drawPicture(): void {

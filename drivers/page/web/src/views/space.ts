@@ -1,8 +1,7 @@
 import type { Loop } from '../data/loop';
 import { h } from '../dom';
 import { Frame } from '../plot/frame';
-
-type Triple = [number, number, number];
+import { Turn, type Triple } from '../plot/turn';
 
 const corners: Triple[] = [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [n & 1 ? 1 : -1, n & 2 ? 1 : -1, n & 4 ? 1 : -1]);
 
@@ -10,8 +9,7 @@ const corners: Triple[] = [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [n & 1 ? 1 : -1, n
 export class Space {
   readonly element: HTMLElement;
   readonly frame = new Frame({ label: 'Path in three coordinates', bare: true, square: true, fixed: true });
-  private turn = 0.6;
-  private tilt = 0.45;
+  private readonly turn = new Turn();
   private loop: Loop | null = null;
 
   /** `places` are the three coordinates; `alike`: they have one scale, as those of a place in space. */
@@ -58,16 +56,13 @@ export class Space {
   }
 
   private rotate(turn: number, tilt: number): void {
-    this.turn += turn;
-    this.tilt = Math.max(-Math.PI / 2, Math.min(Math.PI / 2, this.tilt + tilt));
+    this.turn.rotate(turn, tilt);
     this.frame.draw();
   }
 
-  private project([x, y, z]: Triple): [number, number] {
-    const [c, s] = [Math.cos(this.turn), Math.sin(this.turn)];
-    const [ct, st] = [Math.cos(this.tilt), Math.sin(this.tilt)];
-    const depth = s * x + c * y;
-    return [this.frame.px(c * x - s * y), this.frame.py(ct * z + st * depth)];
+  private project(place: Triple): [number, number] {
+    const [x, y] = this.turn.project(place);
+    return [this.frame.px(x), this.frame.py(y)];
   }
 
   private draw(): void {
