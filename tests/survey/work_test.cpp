@@ -114,7 +114,7 @@ TEST(Payload, EqualWorkHasEqualBytes) { EXPECT_EQ(pack(sample_branch_work()), pa
 TEST(Payload, AnotherKindIsRefusedByName) {
   const std::string text = environment_error_of([] { (void)unpack_branch_work(pack(sample_sweep_outcome())); });
   EXPECT_THAT(text, AllOf(HasSubstr("expected a branch work of version 2"),
-                          HasSubstr("got a sweep outcome of version 4"), HasSubstr("same build")));
+                          HasSubstr("got a sweep outcome of version 5"), HasSubstr("same build")));
 }
 
 TEST(Payload, AnotherVersionIsRefused) {

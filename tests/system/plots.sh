@@ -52,6 +52,6 @@ grep -qE '>Newton: [1-9]<' convergence.svg || fail "Newton's method takes no few
 status=0
 "$program" plot "$atlas" tree -o nowhere/tree.svg 2>said.txt || status=$?
 ((status == 3)) || fail "a folder that is not there: status $status: $(cat said.txt)"
-grep -q 'cannot write nowhere/tree.svg.part' said.txt || fail "a folder that is not there: $(cat said.txt)"
+grep -q 'cannot write nowhere/tree.svg: is there' said.txt || fail "a folder that is not there: $(cat said.txt)"
 [[ -z "$(ls tmp)" ]] || fail "$(ls tmp) was left"
 echo "$drawn pictures"
