@@ -26,9 +26,10 @@ namespace fs = std::filesystem;
 
 void write(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
 
-/// Written on rank 0, read on all.
+/// Written on rank 0, read on all; not before all have read the one before.
 scene::Scene scene_in(const core::Communicator& comm, const fs::path& folder, const std::string& starts,
                       const std::string& more = "") {
+  MPI_Barrier(comm.get());
   core::on_root(comm.get(), [&] {
     write(folder / "scene.yaml", "system: {name: double_pendulum" + more + "}\nstarts: {" + starts +
                                      "}\nlimits: {period: 8, energy: [-3, 3]}\nsurvey: {depth: 0, subharmonics: 1}\n");
@@ -139,6 +140,7 @@ TEST(StartsOfStates, AreNumberedByWhatTheyAre) {
   const std::string both = "{state: [0, 180, 7.8737448, 7.8093862], period: 0.8114095}";
   std::vector<std::map<std::string, std::string>> bytes;
   for (const std::string& order : {outer + ", " + inner + ", " + both, both + ", " + outer + ", " + inner}) {
+    MPI_Barrier(comm.get());  // all have read the scene before
     core::on_root(comm.get(), [&] {
       write(folder / "scene.yaml", "system: {name: double_pendulum}\nstarts: {states: [" + order +
                                        "]}\nlimits: {energy: [15, 40]}\nsurvey: {depth: 0, subharmonics: 1}\n");
