@@ -1,5 +1,6 @@
 #include "coordinator.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,13 +14,16 @@
 
 namespace orbweaver::queue {
 
-Coordinator::Coordinator(const core::Communicator& comm, const Options& options, Observer& observer, Flusher& flusher)
+Coordinator::Coordinator(const core::Communicator& comm, const Options& options, Executor& executor, Observer& observer,
+                         Flusher& flusher)
     : _comm(comm),
       _options(options),
       _flusher(flusher),
       _channel(comm),
       _ledger(options, comm.size(), observer),
-      _schedule(options, comm.size() - 1),
+      _works(comm.size() <= std::max(1, options.root_works_up_to)),
+      _own(options, executor, *this),
+      _schedule(options, _works ? comm.size() : comm.size() - 1),
       _round(comm.size()),
       _deadlines(options.task_seconds, comm.size()),
       _task_of(static_cast<std::size_t>(comm.size())),
@@ -41,16 +45,22 @@ RunSummary Coordinator::run(std::vector<Task> initial) {
 void Coordinator::serve() {
   Backoff backoff(_options);
   while (!_over) {
-    bool busy = receive_some();
-    busy |= pass_on_stop();
-    busy |= check_deadlines();
-    busy |= advance_flush();
-    busy |= hand_out();
-    _ledger.tick();
+    const bool busy = attended(true) || work_itself();
     const bool sending = _channel.sending();
     if (busy || sending) backoff.reset();
     if (!busy) backoff.wait();
   }
+}
+
+/// What others want of rank 0, and the observer. Whether there was anything.
+bool Coordinator::attended(bool stands) {
+  bool busy = receive_some();
+  busy |= pass_on_stop();
+  busy |= check_deadlines();
+  while (!_over && advance_flush(stands)) busy = true;
+  busy |= hand_out();
+  _ledger.tick();
+  return busy;
 }
 
 bool Coordinator::receive_some() {
@@ -86,16 +96,17 @@ bool Coordinator::work_over() const {
   return _ledger.counts().running == 0 && (_stopping || _ledger.counts().waiting == 0);
 }
 
-bool Coordinator::advance_flush() {
+/// Unless rank 0 stands, nobody is asked to: others would wait for the end of its step.
+bool Coordinator::advance_flush(bool stands) {
   switch (_round.phase()) {
     case FlushRound::Phase::none:
-      if (!work_over() && !_schedule.due()) return false;
+      if (!stands || (!work_over() && !_schedule.due())) return false;
       _round.request();
       _schedule.begun();
       _channel.send_to_workers(FlushRequest{_round.number()});
       return true;
     case FlushRound::Phase::gathering:
-      if (!_round.complete()) return false;
+      if (!stands || !_round.complete()) return false;
       flush_together();
       return true;
     case FlushRound::Phase::flushing:
@@ -108,11 +119,15 @@ bool Coordinator::advance_flush() {
 
 void Coordinator::flush_together() {
   _last_round = work_over();
-  _ledger.flushing(_round.number());
-  _channel.send_to_workers(FlushGo{_round.number()});
   const int number = _round.number();
-  _round.go();
-  _round.own_result(flush_guarded(_flusher, number));
+  _own.flush(
+      [&](const std::string& key, const std::string& state) { _ledger.set_state(key, state); },
+      [&] {
+        _ledger.flushing(number);
+        _channel.send_to_workers(FlushGo{number});
+        _round.go();
+        _round.own_result(flush_guarded(_flusher, number));
+      });
 }
 
 void Coordinator::end_flush() {
@@ -139,6 +154,16 @@ bool Coordinator::hand_out() {
     _channel.send(worker, Assign{*task});
   }
   return any;
+}
+
+bool Coordinator::work_itself() {
+  if (!_works || _stopping || _round.phase() != FlushRound::Phase::none || _ledger.counts().waiting == 0) return false;
+  const Task* const next = _ledger.start(0);
+  if (next == nullptr) return true;
+  const Task task = *next;  // the ledger's gets the states of flushes
+  OwnWork::Done done = _own.execute(task);
+  _ledger.settle(std::move(done.outcome), done.overdue);
+  return true;
 }
 
 void Coordinator::count_rows(std::int64_t rows) {
@@ -204,6 +229,7 @@ void Coordinator::refuse(int worker, Tag tag) const {
 }
 
 void Coordinator::part(const std::string& error) {
+  _ledger.set_load(0, _own.load());
   if (!error.empty()) core::log_debug(fmt::format("queue: shutting down: {}", error));
   const RunSummary now = _ledger.numbers();
   _channel.send_to_workers(Shutdown{error, now.done, now.failed, now.waiting, now.stopped, now.stopped_early,

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "alone.hpp"
 #include "coordinator.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/check_mpi.hpp"
@@ -17,6 +16,7 @@ void require_valid(const Options& options) {
   core::require(options.flush_rows >= 0, "flush_rows must be 0 or more");
   core::require(options.flush_share > 0, "flush_share must be more than 0");
   core::require(options.progress_seconds >= 0, "progress_seconds must be 0 or more");
+  core::require(options.root_works_up_to >= 0, "root_works_up_to must be 0 or more");
   core::require(options.task_seconds >= 0, "task_seconds must be 0 or more");
   core::require(options.tick_seconds >= 0, "tick_seconds must be 0 or more");
   core::require(options.shortest_sleep.count() > 0, "shortest_sleep must be more than 0, or a waiting rank would spin");
@@ -28,8 +28,7 @@ void require_valid(const Options& options) {
 RunSummary run(const core::Communicator& comm, const Options& options, std::vector<Task> initial, Executor& executor,
                Observer& observer, Flusher& flusher) {
   require_valid(options);
-  if (comm.size() == 1) return Alone(options, executor, observer, flusher).run(std::move(initial));
-  RunSummary summary = comm.is_root() ? Coordinator(comm, options, observer, flusher).run(std::move(initial))
+  RunSummary summary = comm.is_root() ? Coordinator(comm, options, executor, observer, flusher).run(std::move(initial))
                                       : Worker(comm, options, executor, flusher).run();
   // A worker must not say hello to a next run before rank 0 has heard every goodbye of this one: it would be dropped.
   core::check_mpi(MPI_Barrier(comm.get()), "MPI_Barrier");

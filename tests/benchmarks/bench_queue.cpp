@@ -100,6 +100,7 @@ void measure(const core::Communicator& comm, const Settings& settings, const std
   queue::Options options;
   options.flush_seconds = settings.flush;
   options.flush_rows = 0;
+  options.root_works_up_to = 1;  // workers are what is simulated
   MPI_Barrier(comm.get());
   const double cpu_before = cpu_seconds();
   const queue::RunSummary summary = queue::run(comm, options, std::move(tasks), executor, counter, flusher);

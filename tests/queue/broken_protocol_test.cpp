@@ -38,7 +38,7 @@ class BrokenProtocol : public testing::Test {
 
   std::string error_of_run(queue::Executor& work, queue::Observer& observer) {
     Flush flush;
-    const std::string error = error_of([&] { queue::run(comm, {}, tasks(comm.size() - 1), work, observer, flush); });
+    const std::string error = error_of([&] { queue::run(comm, waiting_root(), tasks(comm.size() - 1), work, observer, flush); });
     EXPECT_TRUE(same_everywhere(comm, error)) << error;
     EXPECT_THAT(error, HasSubstr("the run was ended on all ranks"));
     return error;
@@ -163,7 +163,7 @@ TEST_F(BrokenProtocol, AtAWorkerThatStandsStill) {
   });
   queue::Observer nobody;
   Flush flush;
-  queue::Options options;
+  queue::Options options = waiting_root();
   options.flush_seconds = 0.1;
   const std::string error = error_of([&] { queue::run(comm, options, tasks(comm.size() - 1), work, nobody, flush); });
   EXPECT_TRUE(same_everywhere(comm, error)) << error;

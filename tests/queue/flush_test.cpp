@@ -140,7 +140,7 @@ queue::RunSummary run_timed(const Communicator& comm, Timed& timed, double flush
   queue::Options options;
   options.flush_seconds = flush_seconds;
   options.flush_share = share;
-  return queue::run(comm, options, tasks(20 * std::max(1, comm.size() - 1)), timed, timed, timed);
+  return queue::run(comm, options, tasks(20 * computing(comm)), timed, timed, timed);
 }
 
 TEST(Flush, TakesNoMoreThanItsShareOfTheRun) {

@@ -58,17 +58,17 @@ TEST_F(Stop, EndsRunningWorkAndLeavesItWaiting) {
   Stopper stopper(&queue::request_stop);
   options.keep_outcomes = true;
   const auto summary = queue::run(comm, options, tasks(30), endless, stopper, flush);
-  const auto computing = static_cast<std::size_t>(std::max(1, comm.size() - 1));
+  const auto running = static_cast<std::size_t>(computing(comm));
   EXPECT_TRUE(summary.stopped_early);
   EXPECT_EQ(summary.done, 0u);
   EXPECT_EQ(summary.failed, 0u);
   EXPECT_EQ(summary.waiting, 30u) << "the stopped ones too, and no child of theirs";
-  EXPECT_EQ(summary.stopped, computing);
+  EXPECT_EQ(summary.stopped, running);
   EXPECT_EQ(summary.flushes, flush.calls);
   EXPECT_GE(summary.flushes, 1);
   if (!comm.is_root()) return;
-  EXPECT_EQ(stopper.stopped_tasks, computing);
-  EXPECT_EQ(summary.outcomes.size(), computing);
+  EXPECT_EQ(stopper.stopped_tasks, running);
+  EXPECT_EQ(summary.outcomes.size(), running);
   for (const TaskOutcome& outcome : summary.outcomes) EXPECT_TRUE(outcome.stopped);
 }
 

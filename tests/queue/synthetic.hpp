@@ -44,6 +44,18 @@ inline std::vector<queue::Task> tasks(int count) {
   return made;
 }
 
+/// Rank 0 only waits, whatever the number of ranks.
+inline queue::Options waiting_root() {
+  queue::Options options;
+  options.root_works_up_to = 1;
+  return options;
+}
+
+/// Ranks that do tasks.
+inline int computing(const orbweaver::core::Communicator& comm, const queue::Options& options = {}) {
+  return comm.size() <= options.root_works_up_to ? comm.size() : comm.size() - 1;
+}
+
 /// An executor, observer or flusher out of a function.
 class Work final : public queue::Executor {
  public:

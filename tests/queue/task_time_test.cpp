@@ -74,7 +74,7 @@ TEST(TaskTime, ATaskThatTakesLongerIsPutAsideWithItsStateAndTheRunGoesOn) {
 TEST(TaskTime, StandingStillForFlushesDoesNotCount) {
   const Communicator comm;
   Work work([](const Task&, TaskContext& context) {
-    for (std::int64_t step = 1; step <= 40; ++step) {
+    for (std::int64_t step = 1; step <= 80; ++step) {
       sleep_us(5000);
       EXPECT_TRUE(context.report({step, 1, {}}));
     }

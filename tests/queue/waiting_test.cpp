@@ -52,7 +52,7 @@ TEST(Waiting, RankZeroUsesLessThanThreePercentOfACoreWhileAllOthersWork) {
   Work work(sleep_for_a_second);
   Flush flush;
   queue::Observer nobody;
-  const Use use = use_of(comm, [&] { queue::run(comm, {}, tasks(3 * (comm.size() - 1)), work, nobody, flush); });
+  const Use use = use_of(comm, [&] { queue::run(comm, waiting_root(), tasks(3 * (comm.size() - 1)), work, nobody, flush); });
   EXPECT_GE(use.wall, 3.0);
   if (comm.is_root()) {
     EXPECT_LT(use.cpu, 0.03 * use.wall);
@@ -68,7 +68,7 @@ TEST(Waiting, NoRankSpinsWhileOneWorks) {
   });
   Flush flush;
   queue::Observer nobody;
-  const Use use = use_of(comm, [&] { queue::run(comm, {}, tasks(1), work, nobody, flush); });
+  const Use use = use_of(comm, [&] { queue::run(comm, waiting_root(), tasks(1), work, nobody, flush); });
   EXPECT_GE(use.wall, 3.0) << "every rank stays to the end";
   EXPECT_LT(use.cpu, 0.03 * use.wall) << "rank " << comm.rank();
 }
@@ -82,7 +82,7 @@ TEST(Waiting, NoRankSpinsBeforeAFlushThatOneKeepsWaiting) {
   });
   Flush flush([&](int) { MPI_Barrier(comm.get()); });
   queue::Observer nobody;
-  queue::Options options;
+  queue::Options options = waiting_root();
   options.flush_seconds = 0.2;
   const Use use = use_of(comm, [&] { queue::run(comm, options, tasks(comm.size() - 1), work, nobody, flush); });
   EXPECT_GE(use.wall, 3.0);

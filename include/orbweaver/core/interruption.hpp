@@ -23,7 +23,7 @@ class InterruptionScope {
 };
 
 /// To be called in the loops of work that may take longer than a second, every millisecond or so; costs nanoseconds.
-/// Throws Interrupted when the innermost scope says so; it is asked some ten times a second.
+/// Throws Interrupted when the innermost scope says so; it is asked every few milliseconds.
 void interruption_point();
 
 }  // namespace orbweaver::core

@@ -80,6 +80,7 @@ class Run {
         _tree(scaled.scene(), _system->structure(), Units(*_system)) {
     _queue_options.flush_seconds = scene.output.flush_seconds;
     _queue_options.flush_rows = scene.output.flush_orbits;
+    if (scene.survey.team_size > 1) _queue_options.root_works_up_to = 1;  // rank 0 is in no team
     if (std::isfinite(scene.limits.task_time)) _queue_options.task_seconds = scene.limits.task_time;
     _summary.atlas = directory / "atlas.h5";
   }
