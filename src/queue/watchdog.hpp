@@ -9,7 +9,7 @@
 
 namespace orbweaver::queue {
 
-/// Minds Options::task_seconds where there is one rank and nobody else to do it: a thread that ends the program when a
+/// Minds Options::task_seconds for the tasks of rank 0, which nobody else watches: a thread that ends the program when a
 /// task neither ends nor reports. Without a limit there is no thread.
 class Watchdog {
  public:
