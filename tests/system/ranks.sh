@@ -18,11 +18,11 @@ lacks missed.txt -----
 
 # Signals: SIGINT stops a survey so that it can be resumed; a rank that is killed is told.
 survey_in_background() {
-  rm -rf out
+  rm -rf out background.txt  # the one before says the same
   "$program" --ranks 2 survey "$scene" -o out >background.txt 2>&1 &
   launcher=$!
   for ((n = 0; n < 600; ++n)); do
-    ! grep -q 'In-Phase .* orbits' background.txt || return 0
+    ! grep -qs 'In-Phase .* orbits' background.txt || return 0
     sleep 0.1
   done
   fail "no progress: $(cat background.txt)"
