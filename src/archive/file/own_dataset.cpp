@@ -9,7 +9,8 @@ namespace {
 /// Whether as many bytes are stored as the extents need: HDF5 1.10 reads on behind a compact or contiguous layout that
 /// has fewer.
 bool holds_its_values(hid_t dataset, H5D_layout_t layout) {
-  if (layout != H5D_COMPACT && layout != H5D_CONTIGUOUS) return true;
+  const bool is_unwritten = layout == H5D_CONTIGUOUS && H5Dget_offset(dataset) == HADDR_UNDEF;  // it reads as zeros
+  if (is_unwritten || (layout != H5D_COMPACT && layout != H5D_CONTIGUOUS)) return true;
   const hid_t type = H5Dget_type(dataset);
   const hid_t space = H5Dget_space(dataset);
   const hssize_t values = space >= 0 ? H5Sget_simple_extent_npoints(space) : -1;
