@@ -77,6 +77,25 @@ TEST_F(TextTables, RowsThatAreOnlyClaimedTakeNoMemory) {
               ThrowsMessage<core::InputError>(HasSubstr("claims 1099511627776 rows")));
 }
 
+// HDF5 1.10 reads on behind a chunk that unpacks to fewer bytes than it should: a crash.
+TEST_F(TextTables, ACompressedColumnIsRefused) {
+  alter([](hid_t file) {
+    constexpr hsize_t rows = 2;
+    check_h5(H5Ldelete(file, "rows/first", H5P_DEFAULT), "H5Ldelete");
+    const H5Handle space(check_h5(H5Screate_simple(1, &rows, nullptr), "H5Screate_simple"), H5Sclose);
+    const H5Handle creation(check_h5(H5Pcreate(H5P_DATASET_CREATE), "H5Pcreate"), H5Pclose);
+    check_h5(H5Pset_chunk(creation.get(), 1, &rows), "H5Pset_chunk");
+    check_h5(H5Pset_deflate(creation.get(), 1), "H5Pset_deflate");
+    const H5Handle dataset(
+        check_h5(H5Dcreate2(file, "rows/first", H5T_C_S1, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+                 "H5Dcreate2"),
+        H5Dclose);
+    check_h5(H5Dwrite(dataset.get(), H5T_C_S1, H5S_ALL, H5S_ALL, H5P_DEFAULT, "ab"), "H5Dwrite");
+  });
+  EXPECT_THAT([&] { static_cast<void>(read_text_table(path, table)); },
+              ThrowsMessage<core::InputError>(HasSubstr("lacks the column /rows/first, or it is damaged or compressed")));
+}
+
 // HDF5 1.10 reads on behind the values: a crash.
 TEST_F(TextTables, ACompactColumnThatHoldsFewerBytesThanItsRowsIsRefused) {
   constexpr hsize_t rows = 2, width = 3001;

@@ -40,7 +40,7 @@ hid_t open_own_dataset(hid_t file, const std::string& name) {
   const hid_t creation = H5Dget_create_plist(dataset);
   const H5D_layout_t layout = creation >= 0 ? H5Pget_layout(creation) : H5D_LAYOUT_ERROR;
   const bool is_own = creation >= 0 && layout != H5D_VIRTUAL && H5Pget_external_count(creation) == 0 &&
-                      holds_its_values(dataset, layout);
+                      H5Pget_nfilters(creation) == 0 && holds_its_values(dataset, layout);
   if (creation >= 0) H5Pclose(creation);
   if (is_own) return dataset;
   H5Dclose(dataset);

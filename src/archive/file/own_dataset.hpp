@@ -11,7 +11,8 @@ namespace orbweaver::archive {
 [[nodiscard]] bool is_in_file(hid_t file, const std::string& name);
 
 /// The dataset of that name whose values lie in the file itself; negative where there is none, where they lie in others,
-/// or where fewer are stored than its extents claim.
+/// where fewer are stored than its extents claim, or where they are compressed: HDF5 1.10 reads on behind a chunk that
+/// unpacks to fewer bytes than it should.
 [[nodiscard]] hid_t open_own_dataset(hid_t file, const std::string& name);
 
 }  // namespace orbweaver::archive
