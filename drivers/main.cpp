@@ -14,6 +14,7 @@
 #include "launch.hpp"
 #include "orbweaver/core/blas_kernels.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/pause.hpp"
 #include "signals.hpp"
 
 namespace {
@@ -105,6 +106,7 @@ int main(int argc, char** argv) {
   open_standard_streams();
   std::signal(SIGXFSZ, SIG_IGN);  // beyond `ulimit -f` a write fails, as on a full disk, and the program says so
   orbweaver::core::prefer_fitting_blas_kernels(argv);
+  orbweaver::core::pause_point("begin");
   try {
     return run({argv + 1, argv + argc});
   } catch (...) {

@@ -14,6 +14,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/core/mpi/communicator.hpp"
+#include "orbweaver/core/pause.hpp"
 #include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/core/terminal.hpp"
 #include "orbweaver/report/summary_text.hpp"
@@ -98,6 +99,7 @@ int run(const SurveyOptions& options, const Invocation& invocation) {
   const core::Session session(invocation.petsc_options);
   const core::Communicator comm;
   core::start_logging(options.log.level(), comm.rank(), comm.size());
+  core::pause_point("begin survey");
   try {
     return run_on_ranks(comm, [&] {
       const int status = survey_on(comm, options);

@@ -2,7 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <functional>
+#include <sstream>
+#include <string>
 
 #include "archive/sample.hpp"
 #include "file/h5_handle.hpp"
@@ -72,6 +75,53 @@ TEST_F(TextTables, RowsThatAreOnlyClaimedTakeNoMemory) {
   });
   EXPECT_THAT([&] { static_cast<void>(read_text_table(path, table)); },
               ThrowsMessage<core::InputError>(HasSubstr("claims 1099511627776 rows")));
+}
+
+// HDF5 1.10 reads on behind a chunk that unpacks to fewer bytes than it should: a crash.
+TEST_F(TextTables, ACompressedColumnIsRefused) {
+  alter([](hid_t file) {
+    constexpr hsize_t rows = 2;
+    check_h5(H5Ldelete(file, "rows/first", H5P_DEFAULT), "H5Ldelete");
+    const H5Handle space(check_h5(H5Screate_simple(1, &rows, nullptr), "H5Screate_simple"), H5Sclose);
+    const H5Handle creation(check_h5(H5Pcreate(H5P_DATASET_CREATE), "H5Pcreate"), H5Pclose);
+    check_h5(H5Pset_chunk(creation.get(), 1, &rows), "H5Pset_chunk");
+    check_h5(H5Pset_deflate(creation.get(), 1), "H5Pset_deflate");
+    const H5Handle dataset(
+        check_h5(H5Dcreate2(file, "rows/first", H5T_C_S1, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+                 "H5Dcreate2"),
+        H5Dclose);
+    check_h5(H5Dwrite(dataset.get(), H5T_C_S1, H5S_ALL, H5S_ALL, H5P_DEFAULT, "ab"), "H5Dwrite");
+  });
+  EXPECT_THAT([&] { static_cast<void>(read_text_table(path, table)); },
+              ThrowsMessage<core::InputError>(HasSubstr("lacks the column /rows/first, or it is damaged or compressed")));
+}
+
+// HDF5 1.10 reads on behind the values: a crash.
+TEST_F(TextTables, ACompactColumnThatHoldsFewerBytesThanItsRowsIsRefused) {
+  constexpr hsize_t rows = 2, width = 3001;
+  alter([&](hid_t file) {
+    check_h5(H5Ldelete(file, "rows/first", H5P_DEFAULT), "H5Ldelete");
+    const H5Handle type(check_h5(H5Tcopy(H5T_C_S1), "H5Tcopy"), H5Tclose);
+    check_h5(H5Tset_size(type.get(), width), "H5Tset_size");
+    const H5Handle space(check_h5(H5Screate_simple(1, &rows, nullptr), "H5Screate_simple"), H5Sclose);
+    const H5Handle creation(check_h5(H5Pcreate(H5P_DATASET_CREATE), "H5Pcreate"), H5Pclose);
+    check_h5(H5Pset_layout(creation.get(), H5D_COMPACT), "H5Pset_layout");
+    const H5Handle dataset(
+        check_h5(H5Dcreate2(file, "rows/first", type.get(), space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+                 "H5Dcreate2"),
+        H5Dclose);
+    check_h5(H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, std::string(rows * width, 'a').data()),
+             "H5Dwrite");
+  });
+  std::string bytes = (std::ostringstream() << std::ifstream(path, std::ios::binary).rdbuf()).str();
+  const std::string whole{'\x03', '\0', static_cast<char>(rows * width & 0xff), static_cast<char>(rows * width >> 8)};
+  const std::size_t layout = bytes.find(whole);  // version 3, compact, the size of what follows
+  ASSERT_NE(layout, std::string::npos);
+  ASSERT_EQ(bytes.find(whole, layout + 1), std::string::npos);
+  bytes[layout + 2] = bytes[layout + 3] = '\0';
+  std::ofstream(path, std::ios::binary) << bytes;
+  EXPECT_THAT([&] { static_cast<void>(read_text_table(path, table)); },
+              ThrowsMessage<core::InputError>(HasSubstr("lacks the column /rows/first, or it is damaged")));
 }
 
 }  // namespace

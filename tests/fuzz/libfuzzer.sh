@@ -9,6 +9,7 @@ flags=(-std=c++20 -O1 -g -fsanitize=fuzzer,address -march=native -mno-avx512f -D
 for file in "$source"/tests/fuzz/libfuzzer.cpp "$source"/src/scene/*.cpp "$source"/src/core/{text,error}.cpp; do
   "$clang" "${flags[@]}" -c "$file"
 done
-"$clang" "${flags[@]}" ./*.o "$@" -o fuzz
+# Of what is compiled here the libraries have another copy in a larger piece, whose rest is needed: the first one counts.
+"$clang" "${flags[@]}" -Wl,-z,muldefs ./*.o "$@" -o fuzz
 cp "$source"/drivers/scenes/*.yaml "$source"/tests/scene/good/*.yaml corpus
 ./fuzz -runs="$runs" -seed=1 -timeout=5 -rss_limit_mb=500 -max_len=4000 -detect_leaks=0 -print_final_stats=1 corpus

@@ -5,6 +5,8 @@
 #include <fstream>
 #include <sstream>
 
+#include <fmt/format.h>
+
 #include "archive/sample.hpp"
 #include "gnuplot.hpp"
 #include "plot/figure.hpp"
@@ -63,6 +65,33 @@ std::string error_of(const report::PlotRequest& request) {
     return error.what();
   }
   return "nothing was thrown";
+}
+
+/// More families than there are colours, each the child of the one before, and the first of the last if it is a circle.
+std::string script_of_chain(std::size_t length, bool is_circle) {
+  const archive::Header header = test::sample_header();
+  archive::Records records;
+  const archive::Records whole = test::sample_records(header);
+  for (std::size_t n = 0; n < length; ++n) {
+    archive::FamilyRecord family = whole.families[0];
+    family.key = fmt::format("{:06}", n);
+    family.name = fmt::format("f{}", n);
+    family.parent_key = n > 0 ? fmt::format("{:06}", n - 1) : is_circle ? fmt::format("{:06}", length - 1) : "";
+    family.end_family_key.clear();
+    family.crossing = family.end_crossing = -1;
+    records.families.push_back(family);
+    archive::OrbitRecord orbit = whole.orbits[0];
+    orbit.family_key = family.key;
+    records.orbits.push_back(orbit);
+  }
+  const archive::Archive atlas(test::write_sample_atlas(test::fresh_folder("chain"), header, records));
+  return report::plot_script(atlas, {"tree", {}, {}}, "picture.svg");
+}
+
+TEST(Plot, ParentsInACircleHaveOneColour) {
+  const std::string chain = script_of_chain(8, false);
+  EXPECT_THAT(chain, HasSubstr("'f0'"));
+  EXPECT_EQ(script_of_chain(8, true), chain);
 }
 
 TEST(Plot, WhatCannotBeDrawnIsNamed) {

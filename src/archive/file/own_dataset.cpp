@@ -4,6 +4,24 @@
 
 namespace orbweaver::archive {
 
+namespace {
+
+/// Whether as many bytes are stored as the extents need: HDF5 1.10 reads on behind a compact or contiguous layout that
+/// has fewer.
+bool holds_its_values(hid_t dataset, H5D_layout_t layout) {
+  const bool is_unwritten = layout == H5D_CONTIGUOUS && H5Dget_offset(dataset) == HADDR_UNDEF;  // it reads as zeros
+  if (is_unwritten || (layout != H5D_COMPACT && layout != H5D_CONTIGUOUS)) return true;
+  const hid_t type = H5Dget_type(dataset);
+  const hid_t space = H5Dget_space(dataset);
+  const hssize_t values = space >= 0 ? H5Sget_simple_extent_npoints(space) : -1;
+  const std::size_t bytes = type >= 0 ? H5Tget_size(type) : 0;
+  if (type >= 0) H5Tclose(type);
+  if (space >= 0) H5Sclose(space);
+  return values >= 0 && bytes > 0 && H5Dget_storage_size(dataset) / bytes >= static_cast<hsize_t>(values);
+}
+
+}  // namespace
+
 bool is_in_file(hid_t file, const std::string& name) {
   for (std::size_t end = name.find('/');; end = name.find('/', end + 1)) {
     const std::string part = name.substr(0, end);
@@ -20,7 +38,9 @@ hid_t open_own_dataset(hid_t file, const std::string& name) {
   const hid_t dataset = H5Dopen2(file, name.c_str(), H5P_DEFAULT);
   if (dataset < 0) return dataset;
   const hid_t creation = H5Dget_create_plist(dataset);
-  const bool is_own = creation >= 0 && H5Pget_layout(creation) != H5D_VIRTUAL && H5Pget_external_count(creation) == 0;
+  const H5D_layout_t layout = creation >= 0 ? H5Pget_layout(creation) : H5D_LAYOUT_ERROR;
+  const bool is_own = creation >= 0 && layout != H5D_VIRTUAL && H5Pget_external_count(creation) == 0 &&
+                      H5Pget_nfilters(creation) == 0 && holds_its_values(dataset, layout);
   if (creation >= 0) H5Pclose(creation);
   if (is_own) return dataset;
   H5Dclose(dataset);

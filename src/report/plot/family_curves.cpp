@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 
 #include <fmt/format.h>
@@ -18,6 +19,34 @@ namespace {
 constexpr std::size_t family_colours = 6;  // of plot_colours: black and grey are for what belongs to no family
 constexpr std::size_t points_an_interval = 8;
 constexpr std::size_t orbits_of_a_polynomial = 4;
+
+std::vector<std::size_t> all_rows(std::size_t count) {
+  std::vector<std::size_t> rows(count);
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  return rows;
+}
+
+/// Of each of the families drawn, the first of its ancestors among them; where parents go round in a circle, one of
+/// them.
+std::vector<std::size_t> first_ancestors(const std::vector<std::int64_t>& parents,
+                                         const std::vector<std::size_t>& drawn) {
+  std::vector<bool> is_drawn(parents.size());
+  for (const std::size_t family : drawn) is_drawn[family] = true;
+  constexpr std::size_t unknown = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> first(parents.size(), unknown);
+  for (const std::size_t family : drawn) {
+    std::vector<std::size_t> path;
+    std::size_t at = family;
+    while (first[at] == unknown) {
+      first[at] = at;
+      path.push_back(at);
+      const std::int64_t parent = parents[at];
+      if (parent >= 0 && is_drawn[static_cast<std::size_t>(parent)]) at = static_cast<std::size_t>(parent);
+    }
+    for (const std::size_t below : path) first[below] = first[at];
+  }
+  return first;
+}
 
 }  // namespace
 
@@ -39,31 +68,16 @@ FamilyCurves::FamilyCurves(const archive::Archive& atlas, const std::vector<std:
   if (_families.empty())
     throw core::InputError(fmt::format("{} has no orbits to draw{}", atlas.path().string(),
                                        families.empty() ? "" : " in the families that were named"));
-}
-
-std::size_t FamilyCurves::ancestor(std::size_t family) const {
-  for (std::int64_t parent = _atlas.families().integers("parent")[family]; parent >= 0;
-       parent = _atlas.families().integers("parent")[family]) {
-    const auto row = static_cast<std::size_t>(parent);
-    if (std::find(_families.begin(), _families.end(), row) == _families.end()) break;
-    family = row;
-  }
-  return family;
-}
-
-std::vector<std::size_t> FamilyCurves::coloured() const {
-  std::vector<std::size_t> all;
+  _colour_of = _families.size() <= family_colours ? all_rows(atlas.families().rows())
+                                                  : first_ancestors(atlas.families().integers("parent"), _families);
   for (const std::size_t family : _families)
-    if (_families.size() <= family_colours || ancestor(family) == family) all.push_back(family);
-  if (all.size() > family_colours) all.resize(family_colours);
-  return all;
+    if (_colour_of[family] == family && _coloured.size() < family_colours) _coloured.push_back(family);
 }
 
 std::string FamilyCurves::colour(std::size_t family) const {
-  const std::vector<std::size_t> all = coloured();
-  const std::size_t own = _families.size() <= family_colours ? family : ancestor(family);
-  const auto number = static_cast<std::size_t>(std::find(all.begin(), all.end(), own) - all.begin());
-  return number < all.size() ? plot_colours[number] : "#999999";
+  const auto number =
+      static_cast<std::size_t>(std::find(_coloured.begin(), _coloured.end(), _colour_of[family]) - _coloured.begin());
+  return number < _coloured.size() ? plot_colours[number] : "#999999";
 }
 
 FamilyCurves::Number FamilyCurves::column(const char* name) const {

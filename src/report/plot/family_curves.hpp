@@ -25,7 +25,7 @@ class FamilyCurves {
   /// That of its first ancestor among the families drawn; of its own where there are few.
   [[nodiscard]] std::string colour(std::size_t family) const;
   /// Families that have a colour of their own, as many as there are colours.
-  [[nodiscard]] std::vector<std::size_t> coloured() const;
+  [[nodiscard]] const std::vector<std::size_t>& coloured() const { return _coloured; }
 
   /// A number of an orbit, by its row.
   using Number = std::function<double(std::size_t)>;
@@ -50,11 +50,12 @@ class FamilyCurves {
   [[nodiscard]] Look look_of(std::size_t orbit) const;
   /// Where the stability changes between an orbit and the next: at a crossing, or in the middle.
   [[nodiscard]] double change_between(std::size_t family, std::size_t orbit) const;
-  [[nodiscard]] std::size_t ancestor(std::size_t family) const;
 
   const archive::Archive& _atlas;
   OrbitStability _stability;
   std::vector<std::size_t> _families;
+  std::vector<std::size_t> _colour_of;  ///< of a row of /families: the family whose colour it has
+  std::vector<std::size_t> _coloured;
 };
 
 /// The inverse of `placed`.
