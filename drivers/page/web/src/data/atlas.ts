@@ -21,6 +21,10 @@ interface Index {
   parameterNames: string[];
   parameterValues: number[];
   parameterUnits: string[];
+  /** The parameter that moves along the families; empty where none does. */
+  moving: string;
+  /** Of the system and its coordinates, in words; empty where the program did not know the system. */
+  meaning: string;
   stateNames: string[];
   angles: number[];
   pairs: number;
@@ -56,6 +60,7 @@ export interface Crossing {
   arclength: number;
   period: number;
   energy: number;
+  parameter: number;
   kind: string;
   multiplicity: number;
   kernelDimension: number;
@@ -137,6 +142,7 @@ export class Atlas {
       arclength: number(c, 'arclength', row),
       period: number(c, 'period', row),
       energy: number(c, 'energy', row),
+      parameter: number(c, 'parameter', row),
       kind: text(c, 'kind', row),
       multiplicity: number(c, 'multiplicity', row),
       kernelDimension: number(c, 'kernel_dimension', row),
@@ -187,10 +193,10 @@ export class Atlas {
   }
   /** Those of an orbit: the one that moves along the families has the orbit's value. */
   parametersOf(orbit: number): Record<string, number> {
-    const moved = /^\s*free:\s*(\w+)\s*(#.*)?$/m.exec(this.index.scene)?.[1];
+    const { moving } = this.index;
     const value = this.value('parameter', orbit);
     const all = this.parameters();
-    return moved && moved in all && Number.isFinite(value) ? { ...all, [moved]: value } : all;
+    return moving && Number.isFinite(value) ? { ...all, [moving]: value } : all;
   }
   winding(orbit: number): number[] {
     const turns = this.index.stateNames.map(() => 0);
