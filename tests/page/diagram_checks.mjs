@@ -51,9 +51,14 @@ await checkPage('a click picks a crossing and says what is born there', 'pendulu
   await page.mouse.click(x, y);
   assert.match(await text(page, '.crossing'), /Period doubling.*Born here: I/);
   assert.ok(hint.includes('m 2'));
+  assert.doesNotMatch(await text(page, '.crossing'), /Ends here/);
   await page.evaluate(() => [...document.querySelectorAll('.crossing .link')][0].click());
   assert.match(await text(page, '.orbit h2'), /^ID/);
   assert.ok(await page.$eval('.crossing', (e) => e.hidden));
+  // Where that family comes back to In-Phase.
+  await page.evaluate(() => [...document.querySelectorAll('.head .link')].find((e) => e.textContent === 'In-Phase').click());
+  await page.evaluate(() => [...document.querySelectorAll('.strip .tick')][1].click());
+  assert.match(await text(page, '.crossing'), /No family of this atlas is born here\.Ends here: IDa, IDb/);
 });
 
 await checkPage('search finds names, periods and energies', 'pendulum', {}, async (page) => {

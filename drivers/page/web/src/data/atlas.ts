@@ -69,6 +69,8 @@ export interface Crossing {
   sectorJ: number;
   sectorQ: number;
   born: number[];
+  /** Families that end there, without its own. */
+  ended: number[];
 }
 
 export interface Finding {
@@ -151,6 +153,7 @@ export class Atlas {
       sectorJ: number(c, 'sector_j', row),
       sectorQ: number(c, 'sector_q', row),
       born: [],
+      ended: [],
     }));
     const g = index.findings;
     this.findings = (g['text'] ?? []).map((_, row) => ({
@@ -164,6 +167,8 @@ export class Atlas {
       if (family.count > 0) this.familyOf.fill(family.row, family.first, family.first + family.count);
       this.families[family.parent]?.children.push(family.row);
       this.crossings[family.crossing]?.born.push(family.row);
+      const end = this.crossings[family.endCrossing];
+      if (end && end.family !== family.row) end.ended.push(family.row);
       let depth = 0;
       for (let up = family.parent; up >= 0 && depth < this.families.length; up = this.families[up]!.parent) ++depth;
       family.depth = depth;

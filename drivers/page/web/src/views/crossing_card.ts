@@ -2,6 +2,7 @@ import { kindOf } from '../data/kinds';
 import { exact, rounded } from '../data/quantities';
 import { h, replaceChildren } from '../dom';
 import type { Store } from '../state';
+import { familyLinks } from './family_links';
 
 /** What is known of the picked crossing, and what is born there. */
 export class CrossingCard {
@@ -27,12 +28,13 @@ export class CrossingCard {
       ['kernel', crossing.kernelDimension < 0 ? 'not computed' : `${crossing.kernelDimension} flat direction${crossing.kernelDimension === 1 ? '' : 's'}`],
       ['residual', rounded(crossing.residual, 3)],
       ...crossing.state.map((value, i): [string, string] => [atlas.index.stateNames[i]!, exact(value)]));
-    const born = crossing.born.flatMap((row, i) => [i ? ', ' : '', h('button', { type: 'button', class: 'link', click: () => store.pickFamily(row) }, atlas.families[row]!.name)]);
+    const named = (title: string, rows: number[]): Node | null => (rows.length ? h('p', {}, title, familyLinks(store, rows)) : null);
     replaceChildren(this.element,
       h('div', { class: 'bar' }, h('h3', {}, `${kind.text[0]!.toUpperCase()}${kind.text.slice(1)} (crossing ${crossing.row})`),
         h('button', { type: 'button', class: 'icon', 'aria-label': 'Close', click: () => store.set({ crossing: -1 }, 'crossing') }, '×')),
       h('table', { class: 'numbers' }, rows.map(([name, value]) => h('tr', {}, h('th', { scope: 'row' }, name), h('td', {}, value)))),
-      h('p', {}, born.length ? ['Born here: ', ...born] : 'No family of this atlas is born here.'),
+      named('Born here: ', crossing.born) ?? h('p', {}, 'No family of this atlas is born here.'),
+      named('Ends here: ', crossing.ended),
       h('button', { type: 'button', click: () => copyText(`[${crossing.state.join(', ')}]`, "The crossing's state") }, 'Copy its state'));
   }
 }

@@ -7,6 +7,7 @@ import { Clock } from './clock';
 import { Courses } from './courses';
 import { CrossingCard } from './crossing_card';
 import { familyCsv, fileName, orbitJson } from './export';
+import { familyLink, familyLinks } from './family_links';
 import { Motion } from './motion';
 import { Multipliers } from './multipliers';
 import { Numbers } from './numbers';
@@ -137,8 +138,6 @@ export class OrbitView {
     const { atlas, state } = this.store;
     const family = this.family!;
     const orbit = state.orbit;
-    const link = (row: number): HTMLElement =>
-      h('button', { type: 'button', class: 'link', click: () => this.store.pickFamily(row) }, atlas.families[row]!.name);
     const crossing = atlas.crossings[family.crossing];
     const s = atlas.stable[orbit];
     const badge = h('span', { class: `badge ${s === 1 ? 'stable' : s === 0 ? 'unstable' : 'unknown'}` }, s === 1 ? 'stable' : s === 0 ? 'unstable' : 'stability not known');
@@ -146,13 +145,13 @@ export class OrbitView {
       h('h2', {}, family.name, badge),
       h('p', {},
         family.parent >= 0
-          ? [crossing ? h('button', { type: 'button', class: 'link', click: () => this.store.pickCrossing(crossing.row) }, kindOf(crossing.kind).text) : 'branch', ' of ', link(family.parent), family.multiplicity > 1 ? `, ${family.multiplicity} times around` : '', '. ']
+          ? [crossing ? h('button', { type: 'button', class: 'link', click: () => this.store.pickCrossing(crossing.row) }, kindOf(crossing.kind).text) : 'branch', ' of ', familyLink(this.store, family.parent), family.multiplicity > 1 ? `, ${family.multiplicity} times around` : '', '. ']
           : 'Begun by the scene. ',
         family.isotropy ? `Symmetry ${family.isotropy}. ` : 'No symmetry. ',
         `Ends: ${family.endReason}`,
-        family.endFamily >= 0 && family.endFamily !== family.row && atlas.families[family.endFamily] ? [' → ', link(family.endFamily)] : ''),
+        family.endFamily >= 0 && family.endFamily !== family.row && atlas.families[family.endFamily] ? [' → ', familyLink(this.store, family.endFamily)] : ''),
       family.children.length
-        ? h('p', { class: 'children' }, 'Branches: ', family.children.map((row, i) => [i ? ', ' : '', link(row)]).flat())
+        ? h('p', { class: 'children' }, 'Branches: ', familyLinks(this.store, family.children))
         : null);
     this.slider.max = String(family.count - 1);
     this.slider.value = String(orbit - family.first);
