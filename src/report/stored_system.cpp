@@ -2,11 +2,25 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <numeric>
 
 #include "orbweaver/systems/registry.hpp"
 
 namespace orbweaver::report {
+
+namespace {
+
+/// As the survey had it, reduced by its conserved quantities; null where this program does not know it.
+std::shared_ptr<const systems::System> system_of(const archive::Header& header) {
+  if (info_of(header) == nullptr) return nullptr;
+  std::map<std::string, double> parameters;
+  for (std::size_t i = 0; i < header.parameter_names.size(); ++i)
+    parameters[header.parameter_names[i]] = header.parameter_values[i];
+  return systems::make_system(header.system, parameters, header.effects);
+}
+
+}  // namespace
 
 const systems::ModelInfo* info_of(const archive::Header& header) {
   const std::vector<std::string> known = systems::system_names();
@@ -27,15 +41,16 @@ std::vector<std::string> units_of(const archive::Header& header) {
   return units;
 }
 
+std::string meaning_of(const archive::Header& header) {
+  const auto system = system_of(header);
+  return system == nullptr ? "" : system->info().meaning;
+}
+
 std::vector<int> angles_of(const archive::Header& header) {
   std::vector<int> angles(header.winding_names.size());
   std::iota(angles.begin(), angles.end(), 0);
-  if (info_of(header) == nullptr) return angles;
-  std::map<std::string, double> parameters;
-  for (std::size_t i = 0; i < header.parameter_names.size(); ++i)
-    parameters[header.parameter_names[i]] = header.parameter_values[i];
-  const auto system = systems::make_system(header.system, parameters, header.effects);
-  return system->structure().angles.size() == angles.size() ? system->structure().angles : angles;
+  const auto system = system_of(header);
+  return system != nullptr && system->structure().angles.size() == angles.size() ? system->structure().angles : angles;
 }
 
 }  // namespace orbweaver::report

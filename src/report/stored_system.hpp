@@ -15,6 +15,9 @@ namespace orbweaver::report {
 /// One a parameter of the header; empty where it is not known.
 [[nodiscard]] std::vector<std::string> units_of(const archive::Header& header);
 
+/// What the system is and which coordinates tell its states, in words; empty where it is not known.
+[[nodiscard]] std::string meaning_of(const archive::Header& header);
+
 /// The coordinates that may wind, in the order of the header's winding_names: those of the system, or the first ones
 /// where the program does not know it.
 [[nodiscard]] std::vector<int> angles_of(const archive::Header& header);

@@ -45,4 +45,16 @@ status=0
 [[ $status == 1 ]] && grep -q "line 6: 'tests/none.sh' ended with status 127" said.txt && [[ -s work/copied.py ]] &&
   grep -q 'the file' work/said.txt && ! grep -q 'orbweaver systems' said.txt ||
   { echo "expected the second command to end it, got status $status: $(cat said.txt)" >&2 && exit 1; }
+printf '%s\n' '    echo from' '' '```text' 'row  value' '  0  1.5e-15' '```' >tree/c.md
+# excerpt STATUS ROW: what follow.sh says of that excerpt where ROW was printed.
+excerpt() {
+  printf '#!/bin/sh\nprintf "row     value\\n%s\\n"\n' "$2" >tree/table.sh
+  sed -i "1s|.*|    bash $PWD/tree/table.sh|" tree/c.md
+  status=0
+  "$here/follow.sh" "$PWD/tree/c.md" "$build" "$PWD/atlas" >said.txt 2>&1 || status=$?
+  [[ $status == "$1" ]] && { [[ $status == 0 ]] || grep -q 'line 3: the excerpt is not what was said' said.txt; } ||
+    { echo "an excerpt beside '$2': status $status: $(cat said.txt)" >&2 && exit 1; }
+}
+excerpt 0 '  0  -2.5e-16'
+excerpt 1 '  1  1.5e-15'
 echo "all refused"

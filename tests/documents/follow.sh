@@ -2,8 +2,9 @@
 # follow.sh DOCUMENT BUILD ATLAS [--prefix PREFIX] [--long] [--dry]: writes the files that a document shows and runs its commands in a
 # folder of their own, `work`, which looks like the root of the source tree: build/release is BUILD, out/double_pendulum/atlas.h5 is ATLAS (that
 # of `./quickstart run`). Every command must end with status 0, unless rules.txt says otherwise. With --prefix the program is that
-# of the package installed there. With --long it runs the commands that rules.txt calls long, too. Then checks/DOCUMENT.sh, if there is
-# one, holds what was written and said (`said.txt`) against what the document promises.
+# of the package installed there. With --long it runs the commands that rules.txt calls long, too. Then excerpts, blocks ```text of the
+# document, must be what was said (`said.txt`), line by line, but for zeros and numbers like 1.7e-15, which are rounding; and
+# checks/DOCUMENT.sh, if there is one, holds what was written and said against what the document promises.
 # Placeholders: SCENE is the double pendulum's scene, ATLAS its archive, FAMILY In-Phase, DIR a folder, which is emptied before a survey
 # into it without --resume; of more than 3 ranks 2 are started.
 set -euo pipefail
@@ -52,7 +53,7 @@ if grep -q '^```python ' "$document"; then # the first Python that has what docs
     "$candidate" -c 'import h5py, scipy, matplotlib' 2>/dev/null && ln -s "$(command -v "$candidate")" bin/python3 && break
   done
 fi
-export PATH="$PWD/bin:$PATH"
+export PATH="$PWD/bin:$PATH" LC_ALL=C.UTF-8
 
 ran=0 left_out=0 ran_commands=''
 on_file() {
@@ -60,6 +61,9 @@ on_file() {
   printf '%s' "$3" >"$2"
 }
 on_fault() { fail "line $1: $2"; }
+excerpts=() excerpt_lines=()
+on_excerpt() { excerpt_lines+=("$1") excerpts+=("$2"); }
+without_rounding() { awk '{ for (i = 1; i <= NF; ++i) if ($i ~ /^(-?[0-9.]+e-[0-9]+|0)$/) $i = "~"; $1 = $1; print }'; }
 on_command() {
   local line=$1 command text
   command=$(without_comment "$2")
@@ -91,6 +95,10 @@ on_command() {
 read_document "$document"
 
 [[ -z "$dry" ]] || exit 0
+for n in "${!excerpts[@]}"; do
+  [[ "$(without_rounding <said.txt)" == *"$(without_rounding <<<"${excerpts[n]}")"* ]] ||
+    fail "line ${excerpt_lines[n]}: the excerpt is not what was said, which is in $PWD/said.txt"
+done
 expect() { grep -qE -- "$1" said.txt || fail "nothing says '$1'"; }
 if [[ -e "$here/checks/$name.sh" ]]; then
   . "$here/checks/$name.sh"

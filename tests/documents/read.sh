@@ -5,11 +5,13 @@
 #                             prints too; a line of an indented block that begins with one of the words below; `python3 NAME` behind a
 #                             block ```python NAME. What follows a backslash at its end belongs to it.
 #   on_file LINE NAME TEXT    for a block ```LANGUAGE NAME: a file that the commands after it find
+#   on_excerpt LINE TEXT  for a block ```text: an excerpt of what is printed
 #   on_fault LINE WHAT        for a block ``` of no language, and for a line beside commands that is neither a command, a comment, nor a title ending in a colon
 # Other blocks (```text, ```cpp) are no commands; nor is an indented block in which no line begins so (tables, scenes, formulas).
 command_words='(\./quickstart|orbweaver|build/release/[^ ]+|BUILD/[^ ]+|tests/[^ ]+|mpirun|cmake|ctest|bash|sh|python3|valgrind|sbatch|srun|salloc'
 command_words+='|squeue|scancel|sudo|apt-get|apt|dpkg|dpkg-deb|dpkg-query|docker|podman|spack|git|cd|cp|mkdir|rm|tar|make|ninja|g\+\+|gnuplot|h5dump|npm|node|man'
 command_words+='|source|export|export_[a-z]+|doxygen|[A-Z_]+=[^ ]*)'
+on_excerpt() { :; } # for whom excerpts do not matter
 is_command() { [[ "$1" =~ ^$command_words(\ |$) ]]; }
 
 read_document() {
@@ -34,9 +36,11 @@ read_document() {
         if [[ "$rd_kind" == file ]]; then
           on_file "$rd_first" "$rd_file" "$rd_text"
           [[ "$rd_file" != *.py ]] || on_command "$rd_first" "python3 $rd_file"
+        elif [[ "$rd_kind" == excerpt ]]; then
+          on_excerpt "$rd_first" "$rd_text"
         fi
         rd_kind=''
-      elif [[ "$rd_kind" == file ]]; then
+      elif [[ "$rd_kind" == file || "$rd_kind" == excerpt ]]; then
         rd_text+=$rd_line$'\n'
       elif [[ "$rd_kind" == sh && -n "$rd_line" && "$rd_line" != '#'* ]]; then
         take "$rd_line"
@@ -49,6 +53,7 @@ read_document() {
       '```sh') rd_kind=sh ;;
       '```console') rd_kind=console ;;
       '```'[a-z]*' '*) rd_kind=file rd_file=${rd_line##* } rd_text='' rd_first=$rd_number ;;
+      '```text') rd_kind=excerpt rd_text='' rd_first=$rd_number ;;
       '```'[a-z]*) rd_kind=text ;;
       '```'*) rd_kind=text && on_fault "$rd_number" "a block without a language: write \`\`\`sh, \`\`\`text or \`\`\`LANGUAGE NAME" ;;
       '    '*)

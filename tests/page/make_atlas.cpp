@@ -1,7 +1,11 @@
-// make_atlas hostile|empty|many|unknown FILE.h5 [ORBITS]: writes an atlas that no survey of today would make.
+// make_atlas hostile|empty|many|told|unknown FILE.h5 [ORBITS]: writes an atlas that no survey of today would make.
+// make_atlas reduced FILE.h5 FILE.html: writes one of a system that is reduced by a conserved quantity, which only this program knows, and its
+// page.
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <string>
 
@@ -9,6 +13,11 @@
 
 #include "archive/sample.hpp"
 #include "orbweaver/core/petsc/session.hpp"
+#include "orbweaver/report/page/page.hpp"
+#include "orbweaver/systems/registry.hpp"
+#include "page/page_template.hpp"
+#include "registry_lines.hpp"
+#include "support/lattice.hpp"
 
 namespace {
 
@@ -58,10 +67,33 @@ archive::Records unknown_records() {
   crossing.family_key = family.key;
   crossing.arclength = 1.38;
   crossing.period = 1.138;
+  crossing.parameter = 20 + 3 * 1.38 - 1.38 * 1.38;
   crossing.kind = archive::CrossingKind::torus;
   crossing.state = {2.38, 0, 0};
   records.crossings.push_back(crossing);
   return records;
+}
+
+/// Three particles without their centre of mass: the coordinates are those that the reduction leaves.
+archive::Header reduced_header() {
+  const std::array lines{systems::registry_line<test::Lattice>};
+  systems::add_registry_lines(lines);
+  const auto system = systems::make_system("lattice", {{"closing", 0.0}}, {});
+  archive::Header header;
+  header.orbweaver_version = "0.1.0";
+  header.scene = "system: {name: lattice, parameters: {closing: 0}}\n";
+  header.system = "lattice";
+  header.state_names = system->info().state_names;
+  header.pairs = 1;
+  for (const auto& [name, value] : system->parameters()) {
+    header.parameter_names.push_back(name);
+    header.parameter_values.push_back(value);
+  }
+  header.scale_names = {"time"};
+  header.scale_names.insert(header.scale_names.end(), header.state_names.begin(), header.state_names.end());
+  header.scale_names.push_back("energy");
+  header.scales.assign(header.scale_names.size(), 1.0);
+  return header;
 }
 
 archive::Header header_of() {
@@ -125,15 +157,36 @@ void add_family(archive::Records& records, int number, const std::string& name, 
   if (orbits > 0) records.crossings.push_back(crossing);
 }
 
+/// A double pendulum whose states are not told by its angles.
+archive::Header told_header() {
+  archive::Header header = header_of();
+  header.scene = "system: double_pendulum\n";
+  header.state_names = {"q1", "q2", "p1", "p2"};
+  return header;
+}
+
+archive::Header header_for(const std::string& what) {
+  if (what == "unknown") return unknown_header();
+  if (what == "reduced") return reduced_header();
+  return what == "told" ? told_header() : header_of();
+}
+
 archive::Records records_of(const std::string& what, int orbits) {
   archive::Records records;
-  if (what == "hostile") {
+  if (what == "unknown") return unknown_records();
+  if (what == "told") {
+    add_family(records, 0, "Told", 12);
+  } else if (what == "reduced") {
+    add_family(records, 0, "Breathing", 12);
+    for (archive::OrbitRecord& orbit : records.orbits) orbit.winding.clear();
+  } else if (what == "hostile") {
     const std::string names[] = {"</script><script>window.hacked = 1</script>",
                                  "<img src=x onerror=\"window.hacked = 2\">",
                                  "\"><svg onload='window.hacked = 3'>",
                                  "javascript:alert(1)&amp;#x3c;%3Cb%3E",
                                  "=HYPERLINK(\"http://example.org\")",
-                                 "\xe2\x80\xae" "gnp.exe",
+                                 "\xe2\x80\xae"
+                                 "gnp.exe",
                                  "../../etc/passwd",
                                  "a b&family=In-Phase#x=E"};
     int number = 0;
@@ -155,11 +208,15 @@ int main(int argc, char** argv) {
   const core::Session session;
   const std::filesystem::path folder = std::filesystem::path(argv[2]).parent_path() / "parts";
   std::filesystem::create_directories(folder);
-  const auto orbits = argc > 3 ? std::atoi(argv[3]) : 100'000;
-  const bool unknown = std::string(argv[1]) == "unknown";
-  const auto atlas = unknown ? test::write_sample_atlas(folder, unknown_header(), unknown_records())
-                             : test::write_sample_atlas(folder, header_of(), records_of(argv[1], orbits));
+  const std::string what = argv[1];
+  const auto orbits = what == "many" && argc > 3 ? std::atoi(argv[3]) : 100'000;
+  const auto atlas = test::write_sample_atlas(folder, header_for(what), records_of(what, orbits));
   std::filesystem::rename(atlas, argv[2]);
   std::filesystem::remove_all(folder);
+  if (what == "reduced") {
+    if (argc < 4) return 2;
+    std::ofstream page(argv[3], std::ios::binary);
+    report::write_page(page, archive::Archive(argv[2]), drivers::page_template());
+  }
   return 0;
 }

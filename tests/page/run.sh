@@ -74,7 +74,7 @@ case "$part" in
       --set survey.depth=0 --set limits.period=4
     survey shaken "$scenes/damped_driven_double_pendulum.yaml" --set 'system.effects=[damping, pivot_drive]' \
       --set 'system.parameters={c1: 0.2, c2: 0.2, pivot_amplitude: 0, pivot_direction: 30, drive_frequency: 0.9}' \
-      --set 'starts={fixed_points: {grid: [[0],[0]]}}' --set continuation.free=pivot_amplitude \
+      --set 'starts={fixed_points: {grid: [[0],[0]]}}' --set 'continuation={free: pivot_amplitude}' \
       --set 'limits.parameter=[0,0.5]' --set survey.depth=0
     "$make_atlas" hostile "$folder/hostile.h5"
     page hostile
@@ -82,6 +82,9 @@ case "$part" in
     page empty
     "$make_atlas" unknown "$folder/unknown.h5"
     page unknown
+    "$make_atlas" told "$folder/told.h5"
+    page told
+    "$make_atlas" reduced "$folder/reduced.h5" "$folder/reduced.html"
     "$program" show "$folder/pendulum.h5" orbits --csv >"$folder/pendulum.csv"
     ;;
   browser)

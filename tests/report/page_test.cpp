@@ -241,6 +241,8 @@ TEST_F(Page, TellsTheSystemInItsIndex) {
   EXPECT_THAT(index, HasSubstr("\"system\":\"made_up\""));
   EXPECT_THAT(index, HasSubstr("\"A\\u000a\\\"\""));
   EXPECT_THAT(index, HasSubstr("\"angles\":[0]"));
+  EXPECT_THAT(index, HasSubstr("\"meaning\":\"\""));
+  EXPECT_THAT(index, HasSubstr("\"moving\":\"\""));
   EXPECT_THAT(index, HasSubstr("\"parameterValues\":[0.10000000000000001,9.8100000000000005]"));
   EXPECT_THAT(index, Not(HasSubstr("checksum")));
   header.system = "double_pendulum";
@@ -249,6 +251,7 @@ TEST_F(Page, TellsTheSystemInItsIndex) {
   header.parameter_values = {2.0};
   header.effects.clear();
   EXPECT_THAT(report::angles_of(header), ::testing::ElementsAre(0, 1));
+  EXPECT_EQ(report::meaning_of(header), "two point masses on massless rods under gravity");
 }
 
 }  // namespace

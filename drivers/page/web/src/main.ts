@@ -99,7 +99,7 @@ async function start(): Promise<void> {
         choice('second diagram', 'second', () => store.state.hasSecond, (on) => (store.state.hasSecond = on))),
       diagrams, legend(store), picked),
     orbit.element);
-  const parameters = atlas.index.parameterNames.map((name, i) => `${name} = ${atlas.index.parameterValues[i]}`)
+  const parameters = atlas.index.parameterNames.map((name, i) => (name === atlas.index.moving ? `${name} moves` : `${name} = ${atlas.index.parameterValues[i]}`))
     .concat(atlas.index.effects.length ? `with ${atlas.index.effects.join(', ')}` : []).join(', ');
   const header = h('header', {},
     h('h1', {}, atlas.index.title, parameters ? h('small', {}, parameters) : null),

@@ -21,6 +21,10 @@ interface Index {
   parameterNames: string[];
   parameterValues: number[];
   parameterUnits: string[];
+  /** The parameter that moves along the families; empty where none does. */
+  moving: string;
+  /** Of the system and its coordinates, in words; empty where the program did not know the system. */
+  meaning: string;
   stateNames: string[];
   angles: number[];
   pairs: number;
@@ -56,6 +60,7 @@ export interface Crossing {
   arclength: number;
   period: number;
   energy: number;
+  parameter: number;
   kind: string;
   multiplicity: number;
   kernelDimension: number;
@@ -64,6 +69,8 @@ export interface Crossing {
   sectorJ: number;
   sectorQ: number;
   born: number[];
+  /** Families that end there, without its own. */
+  ended: number[];
 }
 
 export interface Finding {
@@ -137,6 +144,7 @@ export class Atlas {
       arclength: number(c, 'arclength', row),
       period: number(c, 'period', row),
       energy: number(c, 'energy', row),
+      parameter: number(c, 'parameter', row),
       kind: text(c, 'kind', row),
       multiplicity: number(c, 'multiplicity', row),
       kernelDimension: number(c, 'kernel_dimension', row),
@@ -145,6 +153,7 @@ export class Atlas {
       sectorJ: number(c, 'sector_j', row),
       sectorQ: number(c, 'sector_q', row),
       born: [],
+      ended: [],
     }));
     const g = index.findings;
     this.findings = (g['text'] ?? []).map((_, row) => ({
@@ -158,6 +167,8 @@ export class Atlas {
       if (family.count > 0) this.familyOf.fill(family.row, family.first, family.first + family.count);
       this.families[family.parent]?.children.push(family.row);
       this.crossings[family.crossing]?.born.push(family.row);
+      const end = this.crossings[family.endCrossing];
+      if (end && end.family !== family.row) end.ended.push(family.row);
       let depth = 0;
       for (let up = family.parent; up >= 0 && depth < this.families.length; up = this.families[up]!.parent) ++depth;
       family.depth = depth;
@@ -187,10 +198,10 @@ export class Atlas {
   }
   /** Those of an orbit: the one that moves along the families has the orbit's value. */
   parametersOf(orbit: number): Record<string, number> {
-    const moved = /^\s*free:\s*(\w+)\s*(#.*)?$/m.exec(this.index.scene)?.[1];
+    const { moving } = this.index;
     const value = this.value('parameter', orbit);
     const all = this.parameters();
-    return moved && moved in all && Number.isFinite(value) ? { ...all, [moved]: value } : all;
+    return moving && Number.isFinite(value) ? { ...all, [moving]: value } : all;
   }
   winding(orbit: number): number[] {
     const turns = this.index.stateNames.map(() => 0);

@@ -2,7 +2,7 @@
 export interface Kind {
   name: string;
   text: string;
-  mark: 'square' | 'triangle' | 'diamond' | 'circle' | 'ring' | 'star' | 'cross' | 'dot';
+  mark: 'square' | 'triangle' | 'turned' | 'diamond' | 'circle' | 'ring' | 'star' | 'cross' | 'dot';
 }
 
 export const kinds: Kind[] = [
@@ -11,6 +11,7 @@ export const kinds: Kind[] = [
   { name: 'subharmonic', text: 'subharmonic', mark: 'diamond' },
   { name: 'fold-energy', text: 'fold in energy', mark: 'circle' },
   { name: 'fold-period', text: 'fold in period', mark: 'ring' },
+  { name: 'fold-parameter', text: 'fold in the parameter', mark: 'turned' },
   { name: 'torus', text: 'torus', mark: 'star' },
   { name: 'krein', text: 'Krein collision', mark: 'cross' },
 ];
@@ -33,6 +34,9 @@ export function markPath(ctx: CanvasRenderingContext2D, mark: Kind['mark'], x: n
       break;
     case 'triangle':
       polygon([[0, -1.15], [1.05, 0.75], [-1.05, 0.75]]);
+      break;
+    case 'turned':
+      polygon([[0, 1.15], [1.05, -0.75], [-1.05, -0.75]]);
       break;
     case 'diamond':
       polygon([[0, -1.2], [1, 0], [0, 1.2], [-1, 0]]);

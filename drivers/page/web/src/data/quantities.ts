@@ -63,7 +63,9 @@ export function quantitiesOf(atlas: Atlas): Quantity[] {
       Float64Array.from({ length: atlas.orbits }, (_, orbit) => atlas.value('period', orbit) / turns[atlas.familyOf[orbit]!]!),
       { ofCrossing: (c) => c.period / (turns[c.family] ?? 1) });
   add('E', 'energy E', 'E', column('energy'), { ofCrossing: (c) => c.energy });
-  add('parameter', 'parameter', 'parameter', column('parameter'));
+  const moving = atlas.index.moving || 'parameter';
+  const unit = atlas.index.parameterUnits[atlas.index.parameterNames.indexOf(moving)];
+  add('parameter', unit && unit !== '1' ? `${moving} (${unit})` : moving, moving, column('parameter'), { ofCrossing: (c) => c.parameter });
   add('action', 'action', 'action', column('action'));
   const noun = atlas.index.multipliers ? 'multiplier' : 'stability index';
   for (const [name, of] of [
@@ -79,11 +81,11 @@ export function quantitiesOf(atlas: Atlas): Quantity[] {
     }
   }
   if (atlas.index.complex)
-    add('rho', 'largest |multiplier|', '|μ|', Float64Array.from({ length: atlas.orbits }, (_, orbit) => {
+    add('rho', 'largest |μ|', '|μ|', Float64Array.from({ length: atlas.orbits }, (_, orbit) => {
       const sizes = atlas.multipliers('stability', orbit).map((m) => Math.hypot(m.re, m.im));
       return sizes.length ? Math.max(...sizes) : NaN;
     }), { warp: indexWarp });
-  add('amplitude', 'amplitude (rms about the mean)', 'amplitude', column('amplitude'));
+  add('amplitude', 'rms amplitude', 'amplitude', column('amplitude'));
   names.forEach((name, i) => add(`max-${name}`, `largest ${name}`, `max ${name}`, column('largest', i)));
   names.forEach((name, i) =>
     add(`at0-${name}`, `${name} at s = 0`, `${name}(0)`, column('state', i), { ofCrossing: (c) => c.state[i] ?? NaN }),

@@ -18,8 +18,13 @@ const pictures: Record<string, MakePicture> = {
   three_bodies: threeBodies,
 };
 
+/** Whether there is one, in whatever coordinates. */
+export function hasPicture(system: string): boolean {
+  return Object.hasOwn(pictures, system);
+}
+
 /** None for a system that has none, or whose states are told otherwise. */
 export function pictureOf(system: string, parameters: Record<string, number>, stateNames: string[]): Picture | null {
-  const picture = pictures[system]?.(parameters);
+  const picture = hasPicture(system) ? pictures[system]!(parameters) : null;
   return picture?.coordinates.every((name, i) => stateNames[i] === name) ? picture : null;
 }

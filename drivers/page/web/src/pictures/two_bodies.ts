@@ -30,11 +30,15 @@ export function drawBodies(pen: Pen, mu: number, seen: (x: number, y: number) =>
   const { theme } = pen;
   disc(pen, seen(-mu, 0), 9, theme.families[0]!);
   disc(pen, seen(1 - mu, 0), 6, theme.families[4]!);
+  // Labels stand on the other side of what the points are beside: a body, or the line through both.
+  const beside: Point[] = [[1 - mu, 0], [1 - mu, 0], [-mu, 0], [0.5 - mu, 0], [0.5 - mu, 0]].map(([x, y]) => seen(x!, y!));
   librations(mu).forEach((place, i) => {
     const [x, y] = seen(...place);
     const arm = 4 / pen.unit;
     line(pen, [[x - arm, y], [x + arm, y]], theme.ink, 1.5);
     line(pen, [[x, y - arm], [x, y + arm]], theme.ink, 1.5);
-    label(pen, [x, y], `L${i + 1}`, 0, i === 4 ? 13 : -12);
+    const [dx, dy] = [pen.px(x) - pen.px(beside[i]![0]), pen.py(y) - pen.py(beside[i]![1])];
+    const far = Math.hypot(dx, dy);
+    label(pen, [x, y], `L${i + 1}`, far > 0 ? (14 * dx) / far : 0, far > 0 ? (14 * dy) / far : -14);
   });
 }

@@ -24,8 +24,15 @@ export function powerOfTen(power: number): string {
 /** Beyond this many digits labels are told from a base. */
 const mostDigits = 6;
 
+/** Of a warped axis; a narrower range has evenly spaced numbers. */
+const nearlyLinear = 1;
+
 export function axisTicks(low: number, high: number, count: number, warp?: Warp): Ticks {
-  if (warp && (warp.from(low) < -4 || warp.from(high) > 4)) return warpedTicks(low, high, count, warp);
+  if (warp && (low < -2 || high > 2)) {
+    if (high - low > nearlyLinear) return warpedTicks(low, high, count, warp);
+    const ticks = axisTicks(warp.from(low), warp.from(high), count);
+    return { ...ticks, at: ticks.at.map((value) => warp.to(value)) };
+  }
   let at = niceTicks(low, high, count).filter((v) => v >= low && v <= high);
   if (at.length < 2) at = [low + (high - low) * 0.1, low + (high - low) * 0.9];
   const step = at[1]! - at[0]!;
@@ -52,16 +59,33 @@ export function axisTicks(low: number, high: number, count: number, warp?: Warp)
   return { at, labels: at.map((v) => minus(v.toFixed(decimals))), base: '', power: 0 };
 }
 
+/** Numbers of both signs: `inner` in the linear part, up to 2, and `outer` times the powers of ten beyond. */
+function warpedValues(inner: number[], outer: number[]): number[] {
+  const beyond = Array.from({ length: 301 }, (_, decade) => outer.map((value) => value * 10 ** decade)).flat().filter((value) => value > 2);
+  return [...new Set([...inner, ...beyond].flatMap((value) => [value, -value]))];
+}
+
+/** From many to few. */
+const warpedLevels = [warpedValues([0, 0.5, 1, 1.5, 2], [1, 2, 3, 4, 5, 6, 8]), warpedValues([0, 1, 2], [1, 2, 5]), warpedValues([0, 2], [1])];
+
 function warpedTicks(low: number, high: number, count: number, warp: Warp): Ticks {
-  // Beyond some ten decades there is no room for both.
-  const values = high - low > 40 ? [0] : [-2, 0, 2];
-  for (let decade = 1; decade <= 300; ++decade) for (const sign of [-1, 1]) values.push(sign * 10 ** decade);
-  let at = values.map((value) => ({ value, drawn: warp.to(value) })).filter((t) => t.drawn >= low && t.drawn <= high);
+  const most = Math.max(3, count);
+  // Beyond some ten decades there is no room for both 0 and 2.
+  const levels = high - low > 40 ? [warpedValues([0], [1])] : warpedLevels;
+  let at: { value: number; drawn: number }[] = [];
+  for (const values of levels) {
+    at = values.map((value) => ({ value, drawn: warp.to(value) })).filter((t) => t.drawn >= low && t.drawn <= high);
+    if (at.length <= most) break;
+  }
   at.sort((a, b) => a.drawn - b.drawn);
-  const every = Math.ceil(at.length / Math.max(3, count));
+  const every = Math.ceil(at.length / most);
   if (every > 1)
     at = at.filter(({ value }) => Math.abs(value) <= 2 || Math.round(Math.log10(Math.abs(value))) % every === 0);
-  const label = (v: number): string =>
-    Math.abs(v) < 1000 ? minus(String(v)) : `${v < 0 ? '−' : ''}${powerOfTen(Math.round(Math.log10(Math.abs(v))))}`;
+  const label = (v: number): string => {
+    const decade = Math.floor(Math.log10(Math.abs(v)) + 1e-9);
+    if (Math.abs(v) < 1000) return minus(String(v));
+    const factor = Math.round(Math.abs(v) / 10 ** decade);
+    return `${v < 0 ? '−' : ''}${factor === 1 ? '' : `${factor}·`}${powerOfTen(decade)}`;
+  };
   return { at: at.map((t) => t.drawn), labels: at.map((t) => label(t.value)), base: '', power: 0 };
 }

@@ -37,7 +37,8 @@ export function aboutDialog(store: Store): HTMLDialogElement {
     ['archive', index.file],
     ['written by', `Orbweaver ${index.orbweaver}`],
     ['system', `${index.title}${index.effects.length ? ` with ${index.effects.join(', ')}` : ''}`],
-    ...index.parameterNames.map((name, i): [string, string] => [name, `${index.parameterValues[i]} ${index.parameterUnits[i] === '1' ? '' : (index.parameterUnits[i] ?? '')}`]),
+    ...(index.meaning ? [['what it is', index.meaning] as [string, string]] : []),
+    ...index.parameterNames.map((name, i): [string, string] => [name, name === index.moving ? 'moves along the families' : `${index.parameterValues[i]} ${index.parameterUnits[i] === '1' ? '' : (index.parameterUnits[i] ?? '')}`]),
     ['families', String(store.atlas.families.length)],
     ['orbits', String(store.atlas.orbits)],
     ['crossings', String(store.atlas.crossings.length)],
@@ -56,7 +57,7 @@ export function aboutDialog(store: Store): HTMLDialogElement {
 /** What lines and marks mean. */
 export function legend(store: Store): HTMLElement {
   const present = new Set(store.atlas.crossings.map((c) => c.kind));
-  const symbols: Record<string, string> = { square: '■', triangle: '▲', diamond: '◆', circle: '●', ring: '○', star: '★', cross: '✚', dot: '•' };
+  const symbols: Record<string, string> = { square: '■', triangle: '▲', turned: '▼', diamond: '◆', circle: '●', ring: '○', star: '★', cross: '✚', dot: '•' };
   return h('div', { class: 'legend' },
     h('span', {}, h('i', { class: 'key stable' }), 'stable'),
     h('span', {}, h('i', { class: 'key unstable' }), 'unstable'),

@@ -1,3 +1,4 @@
+import type { Atlas } from '../data/atlas';
 import { addLevels, curvesOf, type Curve } from '../data/curve';
 import { drawMark, kindOf } from '../data/kinds';
 import { rounded, type Quantity } from '../data/quantities';
@@ -18,6 +19,14 @@ const dashedWhileMoving = 6000;
 const dotsFrom = 9;
 const pickReach = 28;
 const markReach = 11;
+
+/** Period, and what there is of energy and parameter. */
+function placeText(atlas: Atlas, period: number, energy: number, parameter: number): string {
+  const parts = [`T ${rounded(period)}`];
+  if (Number.isFinite(energy)) parts.push(`E ${rounded(energy)}`);
+  if (Number.isFinite(parameter)) parts.push(`${atlas.index.moving || 'parameter'} ${rounded(parameter)}`);
+  return parts.join(', ');
+}
 
 export class Diagram {
   readonly element: HTMLElement;
@@ -51,10 +60,11 @@ export class Diagram {
     this.clear = clear;
     this.element = h('section', { class: 'diagram', 'aria-label': which },
       h('div', { class: 'bar' }, this.ySelect, this.xSelect,
-        h('button', { type: 'button', title: 'Show all (0)', 'aria-label': `Show all of the ${which}`, class: 'icon', click: () => this.frame.reset() }, '⤢'),
-        h('button', { type: 'button', title: 'Closer (+)', 'aria-label': `Zoom into the ${which}`, class: 'icon', click: () => this.frame.zoom(0.6) }, '+'),
-        h('button', { type: 'button', title: 'Further (−)', 'aria-label': `Zoom out of the ${which}`, class: 'icon', click: () => this.frame.zoom(1 / 0.6) }, '−'),
-        h('button', { type: 'button', title: 'Zoom to the picked family', 'aria-label': `Show the picked family in the ${which}`, class: 'icon', click: () => this.showFamily() }, '◎'),
+        h('div', { class: 'zooms' },
+          h('button', { type: 'button', title: 'Show all (0)', 'aria-label': `Show all of the ${which}`, class: 'icon', click: () => this.frame.reset() }, '⤢'),
+          h('button', { type: 'button', title: 'Closer (+)', 'aria-label': `Zoom into the ${which}`, class: 'icon', click: () => this.frame.zoom(0.6) }, '+'),
+          h('button', { type: 'button', title: 'Further (−)', 'aria-label': `Zoom out of the ${which}`, class: 'icon', click: () => this.frame.zoom(1 / 0.6) }, '−'),
+          h('button', { type: 'button', title: 'Zoom to the picked family', 'aria-label': `Show the picked family in the ${which}`, class: 'icon', click: () => this.showFamily() }, '◎')),
         this.count, clear),
       h('div', { class: 'plot' }, this.frame.canvas, this.tip));
     const frame = this.frame;
@@ -421,11 +431,11 @@ export class Diagram {
     let text: string;
     if ('crossing' in found) {
       const c = atlas.crossings[found.crossing]!;
-      text = `${kindOf(c.kind).text} on ${atlas.families[c.family]?.name ?? '?'}, m ${c.multiplicity}\nT ${rounded(c.period)}, E ${rounded(c.energy)}`;
+      text = `${kindOf(c.kind).text} on ${atlas.families[c.family]?.name ?? '?'}, m ${c.multiplicity}\n${placeText(atlas, c.period, c.energy, c.parameter)}`;
     } else {
       const o = found.orbit;
       const word = { 1: 'stable', 0: 'unstable', '-1': 'stability not known' }[String(atlas.stable[o]) as '1'];
-      text = `${atlas.family(o).name}, step ${atlas.value('step', o)}, ${word}\nT ${rounded(atlas.value('period', o))}, E ${rounded(atlas.value('energy', o))}`;
+      text = `${atlas.family(o).name}, step ${atlas.value('step', o)}, ${word}\n${placeText(atlas, atlas.value('period', o), atlas.value('energy', o), atlas.value('parameter', o))}`;
     }
     this.tip.textContent = text;
     this.tip.hidden = false;

@@ -9,7 +9,7 @@ export function orbitJson(store: Store, orbit: number): string {
   return JSON.stringify({
     system: atlas.index.system,
     effects: atlas.index.effects,
-    parameters: atlas.parameters(),
+    parameters: atlas.parametersOf(orbit),
     family: atlas.family(orbit).name,
     step: atlas.value('step', orbit),
     period: json(atlas.value('period', orbit)),

@@ -2,13 +2,15 @@ import type { Loop } from '../data/loop';
 import { h } from '../dom';
 import { Frame } from '../plot/frame';
 import { Turn, type Triple } from '../plot/turn';
+import type { OrbitPart, Shown } from './orbit_part';
 
 const corners: Triple[] = [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [n & 1 ? 1 : -1, n & 2 ? 1 : -1, n & 4 ? 1 : -1]);
 
 /** The path in three coordinates, turned by dragging or arrows: an orthographic view of the box that holds it. */
-export class Space {
+export class Space implements OrbitPart {
   readonly element: HTMLElement;
   readonly frame = new Frame({ label: 'Path in three coordinates', bare: true, square: true, fixed: true });
+  readonly frames = [this.frame];
   private readonly turn = new Turn();
   private loop: Loop | null = null;
 
@@ -24,7 +26,7 @@ export class Space {
       list.value = String(place);
       list.addEventListener('change', () => {
         places[n] = Number(list.value);
-        this.show(this.loop);
+        this.fit();
       });
       return list;
     });
@@ -49,8 +51,12 @@ export class Space {
     this.element = h('div', { class: 'plane' }, h('div', { class: 'bar' }, selects), h('div', { class: 'plot small space' }, canvas));
   }
 
-  show(loop: Loop | null): void {
+  show({ loop }: Shown): void {
     this.loop = loop;
+    this.fit();
+  }
+
+  private fit(): void {
     this.frame.describe(`Path in ${this.places.map((i) => this.names[i]).join(', ')}; arrows turn it.`);
     this.frame.draw();
   }

@@ -37,7 +37,7 @@ export class Tree {
   constructor(private readonly store: Store) {
     const { atlas } = store;
     const kinds = [...new Set(atlas.families.map((f) => atlas.crossings[f.crossing]?.kind).filter((k): k is string => Boolean(k)))];
-    this.born.append(h('option', { value: '' }, 'born anywhere'), h('option', { value: '-' }, 'born at an equilibrium'));
+    this.born.append(h('option', { value: '' }, 'born anywhere'), h('option', { value: '-' }, 'begun by the scene'));
     for (const kind of kinds) this.born.append(h('option', { value: kind }, `born at a ${kindOf(kind).text}`));
     for (const control of [this.filter, this.only, this.born]) control.addEventListener('input', () => this.fill());
     this.element = h('nav', { class: 'tree', 'aria-label': 'Families' },
@@ -113,12 +113,7 @@ export class Tree {
         event.stopPropagation();
         this.toggle(family.row);
       });
-    let [low, high] = [Infinity, -Infinity];
-    for (let i = family.first; i < family.first + family.count; ++i) {
-      low = Math.min(low, atlas.value('period', i));
-      high = Math.max(high, atlas.value('period', i));
-    }
-    const range = family.count ? `T ${rounded(low, 4)} – ${rounded(high, 4)}` : `no orbits: ${family.endReason}`;
+    const range = family.count ? this.range(family) : `no orbits: ${family.endReason}`;
     const stable = family.count && atlas.stable.subarray(family.first, family.first + family.count).some((s) => s === 1);
     const bornAt = crossing ? `${kindOf(crossing.kind).text}${family.multiplicity > 1 ? `, m ${family.multiplicity}` : ''}` : '';
     const item = h('li', {
@@ -134,6 +129,19 @@ export class Tree {
     });
     this.rows.set(family.row, item);
     return item;
+  }
+
+  /** What moves along the family: its period, or the parameter. */
+  private range(family: Family): string {
+    const { atlas } = this.store;
+    const { moving } = atlas.index;
+    let [low, high] = [Infinity, -Infinity];
+    for (let i = family.first; i < family.first + family.count; ++i) {
+      const value = atlas.value(moving ? 'parameter' : 'period', i);
+      low = Math.min(low, value);
+      high = Math.max(high, value);
+    }
+    return `${moving || 'T'} ${[...new Set([rounded(low, 4), rounded(high, 4)])].join(' – ')}`;
   }
 
   private toggle(row: number): void {
