@@ -9,6 +9,8 @@
 #include "least_guard.hpp"
 #include "limit_orbit.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/loop/curve/time_samples.hpp"
+#include "orbweaver/loop/symmetry/shift_search.hpp"
 #include "point_problem.hpp"
 
 namespace orbweaver::continuation {
@@ -38,6 +40,10 @@ constexpr int grown_cutoff = 4;
 /// Such a family ends once rounding, which a passage magnifies, lets its orbits be known this many times worse than the
 /// tolerance asks: nearer ones take ever more harmonics to resolve noise (docs/performance.md).
 constexpr double worse_than_asked = 1e5;
+/// What samples may add to the square of a distance. In the surveys of the double pendulum the loops that are far off
+/// have 7 times the square of the step and more.
+constexpr double beside_by_samples = 2.0;
+constexpr int least_density_nodes = 64;
 /// What a parameter may change by rounding, in parts of its scale + its value, and a period, in parts of itself.
 constexpr double unmoved = 1e-9;
 
@@ -90,6 +96,18 @@ bool may_have_come_back(const Frontier& frontier, double near, const loop::Loop&
          near < by_size * std::min(extent, first) &&
          std::abs(loop.period - frontier.first.period) < near * frontier.first.period &&
          std::abs(extent - first) < near;
+}
+
+/// By samples in time. A mean over time counts what passes fast for less than one over s, by the density at most.
+bool is_far_off(const systems::Structure& structure, const loop::Loop& first, const loop::Loop& loop, double beside,
+                double step) {
+  const loop::TimeMap& map = loop.time_map;
+  const std::vector<double> density = loop::densities(map, loop::nodes_to_resolve(map) + least_density_nodes);
+  const double most = *std::max_element(density.begin(), density.end());
+  const loop::Loop from = loop::interpolant(loop::time_samples(first));
+  const loop::Loop to = loop::interpolant(loop::time_samples(loop));
+  const double square = loop::shift_minima(from, to, structure.angles).front().square;
+  return square > beside_by_samples * most * (1.0 + beside * beside) * step;
 }
 
 std::optional<Ending> end_at(const Frontier& frontier, const systems::System& system, const Options& options) {

@@ -23,6 +23,11 @@ inline constexpr std::size_t earlier_guards = 5;
 /// A cheap look: whether a loop of the branch may lie within `near` of its first orbit, all around a circle.
 [[nodiscard]] bool may_have_come_back(const Frontier& frontier, double near, const loop::Loop& loop, double amplitude);
 
+/// Another, dearer: whether no time shift of the first orbit lies on the step to `loop`, or less than this part of the
+/// step's length beside it. `step`: its squared length, a mean over s.
+[[nodiscard]] bool is_far_off(const systems::Structure& structure, const loop::Loop& first, const loop::Loop& loop,
+                              double beside, double step);
+
 /// The end that the last orbit is; none if the branch goes on.
 [[nodiscard]] std::optional<Ending> end_at(const Frontier& frontier, const systems::System& system,
                                            const Options& options);

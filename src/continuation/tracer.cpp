@@ -323,12 +323,13 @@ double Tracer::length_to_try() {
 std::optional<Trial> Tracer::closing_orbit(const Trial& trial, double length) {
   if (!may_have_come_back(_frontier, arclength_between(here(), trial.loop), trial.loop, trial.amplitude))
     return std::nullopt;
+  const std::vector<double>& before = _stepper.last();
+  const double step = _problem->product(trial.values, before, trial.values, before);
+  if (is_far_off(_system->structure(), _frontier.first, trial.loop, beside_closing_step, step)) return std::nullopt;
   const loop::Loop first =
       loop::aligned(_frontier.first, loop::align_in_time(_system->structure(), _frontier.first, trial.loop));
   const auto values_there = [&] { return _problem->from_loop(under_map(first, _problem->resolution().time_map)); };
   const std::vector<double> there = values_there();
-  const std::vector<double>& before = _stepper.last();
-  const double step = _problem->product(trial.values, before, trial.values, before);
   const double way = _problem->product(there, before, there, before);
   const double along = _problem->product(there, before, trial.values, before) / step;
   if (!(along > 0.0 && along <= 1.0) || way - along * along * step > beside_closing_step * beside_closing_step * step)

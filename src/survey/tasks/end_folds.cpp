@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "foldable.hpp"
+#include "orbweaver/continuation/left_open.hpp"
+#include "orbweaver/continuation/orbit.hpp"
 
 namespace orbweaver::survey {
 
@@ -36,10 +38,8 @@ class Way {
       if (beside != nullptr && !(std::abs(slope * (here.position - position)) > _visible)) continue;
       const int sign = slope > 0.0 ? 1 : -1;
       if (before * sign < 0) {
-        const double moved = std::max(moved_by_rounding(_system, _isotropy, _quantity, here.loop),
-                                      moved_by_rounding(_system, _isotropy, _quantity, *beside));
-        if (!is_shown(n, sign, position > here.position, std::max(_visible, moved)) ||
-            are_hidden(_system, _isotropy, here.loop, *beside))
+        if (!is_shown(n, sign, position > here.position, _visible) ||
+            is_open(n, sign, position > here.position, here.loop, *beside))
           return;
         folds.push_back({_quantity, std::min(position, here.position), std::max(position, here.position)});
       }
@@ -53,9 +53,10 @@ class Way {
   [[nodiscard]] bool bears_out() const {
     const continuation::CurvePoint& first = _way.points[0];
     const double slope = slope_of(_system, _quantity, first);
+    const int sign = slope > 0.0 ? 1 : -1;
+    if (!is_shown(0, sign, false, _visible)) return false;
     const double moved = moved_by_rounding(_system, _isotropy, _quantity, first.loop);
-    if (!_way.crossing) return std::abs(slope) > moved;
-    return is_shown(0, slope > 0.0 ? 1 : -1, false, std::max(_visible, moved));
+    return _way.crossing ? is_shown(0, sign, false, std::max(_visible, moved)) : std::abs(slope) > moved;
   }
 
  private:
@@ -67,6 +68,17 @@ class Way {
     const double towards = falls ? -1.0 : 1.0;
     const auto says_so = [&](double nearer) { return towards * sign * (nearer - _values[n]) > visible; };
     return !_way.crossing || std::any_of(_values.begin() + static_cast<std::ptrdiff_t>(n) + 1, _values.end(), says_so);
+  }
+
+  /// Whether rounding may have made what two orbits show, or leaves one of them open by more than they are apart.
+  [[nodiscard]] bool is_open(std::size_t n, int sign, bool falls, const loop::Loop& one,
+                             const loop::Loop& other) const {
+    const double first = continuation::left_open_by_rounding(_system, one, _isotropy);
+    const double second = continuation::left_open_by_rounding(_system, other, _isotropy);
+    const double moved =
+        std::max(moved_by(_system, _quantity, one, first), moved_by(_system, _quantity, other, second));
+    return !is_shown(n, sign, falls, std::max(_visible, moved)) ||
+           std::max(first, second) > continuation::arclength_between(one, other);
   }
 
   const systems::System& _system;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "foldable.hpp"
@@ -30,22 +31,27 @@ class WayBetween {
     return (!has_before() || is_slower_than(_way - 1)) && (!has_behind() || is_slower_than(_way + 1));
   }
 
-  /// `curve`: of the known orbits. `moved`: by rounding, at the two.
-  [[nodiscard]] std::vector<Fold> folds(continuation::FamilyCurve& curve, double moved) const {
+  /// `curve`: of the known orbits.
+  [[nodiscard]] std::vector<Fold> folds(continuation::FamilyCurve& curve, const loop::Isotropy& isotropy) const {
     const double from = position(_way);
     const double to = position(_way + 1);
     const std::optional<double> first = slope_at(curve, from);
     const std::optional<double> second = slope_at(curve, to);
     if (!first || !second) return {};
-    const double told = std::max(_visible / (to - from), moved);
-    const bool turns_at_first = *first * _rate < 0.0 && std::abs(*first) > told;
-    const bool turns_at_second = *second * _rate < 0.0 && std::abs(*second) > told;
+    std::optional<double> least;
+    const auto is_told = [&](double slope) {  // rounding is asked only where a slope is against the changes
+      if (!(std::abs(slope) > _visible / (to - from))) return false;
+      if (!least) least = moved(isotropy);
+      return std::abs(slope) > *least;
+    };
+    const bool turns_at_first = *first * _rate < 0.0 && is_told(*first);
+    const bool turns_at_second = *second * _rate < 0.0 && is_told(*second);
     if ((turns_at_first && !has_before()) || (turns_at_second && !has_behind())) return {};  // end_folds finds it
     std::vector<Fold> found;
     if (turns_at_first && is_plain(curve, _way - 1)) found.push_back({_quantity, position(_way - 1), from});
     if (turns_at_first != turns_at_second) {
       found.push_back({_quantity, from, to});
-    } else if (const auto between = turned_between(curve, *first, *second, told)) {
+    } else if (const auto between = turned_between(curve, *first, *second, is_told)) {
       found.push_back({_quantity, from, *between});
       found.push_back({_quantity, *between, to});
     }
@@ -81,7 +87,7 @@ class WayBetween {
   /// Between the two a place at which the slope is against those at both of them: where that of the cubic with these
   /// slopes is least.
   [[nodiscard]] std::optional<double> turned_between(continuation::FamilyCurve& curve, double first, double second,
-                                                     double told) const {
+                                                     const std::function<bool(double)>& is_told) const {
     const double bend = first + second - 2.0 * _rate;
     const double share = (2.0 * first + second - 3.0 * _rate) / (3.0 * bend);
     if (!(share > 0.0 && share < 1.0)) return std::nullopt;
@@ -89,7 +95,13 @@ class WayBetween {
     if (there * second > 0.0) return std::nullopt;
     const double place = position(_way) + share * (position(_way + 1) - position(_way));
     const auto slope = slope_at(curve, place);
-    return slope && *slope * second < 0.0 && std::abs(*slope) > told ? std::optional(place) : std::nullopt;
+    return slope && *slope * second < 0.0 && is_told(*slope) ? std::optional(place) : std::nullopt;
+  }
+
+  /// By rounding, at the two orbits.
+  [[nodiscard]] double moved(const loop::Isotropy& isotropy) const {
+    return std::max(moved_by_rounding(_system, isotropy, _quantity, _known[_way].loop),
+                    moved_by_rounding(_system, isotropy, _quantity, _known[_way + 1].loop));
   }
 
   const systems::System& _system;
@@ -111,9 +123,7 @@ std::vector<Fold> paired_folds(const std::shared_ptr<const systems::System>& sys
     if (!here.may_hide()) continue;
     continuation::FamilyCurve curve(system, isotropy, options);  // what others find does not hang on what is asked here
     for (const Known& one : known) curve.add(one);
-    const double moved = std::max(moved_by_rounding(*system, isotropy, quantity, known[way].loop),
-                                  moved_by_rounding(*system, isotropy, quantity, known[way + 1].loop));
-    for (const Fold& fold : here.folds(curve, moved)) folds.push_back(fold);
+    for (const Fold& fold : here.folds(curve, isotropy)) folds.push_back(fold);
   }
   return folds;
 }

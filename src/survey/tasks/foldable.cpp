@@ -54,14 +54,11 @@ double visible_change(Fold::Quantity quantity, double value) {
 
 double moved_by_rounding(const systems::System& system, const loop::Isotropy& isotropy, Fold::Quantity quantity,
                          const loop::Loop& orbit) {
-  return continuation::left_open_by_rounding(system, orbit, isotropy) * steepest(system, quantity, orbit);
+  return moved_by(system, quantity, orbit, continuation::left_open_by_rounding(system, orbit, isotropy));
 }
 
-bool are_hidden(const systems::System& system, const loop::Isotropy& isotropy, const loop::Loop& one,
-                const loop::Loop& other) {
-  const double apart = continuation::arclength_between(one, other);
-  return std::max(continuation::left_open_by_rounding(system, one, isotropy),
-                  continuation::left_open_by_rounding(system, other, isotropy)) > apart;
+double moved_by(const systems::System& system, Fold::Quantity quantity, const loop::Loop& orbit, double open) {
+  return open * steepest(system, quantity, orbit);
 }
 
 }  // namespace orbweaver::survey

@@ -27,8 +27,8 @@ namespace orbweaver::survey {
 [[nodiscard]] double moved_by_rounding(const systems::System& system, const loop::Isotropy& isotropy,
                                        bifurcation::Fold::Quantity quantity, const loop::Loop& orbit);
 
-/// Whether rounding leaves one of two orbits open by more than they are apart.
-[[nodiscard]] bool are_hidden(const systems::System& system, const loop::Isotropy& isotropy, const loop::Loop& one,
-                              const loop::Loop& other);
+/// The same where it is known how far `open` the orbit is left (continuation/left_open.hpp).
+[[nodiscard]] double moved_by(const systems::System& system, bifurcation::Fold::Quantity quantity,
+                              const loop::Loop& orbit, double open);
 
 }  // namespace orbweaver::survey
