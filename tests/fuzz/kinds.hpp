@@ -34,6 +34,7 @@ Kind archives(const std::filesystem::path& folder);
 Kind segments(const std::filesystem::path& folder);
 Kind checkpoints(const std::filesystem::path& folder);  ///< half of them with a right checksum
 Kind journals(const std::filesystem::path& folder);     ///< the same
+Kind payloads(const std::filesystem::path& folder);     ///< that tasks in both say where they lie
 
 Kind plugins(const std::filesystem::path& folder);         ///< what is looked at before one is loaded
 Kind proofs(const std::filesystem::path& folder);          ///< files of `verify --prove`

@@ -85,6 +85,7 @@ fuzz::Kind kind_of(const std::string& name) {
       {"segments", [&] { return fuzz::segments(folder()); }},
       {"checkpoints", [&] { return fuzz::checkpoints(folder()); }},
       {"journals", [&] { return fuzz::journals(folder()); }},
+      {"payloads", [&] { return fuzz::payloads(folder()); }},
   };
   const auto found = kinds.find(name);
   if (found != kinds.end()) return found->second();

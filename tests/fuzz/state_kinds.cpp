@@ -6,6 +6,7 @@
 #include "fuzz/kinds.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "state/branch_state.hpp"
+#include "state/payload_store.hpp"
 #include "state/resume.hpp"
 
 namespace orbweaver::fuzz {
@@ -49,9 +50,26 @@ EndedTask ended(queue::Task task, std::string outcome) {
   return entry;
 }
 
-/// One ended task of each kind, and two journals.
+/// A location, and where its payload lies.
+queue::Task stored_location(PayloadStore& store) {
+  LocateWork work;
+  work.name = std::string(least_stored, 'x');
+  queue::Task task = task_of(work);
+  store.keep(task);
+  return task;
+}
+
+/// One ended task of each kind, and two journals; payloads that are still counted on lie behind one that is not.
 Checkpoint sample(const std::filesystem::path& folder) {
+  PayloadStore store(folder);
+  store.open(core::Communicator(MPI_COMM_SELF));
+  (void)stored_location(store);
+  BranchWork large = branch_work();
+  large.name = std::string(least_stored, 'x');
+  queue::Task stored_start = task_of(StartWork{large});
+  store.keep(stored_start);
   BranchState state;
+  state.children = {stored_location(store)};
   BranchOutcome branch;
   branch.key = "0000.0000";
   branch.before_limit = pack(state);
@@ -69,10 +87,11 @@ Checkpoint sample(const std::filesystem::path& folder) {
       write_journal(folder, 1, {ended(task_of(SweepWork{}), pack(sweep)), ended(task_of(branch_work()), pack(branch))}),
       write_journal(folder, 2,
                     {ended(task_of(LocateWork{}), pack(located)),
-                     ended(task_of(StartWork{branch_work()}), pack(StartOutcome{}))})};
+                     ended(task_of(StartWork{branch_work()}), pack(StartOutcome{})),
+                     ended(stored_start, pack(StartOutcome{}))})};
   checkpoint.unfinished = {task_of(branch_work())};
   checkpoint.unfinished[0].state = pack(state);
-  checkpoint.left_out = {task_of(LocateWork{})};
+  checkpoint.left_out = {task_of(LocateWork{}), stored_location(store)};
   return checkpoint;
 }
 
@@ -104,5 +123,6 @@ Kind state_kind(const std::filesystem::path& folder, const std::string& changed)
 
 Kind checkpoints(const std::filesystem::path& folder) { return state_kind(folder, "checkpoint"); }
 Kind journals(const std::filesystem::path& folder) { return state_kind(folder, "journal-000001"); }
+Kind payloads(const std::filesystem::path& folder) { return state_kind(folder, payload_file(1)); }
 
 }  // namespace orbweaver::fuzz

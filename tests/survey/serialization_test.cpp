@@ -38,6 +38,16 @@ void fill(test::Filler& filler, Loop& loop) {
 
 }  // namespace orbweaver::loop
 
+namespace orbweaver::survey {
+
+/// So are the numbers of files.
+void fill(test::Filler& filler, StoredWork& work) {
+  work.serialize(filler, 0);
+  work.file = StoredWork::most_files - 1;
+}
+
+}  // namespace orbweaver::survey
+
 namespace serialization_test {
 namespace {
 
@@ -49,7 +59,7 @@ template <class T>
 class Travellers : public ::testing::Test {};
 using Payloads =
     ::testing::Types<SweepWork, SweepOutcome, BranchWork, BranchOutcome, LocateWork, LocateOutcome, GivenOrbits,
-                     StartWork, StartOutcome, LoopQuestion, LoopReply, BranchState, Checkpoint>;
+                     StartWork, StartOutcome, StoredWork, LoopQuestion, LoopReply, BranchState, Checkpoint>;
 TYPED_TEST_SUITE(Travellers, Payloads);
 
 TYPED_TEST(Travellers, ListEveryMember) { EXPECT_EQ(test::incomplete_types_in<TypeParam>(), ""); }

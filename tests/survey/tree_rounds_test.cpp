@@ -60,7 +60,8 @@ TEST_F(TreeRounds, WhatWasLeftOutIsAskedAgainWhenMoreIsKnown) {
   const core::Communicator alone(MPI_COMM_SELF);
   const archive::Header header;
   archive::Records rows;
-  const SegmentFlusher flusher(alone, "nowhere", header, rows, {});
+  PayloadStore store("nowhere");
+  const SegmentFlusher flusher(alone, "nowhere", header, rows, {}, store);
   TreeRecorder recorder({display, time, keeper, flusher}, tree, {});
   add({ended(base_work(), EndReason::period_limit, 5, 12), located(o), located(p), located(q),
        arrived(work_from(p, 0), 16, q, 0)});

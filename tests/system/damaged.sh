@@ -38,6 +38,12 @@ damage() {
       cp "$(last 'segment-*')" out/segments/segment-000001.h5
       rm out/between
       ;;
+    deleted_payloads) rm out/segments/payloads-* ;;
+    changed_payloads)
+      for file in out/segments/payloads-*; do
+        for ((at = 0; at < $(stat -c %s "$file"); at += 4000)); do put '\0252' $at "$file"; done
+      done
+      ;;
     no_checksum_holds)
       put '\0377\0376\0375\0374' -40 out/segments/checkpoint
       put '\0377\0376\0375\0374' -40 out/segments/checkpoint.previous
@@ -63,6 +69,8 @@ case $case in
   torn_first_segment) status=2 says=("segment-000001.h5" "were written: it is torn" "nothing was changed" "from a copy") ;;
   deleted_first_segment) status=2 says=("segment-000001.h5" "does not exist" "nothing was changed" "from a copy") ;;
   exchanged_segments) status=2 says=("segment-000001.h5" "nothing was changed" "from a copy") ;;
+  deleted_payloads) says=("$fallback" "segments/payloads-" "bytes from" "the file is not there") ;;
+  changed_payloads) says=("$fallback" "segments/payloads-" "bytes from" "checksum is wrong: they were damaged") ;;
   no_checksum_holds) status=2 says=("checkpoint: its checksum is wrong" "checkpoint.previous: its checksum is wrong" "nothing was changed") ;;
   newer_version) status=2 says=("its version is 99" "use the newer") ;;
   link_to_itself) says=("$fallback" "segments/checkpoint: it cannot be looked at") ;;
@@ -81,6 +89,13 @@ esac
 # A flush without rows may have come between the last segment and the full disk: then both checkpoints list it.
 if [[ $case == *_last_segment ]] && grep -aqF "$(basename "$(cd "$broken" && last 'segment-*')")" "$broken/out/segments/checkpoint.previous"; then
   status=2 says[0]="nothing was changed"
+fi
+# So may tasks whose payloads are on disk.
+if [[ $case == *_payloads ]]; then
+  grep -aqF "stored work" "$broken/out/segments/checkpoint" || fail "the newest checkpoint counts on no payload on disk"
+  if grep -aqF "stored work" "$broken/out/segments/checkpoint.previous"; then
+    status=2 says[0]="nothing was changed"
+  fi
 fi
 
 for ranks in 1 2 3; do

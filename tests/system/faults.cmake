@@ -51,7 +51,8 @@ set(whole "${runs}/system.not_broken_off/out")
 system_test(not_broken_off 1 0 "OUT=4 families" "FRESH=${whole}" survey "${fine_scene}" -o out ${coarse})
 set_tests_properties(system.broken_off system.not_broken_off PROPERTIES FIXTURES_SETUP broken_off)
 foreach(case IN ITEMS as_it_is part_files torn_last_segment deleted_last_segment torn_journal torn_checkpoint
-    wrong_checksum torn_first_segment deleted_first_segment exchanged_segments no_checksum_holds newer_version newer_previous link_to_itself
+    wrong_checksum torn_first_segment deleted_first_segment exchanged_segments deleted_payloads changed_payloads
+    no_checksum_holds newer_version newer_previous link_to_itself
     folder other_scene narrower)
   orbweaver_add_ctest(system.damaged.${case} 2 system 180 "${CMAKE_CURRENT_SOURCE_DIR}/damaged.sh" ${case}
     $<TARGET_FILE:orbweaver> $<TARGET_FILE:compare_archives> "${broken}" "${whole}/atlas.h5" "${fine_scene}" ${coarse})

@@ -8,7 +8,7 @@ begin_anew
 survey whole 2 || fail "the undisturbed run failed"
 
 places=("write segment-000001.h5" "publish segment-000002.h5" "publish journal-000001" "replace checkpoint" "publish atlas.h5"
-  "publish checkpoint" "publish segment-000001.h5" "write segment-000002.h5" "publish journal-000002" "write segment-000003.h5")
+  "store a payload" "sync payloads" "publish checkpoint" "publish segment-000001.h5" "write segment-000002.h5" "publish journal-000002" "write segment-000003.h5")
 for ((round = 0; round < rounds; ++round)); do
   place=${places[round % ${#places[@]}]}
   rm -rf "$folder/killed"

@@ -90,11 +90,26 @@ void write_file(const std::filesystem::path& path, std::initializer_list<std::st
   if (fsync(file.get()) != 0) throw_system_error("sync", path);
 }
 
+void write_at(const std::filesystem::path& path, std::uint64_t offset, std::string_view bytes, bool create) {
+  const Descriptor file(path, O_WRONLY | (create ? O_CREAT | O_EXCL : 0), create ? "create" : "open");
+  while (!bytes.empty()) {
+    const ssize_t written = pwrite(file.get(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) throw_system_error("write to", path);
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+    offset += static_cast<std::uint64_t>(written);
+  }
+}
+
 void sync_file(const std::filesystem::path& path) { sync(path, O_WRONLY); }
+
+void sync_folder_of(const std::filesystem::path& path) {
+  sync(path.has_parent_path() ? path.parent_path() : std::filesystem::path("."), O_RDONLY | O_DIRECTORY);
+}
 
 void rename_file(const std::filesystem::path& from, const std::filesystem::path& to) {
   if (std::rename(from.c_str(), to.c_str()) != 0) throw_system_error("rename to its final name the file", from);
-  sync(to.has_parent_path() ? to.parent_path() : std::filesystem::path("."), O_RDONLY | O_DIRECTORY);
+  sync_folder_of(to);
 }
 
 }  // namespace orbweaver::archive

@@ -20,8 +20,14 @@ void expect_writable(const std::filesystem::path& path);
 /// Creates (or empties) the file, writes `pieces` one after the other and waits until they are on the disk.
 void write_file(const std::filesystem::path& path, std::initializer_list<std::string_view> pieces);
 
+/// Writes `bytes` from `offset` on, and closes the file. `create`: which must not be there yet.
+void write_at(const std::filesystem::path& path, std::uint64_t offset, std::string_view bytes, bool create);
+
 /// Waits until what this machine wrote to the file is on the disk.
 void sync_file(const std::filesystem::path& path);
+
+/// Waits until the folder remembers that the file is in it.
+void sync_folder_of(const std::filesystem::path& path);
 
 /// Renames, and waits until the folder remembers it.
 void rename_file(const std::filesystem::path& from, const std::filesystem::path& to);

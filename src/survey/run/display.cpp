@@ -109,7 +109,7 @@ void ProgressDisplay::started(const queue::Task& task, int) {
   _sweeping = kind_of(task) == TaskKind::sweep;
   if (kind_of(task) != TaskKind::branch) return;
   FamilyState& family = _families[task.key];
-  family.name = unpack_branch_work(task.payload).name;
+  family.name = told_branch(task).name;
   family.resumed = !task.state.empty();
 }
 

@@ -13,14 +13,20 @@ namespace orbweaver::survey {
 
 SegmentFlusher::SegmentFlusher(const core::Communicator& comm, std::filesystem::path folder,
                                const archive::Header& header, archive::Records& rows,
-                               std::vector<archive::WrittenSegment> written)
-    : _comm(comm), _folder(std::move(folder)), _header(header), _rows(rows), _written(std::move(written)) {
+                               std::vector<archive::WrittenSegment> written, PayloadStore& store)
+    : _comm(comm),
+      _folder(std::move(folder)),
+      _header(header),
+      _rows(rows),
+      _written(std::move(written)),
+      _store(store) {
   for (const archive::WrittenSegment& segment : _written)
     _last_number = std::max(_last_number, std::stoul(segment.name.substr(segment.name.find('-') + 1)));
   _last_number = core::agreed(comm.get(), _last_number);
 }
 
 void SegmentFlusher::flush(int) {
+  core::collectively(_comm.get(), [&] { _store.sync(); });
   if (core::share_of(_comm.get(), _rows.orbits.size() + _rows.sections.size()).total == 0) return;
   const std::filesystem::path path = _folder / fmt::format("segment-{:06}.h5", ++_last_number);
   const auto began = std::chrono::steady_clock::now();

@@ -25,7 +25,9 @@
 #include "orbweaver/survey/run/scaled_scene.hpp"
 #include "segment_flusher.hpp"
 #include "state/checkpoint_keeper.hpp"
+#include "state/payload_store.hpp"
 #include "state/resume.hpp"
+#include "storing_executor.hpp"
 #include "tasks/executor.hpp"
 #include "tasks/recorders.hpp"
 #include "teams.hpp"
@@ -73,8 +75,10 @@ class Run {
         _system(scaled.system()),
         _folder(state_folder(directory)),
         _header(header_of(scene, *_system)),
-        _member(scaled.scene(), _system, _rows, team),
-        _executor(team, _member),
+        _store(_folder),
+        _member(scaled.scene(), _system, _rows, team, &_store),
+        _team(team, _member),
+        _executor(_store, _team),
         _display(options.display, Units(*_system), std::min(scene.limits.time, options.walltime)),
         _time(scene.limits.time, options.walltime),
         _tree(scaled.scene(), _system->structure(), Units(*_system)) {
@@ -134,7 +138,8 @@ class Run {
       _start.orbweaver_version = version();
     });
     _keeper.emplace(_folder, _start);
-    _flusher.emplace(_comm, _folder, _header, _rows, _start.segments);
+    _store.open(_comm);
+    _flusher.emplace(_comm, _folder, _header, _rows, _start.segments, _store);
   }
 
   /// A survey writes its first checkpoint before anything else.
@@ -148,7 +153,7 @@ class Run {
                                          _folder.parent_path().string()));
     for (const auto& entry : std::filesystem::directory_iterator(_folder)) {
       const std::string name = entry.path().filename().string();
-      if (resume && (name.starts_with("segment-") || name.starts_with("journal-")) && !name.ends_with(".part"))
+      if (resume && is_listed_kind(name) && !name.ends_with(".part"))
         throw core::InputError(fmt::format(
             "{} holds {} and no checkpoint, and nothing was changed: bring the checkpoint back from a copy, or "
             "give another folder with -o",
@@ -187,7 +192,7 @@ class Run {
     });
     given = core::agreed(_comm.get(), given);
     _member.expect(unpack_given_orbits(given));
-    _executor.expect(given);
+    _team.expect(given);
     do {
       note_stop(queue::run(_comm, _queue_options, std::move(tasks), _executor, recorder, *_flusher));
       if (_summary.stopped_early) return;
@@ -224,8 +229,10 @@ class Run {
   std::filesystem::path _folder;
   archive::Header _header;
   archive::Records _rows;
+  PayloadStore _store;
   Executor _member;
-  TeamExecutor _executor;
+  TeamExecutor _team;
+  StoringExecutor _executor;
   ProgressDisplay _display;
   TimeLimit _time;
   FamilyTree _tree;

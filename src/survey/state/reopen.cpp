@@ -121,7 +121,7 @@ void Reopening::drop(const queue::Task& task) {
 
 /// The orbits of a branch from its `from`-th on.
 void Reopening::forget_rows(const queue::Task& branch, int from) {
-  const Lineage lineage = unpack_branch_work(branch.payload).lineage;
+  const Lineage lineage = told_branch(branch).lineage;
   archive::VoidedRows rows;
   rows.family_key = lineage.family;
   rows.before_segment = static_cast<int>(_checkpoint.segments.size());

@@ -15,6 +15,7 @@
 #include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/core/text.hpp"
 #include "orbweaver/scene/differences.hpp"
+#include "payload_store.hpp"
 #include "reopen.hpp"
 #include "tasks/payload/work.hpp"
 
@@ -22,21 +23,23 @@ namespace orbweaver::survey {
 
 namespace {
 
-// Throws EnvironmentError unless all that a task carries can be unpacked.
-void expect_readable(const queue::Task& task) {
+// Throws EnvironmentError unless all that a task carries can be unpacked, InputError if its payload is not in the folder.
+void expect_readable(const std::filesystem::path& folder, const queue::Task& task) {
   const TaskKind kind = kind_of(task);
-  if (!task.payload.empty()) switch (kind) {
-      case TaskKind::sweep: (void)unpack_sweep_work(task.payload); break;
-      case TaskKind::branch: (void)unpack_branch_work(task.payload); break;
-      case TaskKind::locate: (void)unpack_locate_work(task.payload); break;
-      case TaskKind::start: (void)unpack_start_work(task.payload); break;
-      case TaskKind::locus: (void)unpack_locus_work(task.payload); break;
+  if (const std::string payload = whole_payload(folder, task.payload); !payload.empty()) switch (kind) {
+      case TaskKind::sweep: (void)unpack_sweep_work(payload); break;
+      case TaskKind::branch: (void)unpack_branch_work(payload); break;
+      case TaskKind::locate: (void)unpack_locate_work(payload); break;
+      case TaskKind::start: (void)unpack_start_work(payload); break;
+      case TaskKind::locus: (void)unpack_locus_work(payload); break;
     }
-  if (kind == TaskKind::branch && !task.state.empty()) (void)unpack_branch_state(task.state);
+  if (is_stored(task.payload) && (kind == TaskKind::branch || kind == TaskKind::start)) (void)told_branch(task);
+  if (kind == TaskKind::branch && !task.state.empty())
+    for (const queue::Task& child : unpack_branch_state(task.state).children) expect_readable(folder, child);
 }
 
-void expect_readable(const EndedTask& entry) {
-  expect_readable(entry.task);
+void expect_readable(const std::filesystem::path& folder, const EndedTask& entry) {
+  expect_readable(folder, entry.task);
   const std::string& outcome = entry.outcome.payload;
   if (outcome.empty()) return;
   switch (kind_of(entry.task)) {
@@ -63,9 +66,9 @@ void expect_name(const std::filesystem::path& path, const std::string& name, std
 }
 
 template <class Items>
-void expect_all_readable(const std::filesystem::path& path, const Items& items) {
+void expect_all_readable(const std::filesystem::path& folder, const std::filesystem::path& path, const Items& items) {
   try {
-    for (const auto& item : items) expect_readable(item);
+    for (const auto& item : items) expect_readable(folder, item);
   } catch (const core::EnvironmentError& error) {
     throw core::InputError(fmt::format("{}: {}", path.string(), error.what()));
   }
@@ -79,10 +82,10 @@ std::optional<Checkpoint> readable(const std::filesystem::path& folder, const st
     for (const archive::WrittenSegment& segment : checkpoint.segments)
       expect_name(path, segment.name, "segment-", ".h5");
     for (const JournalFile& journal : checkpoint.journals) expect_name(path, journal.name, "journal-", "");
-    expect_all_readable(path, checkpoint.unfinished);
-    expect_all_readable(path, checkpoint.left_out);
+    expect_all_readable(folder, path, checkpoint.unfinished);
+    expect_all_readable(folder, path, checkpoint.left_out);
     for (const JournalFile& journal : checkpoint.journals)
-      expect_all_readable(folder / journal.name, read_journal(folder, journal));
+      expect_all_readable(folder, folder / journal.name, read_journal(folder, journal));
     return checkpoint;
   } catch (const core::NewerVersionError&) {
     throw;  // nothing is wrong with it: whoever fell back would destroy it
@@ -108,26 +111,48 @@ void clear_the_way(const std::filesystem::path& path) {
   core::log_warning(fmt::format("{} was a folder; it is now {}", path.string(), aside.string()));
 }
 
+// Files in which payloads of these tasks lie, those that running branches have found included.
+void list_payloads(const std::vector<queue::Task>& tasks, std::set<std::string>& listed) {
+  for (const queue::Task& task : tasks) {
+    if (is_stored(task.payload)) listed.insert(payload_file(unpack_stored_work(task.payload).file));
+    if (kind_of(task) == TaskKind::branch && !task.state.empty())
+      list_payloads(unpack_branch_state(task.state).children, listed);
+  }
+}
+
+// All files that a checkpoint counts on.
+void list_files(const std::filesystem::path& folder, const Checkpoint& checkpoint, std::set<std::string>& listed) {
+  for (const archive::WrittenSegment& segment : checkpoint.segments) listed.insert(segment.name);
+  list_payloads(checkpoint.unfinished, listed);
+  list_payloads(checkpoint.left_out, listed);
+  for (const JournalFile& journal : checkpoint.journals) {
+    if (!listed.insert(journal.name).second) continue;  // another checkpoint's too
+    for (const EndedTask& entry : read_journal(folder, journal)) list_payloads({entry.task}, listed);
+  }
+}
+
 }  // namespace
+
+bool is_listed_kind(const std::string& name) {
+  return name.starts_with("segment-") || name.starts_with("journal-") || name.starts_with(payload_prefix);
+}
 
 void remove_unlisted(const std::filesystem::path& folder, const Checkpoint& checkpoint) {
   std::set<std::string> listed;
-  const auto list = [&](const Checkpoint& by) {
-    for (const archive::WrittenSegment& segment : by.segments) listed.insert(segment.name);
-    for (const JournalFile& journal : by.journals) listed.insert(journal.name);
-  };
-  list(checkpoint);
+  list_files(folder, checkpoint, listed);
   try {
-    list(read_checkpoint(previous_checkpoint_path(folder)));
+    list_files(folder, read_checkpoint(previous_checkpoint_path(folder)), listed);
   } catch (const core::NewerVersionError&) {
     throw;  // what it lists is not this Orbweaver's to remove
   } catch (const core::InputError&) {
     // There is none to fall back to.
+  } catch (const core::EnvironmentError&) {
+    // The same: what lies in it is another build's.
   }
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
     const std::string name = entry.path().filename().string();
-    if ((name.starts_with("segment-") || name.starts_with("journal-")) && !listed.contains(name))
+    if (is_listed_kind(name) && !listed.contains(name))
       std::filesystem::remove(entry.path(), ignored);
   }
 }

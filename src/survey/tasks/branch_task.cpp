@@ -78,7 +78,7 @@ std::vector<bifurcation::TestFunction> functions_of(const scene::Scene& scene, c
 
 BranchTask::BranchTask(const scene::Scene& scene, std::shared_ptr<const systems::System> system, BranchWork work,
                        const std::string& state, const GivenOrbitWatch& given, archive::Records& rows,
-                       queue::TaskContext& context, core::Team* team)
+                       queue::TaskContext& context, core::Team* team, PayloadStore* store)
     : _scene(scene),
       _system(std::move(system)),
       _work(std::move(work)),
@@ -86,6 +86,7 @@ BranchTask::BranchTask(const scene::Scene& scene, std::shared_ptr<const systems:
       _rows(rows),
       _context(context),
       _team(team),
+      _store(store),
       _options(options_of(scene, _work, team)),
       _start(start_of(_work, _system->structure())),
       _curve(_system, _start.isotropy, branch_options(scene, team)),
@@ -585,7 +586,8 @@ void BranchTask::add_event(const bifurcation::Event& event, double from, double 
   work.from = std::max(from, known.front().position);  // a long way without a sign may begin before
   work.known = std::move(known);
   work.to = to;
-  _children.push_back(task_of(work));
+  queue::Task& task = _children.emplace_back(task_of(work));
+  if (_store != nullptr) _store->keep(task);
 }
 
 void BranchTask::solve_requested(const continuation::Orbit& orbit) {

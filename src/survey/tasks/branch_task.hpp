@@ -13,6 +13,7 @@
 #include "orbweaver/queue/executor.hpp"
 #include "orbweaver/scene/scene.hpp"
 #include "state/branch_state.hpp"
+#include "state/payload_store.hpp"
 #include "tasks/arrival.hpp"
 #include "tasks/given_orbit_watch.hpp"
 #include "tasks/payload/work.hpp"
@@ -24,10 +25,10 @@ namespace orbweaver::survey {
 /// its end, also where it meets a more symmetric family. Goes on from a state, or gives it, after any orbit.
 class BranchTask {
  public:
-  /// `state`: that of queue::Task, possibly empty.
+  /// `state`: that of queue::Task, possibly empty. `store`: for the payloads of what is found; may be null.
   BranchTask(const scene::Scene& scene, std::shared_ptr<const systems::System> system, BranchWork work,
              const std::string& state, const GivenOrbitWatch& given, archive::Records& rows,
-             queue::TaskContext& context, core::Team* team);
+             queue::TaskContext& context, core::Team* team, PayloadStore* store);
 
   [[nodiscard]] queue::TaskOutcome run();
 
@@ -82,6 +83,7 @@ class BranchTask {
   archive::Records& _rows;
   queue::TaskContext& _context;
   core::Team* _team;
+  PayloadStore* _store;
 
   continuation::Options _options;
   continuation::Start _start;

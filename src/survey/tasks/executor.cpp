@@ -19,8 +19,8 @@
 namespace orbweaver::survey {
 
 Executor::Executor(const scene::Scene& scene, std::shared_ptr<const systems::System> system, archive::Records& rows,
-                   core::Team* team)
-    : _scene(scene), _system(std::move(system)), _rows(rows), _team(team) {}
+                   core::Team* team, PayloadStore* store)
+    : _scene(scene), _system(std::move(system)), _rows(rows), _team(team), _store(team == nullptr ? store : nullptr) {}
 
 queue::TaskOutcome Executor::execute(const queue::Task& task, queue::TaskContext& context) {
   _orbits_before = _rows.orbits.size();
@@ -28,7 +28,8 @@ queue::TaskOutcome Executor::execute(const queue::Task& task, queue::TaskContext
   switch (kind_of(task)) {
     case TaskKind::sweep: return sweep(unpack_sweep_work(task.payload));
     case TaskKind::branch:
-      return BranchTask(_scene, _system, unpack_branch_work(task.payload), task.state, _given, _rows, context, _team)
+      return BranchTask(_scene, _system, unpack_branch_work(task.payload), task.state, _given, _rows, context, _team,
+                        _store)
           .run();
     case TaskKind::locate: return locate(_scene, _system, unpack_locate_work(task.payload), context, _team);
     case TaskKind::locus: return follow_locus(_scene, *_system, unpack_locus_work(task.payload), context, _team);

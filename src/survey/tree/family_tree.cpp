@@ -66,13 +66,13 @@ std::vector<std::string> passed_texts(const std::vector<FamilySide>& kept, const
 void FamilyTree::add(const queue::Task& task, const queue::TaskOutcome& outcome) {
   const TaskKind kind = kind_of(task);
   if (kind == TaskKind::branch) {
-    BranchWork work = unpack_branch_work(task.payload);
+    BranchWork work = told_branch(task);
     EndedBranch branch{std::move(work.lineage), std::move(work.name), std::move(work.isotropy), std::nullopt,
                        outcome.failed,          outcome.reason};
     if (!outcome.payload.empty()) branch.outcome = unpack_branch_outcome(outcome.payload);
     add_branch(task.key, std::move(branch));
   } else if (kind == TaskKind::start && outcome.failed) {
-    BranchWork work = unpack_start_work(task.payload).branch;
+    BranchWork work = told_branch(task);
     add_branch(work.key, {std::move(work.lineage), std::move(work.name), std::move(work.isotropy), std::nullopt, true,
                           outcome.reason});
   } else if (kind == TaskKind::start && !outcome.stopped && outcome.children.empty()) {
@@ -133,8 +133,7 @@ void FamilyTree::count(const std::vector<std::string>& branches) {
 bool FamilyTree::wanted(const queue::Task& task) const {
   const TaskKind kind = kind_of(task);
   if (kind != TaskKind::branch && kind != TaskKind::start) return true;
-  const BranchWork work =
-      kind == TaskKind::branch ? unpack_branch_work(task.payload) : unpack_start_work(task.payload).branch;
+  const BranchWork work = told_branch(task);
   return !_pruning.would_be_dropped(work.key, work.lineage) &&
          (work.lineage.depth == 0 || _limit.has_room({work.lineage.depth, work.key}, work.lineage.family));
 }

@@ -13,8 +13,9 @@ mkdir -p "$folder"
 if [ ! -x "$folder/bench_queue" ]; then
   smpicxx -std=c++20 -O2 -DSPDLOG_COMPILED_LIB -DSPDLOG_FMT_EXTERNAL -I"$root/include" -include "$here/clock.hpp" \
     "$here/clock.cpp" "$here"/../bench_queue.cpp "$here"/../task_table.cpp "$root"/src/queue/*.cpp \
-    "$root"/src/core/check_mpi.cpp "$root"/src/core/communicator.cpp "$root"/src/core/error.cpp \
-    "$root"/src/core/log.cpp "$root"/src/core/log_stage.cpp \
+    "$root"/src/core/mpi/check_mpi.cpp "$root"/src/core/mpi/collective.cpp "$root"/src/core/mpi/communicator.cpp \
+    "$root"/src/core/error.cpp "$root"/src/core/interruption.cpp "$root"/src/core/serialization.cpp \
+    "$root"/src/core/styled.cpp "$root"/src/core/terminal.cpp "$root"/src/core/text.cpp "$root"/src/core/log/*.cpp \
     -o "$folder/bench_queue" -lboost_serialization -lz -lspdlog -lfmt
 fi
 cat > "$folder/platform-$ranks.xml" <<END

@@ -1,9 +1,11 @@
 #include "payload.hpp"
 
+#include <cstring>
 #include <exception>
 #include <sstream>
 #include <streambuf>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -42,6 +44,14 @@ void expect(const PayloadType& type, boost::archive::binary_iarchive& archive) {
 }
 
 }  // namespace
+
+bool is_named(const PayloadType& type, const std::string& bytes) {
+  const std::string_view name = type.name;
+  std::uint64_t length = 0;  // as a text's stands before it (core/serialization.hpp)
+  if (bytes.size() < sizeof length + name.size()) return false;
+  std::memcpy(&length, bytes.data(), sizeof length);
+  return length == name.size() && std::string_view(bytes).substr(sizeof length, name.size()) == name;
+}
 
 std::string write_payload(const PayloadType& type, const std::function<void(boost::archive::binary_oarchive&)>& write) {
   const auto write_to = [&](std::streambuf& buffer) {

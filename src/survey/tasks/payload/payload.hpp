@@ -26,6 +26,8 @@ template <core::Serialized T>
   return {T::payload_name, T::wire_version, layout};
 }
 
+/// Whether `bytes` begin as those of that type, of any version.
+[[nodiscard]] bool is_named(const PayloadType& type, const std::string& bytes);
 [[nodiscard]] std::string write_payload(const PayloadType& type,
                                         const std::function<void(boost::archive::binary_oarchive&)>& write);
 void read_payload(const PayloadType& type, const std::string& bytes,

@@ -7,4 +7,5 @@
 #include "locate_work.hpp"
 #include "locus_work.hpp"
 #include "start_work.hpp"
+#include "stored_work.hpp"
 #include "sweep_work.hpp"
