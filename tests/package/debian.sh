@@ -12,7 +12,7 @@ for tool in debootstrap dpkg-shlibdeps unshare; do
   command -v $tool >/dev/null || skip "there is no $tool here (Debian: debootstrap, dpkg-dev, util-linux)"
 done
 mirror=$(cat /etc/apt/sources.list /etc/apt/sources.list.d/* 2>/dev/null |
-  sed -nE 's/^(deb|URIs:)[^#]*(https?:[^ ]+debian)\/? ?.*/\2/p' | grep -v security | head -1)
+  sed -nE 's/^(deb|URIs:)[^#]*(https?:[^ ]+debian)\/? ?.*/\2/p' | grep -v security | head -1 || true) # of the lists there may be one only
 mirror=${mirror:-http://deb.debian.org/debian}
 
 mkdir -p "$work" && cd "$work"

@@ -41,13 +41,14 @@ std::string read_piece(const std::filesystem::path& path, const Piece& piece) {
     throw core::InputError(
         fmt::format("{}, {} bytes from {} on: {}", path.string(), piece.bytes, piece.offset, what));
   };
-  std::error_code code;
-  if (!std::filesystem::is_regular_file(path, code)) refuse("the file is not there, or is not a regular one");
-  const std::uint64_t size = std::filesystem::file_size(path, code);
-  if (code) refuse(fmt::format("the file cannot be looked at ({})", code.message()));
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) refuse("the file is not there, or is not a regular one");
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  if (!file) refuse("the file cannot be opened");
+  // Of the open file: network file systems look again when one is opened, and may tell an older size by its name.
+  const auto size = static_cast<std::uint64_t>(file.tellg());
   if (piece.offset > size || piece.bytes > size - piece.offset)
     refuse(fmt::format("the file has {} bytes: it is torn", size));
-  std::ifstream file(path, std::ios::binary);
   std::string bytes(piece.bytes, '\0');
   file.seekg(static_cast<std::streamoff>(piece.offset));
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
