@@ -58,44 +58,6 @@ constexpr double longest_piece = 0.125;
 /// Of the length that a piece has for its part of the chord: by less the two halves of a smooth piece differ.
 constexpr double uneven = 0.2;
 
-/// Whether the orbits between the ends of the step are one curve: halves what is long, uneven, or the steepest.
-bool is_one_curve(continuation::FamilyCurve& step) {
-  struct Piece {
-    double from;
-    double to;
-    loop::Loop before;
-    loop::Loop after;
-    double steepness;  // length, in parts of what it has of the chord
-  };
-  const double chord = continuation::arclength_between(step.known().front().loop, step.known().back().loop);
-  const auto piece = [&](double from, double to, const loop::Loop& before, const loop::Loop& after) {
-    return Piece{from, to, before, after, continuation::arclength_between(before, after) / ((to - from) * chord)};
-  };
-  std::vector<Piece> pieces{piece(0.0, 1.0, step.known().front().loop, step.known().back().loop)};
-  double steepest = 0.0;  // of those that are settled
-  while (!pieces.empty()) {
-    const auto next = std::max_element(pieces.begin(), pieces.end(),
-                                       [](const Piece& a, const Piece& b) { return a.steepness < b.steepness; });
-    const Piece whole = std::move(*next);
-    pieces.erase(next);
-    const double middle = 0.5 * (whole.from + whole.to);
-    const std::optional<continuation::CurvePoint> point = step.at(middle);
-    if (!point) return false;
-    const Piece halves[] = {piece(whole.from, middle, whole.before, point->loop),
-                            piece(middle, whole.to, point->loop, whole.after)};
-    const bool is_uneven = std::abs(halves[0].steepness - halves[1].steepness) > uneven * whole.steepness;
-    for (const Piece& half : halves) {
-      if (half.steepness > torn) return false;
-      const double width = half.to - half.from;
-      if (width >= longest_piece || (width > shortest_piece && (is_uneven || half.steepness > steepest)))
-        pieces.push_back(half);
-      else
-        steepest = std::max(steepest, half.steepness);
-    }
-  }
-  return true;
-}
-
 /// Whether the curve between the orbits is there, and the index comes to 2 on it.
 bool has_index_two_between(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
                            const continuation::Options& options, const KnownStability& from, const KnownStability& to) {
@@ -223,6 +185,44 @@ bool are_turns_asked(const spectrum::Stability& from, const spectrum::Stability&
   for (const spectrum::Stability* s : {&from, &to})
     if (!s->fundamental.empty()) largest = std::max(largest, std::abs(s->fundamental[0]));
   return 4.0 / largest * length >= smallest_jump;
+}
+
+// Halves what is long, uneven, or the steepest.
+bool is_one_curve(continuation::FamilyCurve& step) {
+  struct Piece {
+    double from;
+    double to;
+    loop::Loop before;
+    loop::Loop after;
+    double steepness;  // length, in parts of what it has of the chord
+  };
+  const double chord = continuation::arclength_between(step.known().front().loop, step.known().back().loop);
+  const auto piece = [&](double from, double to, const loop::Loop& before, const loop::Loop& after) {
+    return Piece{from, to, before, after, continuation::arclength_between(before, after) / ((to - from) * chord)};
+  };
+  std::vector<Piece> pieces{piece(0.0, 1.0, step.known().front().loop, step.known().back().loop)};
+  double steepest = 0.0;  // of those that are settled
+  while (!pieces.empty()) {
+    const auto next = std::max_element(pieces.begin(), pieces.end(),
+                                       [](const Piece& a, const Piece& b) { return a.steepness < b.steepness; });
+    const Piece whole = std::move(*next);
+    pieces.erase(next);
+    const double middle = 0.5 * (whole.from + whole.to);
+    const std::optional<continuation::CurvePoint> point = step.at(middle);
+    if (!point) return false;
+    const Piece halves[] = {piece(whole.from, middle, whole.before, point->loop),
+                            piece(middle, whole.to, point->loop, whole.after)};
+    const bool is_uneven = std::abs(halves[0].steepness - halves[1].steepness) > uneven * whole.steepness;
+    for (const Piece& half : halves) {
+      if (half.steepness > torn) return false;
+      const double width = half.to - half.from;
+      if (width >= longest_piece || (width > shortest_piece && (is_uneven || half.steepness > steepest)))
+        pieces.push_back(half);
+      else
+        steepest = std::max(steepest, half.steepness);
+    }
+  }
+  return true;
 }
 
 bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,

@@ -78,6 +78,9 @@ class Chord {
         const IdentityOptions& options)
       : _system(system), _isotropy(isotropy), _options(options), _a(a.loop), _b(b.loop) {
     resize(std::max(a.loop.cutoff, b.loop.cutoff));
+    if (!may_shift()) return;
+    _b = in_phase_with(_first, _second);
+    resize(_first.cutoff);
   }
 
   [[nodiscard]] double length() const {
@@ -107,11 +110,10 @@ class Chord {
 
   /// How far an orbit of the family is from the chord's point at `position`, in parts of the chord, time shifts apart.
   [[nodiscard]] double off_chord(const loop::Loop& x, double position) const {
-    Eigen::VectorXd off =
-        difference(*_unknowns, _first, as_here(x)) - position * difference(*_unknowns, _first, _second);
-    const Eigen::VectorXd shift = shift_direction(*_unknowns, _first);
-    if (shift.size() > 0) off -= shift.dot(off) * shift;
-    return off.norm() / chord_at(_first).norm();
+    const loop::Loop place = moved(*_unknowns, _first, position * difference(*_unknowns, _first, _second));
+    const loop::Loop here = as_here(x);
+    return difference(*_unknowns, place, may_shift() ? in_phase_with(place, here) : here).norm() /
+           chord_at(_first).norm();
   }
 
   [[nodiscard]] loop::Loop as_here(const loop::Loop& x) const {
@@ -119,6 +121,13 @@ class Chord {
   }
 
  private:
+  [[nodiscard]] bool may_shift() const { return shift_direction(*_unknowns, _first).size() > 0; }
+
+  /// Without that what two loops differ by in phase, which a shift takes away to first order only, passes for a bulge.
+  [[nodiscard]] loop::Loop in_phase_with(const loop::Loop& place, const loop::Loop& x) const {
+    return as_here(loop::aligned(x, loop::align_in_time(_system.structure(), x, place)));
+  }
+
   void resize(int cutoff) {
     _first = loop::with_cutoff(_a, cutoff);
     _second = loop::with_time_map(_b, _a.time_map, cutoff);

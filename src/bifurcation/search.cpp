@@ -131,6 +131,9 @@ SearchResult search_directions(const systems::System& system, const loop::Loop& 
       continue;
     }
     taken.push_back(orbit->coordinates);
+    // Where terms of third order decide they change their sign with it: the opposite direction is one too, along which
+    // the period changes the other way.
+    if (group.constant()) starts.emplace_back(-orbit->coordinates);
     if (partner > 0.0) starts.push_back(Eigen::Rotation2Dd(partner).toRotationMatrix() * orbit->coordinates);
     out.found.push_back(std::move(*orbit));
   }

@@ -121,6 +121,13 @@ TEST(Identity, OfOrbitsWithoutReversor) {
     const Comparison found = compare(branch.after[2], branch.after[4], branch.isotropy, image);
     EXPECT_TRUE(found.same) << found.detail << " " << found.distance;
   }
+  // Nor do stored orbits begin alike: neighbours in another phase are the same neighbours.
+  for (const double shift : {0.01, irrational}) {
+    Orbit later = branch.after[4];
+    later.loop = loop::time_shifted(later.loop, shift);
+    const Comparison found = compare(branch.after[2], later, branch.isotropy, branch.after[3].loop);
+    EXPECT_TRUE(found.same) << shift << ": " << found.detail << " " << found.distance;
+  }
   // Along a long chord the first correction comes within 1e-7 only.
   IdentityOptions options;
   options.tolerance = 1e-10;

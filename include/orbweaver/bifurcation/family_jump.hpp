@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "orbweaver/continuation/branch.hpp"
+#include "orbweaver/continuation/family_curve.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
 #include "orbweaver/systems/structure.hpp"
@@ -34,6 +35,10 @@ struct KnownStability {
 /// orbits, of the given length: where families are nearer than that they cross to rounding, and turns tell nothing.
 [[nodiscard]] bool are_turns_asked(const spectrum::Stability& from, const spectrum::Stability& to, double length,
                                    double smallest_jump);
+
+/// Whether the orbits between the first and the last known one of a family are one curve: halved again and again, all
+/// pieces of it shrink. Across a gap between two families one does not. False too where orbits between cannot be had.
+[[nodiscard]] bool is_one_curve(continuation::FamilyCurve& step);
 
 /// True if a step along a family that passes 2 only at folds has gone over to another one: an index has passed 2, and
 /// the energy does not turn on the way, or the orbits between are not one curve on which it is 2. Also where that

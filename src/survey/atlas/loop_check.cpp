@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "orbweaver/bifurcation/family_jump.hpp"
 #include "orbweaver/bifurcation/identity.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
@@ -93,6 +94,23 @@ LoopAnswer LoopCheck::ask(const OrbitBeside& x) const {
   const bifurcation::Comparison found =
       bifurcation::same_family(*_system, a, b, loop::isotropy_of(system, x.beside.isotropy), orbit, options);
   return {found.same, found.distance, allowed, found.detail, found.decided};
+}
+
+bool LoopCheck::is_on_curve(const OrbitBeside& x) const {
+  const systems::Structure& system = _system->structure();
+  const loop::Isotropy isotropy = loop::isotropy_of(system, x.beside.isotropy);
+  const loop::Loop orbit = orbit_of(x.own, x.family, x.orbit, *_system).loop;
+  const double allowed = bifurcation::IdentityOptions{}.tolerance * (1.0 + loop::rms_size(orbit));
+  for (const std::size_t node : {x.segment, x.segment + 1}) {
+    const loop::Loop known = orbit_of(x.other, x.beside, node, *_system).loop;
+    const loop::Loop beside = loop::aligned(orbit, loop::align(system, orbit, known));
+    if (continuation::arclength_between(known, beside) <= allowed) return true;
+    continuation::FamilyCurve curve(_system, isotropy, {});
+    curve.add(0.0, known);
+    curve.add(1.0, beside);
+    if (bifurcation::is_one_curve(curve)) return true;
+  }
+  return false;
 }
 
 std::optional<loop::Loop> LoopCheck::orbit_at(const AtlasTree& tree, std::size_t crossing) const {

@@ -35,13 +35,13 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
     case FindingKind::equilibrium_families:
       return f.severity == Severity::contradiction
                  ? fmt::format(
-                       "the indices of the families that leave the equilibrium, {} oscillations of one period, "
+                       "the indices of the families that leave the equilibrium, {} oscillations of one period ({}), "
                        "add up to {}: some are missing",
-                       f.other_number, f.number)
+                       f.other_number, f.detail, f.number)
                  : fmt::format(
-                       "of some families that leave the equilibrium, {} oscillations of one period, the index "
-                       "is not known",
-                       f.other_number);
+                       "whether all families are found that leave the equilibrium, {} oscillations of one period ({}), "
+                       "is not known: of some the index is not told, and those of the others add up to {}",
+                       f.other_number, f.detail, f.number);
     case FindingKind::base_birth:
       return "its first orbits do not lead back to its equilibrium with the period of the oscillation there";
     case FindingKind::continuum:

@@ -27,10 +27,14 @@ queue::TaskOutcome LoopExecutor::execute(const queue::Task& task, queue::TaskCon
   const TreeFamily& family = atlas.families.at(static_cast<std::size_t>(question.family));
   const TreeFamily& beside = atlas.families.at(static_cast<std::size_t>(question.beside));
   const auto segment = static_cast<std::size_t>(question.segment);
-  const LoopAnswer answer =
-      question.crossing >= 0
-          ? _loops.ask_crossing(atlas, static_cast<std::size_t>(question.crossing), beside, segment)
-          : _loops.ask({atlas, family, static_cast<std::size_t>(question.orbit), atlas, beside, segment});
+  LoopAnswer answer;
+  if (question.crossing >= 0) {
+    answer = _loops.ask_crossing(atlas, static_cast<std::size_t>(question.crossing), beside, segment);
+  } else {
+    const OrbitBeside orbit{atlas, family, static_cast<std::size_t>(question.orbit), atlas, beside, segment};
+    answer = _loops.ask(orbit);
+    if (answer.same && !_loops.is_on_curve(orbit)) answer.same = answer.decided = false;
+  }
   queue::TaskOutcome done;
   done.payload = to_payload(LoopReply{answer.same, answer.decided, answer.distance});
   return done;
