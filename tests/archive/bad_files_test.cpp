@@ -240,7 +240,8 @@ TEST_F(BadFiles, ValuesInOtherFilesAreRefused) {
                              H5Dclose);
     });
   };
-  const auto refused = HasSubstr("lacks the dataset /orbits/period, or it is damaged, compressed or lies in another file");
+  const auto refused =
+      HasSubstr("lacks the dataset /orbits/period, or it is damaged, compressed or lies in another file");
   EXPECT_THAT(created([&](hid_t creation, hid_t) {
                 check_h5(H5Pset_external(creation, pipe.c_str(), 0, H5F_UNLIMITED), "H5Pset_external");
               }),

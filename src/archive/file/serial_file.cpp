@@ -183,7 +183,8 @@ const H5Handle& SerialFile::dataset(const std::string& name) {
   const auto known = _datasets.find(name);
   if (known != _datasets.end()) return known->second;
   const hid_t id = open_own_dataset(_file.get(), name);
-  if (id < 0) expect(false, fmt::format("lacks the dataset /{}, or it is damaged, compressed or lies in another file", name));
+  if (id < 0)
+    expect(false, fmt::format("lacks the dataset /{}, or it is damaged, compressed or lies in another file", name));
   return _datasets[name] = {id, H5Dclose};
 }
 

@@ -83,7 +83,8 @@ std::optional<std::string> text_attribute(const H5Handle& file, const char* name
 }
 
 std::vector<std::string> read_column(const std::filesystem::path& path, const H5Handle& file, const std::string& name) {
-  const std::string problem = fmt::format("'{}' lacks the column /{}, or it is damaged or compressed", path.string(), name);
+  const std::string problem =
+      fmt::format("'{}' lacks the column /{}, or it is damaged or compressed", path.string(), name);
   const H5Handle dataset(check_h5<core::InputError>(open_own_dataset(file.get(), name), problem), H5Dclose);
   const H5Handle type(check_h5<core::InputError>(H5Dget_type(dataset.get()), problem), H5Tclose);
   const H5Handle space(check_h5<core::InputError>(H5Dget_space(dataset.get()), problem), H5Sclose);
