@@ -3,7 +3,8 @@
     orbweaver survey SCENE -o DIR -v 2> log;  python3 task_table.py log > table.csv
 
 A row a task, parents before children: the parent's row (-1: none), priority, kind, seconds, longest time without a report
-(s), bytes of payload in and out. Sweeps, which come before the tree, are left out. --factor scales the seconds, where the
+(s), bytes of payload in and out. Sweeps, which come before the tree, and the comparisons of the witness are left
+out. --factor scales the seconds, where the
 machine was shared (processor time / wall time of the run)."""
 import argparse
 import re
@@ -21,7 +22,7 @@ row_of, parent_of, rows = {}, {}, []
 with open(arguments.log, encoding="utf-8") as log:
     for line in log:
         match = LINE.search(line)
-        if not match or match["kind"] == "sweep":
+        if not match or match["kind"] in ("sweep", "compare"):
             continue
         row_of[match["key"]] = len(rows)
         for child in filter(None, match["children"].strip().split(", ")):

@@ -171,6 +171,8 @@ class StoredSurvey : public ::testing::Test {
     EndedTask ended{tasks[2], {}, true};
     BranchOutcome end;
     end.key = "0000.0001";
+    end.before_limit = before_limit();
+    state_file = unpack_stored_work(end.before_limit).file;
     ended.outcome.payload = pack(end);
     checkpoint.journals = {write_journal(folder, 1, {ended})};
     BranchState state;
@@ -179,6 +181,18 @@ class StoredSurvey : public ::testing::Test {
     running.state = pack(state);
     checkpoint.unfinished.push_back(running);
     write_checkpoint(folder, checkpoint);
+  }
+
+  /// In the last file.
+  std::string before_limit() {
+    BranchState state;
+    state.last.loop = branch_work("0000.0001").base;
+    std::string bytes = pack(state);
+    PayloadStore store(folder);
+    store.open(comm);
+    store.keep(bytes);
+    EXPECT_TRUE(is_stored(bytes));
+    return bytes;
   }
 
   static Checkpoint with(const queue::Task& task) {
@@ -194,6 +208,7 @@ class StoredSurvey : public ::testing::Test {
   core::Communicator comm;
   std::filesystem::path folder = test::fresh_folder("stored_survey");
   std::vector<queue::Task> tasks;
+  int state_file = 0;
   Checkpoint checkpoint;
 };
 
@@ -201,14 +216,14 @@ TEST_F(StoredSurvey, FilesAreRemovedThatNeitherCheckpointCountsOn) {
   EXPECT_TRUE(find_checkpoint(comm, folder).found);
   EXPECT_THAT(files_in(folder), UnorderedElementsAre("checkpoint", "checkpoint.previous", "journal-000001",
                                                      "payloads-000001", "payloads-000002", "payloads-000003",
-                                                     "payloads-000004", "payloads-000006"));
+                                                     "payloads-000004", "payloads-000006", "payloads-000007"));
 }
 
 TEST_F(StoredSurvey, WithADamagedPayloadTheCheckpointBeforeIsTaken) {
-  for (const int file : {1, 2, 3, 4}) {
+  for (const std::size_t file : {1, 2, 3, 4, 7}) {
     SCOPED_TRACE(file);
     SetUp();  // with other files
-    change(unpack_stored_work(tasks[static_cast<std::size_t>(file) - 1].payload).file);
+    change(file == 7 ? state_file : unpack_stored_work(tasks[file - 1].payload).file);
     testing::internal::CaptureStderr();
     const Found found = find_checkpoint(comm, folder);
     (void)testing::internal::GetCapturedStderr();

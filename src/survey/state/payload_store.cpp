@@ -47,13 +47,17 @@ void PayloadStore::open(const core::Communicator& comm) {
 }
 
 void PayloadStore::keep(queue::Task& task) {
-  if (!_file || task.payload.size() < least_stored || is_stored(task.payload)) return;
+  if (task.payload.size() >= least_stored) keep(task.payload, told_of(task));
+}
+
+void PayloadStore::keep(std::string& bytes, const std::string& told) {
+  if (!_file || bytes.size() < least_stored || is_stored(bytes)) return;
   try {
-    const archive::Piece piece = _file->append(task.payload);
+    const archive::Piece piece = _file->append(bytes);
     core::pause_point("store a payload");
-    task.payload = pack(StoredWork{_number, piece.offset, piece.bytes, piece.checksum, told_of(task)});
+    bytes = pack(StoredWork{_number, piece.offset, piece.bytes, piece.checksum, told});
   } catch (const core::EnvironmentError& error) {  // a flush, which cannot write either, says so; else nothing is lost
-    if (!_has_warned) core::log_warning(fmt::format("a task keeps its payload in memory: {}", error.what()));
+    if (!_has_warned) core::log_warning(fmt::format("a payload stays in memory: {}", error.what()));
     _has_warned = true;
   }
 }

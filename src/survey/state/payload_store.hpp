@@ -13,7 +13,7 @@
 
 namespace orbweaver::survey {
 
-/// Payloads of fewer bytes travel with their tasks: a message of this size is sent in one piece.
+/// Bytes that are fewer travel as they are: a message of this size is sent in one piece.
 inline constexpr std::size_t least_stored = 4096;
 
 /// What the names of files of payloads begin with.
@@ -21,12 +21,13 @@ inline constexpr std::string_view payload_prefix = "payloads-";
 /// The name of one, in the folder of segments.
 [[nodiscard]] std::string payload_file(int number);
 
-/// The payload that a task's stands for, from `folder`; that itself if it is not a stored one. Throws InputError that
-/// names the file if it cannot be read as it was written.
+/// What a task's payload, or the state of a branch before a limit, stands for, from `folder`; that itself if it is not
+/// stored. Throws InputError that names the file if it cannot be read as it was written.
 [[nodiscard]] std::string whole_payload(const std::filesystem::path& folder, const std::string& payload);
 
-/// Keeps large payloads of the tasks that this rank makes in a file of its own beside the segments, so that rank 0, its
-/// journals and checkpoints have only where they lie (StoredWork). Every rank reads those of all.
+/// Keeps large payloads of the tasks that this rank makes, and states of its branches before limits, in a file of its own
+/// beside the segments, so that rank 0, its journals and checkpoints have only where they lie (StoredWork). Every rank
+/// reads those of all.
 class PayloadStore {
  public:
   explicit PayloadStore(std::filesystem::path folder) : _folder(std::move(folder)) {}
@@ -35,6 +36,7 @@ class PayloadStore {
   void open(const core::Communicator& comm);
   /// A large payload goes into the file, and the task says where; one that cannot be written stays in the task.
   void keep(queue::Task& task);
+  void keep(std::string& bytes, const std::string& told = {});
   /// As whole_payload; what it throws, the next sync throws as well.
   [[nodiscard]] std::string whole(const queue::Task& task);
   /// All that was kept is on the disk. Throws EnvironmentError.

@@ -6,6 +6,7 @@
 
 #include "branch_state.hpp"
 #include "orbweaver/scene/differences.hpp"
+#include "payload_store.hpp"
 #include "tasks/payload/keys.hpp"
 
 namespace orbweaver::survey {
@@ -84,7 +85,7 @@ void Reopening::reopen(const EndedTask& entry) {
   task.state.clear();
   if (kind_of(task) == TaskKind::start) _whole.push_back(place_of(task.key));
   if (kind_of(task) == TaskKind::branch) {
-    task.state = unpack_branch_outcome(entry.outcome.payload).before_limit;
+    task.state = whole_payload(_folder, unpack_branch_outcome(entry.outcome.payload).before_limit);
     int orbits = 0;
     int events = 0;
     if (!task.state.empty()) {
@@ -106,7 +107,7 @@ void Reopening::go_back(queue::Task& running) {
   int orbits = 0;
   running.state.clear();
   if (!now.outcome.before_limit.empty()) {
-    BranchState before = unpack_branch_state(now.outcome.before_limit);
+    BranchState before = unpack_branch_state(whole_payload(_folder, now.outcome.before_limit));
     orbits = before.outcome.orbits;
     for (const queue::Task& child : now.children)
       if (event_number(place_of(child.key), running.key) < before.events) before.children.push_back(child);

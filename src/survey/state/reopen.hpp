@@ -1,6 +1,8 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "checkpoint.hpp"
@@ -16,7 +18,9 @@ namespace orbweaver::survey {
 /// rows that it made, no longer count.
 class Reopening {
  public:
-  Reopening(int widened, Checkpoint& checkpoint) : _widened(widened), _checkpoint(checkpoint) {}
+  /// `folder`: where stored payloads lie.
+  Reopening(int widened, Checkpoint& checkpoint, std::filesystem::path folder = {})
+      : _widened(widened), _checkpoint(checkpoint), _folder(std::move(folder)) {}
 
   /// False for a task that is done again, or that followed from what is.
   [[nodiscard]] bool stays(const EndedTask& entry);
@@ -41,6 +45,7 @@ class Reopening {
 
   int _widened;
   Checkpoint& _checkpoint;
+  std::filesystem::path _folder;
   std::vector<Behind> _behind;
   std::vector<std::string> _whole;  // branches of which nothing stays
   std::vector<queue::Task> _again;

@@ -23,6 +23,12 @@ namespace orbweaver::survey {
 
 namespace {
 
+// Throws as expect_readable unless the state before the limit that a branch has met can be.
+void expect_state(const std::filesystem::path& folder, const BranchOutcome& outcome) {
+  if (const std::string state = whole_payload(folder, outcome.before_limit); !state.empty())
+    (void)unpack_branch_state(state);
+}
+
 // Throws EnvironmentError unless all that a task carries can be unpacked, InputError if its payload is not in the folder.
 void expect_readable(const std::filesystem::path& folder, const queue::Task& task) {
   const TaskKind kind = kind_of(task);
@@ -34,8 +40,10 @@ void expect_readable(const std::filesystem::path& folder, const queue::Task& tas
       case TaskKind::locus: (void)unpack_locus_work(payload); break;
     }
   if (is_stored(task.payload) && (kind == TaskKind::branch || kind == TaskKind::start)) (void)told_branch(task);
-  if (kind == TaskKind::branch && !task.state.empty())
-    for (const queue::Task& child : unpack_branch_state(task.state).children) expect_readable(folder, child);
+  if (kind != TaskKind::branch || task.state.empty()) return;
+  const BranchState state = unpack_branch_state(task.state);
+  for (const queue::Task& child : state.children) expect_readable(folder, child);
+  expect_state(folder, state.outcome);
 }
 
 void expect_readable(const std::filesystem::path& folder, const EndedTask& entry) {
@@ -47,9 +55,7 @@ void expect_readable(const std::filesystem::path& folder, const EndedTask& entry
     case TaskKind::locate: (void)unpack_locate_outcome(outcome); break;
     case TaskKind::start: (void)unpack_start_outcome(outcome); break;
     case TaskKind::locus: (void)unpack_locus_outcome(outcome); break;
-    case TaskKind::branch:
-      if (const std::string before = unpack_branch_outcome(outcome).before_limit; !before.empty())
-        (void)unpack_branch_state(before);
+    case TaskKind::branch: expect_state(folder, unpack_branch_outcome(outcome)); break;
   }
 }
 
@@ -111,12 +117,18 @@ void clear_the_way(const std::filesystem::path& path) {
   core::log_warning(fmt::format("{} was a folder; it is now {}", path.string(), aside.string()));
 }
 
-// Files in which payloads of these tasks lie, those that running branches have found included.
+void list_payload(const std::string& payload, std::set<std::string>& listed) {
+  if (is_stored(payload)) listed.insert(payload_file(unpack_stored_work(payload).file));
+}
+
+// Files in which payloads of these tasks lie, those of running branches' states included.
 void list_payloads(const std::vector<queue::Task>& tasks, std::set<std::string>& listed) {
   for (const queue::Task& task : tasks) {
-    if (is_stored(task.payload)) listed.insert(payload_file(unpack_stored_work(task.payload).file));
-    if (kind_of(task) == TaskKind::branch && !task.state.empty())
-      list_payloads(unpack_branch_state(task.state).children, listed);
+    list_payload(task.payload, listed);
+    if (kind_of(task) != TaskKind::branch || task.state.empty()) continue;
+    const BranchState state = unpack_branch_state(task.state);
+    list_payloads(state.children, listed);
+    list_payload(state.outcome.before_limit, listed);
   }
 }
 
@@ -127,7 +139,11 @@ void list_files(const std::filesystem::path& folder, const Checkpoint& checkpoin
   list_payloads(checkpoint.left_out, listed);
   for (const JournalFile& journal : checkpoint.journals) {
     if (!listed.insert(journal.name).second) continue;  // another checkpoint's too
-    for (const EndedTask& entry : read_journal(folder, journal)) list_payloads({entry.task}, listed);
+    for (const EndedTask& entry : read_journal(folder, journal)) {
+      list_payloads({entry.task}, listed);
+      if (kind_of(entry.task) == TaskKind::branch && !entry.outcome.payload.empty())
+        list_payload(unpack_branch_outcome(entry.outcome.payload).before_limit, listed);
+    }
   }
 }
 
@@ -251,7 +267,7 @@ void continue_with(const scene::Scene& scene, const std::filesystem::path& folde
         fmt::format("{} holds a survey of another scene: {}. Give another folder with -o, or the scene "
                     "that it was begun with",
                     folder.parent_path().string(), differing));
-  Reopening reopening(widened_limits(before, scene), checkpoint);
+  Reopening reopening(widened_limits(before, scene), checkpoint, folder);
   for (JournalFile& journal : checkpoint.journals) {
     std::vector<EndedTask> entries = read_journal(folder, journal);
     const std::size_t listed = entries.size();

@@ -226,6 +226,7 @@ void BranchTask::limited_by(int limits, const continuation::Frontier& before) {
     BranchState state = state_at(before);
     state.children.clear();  // of a branch that has ended they are tasks of their own (else see reopen.cpp)
     _outcome.before_limit = pack(state);
+    if (_store != nullptr) _store->keep(_outcome.before_limit);
   }
   _outcome.limited_by |= limits;
 }

@@ -99,7 +99,8 @@ struct BranchOutcome {
   double tolerance_met = 0.0;  ///< the largest of the orbits', where rounding keeps one above the tolerance; else 0
   double moved_out = 0.0;      ///< of the first orbit, as continuation::Orbit
   int limited_by = 0;          ///< Limit: with wider ones the branch would have gone on
-  std::string before_limit;    ///< the state (queue::Task) from which it would, without children; empty: from its start
+  /// The state (queue::Task) from which it would, without children, or where that is stored; empty: from its start.
+  std::string before_limit;
   std::vector<PassedStart> passed{};
 
   static constexpr int wire_version = 6;
