@@ -25,9 +25,9 @@ inline constexpr std::string_view payload_prefix = "payloads-";
 /// stored. Throws InputError that names the file if it cannot be read as it was written.
 [[nodiscard]] std::string whole_payload(const std::filesystem::path& folder, const std::string& payload);
 
-/// Keeps large payloads of the tasks that this rank makes, and states of its branches before limits, in a file of its own
-/// beside the segments, so that rank 0, its journals and checkpoints have only where they lie (StoredWork). Every rank
-/// reads those of all.
+/// Keeps large payloads of the tasks that this rank makes, and states of its branches before limits, in a file of its
+/// own beside the segments, so that rank 0, its journals and checkpoints have only where they lie (StoredWork). Every
+/// rank reads those of all.
 class PayloadStore {
  public:
   explicit PayloadStore(std::filesystem::path folder) : _folder(std::move(folder)) {}

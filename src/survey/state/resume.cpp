@@ -29,7 +29,8 @@ void expect_state(const std::filesystem::path& folder, const BranchOutcome& outc
     (void)unpack_branch_state(state);
 }
 
-// Throws EnvironmentError unless all that a task carries can be unpacked, InputError if its payload is not in the folder.
+// Throws EnvironmentError unless all that a task carries can be unpacked, InputError if its payload is not in the
+// folder.
 void expect_readable(const std::filesystem::path& folder, const queue::Task& task) {
   const TaskKind kind = kind_of(task);
   if (const std::string payload = whole_payload(folder, task.payload); !payload.empty()) switch (kind) {

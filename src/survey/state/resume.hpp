@@ -38,8 +38,8 @@ void continue_with(const scene::Scene& scene, const std::filesystem::path& folde
 /// Whether a file of this name is one of those that a checkpoint, its journals or their tasks list.
 [[nodiscard]] bool is_listed_kind(const std::string& name);
 
-/// Removes segments, journals and payloads that neither the checkpoint nor the previous one lists: they came after it, or
-/// are not needed any more.
+/// Removes segments, journals and payloads that neither the checkpoint nor the previous one lists: they came after it,
+/// or are not needed any more.
 void remove_unlisted(const std::filesystem::path& folder, const Checkpoint& checkpoint);
 
 /// Sentences on the keys in which a survey of `before` cannot go on as one of `now`; empty: it can.

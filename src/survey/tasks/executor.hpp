@@ -19,8 +19,8 @@ namespace orbweaver::survey {
 class Executor : public queue::Executor {
  public:
   /// `team`: ranks that divide the work of a task among them, all executing the same one. `store`: for the payloads of
-  /// what comes of a task on its way, of which its state has many; not with a team, whose members' states must be alike.
-  /// Both may be null.
+  /// what comes of a task on its way, of which its state has many; not with a team, whose members' states must be
+  /// alike. Both may be null.
   Executor(const scene::Scene& scene, std::shared_ptr<const systems::System> system, archive::Records& rows,
            core::Team* team = nullptr, PayloadStore* store = nullptr);
 

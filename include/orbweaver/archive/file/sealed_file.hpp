@@ -23,8 +23,8 @@ void write_sealed(const std::filesystem::path& path, const Seal& seal, std::stri
 void write_sealed_keeping(const std::filesystem::path& path, const std::filesystem::path& previous, const Seal& seal,
                           std::string_view bytes);
 
-/// The bytes. Throws InputError for a file that is absent, torn, changed, foreign or of an older version than the seal's
-/// oldest, NewerVersionError for one of a newer version than the seal's.
+/// The bytes. Throws InputError for a file that is absent, torn, changed, foreign or of an older version than the
+/// seal's oldest, NewerVersionError for one of a newer version than the seal's.
 [[nodiscard]] std::string read_sealed(const std::filesystem::path& path, const Seal& seal);
 
 }  // namespace orbweaver::archive

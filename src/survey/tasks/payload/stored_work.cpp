@@ -11,8 +11,8 @@ namespace orbweaver::survey {
 
 void StoredWork::check_file(int file) {
   if (file < 0 || file >= most_files)
-    throw core::EnvironmentError(fmt::format("stored work lies in a file {}, where a number below {} was expected", file,
-                                             most_files));
+    throw core::EnvironmentError(
+        fmt::format("stored work lies in a file {}, where a number below {} was expected", file, most_files));
 }
 
 std::string pack(const StoredWork& work) { return to_payload(work); }
