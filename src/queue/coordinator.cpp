@@ -120,14 +120,13 @@ bool Coordinator::advance_flush(bool stands) {
 void Coordinator::flush_together() {
   _last_round = work_over();
   const int number = _round.number();
-  _own.flush(
-      [&](const std::string& key, const std::string& state) { _ledger.set_state(key, state); },
-      [&] {
-        _ledger.flushing(number);
-        _channel.send_to_workers(FlushGo{number});
-        _round.go();
-        _round.own_result(flush_guarded(_flusher, number));
-      });
+  _own.flush([&](const std::string& key, const std::string& state) { _ledger.set_state(key, state); },
+             [&] {
+               _ledger.flushing(number);
+               _channel.send_to_workers(FlushGo{number});
+               _round.go();
+               _round.own_result(flush_guarded(_flusher, number));
+             });
 }
 
 void Coordinator::end_flush() {

@@ -14,8 +14,8 @@
 
 namespace orbweaver::queue {
 
-/// Rank 0 of a run: hands out tasks, gathers outcomes and leads flushes. In between it does tasks itself where there are
-/// few ranks (Options::root_works_up_to), and sleeps where there are more.
+/// Rank 0 of a run: hands out tasks, gathers outcomes and leads flushes. In between it does tasks itself where there
+/// are few ranks (Options::root_works_up_to), and sleeps where there are more.
 class Coordinator final : private OwnWork::Duties {
  public:
   Coordinator(const core::Communicator& comm, const Options& options, Executor& executor, Observer& observer,

@@ -13,8 +13,8 @@
 
 namespace orbweaver::queue {
 
-/// The tasks that rank 0 does itself, one at a time. What the run wants of it meanwhile is done at the task's reports and
-/// interruption points.
+/// The tasks that rank 0 does itself, one at a time. What the run wants of it meanwhile is done at the task's reports
+/// and interruption points.
 class OwnWork final : private TaskContext {
  public:
   /// Rank 0's part in the run.

@@ -9,8 +9,8 @@
 
 namespace orbweaver::queue {
 
-/// Minds Options::task_seconds for the tasks of rank 0, which nobody else watches: a thread that ends the program when a
-/// task neither ends nor reports. Without a limit there is no thread.
+/// Minds Options::task_seconds for the tasks of rank 0, which nobody else watches: a thread that ends the program when
+/// a task neither ends nor reports. Without a limit there is no thread.
 class Watchdog {
  public:
   explicit Watchdog(double task_seconds);

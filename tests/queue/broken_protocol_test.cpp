@@ -38,7 +38,8 @@ class BrokenProtocol : public testing::Test {
 
   std::string error_of_run(queue::Executor& work, queue::Observer& observer) {
     Flush flush;
-    const std::string error = error_of([&] { queue::run(comm, waiting_root(), tasks(comm.size() - 1), work, observer, flush); });
+    const std::string error =
+        error_of([&] { queue::run(comm, waiting_root(), tasks(comm.size() - 1), work, observer, flush); });
     EXPECT_TRUE(same_everywhere(comm, error)) << error;
     EXPECT_THAT(error, HasSubstr("the run was ended on all ranks"));
     return error;

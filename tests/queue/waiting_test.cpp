@@ -52,7 +52,8 @@ TEST(Waiting, RankZeroUsesLessThanThreePercentOfACoreWhileAllOthersWork) {
   Work work(sleep_for_a_second);
   Flush flush;
   queue::Observer nobody;
-  const Use use = use_of(comm, [&] { queue::run(comm, waiting_root(), tasks(3 * (comm.size() - 1)), work, nobody, flush); });
+  const Use use =
+      use_of(comm, [&] { queue::run(comm, waiting_root(), tasks(3 * (comm.size() - 1)), work, nobody, flush); });
   EXPECT_GE(use.wall, 3.0);
   if (comm.is_root()) {
     EXPECT_LT(use.cpu, 0.03 * use.wall);

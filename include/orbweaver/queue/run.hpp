@@ -29,7 +29,7 @@ struct Options {
   /// run goes on with the others and ends as stopped early. If it has not ended after the same time again, the program
   /// ends on all ranks with exit status 3. 0: no limit.
   double task_seconds = 0.0;
-  /// With so many ranks or fewer, rank 0 does tasks too, between messages: it would only wait otherwise, for half of the
+  /// With so many ranks or fewer, rank 0 does tasks too, between messages: it would only wait otherwise, half of the
   /// machine with two ranks. With more, a worker would wait for it longer than its help is worth.
   int root_works_up_to = 4;
   double tick_seconds = 0.1;                     ///< between two ticks of the observer
@@ -70,8 +70,8 @@ struct RunSummary {
 /// Does `initial` and all children of it. Collective over `comm`; docs/protocol.md tells how.
 ///
 /// Rank 0 keeps the queue, whose order everybody is given tasks in; with few ranks (Options::root_works_up_to) it also
-/// does tasks itself, with one all of them. No rank spins while it waits. `initial` and `observer` count on rank 0 only. Nobody else may send
-/// on `comm` meanwhile, except within a collective flush.
+/// does tasks itself, with one all of them. No rank spins while it waits. `initial` and `observer` count on rank 0
+/// only. Nobody else may send on `comm` meanwhile, except within a collective flush.
 ///
 /// A task that the observer does not want counts as done. A task that fails is recorded and the run goes on. The run
 /// ends with the same EnvironmentError on all ranks when a flush or the observer throws, when a key comes twice, or
