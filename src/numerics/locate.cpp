@@ -116,7 +116,7 @@ std::optional<Located> locate_smooth_root(const Function& function, const Place&
     if (!(position > low.position && position < high.position)) break;
     ++evaluations;
     const Place here{position, function(position)};
-    if (std::isnan(here.value)) return std::nullopt;
+    if (std::isnan(here.value)) break;  // it may have one wherever the other algorithm looks
     const double slope = (here.value - best.value) / (here.position - best.position);
     const double off = std::abs(here.value / slope);
     if (here.value == 0.0 || (std::abs(here.value) < converging * std::abs(best.value) && off <= settled * tolerance))

@@ -97,14 +97,17 @@ std::string read_sealed(const std::filesystem::path& path, const Seal& seal) {
   if (all.size() < head_bytes || all.compare(0, mark_bytes, seal.mark) != 0)
     refuse(path, "it does not begin as such a file should: it is torn, or another program's");
   const auto version = number_at<std::uint32_t>(all, mark_bytes);
+  const std::string reads = seal.oldest == seal.version
+                                ? fmt::format("version {}", seal.version)
+                                : fmt::format("versions {} to {}", seal.oldest, seal.version);
   if (version > seal.version)
     throw core::NewerVersionError(
-        fmt::format("{}: its version is {}, and this Orbweaver reads version {}; nothing was changed: use the newer "
+        fmt::format("{}: its version is {}, and this Orbweaver reads {}; nothing was changed: use the newer "
                     "Orbweaver that wrote it",
-                    path.string(), version, seal.version));
-  if (version < seal.version)
-    refuse(path, fmt::format("its version is {}, and this Orbweaver reads version {}: use the Orbweaver that wrote it",
-                             version, seal.version));
+                    path.string(), version, reads));
+  if (version < seal.oldest)
+    refuse(path, fmt::format("its version is {}, and this Orbweaver reads {}: use the Orbweaver that wrote it", version,
+                             reads));
   const auto length = number_at<std::uint64_t>(all, mark_bytes + 4);
   if (length != all.size() - head_bytes)
     refuse(path, fmt::format("it should hold {} bytes and holds {}: it is torn", length, all.size() - head_bytes));

@@ -16,8 +16,9 @@ namespace {
 
 // Counts up with every change of what the files hold, payloads and states included.
 constexpr std::uint32_t file_version = 5;
-constexpr archive::Seal checkpoint_seal{"ORBWCKP\x1a", file_version};
-constexpr archive::Seal journal_seal{"ORBWJRN\x1a", file_version};
+constexpr std::uint32_t without_stored_payloads = 4;  // otherwise the same
+constexpr archive::Seal checkpoint_seal{"ORBWCKP\x1a", file_version, without_stored_payloads};
+constexpr archive::Seal journal_seal{"ORBWJRN\x1a", file_version, without_stored_payloads};
 
 struct Journal {
   static constexpr const char* payload_name = "journal";

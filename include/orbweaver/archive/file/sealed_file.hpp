@@ -11,6 +11,7 @@ namespace orbweaver::archive {
 struct Seal {
   std::string_view mark;  ///< 8 bytes
   std::uint32_t version = 1;
+  std::uint32_t oldest = version;  ///< that is read
 };
 
 /// A file of any bytes that is whole or not there: mark (8 bytes), version (4), length of the bytes (8), CRC-32 of all
@@ -22,8 +23,8 @@ void write_sealed(const std::filesystem::path& path, const Seal& seal, std::stri
 void write_sealed_keeping(const std::filesystem::path& path, const std::filesystem::path& previous, const Seal& seal,
                           std::string_view bytes);
 
-/// The bytes. Throws InputError for a file that is absent, torn, changed or foreign, NewerVersionError for one of a
-/// newer version than the seal's.
+/// The bytes. Throws InputError for a file that is absent, torn, changed, foreign or of an older version than the
+/// seal's oldest, NewerVersionError for one of a newer version than the seal's.
 [[nodiscard]] std::string read_sealed(const std::filesystem::path& path, const Seal& seal);
 
 }  // namespace orbweaver::archive
