@@ -55,11 +55,6 @@ class EventFunction {
   std::optional<Crossing> at(double position, bool whole = false) {
     const bool fold = _event.kind != Event::Kind::test_function;
     std::optional<continuation::CurvePoint> point = _family.at(position, whole || fold);
-    if (point && whole && !fold && is_last(*point)) {
-      Crossing out = *_last;  // its multipliers are known
-      out.point = std::move(*point);
-      return out;
-    }
     if (!point) return without_value(NotLocated::Reason::no_orbit, position, period_before(position));
     Crossing out;
     out.point = std::move(*point);
@@ -77,16 +72,10 @@ class EventFunction {
       out.reading = {slope(_system, _event.kind, out.point), 0.0};
     if (std::isnan(out.reading.value))
       return without_value(NotLocated::Reason::no_value, position, out.point.loop.period);
-    _last = out;
     return out;
   }
 
  private:
-  [[nodiscard]] bool is_last(const continuation::CurvePoint& point) const {
-    return _last && _last->point.position == point.position && _last->point.loop.period == point.loop.period &&
-           _last->point.loop.parameters == point.loop.parameters && _last->point.loop.modes == point.loop.modes;
-  }
-
   std::optional<Crossing> without_value(NotLocated::Reason reason, double position, double period,
                                         std::string detail = "") {
     _without_value = {.reason = reason, .position = position, .period = period, .detail = std::move(detail)};
@@ -104,7 +93,6 @@ class EventFunction {
   continuation::FamilyCurve& _family;
   const Event& _event;
   std::optional<NotLocated> _without_value;
-  std::optional<Crossing> _last;
 };
 
 /// The least or largest period or energy between two positions, if it lies within.
@@ -212,17 +200,13 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
   constexpr double widest = 1e-10;  // what |index - value| <= |dk/ds| 1e-10 allows
   const double absolute = std::min(tolerance * (1.0 + std::max(std::abs(from), std::abs(to))), widest);
   const auto along = [&](double position) { return function(position); };
-  const auto end = [&](double position, double known) {
-    return numerics::Place{position, std::isnan(known) ? function(position) : known};
-  };
   std::optional<numerics::Located> located;
   if (event.passed)
     located = numerics::locate_root([&](double position) { return function.twist_at(position); }, from, to, absolute);
   else
-    located = event.tangency
-                  ? numerics::locate_minimum([&](double position) { return std::abs(function(position)); }, from, to,
-                                             absolute)
-                  : numerics::locate_smooth_root(along, end(from, event.at_from), end(to, event.at_to), absolute);
+    located = event.tangency ? numerics::locate_minimum([&](double position) { return std::abs(function(position)); },
+                                                        from, to, absolute)
+                             : numerics::locate_root(along, from, to, absolute);
   // Where directions along the family are uncertain, the extremum itself is looked for.
   if (!located && event.kind != Event::Kind::test_function)
     located = extremum(system, family, event, from, to, absolute);

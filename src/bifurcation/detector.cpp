@@ -26,13 +26,6 @@ constexpr double at_end = 0.01;
 /// A parabola's minimum is examined where it lies below this share of its neighbours (a parabola is a poor model).
 constexpr double deep_enough = 0.5;
 
-/// A minimum is given up where a parabola through nodes nearer to it than this part of the bracket leaves it this share
-/// of the least modulus, which is far above what may be a touch.
-constexpr std::size_t settling_nodes = 5;
-constexpr double near_the_least = 0.4;
-constexpr double settled_share = 0.8;
-constexpr double surely_no_zero = 1e-3;
-
 using Node = DetectorState::Node;
 
 void sort_by_position(std::vector<Bracket>& brackets) {
@@ -62,21 +55,6 @@ double passed_at(const TestPoint& point, std::size_t function) {
   return point.passed.empty() ? std::numeric_limits<double>::quiet_NaN() : point.passed[function];
 }
 
-/// Whether nodes of one sign on this length show already that the minimum of the modulus is far from zero: the least
-/// lies between nodes so near to it that the parabola through the three can be believed, and that has no deeper vertex.
-bool is_above_zero(std::vector<Node> nodes, double length) {
-  if (nodes.size() < settling_nodes) return false;
-  const auto modulus = [](const Node& node) { return std::abs(node.reading.value); };
-  std::sort(nodes.begin(), nodes.end(), [](const Node& a, const Node& b) { return a.position < b.position; });
-  const auto least = std::min_element(nodes.begin(), nodes.end(),
-                                      [&](const Node& a, const Node& b) { return modulus(a) < modulus(b); });
-  if (least == nodes.begin() || least + 1 == nodes.end() || !(modulus(*least) > surely_no_zero)) return false;
-  const Node& before = *(least - 1);
-  const Node& after = *(least + 1);
-  return after.position - before.position < near_the_least * length &&
-         std::abs(vertex_of(before, *least, after).value) > settled_share * modulus(*least);
-}
-
 /// Zeros that a function has passed between two places, 0 where that is not known.
 int passed_between(double from, double to) {
   const double change = std::abs(to - from);
@@ -90,17 +68,12 @@ bool pass_several(const TestPoint& from, const TestPoint& to) {
   return false;
 }
 
-/// Nodes of unlike signs.
-Bracket between(std::size_t function, const Node& from, const Node& to) {
-  return {function, from.position, to.position, false, false, false, from.reading.value, to.reading.value};
-}
-
 void add_sign_changes(std::size_t function, const std::vector<Node>& nodes, std::vector<Bracket>& found) {
   const Node* before = nullptr;
   for (const Node& node : nodes) {
     if (node.reading.sign() == 0) continue;
     if (before != nullptr && before->reading.sign() != node.reading.sign())
-      found.push_back(between(function, *before, node));
+      found.push_back({function, before->position, node.position, false});
     before = &node;
   }
 }
@@ -190,11 +163,7 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
     return sign * reading.value;
   };
   const double length = right.position - left.position;
-  const auto size_or_settled = [&](double position) {
-    return is_above_zero(nodes, length) ? std::nan("") : size(position);
-  };
-  (void)numerics::locate_minimum(size_or_settled, left.position, right.position, minimum_width * length,
-                                 _options.probes);
+  (void)numerics::locate_minimum(size, left.position, right.position, minimum_width * length, _options.probes);
   std::sort(nodes.begin(), nodes.end(), [](const Node& a, const Node& b) { return a.position < b.position; });
   double& examined_to = _state.watches[function].examined_to;
   if (crossed) {
@@ -276,7 +245,7 @@ void Detector::take(std::size_t function, const Node& node, const Probe& probe, 
   std::vector<Node>& last = watch.signed_nodes;
   if (!last.empty()) {
     if (last.back().reading.sign() != node.reading.sign())
-      found.push_back(between(function, last.back(), node));
+      found.push_back({function, last.back().position, node.position, false});
     else if (watch.undecided && passed_between(last.back().passed, node.passed) == 0)
       examine(function, last.back(), node, probe, found);
     count(function, last.back(), node, probe, found);

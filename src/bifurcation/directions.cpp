@@ -350,7 +350,7 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   for (const double r : constant ? amplitudes_from(beyond_births * options.amplitude) : search_amplitudes(q, base)) {
     SearchResult result =
         search_directions(system, base, group, kept, start_directions(group.dimension(), q, options.seeds),
-                          expected == 2 ? std::numbers::pi / q : 0.0, expected, r, nudge, lines, options);
+                          expected == 2 ? std::numbers::pi / q : 0.0, r, nudge, lines, options);
     const auto count = static_cast<int>(result.found.size());
     const bool possible = expected == 0 || count <= expected;
     if (amplitude == 0.0 || (possible && result.found.size() > best.found.size()) ||

@@ -114,7 +114,7 @@ Gap gap_between(const loop::Loop& base, const loop::Loop& orbit, const KernelAct
 
 SearchResult search_directions(const systems::System& system, const loop::Loop& base, const KernelActions& group,
                                const loop::Isotropy& isotropy, std::vector<Eigen::VectorXd> starts, double partner,
-                               int wanted, double amplitude, double nudge, const std::vector<Eigen::VectorXd>& known,
+                               double amplitude, double nudge, const std::vector<Eigen::VectorXd>& known,
                                const DirectionOptions& options) {
   const Search search{system, base, group, isotropy, amplitude, options};
   SearchResult out;
@@ -136,7 +136,6 @@ SearchResult search_directions(const systems::System& system, const loop::Loop& 
     if (group.constant()) starts.emplace_back(-orbit->coordinates);
     if (partner > 0.0) starts.push_back(Eigen::Rotation2Dd(partner).toRotationMatrix() * orbit->coordinates);
     out.found.push_back(std::move(*orbit));
-    if (wanted == static_cast<int>(out.found.size()) && out.not_isolated == 0) break;
   }
   return out;
 }

@@ -35,12 +35,11 @@ struct SearchResult {
 /// each that no symmetry of `group` maps to another or to one of `known` (to its negative neither): Newton's method
 /// from the kernel directions `starts` and, in a plane and if `partner` is not 0, from that angle beside each one
 /// found: extrema of the reduced action alternate, and one kind of them may be reached from very near only. Each is
-/// sought once more from `nudge` radians beside it. With as many as are `wanted`, all of them isolated, the search
-/// ends; 0: it takes all starts.
+/// sought once more from `nudge` radians beside it.
 [[nodiscard]] SearchResult search_directions(const systems::System& system, const loop::Loop& base,
                                              const KernelActions& group, const loop::Isotropy& isotropy,
-                                             std::vector<Eigen::VectorXd> starts, double partner, int wanted,
-                                             double amplitude, double nudge, const std::vector<Eigen::VectorXd>& known,
+                                             std::vector<Eigen::VectorXd> starts, double partner, double amplitude,
+                                             double nudge, const std::vector<Eigen::VectorXd>& known,
                                              const DirectionOptions& options);
 
 /// Whether an orbit found about an equilibrium is of a family that is born on one of the directions `known` further out

@@ -37,9 +37,7 @@ constexpr std::size_t together = ad::Lanes::width;
 
 /// 0 x is 0 for finite numbers only.
 bool is_finite(const State& values) {
-  double sum = 0.0;
-  for (const double v : values) sum += 0.0 * v;
-  return sum == 0.0;
+  return (0.0 * Eigen::Map<const Eigen::ArrayXd>(values.data(), static_cast<Eigen::Index>(values.size()))).sum() == 0.0;
 }
 
 [[noreturn]] void fail(const systems::System& system, double reached, double time, const char* reason) {

@@ -64,14 +64,10 @@ CurveInterval::CurveInterval(const systems::System& system, const loop::Isotropy
 }
 
 std::optional<CurvePoint> CurveInterval::at(double position, bool with_tangent) {
-  const auto known =
-      std::find_if(_found.begin(), _found.end(), [&](const CurvePoint& point) { return point.position == position; });
-  if (known != _found.end()) {
-    const std::size_t found_first = _points.size() - _found.size();
-    if (with_tangent && known->tangent.empty())
-      set_tangent(*known, _points[found_first + static_cast<std::size_t>(known - _found.begin())].values);
-    return *known;
-  }
+  const auto known = std::find_if(_found.begin(), _found.end(), [&](const CurvePoint& point) {
+    return point.position == position && (!with_tangent || !point.tangent.empty());
+  });
+  if (known != _found.end()) return *known;
   std::optional<Trial> trial = solve(position);
   if (!trial) {
     _state.factor_point.clear();
@@ -80,14 +76,11 @@ std::optional<CurvePoint> CurveInterval::at(double position, bool with_tangent) 
   if (!trial) trial = known_at(position);
   if (!trial) return std::nullopt;
   CurvePoint found{position, std::move(trial->loop), {}};
-  if (with_tangent) set_tangent(found, trial->values);
+  if (with_tangent)
+    found.tangent = _problem->tangent_of(_problem->direction_at(trial->values, prediction_at(position)), found.loop);
   _points.push_back({std::move(trial->values), position});
   _found.push_back(found);
   return found;
-}
-
-void CurveInterval::set_tangent(CurvePoint& point, const std::vector<double>& values) {
-  point.tangent = _problem->tangent_of(_problem->direction_at(values, prediction_at(point.position)), point.loop);
 }
 
 std::optional<Trial> CurveInterval::known_at(double position) const {

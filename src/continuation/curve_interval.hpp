@@ -25,7 +25,6 @@ class CurveInterval {
   [[nodiscard]] std::optional<Trial> solve(double position);
   /// A known orbit itself, which the corrector may fail to find again; none between the two.
   [[nodiscard]] std::optional<Trial> known_at(double position) const;
-  void set_tangent(CurvePoint& point, const std::vector<double>& values);
   [[nodiscard]] bool slipped(const Trial& trial, const Prediction& prediction);
   [[nodiscard]] Prediction prediction_at(double position);
 
@@ -38,7 +37,7 @@ class CurveInterval {
   std::size_t _first = 0;           // of the interval, among the points
   std::size_t _last = 0;
   std::array<loop::Loop, 2> _ends;  // under the interval's time map
-  std::vector<CurvePoint> _found;   // the last of the points
+  std::vector<CurvePoint> _found;
 };
 
 }  // namespace orbweaver::continuation

@@ -12,7 +12,6 @@ namespace {
 using namespace orbweaver;
 using numerics::locate_minimum;
 using numerics::locate_root;
-using numerics::locate_smooth_root;
 
 TEST(LocateRoot, FindsARootToItsTolerance) {
   for (const double tolerance : {1e-3, 1e-8, 1e-13}) {
@@ -31,32 +30,6 @@ TEST(LocateRoot, TakesFewEvaluations) {
   ASSERT_TRUE(root);
   EXPECT_NEAR(root->position, 0.37, 1e-10);
   EXPECT_LE(root->evaluations, 12);
-}
-
-TEST(LocateSmoothRoot, TakesFewerEvaluations) {
-  const auto line = [](double x) { return std::tanh(3 * (x - 0.37)); };
-  const auto root = locate_smooth_root(line, {0.3, line(0.3)}, {0.5, line(0.5)}, 1e-10);
-  ASSERT_TRUE(root);
-  EXPECT_TRUE(root->converged);
-  EXPECT_NEAR(root->position, 0.37, 1e-12);
-  EXPECT_LE(root->evaluations, 5);
-  EXPECT_GE(root->evaluations, 3);
-}
-
-TEST(LocateSmoothRoot, FindsWhatIsNotSmoothToo) {
-  const auto bent = [](double x) { return x < 0.4 ? 0.001 * (x - 0.4) : 1000.0 * (x - 0.4); };
-  const auto root = locate_smooth_root(bent, {0.0, bent(0.0)}, {1.0, bent(1.0)}, 1e-10);
-  ASSERT_TRUE(root);
-  EXPECT_TRUE(root->converged);
-  EXPECT_NEAR(root->position, 0.4, 1e-10);
-  const auto step = [](double x) { return x < 0.123 ? -1.0 : 1.0; };
-  const auto jump = locate_smooth_root(step, {0.0, -1.0}, {1.0, 1.0}, 1e-10);
-  ASSERT_TRUE(jump);
-  EXPECT_TRUE(jump->converged);
-  EXPECT_LE(jump->width, 1e-10);
-  EXPECT_EQ(std::abs(jump->value), 1.0);
-  EXPECT_FALSE(locate_smooth_root(step, {0.5, 1.0}, {1.0, 1.0}, 1e-10));
-  EXPECT_FALSE(locate_smooth_root([](double) { return std::nan(""); }, {0.0, -1.0}, {1.0, 1.0}, 1e-10));
 }
 
 TEST(LocateRoot, SaysWhenItRanOutOfEvaluations) {

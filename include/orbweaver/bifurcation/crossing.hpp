@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,14 +23,11 @@ struct Event {
   /// A tangency at which a multiplier passes 1 or -1 and stays on the unit circle, to rounding: there
   /// `Stability::twist` changes its sign, by which it is located.
   bool passed = false;
-  /// Of the test function at the ends of the interval, where they are known already.
-  double at_from = std::numeric_limits<double>::quiet_NaN();
-  double at_to = std::numeric_limits<double>::quiet_NaN();
 
-  static constexpr int wire_version = 3;
+  static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, kind, function, tangency, passed, at_from, at_to);
+    core::serialize_members(archive, kind, function, tangency, passed);
   }
 };
 

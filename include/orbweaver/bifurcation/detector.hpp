@@ -35,8 +35,6 @@ struct Bracket {
   bool tangency;
   bool passed = false;  ///< a tangency that is one: counts say that a zero is passed there
   bool lost = false;    ///< a tangency that may be one: where the minimum was looked for there was no orbit
-  double at_from = std::numeric_limits<double>::quiet_NaN();  ///< the function's values, of a change of sign
-  double at_to = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Between `from` and `to` a function has more zeros than were bracketed, by so many.

@@ -33,13 +33,6 @@ struct Located {
 [[nodiscard]] std::optional<Located> locate_root(const Function& function, const Place& from, const Place& to,
                                                  double tolerance, int max_evaluations = 60);
 
-/// The same for a smooth function whose values are dear: by inverse interpolation through the nearest four places,
-/// until the slope to the place before says that the zero is no further off than a hundredth of `tolerance`. The
-/// interval around it is not closed then, and `width` is that distance. Where this does not converge at once, algorithm
-/// 748 goes on.
-[[nodiscard]] std::optional<Located> locate_smooth_root(const Function& function, const Place& from, const Place& to,
-                                                        double tolerance, int max_evaluations = 60);
-
 /// A local minimum of `function` between `from` and `to` (Brent's method), to `tolerance` in the position, but not
 /// closer than 1e-8 (to - from), where a minimum is flat to double precision. None if a value is NaN.
 /// Throws MisuseError unless from < to and tolerance > 0.

@@ -238,9 +238,8 @@ void BranchTask::finish() {
   _curve.forget_found();
   const auto probing = [this](double position) { return probe(position); };
   for (const bifurcation::Bracket& b : _detector.finish(probing))
-    add_event(
-        {bifurcation::Event::Kind::test_function, _functions[b.function], b.tangency, b.passed, b.at_from, b.at_to},
-        b.from, b.to, _curve.known());
+    add_event({bifurcation::Event::Kind::test_function, _functions[b.function], b.tangency, b.passed}, b.from, b.to,
+              _curve.known());
   for (const bifurcation::MissedZeros& missed : _detector.missed()) add_missed(missed);
 }
 
@@ -419,9 +418,8 @@ std::optional<bifurcation::TestPoint> BranchTask::probe(double position) {
 void BranchTask::detect_zeros(const bifurcation::TestPoint& point) {
   const auto probing = [this](double position) { return probe(position); };
   for (const bifurcation::Bracket& b : _detector.advance(point, probing))
-    add_event(
-        {bifurcation::Event::Kind::test_function, _functions[b.function], b.tangency, b.passed, b.at_from, b.at_to},
-        b.from, b.to, _curve.known());
+    add_event({bifurcation::Event::Kind::test_function, _functions[b.function], b.tangency, b.passed}, b.from, b.to,
+              _curve.known());
 }
 
 void BranchTask::detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability) {
@@ -587,7 +585,6 @@ void BranchTask::add_event(const bifurcation::Event& event, double from, double 
   work.isotropy = _work.isotropy;
   work.before_first = _before_first;
   work.from = std::max(from, known.front().position);  // a long way without a sign may begin before
-  if (work.from != from) work.event.at_from = archive::not_computed;
   work.known = std::move(known);
   work.to = to;
   queue::Task& task = _children.emplace_back(task_of(work));

@@ -79,9 +79,7 @@ class Location {
     }
     const bifurcation::NotLocated at_first = why;
     try {
-      Event again = _event;
-      again.at_from = again.at_to = archive::not_computed;  // at other places
-      crossing = bifurcation::locate(*_system, any, again, from, to, why);
+      crossing = bifurcation::locate(*_system, any, _event, from, to, why);
     } catch (const core::InputError&) {  // it does not apply, as to driven orbits that a reversor fixes
       return without_crossing(at_first, fast);
     }
