@@ -1,6 +1,6 @@
 // make_atlas hostile|empty|many|told|unknown FILE.h5 [ORBITS]: writes an atlas that no survey of today would make.
-// make_atlas reduced FILE.h5 FILE.html: writes one of a system that a conserved quantity reduces, which only this program
-// knows, and its page.
+// make_atlas reduced FILE.h5 FILE.html: writes one of a system that a conserved quantity reduces, which only this
+// program knows, and its page.
 #include <array>
 #include <cmath>
 #include <cstdlib>

@@ -3,7 +3,8 @@
 # width; colours, unless NO_COLOR is set or TERM is `dumb`; pages. To a pipe it writes no escape sequence, alone and under mpirun.
 set -euo pipefail
 program=$1 scene=$2
-quick=(--set limits.period=8.5 --set starts.sweep.step=0.1 --set survey.depth=0)
+# Small steps: a bar is drawn ten times a second.
+quick=(--set limits.period=8.5 --set starts.sweep.step=0.1 --set survey.depth=0 --set continuation.step=0.2deg)
 fail() { echo "terminal.sh: $*" >&2; exit 1; }
 command -v script >/dev/null || { echo "skipped: no script here (Debian: bsdutils)"; exit 77; }
 export LC_ALL=C PAGER=cat

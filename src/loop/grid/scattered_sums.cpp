@@ -62,8 +62,8 @@ constexpr std::size_t order = 20;                        // of the window's poly
 
 constexpr double rest_of_two_pi = 2.4492935982947064e-16;  // 2 pi less the double next to it
 
-// The weights of the nodes as polynomials in u, -1 to 1 across a cell. The window is even, so that a node and its mirror
-// image have the same even part and opposite odd ones.
+// The weights of the nodes as polynomials in u, -1 to 1 across a cell. The window is even, so that a node and its
+// mirror image have the same even part and opposite odd ones.
 class Window {
  public:
   static const Window& get() {
