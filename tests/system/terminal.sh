@@ -3,8 +3,8 @@
 # width; colours, unless NO_COLOR is set or TERM is `dumb`; pages. To a pipe it writes no escape sequence, alone and under mpirun.
 set -euo pipefail
 program=$1 scene=$2
-# Small steps: a bar is drawn ten times a second.
-quick=(--set limits.period=8.5 --set starts.sweep.step=0.1 --set survey.depth=0 --set continuation.step=0.2deg)
+quick=(--set limits.period=8.5 --set starts.sweep.step=0.1 --set survey.depth=0)
+small_steps=(--set continuation.step=0.2deg)  # a bar is drawn ten times a second
 fail() { echo "terminal.sh: $*" >&2; exit 1; }
 command -v script >/dev/null || { echo "skipped: no script here (Debian: bsdutils)"; exit 77; }
 export LC_ALL=C PAGER=cat
@@ -24,7 +24,7 @@ lacks() { ! grep -qF -- "$2" "$1" || fail "$1 has '$2': $(grep -F -- "$2" "$1" |
 
 for columns in 60 80 120; do
   rm -rf out
-  on_terminal $columns live.txt "$program" --ranks 2 survey "$scene" -o out "${quick[@]}" || fail "a survey: status $?"
+  on_terminal $columns live.txt "$program" --ranks 2 survey "$scene" -o out "${quick[@]}" "${small_steps[@]}" || fail "a survey: status $?"
   plain live.txt | sed '/^[0-9]* families, /,$d' | grep -v '^orbweaver' >progress.txt
   widest=$(awk '{if (length($0) > most) most = length($0)} END {print most + 0}' progress.txt)
   ((widest > columns / 2 && widest < columns)) || fail "$columns columns: a line has $widest: $(sort progress.txt | tail -3)"
