@@ -20,6 +20,8 @@ constexpr std::size_t neighbours = 3;
 /// Of that estimate, and of T dE where nothing is left of it: what the columns' rounding leaves of a derivative.
 constexpr double times_estimate = 10.0;
 constexpr double derivative_rounding = 1e-6;
+/// An action or an energy is stored to this many eps of itself.
+constexpr double digits_lost = 4.0;
 
 class TableRules {
  public:
@@ -144,7 +146,8 @@ class TableRules {
   }
 
   /// dW/dx = T dE/dx, both as polynomials through seven neighbours in x; the error is taken from those through five.
-  /// The energy may turn, so the gap is held against T times the greatest slope of the energy among the seven.
+  /// The energy may turn, so the gap is held against T times the greatest slope of the energy among the seven; where it
+  /// comes to an end, against the last digits of what is stored.
   void action_along(std::size_t n) {
     const TreeFamily& family = _atlas.tree().families[n];
     const archive::Table& orbits = _archive.orbits();
@@ -170,6 +173,14 @@ class TableRules {
                                      (orbits.reals("energy")[rows[at - reach + m]] - orbits.reals("energy")[row]));
           return sum / orbits.reals("period")[row];
         };
+        std::vector<double> nodes;
+        for (std::size_t m = at - neighbours; m <= at + neighbours; ++m) nodes.push_back(x[rows[m]]);
+        const std::vector<double> weights = numerics::lagrange_weights(nodes, x[row]).slope;
+        double last_digits = 0.0;
+        for (std::size_t m = 0; m < nodes.size(); ++m)
+          last_digits += std::abs(weights[m]) * digits_lost * std::numeric_limits<double>::epsilon() *
+                         (std::abs(orbits.reals("action")[row]) / orbits.reals("period")[row] +
+                          std::abs(orbits.reals("energy")[row]));
         double slope = 0.0;
         for (std::size_t m = at - neighbours; m < at + neighbours; ++m)
           slope = std::max(slope, std::abs((orbits.reals("energy")[rows[m + 1]] - orbits.reals("energy")[rows[m]]) /
@@ -177,7 +188,7 @@ class TableRules {
         const double best = std::abs(gap(neighbours));
         const double error =
             std::abs(gap(neighbours - 1) - gap(neighbours)) + std::abs(gap(neighbours - 2) - gap(neighbours - 1));
-        least = std::min(least, best / (times_estimate * error + derivative_rounding * slope));
+        least = std::min(least, best / (times_estimate * error + derivative_rounding * slope + last_digits));
       }
       if (std::isfinite(least))
         of("orbits", row).below("dW/dE", least, 1.0, "dW/dE - T, in parts of what the steps leave,");
