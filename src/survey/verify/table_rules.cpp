@@ -162,23 +162,23 @@ class TableRules {
         bool grows = true;
         for (std::size_t m = at - neighbours; m < at + neighbours; ++m) grows = grows && x[rows[m + 1]] > x[rows[m]];
         if (!grows) continue;
-        const auto gap = [&](std::size_t reach) {
+        const auto slope_weights = [&](std::size_t reach) {
           std::vector<double> nodes;
           for (std::size_t m = at - reach; m <= at + reach; ++m) nodes.push_back(x[rows[m]]);
-          const std::vector<double> weights = numerics::lagrange_weights(nodes, x[row]).slope;
+          return numerics::lagrange_weights(nodes, x[row]).slope;
+        };
+        const auto gap = [&](std::size_t reach) {
+          const std::vector<double> weights = slope_weights(reach);
           double sum = 0.0;
-          for (std::size_t m = 0; m < nodes.size(); ++m)
+          for (std::size_t m = 0; m < weights.size(); ++m)
             sum += weights[m] * (orbits.reals("action")[rows[at - reach + m]] - orbits.reals("action")[row] -
                                  orbits.reals("period")[row] *
                                      (orbits.reals("energy")[rows[at - reach + m]] - orbits.reals("energy")[row]));
           return sum / orbits.reals("period")[row];
         };
-        std::vector<double> nodes;
-        for (std::size_t m = at - neighbours; m <= at + neighbours; ++m) nodes.push_back(x[rows[m]]);
-        const std::vector<double> weights = numerics::lagrange_weights(nodes, x[row]).slope;
         double last_digits = 0.0;
-        for (std::size_t m = 0; m < nodes.size(); ++m)
-          last_digits += std::abs(weights[m]) * digits_lost * std::numeric_limits<double>::epsilon() *
+        for (const double weight : slope_weights(neighbours))
+          last_digits += std::abs(weight) * digits_lost * std::numeric_limits<double>::epsilon() *
                          (std::abs(orbits.reals("action")[row]) / orbits.reals("period")[row] +
                           std::abs(orbits.reals("energy")[row]));
         double slope = 0.0;
