@@ -1,5 +1,7 @@
+#include <atomic>
 #include <chrono>
 #include <map>
+#include <new>
 #include <stdexcept>
 #include <thread>
 
@@ -20,6 +22,31 @@ using queue::TaskOutcome;
 
 constexpr int steps_each = 40;
 
+/// A number that all ranks of this machine see at once, without a message.
+class SharedNumber {
+ public:
+  explicit SharedNumber(const Communicator& comm) {
+    const MPI_Aint size = comm.is_root() ? sizeof(std::atomic<int>) : 0;
+    void* mine = nullptr;
+    MPI_Win_allocate_shared(size, 1, MPI_INFO_NULL, comm.get(), static_cast<void*>(&mine), &_window);
+    MPI_Aint root_size = 0;
+    int unit = 0;
+    void* at_root = nullptr;
+    MPI_Win_shared_query(_window, 0, &root_size, &unit, static_cast<void*>(&at_root));
+    _number = comm.is_root() ? new (at_root) std::atomic<int>(0) : static_cast<std::atomic<int>*>(at_root);
+    MPI_Barrier(comm.get());
+  }
+  SharedNumber(const SharedNumber&) = delete;
+  SharedNumber& operator=(const SharedNumber&) = delete;
+  ~SharedNumber() { MPI_Win_free(&_window); }
+
+  std::atomic<int>& operator*() { return *_number; }
+
+ private:
+  MPI_Win _window = MPI_WIN_NULL;
+  std::atomic<int>* _number = nullptr;
+};
+
 /// A step a row; the state is the number of steps done. Rows count as written from the flush on, and what a flush
 /// writes stays only if the queue was told that it succeeded, as in a program that is killed and begun again.
 class Steps : public queue::Executor, public queue::Flusher, public queue::Observer {
@@ -28,13 +55,23 @@ class Steps : public queue::Executor, public queue::Flusher, public queue::Obser
 
   TaskOutcome execute(const Task& t, TaskContext& context) override {
     _before = _held.size();
+    const int flushes = _flushes_seen;
     int step = t.state.empty() ? 0 : std::stoi(t.state);
-    if (step > 0) ++_gone_on;
+    const bool has_state = step > 0;
+    if (has_state) ++_gone_on;
+    const auto report = [&](int rows) {
+      return context.report({step, rows, {}}, [&] { return std::to_string(step); });
+    };
     while (step < steps_each) {
       sleep_us(hash(t.key, static_cast<std::uint64_t>(step)) % 300);
       _held.emplace_back(t.key, step++);
-      if (_hangs && step == steps_each / 2) hang();
-      if (!context.report({step, 1, {}}, [&] { return std::to_string(step); })) break;
+      if (_hanging != nullptr && step == steps_each / 2) hang();
+      if (!report(1)) break;
+      // A task hangs with a state that it can go on from, however slowly flushes come.
+      while (_hanging != nullptr && step == steps_each / 2 - 1 && !has_state && _flushes_seen == flushes) {
+        sleep_us(100);
+        if (!report(0)) return {};
+      }
     }
     return {};
   }
@@ -48,6 +85,7 @@ class Steps : public queue::Executor, public queue::Flusher, public queue::Obser
     MPI_Barrier(_comm.get());
     for (const auto& row : _held) ++_written[row];
     _held.clear();
+    ++_flushes_seen;
   }
 
   void flushing(int number, const queue::TaskQueue& now) override {
@@ -65,8 +103,9 @@ class Steps : public queue::Executor, public queue::Flusher, public queue::Obser
     _dies_at = flush;
     _flushed = 0;
   }
-  /// Every task stays in the middle of one of its steps, with a row that was not reported.
-  void hang_in_the_middle(bool hangs) { _hangs = hangs; }
+  /// Every task stays in the middle of one of its steps, with a row that was not reported, and says so in `hanging`.
+  void hang_in_the_middle(std::atomic<int>& hanging) { _hanging = &hanging; }
+  void hang_no_more() { _hanging = nullptr; }
   [[nodiscard]] std::int64_t given_up() const { return sum(_comm, _given_up); }
   void forget_rows_in_hand() { _held.clear(); }
   [[nodiscard]] const std::vector<Task>& unfinished() const { return _unfinished; }
@@ -85,7 +124,8 @@ class Steps : public queue::Executor, public queue::Flusher, public queue::Obser
   }
 
  private:
-  static void hang() {
+  void hang() {
+    ++*_hanging;
     const auto began = std::chrono::steady_clock::now();
     while (std::chrono::steady_clock::now() - began < std::chrono::seconds(20)) orbweaver::core::interruption_point();
     ADD_FAILURE() << "nobody has asked for the end of this step";
@@ -93,7 +133,8 @@ class Steps : public queue::Executor, public queue::Flusher, public queue::Obser
 
   const Communicator& _comm;
   std::size_t _before = 0;
-  bool _hangs = false;
+  std::atomic<int>* _hanging = nullptr;
+  int _flushes_seen = 0;
   std::int64_t _given_up = 0;
   std::vector<std::pair<std::string, int>> _held;
   std::map<std::pair<std::string, int>, int> _written;
@@ -118,25 +159,24 @@ TEST(States, AStopWithinAStepGoesOnFromTheLastFlush) {
   constexpr int count = 30;
   std::vector<Task> remaining = tasks(count);
   queue::Options options = often();
-  options.flush_rows = 5;  // tasks are flushed before the middle
+  options.flush_rows = 5;  // what a task has done before its middle is enough for a flush
   for (const int victim : {0, comm.size() - 1}) {
     steps.die_at(-1);
-    steps.hang_in_the_middle(true);
-    const auto began = std::chrono::steady_clock::now();
+    SharedNumber hanging(comm);
+    steps.hang_in_the_middle(*hanging);
     std::thread stopper([&] {
-      std::this_thread::sleep_for(std::chrono::milliseconds(300));
+      while (*hanging == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
       if (comm.rank() == victim) queue::request_stop();
     });
     const auto summary = queue::run(comm, options, remaining, steps, steps, steps);
     stopper.join();
     queue::clear_stop();
     EXPECT_TRUE(summary.stopped_early);
-    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(), 3.0);
     remaining = steps.unfinished();
   }
   EXPECT_GE(steps.given_up(), 2);
   steps.die_at(-1);
-  steps.hang_in_the_middle(false);
+  steps.hang_no_more();
   EXPECT_FALSE(queue::run(comm, options, remaining, steps, steps, steps).stopped_early);
   EXPECT_GT(steps.gone_on(), 0) << "some task must have gone on from a state";
   steps.expect_each_once(count);
