@@ -1,6 +1,7 @@
 #!/bin/bash
-# Asks a survey to stop (signals to mpirun, to rank 0, to a worker; wall time), which must end with status 4 and how to go on,
-# and resumes it; the archive must be that of an undisturbed run. Arguments: those of survey_runs.sh.
+# Asks a survey to stop (signals to mpirun, to rank 0, to a worker; wall time), which must end with status 4 and how to go
+# on (but SIGTERM to mpirun, which ends the job), and resumes it; the archive must be that of an undisturbed run.
+# Arguments: those of survey_runs.sh.
 . "$(dirname "$0")/survey_runs.sh"
 begin_anew
 survey whole 2 || fail "the undisturbed run failed"
@@ -33,6 +34,24 @@ for case in "TERM rank0" "USR1 mpirun" "USR1 worker" "INT rank0"; do
   expect_same stopped
   echo "$case: stopped and resumed"
 done
+
+# Open MPI 4.1's mpirun answers SIGTERM by ending the job itself, with a status of its own; the last checkpoint stands.
+rm -rf "$folder/stopped"
+: > "$folder/log"
+held 1 "$place" survey stopped 3 &
+job=$!
+wait_until_held $job
+kill -TERM "$(mpirun_of stopped)"
+wait $job
+status=$?
+wait_for_end stopped
+[ $status = 1 ] || grep -q "mpirun did not end with its ranks" "$folder/log" ||
+  fail "TERM mpirun: exit status $status instead of mpirun's 1"
+[ -e "$folder/stopped/segments/checkpoint" ] || fail "TERM mpirun: no checkpoint"
+[ -e "$folder/stopped/atlas.h5" ] && fail "TERM mpirun: an archive of a survey that was ended"
+survey stopped 2 --resume || fail "TERM mpirun: the resumed run failed"
+expect_same stopped
+echo "TERM mpirun: ended and resumed"
 
 rm -rf "$folder/stopped"
 : > "$folder/log"
