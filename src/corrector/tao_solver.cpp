@@ -208,7 +208,10 @@ TaoRun run_tao(Objective& objective, const Options& options) {
   if (options.method == Method::ntr) solve_directly(tao.get(), KSPSTCG);
   core::check(TaoSetFromOptions(tao.get()), "TaoSetFromOptions");
   if (options.method == Method::brgn) {
-    const PetscErrorCode set_up = TaoSetUp(tao.get());  // evaluates the guess
+    // TaoSetUp evaluates the guess, and one that fails leaves its vectors behind (PETSc 3.18): it is evaluated first.
+    const Eigen::VectorXd guess = loss::to_eigen(x.get());
+    if (objective.defined_at(guess)) (void)objective.jacobian(guess);
+    const PetscErrorCode set_up = TaoSetUp(tao.get());
     context.guard.rethrow();
     core::check(set_up, "TaoSetUp");
     solve_directly(tested, KSPPREONLY);

@@ -1,6 +1,6 @@
 #include "document.hpp"
 
-#include <chrono>
+#include <ctime>
 #include <functional>
 #include <string>
 
@@ -75,16 +75,19 @@ TEST(Document, BytesThatAreNoTextAreRefusedWithTheirLine) {
   EXPECT_THAT(refusal("a: \0 1"s), HasSubstr("text.yaml:1: expected a scene, text in UTF-8, got the byte 0x00"));
 }
 
+/// Of the processor: how busy the machine is does not matter.
 double seconds_of(const std::function<void()>& body) {
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   body();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
-// What is quadratic in the length takes minutes here, what is linear milliseconds.
+// What is quadratic in the length takes minutes here, what is linear milliseconds (a second or two under sanitizers).
+constexpr double enough = 5.0;  // seconds
+
 TEST(Document, TheLengthIsLookedAtFirst) {
   const std::string text = fmt::format("[{}]", repeated("1,", 3000000));
-  EXPECT_LT(seconds_of([&] { EXPECT_THAT(refusal(text), HasSubstr("expected at most 60000")); }), 1.0);
+  EXPECT_LT(seconds_of([&] { EXPECT_THAT(refusal(text), HasSubstr("expected at most 60000")); }), enough);
 }
 
 TEST(Document, TheLongestScenesTakeLittleTime) {
@@ -103,14 +106,15 @@ TEST(Document, TheLongestScenesTakeLittleTime) {
   EXPECT_LT(seconds_of([&] {
               EXPECT_EQ(parsed(begin + fmt::format("starts: {{}}\nevents: {{periods: [{}]}}\n", values)), 7999U);
             }),
-            1.0);
+            enough);
   EXPECT_LT(
       seconds_of([&] { parsed(begin + fmt::format("starts: {{fixed_points: {{grid: [[{}], [0]]}}}}\n", values)); }),
-      1.0);
+      enough);
   EXPECT_LT(seconds_of([&] { parsed(begin + fmt::format("starts: {{fixed_points: {{names: {{{}}}}}}}\n", names)); }),
-            1.0);
-  EXPECT_LT(seconds_of([&] { EXPECT_EQ(parsed(begin + keys), 0U); }), 1.0);
-  EXPECT_LT(seconds_of([&] { EXPECT_EQ(parsed(fmt::format("{}: 1\n", repeated("x", 59000))), 0U); }), 1.0);
+            enough);
+  EXPECT_LT(seconds_of([&] { EXPECT_EQ(parsed(begin + keys), 0U); }), enough);
+  EXPECT_LT(seconds_of([&] { EXPECT_EQ(parsed(fmt::format("{}: 1\n", repeated("x", 59000))), 0U); }),
+            enough);
 }
 
 }  // namespace

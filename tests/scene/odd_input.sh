@@ -1,9 +1,10 @@
 #!/bin/bash
-# odd_input.sh PROGRAM SCENE: words and files that are none. Each must be refused within 5 s, in 500 MB, with status 2, with what is
-# expected and without a raw control character or a byte that is not UTF-8.
+# odd_input.sh PROGRAM SCENE SANITIZED: words and files that are none. Each must be refused within 5 s, in 500 MB, with
+# status 2, with what is expected and without a raw control character or a byte that is not UTF-8. AddressSanitizer
+# reserves terabytes of addresses: where the program is built with it (SANITIZED is ON) memory has no limit.
 set -u
-program=$1 scene=$2
-ulimit -v 1000000
+program=$1 scene=$2 sanitized=$3
+[ "$sanitized" = ON ] || ulimit -v 1000000
 rm -rf work && mkdir work && cd work || exit 1
 
 fail() {
@@ -38,6 +39,7 @@ refused "/dev/zero' is not a regular file" show /dev/zero
 
 # 8 million unknowns take more than the limit above leaves.
 for command in check "survey -o out"; do
+  [ "$sanitized" = ON ] && break
   refused "continuation.cutoff: expected orbits that fit into the memory at hand, 0.954 GiB" $command "$scene" \
     --set 'continuation.cutoff=[1000000, 1000000]'
 done
