@@ -1,10 +1,10 @@
 #!/bin/bash
-# program.sh PROGRAM FUZZ SCENE COUNT: gives the program itself COUNT inputs each of scenes, --set and archives. Each must be taken or
+# program.sh PROGRAM FUZZ SCENE COUNT SANITIZED: gives the program itself COUNT inputs each of scenes, --set and archives. Each must be taken or
 # refused, status 0 or 2, within 5 s of a processor (a minute by the clock) and 1 GB of addresses, and all that is printed must be
-# text without control characters.
+# text without control characters. AddressSanitizer reserves terabytes of addresses: SANITIZED is ON where there can be no such limit.
 set -u
-program=$1 fuzz=$2 scene=$3 count=$4
-ulimit -v 1000000
+program=$1 fuzz=$2 scene=$3 count=$4 sanitized=$5
+[ "$sanitized" = ON ] || ulimit -v 1000000
 
 fail() {
   echo "program.sh: $*"
