@@ -11,4 +11,8 @@ void refuse_enum(int number, int last) {
       fmt::format("an enum that ends at {} has the value {}: the bytes are damaged or foreign", last, number));
 }
 
+void refuse_flag(int byte) {
+  throw EnvironmentError(fmt::format("a flag has the value {}: the bytes are damaged or foreign", byte));
+}
+
 }  // namespace orbweaver::core

@@ -85,8 +85,8 @@ template <bool loads>
 struct OneNumber {
   using is_loading = std::bool_constant<loads>;
   int number = 0;
-  bool present = false;
-  OneNumber& operator&(bool& value) {
+  unsigned char present = 0;
+  OneNumber& operator&(unsigned char& value) {
     (loads ? value : present) = loads ? present : value;
     return *this;
   }
@@ -122,16 +122,26 @@ TEST(Serialization, OptionalMembersTravelBehindAFlag) {
   OneNumber<false> out;
   std::optional<Colour> colour = Colour::green;
   core::serialize_members(out, colour);
-  EXPECT_TRUE(out.present);
+  EXPECT_EQ(out.present, 1);
   EXPECT_EQ(out.number, 1);
-  OneNumber<true> nothing{2, false};
+  OneNumber<true> nothing{2, 0};
   core::serialize_members(nothing, colour);
   EXPECT_EQ(colour, std::nullopt);
   core::serialize_members(out, colour);
-  EXPECT_FALSE(out.present);
-  OneNumber<true> in{2, true};
+  EXPECT_EQ(out.present, 0);
+  OneNumber<true> in{2, 1};
   core::serialize_members(in, colour);
   EXPECT_EQ(colour, Colour::blue);
+}
+
+TEST(Serialization, BytesThatAreNoFlagAreRefused) {
+  for (const unsigned char byte : {2, 13, 255}) {
+    OneNumber<true> in{2, byte};
+    bool flag = true;
+    EXPECT_THROW(core::serialize_members(in, flag), core::EnvironmentError) << int{byte};
+    std::optional<Colour> colour = Colour::green;
+    EXPECT_THROW(core::serialize_members(in, colour), core::EnvironmentError) << int{byte};
+  }
 }
 
 TEST(Layouts, TellWhatIsListedWithAllVersions) {

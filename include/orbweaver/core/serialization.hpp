@@ -41,6 +41,8 @@ concept Visits = requires(Archive& archive, T& member) {
 
 /// Throws EnvironmentError: `number` is no value of an enum whose last one is `last`.
 [[noreturn]] void refuse_enum(int number, int last);
+/// Throws EnvironmentError: the byte of a flag is neither 0 nor 1.
+[[noreturn]] void refuse_flag(int byte);
 
 /// Bytes by which a text or a list of numbers grows while it is read, so that a forged size takes no more memory than
 /// there are bytes behind it.
@@ -71,8 +73,8 @@ void serialize_values(Archive& archive, Values& values) {
   }
 }
 
-/// One member: an enum as an int that is checked, an optional one behind a flag, a text or list behind its size,
-/// others as the archive does it.
+/// One member: an enum as an int that is checked, a flag as a byte that is, an optional one behind a flag, a text or list
+/// behind its size, others as the archive does it.
 template <class Archive, class T>
 void serialize_member(Archive& archive, T& member) {
   if constexpr (Visits<Archive, T>) {
@@ -83,6 +85,11 @@ void serialize_member(Archive& archive, T& member) {
     archive& number;
     if (number < 0 || number > last) refuse_enum(number, last);
     if constexpr (Archive::is_loading::value) member = static_cast<T>(number);
+  } else if constexpr (std::is_same_v<T, bool>) {
+    unsigned char byte = member ? 1 : 0;  // a bool that holds another value than these is undefined
+    archive& byte;
+    if (byte > 1) refuse_flag(byte);
+    if constexpr (Archive::is_loading::value) member = byte == 1;
   } else {
     archive& member;
   }
@@ -94,7 +101,7 @@ void serialize_member(Archive& archive, std::optional<T>& member) {
     archive.visit(member);
   } else {
     bool present = member.has_value();
-    archive& present;
+    serialize_member(archive, present);
     if constexpr (Archive::is_loading::value) {
       member.reset();
       if (present) member.emplace();
