@@ -9,7 +9,9 @@
 #include "cell_counts.hpp"
 #include "collocation_metric.hpp"
 #include "collocation_problem.hpp"
+#include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/corrector/correct.hpp"
 
 namespace orbweaver::continuation {
 
@@ -39,6 +41,17 @@ std::vector<double> moved_by(const Collocation& e, double period, double size) {
   return moved;
 }
 
+/// What rounding leaves of the residual in dz/dt: of its differences by what moves about the centre, whose change the
+/// unknowns are, and of the field by the state, which about a far origin is much larger. No less than is left.
+double residual_left(const Collocation& e, const Collocation::Quality& quality, double period) {
+  const double jacobian = e.field_jacobian_rms();
+  const double moving =
+      std::max(corrector::rounding_floor(e.grid().cutoff(), period, quality.amplitude, quality.speed_rms, jacobian),
+               nodal_rounding * quality.amplitude * jacobian);
+  const double expected = std::max(moving, corrector::state_rounding(quality.size, jacobian));
+  return std::max(expected, std::min(quality.asked, rounding_floor(e, quality, period)));
+}
+
 /// Along the family: what only the first condition sees.
 std::vector<double> along(const Collocation& e) {
   std::vector<double> direction(static_cast<std::size_t>(e.size()), 0.0);
@@ -49,13 +62,13 @@ std::vector<double> along(const Collocation& e) {
 
 }  // namespace
 
-double left_open_by_rounding(const systems::System& system, const loop::Loop& orbit, const loop::Isotropy& isotropy) {
-  if (!CollocationProblem::obstacle({system, orbit, isotropy}, orbit.cutoff).empty()) return 0.0;
+LeftOpen left_open_by_rounding(const systems::System& system, const loop::Loop& orbit, const loop::Isotropy& isotropy) {
+  if (!CollocationProblem::obstacle({system, orbit, isotropy}, orbit.cutoff).empty()) return {};
   const loop::FundamentalDomain domain = loop::fundamental_domain(system.structure(), isotropy);
   const std::vector<double> centre(orbit.modes.begin(), orbit.modes.begin() + orbit.dimension);
   Collocation e(system, domain, centre, orbit.winding, cell_counts::at_least_for_cutoff(domain, orbit.cutoff),
                 orbit.time_map);
-  if (e.size() > equations::exact_unknowns) return 0.0;
+  if (e.size() > equations::exact_unknowns) return {};
   std::vector<double> values(static_cast<std::size_t>(e.size()), 0.0);
   e.from_loop(orbit, values.data());
   try {
@@ -63,7 +76,7 @@ double left_open_by_rounding(const systems::System& system, const loop::Loop& or
     e.set_conditions(step_conditions(e, {values, random_signs(values.size()), 1}, orbit.period), values);
     e.precondition_by(equations::Preconditioner::exact);
     e.factor(values.data());
-    std::vector<double> moved = moved_by(e, orbit.period, rounding_floor(e, e.quality(values.data()), orbit.period));
+    std::vector<double> moved = moved_by(e, orbit.period, residual_left(e, e.quality(values.data()), orbit.period));
     const std::vector<double> direction = along(e);
     const std::vector<double> none(values.size(), 0.0);
     const auto product = [&](const std::vector<double>& a, const std::vector<double>& b) {
@@ -71,10 +84,16 @@ double left_open_by_rounding(const systems::System& system, const loop::Loop& or
     };
     const double part = product(moved, direction) / product(direction, direction);
     for (std::size_t n = 0; n < moved.size(); ++n) moved[n] -= part * direction[n];
-    const double open = std::sqrt(product(moved, moved));
-    return std::isfinite(open) ? open : 0.0;
+    LeftOpen open{.across = std::sqrt(product(moved, moved)),
+                  .period = std::abs(moved[static_cast<std::size_t>(e.period_at())])};
+    if (!std::isfinite(open.across)) return {};
+    for (std::size_t n = 0; n < moved.size(); ++n) moved[n] += values[n];
+    const loop::Loop there = e.to_loop(moved.data());
+    if (system.structure().conservative()) open.energy = std::abs(energy_of(system, there) - energy_of(system, orbit));
+    if (!orbit.parameters.empty()) open.parameter = std::abs(there.parameters.front() - orbit.parameters.front());
+    return open;
   } catch (const core::NumericalError&) {
-    return 0.0;
+    return {};
   }
 }
 

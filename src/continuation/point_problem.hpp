@@ -20,6 +20,7 @@ struct Trial {
   bool is_orbit = false;        ///< converged, and the loss over the whole loop is under its threshold
   bool unsolved = false;        ///< beside a fast motion: the loss where the equations ask is above threshold
   bool to_rounding = false;     ///< the loss between the places where the equations ask is no more than rounding leaves
+  bool is_beside_the_way = false;  ///< its equations are not solved as far as the way asks, whatever the scene does
   bool truncated = false;       ///< its equations hold where they ask, and the loop does not obey them in between
   bool at_rounding = false;     ///< an orbit, though rounding keeps its loss above the threshold
   bool lost_in_rounding = false;  ///< it would be an orbit, but its speed is not known (corrector::largest_unknown)
@@ -34,6 +35,7 @@ struct Trial {
   double loss_rms = 0.0;
   double asked_rms = 0.0;  ///< the same where the equations ask
   double threshold = 0.0;
+  double threshold_of_the_way = 0.0;  ///< that to which the equations are solved where the scene's tolerance is coarse
   double tolerance_met = 0.0;  ///< corrector::tolerance_met
   double amplitude = 0.0;      ///< rms distance from its mean, winding left out
   double size = 0.0;           ///< `extent_of` its rms size

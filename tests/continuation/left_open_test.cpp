@@ -19,17 +19,17 @@ TEST(LeftOpen, IsMuchWhereAnotherFamilyWithTheIsotropyCrosses) {
   const loop::Loop regular = test::orbit_at(test::family_to_twelve(test::in_phase()), 9.0).loop;
   const loop::Loop crossing = test::orbit_at(test::family_to_twelve(test::in_phase()), 10.41677328).loop;
   for (const loop::Loop* orbit : {&regular, &crossing}) {
-    EXPECT_GT(left_open_by_rounding(*test::pendulum(), *orbit, isotropy), 1e-15);
-    EXPECT_LT(left_open_by_rounding(*test::pendulum(), *orbit, isotropy), 1e-10);
+    EXPECT_GT(left_open_by_rounding(*test::pendulum(), *orbit, isotropy).across, 1e-15);
+    EXPECT_LT(left_open_by_rounding(*test::pendulum(), *orbit, isotropy).across, 1e-10);
   }
-  EXPECT_LT(left_open_by_rounding(*test::pendulum(), regular, half_turn), 1e-10);
-  EXPECT_GT(left_open_by_rounding(*test::pendulum(), crossing, half_turn), 1e-5);
+  EXPECT_LT(left_open_by_rounding(*test::pendulum(), regular, half_turn).across, 1e-10);
+  EXPECT_GT(left_open_by_rounding(*test::pendulum(), crossing, half_turn).across, 1e-5);
 }
 
 TEST(LeftOpen, IsNotKnownOfOrbitsThatCollocationDoesNotTake) {
   loop::Loop large = test::orbit_at(test::family_to_twelve(test::in_phase()), 9.0).loop;
   large = loop::with_cutoff(large, 2047);
-  EXPECT_EQ(left_open_by_rounding(*test::pendulum(), large, test::pendulum_isotropy(*test::pendulum())), 0.0);
+  EXPECT_EQ(left_open_by_rounding(*test::pendulum(), large, test::pendulum_isotropy(*test::pendulum())).across, 0.0);
 }
 
 }  // namespace

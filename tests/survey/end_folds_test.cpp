@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "support/even_well.hpp"
+#include "support/translated_system.hpp"
 #include "survey/atlas.hpp"
 #include "survey/rotator.hpp"
 #include "survey/scenes.hpp"
@@ -124,6 +125,53 @@ TEST(EndFolds, PairsThatStepsPassAreFound) {
     EXPECT_THAT(energies_of(test::Atlas(summary.atlas), "Equilibrium 1, mode 3 T3-1", "fold-period"),
                 testing::UnorderedElementsAre(DoubleNear(0.1527438498, 1e-9), DoubleNear(0.1529425093, 1e-9),
                                               DoubleNear(0.2785292247, 1e-9)));
+  }
+}
+
+// About coordinates of 1e5 a state is known to 1.5e-11.
+survey::Summary far_even_well(const std::map<std::string, double>& parameters,
+                              const std::vector<std::string>& overrides) {
+  const core::Communicator comm;
+  std::vector<std::string> all{"starts.fixed_points.names={}", "starts.fixed_points.letters={}",
+                               "starts.fixed_points.grid=[[1e5], [1e5], [1e5], [1e5]]", "starts.sweep.period=auto",
+                               "survey.subharmonics=3"};
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/henon_heiles.yaml", all);
+  const auto folder = test::fresh_folder("far_even_well", comm.get());
+  const auto far = std::make_shared<const test::TranslatedSystem>(test::even_well(parameters),
+                                                                  Eigen::Vector4d::Constant(1e5));
+  survey::Summary summary = survey::run_survey(comm, scene, far, folder, {});
+  EXPECT_TRUE(summary.failed_tasks.empty()) << testing::PrintToString(summary.failed_tasks);
+  return summary;
+}
+
+// T is known better than an orbit is across its family, and with it the pair; E is not, of which the fold beside the
+// birth is 5e-9 from it.
+TEST(EndFolds, FarFromTheOriginTheSameAreFoundWhereverTheFirstOrbitIs) {
+  for (const std::string start : {"0.003", "0.0087", "0.02"}) {
+    SCOPED_TRACE(start);
+    const survey::Summary summary = far_even_well(round_well, {"continuation.start=" + start, "survey.depth=1",
+                                                               "limits.energy=[-.inf, 0.37]", "limits.period=25"});
+    const test::Atlas atlas(summary.atlas);
+    const std::string family = "Equilibrium 1, mode 3 T3-1";
+    EXPECT_THAT(energies_of(atlas, family, "fold-period"),
+                testing::UnorderedElementsAre(DoubleNear(0.1527438498, 1e-7), DoubleNear(0.1529425093, 1e-7),
+                                              DoubleNear(0.2785292247, 1e-7)));
+    EXPECT_TRUE(energies_of(atlas, family, "fold-energy").empty());
+  }
+}
+
+// Two oscillators: T is one number along each family, and what its orbits show of it is rounding.
+TEST(EndFolds, FarFromTheOriginNoneAreFoundWhereNothingTurns) {
+  const std::map<std::string, double> oscillators{{"k1", 1.0}, {"k2", 2.0}, {"a", 0.0}, {"b", 0.0},
+                                                  {"c", 0.0},  {"d", 0.0},  {"e", 0.0}};
+  for (const std::string start : {"0.003", "0.0087", "0.02"}) {
+    SCOPED_TRACE(start);
+    const survey::Summary summary =
+        far_even_well(oscillators, {"continuation.start=" + start, "survey.depth=0", "limits.energy=[-.inf, 3]"});
+    EXPECT_EQ(summary.failures, 0U);
+    EXPECT_EQ(summary.families.size(), 2U);
+    EXPECT_EQ(test::Atlas(summary.atlas).crossings().rows(), 0U);
   }
 }
 

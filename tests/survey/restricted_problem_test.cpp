@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -14,6 +13,7 @@
 #include "orbweaver/survey/verify/verify.hpp"
 #include "survey/atlas.hpp"
 #include "survey/atlas_records.hpp"
+#include "survey/long_family.hpp"
 
 namespace restricted_problem_test {
 namespace {
@@ -47,51 +47,10 @@ TEST(RestrictedProblem, ShortFamiliesEndOnThatOfL3) {
   }
 }
 
-// Henrard 1970 and 2002 have the long-period family end on an orbit of the short-period family gone around 13 times;
-// the short orbit of that resonance was located on the short-period family itself. On the way a narrow gap must not be
-// stepped over: the family turns there, at T = 82.0097.
-TEST(RestrictedProblem, LongFamiliesEndAtTheirResonance) {
-  constexpr double short_period = 6.289847916;
-  constexpr double energy = -1.234482545;
-  struct Case {
-    std::string tolerance;
-    std::string first;
-    std::string y;
-    std::string limit = "120";  // at 83 a step over the gap would end on the limit, on another family
-  };
+// All tolerances and first steps: long_family_matrix_test.cpp.
+TEST(RestrictedProblem, LongFamilyOfL5EndsAtItsResonance) {
   const core::Communicator comm;
-  std::vector<Case> cases{{"1e-10", "0.01", "-0.866"}};
-  if (comm.size() == 1)  // on more ranks one branch is the same work
-    cases.insert(cases.end(), {{"1e-10", "0.01", "0.866", "83"},
-                               {"1e-8", "0.01", "0.866"},
-                               {"1e-10", "0.01", "0.866"},
-                               {"1e-11", "0.01", "0.866"},
-                               {"1e-10", "0.003", "0.866"},
-                               {"1e-10", "0.02", "0.866"}});
-  for (const Case& with : cases) {
-    SCOPED_TRACE(with.tolerance + " " + with.first + " " + with.y + " " + with.limit);
-    const scene::Scene scene =
-        scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_mu_0.001.yaml",
-                    {"continuation.start=" + with.first, "continuation.tolerance=" + with.tolerance,
-                     "starts.fixed_points.grid=[[0.499], [" + with.y + "]]", "starts.sweep.period=[70, 80]",
-                     "starts.sweep.step=0.1", "survey.depth=0", "limits.period=" + with.limit});
-    const survey::Summary summary = test::run(comm, scene, "long");
-    if (!comm.is_root()) continue;
-    EXPECT_EQ(summary.failures, 0U);
-    ASSERT_EQ(summary.families.size(), 1U);
-    const std::string& end = summary.families.front().end_reason;
-    double period = 0.0;
-    double found = 0.0;
-    double once = 0.0;
-    ASSERT_EQ(std::sscanf(end.c_str(), "met a family of more symmetry (T = %lf, E = %lf, 13 times around T = %lf",
-                          &period, &found, &once),
-              3)
-        << end;
-    EXPECT_NEAR(period, 13 * short_period, 13e-9);
-    EXPECT_NEAR(once, short_period, 1e-9);
-    EXPECT_NEAR(found, energy, 1e-9);
-    EXPECT_NEAR(summary.families.front().period_to, 82.0097, 1e-4);
-  }
+  test::expect_long_family_to_end(comm, {.y = "-0.866"});
 }
 
 // The short-period families are not looked at for 13 turns: the crossings are those of the branches that end there.

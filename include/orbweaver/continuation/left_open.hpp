@@ -6,11 +6,19 @@
 
 namespace orbweaver::continuation {
 
-/// How far across its family rounding of the equations may move an orbit with this isotropy: by the equations on its
-/// own fundamental domain, linearised there, with residuals as large as rounding leaves them (a length as of
-/// `arclength_between`). Where neighbours are nearer they are not told apart. 0 where that is not known: collocation
-/// does not apply, has too many unknowns to factor its Jacobian (equations::exact_unknowns), or the field fails.
-[[nodiscard]] double left_open_by_rounding(const systems::System& system, const loop::Loop& orbit,
-                                           const loop::Isotropy& isotropy);
+/// What rounding of the equations leaves open of an orbit.
+struct LeftOpen {
+  double across = 0.0;     ///< how far across its family it may be moved (a length as of `arclength_between`)
+  double period = 0.0;     ///< by how much its period is moved there,
+  double energy = 0.0;     ///< and its energy
+  double parameter = 0.0;  ///< and the parameter that moves along its family
+};
+
+/// By the equations of an orbit with this isotropy on its own fundamental domain, linearised there, with residuals as
+/// large as rounding leaves them. Where neighbours are nearer than `across` they are not told apart. 0 where that is
+/// not known: collocation does not apply, has too many unknowns to factor its Jacobian (equations::exact_unknowns), or
+/// the field fails.
+[[nodiscard]] LeftOpen left_open_by_rounding(const systems::System& system, const loop::Loop& orbit,
+                                             const loop::Isotropy& isotropy);
 
 }  // namespace orbweaver::continuation

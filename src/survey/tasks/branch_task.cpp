@@ -13,6 +13,7 @@
 #include "equilibrium_end.hpp"
 #include "executor.hpp"
 #include "fold_pairs.hpp"
+#include "foldable.hpp"
 #include "orbit_row.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/bifurcation/family_jump.hpp"
@@ -56,9 +57,6 @@ constexpr double largest_change = 0.1;
 constexpr double most_turned = 0.25;
 /// Relative to the equilibrium's: a period or an energy that is asked for and is no further from it is its own.
 constexpr double at_equilibrium = 1e-10;
-/// Relative to their size, of changes of T and E: ten times what a fold is seen by (bifurcation/fold_watch), for
-/// what differences of them are off.
-constexpr double visible_change = 1e-9;
 
 continuation::Options options_of(const scene::Scene& scene, const BranchWork& work, core::Team* team) {
   continuation::Options options = branch_options(scene, team);
@@ -340,20 +338,23 @@ bool BranchTask::has_requested(const continuation::Orbit& first) const {
 bool BranchTask::has_turned(const loop::Loop& small, const continuation::Orbit& first) const {
   continuation::FamilyCurve curve(_system, _start.isotropy, branch_options(_scene, _team));
   const double length = continuation::arclength_between(small, first.loop);
+  if (length < nearly_at_rest) return false;  // it has the linear motion's period and energy, and half of it is none
   curve.add(0.0, small);
   curve.add(length, first.loop);
   const std::optional<continuation::CurvePoint> half = curve.at(0.5 * length);
   if (!half) return false;
-  const auto turns = [](double rest, double middle, double there) {
+  const auto turns = [&](bifurcation::Fold::Quantity quantity) {
+    const double rest = value_of(*_system, quantity, _start.base);
+    const double there = value_of(*_system, quantity, first.loop);
     const double change = there - rest;
-    const double by_square = (16.0 * (middle - rest) - change) / 3.0;
+    const double by_square = (16.0 * (value_of(*_system, quantity, half->loop) - rest) - change) / 3.0;
     const double at_first = 2.0 * change - by_square;  // half the amplitude times the slope there
-    const double seen = visible_change * std::max(std::abs(rest), std::abs(there));
-    return std::abs(by_square) > seen && std::abs(at_first) > seen && by_square * at_first < 0.0;
+    const double larger = std::max(std::abs(rest), std::abs(there));
+    const auto are_seen = [&](double least) { return std::abs(by_square) > least && std::abs(at_first) > least; };
+    return by_square * at_first < 0.0 && are_seen(visible_change(quantity, larger)) &&
+           are_seen(16.0 / 3.0 * moved_by_rounding(*_system, _start.isotropy, quantity, half->loop));
   };
-  return turns(_start.base.period, half->loop.period, first.loop.period) ||
-         turns(continuation::energy_of(*_system, _start.base), continuation::energy_of(*_system, half->loop),
-               first.energy);
+  return turns(bifurcation::Fold::Quantity::period) || turns(bifurcation::Fold::Quantity::energy);
 }
 
 /// Whether indices pass what the survey looks for, or may do so. Families of one resonance start at one amplitude, and
@@ -426,9 +427,16 @@ void BranchTask::detect(const continuation::Orbit& orbit, const std::optional<sp
   detect_zeros(test_point(orbit.arclength, stability));
   // Where a parameter moves only it folds; T and the energy have extrema that say nothing.
   const bool moves = !orbit.loop.parameters.empty();
+  const auto watched = [&](bifurcation::Fold::Quantity quantity, const bifurcation::FoldWatch::Turn& turn) {
+    return is_rounding(*_system, _start.isotropy, quantity, turn, orbit.loop, _curve.known())
+               ? archive::not_computed
+               : value_of(*_system, quantity, orbit.loop);
+  };
+  using Quantity = bifurcation::Fold::Quantity;
   add_folds(moves ? _folds.advance(orbit.arclength, archive::not_computed, archive::not_computed,
-                                   orbit.loop.parameters.front())
-                  : _folds.advance(orbit.arclength, orbit.loop.period, orbit.energy),
+                                   watched(Quantity::parameter, _folds.parameter))
+                  : _folds.advance(orbit.arclength, watched(Quantity::period, _folds.period),
+                                   watched(Quantity::energy, _folds.energy)),
             _curve.known());
   if (const std::size_t known = _curve.known().size(); known > 2) add_paired_folds(known == 3 ? 0 : known - 3);
 }

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "foldable.hpp"
-#include "orbweaver/continuation/left_open.hpp"
 #include "orbweaver/continuation/orbit.hpp"
 
 namespace orbweaver::survey {
@@ -55,8 +54,9 @@ class Way {
     const double slope = slope_of(_system, _quantity, first);
     const int sign = slope > 0.0 ? 1 : -1;
     if (!is_shown(0, sign, false, _visible)) return false;
-    const double moved = moved_by_rounding(_system, _isotropy, _quantity, first.loop);
-    return _way.crossing ? is_shown(0, sign, false, std::max(_visible, moved)) : std::abs(slope) > moved;
+    if (!_way.crossing) return std::abs(slope) > slope_left_open(_system, _isotropy, _quantity, first.loop);
+    const double moved = moved_by_rounding(_system, _quantity, first.loop, left_open(first.loop));
+    return is_shown(0, sign, false, std::max(_visible, moved));
   }
 
  private:
@@ -73,12 +73,16 @@ class Way {
   /// Whether rounding may have made what two orbits show, or leaves one of them open by more than they are apart.
   [[nodiscard]] bool is_open(std::size_t n, int sign, bool falls, const loop::Loop& one,
                              const loop::Loop& other) const {
-    const double first = continuation::left_open_by_rounding(_system, one, _isotropy);
-    const double second = continuation::left_open_by_rounding(_system, other, _isotropy);
-    const double moved =
-        std::max(moved_by(_system, _quantity, one, first), moved_by(_system, _quantity, other, second));
+    const continuation::LeftOpen first = left_open(one);
+    const continuation::LeftOpen second = left_open(other);
+    const double moved = std::max(moved_by_rounding(_system, _quantity, one, first),
+                                  moved_by_rounding(_system, _quantity, other, second));
     return !is_shown(n, sign, falls, std::max(_visible, moved)) ||
-           std::max(first, second) > continuation::arclength_between(one, other);
+           std::max(first.across, second.across) > continuation::arclength_between(one, other);
+  }
+
+  [[nodiscard]] continuation::LeftOpen left_open(const loop::Loop& orbit) const {
+    return continuation::left_open_by_rounding(_system, orbit, _isotropy);
   }
 
   const systems::System& _system;

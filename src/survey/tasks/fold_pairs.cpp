@@ -98,10 +98,10 @@ class WayBetween {
     return slope && *slope * second < 0.0 && is_told(*slope) ? std::optional(place) : std::nullopt;
   }
 
-  /// By rounding, at the two orbits.
+  /// Of slopes, by rounding, at the two orbits.
   [[nodiscard]] double moved(const loop::Isotropy& isotropy) const {
-    return std::max(moved_by_rounding(_system, isotropy, _quantity, _known[_way].loop),
-                    moved_by_rounding(_system, isotropy, _quantity, _known[_way + 1].loop));
+    return std::max(slope_left_open(_system, isotropy, _quantity, _known[_way].loop),
+                    slope_left_open(_system, isotropy, _quantity, _known[_way + 1].loop));
   }
 
   const systems::System& _system;

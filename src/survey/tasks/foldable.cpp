@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "orbweaver/bifurcation/crossing.hpp"
-#include "orbweaver/continuation/left_open.hpp"
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/loop/curve/system_at.hpp"
 
@@ -18,6 +17,10 @@ namespace {
 /// Relative to their size, of changes of T and E: ten times what a fold is seen by (bifurcation/fold_watch), for
 /// what differences of them are off.
 constexpr double visible_part = 1e-9;
+/// Of that, what the watch sees.
+constexpr double seen_by_watch = 0.1;
+/// What roundings move is known from one set of them: others may move a quantity by so much more. Not measured.
+constexpr double of_one_rounding = 10.0;
 
 /// The largest change of a quantity with a length of orbits (that of continuation::arclength_between).
 double steepest(const systems::System& system, Fold::Quantity quantity, const loop::Loop& orbit) {
@@ -52,13 +55,35 @@ double visible_change(Fold::Quantity quantity, double value) {
   return visible_part * std::max(std::abs(value), least);
 }
 
-double moved_by_rounding(const systems::System& system, const loop::Isotropy& isotropy, Fold::Quantity quantity,
-                         const loop::Loop& orbit) {
-  return moved_by(system, quantity, orbit, continuation::left_open_by_rounding(system, orbit, isotropy));
+double slope_left_open(const systems::System& system, const loop::Isotropy& isotropy, Fold::Quantity quantity,
+                       const loop::Loop& orbit) {
+  return continuation::left_open_by_rounding(system, orbit, isotropy).across * steepest(system, quantity, orbit);
 }
 
-double moved_by(const systems::System& system, Fold::Quantity quantity, const loop::Loop& orbit, double open) {
-  return open * steepest(system, quantity, orbit);
+double moved_by_rounding(const systems::System& system, Fold::Quantity quantity, const loop::Loop& orbit,
+                         const continuation::LeftOpen& open) {
+  const double moved = quantity == Fold::Quantity::period   ? open.period
+                       : quantity == Fold::Quantity::energy ? open.energy
+                                                            : open.parameter;
+  return of_one_rounding * moved + open.across * open.across * steepest(system, quantity, orbit);
+}
+
+double moved_by_rounding(const systems::System& system, const loop::Isotropy& isotropy, Fold::Quantity quantity,
+                         const loop::Loop& orbit) {
+  return moved_by_rounding(system, quantity, orbit, continuation::left_open_by_rounding(system, orbit, isotropy));
+}
+
+bool is_rounding(const systems::System& system, const loop::Isotropy& isotropy, Fold::Quantity quantity,
+                 const bifurcation::FoldWatch::Turn& turn, const loop::Loop& orbit,
+                 const std::vector<continuation::FamilyCurve::Known>& known) {
+  const double change = value_of(system, quantity, orbit) - turn.value;
+  if (std::isnan(change) || std::isnan(turn.position) || turn.direction * change > 0.0) return false;
+  if (std::abs(change) <= seen_by_watch * visible_part * turn.scale) return false;  // which the watch passes over
+  if (std::abs(change) <= moved_by_rounding(system, isotropy, quantity, orbit)) return true;
+  const auto before = std::find_if(known.begin(), known.end(),
+                                   [&](const auto& one) { return one.position == turn.position; });
+  return before != known.end() &&
+         std::abs(change) <= moved_by_rounding(system, isotropy, quantity, before->loop);
 }
 
 }  // namespace orbweaver::survey

@@ -4,6 +4,7 @@
 
 #include "orbweaver/bifurcation/fold_watch.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
+#include "orbweaver/continuation/left_open.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/systems/system.hpp"
 
@@ -22,13 +23,21 @@ namespace orbweaver::survey {
 /// The least change of a quantity that tells a fold, where its value is `value`.
 [[nodiscard]] double visible_change(bifurcation::Fold::Quantity quantity, double value);
 
-/// How far rounding may move the quantity at an orbit, which it leaves open across the family. As much of its slope
-/// along the family may be that of another one.
+/// How much of the quantity's slope along the family at an orbit may be that of another one, where rounding leaves the
+/// orbit open across the family.
+[[nodiscard]] double slope_left_open(const systems::System& system, const loop::Isotropy& isotropy,
+                                     bifurcation::Fold::Quantity quantity, const loop::Loop& orbit);
+
+/// How far rounding may move the quantity at an orbit that it leaves so much `open`.
+[[nodiscard]] double moved_by_rounding(const systems::System& system, bifurcation::Fold::Quantity quantity,
+                                       const loop::Loop& orbit, const continuation::LeftOpen& open);
 [[nodiscard]] double moved_by_rounding(const systems::System& system, const loop::Isotropy& isotropy,
                                        bifurcation::Fold::Quantity quantity, const loop::Loop& orbit);
 
-/// The same where it is known how far `open` the orbit is left (continuation/left_open.hpp).
-[[nodiscard]] double moved_by(const systems::System& system, bifurcation::Fold::Quantity quantity,
-                              const loop::Loop& orbit, double open);
+/// Whether rounding may have made the change from `turn` to `orbit` where it would tell which way the quantity goes:
+/// the first change of a family, and one against the last. `known`: orbits before, that of the turn perhaps among them.
+[[nodiscard]] bool is_rounding(const systems::System& system, const loop::Isotropy& isotropy,
+                               bifurcation::Fold::Quantity quantity, const bifurcation::FoldWatch::Turn& turn,
+                               const loop::Loop& orbit, const std::vector<continuation::FamilyCurve::Known>& known);
 
 }  // namespace orbweaver::survey

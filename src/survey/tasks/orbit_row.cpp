@@ -21,7 +21,7 @@ std::string not_told_apart(const systems::System& system, const loop::Loop& orbi
   if (stability && !bifurcation::is_isolated(*stability)) return "an index is 2 to rounding";
   if (neighbour == nullptr) return {};
   const double apart = continuation::arclength_between(*neighbour, orbit);
-  const double open = continuation::left_open_by_rounding(system, orbit, isotropy);
+  const double open = continuation::left_open_by_rounding(system, orbit, isotropy).across;
   if (!(open > apart)) return {};
   return fmt::format("rounding leaves an orbit open by {:.2g}, and its neighbour is {:.2g} away", open, apart);
 }
