@@ -25,18 +25,36 @@ constexpr double largest_sum = 5e-4;
 /// The sum falls with this power of the number of segments: n terms of n^-8.
 constexpr double power_of_segments = 7.0;
 
-/// Few numbers of segments are used, so that few Fourier plans are made: multiples of 24, by 2 to 7, or 8 to 15 times a
-/// power of 2.
+/// Few numbers of segments are used, so that few Fourier plans are made: multiples of 24, by 2 to 7, or by 8, 9, 10, 12,
+/// 14 or 15 times a power of 2. With the prime factors 11 and 13 the plans would not be among those that are known.
 int allowed_segments(double at_least, int factor) {
   const int multiple = 2 * std::lcm(12, factor);
   for (int n = 2;; ++n) {
     int leading = n;
     while (leading > 15 && leading % 2 == 0) leading /= 2;
-    if (leading <= 15 && multiple * n >= at_least) return multiple * n;
+    if (leading <= 15 && leading != 11 && leading != 13 && multiple * n >= at_least) return multiple * n;
   }
 }
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Lengths of the segments. A pulse repeats after half a turn and is even there: a quarter of them is enough, since
+/// sines and arctangents cost as much as what is integrated with them.
+Eigen::VectorXd steps_of(const loop::Loop& loop, int segments, int around) {
+  if (loop.time_map.is_identity()) return Eigen::VectorXd::Constant(segments, loop.period / around);
+  const bool by_quarters = loop.time_map.coefficients.empty() && around % 4 == 0;
+  const int half = around / 2;
+  const int own = by_quarters ? std::min(segments, around / 4) : segments;
+  std::vector<double> s;
+  for (int m = 0; m <= own; ++m) s.push_back(2 * std::numbers::pi * static_cast<double>(m) / around);
+  const std::vector<double> phases = loop.time_map.phases(s);
+  const double rate = loop.period / (2 * std::numbers::pi);
+  Eigen::VectorXd steps(segments);
+  for (int m = 0; m < own; ++m)
+    steps[m] = rate * (phases[static_cast<std::size_t>(m) + 1] - phases[static_cast<std::size_t>(m)]);
+  for (int m = own; m < segments; ++m) steps[m] = m < half ? steps[half - 1 - m] : steps[m - half];
+  return steps;
+}
 
 /// States, field and Jacobian at the nodes of T/p, `around` being their number on the whole loop.
 Chain nodes_of(const systems::System& system, const loop::Loop& loop, const FundamentalGroup& group, int around) {
@@ -47,15 +65,7 @@ Chain nodes_of(const systems::System& system, const loop::Loop& loop, const Fund
   loop::FourierGrid::of_size(grid).synthesize(loop.cutoff, loop.dimension, loop.modes.data(), nodal.data());
   Chain chain;
   const int segments = around / group.order;
-  chain.steps = Eigen::VectorXd::Constant(segments, loop.period / around);
-  if (!loop.time_map.is_identity()) {
-    const double rate = loop.period / (2 * std::numbers::pi);
-    std::vector<double> s;
-    for (int m = 0; m <= segments; ++m) s.push_back(2 * std::numbers::pi * static_cast<double>(m) / around);
-    const std::vector<double> phases = loop.time_map.phases(s);
-    for (int m = 0; m < segments; ++m)
-      chain.steps[m] = rate * (phases[static_cast<std::size_t>(m) + 1] - phases[static_cast<std::size_t>(m)]);
-  }
+  chain.steps = steps_of(loop, segments, around);
   chain.states.resize(d, segments + 1);
   for (Eigen::Index j = 0; j < chain.states.cols(); ++j)
     for (Eigen::Index i = 0; i < d; ++i)
@@ -225,23 +235,33 @@ void take_transitions(VariationalStep& stepper, const FundamentalGroup& group, c
     take_transitions<Eigen::Dynamic>(stepper, group, team, chain);
 }
 
-}  // namespace
-
-void evaluate_field(const systems::System& system, Chain& chain) {
+/// Fills in the Jacobians at the chain's states; returns f there.
+RowMajor jacobians_and_field(const systems::System& system, Chain& chain) {
   const Eigen::Index d = chain.dimension();
   const Eigen::Index count = chain.states.cols();
   const RowMajor z = chain.states;
   RowMajor f(d, count);
   RowMajor a(d * d, count);
   system.field_jacobian(static_cast<std::size_t>(count), z.data(), f.data(), a.data());
-  chain.fields = f;
-  if (system.structure().conservative()) {
-    system.conserved_gradients(0, static_cast<std::size_t>(count), z.data(), f.data());
-    chain.gradients = f;
-  }
   chain.jacobians.resize(d * d, count);
   for (Eigen::Index i = 0; i < d; ++i)
     for (Eigen::Index l = 0; l < d; ++l) chain.jacobians.row(l * d + i) = a.row(i * d + l);
+  return f;
+}
+
+}  // namespace
+
+void evaluate_jacobians(const systems::System& system, Chain& chain) {
+  static_cast<void>(jacobians_and_field(system, chain));
+}
+
+void evaluate_field(const systems::System& system, Chain& chain) {
+  RowMajor f = jacobians_and_field(system, chain);
+  chain.fields = f;
+  if (!system.structure().conservative()) return;
+  const RowMajor z = chain.states;
+  system.conserved_gradients(0, static_cast<std::size_t>(z.cols()), z.data(), f.data());
+  chain.gradients = f;
 }
 
 Chain make_chain(const systems::System& system, VariationalStep& stepper, const loop::Loop& loop,

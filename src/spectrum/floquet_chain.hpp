@@ -31,6 +31,8 @@ struct Chain {
 
 /// f, its Jacobian and the energy's gradient at the chain's states.
 void evaluate_field(const systems::System& system, Chain& chain);
+/// The Jacobians alone.
+void evaluate_jacobians(const systems::System& system, Chain& chain);
 
 /// The chain with at least `at_least` segments a period: as many as suit the loop's resolution, the rates of its
 /// linearised flow and its symmetries, even on T/p. Segments that a reversor gives are not integrated. A team divides

@@ -180,7 +180,7 @@ Chain corrected(const systems::System& system, const Chain& chain, const OrbitCo
   off.states = factor * chain.offsets;
   for (Eigen::Index m = 0; m < chain.segments(); ++m)
     off.states.col(m) += chain.states.col(chain.mirrored[static_cast<std::size_t>(m)] ? m : m + 1);
-  evaluate_field(system, off);
+  evaluate_jacobians(system, off);
   changed.transitions.resize(chain.transitions.rows(), chain.transitions.cols());
   const auto change = [&](Eigen::Index first, Eigen::Index last) {
     if (chain.dimension() == 4)

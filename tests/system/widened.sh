@@ -5,6 +5,11 @@
 begin_anew
 survey whole 2 || fail "the undisturbed run failed"
 
+# Files of payloads with their sizes.
+payloads_of() {
+  (cd "$folder/$1/segments" && stat -c '%n %s' payloads-*)
+}
+
 n=0
 for narrow in "limits.period=17" "survey.depth=0" "survey.depth=1 limits.period=15" "limits.energy=[-3,0.5]" \
   "limits.steps=12" "limits.families=5"; do
@@ -12,12 +17,16 @@ for narrow in "limits.period=17" "survey.depth=0" "survey.depth=1 limits.period=
   words=()
   for limit in $narrow; do words+=(--set "$limit"); done
   survey widened$n 2 "${words[@]}" || fail "$narrow: the narrow run failed"
+  # What no wider limit can ask for is gone; where that is nothing (depth 0) both ranks' files stay.
+  [ "$n" = 2 ] || [ "$(payloads_of widened$n | wc -l)" = 1 ] || fail "$narrow: payloads were kept: $(payloads_of widened$n)"
   "$compare" "$folder/whole/atlas.h5" "$folder/widened$n/atlas.h5" > /dev/null 2>&1 && fail "$narrow: cuts nothing off"
   survey widened$n 2 && fail "$narrow: begun without --resume"
   [ "$n" != 1 ] || grep -q "holds a finished survey with narrower limits" "$folder/log" || fail "$narrow: told otherwise"
   survey widened$n 3 --resume || fail "$narrow: the resume with wider limits failed"
   expect_same widened$n
+  before=$(payloads_of widened$n)
   survey widened$n 2 --resume || fail "$narrow: a finished survey was not accepted"
+  [ "$(payloads_of widened$n)" = "$before" ] || fail "$narrow: payloads were moved again: $(payloads_of widened$n)"
   echo "$narrow: widened"
 done
 survey widened1 2 --resume --set limits.period=14

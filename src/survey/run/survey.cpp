@@ -219,7 +219,11 @@ class Run {
     // After a signal or the wall time others wait for the machine.
     _summary.archived = core::agreed(_comm.get(), !_summary.stopped_early || _time.reached_scene());
     write_archive(_comm, _scene, _system, _keeper->last(), _tree, _sweeps_ended, _summary);
-    if (!_summary.stopped_early) core::on_root(_comm.get(), [&] { _keeper->finish(_summary.failures); });
+    if (_summary.stopped_early) return;
+    core::on_root(_comm.get(), [&] {
+      _keeper->finish(_summary.failures);
+      keep_needed_payloads(_folder, _keeper->last());
+    });
   }
 
   const core::Communicator& _comm;

@@ -11,9 +11,6 @@
 
 namespace orbweaver::survey {
 
-namespace {
-
-/// Limit that the entry's end rests on.
 int limits_of(const EndedTask& entry) {
   const std::string& outcome = entry.outcome.payload;
   switch (kind_of(entry.task)) {
@@ -26,8 +23,6 @@ int limits_of(const EndedTask& entry) {
   }
   return 0;
 }
-
-}  // namespace
 
 int widened_limits(const scene::Scene& before, const scene::Scene& now) {
   int limits = 0;

@@ -148,7 +148,77 @@ void list_files(const std::filesystem::path& folder, const Checkpoint& checkpoin
   }
 }
 
+/// `visit` of each payload or state of an ended task that wider limits may ask for; what they never do is dropped.
+template <class Visit>
+void for_needed(EndedTask& entry, const Visit& visit) {
+  std::string& payload = entry.task.payload;
+  const TaskKind kind = kind_of(entry.task);
+  if (limits_of(entry) != 0) {
+    visit(payload);
+  } else if (is_stored(payload)) {  // of branches and starts the tree of families reads what rank 0 is told
+    const bool branch = kind == TaskKind::branch;
+    const std::string told = branch || kind == TaskKind::start ? pack(told_branch(entry.task)) : std::string();
+    payload = kind == TaskKind::start ? pack(StartWork{unpack_branch_work(told)}) : told;
+  }
+  if (kind != TaskKind::branch || entry.outcome.payload.empty()) return;
+  BranchOutcome outcome = unpack_branch_outcome(entry.outcome.payload);
+  if (outcome.before_limit.empty()) return;
+  visit(outcome.before_limit);
+  entry.outcome.payload = pack(outcome);
+}
+
+std::uint64_t bytes_in_payload_files(const std::filesystem::path& folder) {
+  std::uint64_t bytes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.path().filename().string().starts_with(payload_prefix) && entry.is_regular_file())
+      bytes += entry.file_size();
+  return bytes;
+}
+
+void move_needed_payloads(const std::filesystem::path& folder, Checkpoint checkpoint) {
+  std::uint64_t needed = 0;
+  const auto add = [&](const std::string& payload) {
+    if (is_stored(payload)) needed += unpack_stored_work(payload).bytes;
+  };
+  for (const JournalFile& journal : checkpoint.journals)
+    for (EndedTask& entry : read_journal(folder, journal)) for_needed(entry, add);
+  for (const queue::Task& task : checkpoint.left_out) add(task.payload);
+  if (needed == bytes_in_payload_files(folder)) return;
+
+  const core::Communicator alone(MPI_COMM_SELF);
+  PayloadStore store(folder);
+  store.open(alone);
+  const auto move = [&](std::string& payload) {
+    if (!is_stored(payload)) return;
+    const std::string told = unpack_stored_work(payload).told;
+    payload = whole_payload(folder, payload);
+    store.keep(payload, told);
+    if (!is_stored(payload)) throw core::EnvironmentError("a payload cannot be moved");
+  };
+  std::size_t number = next_journal(checkpoint);
+  for (JournalFile& journal : checkpoint.journals) {
+    std::vector<EndedTask> entries = read_journal(folder, journal);
+    for (EndedTask& entry : entries) for_needed(entry, move);
+    journal = write_journal(folder, number++, entries);
+  }
+  for (queue::Task& task : checkpoint.left_out) move(task.payload);
+  store.sync();
+  for (int n = 0; n < 2; ++n) write_checkpoint(folder, checkpoint);  // the one before counts on nothing else either
+  remove_unlisted(folder, checkpoint);
+}
+
 }  // namespace
+
+void keep_needed_payloads(const std::filesystem::path& folder, const Checkpoint& checkpoint) {
+  if (!checkpoint.unfinished.empty()) return;
+  try {
+    move_needed_payloads(folder, checkpoint);
+  } catch (const core::EnvironmentError& error) {
+    core::log_warning(fmt::format("the files of payloads stay as they are: {}", error.what()));
+  } catch (const core::InputError& error) {
+    core::log_warning(fmt::format("the files of payloads stay as they are: {}", error.what()));
+  }
+}
 
 bool is_listed_kind(const std::string& name) {
   return name.starts_with("segment-") || name.starts_with("journal-") || name.starts_with(payload_prefix);

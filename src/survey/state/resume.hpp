@@ -42,6 +42,11 @@ void continue_with(const scene::Scene& scene, const std::filesystem::path& folde
 /// or are not needed any more.
 void remove_unlisted(const std::filesystem::path& folder, const Checkpoint& checkpoint);
 
+/// Of a survey that is over, whose last checkpoint is `checkpoint`: payloads that no resume can ask for go, the others
+/// are moved into one file, and the checkpoints count on that. Where this cannot be done all stays as it is, with a
+/// warning. On rank 0 only.
+void keep_needed_payloads(const std::filesystem::path& folder, const Checkpoint& checkpoint);
+
 /// Sentences on the keys in which a survey of `before` cannot go on as one of `now`; empty: it can.
 [[nodiscard]] std::string refusal(const scene::Scene& before, const scene::Scene& now);
 
