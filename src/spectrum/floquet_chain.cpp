@@ -25,8 +25,8 @@ constexpr double largest_sum = 5e-4;
 /// The sum falls with this power of the number of segments: n terms of n^-8.
 constexpr double power_of_segments = 7.0;
 
-/// Few numbers of segments are used, so that few Fourier plans are made: multiples of 24, by 2 to 7, or by 8, 9, 10, 12,
-/// 14 or 15 times a power of 2. With the prime factors 11 and 13 the plans would not be among those that are known.
+/// Few numbers of segments are used, so that few Fourier plans are made: multiples of 24, by 2 to 7, or by 8, 9, 10,
+/// 12, 14 or 15 times a power of 2. With the prime factors 11 and 13 the plans would not be among those that are known.
 int allowed_segments(double at_least, int factor) {
   const int multiple = 2 * std::lcm(12, factor);
   for (int n = 2;; ++n) {

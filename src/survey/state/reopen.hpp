@@ -13,7 +13,8 @@ namespace orbweaver::survey {
 /// Bits of Limit (task_kind.hpp) for the limits that lie farther out in `now`.
 [[nodiscard]] int widened_limits(const scene::Scene& before, const scene::Scene& now);
 
-/// Bits of Limit on which the end of a task rests: with these limits wider it is done again, or goes on. 0: it never is.
+/// Bits of Limit on which the end of a task rests: with these limits wider it is done again, or goes on. 0: it never
+/// is.
 [[nodiscard]] int limits_of(const EndedTask& entry);
 
 /// Decides, entry by entry in the order in which tasks ended, what a survey with wider limits keeps. What ended at one
