@@ -52,6 +52,20 @@ TEST(EquilibriumEnd, NoneIsNear) {
   EXPECT_THAT(end.text, StartsWith("no equilibrium found near th1 = 17.1887 deg"));
 }
 
+// At rho = 20 the equilibria of Lorenz's equations are elsewhere than at 24: (s, s, rho - 1), s^2 = 8/3 (rho - 1).
+TEST(EquilibriumEnd, IsLookedForWithTheParameterOfTheLastOrbit) {
+  const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/lorenz.yaml", {"system.parameters.rho=20"});
+  const auto system = scene::bound_system(scene.system);
+  const double s = std::sqrt(8.0 / 3.0 * 23.0);
+  loop::Loop last = loop::constant_loop(std::vector<double>{s, s, 23.0}, 0.65, 4);
+  last.parameters = {24.0 / system->parameter_scale("rho")};
+  for (std::size_t i = 0; i < 3; ++i) last.modes[i] /= system->scales().coordinate(i);
+  last.cosine(1, 0) = 1e-3;
+  const EquilibriumEnd end = equilibrium_end(scene, *system, last);
+  EXPECT_EQ(end.index, -1);
+  EXPECT_THAT(end.text, AllOf(StartsWith("x = 7.83156, y = 7.83156, z = 23"), HasSubstr("at rho = 24")));
+}
+
 struct Context : queue::TaskContext {
   bool report(const queue::Progress&, const queue::StateSource&) override { return true; }
 };

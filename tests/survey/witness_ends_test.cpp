@@ -175,6 +175,32 @@ TEST_F(WitnessOf, EndsAtEquilibria) {
   EXPECT_NEAR(rows[0].period, 8.4172, 1e-3);
 }
 
+// A Hopf point of a curve of equilibria is known, where the parameter is the family's there.
+TEST_F(WitnessOf, EndsAtHopfPoints) {
+  for (const double away : {0.0, 0.1}) {
+    SCOPED_TRACE(away);
+    input = {};
+    if (world->is_root()) {
+      records = records_of(*atlas);
+      EndEvidence& end = add_end("Straight");
+      end.met = false;
+      end.side = 1;
+      end.end->reason = continuation::EndReason::fixed_point;
+      double level = 0.0;
+      for (archive::OrbitRecord& orbit : records.orbits) {
+        if (orbit.family_key != key_named("Straight") || orbit.period <= 8.4) continue;
+        orbit.modes[1] += 5.0;
+        level = orbit.energy;
+      }
+      input.beginnings["a Hopf point"] = {0.0, 5.0, 0.0, 0.0, level + away};
+    }
+    const std::vector<Found> rows = found();
+    if (!world->is_root()) continue;
+    EXPECT_EQ(rows.size(), away == 0.0 ? 0U : 1U);
+    EXPECT_THAT(rows, ::testing::Each(finding("undecided", "unknown-equilibrium")));
+  }
+}
+
 TEST_F(WitnessOf, MirrorImagesThatAgree) {
   if (world->is_root()) add_image_of_straight();
   const std::vector<Found> rows = found();

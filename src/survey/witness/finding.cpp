@@ -43,7 +43,8 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
                        "is not known: of some the index is not told, and those of the others add up to {}",
                        f.other_number, f.detail, f.number);
     case FindingKind::base_birth:
-      return "its first orbits do not lead back to its equilibrium with the period of the oscillation there";
+      return "its first orbits do not lead back to its equilibrium with the period of the oscillation there, or their "
+             "energy and action do not belong together (of a plugin: conserved<0> and action_density)";
     case FindingKind::continuum:
       return fmt::format(
           "oscillations that share a period: {} orbits were found near the equilibrium whose neighbours "

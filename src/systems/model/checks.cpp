@@ -70,9 +70,14 @@ void check(const Structure& structure, const ModelInfo& info, int dimension, int
                 "a model, its structure and its names have as many coordinates");
   core::require(static_cast<int>(structure.conserved.size()) <= quantities,
                 "a model needs a function for every conserved quantity of its structure");
-  for (const int i : structure.angles)
-    core::require(i >= 0 && i < dimension && !info.winding_names[static_cast<std::size_t>(i)].empty(),
-                  "an angle is a coordinate whose winding number has a name");
+  for (const int i : structure.angles) {
+    core::require(i >= 0 && i < dimension, "an angle is the number of a coordinate");
+    if (info.winding_names[static_cast<std::size_t>(i)].empty())
+      throw core::MisuseError(
+          fmt::format("structure.angles has {}, '{}', whose winding number has no name in info.winding_names: give one, "
+                      "or leave it out of the angles",
+                      i, info.state_names[static_cast<std::size_t>(i)]));
+  }
   core::require(!structure.driven || structure.is_angle(d - 1), "a drive's phase is the last coordinate and an angle");
   std::set<std::string> names{identity_name};
   for (const auto* symmetries : {&structure.equivariances, &structure.reversors})

@@ -118,11 +118,27 @@ class Ends final : public Check {
     for (const std::vector<double>& point : evidence.known.equilibria)
       if (evidence.distance_between(mean, point) <= size) return std::nullopt;
     const Invariants& last = family.curve.points()[orbit];
+    if (is_hopf_point(evidence, family, mean, size, last.value(Invariant::level))) return std::nullopt;
     finding.kind = FindingKind::unknown_equilibrium;
     finding.severity = Severity::undecided;
     finding.period = last.value(Invariant::period);
     finding.level = last.value(Invariant::level);
     return finding;
+  }
+
+  // A family that shrinks to a Hopf point has nearly its parameter there: they differ by the square of its size.
+  static bool is_hopf_point(const Evidence& evidence, const TreeFamily& family, std::span<const double> mean,
+                            double size, double level) {
+    double least = level;
+    double greatest = level;
+    for (const Invariants& point : family.curve.points()) {
+      least = std::fmin(least, point.value(Invariant::level));
+      greatest = std::fmax(greatest, point.value(Invariant::level));
+    }
+    for (const auto& [key, hopf] : evidence.known.beginnings)  // the state, then the parameter
+      if (evidence.distance_between(mean, hopf) <= size && std::abs(hopf.back() - level) <= 0.01 * (greatest - least))
+        return true;
+    return false;
   }
 
   // Near crossings that were found: a limit kept their directions from being looked for, or theirs are others.
