@@ -1,5 +1,6 @@
 #include "structure_text.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -10,8 +11,9 @@ namespace orbweaver::drivers {
 
 namespace {
 
-/// One coordinate of a map's image: "-th1", "phase + 180 deg", "-0.5 x - 0.866025 y".
-std::string image_text(const std::vector<std::string>& coordinates, const systems::AffineMap& map, Eigen::Index row) {
+/// One coordinate of a map's image: "-th1", "phase + 180 deg", "-0.5 x - 0.866025 y", "-x + 2".
+std::string image_text(const std::vector<std::string>& coordinates, const systems::AffineMap& map, Eigen::Index row,
+                       bool is_angle) {
   std::string text;
   const auto add = [&](double factor, const std::string& of) {
     const double size = std::abs(factor);
@@ -20,19 +22,26 @@ std::string image_text(const std::vector<std::string>& coordinates, const system
   };
   for (Eigen::Index l = 0; l < map.matrix.cols(); ++l)
     if (map.matrix(row, l) != 0.0) add(map.matrix(row, l), coordinates[static_cast<std::size_t>(l)]);
-  if (map.offset(row) != 0.0) add(map.offset(row) / std::numbers::pi * 180.0, "deg");
+  if (const double offset = map.offset(row); offset != 0.0) {
+    if (is_angle)
+      add(offset / std::numbers::pi * 180.0, "deg");
+    else
+      text += fmt::format("{}{:.6g}", offset < 0.0 ? (text.empty() ? "-" : " - ") : (text.empty() ? "" : " + "),
+                          std::abs(offset));
+  }
   return text.empty() ? "0" : text;
 }
 
 }  // namespace
 
-std::string symmetries_text(const std::vector<std::string>& coordinates,
+std::string symmetries_text(const std::vector<std::string>& coordinates, const std::vector<int>& angles,
                             const std::vector<systems::Symmetry>& symmetries) {
   std::vector<std::string> texts;
   for (const systems::Symmetry& symmetry : symmetries) {
     std::vector<std::string> images;
     for (Eigen::Index row = 0; row < symmetry.map.dimension(); ++row)
-      images.push_back(image_text(coordinates, symmetry.map, row));
+      images.push_back(image_text(coordinates, symmetry.map, row,
+                                  std::find(angles.begin(), angles.end(), static_cast<int>(row)) != angles.end()));
     texts.push_back(fmt::format("{}: {}", symmetry.name, fmt::join(images, ", ")));
   }
   return texts.empty() ? "none" : fmt::format("of ({}): {}", fmt::join(coordinates, ", "), fmt::join(texts, "; "));
@@ -58,8 +67,8 @@ std::vector<std::pair<std::string, std::string>> structure_lines(const systems::
                                                                  const std::string& families) {
   const auto& conserved = structure.conserved;
   return {{"conserved", conserved.empty() ? "nothing" : fmt::format("{}", fmt::join(conserved, ", "))},
-          {"symmetries", symmetries_text(info.state_names, structure.equivariances)},
-          {"reversors", symmetries_text(info.state_names, structure.reversors)},
+          {"symmetries", symmetries_text(info.state_names, structure.angles, structure.equivariances)},
+          {"reversors", symmetries_text(info.state_names, structure.angles, structure.reversors)},
           {"families", families}};
 }
 

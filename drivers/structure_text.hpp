@@ -15,7 +15,7 @@ namespace orbweaver::drivers {
                                                                                const std::string& families);
 
 /// "S: th1, th2, w1, w2 -> -th1, -th2, -w1, -w2" for each, or "none".
-[[nodiscard]] std::string symmetries_text(const std::vector<std::string>& coordinates,
+[[nodiscard]] std::string symmetries_text(const std::vector<std::string>& coordinates, const std::vector<int>& angles,
                                           const std::vector<systems::Symmetry>& symmetries);
 
 /// "conservative: ..." and so on.
