@@ -140,6 +140,8 @@ void print_simulated(const scene::Scene& scene, const systems::System& system,
   lines.insert(lines.end(), holds.begin(), holds.end());
   for (const std::string& symmetry : systems::undeclared_symmetries(system, points))
     lines.emplace_back("not declared", symmetry);
+  if (systems::may_be_symplectic(system, points))
+    lines.emplace_back("not declared", "perhaps `symplectic`: eigenvalues at every equilibrium come in pairs +-lambda");
   if (!points.empty()) lines.emplace_back("price", price_text(system, points.front()));
   print_group("Simulated", lines);
 }

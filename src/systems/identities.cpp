@@ -224,6 +224,15 @@ IdentityError pairing_error(const System& system, const std::vector<double>& equ
   return worst;
 }
 
+bool may_be_symplectic(const System& system, const std::vector<std::vector<double>>& equilibria) {
+  const Structure& structure = system.structure();
+  if (structure.symplectic || !structure.conservative() || system.dimension() % 2 != 0 || equilibria.empty())
+    return false;
+  return std::all_of(equilibria.begin(), equilibria.end(), [&](const std::vector<double>& point) {
+    return pairing_error(system, point).error <= beyond_rounding;
+  });
+}
+
 std::vector<std::vector<double>> states_around(const Structure& structure,
                                                const std::vector<std::vector<double>>& points, int count, double size) {
   numerics::Random random(seed);

@@ -54,7 +54,8 @@ TEST(EquilibriumEnd, NoneIsNear) {
 
 // At rho = 20 the equilibria of Lorenz's equations are elsewhere than at 24: (s, s, rho - 1), s^2 = 8/3 (rho - 1).
 TEST(EquilibriumEnd, IsLookedForWithTheParameterOfTheLastOrbit) {
-  const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/lorenz.yaml", {"system.parameters.rho=20"});
+  const scene::Scene scene =
+      scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/lorenz.yaml", {"system.parameters.rho=20"});
   const auto system = scene::bound_system(scene.system);
   const double s = std::sqrt(8.0 / 3.0 * 23.0);
   loop::Loop last = loop::constant_loop(std::vector<double>{s, s, 23.0}, 0.65, 4);

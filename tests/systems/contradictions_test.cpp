@@ -195,5 +195,18 @@ TEST(Contradictions, StatesAreOfTheSizeOfTheCoordinatesToo) {
   expect_refusal(Altered(spring, {}, pull), rest, {"got a relative difference of"});
 }
 
+// What is not declared contradicts nothing, but is asked for.
+TEST(Contradictions, ASymplecticFormThatIsNotDeclaredShowsInPairs) {
+  const auto undeclared = [](Structure& structure) { structure.symplectic = false; };
+  const std::vector<std::vector<double>> rest{{0, 0, 0, 0}};
+  const auto system = make_system("henon_heiles");
+  EXPECT_TRUE(may_be_symplectic(Altered(system, undeclared), rest));
+  EXPECT_FALSE(may_be_symplectic(*system, rest)) << "it is declared";
+  EXPECT_FALSE(may_be_symplectic(Altered(system, undeclared), {})) << "nothing is known";
+  const auto friction = [](const std::vector<double>& z, double* f) { f[2] -= 1e-6 * z[2]; };
+  EXPECT_FALSE(may_be_symplectic(Altered(system, undeclared, friction), rest)) << "no pairs";
+  EXPECT_FALSE(may_be_symplectic(*make_system("lorenz"), {{0, 0, 0}})) << "it conserves nothing";
+}
+
 }  // namespace
 }  // namespace orbweaver::systems::contradictions_test

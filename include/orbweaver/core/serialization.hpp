@@ -73,8 +73,8 @@ void serialize_values(Archive& archive, Values& values) {
   }
 }
 
-/// One member: an enum as an int that is checked, a flag as a byte that is, an optional one behind a flag, a text or list
-/// behind its size, others as the archive does it.
+/// One member: an enum as an int that is checked, a flag as a byte that is, an optional one behind a flag, a text or
+/// list behind its size, others as the archive does it.
 template <class Archive, class T>
 void serialize_member(Archive& archive, T& member) {
   if constexpr (Visits<Archive, T>) {

@@ -1,5 +1,9 @@
 #include "h5_handle.hpp"
 
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <utility>
 
 namespace orbweaver::archive {
@@ -44,6 +48,24 @@ H5Handle::~H5Handle() { reset(); }
 hid_t H5Handle::get() const {
   core::require(!empty(), "use of an empty HDF5 handle");
   return _id;
+}
+
+herr_t close_written_file(hid_t file) {
+  const herr_t flushed = H5Fflush(file, H5F_SCOPE_LOCAL);
+  if (flushed >= 0) return H5Fclose(file);
+  const hid_t errors = H5Eget_current_stack();
+  void* handle = nullptr;
+  const int memory = memfd_create("orbweaver", 0);
+  if (memory >= 0 && H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) >= 0) dup2(memory, *static_cast<int*>(handle));
+  if (memory >= 0) ::close(memory);
+  rlimit limit{};  // of the size of files, which holds in memory too
+  getrlimit(RLIMIT_FSIZE, &limit);
+  const rlimit none{limit.rlim_max, limit.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &none);
+  H5Fclose(file);
+  setrlimit(RLIMIT_FSIZE, &limit);
+  H5Eset_current_stack(errors);
+  return flushed;
 }
 
 void H5Handle::close(std::string_view what) {

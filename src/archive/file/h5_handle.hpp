@@ -28,6 +28,11 @@ Result check_h5(Result result, std::string_view what) {
   return result;
 }
 
+/// Closes a file that one rank has written; negative, with HDF5's error stack, where it cannot be written to its end.
+/// What the disk does not take is written into memory then: H5Fclose of HDF5 1.10 frees a file that it cannot write,
+/// but not its identifier, and HDF5 crashes on that when the program ends.
+herr_t close_written_file(hid_t file);
+
 /// Owns one HDF5 identifier (file, group, dataset, dataspace, type, property list, attribute) with the function that
 /// closes it. A moved-from handle is empty. Where the file was opened by several ranks, closing is collective.
 class H5Handle {

@@ -56,7 +56,8 @@ class Layout {
     keep_in_header(creation);
     const hid_t file = begin == Begin::anew ? H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get())
                                             : H5Fopen(path.c_str(), H5F_ACC_RDWR, access.get());
-    _file = {check_h5(file, fmt::format("cannot {} '{}'", begin == Begin::anew ? "create" : "open", _path)), H5Fclose};
+    _file = {check_h5(file, fmt::format("cannot {} '{}'", begin == Begin::anew ? "create" : "open", _path)),
+             close_written_file};
   }
 
   void write_attributes(const char* format, const Header& header) {

@@ -121,7 +121,7 @@ void write_text_table(const std::filesystem::path& path, const TextTable& table)
     const H5Handle creation = timeless(H5P_FILE_CREATE);
     H5Handle file(check_h5(H5Fcreate(part.c_str(), H5F_ACC_TRUNC, creation.get(), H5P_DEFAULT),
                            fmt::format("cannot create '{}'", part.string())),
-                  H5Fclose);
+                  close_written_file);
     write_attribute(file, "format", h5_text_type(table.format.size()), table.format.c_str());
     const std::int64_t version = table.version;
     write_attribute(file, "format_version", h5_memory_type({"", ColumnType::integer, {}}), &version);

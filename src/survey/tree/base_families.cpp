@@ -75,7 +75,8 @@ void remark_grid(const scene::Scene& scene, const systems::System& system, Summa
                     passed_over.size(), point_text(system, passed_over.front())));
 }
 
-/// Crossings that an undeclared symmetry forces look like accidents, and its circles are traced twice.
+/// Crossings that an undeclared symmetry forces look like accidents, and its circles are traced twice; without a
+/// symplectic form whole kinds of crossings are not looked for.
 void remark_undeclared(const systems::System& system, const std::vector<SweepOutcome>& equilibria, Summary& summary) {
   std::vector<std::vector<double>> points;
   for (const SweepOutcome& found : equilibria) points.push_back(found.point);
@@ -84,6 +85,10 @@ void remark_undeclared(const systems::System& system, const std::vector<SweepOut
         fmt::format("the field has {}, which the system does not declare: with it the survey is faster, and says which "
                     "crossings it forces",
                     symmetry));
+  if (systems::may_be_symplectic(system, points))
+    summary.remarks.push_back(
+        "the eigenvalues at every equilibrium come in pairs +-lambda, as those of Hamiltonian systems do: if this is "
+        "one, declare `symplectic`, without which its period doublings and subharmonics are not found");
 }
 
 /// What to do where a survey has found no family at all.

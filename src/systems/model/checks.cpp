@@ -74,8 +74,8 @@ void check(const Structure& structure, const ModelInfo& info, int dimension, int
     core::require(i >= 0 && i < dimension, "an angle is the number of a coordinate");
     if (info.winding_names[static_cast<std::size_t>(i)].empty())
       throw core::MisuseError(
-          fmt::format("structure.angles has {}, '{}', whose winding number has no name in info.winding_names: give one, "
-                      "or leave it out of the angles",
+          fmt::format("structure.angles has {}, '{}', whose winding number has no name in info.winding_names: give "
+                      "one, or leave it out of the angles",
                       i, info.state_names[static_cast<std::size_t>(i)]));
   }
   core::require(!structure.driven || structure.is_angle(d - 1), "a drive's phase is the last coordinate and an angle");

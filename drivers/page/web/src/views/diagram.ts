@@ -15,8 +15,10 @@ const bendFrom = 4;
 const canvasReach = 3000;
 /** While it moves, dashes are left out where more vertices than this are in view. */
 const dashedWhileMoving = 6000;
-/** Orbits are dots where the picked family's are at least this far apart on average. */
-const dotsFrom = 9;
+/** Orbits are ticks across the curve, unlike any crossing's mark, where the picked family's are at least this far apart on average. */
+const ticksFrom = 9;
+/** Half their length. */
+const tick = 4;
 const pickReach = 28;
 const markReach = 11;
 
@@ -235,7 +237,7 @@ export class Diagram {
       ctx.stroke(path);
     }
     ctx.setLineDash([]);
-    this.drawDots(picked);
+    this.drawTicks(picked);
     this.drawBrushed();
     this.drawMarks();
     this.drawPicked();
@@ -269,7 +271,7 @@ export class Diagram {
     return second;
   }
 
-  private drawDots(picked: number): void {
+  private drawTicks(picked: number): void {
     const { frame, curves } = this;
     const curve = curves[picked];
     if (!curve) return;
@@ -283,16 +285,18 @@ export class Diagram {
     }
     let long = 0;
     inside.forEach(([px, py], i) => i && (long += Math.hypot(px - inside[i - 1]![0], py - inside[i - 1]![1])));
-    if (inside.length > 1 && long / inside.length < dotsFrom) return;
-    ctx.fillStyle = theme.panel;
+    if (inside.length > 1 && long / inside.length < ticksFrom) return;
     ctx.strokeStyle = theme.ink;
     ctx.lineWidth = 1;
-    for (const [px, py] of inside) {
-      ctx.beginPath();
-      ctx.arc(px, py, 2.4, 0, 2 * Math.PI);
-      ctx.fill();
-      ctx.stroke();
-    }
+    ctx.beginPath();
+    inside.forEach(([px, py], i) => {
+      const [from, to] = [inside[Math.max(i - 1, 0)]!, inside[Math.min(i + 1, inside.length - 1)]!];
+      const length = Math.hypot(to[0] - from[0], to[1] - from[1]) || 1;
+      const [across, up] = [(tick * (from[1] - to[1])) / length, (tick * (to[0] - from[0])) / length];
+      ctx.moveTo(px - across, py - up);
+      ctx.lineTo(px + across, py + up);
+    });
+    ctx.stroke();
   }
 
   private drawBrushed(): void {
