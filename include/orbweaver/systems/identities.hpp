@@ -33,8 +33,8 @@ struct IdentityError {
 /// (Elsewhere the trace of J need not vanish: the form may vary.)
 [[nodiscard]] IdentityError pairing_error(const System& system, const std::vector<double>& equilibrium);
 
-/// Whether a system that conserves an energy and declares no symplectic form may have one all the same: its dimension is
-/// even, and the pairs of `pairing_error` are there at each of these equilibria (at least one). They may be there
+/// Whether a system that conserves an energy and declares no symplectic form may have one all the same: its dimension
+/// is even, and the pairs of `pairing_error` are there at each of these equilibria (at least one). They may be there
 /// without a form.
 [[nodiscard]] bool may_be_symplectic(const System& system, const std::vector<std::vector<double>>& equilibria);
 
