@@ -203,7 +203,11 @@ void move_needed_payloads(const std::filesystem::path& folder, Checkpoint checkp
   }
   for (queue::Task& task : checkpoint.left_out) move(task.payload);
   store.sync();
-  for (int n = 0; n < 2; ++n) write_checkpoint(folder, checkpoint);  // the one before counts on nothing else either
+  core::pause_point("count on moved payloads");
+  write_checkpoint(folder, checkpoint);
+  core::pause_point("count on moved payloads alone");
+  write_checkpoint(folder, checkpoint);  // the one before counts on nothing else either
+  core::pause_point("remove payloads");
   remove_unlisted(folder, checkpoint);
 }
 
