@@ -13,6 +13,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
+#include "orbweaver/core/pause.hpp"
 #include "orbweaver/core/text.hpp"
 #include "orbweaver/scene/differences.hpp"
 #include "payload_store.hpp"
