@@ -5,9 +5,9 @@ set(fine_scene "${PROJECT_SOURCE_DIR}/drivers/scenes/double_pendulum_half_degree
 set(coarse --set continuation.step=2deg --set limits.period=12 --set starts.sweep.step=0.05 --set output.flush_seconds=0.2 --set output.flush_orbits=25)
 set(fine --set continuation.step=0.5deg --set limits.period=12 --set starts.sweep.step=0.01 --set output.flush_seconds=0.2 --set output.flush_orbits=100)
 
-# full_disk_test(<name> <ranks> <bytes> <segments> [KEY=value of run_program.cmake ...]): no file may grow beyond <bytes>
-# once <segments> segments stand.
-function(full_disk_test name ranks bytes segments)
+# full_disk_test(<name> <ranks> <limit> <place> [KEY=value of run_program.cmake ...]): no file may grow beyond <limit> once the
+# survey comes to <place> (full_disk.sh).
+function(full_disk_test name ranks limit place)
   set(command "$<TARGET_FILE:orbweaver>" survey "${fine_scene}" -o out ${coarse} -q)
   if(ranks GREATER 1)
     set(command ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks} ${command})
@@ -16,7 +16,7 @@ function(full_disk_test name ranks bytes segments)
   set(keys ${ARGN})
   list(TRANSFORM keys PREPEND "-D")
   orbweaver_add_ctest(system.${name} ${ranks} system 120 ${CMAKE_COMMAND}
-    "-DCOMMAND=${CMAKE_CURRENT_FUNCTION_LIST_DIR}/full_disk.sh|${bytes}|${segments}|${command}" -DSTATUS=3 ${keys}
+    "-DCOMMAND=${CMAKE_CURRENT_FUNCTION_LIST_DIR}/full_disk.sh|${limit}|${place}|${command}" -DSTATUS=3 ${keys}
     -P "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/run_program.cmake")
 endfunction()
 
@@ -32,12 +32,20 @@ foreach(ranks IN ITEMS 1 2 3)
   system_test(output_in_proc.${tag} ${ranks} 3 "ERR=cannot create the folder /proc/orbweaver|give -o a place where you may write"
     survey "${scene}" -o /proc/orbweaver ${limits})
   # A disk that is full at the first flush, and one that holds the segments but not the atlas made of them.
-  set(folder "${runs}/system.full_disk.${tag}/out")
-  full_disk_test(full_disk.${tag} ${ranks} 20000 0
-    "ERR=orbweaver: the run was ended on all ranks: |cannot |'out/segments/|.part'|File too large|Check the folder, its permissions and the free space."
+  foreach(limit IN ITEMS "20000:" "20000:20000" "2000:2000")
+    string(REPLACE ":" "_" name "full_disk.${limit}.${tag}")
+    set(folder "${runs}/system.${name}/out")
+    full_disk_test(${name} ${ranks} ${limit} "sync payloads"
+      "ERR=orbweaver: the run was ended on all ranks: |cannot |'out/segments/|.part'|File too large|Check the folder, its permissions and the free space."
+      "GONE=${folder}/segments/segment-000001.h5.part")
+  endforeach()
+  # One that is filled by others after the space was reserved.
+  set(folder "${runs}/system.full_disk_in_a_flush.${tag}/out")
+  full_disk_test(full_disk_in_a_flush.${tag} ${ranks} 2000: "write segment-000001.h5"
+    "ERR=orbweaver: the run was ended on all ranks: flush 0 failed|cannot write /|'out/segments/segment-000001.h5.part'|the free space."
     "GONE=${folder}/segments/segment-000001.h5.part")
   set(folder "${runs}/system.full_disk_at_the_end.${tag}/out")
-  full_disk_test(full_disk_at_the_end.${tag} ${ranks} 1800000 0
+  full_disk_test(full_disk_at_the_end.${tag} ${ranks} 1800000: "publish segment-000001.h5"
     "ERR=cannot reserve disk space for 'out/atlas.h5.part'|File too large|the free space"
     "HAS=${folder}/segments/segment-000001.h5" "GONE=${folder}/atlas.h5")
 endforeach()
@@ -45,7 +53,7 @@ endforeach()
 # A survey ended by a full disk after two flushes is resumed, whole or with a file of it damaged: it comes to the archive of an
 # undisturbed one, or is refused and stays as it was.
 set(broken "${runs}/system.broken_off")
-full_disk_test(broken_off 2 20000 2 "ERR=File too large|the free space" "HAS=${broken}/out/segments/checkpoint.previous"
+full_disk_test(broken_off 2 20000: "write segment-000003.h5" "ERR=File too large|the free space" "HAS=${broken}/out/segments/checkpoint.previous"
   "GONE=${broken}/out/atlas.h5")
 set(whole "${runs}/system.not_broken_off/out")
 system_test(not_broken_off 1 0 "OUT=4 families" "FRESH=${whole}" survey "${fine_scene}" -o out ${coarse})

@@ -1,27 +1,23 @@
 #!/usr/bin/env bash
-# full_disk.sh BYTES SEGMENTS COMMAND...: runs COMMAND, a survey into ./out, alone or under mpirun. Once SEGMENTS segments stand
-# there with a checkpoint after them (0: once MPI has started), no process of it can write a file beyond BYTES. Exits with the
-# status of COMMAND.
+# full_disk.sh LIMIT PLACE COMMAND...: runs COMMAND, a survey into ./out, alone or under mpirun. From where it first comes to PLACE
+# (core::pause_point) no process of it can write a file beyond LIMIT bytes (`N:`, or `N:N` where it may not raise the limit itself).
+# Exits with the status of COMMAND.
 set -u
-bytes=$1
-segments=$2
+limit=$1
+place=$2
 shift 2
 rm -rf out
-# It stands still before the next one, however fast the machine.
-if ((segments > 0)); then
-  export ORBWEAVER_PAUSE_SECONDS=1
-  ORBWEAVER_PAUSE_AT=$(printf 'write segment-%06d.h5' $((segments + 1)))
-  export ORBWEAVER_PAUSE_AT
-fi
-"$@" &
+: > errors
+ORBWEAVER_PAUSE_AT=$place ORBWEAVER_PAUSE_SECONDS=1 "$@" 2> errors &
 pid=$!
-written() { find out/segments -name 'segment-*.h5' ! -newer out/segments/checkpoint 2>/dev/null | wc -l; }
-for ((i = 0; i < 4000; ++i)); do
-  [[ -d out/segments && $(written) -ge $segments ]] && break
-  kill -0 "$pid" 2>/dev/null || break
+until grep -q "paused at" errors; do
+  kill -0 "$pid" 2> /dev/null || break
   sleep 0.01
 done
 for process in "$pid" $(pgrep -P "$pid"); do
-  prlimit --pid "$process" --fsize="$bytes:" || kill "$pid"
+  prlimit --pid "$process" --fsize="$limit" || kill "$pid"
 done
 wait "$pid"
+status=$?
+cat errors >&2
+exit $status
