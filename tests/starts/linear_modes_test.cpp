@@ -1,6 +1,5 @@
 #include "orbweaver/starts/linear_modes.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <map>
@@ -101,12 +100,12 @@ TEST(LinearModes, KernelVectorsSolveTheLinearProblem) {
 
 TEST(LinearModes, InMilliseconds) {
   const auto system = systems::make_system("double_pendulum", {{"m2", 1e6}});
-  const auto began = std::chrono::steady_clock::now();
+  const std::clock_t began = std::clock();  // of the processor, whatever else runs
   constexpr int times = 20;
   for (int n = 0; n < times; ++n) EXPECT_EQ(linear_modes(*system, std::vector<double>(4, 0.0)).oscillations.size(), 2u);
-  const double each = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() / times;
+  const double each = static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC / times;
   RecordProperty("seconds", fmt::format("{:.3e}", each));
-  EXPECT_LT(each, 0.05) << "a millisecond where nothing else runs";
+  EXPECT_LT(each, 0.05) << "a millisecond without sanitizers";
 }
 
 /// Zeros of Laguerre's polynomial of degree n, ascending: eigenvalues of its recurrence (Golub and Welsch 1969).
