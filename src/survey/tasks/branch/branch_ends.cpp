@@ -104,7 +104,8 @@ std::vector<continuation::Orbit> BranchEnds::look_behind_last(const std::optiona
     way.points = places_before(*arrival, _followed.curve, _symmetry, *last);
     if (way.points.size() > 1) way.crossing = way.points.back().loop;
   }
-  _events.add_folds(borne_out(*_followed.system, _followed.start.isotropy, before_last, way), _followed.curve.known());
+  for (const bifurcation::Fold& fold : borne_out(*_followed.system, _followed.start.isotropy, before_last, way))
+    _events.add_watched(fold);
   if (!arrival) {
     if (_followed.curve.known().size() > 2) _events.add_paired_folds(_followed.curve.known().size() - 2);
     return {};

@@ -12,14 +12,16 @@
 #include "tasks/branch/foldable.hpp"
 #include "tasks/orbit_row.hpp"
 #include "tasks/payload/keys.hpp"
+#include "tasks/units.hpp"
 
 namespace orbweaver::survey {
 
 void BranchEvents::go_on(bifurcation::DetectorState detector, const bifurcation::FoldWatch& folds, int count,
-                         std::vector<queue::Task> tasks) {
+                         double passed_one, std::vector<queue::Task> tasks) {
   _detector = bifurcation::Detector(std::move(detector), {});
   _folds = folds;
   _count = count;
+  _passed_one = passed_one;
   _tasks = std::move(tasks);
 }
 
@@ -38,9 +40,12 @@ std::optional<bifurcation::TestPoint> BranchEvents::probe(double position) {
 
 void BranchEvents::detect_zeros(const bifurcation::TestPoint& point) {
   const auto probing = [this](double position) { return probe(position); };
-  for (const bifurcation::Bracket& b : _detector.advance(point, probing))
+  for (const bifurcation::Bracket& b : _detector.advance(point, probing)) {
+    const bifurcation::TestFunction& function = _followed.functions[b.function];
+    if (bifurcation::has_sector(function.kind) && function.sector.q == 1 && !b.tangency) _passed_one = b.to;
     add_event({bifurcation::Event::Kind::test_function, _followed.functions[b.function], b.tangency, b.passed}, b.from,
               b.to, _followed.curve.known());
+  }
 }
 
 void BranchEvents::detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability) {
@@ -53,12 +58,42 @@ void BranchEvents::detect(const continuation::Orbit& orbit, const std::optional<
                : value_of(*_followed.system, quantity, orbit.loop);
   };
   using Quantity = bifurcation::Fold::Quantity;
-  add_folds(moves ? _folds.advance(orbit.arclength, archive::not_computed, archive::not_computed,
-                                   watched(Quantity::parameter, _folds.parameter))
-                  : _folds.advance(orbit.arclength, watched(Quantity::period, _folds.period),
-                                   watched(Quantity::energy, _folds.energy)),
-            _followed.curve.known());
+  for (const bifurcation::Fold& fold :
+       moves ? _folds.advance(orbit.arclength, archive::not_computed, archive::not_computed,
+                              watched(Quantity::parameter, _folds.parameter))
+             : _folds.advance(orbit.arclength, watched(Quantity::period, _folds.period),
+                              watched(Quantity::energy, _folds.energy)))
+    add_watched(fold);
   if (const std::size_t known = _followed.curve.known().size(); known > 2) add_paired_folds(known == 3 ? 0 : known - 3);
+}
+
+void BranchEvents::add_watched(const bifurcation::Fold& fold) {
+  const std::vector<continuation::FamilyCurve::Known>& known = _followed.curve.known();
+  const bool is_kept = known.size() < kept_orbits || fold.from >= known.front().position;
+  if (is_kept || is_in_known(fold)) return add_folds({fold}, known);
+  const bool is_period = fold.quantity == bifurcation::Fold::Quantity::period;
+  if (!is_period && _passed_one > fold.from) return;
+  const Units units(*_followed.system);
+  const double value = value_of(*_followed.system, fold.quantity, known.front().loop);
+  _followed.outcome.unlocated.push_back(fmt::format(
+      "{0} turns near {1:.12g} between {2:.6g} and {3:.6g} of the survey's lengths along the family, where it changes "
+      "by less than {4:.0e} of its size: where is hidden by rounding",
+      is_period ? "T" : units.level_name(), value * (is_period ? units.time : units.level()), fold.from,
+      known.front().position, bifurcation::FoldWatch::visible_change));
+}
+
+/// Whether the known orbits show the turn of a fold that the watch has found from before them: one between two others
+/// is beyond both, by more than rounding moves it.
+bool BranchEvents::is_in_known(const bifurcation::Fold& fold) const {
+  const std::vector<continuation::FamilyCurve::Known>& known = _followed.curve.known();
+  const auto value = [&](const loop::Loop& loop) { return value_of(*_followed.system, fold.quantity, loop); };
+  const double first = value(known.front().loop);
+  const double direction = value(known.back().loop) > first ? 1.0 : -1.0;
+  return std::any_of(known.begin() + 1, known.end() - 1, [&](const continuation::FamilyCurve::Known& one) {
+    const double beyond = direction * (first - value(one.loop));
+    return beyond > 0.0 &&
+           beyond > moved_by_rounding(*_followed.system, _followed.start.isotropy, fold.quantity, one.loop);
+  });
 }
 
 void BranchEvents::add_paired_folds(std::size_t way) {

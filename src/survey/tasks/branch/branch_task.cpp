@@ -68,7 +68,7 @@ void BranchTask::begin(const std::string& bytes) {
   BranchState state = unpack_branch_state(bytes);
   _branch.emplace(_followed.system, _followed.start, _options, std::move(state.frontier));
   for (const continuation::FamilyCurve::Known& known : state.known) _followed.curve.add(known, kept_orbits);
-  _events.go_on(std::move(state.detector), state.folds, state.events, std::move(state.children));
+  _events.go_on(std::move(state.detector), state.folds, state.events, state.passed_one, std::move(state.children));
   _sampled = bifurcation::SymmetryWatch::sampled(state.last.loop);
   _followed.last = std::move(state.last);
   _followed.before_first = state.before_first;
@@ -78,7 +78,8 @@ void BranchTask::begin(const std::string& bytes) {
 BranchState BranchTask::state_at(const continuation::Frontier& frontier) const {
   return {frontier,        _followed.curve.known(), _events.detector_state(),
           _events.folds(), _followed.last.value(),  _followed.before_first,
-          _events.count(), _followed.outcome,       _events.tasks()};
+          _events.count(), _events.passed_one(),    _followed.outcome,
+          _events.tasks()};
 }
 
 queue::TaskOutcome BranchTask::run() {
