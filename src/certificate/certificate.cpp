@@ -240,9 +240,9 @@ class Certifier::Parts {
     }
   }
 
-  // The most that a displacement of one coordinate at one of the instants t_m has grown by T, by products of differences
-  // over the segments: an error that is made on the way grows from there, and beside what repels orbits by far more than
-  // one that is made at their start.
+  // The most that a displacement of one coordinate at one of the instants t_m has grown by T, by products of
+  // differences over the segments: an error that is made on the way grows from there, and beside what repels orbits by
+  // far more than one that is made at their start.
   [[nodiscard]] double growth_on_the_way(double size) const {
     const auto d = static_cast<Eigen::Index>(_states.front().size());
     Eigen::MatrixXd to_end = Eigen::MatrixXd::Identity(d, d);

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/numerics/decompositions.hpp"
-#include "orbweaver/systems/structure_error.hpp"
+#include "structure_error.hpp"
 
 namespace orbweaver::systems {
 

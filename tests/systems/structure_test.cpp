@@ -15,7 +15,7 @@
 #include "orbweaver/systems/identities.hpp"
 #include "orbweaver/systems/model/model_system.hpp"
 #include "orbweaver/systems/registry.hpp"
-#include "orbweaver/systems/structure_error.hpp"
+#include "structure_error.hpp"
 #include "systems/samples.hpp"
 
 namespace orbweaver::systems::structure_test {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/systems/model/checks.hpp"
-#include "orbweaver/systems/structure_error.hpp"
+#include "structure_error.hpp"
 
 namespace orbweaver::systems {
 

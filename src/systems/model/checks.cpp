@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/systems/structure_error.hpp"
+#include "structure_error.hpp"
 
 namespace orbweaver::systems {
 
