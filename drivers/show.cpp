@@ -68,11 +68,17 @@ Command make_show_command(CLI::App& program) {
   parser
       ->add_option("--sort", options->selection.sort, "By this column; downwards with a `-` before it: --sort=-period")
       ->needs(table);
+  parser
+      ->add_flag(
+          "--all", options->selection.all_equilibria,
+          "Of equilibria every point of their curves, not only ends, Hopf points, folds and changes of stability")
+      ->needs(table);
   add_plugin_option(*parser);
   add_examples(*parser, {"orbweaver show out/double_pendulum/atlas.h5 families",
                          "orbweaver show out/double_pendulum/atlas.h5 orbits --family In-Phase --columns "
                          "step,period,energy --sort=-period",
                          "orbweaver show out/double_pendulum/atlas.h5 crossings --csv",
+                         "orbweaver show out/double_pendulum/atlas.h5 equilibria --all",
                          "orbweaver show out/double_pendulum/atlas.h5 findings"});
   return {parser, [options](const Invocation&) { return show(*options); }};
 }

@@ -9,9 +9,6 @@ namespace orbweaver::bifurcation {
 
 namespace {
 
-/// Changes of T, E and parameters below this, relative to the largest modulus so far, are the corrector's tolerance.
-constexpr double visible_change = 1e-10;
-
 /// True if the quantity has turned since `turn.before`.
 bool turned(const FoldWatch::Turn& turn, int direction) { return turn.direction != 0 && direction != turn.direction; }
 
@@ -25,7 +22,7 @@ void take(FoldWatch::Turn& turn, double position, double value, Fold::Quantity q
   }
   core::require(position > turn.position, "fold watch: positions must increase");
   const double change = value - turn.value;
-  if (!(std::abs(change) > visible_change * turn.scale)) return;
+  if (!(std::abs(change) > FoldWatch::visible_change * turn.scale)) return;
   const int direction = change > 0.0 ? 1 : -1;
   if (turned(turn, direction)) folds.push_back({quantity, turn.before, position});
   turn.before = turn.position;
@@ -37,7 +34,8 @@ void take(FoldWatch::Turn& turn, double position, double value, Fold::Quantity q
 /// Between the last two orbits that differ and `position`, the last one's, the slope there being `slope`.
 void take_end(const FoldWatch::Turn& turn, double position, double slope, Fold::Quantity quantity,
               std::vector<Fold>& folds) {
-  if (turn.direction == 0 || !(std::abs(slope) * (position - turn.before) > visible_change * turn.scale)) return;
+  if (turn.direction == 0 || !(std::abs(slope) * (position - turn.before) > FoldWatch::visible_change * turn.scale))
+    return;
   if (turned(turn, slope > 0.0 ? 1 : -1)) folds.push_back({quantity, turn.before, position});
 }
 

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "explained.hpp"
 #include "newton.hpp"
 #include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/core/error.hpp"
@@ -60,8 +61,9 @@ double largest(const std::vector<Eigen::VectorXd>& vectors) {
   return largest;
 }
 
-/// Of the orbit's reach: where it returns by no more, what a displacement grows to is not asked for.
-constexpr double far_return = 1e-9;
+/// Of the orbit's reach: where it returns by no more, what a displacement grows to is not asked for. So far off every
+/// orbit may return (verdict.cpp).
+constexpr double far_return = unexplained * integration_error;
 /// Of the reach: by how much a state is displaced to see it, a hundred times what the integrator's tolerance leaves.
 constexpr double displaced = 1e-11;
 
@@ -232,8 +234,32 @@ class Certifier::Parts {
         largest = std::fmax(largest, distance(other, end) / (displaced * found.reach));
       }
       found.displaced_growth = largest;
+      if (_system.structure().conserved.empty())
+        found.displaced_growth = std::fmax(largest, growth_on_the_way(displaced * found.reach));
     } catch (const core::NumericalError&) {
     }
+  }
+
+  // The most that a displacement of one coordinate at one of the instants t_m has grown by T, by products of
+  // differences over the segments: an error that is made on the way grows from there, and beside what repels orbits by
+  // far more than one that is made at their start.
+  [[nodiscard]] double growth_on_the_way(double size) const {
+    const auto d = static_cast<Eigen::Index>(_states.front().size());
+    Eigen::MatrixXd to_end = Eigen::MatrixXd::Identity(d, d);
+    double most = 0.0;
+    for (int m = _segments - 1; m >= 0; --m) {
+      const State& from = _states[static_cast<std::size_t>(m)];
+      const Eigen::VectorXd end = vector_of(integrate(_system, from, step(), _options.tolerance));
+      Eigen::MatrixXd over_segment(d, d);
+      for (Eigen::Index i = 0; i < d; ++i) {
+        State moved = from;
+        moved[static_cast<std::size_t>(i)] += size;
+        over_segment.col(i) = (vector_of(integrate(_system, moved, step(), _options.tolerance)) - end) / size;
+      }
+      to_end = (to_end * over_segment).eval();
+      most = std::max(most, to_end.colwise().norm().maxCoeff());
+    }
+    return most;
   }
 
   // The gradient of the energy, or, where nothing is conserved, every coordinate.

@@ -4,15 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "explained.hpp"
+
 namespace orbweaver::certificate {
 
 namespace {
 
-/// Of |z|: what the integrator's tolerance and rounding leave.
-constexpr double integration_error = 1e-13;
-/// How much more than its residual lets expect an orbit may be off. The closures of 10,000 orbits of the double
-/// pendulum, the swinging spring and the restricted problem were at most 5 times that, their drifts 0.6 times.
-constexpr double unexplained = 1e3;
 /// Of |H|: what summing its terms leaves, however small the orbit is. Measured: up to 2 eps at amplitudes of 1e-7.
 constexpr double energy_roundings = 32.0 * std::numeric_limits<double>::epsilon();
 /// Of the amplitude: fewer digits than four confirm no orbit.

@@ -1,10 +1,12 @@
 #include "orbweaver/report/show.hpp"
 
+#include <algorithm>
 #include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "notable_equilibria.hpp"
 #include "show_crossings.hpp"
 #include "show_equilibria.hpp"
 #include "show_families.hpp"
@@ -27,6 +29,23 @@ const archive::Table& shown_table(const archive::Archive& atlas, const std::stri
   throw core::InputError(fmt::format(
       "cannot show '{}': the tables of an atlas are families, orbits, crossings, loci, equilibria and findings", name));
 }
+
+namespace {
+
+void print_equilibria_of(std::ostream& out, const archive::Archive& atlas, const Selection& selection) {
+  TableView view = view_of(atlas, atlas.equilibria(), selection);
+  if (!selection.all_equilibria) {
+    const std::vector<std::size_t> notable = notable_equilibria(atlas.equilibria());
+    std::erase_if(view.rows, [&](std::size_t row) { return !std::binary_search(notable.begin(), notable.end(), row); });
+  }
+  if (selection.columns.empty())
+    print_equilibria(out, atlas, view.rows);
+  else
+    print_readable(out, atlas, view);
+  print_left_out_equilibria(out, atlas, view.rows.size());
+}
+
+}  // namespace
 
 void print_summary(std::ostream& out, const archive::Archive& atlas, const Layout& layout) {
   const archive::Header& header = atlas.header();
@@ -73,6 +92,8 @@ void print_table(std::ostream& out, const archive::Archive& atlas, const std::st
     print_json(out, view_of(atlas, table, selection));
   else if (name == "crossings" && selection.columns.empty())
     print_crossings(out, atlas, view_of(atlas, table, selection).rows);
+  else if (name == "equilibria")
+    print_equilibria_of(out, atlas, selection);
   else if (name == "orbits" || !selection.empty()) {
     TableView view = view_of(atlas, table, selection);
     if (selection.columns.empty()) drop_unread_columns(view);
@@ -81,8 +102,6 @@ void print_table(std::ostream& out, const archive::Archive& atlas, const std::st
     print_families(out, atlas, layout);
   else if (name == "loci")
     print_loci(out, atlas);
-  else if (name == "equilibria")
-    print_equilibria(out, atlas);
   else
     print_findings(out, atlas);
 }

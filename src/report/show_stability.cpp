@@ -14,6 +14,8 @@ namespace orbweaver::report {
 namespace {
 
 constexpr std::size_t most_intervals = 8;
+/// Changes of T that six digits show, relative to it.
+constexpr double shown_change = 1e-6;
 
 // The period at which stability changes between neighbouring orbits: of the crossing that was located there, or that of
 // the stable one.
@@ -49,6 +51,23 @@ double turn_near(const archive::Archive& atlas, std::size_t family, std::size_t 
   return atlas.orbits().reals("period")[orbit];
 }
 
+/// Whether T says which orbit of a family is meant: it only rises along it, or only falls.
+bool is_told_by_period(const archive::Archive& atlas, std::size_t first, std::size_t end) {
+  const auto& periods = atlas.orbits().reals("period");
+  double least = periods[first];
+  double most = periods[first];
+  bool rises = false;
+  bool falls = false;
+  for (std::size_t orbit = first; orbit < end; ++orbit) {
+    const double visible = shown_change * std::abs(periods[orbit]);
+    rises = rises || periods[orbit] > least + visible;
+    falls = falls || periods[orbit] < most - visible;
+    least = std::min(least, periods[orbit]);
+    most = std::max(most, periods[orbit]);
+  }
+  return rises != falls;
+}
+
 /// "8.44 .. 9.1"; "25.2693 .. 25.2999 .. 25.2621" where T turns between the ends, in the order along the family.
 std::string interval_text(const archive::Archive& atlas, std::size_t family, double from, double to, std::size_t first,
                           std::size_t last) {
@@ -62,7 +81,7 @@ std::string interval_text(const archive::Archive& atlas, std::size_t family, dou
   bool rising = false;
   bool moves = false;
   const auto pass = [&](double period, std::size_t orbit_before) {
-    if (period == before) return;
+    if (std::abs(period - before) <= shown_change * std::abs(period)) return;
     if (moves && rising != (period > before)) add(turn_near(atlas, family, orbit_before));
     moves = true;
     rising = period > before;
@@ -85,6 +104,8 @@ std::string stability_text(const archive::Archive& atlas, std::size_t family) {
   const auto& periods = atlas.orbits().reals("period");
   const auto first = static_cast<std::size_t>(atlas.families().integers("first_orbit")[family]);
   const auto end = first + static_cast<std::size_t>(atlas.families().integers("orbit_count")[family]);
+  const auto& steps = atlas.orbits().integers("step");
+  const bool is_told = first == end || is_told_by_period(atlas, first, end);
   std::vector<std::string> intervals;
   std::size_t known = 0;
   std::size_t stable = 0;
@@ -98,6 +119,7 @@ std::string stability_text(const archive::Archive& atlas, std::size_t family) {
       const double from = begin == first ? periods[begin] : boundary(atlas, family, begin, begin - 1);
       const double to = orbit == end ? periods[orbit - 1] : boundary(atlas, family, orbit - 1, orbit);
       intervals.push_back(interval_text(atlas, family, from, to, begin, orbit - 1));
+      if (!is_told) intervals.back() += fmt::format(" (steps {} to {})", steps[begin], steps[orbit - 1]);
     }
     begin = orbit + 1;
   }

@@ -5,8 +5,10 @@
 #include <numbers>
 #include <utility>
 
-#include "orbweaver/core/error.hpp"
+#include <fmt/format.h>
+
 #include "orbweaver/numerics/decompositions.hpp"
+#include "structure_error.hpp"
 
 namespace orbweaver::systems {
 
@@ -19,8 +21,11 @@ constexpr double same = 1e-9;
 
 AffineMap::AffineMap(Eigen::MatrixXd linear, Eigen::VectorXd constant)
     : matrix(std::move(linear)), offset(std::move(constant)) {
-  core::require(matrix.rows() == matrix.cols() && matrix.rows() == offset.size(),
-                "an affine map needs a square matrix and an offset of its size");
+  if (matrix.rows() != matrix.cols() || matrix.rows() != offset.size())
+    throw StructureError(
+        fmt::format("an affine map is of a {} x {} matrix and an offset of {} entries: give it a square "
+                    "matrix, and an offset of its size",
+                    matrix.rows(), matrix.cols(), offset.size()));
 }
 
 AffineMap AffineMap::identity(int dimension) { return Eigen::MatrixXd::Identity(dimension, dimension); }

@@ -12,6 +12,7 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/numerics/random.hpp"
+#include "orbweaver/systems/plugins.hpp"
 
 namespace orbweaver::systems {
 
@@ -188,8 +189,8 @@ std::string state_text(const System& system, const std::vector<double>& state) {
 
 [[noreturn]] void refuse(const System& system, const std::string& what, const std::vector<double>& state) {
   throw core::InputError(
-      fmt::format("the model of system '{}' contradicts its structure: {}, at {}; mend the model before it is surveyed",
-                  system.info().name, what, state_text(system, state)));
+      fmt::format("the model of system {} contradicts its structure: {}, at {}; mend the model before it is surveyed",
+                  name_with_plugin(system.info().name), what, state_text(system, state)));
 }
 
 void require(const System& system, const IdentityError& found) {

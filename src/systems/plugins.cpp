@@ -1,5 +1,6 @@
 #include "orbweaver/systems/plugins.hpp"
 
+#include <algorithm>
 #include <deque>
 #include <fstream>
 #include <span>
@@ -92,6 +93,13 @@ const Plugin& load_plugin(const std::filesystem::path& file) {
     refuse(file, error.what());
   }
   return plugins().emplace_back(std::move(plugin));
+}
+
+std::string name_with_plugin(const std::string& system) {
+  for (const Plugin& plugin : plugins())
+    if (std::find(plugin.models.begin(), plugin.models.end(), system) != plugin.models.end())
+      return fmt::format("'{}' ({})", system, plugin.file.string());
+  return fmt::format("'{}'", system);
 }
 
 const Plugin* find_plugin(const std::string& source) {

@@ -11,6 +11,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/text.hpp"
 #include "orbweaver/systems/model/checks.hpp"
+#include "orbweaver/systems/plugins.hpp"
 #include "orbweaver/systems/reduced_system.hpp"
 #include "pendulum_chain.hpp"
 #include "registry_lines.hpp"
@@ -120,12 +121,13 @@ std::shared_ptr<const System> made(const RegistryLine& line, const Bound& bound)
   const bool is_built_in =
       std::any_of(built_in.begin(), built_in.end(), [&](const RegistryLine& own) { return own.make == line.make; });
   if (is_built_in) return line.make(bound);
+  const std::string& name = line.info().name;
   try {
     return line.make(bound);
   } catch (const core::Error&) {
     throw;
   } catch (const std::exception& error) {
-    throw core::InputError(fmt::format("the plugin's system '{}': {}", line.info().name, error.what()));
+    throw core::InputError(fmt::format("the plugin's system {}: {}", name_with_plugin(name), error.what()));
   }
 }
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "certificate/decay.hpp"
+#include "orbweaver/certificate/verdict.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/scaled_system.hpp"
@@ -86,6 +87,45 @@ TEST(Certificate, MeasuresHowAnErrorOfTheEnergyGrows) {
     EXPECT_NEAR(found.displaced_growth / std::hypot(1.0, 2.0 * pi * shear), 1.0, 0.02) << shear;
   }
   EXPECT_TRUE(std::isnan(certify(ShearedRotator(0.0), loop).displaced_growth)) << "it returns to rounding";
+}
+
+/// r = cos(phase), an orbit beside which others part like exp(strength sin(phase)): not at all once around.
+class RepellingHalfWay final : public test::PointSystem {
+ public:
+  explicit RepellingHalfWay(double strength) : PointSystem(turning()), _strength(strength) {}
+
+  [[nodiscard]] Eigen::VectorXd field_at(const Eigen::VectorXd& z) const override {
+    return Eigen::Vector2d(_strength * std::cos(z(1)) * (z(0) - std::cos(z(1))) - std::sin(z(1)), 1.0);
+  }
+  [[nodiscard]] Eigen::MatrixXd jacobian_at(const Eigen::VectorXd& z) const override {
+    const double off = z(0) - std::cos(z(1));
+    Eigen::Matrix2d jacobian;
+    jacobian << _strength * std::cos(z(1)), _strength * std::sin(z(1)) * (std::cos(z(1)) - off) - std::cos(z(1)), 0.0,
+        0.0;
+    return jacobian;
+  }
+
+ private:
+  static systems::Structure turning() {
+    systems::Structure structure = test::structure_of(2);
+    structure.angles = {1};
+    return structure;
+  }
+  double _strength;
+};
+
+// It begins where others are farthest: what is displaced there comes back to it by then.
+TEST(Certificate, MeasuresHowAnErrorOnTheWayGrows) {
+  loop::Loop loop = loop::constant_loop(std::vector<double>{0.0, 0.5 * pi}, 2.0 * pi, 3);
+  loop.sine(1, 0) = -1.0;
+  loop.winding = {0, 1};
+  for (const double strength : {8.0, 10.0}) {
+    const Certificate found = certify(RepellingHalfWay(strength), loop);
+    EXPECT_LT(found.closure, 1e-9);
+    EXPECT_NEAR(found.displaced_growth / std::exp(2.0 * strength), 1.0, 0.1) << strength;
+    EXPECT_EQ(judge(found, {.period = 2.0 * pi, .residual = 1e-15, .amplitude = 1.0, .growth = 1.0}).verdict,
+              Verdict::holds);
+  }
 }
 
 TEST(Certificate, IsThatOfTheOrbitUnderAnyTimeMap) {

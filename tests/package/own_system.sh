@@ -54,6 +54,19 @@ expect_refusal "plugin_source" mpirun -n 2 orbweaver survey other.yaml -o out --
 expect_refusal "cannot be loaded" orbweaver verify --plugin two_masses.yaml out/atlas.h5
 expect_refusal "there is no such file" orbweaver verify --plugin nowhere.so out/atlas.h5
 expect_refusal "which there is already" orbweaver build-system --model duffing --effects drive -o drive.so
+# A structure that does not fit its model: the item is named once, whatever the number of ranks, and no place in Orbweaver's own sources.
+sed 's/"two_masses"/"wrong"/; s/{"energy"}/{"energy", "momentum"}/' two_masses.cpp >wrong.cpp
+sed 's/two_masses.so/wrong.so/' two_masses.yaml >wrong.yaml
+orbweaver build-system wrong.cpp -o wrong.so
+for ranks in 1 2 3; do
+  expect_refusal "structure.conserved names 2 quantities (energy, momentum)" mpirun -n "$ranks" orbweaver survey wrong.yaml -o wrong
+  (($(grep -c "the plugin's system 'wrong' (.*/wrong.so)" refused.txt) == 1)) || fail "the plugin is not named once: $(cat refused.txt)"
+  ! grep -qE '[ch]pp:[0-9]' refused.txt || fail "a place in a source is named: $(cat refused.txt)"
+done
+sed 's/"wrong"/"false"/; s/{"energy", "momentum"}/{"energy"}/; s/{"R", back}/{"R", minus}/; s/{"M", minus}, //' wrong.cpp >false.cpp
+sed 's/two_masses.so/false.so/' two_masses.yaml >false.yaml
+orbweaver build-system false.cpp -o false.so
+expect_refusal "false.so) contradicts its structure: expected f(R z) = -R f(z)" mpirun -n 2 orbweaver survey false.yaml -o false
 echo 'int nothing;' >nothing.cpp
 expect_refusal "has no symbol \`orbweaver_plugin\`" orbweaver build-system nothing.cpp -o nothing.so
 echo 'int nothing' >nothing.cpp

@@ -45,13 +45,19 @@ TEST(ShowStability, IntervalsNameTheTurnsOfThePeriod) {
     return stability_text(atlas, 0);
   };
   EXPECT_EQ(text({25.2693, 25.28, 25.2999, 25.27, 25.2621, 25}, {1, 1, 1, 1, 1, 3}),
-            "stable T 25.2693 .. 25.2999 .. 25.2621");
+            "stable T 25.2693 .. 25.2999 .. 25.2621 (steps 0 to 4)");
   EXPECT_EQ(text({25.2693, 25.28, 25.2999, 25.27, 25.2621, 25}, {1, 1, 1, 1, 1, 3}, 25.3001),
-            "stable T 25.2693 .. 25.3001 .. 25.2621");
-  EXPECT_EQ(text({1, 2, 2, 1.5, 3, 9}, {1, 1, 1, 1, 1, 3}), "stable T 1 .. 2 .. 1.5 .. 3");
+            "stable T 25.2693 .. 25.3001 .. 25.2621 (steps 0 to 4)");
+  EXPECT_EQ(text({1, 2, 2, 1.5, 3, 9}, {1, 1, 1, 1, 1, 3}), "stable T 1 .. 2 .. 1.5 .. 3 (steps 0 to 4)");
   EXPECT_EQ(text({1, 2, 3, 4, 5, 6}, {1, 1, 1, 1, 1, 3}), "stable T 1 .. 5");
   EXPECT_EQ(text({1, 3, 2, 4, 3, 5, 4, 9}, {1, 1, 1, 1, 1, 1, 1, 3}),
-            "stable T 1 .. 4 (within 1 .. 5, turning 5 times)");
+            "stable T 1 .. 4 (within 1 .. 5, turning 5 times) (steps 0 to 6)");
+  // T does not turn where the orbits are stable, but there are others with the same T.
+  EXPECT_EQ(text({1, 2, 3, 2.5, 2, 1.5}, {1, 1, 3, 3, 1, 1}),
+            "stable T 1 .. 2 (steps 0 to 1), 2 .. 1.5 (steps 4 to 5)");
+  EXPECT_EQ(text({2, 2, 2, 2}, {1, 1, 3, 3}), "stable T 2 (steps 0 to 1)");
+  // What six digits do not show is no turn.
+  EXPECT_EQ(text({1, 2, 2 - 1e-8, 3, 4}, {1, 1, 1, 1, 3}), "stable T 1 .. 3");
 }
 
 // Below the least double a single multiplier is not known, but its logarithm is.

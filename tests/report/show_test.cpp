@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <sstream>
 #include <tuple>
 
@@ -208,6 +209,79 @@ TEST(Show, TheHeadHasTheSystemItsParametersAndUnits) {
   EXPECT_THAT(known.str(),
               HasSubstr("double_pendulum: Ideal double pendulum, with damping\nparameters   c1 = 0.25 N m s/rad, c2 "
                         "= 0.5 N m s/rad,\n             g = 9.81 m/s^2, l1 = 1 m,"));
+}
+
+/// A curve of `points` equilibria from step 0 on, stable up to `stable`, and one equilibrium beside it.
+Records with_equilibria(int points, int stable) {
+  const Header header = test::sample_header();
+  Records records = test::sample_records(header);
+  const std::size_t d = header.state_names.size();
+  for (int step = 0; step < points; ++step) {
+    EquilibriumRecord& point = records.equilibria.emplace_back();
+    point.step = step;
+    point.arclength = 0.1 * step;
+    point.kind = "equilibrium";
+    point.parameter = step;
+    point.state.assign(d, 0.0);
+    point.stability = step <= stable ? "stable" : "unstable";
+  }
+  EquilibriumRecord& other = records.equilibria.emplace_back(records.equilibria.front());
+  other.equilibrium = 1;
+  return records;
+}
+
+/// The steps of the rows that are shown, and what is said behind them.
+std::pair<std::vector<int>, std::string> shown_equilibria(const std::string& folder, const Records& records,
+                                                          const Selection& selection = {}) {
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder(folder), test::sample_header(), records));
+  std::vector<int> steps;
+  std::string behind;
+  for (const std::string& line : lines_of(selected(atlas, "equilibria", TextFormat::readable, selection))) {
+    int number = 0;
+    int step = 0;
+    if (line.find("left out") != std::string::npos)
+      behind = line;
+    else if (std::sscanf(line.c_str(), "%d %d", &number, &step) == 2)
+      steps.push_back(step);
+  }
+  return {steps, behind};
+}
+
+TEST(Show, EquilibriaOfACurveAreThoseAtWhichSomethingIs) {
+  Records records = with_equilibria(40, 40);
+  records.equilibria[7].kind = "hopf";
+  records.equilibria[21].kind = "fold-parameter";
+  records.equilibria[30].kind = "a kind that comes later";
+  records.equilibria[33].note = "why it ends";
+  const auto [steps, behind] = shown_equilibria("equilibria", records);
+  EXPECT_THAT(steps, ElementsAre(0, 7, 21, 30, 33, 39, 0));
+  EXPECT_THAT(behind, testing::AllOf(HasSubstr("34 of 41 points are left out"), HasSubstr("--all")));
+}
+
+TEST(Show, EquilibriaWhoseStabilityChangesWithoutAReasonAreShown) {
+  Records records = with_equilibria(40, 11);
+  EXPECT_THAT(shown_equilibria("stability_changes", records).first, ElementsAre(0, 11, 12, 39, 0));
+  records.equilibria[12].kind = "hopf";  // which says it
+  EXPECT_THAT(shown_equilibria("stability_at_hopf", records).first, ElementsAre(0, 12, 39, 0));
+}
+
+TEST(Show, AllEquilibriaWhereTheyAreAskedForAndNothingIsSaidBehindThem) {
+  const Records records = with_equilibria(40, 40);
+  const auto [steps, behind] = shown_equilibria("all_equilibria", records, {.all_equilibria = true});
+  EXPECT_EQ(steps.size(), 41U);
+  EXPECT_EQ(behind, "");
+  const auto [few, nothing] = shown_equilibria("few_equilibria", with_equilibria(2, 2));
+  EXPECT_THAT(few, ElementsAre(0, 1, 0));
+  EXPECT_EQ(nothing, "");
+}
+
+TEST(Show, EquilibriaInAnOrderOfTheirOwnAreTheSameOnes) {
+  Records records = with_equilibria(40, 40);
+  records.equilibria[7].kind = "hopf";
+  EXPECT_THAT(shown_equilibria("sorted_equilibria", records, {.sort = "-parameter"}).first, ElementsAre(39, 7, 0, 0));
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("equilibria_json"), test::sample_header(), records));
+  EXPECT_EQ(lines_of(shown(atlas, "equilibria", TextFormat::csv)).size(), 42U);  // with the head
+  EXPECT_EQ(lines_of(shown(atlas, "equilibria", TextFormat::json)).size(), 43U);
 }
 
 TEST(Show, FindingsALineEach) {

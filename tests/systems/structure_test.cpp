@@ -1,15 +1,21 @@
 // What holds depends on parameter values and effects, and the system evaluates what its structure names.
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/systems/identities.hpp"
 #include "orbweaver/systems/model/model_system.hpp"
 #include "orbweaver/systems/registry.hpp"
+#include "structure_error.hpp"
 #include "systems/samples.hpp"
 
 namespace orbweaver::systems::structure_test {
@@ -167,27 +173,93 @@ TEST(Structure, GuardsAreFunctionsOfTheState) {
   EXPECT_THROW((void)make_system("henon_heiles")->guard(0, z), core::MisuseError);
 }
 
-TEST(Structure, OnesThatDoNotFitTheirModelAreRefused) {
-  const ModelInfo info = Springs::info();
+TEST(Structure, OnesThatDoNotFitTheirModelAreRefusedByTheItemThatDoesNot) {
   const Structure good = springs({})->structure();
-  EXPECT_NO_THROW(check(good, info, 4, 2));
-  Structure bad = good;
-  bad.dimension = 5;
-  EXPECT_THROW(check(bad, info, 4, 2), core::MisuseError);
-  bad = good;
-  for (const int angle : {0, -1, 4}) {  // the winding number of 0 has no name
-    bad.angles = {angle};
-    EXPECT_THROW(check(bad, info, 4, 2), core::MisuseError);
+  EXPECT_NO_THROW(check(good, Springs::info(), 4, 2));
+  const Eigen::Matrix4d identity = Eigen::Matrix4d::Identity();
+  const Eigen::MatrixXd flat = Eigen::MatrixXd::Identity(4, 3);
+  using Change = std::function<void(Structure&)>;
+  const std::vector<std::pair<std::string, Change>> wrong{
+      {"structure.dimension is 5, and the model's dimension 4", [](Structure& s) { s.dimension = 5; }},
+      {"structure.angles has 0, 'x', whose winding number has no name", [](Structure& s) { s.angles = {0}; }},
+      {"structure.angles[0] is -1: expected the number of a coordinate, from 0 to 3",
+       [](Structure& s) { s.angles = {-1}; }},
+      {"structure.angles[0] is 4", [](Structure& s) { s.angles = {4}; }},
+      {"structure.conserved names 3 quantities (energy, p, q), and the model has functions for 2",
+       [](Structure& s) {
+         s.conserved = {"energy", "p", "q"};
+       }},
+      {"structure.conserved[0] is 'p'",
+       [](Structure& s) {
+         s.conserved = {"p", "p"};
+       }},
+      {"'Q': its matrix is 2 x 2, and the state has 4 coordinates",
+       [](Structure& s) {
+         s.reversors.push_back({"Q", Eigen::Matrix2d::Identity()});
+       }},
+      {"structure.equivariances[0], 'Q': its matrix is 4 x 3",
+       [&](Structure& s) {
+         s.equivariances = {{"Q", flat}};
+       }},
+      {"structure.equivariances[0], 'Q': done often enough a symmetry is the identity",
+       [&](Structure& s) {
+         s.equivariances = {{"Q", 2.0 * identity}};
+       }},
+      {"structure.reversors[0], 'Q': done often enough",
+       [&](Structure& s) {
+         s.reversors = {{"Q", 0.0 * identity}};
+       }},
+      {"structure.equivariances[0], 'Q': it is the identity",
+       [&](Structure& s) {
+         s.equivariances = {{"Q", identity}};
+       }},
+      {"structure.reversors[1], 'Q': it is the same map as 'R'",
+       [](Structure& s) {
+         s.reversors.push_back({"Q", s.reversors.front().map});
+       }},
+      {"structure.reversors[0], 'S': the name is that of structure.equivariances[0], 'S'",
+       [](Structure& s) { s.reversors.front().name = "S"; }},
+      {"structure.reversors[0], '1': the name is that of the identity",
+       [](Structure& s) { s.reversors.front().name = "1"; }},
+      {"structure.reversors[0], '': expected a name", [](Structure& s) { s.reversors.front().name = ""; }},
+      {"structure.symplectic is true, and so is structure.dissipative",
+       [](Structure& s) { s.symplectic = s.dissipative = true; }},
+      {"structure.symplectic is true, and structure.conserved is empty",
+       [](Structure& s) {
+         s.symplectic = true;
+         s.conserved = {};
+       }},
+      {"structure.driven says that the last coordinate", [](Structure& s) {
+         s.driven = true;
+         s.angles = {};
+       }}};
+  for (const auto& [what, change] : wrong) {
+    Structure bad = good;
+    change(bad);
+    EXPECT_THAT(([&] { check(bad, Springs::info(), 4, 2); }),
+                testing::ThrowsMessage<StructureError>(testing::HasSubstr(what)))
+        << what;
   }
-  bad = good;
-  bad.reversors.push_back({"Q", Eigen::Matrix2d::Identity()});
-  EXPECT_THROW(check(bad, info, 4, 2), core::MisuseError);
-  EXPECT_THROW(check(good, info, 4, 0), core::MisuseError);
-  for (const char* taken : {"S", "1", ""}) {
-    bad = good;
-    bad.reversors.front().name = taken;
-    EXPECT_THROW(check(bad, info, 4, 2), core::MisuseError) << taken;
-  }
+  ModelInfo nameless = Springs::info();
+  nameless.winding_names.pop_back();
+  EXPECT_THAT(([&] { check(good, nameless, 4, 2); }),
+              testing::ThrowsMessage<StructureError>(
+                  testing::HasSubstr("info.winding_names has 3 names, and the state 4 coordinates")));
+}
+
+TEST(Structure, GuardsWantAFunction) {
+  Structure structure = springs({})->structure();
+  structure.guards = {{"r", "the centre"}};
+  EXPECT_THAT([&] { check_without_guards(structure); },
+              testing::ThrowsMessage<StructureError>(testing::HasSubstr("structure.guards names 'r'")));
+}
+
+TEST(Bound, AParameterThatInfoDoesNotNameIsTold) {
+  const Bound bound{{{"c", 1.0}, {"k", 2.0}}, {}};
+  EXPECT_EQ(bound["k"], 2.0);
+  EXPECT_THAT([&] { static_cast<void>(bound["kk"]); }, testing::ThrowsMessage<StructureError>(testing::HasSubstr(
+                                                           "a parameter 'kk', which info.parameters does not "
+                                                           "name; it names c, k")));
 }
 
 TEST(AffineMap, ComposesAndInverts) {
@@ -199,7 +271,7 @@ TEST(AffineMap, ComposesAndInverts) {
   EXPECT_LT((about.inverse()(about(Eigen::Vector2d(0.3, 0.7))) - Eigen::Vector2d(0.3, 0.7)).norm(), 1e-15);
   EXPECT_TRUE((half * half).is_same(AffineMap::identity(2), {}));
   EXPECT_FALSE(half.is_linear());
-  EXPECT_THROW(AffineMap(Eigen::MatrixXd::Identity(2, 2), Eigen::VectorXd::Zero(3)), core::MisuseError);
+  EXPECT_THROW(AffineMap(Eigen::MatrixXd::Identity(2, 2), Eigen::VectorXd::Zero(3)), StructureError);
 }
 
 TEST(AffineMap, IsTheSameModuloWholeTurnsOfAngles) {

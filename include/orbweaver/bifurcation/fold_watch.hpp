@@ -17,9 +17,11 @@ struct Fold {
 /// Finds folds from the orbits of a family one after the other.
 class FoldWatch {
  public:
-  /// The folds that this orbit shows, between it and up to two earlier ones that differ by more than rounding:
-  /// differences count above 1e-10 times the largest modulus so far. Quantities that are NaN are passed over. Throws
-  /// MisuseError unless positions increase.
+  /// Changes of T, E and parameters below this, relative to the largest modulus so far, are the corrector's tolerance.
+  static constexpr double visible_change = 1e-10;
+
+  /// The folds that this orbit shows, between it and up to two earlier ones that differ by more than `visible_change`.
+  /// Quantities that are NaN are passed over. Throws MisuseError unless positions increase.
   [[nodiscard]] std::vector<Fold> advance(double position, double period, double energy,
                                           double parameter = std::numeric_limits<double>::quiet_NaN());
 

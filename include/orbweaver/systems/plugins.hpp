@@ -14,6 +14,9 @@ struct Plugin {
   std::vector<std::string> models;  ///< names of its systems, the first one first
 };
 
+/// "'mine' (/home/me/mine.so)" of a system that a loaded plugin brings, "'duffing'" of one of the program.
+[[nodiscard]] std::string name_with_plugin(const std::string& system);
+
 /// Loads a plugin, once, and adds its systems to the registry. Throws core::InputError that names the file: where it
 /// cannot be read, is none, was built for another version, compiler or processor, lacks a symbol, or brings a system or
 /// a combination of effects that there is already.

@@ -17,7 +17,8 @@ namespace {
 
 /// Orbits that are tried before two families count as different: Newton's method may fail beside one.
 constexpr int most_tries = 3;
-/// Orbits on either side of a crossing from which its own is found: as a location has (survey/tasks/branch_task.cpp).
+/// Orbits on either side of a crossing from which its own is found: as a location has
+/// (survey/tasks/branch/followed_branch.hpp).
 constexpr std::size_t orbits_beside = 3;
 /// From an orbit to the next by way of one between them, in parts of the chord: that of a family that turns by 90
 /// degrees is 1.4.

@@ -23,13 +23,15 @@ struct BranchState {
   continuation::Orbit last;
   double before_first = 0.0;
   int events = 0;
+  double passed_one = 0.0;            ///< as of BranchEvents
   BranchOutcome outcome;              ///< so far
   std::vector<queue::Task> children;  ///< so far
 
-  static constexpr int wire_version = 1;
+  static constexpr int wire_version = 2;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, frontier, known, detector, folds, last, before_first, events, outcome, children);
+    core::serialize_members(archive, frontier, known, detector, folds, last, before_first, events, passed_one, outcome,
+                            children);
   }
 };
 

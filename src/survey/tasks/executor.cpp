@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "branch_task.hpp"
+#include "tasks/branch/branch_task.hpp"
 #include "equilibrium_places.hpp"
 #include "given_start.hpp"
 #include "locate_task.hpp"

@@ -22,6 +22,7 @@
 #include "orbweaver/loop/symmetry/subspace.hpp"
 #include "orbweaver/loss/unknowns.hpp"
 #include "stability_columns.hpp"
+#include "tasks/branch/followed_branch.hpp"
 #include "units.hpp"
 
 namespace orbweaver::survey {
@@ -157,7 +158,7 @@ class Location {
     _outcome.remark = to_text(why);
     _outcome.undecided = _event.passed || (_event.tangency && why.reason != bifurcation::NotLocated::Reason::no_event);
     if (done.failed)
-      if (const std::string hidden = hidden_in(family); !hidden.empty()) {
+      if (const std::string hidden = hidden_in(family, why.reason); !hidden.empty()) {
         done.failed = false;
         _outcome.undecided = true;
         _outcome.remark += "; " + hidden;
@@ -169,8 +170,12 @@ class Location {
     return done;
   }
 
-  /// Why one of the orbits on both sides of the event is not told from others; empty where both are.
-  [[nodiscard]] std::string hidden_in(const continuation::FamilyCurve& family) const {
+  /// Why rounding hides the event: its function has no sign on the way to it, or one of the orbits on both sides is not
+  /// told from others. Empty where neither is so.
+  [[nodiscard]] std::string hidden_in(const continuation::FamilyCurve& family,
+                                      bifurcation::NotLocated::Reason reason) const {
+    if (reason == bifurcation::NotLocated::Reason::no_zero && is_cut(family))
+      return "on all orbits that are known between both signs of the function it is within its error bound";
     const loop::Loop* beside = nullptr;
     std::string why;
     for (const continuation::FamilyCurve::Known& known : family.known()) {
@@ -179,6 +184,12 @@ class Location {
       beside = &known.loop;
     }
     return why.empty() ? steep_in(family) : why;
+  }
+
+  /// Whether the function had its sign before the event on the first known orbit, or before it: those since have none.
+  [[nodiscard]] bool is_cut(const continuation::FamilyCurve& family) const {
+    return _event.kind == Event::Kind::test_function && family.known().size() >= kept_orbits &&
+           _work.from <= family.known().front().position;
   }
 
   /// Says so where an index is between -2 and 2 on too short a part of the way between the known orbits around the

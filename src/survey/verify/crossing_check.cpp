@@ -36,7 +36,7 @@ namespace {
 
 using archive::CrossingKind;
 
-/// From which a crossing's is found: as a location has them (survey/tasks/branch_task.cpp).
+/// From which a crossing's is found: as a location has them (survey/tasks/branch/followed_branch.hpp).
 constexpr std::size_t orbits_given = 5;
 /// Relative, of period and energy, and of the state relative to the orbit's size; of 1 + the arclength. At most a
 /// hundredth of it was seen.

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <map>
 
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "structure_error.hpp"
 
 namespace orbweaver::systems {
 
@@ -14,6 +15,8 @@ namespace {
 
 /// The identity's name, in isotropies.
 constexpr const char* identity_name = "1";
+/// Entries of matrices that turn by a part of a circle are wrong by rounding; what is no symmetry is off by much more.
+constexpr double rounding_of_maps = 1e-9;
 
 template <class Named>
 std::string names_of(const std::vector<Named>& list) {
@@ -62,30 +65,126 @@ void check_value(const ModelInfo& info, const Parameter& parameter, double value
                                      parameter.name, parameter.meaning, info.name, range_text(parameter), value));
 }
 
-}  // namespace
+void check_names(const char* list, const std::vector<std::string>& names, int dimension, const char* what_to_do) {
+  if (static_cast<int>(names.size()) != dimension)
+    throw StructureError(
+        fmt::format("{} has {} names, and the state {} coordinates: {}", list, names.size(), dimension, what_to_do));
+}
 
-void check(const Structure& structure, const ModelInfo& info, int dimension, int quantities) {
-  const auto d = static_cast<std::size_t>(dimension);
-  core::require(structure.dimension == dimension && info.state_names.size() == d && info.winding_names.size() == d,
-                "a model, its structure and its names have as many coordinates");
-  core::require(static_cast<int>(structure.conserved.size()) <= quantities,
-                "a model needs a function for every conserved quantity of its structure");
-  for (const int i : structure.angles) {
-    core::require(i >= 0 && i < dimension, "an angle is the number of a coordinate");
+void check_sizes(const Structure& structure, const ModelInfo& info, int dimension) {
+  check_names("info.state_names", info.state_names, dimension, "name each coordinate");
+  check_names("info.winding_names", info.winding_names, dimension,
+              "name the winding number of each angle, and give the other coordinates \"\"");
+  if (structure.dimension != dimension)
+    throw StructureError(
+        fmt::format("structure.dimension is {}, and the model's dimension {}: write structure.dimension = dimension",
+                    structure.dimension, dimension));
+}
+
+void check_conserved(const Structure& structure, int quantities) {
+  const std::vector<std::string>& names = structure.conserved;
+  if (static_cast<int>(names.size()) > quantities)
+    throw StructureError(fmt::format(
+        "structure.conserved names {} quantities ({}), and the model has functions for {}: set `quantities` "
+        "to their number, with a conserved<K> for each, or leave names out",
+        names.size(), joined(names), quantities));
+  for (std::size_t n = 0; n < names.size(); ++n)
+    if (names[n].empty() || std::count(names.begin(), names.end(), names[n]) > 1)
+      throw StructureError(
+          fmt::format("structure.conserved[{}] is '{}': give each quantity a name of its own", n, names[n]));
+}
+
+void check_angles(const Structure& structure, const ModelInfo& info) {
+  for (std::size_t n = 0; n < structure.angles.size(); ++n) {
+    const int i = structure.angles[n];
+    if (i < 0 || i >= structure.dimension)
+      throw StructureError(fmt::format("structure.angles[{}] is {}: expected the number of a coordinate, from 0 to {}",
+                                       n, i, structure.dimension - 1));
     if (info.winding_names[static_cast<std::size_t>(i)].empty())
-      throw core::MisuseError(
+      throw StructureError(
           fmt::format("structure.angles has {}, '{}', whose winding number has no name in info.winding_names: give "
                       "one, or leave it out of the angles",
                       i, info.state_names[static_cast<std::size_t>(i)]));
   }
-  core::require(!structure.driven || structure.is_angle(d - 1), "a drive's phase is the last coordinate and an angle");
-  std::set<std::string> names{identity_name};
-  for (const auto* symmetries : {&structure.equivariances, &structure.reversors})
-    for (const Symmetry& s : *symmetries) {
-      core::require(s.map.dimension() == dimension, "a symmetry acts on as many coordinates as its model has");
-      core::require(!s.name.empty() && names.insert(s.name).second,
-                    "symmetries have names, each its own, and none is \"1\", the name of the identity");
-    }
+  if (structure.driven && !structure.is_angle(static_cast<std::size_t>(structure.dimension) - 1))
+    throw StructureError(
+        fmt::format("structure.driven says that the last coordinate, '{}', is the phase of a drive: expected it among "
+                    "structure.angles",
+                    info.state_names.back()));
+}
+
+/// `places`: of the names that are taken, with which item has each.
+void check_symmetries(const Structure& structure, bool reversing, std::map<std::string, std::string>& places) {
+  const std::vector<Symmetry>& symmetries = reversing ? structure.reversors : structure.equivariances;
+  const char* list = reversing ? "reversors" : "equivariances";
+  const int dimension = structure.dimension;
+  const std::vector<int>& angles = structure.angles;
+  for (std::size_t n = 0; n < symmetries.size(); ++n) {
+    const auto& [name, map] = symmetries[n];
+    const std::string item = fmt::format("structure.{}[{}], '{}'", list, n, name);
+    if (name.empty())
+      throw StructureError(fmt::format("{}: expected a name, by which isotropies and families are told", item));
+    if (const auto [taken, is_new] = places.emplace(name, item); !is_new)
+      throw StructureError(
+          fmt::format("{}: the name is that of {}; give each symmetry a name of its own", item, taken->second));
+    if (map.matrix.rows() != dimension || map.matrix.cols() != dimension)
+      throw StructureError(
+          fmt::format("{}: its matrix is {} x {}, and the state has {} coordinates: give one of {} x {}", item,
+                      map.matrix.rows(), map.matrix.cols(), dimension, dimension, dimension));
+    if (map.offset.size() != dimension)
+      throw StructureError(fmt::format("{}: its offset has {} entries, and the state {} coordinates", item,
+                                       map.offset.size(), dimension));
+    const double volume = std::abs(map.matrix.determinant());
+    if (!map.offset.allFinite() || !(std::abs(volume - 1.0) < rounding_of_maps))
+      throw StructureError(
+          fmt::format("{}: done often enough a symmetry is the identity, so that the determinant of its matrix is 1 or "
+                      "-1; its modulus is {:.12g}: mend the matrix",
+                      item, volume));
+    if (!reversing && map.is_same(AffineMap::identity(dimension), angles))
+      throw StructureError(fmt::format("{}: it is the identity, which every system has: leave it out", item));
+    for (std::size_t other = 0; other < n; ++other)
+      if (map.is_same(symmetries[other].map, angles))
+        throw StructureError(
+            fmt::format("{}: it is the same map as '{}': leave one of them out", item, symmetries[other].name));
+  }
+}
+
+void check_symplectic(const Structure& structure) {
+  if (!structure.symplectic) return;
+  const auto refuse = [](const std::string& why) {
+    throw StructureError(fmt::format("structure.symplectic is true, {}", why));
+  };
+  if (structure.dissipative)
+    refuse("and so is structure.dissipative: a symplectic flow keeps volumes; set one of them");
+  if (!structure.driven && structure.dimension % 2 != 0)
+    refuse(
+        fmt::format("and the state has {} coordinates: a symplectic form needs an even number of them, beside the "
+                    "phase of a drive (structure.driven)",
+                    structure.dimension));
+  if (!structure.driven && structure.conserved.empty())
+    refuse(
+        "and structure.conserved is empty: a Hamiltonian field that does not depend on time conserves its energy; "
+        "name it there, or set symplectic to false");
+}
+
+}  // namespace
+
+void check(const Structure& structure, const ModelInfo& info, int dimension, int quantities) {
+  check_sizes(structure, info, dimension);
+  check_conserved(structure, quantities);
+  check_angles(structure, info);
+  std::map<std::string, std::string> places{{identity_name, "the identity"}};
+  check_symmetries(structure, false, places);
+  check_symmetries(structure, true, places);
+  check_symplectic(structure);
+}
+
+void check_without_guards(const Structure& structure) {
+  if (!structure.guards.empty())
+    throw StructureError(
+        fmt::format("structure.guards names '{}', and the model has no function for it: give it `double guard(int k, "
+                    "const double* z) const`, or leave the guard out",
+                    structure.guards.front().name));
 }
 
 std::string joined(const std::vector<std::string>& names) {

@@ -17,9 +17,12 @@ namespace orbweaver::systems {
 [[nodiscard]] Bound bound_to(const ModelInfo& info, const std::map<std::string, double>& given,
                              const std::vector<std::string>& effects, const FamilyScalars& scalars = {});
 
-/// Throws core::MisuseError unless the structure fits its model: sizes, angles with names for their windings, no more
-/// conserved quantities than functions for them.
+/// Throws StructureError unless the structure fits its model: as many names as coordinates, angles that are coordinates
+/// and have names for their windings, no more conserved quantities than functions for them, symmetries of the state's
+/// dimension and of finite order with names of their own, and nothing symplectic that cannot be so.
 void check(const Structure& structure, const ModelInfo& info, int dimension, int quantities);
+/// Throws StructureError if the structure of a model without a function for them names guards.
+void check_without_guards(const Structure& structure);
 
 /// "a, b, c", or "none" where the list is empty.
 [[nodiscard]] std::string joined(const std::vector<std::string>& names);

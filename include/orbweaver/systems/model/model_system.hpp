@@ -45,6 +45,8 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
  public:
   explicit ModelSystem(const Bound& bound) : _model(bound), _structure(Model::structure(bound)), _bound(bound) {
     check(_structure, Registered<Model>::info(), Model::dimension, Model::quantities);
+    if constexpr (!requires(const Numeric& model, const double* z) { model.guard(0, z); })
+      check_without_guards(_structure);
   }
 
   [[nodiscard]] const ModelInfo& info() const override { return Registered<Model>::info(); }

@@ -14,11 +14,8 @@ using bifurcation::Fold;
 
 namespace {
 
-/// Relative to their size, of changes of T and E: ten times what a fold is seen by (bifurcation/fold_watch), for
-/// what differences of them are off.
-constexpr double visible_part = 1e-9;
-/// Of that, what the watch sees.
-constexpr double seen_by_watch = 0.1;
+/// Relative to their size, of changes of T and E: ten times what the watch sees, for what differences of them are off.
+constexpr double visible_part = 10.0 * bifurcation::FoldWatch::visible_change;
 /// What roundings move is known from one set of them: others may move a quantity by so much more. Not measured.
 constexpr double of_one_rounding = 10.0;
 
@@ -78,12 +75,12 @@ bool is_rounding(const systems::System& system, const loop::Isotropy& isotropy, 
                  const std::vector<continuation::FamilyCurve::Known>& known) {
   const double change = value_of(system, quantity, orbit) - turn.value;
   if (std::isnan(change) || std::isnan(turn.position) || turn.direction * change > 0.0) return false;
-  if (std::abs(change) <= seen_by_watch * visible_part * turn.scale) return false;  // which the watch passes over
+  if (std::abs(change) <= bifurcation::FoldWatch::visible_change * turn.scale)
+    return false;  // which the watch passes over
   if (std::abs(change) <= moved_by_rounding(system, isotropy, quantity, orbit)) return true;
-  const auto before = std::find_if(known.begin(), known.end(),
-                                   [&](const auto& one) { return one.position == turn.position; });
-  return before != known.end() &&
-         std::abs(change) <= moved_by_rounding(system, isotropy, quantity, before->loop);
+  const auto before =
+      std::find_if(known.begin(), known.end(), [&](const auto& one) { return one.position == turn.position; });
+  return before != known.end() && std::abs(change) <= moved_by_rounding(system, isotropy, quantity, before->loop);
 }
 
 }  // namespace orbweaver::survey

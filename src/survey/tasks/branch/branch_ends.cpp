@@ -1,0 +1,149 @@
+#include "branch_ends.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "orbweaver/survey/tasks/branch_options.hpp"
+#include "tasks/branch/end_folds.hpp"
+#include "tasks/branch/requested.hpp"
+#include "tasks/orbit_row.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+/// Places from a family's second orbit to its birth at which slopes tell folds, from the first orbit on each so much
+/// nearer to the birth than the one before: the last is a thousandth of the first orbit's way from it.
+constexpr std::size_t places_from_birth = 7;
+constexpr double nearer_to_birth = 0.25;
+
+/// Test functions of a family's birth that are smaller vanish there, the family's own for one. Their error bounds say
+/// nothing: they take a Newton step, and the orbits of two families lie side by side. The crossing is located to 1e-9.
+constexpr double zero_at_birth = 1e-6;
+
+}  // namespace
+
+void BranchEnds::look_before_first(const std::optional<Arrival>& arrival) {
+  detect_from_birth(arrival);
+  folds_at_start();
+}
+
+/// The first orbit may lie so far out that an index has passed the values of other sectors on the way from the crossing
+/// where the family is born.
+void BranchEnds::detect_from_birth(const std::optional<Arrival>& arrival) {
+  if (_followed.work.lineage.crossing.empty() || _followed.curve.known().empty()) return;
+  const continuation::FamilyCurve::Known& first = _followed.curve.known().front();
+  std::vector<continuation::FamilyCurve::Known> known{
+      {first.position - continuation::arclength_between(_followed.start.base, first.loop), _followed.start.base,
+       first.arclength - _followed.before_first}};
+  known.insert(known.end(), _followed.curve.known().begin(), _followed.curve.known().end());
+  if (arrival && known.back().position > _followed.last->arclength) known.pop_back();  // it lies beyond the meeting
+  if (!_followed.functions.empty()) indices_from_birth(known);
+  folds_from_birth(known);
+}
+
+void BranchEnds::indices_from_birth(const std::vector<continuation::FamilyCurve::Known>& known) {
+  std::optional<spectrum::Stability> birth =
+      stability_of(*_followed.system, _followed.start.base, _followed.start.isotropy, _followed.team);
+  // Its value tells: its error bound is that of a place where orbits are not isolated.
+  if (birth) std::fill(birth->fundamental_error.begin(), birth->fundamental_error.end(), 0.0);
+  const auto at_birth = _followed.test_point(0.0, birth);
+  const auto at_first = _followed.test_point(
+      0.0, stability_of(*_followed.system, known[1].loop, _followed.start.isotropy, _followed.team));
+  for (std::size_t f = 0; f < _followed.functions.size(); ++f) {
+    const double before = at_birth.readings[f].value;
+    const int after = at_first.readings[f].sign();
+    const bool is_shown = std::abs(before) > zero_at_birth && before * after < 0.0;
+    if (is_shown)
+      _events.add_event({bifurcation::Event::Kind::test_function, _followed.functions[f], false}, known[0].position,
+                        known[1].position, known);
+    // Of two places of one function signs show none. The one where a family is born is none.
+    const double passed = std::abs(at_first.passed[f] - at_birth.passed[f]);
+    if (_followed.functions[f].sector.q > 2 && passed > 1.0)
+      _events.add_missed({f, known[0].position, known[1].position, static_cast<int>(passed) - (is_shown ? 1 : 0)});
+  }
+}
+
+/// Folds that the orbits from the first one on do not show: on the way from the birth to it, and on that to the second.
+void BranchEnds::folds_from_birth(const std::vector<continuation::FamilyCurve::Known>& known) {
+  continuation::FamilyCurve curve(_followed.system, _followed.start.isotropy,
+                                  branch_options(_followed.scene, _followed.team));
+  for (const continuation::FamilyCurve::Known& one : known) curve.add(one);
+  const double birth = known[0].position;
+  WayToEnd way;
+  way.crossing = _followed.start.base;
+  if (known.size() > 2) way.inner = known[2];
+  double place = known[1].position;
+  for (std::size_t n = 0; n < places_from_birth; ++n, place = birth + nearer_to_birth * (place - birth)) {
+    auto point = curve.at(place, true);
+    if (!point || point->tangent.empty()) break;
+    way.points.push_back(std::move(*point));
+  }
+  _events.add_folds(folds_on(*_followed.system, _followed.start.isotropy, way), known);
+}
+
+/// Of a family that goes on behind its first orbit, to the other side: a fold beside it shows on one of the two only.
+void BranchEnds::folds_at_start() {
+  const std::vector<continuation::FamilyCurve::Known>& known = _followed.curve.known();
+  if (!_followed.work.base_is_orbit || known.size() < 2) return;
+  const auto first = _followed.curve.at(known[0].position, true);
+  if (!first || first->tangent.empty()) return;
+  _events.add_folds(folds_on(*_followed.system, _followed.start.isotropy, {known[1], {*first}, std::nullopt}), known);
+}
+
+std::vector<continuation::Orbit> BranchEnds::look_behind_last(const std::optional<Arrival>& arrival) {
+  if (!_followed.last || _followed.curve.known().size() < 2) return {};
+  const auto last = _followed.curve.at(_followed.last->arclength, true);
+  if (!last || last->tangent.empty()) return {};
+  const std::vector<bifurcation::Fold> before_last =
+      _events.folds().finish(last->position, slopes_at(*_followed.system, *last));
+  WayToEnd way;
+  way.points = {*last};
+  if (arrival) {
+    way.points = places_before(*arrival, _followed.curve, _symmetry, *last);
+    if (way.points.size() > 1) way.crossing = way.points.back().loop;
+  }
+  for (const bifurcation::Fold& fold : borne_out(*_followed.system, _followed.start.isotropy, before_last, way))
+    _events.add_watched(fold);
+  if (!arrival) {
+    if (_followed.curve.known().size() > 2) _events.add_paired_folds(_followed.curve.known().size() - 2);
+    return {};
+  }
+  add_behind(way.points);
+  std::vector<continuation::Orbit> behind = orbits_to_zeros(way.points);
+  _events.add_folds(folds_on(*_followed.system, _followed.start.isotropy, way), _followed.curve.known());
+  if (way.points.size() > 1) {
+    const continuation::Orbit near = orbit_of(*_followed.system, way.points.back().loop, way.points.back().position);
+    for (continuation::Orbit& wanted : requested_orbits(_followed.scene, *_followed.system, _followed.curve,
+                                                        *_followed.last, near, _followed.outcome.remarks))
+      behind.push_back(std::move(wanted));
+  }
+  std::sort(behind.begin(), behind.end(), [](const auto& x, const auto& y) { return x.arclength < y.arclength; });
+  return behind;
+}
+
+/// The places behind the last orbit become known orbits, as if the branch had stepped to them.
+void BranchEnds::add_behind(std::vector<continuation::CurvePoint>& places) {
+  _followed.curve.drop_behind(_followed.last->arclength);
+  for (std::size_t n = 1; n < places.size(); ++n) {
+    places[n].position = places[n - 1].position + continuation::arclength_between(places[n - 1].loop, places[n].loop);
+    _followed.curve.add(places[n].position, places[n].loop, kept_orbits + n);
+  }
+}
+
+/// Of the places behind the last orbit those up to the last zero of a test function: crossings lie within families.
+std::vector<continuation::Orbit> BranchEnds::orbits_to_zeros(const std::vector<continuation::CurvePoint>& places) {
+  std::vector<continuation::Orbit> orbits;
+  for (std::size_t n = 1; n < places.size(); ++n) {
+    const int known = _events.count();
+    _events.detect_zeros(_followed.test_point(places[n].position, _followed.asked_stability(places[n].loop)));
+    while (_events.count() > known && orbits.size() < n) {
+      const continuation::CurvePoint& place = places[orbits.size() + 1];
+      orbits.push_back(orbit_of(*_followed.system, place.loop, place.position));
+    }
+  }
+  return orbits;
+}
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,158 @@
+#include "branch_events.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "orbweaver/archive/schema/records.hpp"
+#include "orbweaver/survey/tasks/branch_options.hpp"
+#include "tasks/branch/fold_pairs.hpp"
+#include "tasks/branch/foldable.hpp"
+#include "tasks/orbit_row.hpp"
+#include "tasks/payload/keys.hpp"
+#include "tasks/units.hpp"
+
+namespace orbweaver::survey {
+
+void BranchEvents::go_on(bifurcation::DetectorState detector, const bifurcation::FoldWatch& folds, int count,
+                         double passed_one, std::vector<queue::Task> tasks) {
+  _detector = bifurcation::Detector(std::move(detector), {});
+  _folds = folds;
+  _count = count;
+  _passed_one = passed_one;
+  _tasks = std::move(tasks);
+}
+
+void BranchEvents::watch_from_rest(const continuation::Orbit& first) {
+  (void)_folds.advance(first.arclength - continuation::arclength_between(_followed.start.base, first.loop),
+                       _followed.start.base.period, continuation::energy_of(*_followed.system, _followed.start.base));
+}
+
+std::optional<bifurcation::TestPoint> BranchEvents::probe(double position) {
+  if (position < _followed.curve.known().front().position) return std::nullopt;  // so far back no orbits are kept
+  const std::optional<continuation::CurvePoint> point = _followed.curve.at(position);
+  if (!point) return std::nullopt;
+  return _followed.test_point(position,
+                              stability_of(*_followed.system, point->loop, _followed.start.isotropy, _followed.team));
+}
+
+void BranchEvents::detect_zeros(const bifurcation::TestPoint& point) {
+  const auto probing = [this](double position) { return probe(position); };
+  for (const bifurcation::Bracket& b : _detector.advance(point, probing)) {
+    const bifurcation::TestFunction& function = _followed.functions[b.function];
+    if (bifurcation::has_sector(function.kind) && function.sector.q == 1 && !b.tangency) _passed_one = b.to;
+    add_event({bifurcation::Event::Kind::test_function, _followed.functions[b.function], b.tangency, b.passed}, b.from,
+              b.to, _followed.curve.known());
+  }
+}
+
+void BranchEvents::detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability) {
+  detect_zeros(_followed.test_point(orbit.arclength, stability));
+  // Where a parameter moves only it folds; T and the energy have extrema that say nothing.
+  const bool moves = !orbit.loop.parameters.empty();
+  const auto watched = [&](bifurcation::Fold::Quantity quantity, const bifurcation::FoldWatch::Turn& turn) {
+    return is_rounding(*_followed.system, _followed.start.isotropy, quantity, turn, orbit.loop, _followed.curve.known())
+               ? archive::not_computed
+               : value_of(*_followed.system, quantity, orbit.loop);
+  };
+  using Quantity = bifurcation::Fold::Quantity;
+  for (const bifurcation::Fold& fold :
+       moves ? _folds.advance(orbit.arclength, archive::not_computed, archive::not_computed,
+                              watched(Quantity::parameter, _folds.parameter))
+             : _folds.advance(orbit.arclength, watched(Quantity::period, _folds.period),
+                              watched(Quantity::energy, _folds.energy)))
+    add_watched(fold);
+  if (const std::size_t known = _followed.curve.known().size(); known > 2) add_paired_folds(known == 3 ? 0 : known - 3);
+}
+
+void BranchEvents::add_watched(const bifurcation::Fold& fold) {
+  const std::vector<continuation::FamilyCurve::Known>& known = _followed.curve.known();
+  const bool is_kept = known.size() < kept_orbits || fold.from >= known.front().position;
+  if (is_kept || is_in_known(fold)) return add_folds({fold}, known);
+  const bool is_period = fold.quantity == bifurcation::Fold::Quantity::period;
+  if (!is_period && _passed_one > fold.from) return;
+  const Units units(*_followed.system);
+  const double value = value_of(*_followed.system, fold.quantity, known.front().loop);
+  _followed.outcome.unlocated.push_back(fmt::format(
+      "{0} turns near {1:.12g} between {2:.6g} and {3:.6g} of the survey's lengths along the family, where it changes "
+      "by less than {4:.0e} of its size: where is hidden by rounding",
+      is_period ? "T" : units.level_name(), value * (is_period ? units.time : units.level()), fold.from,
+      known.front().position, bifurcation::FoldWatch::visible_change));
+}
+
+/// Whether the known orbits show the turn of a fold that the watch has found from before them: one between two others
+/// is beyond both, by more than rounding moves it.
+bool BranchEvents::is_in_known(const bifurcation::Fold& fold) const {
+  const std::vector<continuation::FamilyCurve::Known>& known = _followed.curve.known();
+  const auto value = [&](const loop::Loop& loop) { return value_of(*_followed.system, fold.quantity, loop); };
+  const double first = value(known.front().loop);
+  const double direction = value(known.back().loop) > first ? 1.0 : -1.0;
+  return std::any_of(known.begin() + 1, known.end() - 1, [&](const continuation::FamilyCurve::Known& one) {
+    const double beyond = direction * (first - value(one.loop));
+    return beyond > 0.0 &&
+           beyond > moved_by_rounding(*_followed.system, _followed.start.isotropy, fold.quantity, one.loop);
+  });
+}
+
+void BranchEvents::add_paired_folds(std::size_t way) {
+  add_folds(paired_folds(_followed.system, _followed.start.isotropy, branch_options(_followed.scene, _followed.team),
+                         _followed.curve.known(), way),
+            _followed.curve.known());
+}
+
+void BranchEvents::add_folds(const std::vector<bifurcation::Fold>& folds,
+                             const std::vector<continuation::FamilyCurve::Known>& known) {
+  using Kind = bifurcation::Event::Kind;
+  using Quantity = bifurcation::Fold::Quantity;
+  for (const bifurcation::Fold& fold : folds) {
+    const Kind kind = fold.quantity == Quantity::period   ? Kind::fold_period
+                      : fold.quantity == Quantity::energy ? Kind::fold_energy
+                                                          : Kind::fold_parameter;
+    add_event({kind, {}, false}, fold.from, fold.to, known);
+  }
+}
+
+void BranchEvents::add_event(const bifurcation::Event& event, double from, double to,
+                             std::vector<continuation::FamilyCurve::Known> known) {
+  // A family's own birth is no event: its index leaves 2 there like a power of the distance, first within its error.
+  const bool at_birth = _followed.work.lineage.depth > 0 && from <= 0.0;
+  const bool is_fold = event.kind != bifurcation::Event::Kind::test_function;
+  const bool is_in_sector = !is_fold && bifurcation::has_sector(event.function.kind);
+  if (at_birth && is_in_sector && event.function.sector.q == 1) return;
+  LocateWork work;
+  work.event = event;
+  const std::string what = is_fold        ? "fold"
+                           : is_in_sector ? fmt::format("q{}.j{}", event.function.sector.q, event.function.sector.j)
+                                          : std::string(bifurcation::name_of(event.function.kind));
+  work.key = event_key(_followed.work.key, _count++, what);
+  work.name = _followed.work.name;
+  work.lineage = _followed.work.lineage;
+  work.isotropy = _followed.work.isotropy;
+  work.before_first = _followed.before_first;
+  work.from = std::max(from, known.front().position);  // a long way without a sign may begin before
+  work.known = std::move(known);
+  work.to = to;
+  queue::Task& task = _tasks.emplace_back(task_of(work));
+  if (_store != nullptr) _store->keep(task);
+}
+
+/// Positions as they are: which arclength they have is known of the last few orbits only.
+void BranchEvents::add_missed(const bifurcation::MissedZeros& missed) {
+  const bifurcation::Sector& sector = _followed.functions[missed.function].sector;
+  _followed.outcome.unlocated.push_back(fmt::format(
+      "a multiplier passes exp(2 pi i {}/{}), or its inverse, {} times more than was found, {} to {} of the "
+      "survey's lengths along the family",
+      sector.j, sector.q, missed.count, missed.from, missed.to));
+}
+
+void BranchEvents::finish_zeros() {
+  const auto probing = [this](double position) { return probe(position); };
+  for (const bifurcation::Bracket& b : _detector.finish(probing))
+    add_event({bifurcation::Event::Kind::test_function, _followed.functions[b.function], b.tangency, b.passed}, b.from,
+              b.to, _followed.curve.known());
+  for (const bifurcation::MissedZeros& missed : _detector.missed()) add_missed(missed);
+}
+
+}  // namespace orbweaver::survey

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "orbweaver/bifurcation/crossing.hpp"
+#include "orbweaver/bifurcation/detector.hpp"
+#include "orbweaver/bifurcation/fold_watch.hpp"
+#include "orbweaver/continuation/family_curve.hpp"
+#include "orbweaver/continuation/orbit.hpp"
+#include "orbweaver/queue/task.hpp"
+#include "state/payload_store.hpp"
+#include "tasks/branch/followed_branch.hpp"
+
+namespace orbweaver::survey {
+
+/// The events on a branch: zeros of its test functions and folds, each of which becomes a task that locates it.
+class BranchEvents {
+ public:
+  /// `store`: for the payloads of the tasks; may be null.
+  BranchEvents(FollowedBranch& followed, PayloadStore* store) : _followed(followed), _store(store) {}
+
+  void go_on(bifurcation::DetectorState detector, const bifurcation::FoldWatch& folds, int count, double passed_one,
+             std::vector<queue::Task> tasks);
+  [[nodiscard]] const bifurcation::DetectorState& detector_state() const { return _detector.state(); }
+  [[nodiscard]] const bifurcation::FoldWatch& folds() const { return _folds; }
+  [[nodiscard]] int count() const { return _count; }
+  /// The position behind which no multiplier has passed 1; NaN before one has.
+  [[nodiscard]] double passed_one() const { return _passed_one; }
+  [[nodiscard]] const std::vector<queue::Task>& tasks() const { return _tasks; }
+  [[nodiscard]] std::vector<queue::Task> take_tasks() { return std::move(_tasks); }
+
+  /// A fold may lie between the first orbit of a family that begins at an equilibrium and the next.
+  void watch_from_rest(const continuation::Orbit& first);
+  void detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability);
+  void detect_zeros(const bifurcation::TestPoint& point);
+  /// What only the family's end shows of test functions, from the stored orbits alone, whatever was probed before.
+  void finish_zeros();
+
+  /// `way`: from this known orbit to the next.
+  void add_paired_folds(std::size_t way);
+  void add_folds(const std::vector<bifurcation::Fold>& folds,
+                 const std::vector<continuation::FamilyCurve::Known>& known);
+  /// A fold that the watch has found between the last orbit and another one, which may be no longer known. If a
+  /// multiplier has passed 1 since, as at every fold of the parameter or the energy, that has a location of its own;
+  /// without one where it turns is undecided.
+  void add_watched(const bifurcation::Fold& fold);
+  void add_event(const bifurcation::Event& event, double from, double to,
+                 std::vector<continuation::FamilyCurve::Known> known);
+  void add_missed(const bifurcation::MissedZeros& missed);
+
+ private:
+  [[nodiscard]] bool is_in_known(const bifurcation::Fold& fold) const;
+  [[nodiscard]] std::optional<bifurcation::TestPoint> probe(double position);
+
+  FollowedBranch& _followed;
+  PayloadStore* _store;
+  bifurcation::Detector _detector;
+  bifurcation::FoldWatch _folds;
+  int _count = 0;
+  double _passed_one = std::numeric_limits<double>::quiet_NaN();
+  std::vector<queue::Task> _tasks;
+};
+
+}  // namespace orbweaver::survey
