@@ -9,7 +9,7 @@ set(ORBWEAVER_TEST_ENVIRONMENT
   "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1"
   "OMPI_MCA_rmaps_base_oversubscribe=1"
   "OMPI_MCA_btl_base_warn_component_unused=0"
-  "ASAN_OPTIONS=fast_unwind_on_malloc=0"
+  "ASAN_OPTIONS=fast_unwind_on_malloc=0:allocator_may_return_null=1"
   "UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1"
   "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/cmake/lsan.supp")
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "schema/check_records.hpp"
 #include "schema/row_checksum.hpp"
 #include "write/fingerprint.hpp"
 
@@ -23,7 +24,7 @@ void SegmentFile::check_values() const {
   const auto counts = orbit_integers("modes_count");
   const auto dimension = static_cast<std::int64_t>(_file.header().state_names.size());
   for (std::size_t i = 0; i < counts.size(); ++i)
-    _file.expect(counts[i] == (2 * cutoffs[i] + 1) * dimension,
+    _file.expect(is_mode_count(counts[i], cutoffs[i], dimension),
                  fmt::format("has {} modes in row {}; cutoff {} asks for another number", counts[i], i, cutoffs[i]));
   const std::string problem = _file.change_in_header();
   _file.expect(problem.empty(), problem);
@@ -57,14 +58,15 @@ void SegmentFile::check_loops(const std::string& name, const std::string& datase
 void SegmentFile::check_ranges(const char* begin, const char* count, std::uint64_t total) const {
   const auto begins = orbit_integers(begin);
   const auto counts = orbit_integers(count);
+  const auto end = static_cast<std::int64_t>(total);
   std::int64_t next = 0;
   for (std::size_t i = 0; i < begins.size(); ++i) {
-    _file.expect(begins[i] == next && counts[i] >= 0,
+    _file.expect(begins[i] == next && counts[i] >= 0 && counts[i] <= end - next,
                  fmt::format("has {} = {} and {} = {} in row {}; the row was expected to begin at {}", begin, begins[i],
                              count, counts[i], i, next));
     next += counts[i];
   }
-  _file.expect(static_cast<std::uint64_t>(next) == total,
+  _file.expect(next == end,
                fmt::format("stores {} values where its rows of {} add up to {}", total, count, next));
 }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "schema/check_records.hpp"
+
 namespace orbweaver::archive {
 
 namespace {
@@ -30,14 +32,12 @@ void expect_mode_counts(const SerialFile& file, const Table& orbits) {
   const auto& cutoffs = orbits.integers("cutoff");
   const auto& counts = orbits.integers("modes_count");
   const auto dimension = static_cast<std::int64_t>(file.header().state_names.size());
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    const bool is_right = cutoffs[i] >= 0 && counts[i] % dimension == 0 && counts[i] / dimension == 2 * cutoffs[i] + 1;
-    if (!is_right)
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    if (!is_mode_count(counts[i], cutoffs[i], dimension))
       file.expect(false,
                   fmt::format("has /orbits/modes_count = {} in row {}, where cutoff {} and {} coordinates ask for "
                               "(2 cutoff + 1) x coordinates",
                               counts[i], i, cutoffs[i], dimension));
-  }
 }
 
 // The families' ranges of orbits follow one another and cover the table, so each orbit has one family.

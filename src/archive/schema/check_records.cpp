@@ -207,4 +207,9 @@ void check_voided(const Records& records, std::size_t segments) {
   }
 }
 
+bool is_mode_count(std::int64_t count, std::int64_t cutoff, std::int64_t dimension) {
+  // A cutoff above the count cannot be right, and could not be doubled.
+  return cutoff >= 0 && cutoff <= count && count % dimension == 0 && count / dimension == 2 * cutoff + 1;
+}
+
 }  // namespace orbweaver::archive

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "orbweaver/archive/schema/records.hpp"
 
@@ -17,5 +18,8 @@ void check_loci(const Header& header, const Records& records);
 void check_equilibria(const Header& header, const Records& records);
 /// `segments`: how many are listed to consolidate.
 void check_voided(const Records& records, std::size_t segments);
+
+/// Whether a loop of that cutoff in so many coordinates (1 or more) has `count` modes; false for any damaged numbers.
+[[nodiscard]] bool is_mode_count(std::int64_t count, std::int64_t cutoff, std::int64_t dimension);
 
 }  // namespace orbweaver::archive
