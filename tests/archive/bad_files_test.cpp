@@ -298,6 +298,7 @@ TEST_F(BadFiles, IndicesOutsideTheirTablesAreNamed) {
   expect_bad("orbits/modes_begin", 28, -1, "/orbits/modes_begin");
   expect_bad("orbits/modes_count", 2, 7, "/orbits/modes_count");
   expect_bad("orbits/time_map_count", 28, std::int64_t{1} << 62, "/orbits/time_map_count");
+  expect_bad("orbits/cutoff", 2, std::int64_t{1} << 62, "cutoff 4611686018427387904");
   expect_bad("sections/orbit", 0, 29, "/sections/orbit");
   expect_bad("crossings/family", 2, -1, "/crossings/family");
 }
@@ -309,7 +310,9 @@ TEST_F(BadFiles, ATornSegmentIsToldFromAWholeOne) {
   };
   EXPECT_THAT(bad("orbits/modes_begin", 4, 0), AllOf(HasSubstr("modes_begin = 0"), HasSubstr("leave it out")));
   EXPECT_THAT(bad("orbits/cutoff", 4, 0), HasSubstr("cutoff 0"));
-  EXPECT_THAT(bad("orbits/time_map_count", 28, 1000), HasSubstr("add up to"));
+  EXPECT_THAT(bad("orbits/cutoff", 4, std::int64_t{1} << 62), HasSubstr("cutoff 4611686018427387904"));
+  EXPECT_THAT(bad("orbits/time_map_count", 28, 1000), HasSubstr("add up to more: 1000 in row 28"));
+  EXPECT_THAT(bad("orbits/time_map_count", 28, std::int64_t{1} << 62), HasSubstr("add up to more"));
 }
 
 }  // namespace

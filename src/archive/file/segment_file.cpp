@@ -61,13 +61,15 @@ void SegmentFile::check_ranges(const char* begin, const char* count, std::uint64
   const auto end = static_cast<std::int64_t>(total);
   std::int64_t next = 0;
   for (std::size_t i = 0; i < begins.size(); ++i) {
-    _file.expect(begins[i] == next && counts[i] >= 0 && counts[i] <= end - next,
+    _file.expect(begins[i] == next && counts[i] >= 0,
                  fmt::format("has {} = {} and {} = {} in row {}; the row was expected to begin at {}", begin, begins[i],
+                             count, counts[i], i, next));
+    _file.expect(counts[i] <= end - next,
+                 fmt::format("stores {} values where its rows of {} add up to more: {} in row {}, and {} before it", total,
                              count, counts[i], i, next));
     next += counts[i];
   }
-  _file.expect(next == end,
-               fmt::format("stores {} values where its rows of {} add up to {}", total, count, next));
+  _file.expect(next == end, fmt::format("stores {} values where its rows of {} add up to {}", total, count, next));
 }
 
 std::uint64_t SegmentFile::fingerprint() const {
