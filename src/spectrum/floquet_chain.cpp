@@ -255,6 +255,13 @@ void require_finite_rates(double value) {
         "derivatives at every state of an accepted orbit");
 }
 
+void require_finite_field(double value) {
+  if (!std::isfinite(value))
+    throw core::NotFiniteError(
+        "Floquet multipliers: the field is not finite on the orbit; expected finite values at every state of an "
+        "accepted orbit");
+}
+
 void evaluate_jacobians(const systems::System& system, Chain& chain) {
   static_cast<void>(jacobians_and_field(system, chain));
 }

@@ -42,6 +42,8 @@ struct Chain {
 [[nodiscard]] Eigen::VectorXd steps_of(const loop::Loop& loop, int segments, int around);
 /// Throws core::NotFiniteError unless what was made of the rates of the linearised flow is finite.
 void require_finite_rates(double value);
+/// Likewise of what was made of the field itself.
+void require_finite_field(double value);
 
 /// f, its Jacobian and the energy's gradient at the chain's states.
 void evaluate_field(const systems::System& system, Chain& chain);

@@ -134,10 +134,15 @@ void HermiteChain::sample(const systems::System& system, const loop::Loop& loop,
   _chain.steps = steps_of(loop, static_cast<int>(_segments), around);
   _chain.truncation_share = 1.0;
   take_nodes(system, _states.get(), _fields.get(), _jacobians.get(), _chain);
+  Lanes sum = 0.0;
   for (std::size_t i = 0; i < d; ++i)
-    for (std::size_t n = 0; n < _points; n += wide)
-      (Lanes::load(&_residuals[i * _points + n]) - Lanes::load(&_rates[n]) * Lanes::load(&_fields[i * _points + n]))
-          .store(&_residuals[i * _points + n]);
+    for (std::size_t n = 0; n < _points; n += wide) {
+      const Lanes residual =
+          Lanes::load(&_residuals[i * _points + n]) - Lanes::load(&_rates[n]) * Lanes::load(&_fields[i * _points + n]);
+      residual.store(&_residuals[i * _points + n]);
+      sum += residual;
+    }
+  for (std::size_t l = 0; l < wide; ++l) require_finite_field(sum.packed[l]);
   for (std::size_t entry = 0; entry < d * d; ++entry)
     for (std::size_t n = 0; n < _points; n += wide)
       (Lanes::load(&_rates[n]) * Lanes::load(&_jacobians[entry * _points + n]))
