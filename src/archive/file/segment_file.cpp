@@ -65,8 +65,8 @@ void SegmentFile::check_ranges(const char* begin, const char* count, std::uint64
                  fmt::format("has {} = {} and {} = {} in row {}; the row was expected to begin at {}", begin, begins[i],
                              count, counts[i], i, next));
     _file.expect(counts[i] <= end - next,
-                 fmt::format("stores {} values where its rows of {} add up to more: {} in row {}, and {} before it", total,
-                             count, counts[i], i, next));
+                 fmt::format("stores {} values where its rows of {} add up to more: {} in row {}, and {} before it",
+                             total, count, counts[i], i, next));
     next += counts[i];
   }
   _file.expect(next == end, fmt::format("stores {} values where its rows of {} add up to {}", total, count, next));
