@@ -8,7 +8,11 @@ times=${options[0]}
 options=("${options[@]:1}")
 begin_anew
 survey whole 1 || fail "the undisturbed run failed"
-held 1 "write segment-000003.h5" survey stopped 1 --walltime 0.5
+held 2 "write segment-000003.h5" survey stopped 1 &
+job=$!
+wait_until_held $job
+kill -TERM "$(ranks_of stopped | head -1)"
+wait $job
 [ $? = 4 ] || fail "the survey that was to be stopped came to its end"
 cp -r "$folder/whole" "$folder/finished"
 cp -r "$folder/stopped" "$folder/last"
