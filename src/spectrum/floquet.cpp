@@ -4,16 +4,21 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "floquet_chain.hpp"
 #include "floquet_group.hpp"
 #include "floquet_indices.hpp"
+#include "hermite_chain.hpp"
 #include "matrix_table.hpp"
 #include "orbit_correction.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/curve/system_at.hpp"
 #include "orbweaver/numerics/quad.hpp"
 #include "orbweaver/numerics/random.hpp"
@@ -29,9 +34,6 @@ using Complex = std::complex<double>;
 using Values = std::vector<Complex>;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-/// Truncation error as a share of the embedded methods' estimate, which is of a lower order. On the pendulum's families
-/// it was a fortieth to a thousandth.
-constexpr double truncation_share = 0.1;
 /// The Newton step that stands for the orbit's own error is itself uncertain.
 constexpr double orbit_safety = 3.0;
 /// Roundings of one step's arithmetic on a factor of size 1. Not measured; added to a bound.
@@ -41,6 +43,18 @@ constexpr double step_roundings = 8.0;
 constexpr double room = 1.1;
 constexpr double most_finer = 2.0;
 constexpr double order_of_steps = 8.0;
+/// Long segments' estimates are of the error itself, which those of short ones exceed a hundredfold.
+constexpr double share_of_tolerance = 0.2;
+constexpr double order_of_long_steps = 16.0;
+/// A long segment is as exact as two to three short ones.
+constexpr int short_segments_a_long_one = 3;
+/// From so many coordinates on products of matrices are most of the cost, of which long segments need more, and a team
+/// divides short ones.
+constexpr int many_coordinates = 8;
+/// Largest tail of a loop (loop::tail), in parts of its amplitude, for long segments. They follow the loop itself, so
+/// that the index has an error of first order in what the loop lacks, and their response to it, known to some percent,
+/// is no bound where it happens to vanish.
+constexpr double largest_tail = 1e-10;
 
 /// Distance from each value to the nearest of `others`, times a factor, added to `errors`.
 void add_distances(const Values& values, const Values& others, double factor, std::vector<double>& errors) {
@@ -103,7 +117,7 @@ struct TraceError {
 /// What the factors' errors do to the trace of their product, for 2 x 2 matrices: bounds, but for `estimate`. An
 /// estimate says how large a factor's entries' errors are, not of which sign: on circles, whose segments are all alike,
 /// the trace with the estimates is up to 32 times too small.
-TraceError error_of_trace(const Eigen::VectorXd& roundings, const TransverseFlow& flow) {
+TraceError error_of_trace(const Eigen::VectorXd& roundings, const TransverseFlow& flow, double truncation_share) {
   const Eigen::Index n = flow.factors.cols();
   Eigen::MatrixXd after(4, n);  // products of the factors behind each one
   matrix_in<2>(after, n - 1, 2).setIdentity();
@@ -176,12 +190,12 @@ TraceError add_truncation(const systems::System& of, const Chain& chain, const T
                           const FloquetIndices& indices, core::Team* team, Stability& stability) {
   const systems::Structure& system = of.structure();
   if (is_single_pair(system, flow)) {
-    const TraceError error = error_of_trace(roundings_of(of, chain), flow);
+    const TraceError error = error_of_trace(roundings_of(of, chain), flow, chain.truncation_share);
     stability.fundamental_error[0] += error.truncation;
     return error;
   }
   const auto change = [&](Eigen::Index m, auto& random) -> Eigen::VectorXd {
-    return std::copysign(truncation_share, random()) * flow.errors.col(m);
+    return std::copysign(chain.truncation_share, random()) * flow.errors.col(m);
   };
   add_probes(system, flow, order, indices, change, team, stability);
   return {};
@@ -197,18 +211,6 @@ void add_rounding_probes(const systems::System& system, const Chain& chain, cons
     return changes;
   };
   add_probes(system.structure(), flow, order, indices, change, team, stability);
-}
-
-/// The values' response to the orbit's own error, on a scale where differences keep their digits.
-void add_orbit_error(const systems::System& system, const Chain& chain, const FundamentalGroup& group,
-                     const FloquetIndices& indices, core::Team* team, Stability& stability) {
-  constexpr double visible = 1e-7;  // of a change of the states: far above rounding, and its square far below
-  const OrbitCorrection correction = orbit_correction(chain, group, system.structure().conservative());
-  const double size = std::max(correction.states.cwiseAbs().maxCoeff(), std::abs(correction.stretch));
-  if (size == 0.0) return;
-  const double factor = std::max(1.0, visible / size);
-  const TransverseFlow flow = transverse_flow(system, corrected(system, chain, correction, factor, team), group, team);
-  add_distances(indices, floquet_indices(system.structure(), flow, group.order), orbit_safety / factor, stability);
 }
 
 bool moves(const loop::Loop& loop) {
@@ -252,33 +254,76 @@ Stability without_errors(const FloquetIndices& indices, int order) {
 
 /// The indices with their truncation error as far as known, and what they were computed from.
 struct Integrated {
+  std::unique_ptr<HermiteChain> segments;  ///< none: short ones
   Chain chain;
   TransverseFlow flow;
   FloquetIndices indices;
   TraceError trace;
   Stability stability;
+
+  /// From the chain on; returns the estimate of the relative truncation error.
+  double evaluate(const systems::System& system, const loop::Loop& loop, const FundamentalGroup& group,
+                  core::Team* team) {
+    const systems::Structure& structure = system.structure();
+    flow = transverse_flow(system, chain, group, team);
+    indices = floquet_indices(structure, flow, group.order);
+    require_one_in_range(indices.fundamental, loop);
+    stability = without_errors(indices, group.order);
+    trace = add_truncation(system, chain, flow, group.order, indices, team, stability);
+    return is_single_pair(structure, flow) ? trace.estimate / (1.0 + std::abs(indices.fundamental[0]))
+                                           : largest_relative(stability.fundamental, stability.fundamental_error);
+  }
 };
+
+/// The values' response to the orbit's own error, on a scale where differences keep their digits.
+void add_orbit_error(const systems::System& system, const Integrated& of, const FundamentalGroup& group,
+                     core::Team* team, Stability& stability) {
+  constexpr double visible = 1e-7;  // of a change of the states: far above rounding, and its square far below
+  const OrbitCorrection correction = orbit_correction(of.chain, group, system.structure().conservative());
+  const double size = std::max(correction.states.cwiseAbs().maxCoeff(), std::abs(correction.stretch));
+  if (size == 0.0) return;
+  const double factor = std::max(1.0, visible / size);
+  const Chain changed = of.segments ? of.segments->corrected(system, correction, factor)
+                                    : corrected(system, of.chain, correction, factor, team);
+  const TransverseFlow flow = transverse_flow(system, changed, group, team);
+  add_distances(of.indices, floquet_indices(system.structure(), flow, group.order), orbit_safety / factor, stability);
+}
+
+/// How many segments a period to take next where `estimated` is too large an error.
+int finer_segments(const Chain& chain, int group_order, double estimated, double tolerance, double order_of_error) {
+  const double finer = std::min(most_finer, room * std::pow(estimated / tolerance, 1.0 / order_of_error));
+  return static_cast<int>(finer * static_cast<double>(chain.segments()) * group_order) + 1;
+}
+
+/// By long segments; nothing where they cannot be made fine enough.
+std::optional<Integrated> integrated_by_long_segments(const systems::System& system, const loop::Loop& loop,
+                                                      const FundamentalGroup& group, const FloquetOptions& options) {
+  const double tolerance = share_of_tolerance * options.tolerance;
+  Integrated result;
+  int least = options.least_segments / short_segments_a_long_one;
+  for (int refinement = 0; refinement <= options.refinements; ++refinement) {
+    result.segments = std::make_unique<HermiteChain>(system, loop, group, least);
+    result.chain = result.segments->chain();
+    const double error = result.evaluate(system, loop, group, nullptr);
+    if (error <= tolerance) return result;
+    least = finer_segments(result.chain, group.order, error, tolerance, order_of_long_steps);
+  }
+  return {};
+}
 
 Integrated integrated(const systems::System& system, const loop::Loop& loop, const FundamentalGroup& group,
                       const FloquetOptions& options, core::Team* team) {
-  const systems::Structure& structure = system.structure();
+  if (loop.dimension < many_coordinates && loop::tail(loop) <= largest_tail * loop::rms_amplitude(loop))
+    if (std::optional<Integrated> result = integrated_by_long_segments(system, loop, group, options))
+      return std::move(*result);
   VariationalStep stepper(system);
   Integrated result;
   int least = options.least_segments;
   for (int refinement = 0;; ++refinement) {
     result.chain = make_chain(system, stepper, loop, group, least, team);
-    result.flow = transverse_flow(system, result.chain, group, team);
-    result.indices = floquet_indices(structure, result.flow, group.order);
-    require_one_in_range(result.indices.fundamental, loop);
-    result.stability = without_errors(result.indices, group.order);
-    result.trace =
-        add_truncation(system, result.chain, result.flow, group.order, result.indices, team, result.stability);
-    const double error = is_single_pair(structure, result.flow)
-                             ? result.trace.estimate / (1.0 + std::abs(result.indices.fundamental[0]))
-                             : largest_relative(result.stability.fundamental, result.stability.fundamental_error);
+    const double error = result.evaluate(system, loop, group, team);
     if (error <= options.tolerance || refinement >= options.refinements) return result;
-    const double finer = std::min(most_finer, room * std::pow(error / options.tolerance, 1.0 / order_of_steps));
-    least = static_cast<int>(finer * static_cast<double>(result.chain.segments()) * group.order) + 1;
+    least = finer_segments(result.chain, group.order, error, options.tolerance, order_of_steps);
   }
 }
 
@@ -298,8 +343,10 @@ Stability floquet(const systems::System& family, const loop::Loop& loop, const l
   const FundamentalGroup group = fundamental_group(system, loop, isotropy);
   if (loop.dimension == (structure.conservative() ? 2 : 1)) return without_errors({}, group.order);
   core::Team* const team = core::worth_dividing(options.team, loop.dimension);
-  auto [chain, flow, indices, trace, stability] = integrated(system, loop, group, options, team);
-  add_orbit_error(system, chain, group, indices, team, stability);
+  const Integrated result = integrated(system, loop, group, options, team);
+  const auto& [segments, chain, flow, indices, trace, known] = result;
+  Stability stability = known;
+  add_orbit_error(system, result, group, team, stability);
   if (is_single_pair(structure, flow)) {
     stability.fundamental_error[0] += trace.rounding;
     stability.full_error[0] =

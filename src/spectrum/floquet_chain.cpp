@@ -25,36 +25,7 @@ constexpr double largest_sum = 5e-4;
 /// The sum falls with this power of the number of segments: n terms of n^-8.
 constexpr double power_of_segments = 7.0;
 
-/// Few numbers of segments are used, so that few Fourier plans are made: multiples of 24, by 2 to 7, or by 8, 9, 10,
-/// 12, 14 or 15 times a power of 2. With the prime factors 11 and 13 the plans would not be among those that are known.
-int allowed_segments(double at_least, int factor) {
-  const int multiple = 2 * std::lcm(12, factor);
-  for (int n = 2;; ++n) {
-    int leading = n;
-    while (leading > 15 && leading % 2 == 0) leading /= 2;
-    if (leading <= 15 && leading != 11 && leading != 13 && multiple * n >= at_least) return multiple * n;
-  }
-}
-
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-/// Lengths of the segments. A pulse repeats after half a turn and is even there: a quarter of them is enough, since
-/// sines and arctangents cost as much as what is integrated with them.
-Eigen::VectorXd steps_of(const loop::Loop& loop, int segments, int around) {
-  if (loop.time_map.is_identity()) return Eigen::VectorXd::Constant(segments, loop.period / around);
-  const bool by_quarters = loop.time_map.coefficients.empty() && around % 4 == 0;
-  const int half = around / 2;
-  const int own = by_quarters ? std::min(segments, around / 4) : segments;
-  std::vector<double> s;
-  for (int m = 0; m <= own; ++m) s.push_back(2 * std::numbers::pi * static_cast<double>(m) / around);
-  const std::vector<double> phases = loop.time_map.phases(s);
-  const double rate = loop.period / (2 * std::numbers::pi);
-  Eigen::VectorXd steps(segments);
-  for (int m = 0; m < own; ++m)
-    steps[m] = rate * (phases[static_cast<std::size_t>(m) + 1] - phases[static_cast<std::size_t>(m)]);
-  for (int m = own; m < segments; ++m) steps[m] = m < half ? steps[half - 1 - m] : steps[m - half];
-  return steps;
-}
 
 /// States, field and Jacobian at the nodes of T/p, `around` being their number on the whole loop.
 Chain nodes_of(const systems::System& system, const loop::Loop& loop, const FundamentalGroup& group, int around) {
@@ -251,31 +222,73 @@ RowMajor jacobians_and_field(const systems::System& system, Chain& chain) {
 
 }  // namespace
 
+int allowed_segments(double at_least, int multiple) {
+  for (int n = 2;; ++n) {
+    int leading = n;
+    while (leading > 15 && leading % 2 == 0) leading /= 2;
+    if (leading <= 15 && leading != 11 && leading != 13 && multiple * n >= at_least) return multiple * n;
+  }
+}
+
+// A pulse repeats after half a turn and is even there: a quarter of them is enough, since
+// sines and arctangents cost as much as what is integrated with them.
+Eigen::VectorXd steps_of(const loop::Loop& loop, int segments, int around) {
+  if (loop.time_map.is_identity()) return Eigen::VectorXd::Constant(segments, loop.period / around);
+  const bool by_quarters = loop.time_map.coefficients.empty() && around % 4 == 0;
+  const int half = around / 2;
+  const int own = by_quarters ? std::min(segments, around / 4) : segments;
+  std::vector<double> s;
+  for (int m = 0; m <= own; ++m) s.push_back(2 * std::numbers::pi * static_cast<double>(m) / around);
+  const std::vector<double> phases = loop.time_map.phases(s);
+  const double rate = loop.period / (2 * std::numbers::pi);
+  Eigen::VectorXd steps(segments);
+  for (int m = 0; m < own; ++m)
+    steps[m] = rate * (phases[static_cast<std::size_t>(m) + 1] - phases[static_cast<std::size_t>(m)]);
+  for (int m = own; m < segments; ++m) steps[m] = m < half ? steps[half - 1 - m] : steps[m - half];
+  return steps;
+}
+
+void require_finite_rates(double value) {
+  if (!std::isfinite(value))
+    throw core::NotFiniteError(
+        "Floquet multipliers: the field's Jacobian is not finite on the orbit; expected finite "
+        "derivatives at every state of an accepted orbit");
+}
+
+void require_finite_field(double value) {
+  if (!std::isfinite(value))
+    throw core::NotFiniteError(
+        "Floquet multipliers: the field is not finite on the orbit; expected finite values at every state of an "
+        "accepted orbit");
+}
+
 void evaluate_jacobians(const systems::System& system, Chain& chain) {
   static_cast<void>(jacobians_and_field(system, chain));
 }
 
 void evaluate_field(const systems::System& system, Chain& chain) {
-  RowMajor f = jacobians_and_field(system, chain);
-  chain.fields = f;
+  chain.fields = jacobians_and_field(system, chain);
+  evaluate_gradients(system, chain);
+}
+
+void evaluate_gradients(const systems::System& system, Chain& chain) {
   if (!system.structure().conservative()) return;
   const RowMajor z = chain.states;
-  system.conserved_gradients(0, static_cast<std::size_t>(z.cols()), z.data(), f.data());
-  chain.gradients = f;
+  RowMajor gradients(z.rows(), z.cols());
+  system.conserved_gradients(0, static_cast<std::size_t>(z.cols()), z.data(), gradients.data());
+  chain.gradients = gradients;
 }
 
 Chain make_chain(const systems::System& system, VariationalStep& stepper, const loop::Loop& loop,
                  const FundamentalGroup& group, int at_least, core::Team* team) {
   const double resolution = std::max<double>(at_least, segments_a_harmonic * loop.cutoff);
-  const int around = allowed_segments(resolution, group.grid_factor);
+  const int multiple = 2 * std::lcm(12, group.grid_factor);
+  const int around = allowed_segments(resolution, multiple);
   Chain chain = nodes_of(system, loop, group, around);
   const double sum = group.order * (loop.dimension == 4 ? sum_of_rates<4>(chain) : sum_of_rates<Eigen::Dynamic>(chain));
   const double wanted = around * std::pow(sum / largest_sum, 1.0 / power_of_segments);
-  if (!std::isfinite(wanted))
-    throw core::NotFiniteError(
-        "Floquet multipliers: the field's Jacobian is not finite on the orbit; expected finite "
-        "derivatives at every state of an accepted orbit");
-  const int finer = allowed_segments(wanted, group.grid_factor);
+  require_finite_rates(wanted);
+  const int finer = allowed_segments(wanted, multiple);
   if (finer > around) chain = nodes_of(system, loop, group, finer);
   take_transitions(stepper, group, team, chain);
   return chain;

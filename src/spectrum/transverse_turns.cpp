@@ -57,9 +57,9 @@ struct Quaternions {
 /// other two to those of the frame. Along any orbit it is continuous, since u = -J would need M^-1 p = -a p, a > 0.
 class Frame {
  public:
-  Frame(const Chain& chain, Eigen::Index m, const Vector4d& scales)
-      : _scales(scales), _basis(Vector4d(chain.gradients.col(m).cwiseProduct(scales)).normalized()) {
-    const Vector4d f = Vector4d(chain.fields.col(m).cwiseQuotient(scales)).normalized();
+  Frame(const Vector4d& gradient, const Vector4d& field, const Vector4d& scales)
+      : _scales(scales), _basis(Vector4d(gradient.cwiseProduct(scales)).normalized()) {
+    const Vector4d f = Vector4d(field.cwiseQuotient(scales)).normalized();
     for (int k = 0; k < 3; ++k) _u[k] = f.dot(_basis.images[k]);
   }
 
@@ -92,25 +92,35 @@ double transverse_turns(const Chain& chain, const TransverseFlow& flow, const Fu
   const auto basis_at = [&](Eigen::Index m) {
     return Eigen::Map<const Eigen::Matrix<double, 4, 2>>(flow.bases.col(m).data());
   };
-  const Frame first(chain, 0, scales);
+  const Frame first(chain.gradients.col(0), chain.fields.col(0), scales);
   if (!first.exists()) return unknown;
   const Vector2d start = Vector2d::UnitX();
   Vector2d carried = start;
   const Vector2d start_there = first.coordinates(basis_at(0) * start);
   Vector2d before = start_there;
   double angle = 0.0;
-  for (Eigen::Index m = 0; m < segments; ++m) {
-    carried = (matrix_in<2>(flow.factors, m, 2) * carried).eval();
-    carried.normalize();
-    const Frame frame(chain, m + 1, scales);
-    if (!frame.exists()) return unknown;
-    const Vector4d vector =
-        m + 1 < segments ? Vector4d(basis_at(m + 1) * carried) : Vector4d(group.generator * (basis_at(0) * carried));
+  // Adds the angle from the last vector to this one; false where it cannot be told.
+  const auto pass = [&](const Frame& frame, const Vector4d& vector) {
+    if (!frame.exists()) return false;
     const Vector2d here = frame.coordinates(vector);
     const double change = angle_between(before, here);
-    if (!(std::abs(change) < most_between_nodes)) return unknown;
+    if (!(std::abs(change) < most_between_nodes)) return false;
     angle += change;
     before = here;
+    return true;
+  };
+  const Eigen::Index inner = chain.inner_transitions.cols() / segments;
+  for (Eigen::Index m = 0; m < segments; ++m) {
+    for (Eigen::Index n = m * inner; n < (m + 1) * inner; ++n)
+      if (!pass(Frame(chain.inner_gradients.col(n), chain.inner_fields.col(n), scales),
+                matrix_in<4>(chain.inner_transitions, n, 4) * (basis_at(m) * carried)))
+        return unknown;
+    carried = (matrix_in<2>(flow.factors, m, 2) * carried).eval();
+    carried.normalize();
+    const Frame frame(chain.gradients.col(m + 1), chain.fields.col(m + 1), scales);
+    const Vector4d vector =
+        m + 1 < segments ? Vector4d(basis_at(m + 1) * carried) : Vector4d(group.generator * (basis_at(0) * carried));
+    if (!pass(frame, vector)) return unknown;
     if (m + 1 < segments) continue;
     // The generator turns the frame by a whole or a half turn.
     double gauge = angle_between(start_there, frame.coordinates(group.generator * (basis_at(0) * start)));

@@ -50,9 +50,11 @@ struct Stability {
 
 /// Stability of an accepted orbit, at a cost proportional to the number of its harmonics.
 ///
-/// Transition matrices over short segments equal in s, each started at the loop's own state (Dormand and Prince's order
-/// 8 from Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, section II.5), only over T/p, and over
-/// half of that where `isotropy` has a reversor; the index of a single pair is the trace of their product, others come
+/// Transition matrices over segments equal in s: along the loop itself by two-point Hermite steps of order 16 where its
+/// harmonics are resolved and it has fewer than eight coordinates, else shorter ones, each started at the loop's own
+/// state (Dormand and Prince's order 8 from Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I,
+/// section II.5), only over T/p, short ones over half of that where `isotropy` has a reversor; the index of a single
+/// pair is the trace of their product, others come
 /// from orthogonal iteration on the product, so that large and small multipliers keep their digits. The error bound
 /// adds the truncation (a tenth of what the embedded methods of lower order differ), the rounding, and the orbit's own
 /// error: the response to one Newton step of multiple shooting, at (nearly) fixed period where the system is
