@@ -18,7 +18,7 @@ namespace orbweaver::spectrum {
 class HermiteChain {
  public:
   /// At least `at_least` segments a period: as many as suit the loop's resolution, the rates of its linearised flow and
-  /// its fundamental map. Throws core::NotFiniteError if the Jacobian is not finite on the loop.
+  /// its fundamental map. Throws core::NotFiniteError if field or Jacobian is not finite on the loop.
   HermiteChain(const systems::System& system, const loop::Loop& loop, const FundamentalGroup& group, int at_least);
 
   [[nodiscard]] const Chain& chain() const { return _chain; }
