@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -47,8 +49,9 @@ constexpr int most_orbits = 20;
 /// Lengths of pieces of a curve, in parts of what they have of the chord: those of a curve that turns from it by less
 /// than 60 degrees are below 2, and a piece across a gap has more the shorter it is.
 constexpr double torn = 4.0;
-/// How far from 2 an index may be on either side of a narrow gap: 0.006 and 0.002 were seen where steps led over one.
-constexpr double beside_gap = 0.1;
+/// How far from 2 an index may be on either side of a gap: one of -1e10 is 2 on so short a part of a step that no orbit
+/// there shows it.
+constexpr double told_apart = 100.0;
 /// The shortest piece that is looked at, in parts of the chord: gaps narrower than four of them are not seen.
 constexpr double shortest_piece = 1e-3;
 
@@ -82,6 +85,13 @@ bool has_index_two_between(const std::shared_ptr<const systems::System>& system,
   };
   const auto root = numerics::locate_root(along, before, after, narrowest, most_orbits);
   return root && root->value == 0.0 && is_one_curve(step);
+}
+
+/// Of the index next to 2 from it.
+double distance_of(const spectrum::Stability& s) {
+  double distance = std::numeric_limits<double>::infinity();
+  for (const std::complex<double>& k : s.fundamental) distance = std::min(distance, std::abs(k - 2.0));
+  return distance;
 }
 
 /// By which neighbours of an elliptic orbit go around, in the sense of its twist.
@@ -251,11 +261,8 @@ bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop
   for (const continuation::CurvePoint* point : {&*start, &*end})
     if (along_chord(*point, start->loop, end->loop) < options.least_cosine) return true;
   if (level_slope(*system, *start) * level_slope(*system, *end) > 0.0) return true;
-  // On either side of a narrow gap slopes are as they are at a fold, and indices near 2.
-  const auto distance_of = [&](const spectrum::Stability& s) {
-    return std::abs(evaluate(two, system->structure(), s).value);
-  };
-  return std::max(distance_of(from.stability), distance_of(to.stability)) < beside_gap &&
+  // On either side of a gap slopes may be as they are at a fold.
+  return std::max(distance_of(from.stability), distance_of(to.stability)) < told_apart &&
          !has_index_two_between(system, isotropy, options, from, to);
 }
 

@@ -143,6 +143,17 @@ class FamilyJump : public ::testing::TestWithParam<double> {
  protected:
   std::shared_ptr<const systems::System> system = std::make_shared<MagneticPendulum>(GetParam());
   Followed loose{system, in_phase_start(), false};
+
+  /// The other curve, from beyond the gap backwards: down to a fold, and up again.
+  [[nodiscard]] Followed other_curve() const {
+    const Orbit& last = loose.orbits.back();
+    const Orbit& before = loose.orbits[loose.orbits.size() - 2];
+    continuation::Start back{last.loop, {}, without_reversors()};
+    const loop::Loop towards = loop::with_cutoff(before.loop, last.loop.cutoff);
+    for (std::size_t n = 0; n < towards.modes.size(); ++n)
+      back.direction.modes.push_back(towards.modes[n] - last.loop.modes[n]);
+    return {system, back, true};
+  }
 };
 
 TEST_P(FamilyJump, StepsAcrossTheGapBetweenTwoFamiliesAreTakenBack) {
@@ -161,14 +172,7 @@ TEST_P(FamilyJump, StepsAcrossTheGapBetweenTwoFamiliesAreTakenBack) {
 }
 
 TEST_P(FamilyJump, AFoldInTheEnergyIsNone) {
-  // The other curve, from beyond the gap backwards: down to a fold, and up again.
-  const Orbit& last = loose.orbits.back();
-  const Orbit& before = loose.orbits[loose.orbits.size() - 2];
-  continuation::Start back{last.loop, {}, without_reversors()};
-  const loop::Loop towards = loop::with_cutoff(before.loop, last.loop.cutoff);
-  for (std::size_t n = 0; n < towards.modes.size(); ++n)
-    back.direction.modes.push_back(towards.modes[n] - last.loop.modes[n]);
-  Followed held(system, back, true);
+  Followed held = other_curve();
   EXPECT_EQ(held.ending.reason, continuation::EndReason::period_limit) << held.ending.text();
   ASSERT_EQ(held.passing_two().size(), 1U);
   ASSERT_EQ(held.turning().size(), 1U);
@@ -178,6 +182,22 @@ TEST_P(FamilyJump, AFoldInTheEnergyIsNone) {
   EXPECT_LT(held.indices.back(), 2.0);
   EXPECT_FALSE(held.jumped(held.orbits[across - 1], held.orbits[across]));
   EXPECT_TRUE(held.jumped(held.orbits.front(), held.orbits.back())) << "so far apart it cannot be told";
+}
+
+// Where the one curve comes up to the gap its index is far below 2; beside the fold of the other its energy falls too.
+TEST_P(FamilyJump, AStepOntoTheOtherCurveBesideItsFoldIsTakenBack) {
+  Followed near(system, in_phase_start(), true);
+  const Followed other = other_curve();
+  int pairs = 0;
+  for (std::size_t n = 0; n < near.orbits.size(); ++n) {
+    for (std::size_t m = 0; m < other.orbits.size(); ++m) {
+      const bool is_above = other.indices[m] > 2.0 && other.indices[m] < 2.5;
+      if (!is_above || near.indices[n] < 0.5 || near.indices[n] > 1.9) continue;
+      ++pairs;
+      EXPECT_TRUE(near.jumped(near.orbits[n], other.orbits[m])) << near.indices[n] << " to " << other.indices[m];
+    }
+  }
+  EXPECT_GT(pairs, 3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Fields, FamilyJump, ::testing::Values(5e-13, 3.4e-11, 2.2e-9, 2.7e-8, 1e-6, 1e-5));
