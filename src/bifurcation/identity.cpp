@@ -32,6 +32,8 @@ constexpr double repeated = 1e-3;
 /// A smooth family leaves the chord by about this share of it times position (1 - position); further off Newton's
 /// method has gone over to a neighbouring family.
 constexpr double bulge = 0.8;
+/// Roundings of the coordinates by which two computations of one orbit may differ. Not measured.
+constexpr double roundings = 1e3;
 
 bool is_between(double a, double b, double x, double widening) {
   const double margin = 0.5 * std::abs(b - a) + widening;
@@ -175,7 +177,7 @@ Comparison undecided(double distance, double position, std::string detail) {
 Comparison compare(const systems::System& system, Chord chord, const loop::Loop& x, const IdentityOptions& options) {
   const systems::Structure& structure = system.structure();
   const double length = chord.length();
-  const double tolerance = options.tolerance * (1.0 + loop::rms_size(x));
+  const double tolerance = same_within(x, options.tolerance);
   loop::Alignment alignment = loop::align(structure, x, chord.first(), 2.0 * length + tolerance);
   if (alignment.distance > 2.0 * length + tolerance)
     return apart(alignment.distance, std::nan(""), "far from the neighbours");
@@ -227,6 +229,11 @@ bool may_lie_between(const Orbit& a, const Orbit& b, const Orbit& x, double wide
          between(a.action, b.action, x.action, widening * std::abs(x.action));
 }
 
+double same_within(const loop::Loop& loop, double tolerance) {
+  return std::max(tolerance * (1.0 + loop::rms_amplitude(loop)),
+                  roundings * std::numeric_limits<double>::epsilon() * loop::rms_size(loop));
+}
+
 bool same_orbit(const systems::System& system, const loop::Loop& a, const loop::Loop& b, double tolerance) {
   const auto once = [&](const loop::Loop& orbit) {
     const int m = loop::repetitions(orbit, std::min(tolerance, repeated * loop::rms_amplitude(orbit)));
@@ -235,7 +242,7 @@ bool same_orbit(const systems::System& system, const loop::Loop& a, const loop::
   if (a.parameters.size() != b.parameters.size()) return false;
   const loop::Loop first = once(a);
   const loop::Loop second = once(b);
-  const double allowed = tolerance * (1.0 + loop::rms_size(first));
+  const double allowed = same_within(first, tolerance);
   for (std::size_t n = 0; n < a.parameters.size(); ++n)
     if (!(std::abs(a.parameters[n] - b.parameters[n]) <= allowed)) return false;
   if (!(std::abs(first.period / second.period - 1.0) <= allowed)) return false;

@@ -80,6 +80,22 @@ TEST(Translated, HenonHeiles) {
   if (comm.is_root()) expect_same(pair);
 }
 
+// First orbits 0.003 from the equilibrium, where the mean of |z| is 1e5: orbits are told apart by their motion.
+TEST(Translated, FarFromTheOriginFamiliesAreNotTakenForOneAnother) {
+  const core::Communicator comm;
+  const std::string file = ORBWEAVER_SOURCE_DIR "/drivers/scenes/henon_heiles.yaml";
+  const std::vector<std::string> near{"continuation.start=0.003"};
+  std::vector<std::string> far = near;
+  far.emplace_back("starts.fixed_points.grid=[[100000], [100000], [0], [0]]");
+  far.emplace_back("starts.fixed_points.names={[100000, 100000, 0, 0]: [Straight, Curved, Loop]}");
+  const Pair pair =
+      surveys(comm, "far", scene::load(file, near), scene::load(file, far), Eigen::Vector4d(1e5, 1e5, 0.0, 0.0));
+  if (!comm.is_root()) return;
+  EXPECT_EQ(pair.here.failures, 0U);
+  EXPECT_EQ(pair.there.failures, 0U) << "contradictions too";
+  EXPECT_EQ(pair.there.families.size(), pair.here.families.size());
+}
+
 // Angles: the mirror S maps th to 60 deg - th and 270 deg - th, modulo whole turns.
 TEST(Translated, DoublePendulum) {
   const core::Communicator comm;
