@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <vector>
 
 #include "floquet_chain.hpp"
@@ -9,6 +8,7 @@
 #include "orbit_correction.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/systems/system.hpp"
+#include "sampled_loop.hpp"
 
 namespace orbweaver::spectrum {
 
@@ -26,14 +26,7 @@ class HermiteChain {
   [[nodiscard]] Chain corrected(const systems::System& system, const OrbitCorrection& correction, double factor) const;
 
  private:
-  using Numbers = std::unique_ptr<double[]>;
-
-  void sample(const systems::System& system, const loop::Loop& loop, int order, int around);
-  template <std::size_t D>
-  void take_rates(int order, int around);
   void take_inner(const systems::System& system);
-  template <std::size_t D>
-  void split_residuals();
   template <std::size_t D>
   void solve();
   template <std::size_t D>
@@ -46,24 +39,13 @@ class HermiteChain {
   void move_points(const OrbitCorrection& correction, double factor, double* states) const;
   template <std::size_t D>
   void change_transitions(double stretched, const double* jacobians, Chain& changed) const;
+  /// Of `jacobians` an entry has a row of `row` numbers.
   void take_nodes(const systems::System& system, const double* states, const double* fields, const double* jacobians,
-                  Chain& chain) const;
+                  std::size_t row, Chain& chain) const;
 
   Chain _chain;
   std::size_t _dimension;
-  std::size_t _segments = 0;
-  std::size_t _stride = 0;  ///< segments with those beyond both ends that the first and last nodes reach into
-  std::size_t _points = 0;  ///< _stride times the points of a segment
-  double _largest_rate = 0.0;   ///< largest h |A| of a segment
-  double _wanted = 0.0;         ///< segments a period that the rates ask for
-  std::vector<char> _vanishes;  ///< the entries of A that are 0 all along
-  // At points, [...][point of the segment][segment]:
-  Numbers _states;
-  Numbers _fields;
-  Numbers _jacobians;
-  Numbers _rates;      ///< dt/ds, in segments
-  Numbers _residuals;  ///< dz/ds less what the field says, in segments
-  Numbers _fast;       ///< what trapezoidal sums leave of the orbit's distance to the loop
+  SampledLoop _loop;
   // At points within segments, for several of them at a time, [segments][point of the segment][...][lane]:
   Numbers _flows;     ///< transition matrices from the segment's begin
   Numbers _inverses;  ///< and their inverses

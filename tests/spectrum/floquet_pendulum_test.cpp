@@ -7,12 +7,12 @@
 
 #include <gtest/gtest.h>
 
+#include "continuation/families.hpp"
 #include "floquet_chain.hpp"
 #include "floquet_indices.hpp"
 #include "matrix_table.hpp"
 #include "orbit_correction.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
-#include "orbweaver/systems/registry.hpp"
 #include "spectrum/floquet_checks.hpp"
 #include "spectrum/pendulum_loops.hpp"
 #include "support/relative_error.hpp"
@@ -25,6 +25,7 @@ using namespace orbweaver;
 using spectrum::floquet;
 using spectrum::Stability;
 using test::expect_value;
+using test::pendulum;
 
 /// Index of the half map, from the quarter period in quadruple precision: Newton's method for the brake point, then the
 /// variational equations over T/2, both by extrapolation of order 28.
@@ -55,21 +56,11 @@ const std::vector<std::pair<test::PendulumMode, std::vector<Reference>>>& refere
   return values;
 }
 
-std::shared_ptr<const systems::System> pendulum() {
-  static const std::shared_ptr<const systems::System> system = systems::make_system("double_pendulum");
-  return system;
-}
-
 std::vector<continuation::Orbit> family_to_thirty(const test::PendulumMode& mode) {
-  continuation::Start start;
-  start.base = loop::constant_loop(mode.point, mode.period(), 10);
-  start.direction.modes = test::linear_loop(mode, 1.0, 10).modes;
-  std::fill_n(start.direction.modes.begin(), 4, 0.0);
-  start.isotropy = test::pendulum_isotropy(*pendulum());
   continuation::Options options;
   options.fit_time_map = false;
   options.period_limit = 30.5;
-  return test::orbits_of(pendulum(), start, options);
+  return test::trace_of(mode, options).orbits;
 }
 
 loop::Loop orbit_at(const std::vector<continuation::Orbit>& family, double period) {

@@ -8,9 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include "continuation/families.hpp"
 #include "floquet_indices.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
-#include "orbweaver/systems/registry.hpp"
 #include "spectrum/floquet_checks.hpp"
 #include "spectrum/pendulum_loops.hpp"
 #include "transverse_flow.hpp"
@@ -19,11 +19,7 @@ namespace hermite_chain_test {
 namespace {
 
 using namespace orbweaver;
-
-std::shared_ptr<const systems::System> pendulum() {
-  static const std::shared_ptr<const systems::System> system = systems::make_system("double_pendulum");
-  return system;
-}
+using test::pendulum;
 
 /// Orbits of the in-phase family, without symmetry, evenly in s and under the maps that their branch chooses.
 const std::vector<loop::Loop>& loops() {
@@ -31,15 +27,10 @@ const std::vector<loop::Loop>& loops() {
     std::vector<loop::Loop> all;
     const test::PendulumMode mode = test::in_phase();
     for (const bool mapped : {false, true}) {
-      continuation::Start start;
-      start.base = loop::constant_loop(mode.point, mode.period(), 10);
-      start.direction.modes = test::linear_loop(mode, 1.0, 10).modes;
-      std::fill_n(start.direction.modes.begin(), 4, 0.0);
-      start.isotropy = test::pendulum_isotropy(*pendulum());
       continuation::Options options;
       options.fit_time_map = mapped;
       options.period_limit = 16.0;
-      for (const continuation::Orbit& orbit : test::orbits_of(pendulum(), start, options))
+      for (const continuation::Orbit& orbit : test::trace_of(mode, options).orbits)
         if (orbit.loop.period > 9.5) all.push_back(orbit.loop);
     }
     return all;

@@ -42,8 +42,8 @@ struct Certificate {
   double tail = unknown;             ///< loop::tail
   double reach = 0.0;                ///< largest |z(t_m)|
   /// How many times farther than at its start a displacement is once around, where the orbit returns so far off that it
-  /// matters: one along dH/dz, or, where nothing is conserved, that of the coordinates which grows most, from whichever
-  /// of the instants t_m to the end.
+  /// matters: one along dH/dz, or, where nothing is conserved, that of the coordinates which grows most; where that
+  /// does not explain the return, from whichever of the instants t_m to the end.
   double displaced_growth = unknown;
   double steepness = 0.0;            ///< largest |dH/dz(z(t_m))|; 0 for a system that conserves no energy
   double energy_size = 0.0;          ///< largest |H(z(t_m))|, of which its rounding is a part

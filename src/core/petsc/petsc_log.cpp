@@ -15,7 +15,7 @@ namespace {
 constexpr const char* stage_names[] = {"Sweep",       "Continuation", "Corrector", "Spectrum",
                                        "Certificate", "Archive",      "Queue wait"};
 constexpr const char* event_names[] = {"LoopResidual", "LoopJacobian",    "FieldEvaluation", "LoopAssembly",
-                                       "BoxFactor",    "BoxPrecondition", "Multipliers"};
+                                       "BoxFactor",    "BoxPrecondition", "Multipliers",     "StepValidation"};
 static_assert(std::size(stage_names) == detail::stages && std::size(event_names) == detail::events);
 
 // Logging is no reason to fail: PETSc's errors are left aside.

@@ -8,11 +8,11 @@ namespace orbweaver::core {
 enum class Stage { sweep, continuation, corrector, spectrum, certificate, archive, queue_wait };
 
 /// What it tells apart as events, in whichever stage they happen. Events include events begun within them.
-enum class Event { residual, jacobian, field, assembly, factor, precondition, multipliers };
+enum class Event { residual, jacobian, field, assembly, factor, precondition, multipliers, validation };
 
 namespace detail {
 inline constexpr int stages = 7;
-inline constexpr int events = 7;
+inline constexpr int events = 8;
 /// Who keeps the times (PETSc, while a Session lives that logs), and the numbers of stages and events there.
 /// Numbers are -1, and nothing is called, while nobody does.
 struct Log {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/bifurcation/family_jump.hpp"
+#include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/loop/symmetry/standard_phase.hpp"
 #include "orbweaver/survey/tasks/branch_options.hpp"
 #include "tasks/branch/requested.hpp"
@@ -238,6 +239,7 @@ bool BranchTask::jumped(const continuation::Orbit& from, const continuation::Orb
   if (!_last_stability)
     _last_stability = stability_of(*_followed.system, _followed.last->loop, _followed.start.isotropy, _followed.team);
   const std::optional<spectrum::Stability>& after = _followed.stability_at(to);
+  const core::LogEvent event(core::Event::validation);
   return _last_stability && after && bifurcation::are_decided(*_last_stability) && bifurcation::are_decided(*after) &&
          bifurcation::has_jumped(_followed.system, _followed.start.isotropy,
                                  branch_options(_followed.scene, _followed.team), {from, *_last_stability},
@@ -247,6 +249,7 @@ bool BranchTask::jumped(const continuation::Orbit& from, const continuation::Orb
 bool BranchTask::arrive(const continuation::Orbit& orbit) {
   bifurcation::SymmetryWatch::SampledOrbit sampled = bifurcation::SymmetryWatch::sampled(orbit.loop);
   if (_followed.last) {
+    const core::LogEvent event(core::Event::validation);
     if (auto arrival = arrival_between(*_followed.system, _followed.curve, _symmetry, *_followed.last, *_sampled, orbit,
                                        sampled)) {
       // The met family looks only for crossings of the orders that the scene asks for.
