@@ -227,7 +227,7 @@ template <Told told>
 class ToldLattice {
  public:
   static constexpr int dimension = 6;
-  static constexpr int quantities = 3;
+  static constexpr int quantities = told == Told::twice ? 3 : 2;
   static ModelInfo info() { return Lattice::info(); }
   static Structure structure(const Bound& bound) {
     Structure structure = Lattice::structure(bound);

@@ -25,9 +25,10 @@ namespace orbweaver::systems {
 
 /// Adapts a model to the System interface, with derivatives by AD, over nodes in SIMD lanes. A model has
 ///   static constexpr int dimension;
-///   static constexpr int quantities;                          // functions that can be conserved
+///   static constexpr int quantities;                          // functions that may be conserved
 ///   static ModelInfo info();
-///   static Structure structure(const Bound& bound);           // what holds with these parameters and effects
+///   static Structure structure(const Bound& bound);           // what holds with these parameters and effects; names
+///                                                             // each of the functions that is conserved
 ///   static std::vector<EffectRules> effects();                // composed into it (effects/composition.hpp), if any
 ///   `template <class P> class With;`                          // the model with parameters of type P
 /// and With<P>, P being double or (to differentiate by a parameter, in quadruple precision, and in formulas) the scalar
@@ -47,6 +48,16 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
     check(_structure, Registered<Model>::info(), Model::dimension, Model::quantities);
     if constexpr (!requires(const Numeric& model, const double* z) { model.guard(0, z); })
       check_without_guards(_structure);
+  }
+
+  /// Throws StructureError if the field keeps a function of the model that the structure does not name. Asked once for
+  /// each system that is made by name, not for those whose parameters have moved.
+  void require_names() const {
+    if constexpr (Model::quantities > 0)
+      check_unnamed(_structure, Model::quantities, [this](int k, const double* z, double* f, double* gradient) {
+        field(1, z, f);
+        with_function(k, [&]<int K>(std::integral_constant<int, K>) { gradients_of<K>(1, z, gradient); });
+      });
   }
 
   [[nodiscard]] const ModelInfo& info() const override { return Registered<Model>::info(); }
@@ -158,13 +169,7 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
   }
 
   void conserved_gradients(int k, std::size_t nodes, const double* z, double* gradients) const override {
-    with_quantity(k, [&]<int K>(std::integral_constant<int, K>) {
-      const auto quantity = [this]<class S>(const S* state) { return _model.template conserved<K, S>(state); };
-      for_each_group(nodes, [=](std::size_t j, std::size_t count) {
-        const auto result = ad::value_gradient<Model::dimension>(quantity, load(nodes, j, count, z).data());
-        store(nodes, j, count, result.gradient, gradients);
-      });
-    });
+    with_quantity(k, [&]<int K>(std::integral_constant<int, K>) { gradients_of<K>(nodes, z, gradients); });
   }
 
   [[nodiscard]] double conserved(int k, std::span<const double> z) const override {
@@ -217,10 +222,24 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
   void with_quantity(int k, const Evaluate& evaluate) const {
     core::require(k >= 0 && k < static_cast<int>(_structure.conserved.size()),
                   "the structure names no such conserved quantity");
+    with_function(k, evaluate);
+  }
+
+  template <class Evaluate>
+  static void with_function(int k, const Evaluate& evaluate) {
     [&]<int... K>(std::integer_sequence<int, K...>) {
       static_cast<void>(((k == K && (evaluate(std::integral_constant<int, K>{}), true)) || ...));
     }
     (std::make_integer_sequence<int, Model::quantities>{});
+  }
+
+  template <int K>
+  void gradients_of(std::size_t nodes, const double* z, double* gradients) const {
+    const auto quantity = [this]<class S>(const S* state) { return _model.template conserved<K, S>(state); };
+    for_each_group(nodes, [=](std::size_t j, std::size_t count) {
+      const auto result = ad::value_gradient<Model::dimension>(quantity, load(nodes, j, count, z).data());
+      store(nodes, j, count, result.gradient, gradients);
+    });
   }
 
   // One body serves full groups and the last one, so that a node's bits do not depend on where it stands.
@@ -273,7 +292,9 @@ const std::vector<std::string>& Registered<Model>::effects() {
 
 template <class Model>
 std::shared_ptr<const System> Registered<Model>::make(const Bound& bound) {
-  return std::make_shared<const ModelSystem<Model>>(bound);
+  const auto system = std::make_shared<const ModelSystem<Model>>(bound);
+  system->require_names();
+  return system;
 }
 
 template <class Model>
