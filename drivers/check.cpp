@@ -132,6 +132,10 @@ void print_simulated(const scene::Scene& scene, const systems::System& system,
   lines.insert(lines.end(), holds.begin(), holds.end());
   for (const std::string& symmetry : systems::undeclared_symmetries(system, points))
     lines.emplace_back("not declared", symmetry);
+  if (const std::vector<std::string> moved = systems::undeclared_translations(system); !moved.empty())
+    lines.emplace_back(
+        "not declared",
+        fmt::format("perhaps a momentum: the field stays the same along translations of {}", fmt::join(moved, ", ")));
   if (systems::may_be_symplectic(system, points))
     lines.emplace_back(
         "not declared",

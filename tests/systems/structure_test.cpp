@@ -282,6 +282,15 @@ TEST(Structure, GuardsWantAFunction) {
               testing::ThrowsMessage<StructureError>(testing::HasSubstr("structure.guards names 'r'")));
 }
 
+TEST(Structure, AnEnergyWantsAnActionDensity) {
+  Structure structure = springs({})->structure();
+  EXPECT_THAT([&] { check_without_action_density(structure); },
+              testing::ThrowsMessage<StructureError>(testing::HasSubstr("names 'energy', and the model has no action "
+                                                                        "density")));
+  structure.conserved.clear();
+  EXPECT_NO_THROW(check_without_action_density(structure));
+}
+
 TEST(Bound, AParameterThatInfoDoesNotNameIsTold) {
   const Bound bound{{{"c", 1.0}, {"k", 2.0}}, {}};
   EXPECT_EQ(bound["k"], 2.0);

@@ -86,6 +86,12 @@ void remark_undeclared(const systems::System& system, const std::vector<SweepOut
         fmt::format("the field has {}, which the system does not declare: with it the survey is faster, and says which "
                     "crossings it forces",
                     symmetry));
+  if (const std::vector<std::string> moved = systems::undeclared_translations(system); !moved.empty())
+    summary.remarks.push_back(
+        fmt::format("the field stays the same along translations of {}: declare the momentum that is conserved with "
+                    "them, without which orbits and crossings are not isolated (docs/your_own_system.md, \"More "
+                    "conserved quantities\")",
+                    fmt::join(moved, ", ")));
   if (systems::may_be_symplectic(system, points))
     summary.remarks.push_back(fmt::format(
         "the eigenvalues at every equilibrium come in pairs +-lambda, as those of Hamiltonian systems do: if this is "

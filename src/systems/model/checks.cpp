@@ -192,6 +192,15 @@ void check_without_guards(const Structure& structure) {
                     structure.guards.front().name));
 }
 
+void check_without_action_density(const Structure& structure) {
+  if (structure.conservative())
+    throw StructureError(fmt::format(
+        "structure.conserved names '{}', and the model has no action density: give it `template <class S> S "
+        "action_density(const S* z) const`, p dq/dt, by which the energy is checked, or NaN where there is "
+        "none",
+        structure.conserved.front()));
+}
+
 namespace {
 
 /// Whether the field keeps the function, as it does no other than a conserved quantity: coordinates have sizes of many

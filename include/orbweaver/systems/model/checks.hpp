@@ -25,6 +25,9 @@ void check(const Structure& structure, const ModelInfo& info, int dimension, int
 /// Throws StructureError if the structure of a model without a function for them names guards.
 void check_without_guards(const Structure& structure);
 
+/// Throws StructureError if the structure of a model without an action density names an energy.
+void check_without_action_density(const Structure& structure);
+
 /// Of a function `conserved<k>` of a model, at a state: the field and the function's gradient (`dimension` numbers
 /// each).
 using FunctionAt = std::function<void(int k, const double* z, double* field, double* gradient)>;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -36,7 +37,7 @@ namespace orbweaver::systems {
 ///   explicit With(const BoundTo<P>& bound);
 ///   `template <class S> void field(const S* z, S* f) const;`
 ///   `template <int K, class S> S conserved(const S* z) const;` // quantity K of the structure, K < quantities
-///   `template <class S> S action_density(const S* z) const;`   // NaN where there is none
+///   `template <class S> S action_density(const S* z) const;`   // if it conserves an energy; NaN where there is none
 /// and, if its structure may name guards,
 ///   double guard(int k, const double* z) const;
 /// Constants are doubles; what none is exactly (1/3) is written as S(1.0) / 3.0, so that more digits than those of a
@@ -48,6 +49,7 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
     check(_structure, Registered<Model>::info(), Model::dimension, Model::quantities);
     if constexpr (!requires(const Numeric& model, const double* z) { model.guard(0, z); })
       check_without_guards(_structure);
+    if constexpr (!has_action_density) check_without_action_density(_structure);
   }
 
   /// Throws StructureError if the field keeps a function of the model that the structure does not name. Asked once for
@@ -192,7 +194,10 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
   }
 
   [[nodiscard]] double action_density(std::span<const double> z) const override {
-    return _model.template action_density<double>(z.data());
+    if constexpr (has_action_density)
+      return _model.template action_density<double>(z.data());
+    else
+      return std::numeric_limits<double>::quiet_NaN();
   }
 
   void complex_field(const std::complex<double>* z, std::complex<double>* f) const override { _model.field(z, f); }
@@ -208,6 +213,9 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
   using State = std::array<ad::Lanes, size>;
 
   using Numeric = typename Model::template With<double>;
+  static constexpr bool has_action_density = requires(const Numeric& model, const double* z) {
+    model.template action_density<double>(z);
+  };
 
   struct Field {
     const Numeric& model;
