@@ -14,9 +14,7 @@
 #include "failure.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/text.hpp"
-#include "orbweaver/scene/in_scales.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
-#include "orbweaver/starts/natural_scales.hpp"
 #include "orbweaver/survey/run/expected_work.hpp"
 #include "orbweaver/survey/run/scaled_scene.hpp"
 #include "orbweaver/survey/tree/expected_starts.hpp"
@@ -57,24 +55,18 @@ std::string value_of_parameter(const systems::System& system, const std::string&
   return found == known.end() ? fmt::format("{} = {}", name, value) : parameter_text(*found, value);
 }
 
-std::string scales_text(const scene::Scene& scene, const systems::System& system) {
-  try {
-    const systems::Scales scales =
-        scene::scales_of(scene, system, starts::natural_scales(system, scene.fixed_points.grid));
-    std::vector<std::string> texts{fmt::format("time {:.6g}", scales.time)};
-    for (std::size_t i = 0; i < system.info().state_names.size(); ++i)
-      if (!system.structure().is_angle(i))
-        texts.push_back(fmt::format("{} {:.6g}", system.info().state_names[i], scales.coordinate(i)));
-    for (std::size_t k = 0; k < system.structure().conserved.size(); ++k)
-      texts.push_back(fmt::format("{} {:.6g}", system.structure().conserved[k],
-                                  scales.conserved.empty() ? 1.0 : scales.conserved[k]));
-    return fmt::format("{}", fmt::join(texts, ", "));
-  } catch (const core::NumericalError& error) {
-    return fmt::format("not found: {}", error.what());
-  }
+std::string scales_text(const systems::System& system, const systems::Scales& scales) {
+  std::vector<std::string> texts{fmt::format("time {:.6g}", scales.time)};
+  for (std::size_t i = 0; i < system.info().state_names.size(); ++i)
+    if (!system.structure().is_angle(i))
+      texts.push_back(fmt::format("{} {:.6g}", system.info().state_names[i], scales.coordinate(i)));
+  for (std::size_t k = 0; k < system.structure().conserved.size(); ++k)
+    texts.push_back(fmt::format("{} {:.6g}", system.structure().conserved[k],
+                                scales.conserved.empty() ? 1.0 : scales.conserved[k]));
+  return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-void print_system(const scene::Scene& scene, const systems::System& system) {
+void print_system(const scene::Scene& scene, const systems::System& system, const systems::Scales& scales) {
   std::vector<std::string> coordinates, parameters;
   for (std::size_t i = 0; i < system.info().state_names.size(); ++i)
     coordinates.push_back(system.info().state_names[i] + (system.structure().is_angle(i) ? " (angle)" : ""));
@@ -83,7 +75,7 @@ void print_system(const scene::Scene& scene, const systems::System& system) {
     lines.emplace_back(lines.size() == 1 ? "parameters" : "", value_of_parameter(system, name, value));
   const auto& effects = scene.system.effects;
   lines.emplace_back("effects", effects.empty() ? "none" : fmt::format("{}", fmt::join(effects, ", ")));
-  lines.emplace_back("scales", scales_text(scene, system));
+  lines.emplace_back("scales", scales_text(system, scales));
   print_group(fmt::format("System: {} ({})", system.info().title, system.info().name), lines);
 }
 
@@ -140,8 +132,15 @@ void print_simulated(const scene::Scene& scene, const systems::System& system,
   lines.insert(lines.end(), holds.begin(), holds.end());
   for (const std::string& symmetry : systems::undeclared_symmetries(system, points))
     lines.emplace_back("not declared", symmetry);
+  if (const std::vector<std::string> moved = systems::undeclared_translations(system); !moved.empty())
+    lines.emplace_back(
+        "not declared",
+        fmt::format("perhaps a momentum: the field stays the same along translations of {}", fmt::join(moved, ", ")));
   if (systems::may_be_symplectic(system, points))
-    lines.emplace_back("not declared", "perhaps `symplectic`: eigenvalues at every equilibrium come in pairs +-lambda");
+    lines.emplace_back(
+        "not declared",
+        fmt::format("perhaps {}: eigenvalues at every equilibrium come in pairs +-lambda",
+                    system.structure().conservative() ? "`symplectic`" : "an energy (`conserved`) and `symplectic`"));
   if (!points.empty()) lines.emplace_back("price", price_text(system, points.front()));
   print_group("Simulated", lines);
 }
@@ -167,8 +166,7 @@ std::string sweep_text(const scene::Sweep& sweep) {
 
 std::string named(const std::string& name) { return name.empty() ? "" : ", " + name; }
 
-void print_starts(const scene::Scene& scene, const std::shared_ptr<const systems::System>& bound) {
-  const systems::System& system = *bound;
+void print_starts(const scene::Scene& scene, const systems::System& system, const survey::ExpectedStarts& expected) {
   const scene::FixedPoints& points = scene.fixed_points;
   std::size_t count = 1;
   std::vector<std::string> axes;
@@ -179,10 +177,14 @@ void print_starts(const scene::Scene& scene, const std::shared_ptr<const systems
     axes.push_back(fmt::format("{} = {}", system.info().state_names[i], fmt::join(texts, ", ")));
     count *= values.size();
   }
-  const std::string sought = system.structure().driven ? "none: the phase of the drive never stands still"
-                             : points.grid.empty()     ? "not sought: starts.fixed_points.grid is not given"
-                                                       : fmt::format("Newton's method from {} point{}: {}", count,
-                                                                 count == 1 ? "" : "s", fmt::join(axes, "; "));
+  const std::string grid = fmt::format("Newton's method from {} point{}", count, count == 1 ? "" : "s");
+  std::string sought = "not sought: starts.fixed_points.grid is not given";
+  if (system.structure().driven)
+    sought = expected.equilibria == 0
+                 ? "none: the phase of the drive never stands still"
+                 : fmt::format("{} that rest at every phase of the drive, by {}", expected.equilibria, grid);
+  else if (!points.grid.empty())
+    sought = fmt::format("{}: {}", grid, fmt::join(axes, "; "));
   Lines lines{{"equilibria", sought}};
   for (const scene::FixedPoints::Names& named : points.names) {
     std::vector<std::string> texts;
@@ -196,18 +198,14 @@ void print_starts(const scene::Scene& scene, const std::shared_ptr<const systems
   for (const scene::LoopStart& start : scene.loops)
     lines.emplace_back("loop", fmt::format("{}, {} samples, T = {:g}{}", core::printable(start.file.path),
                                            start.samples.times.size(), start.period, named(start.name)));
-  if (!scene.orbits.empty() || scene.recurrences) {
-    const survey::ScaledScene scaled(scene, bound);
-    const survey::ExpectedStarts expected = survey::expected_starts(scaled.scene(), *scaled.system());
-    for (std::size_t n = 0; n < expected.orbits.size(); ++n)
-      lines.emplace_back("orbit", core::printable(expected.orbits[n]) + named(scene.orbits[n].name));
-    if (scene.recurrences)
-      lines.emplace_back("recurrences",
-                         fmt::format("{} returns to {:g} within T = {:g}, each a guess to correct; at most {} orbits "
-                                     "are followed",
-                                     expected.near_returns, scene.recurrences->tolerance, scene.recurrences->time,
-                                     scene.recurrences->most));
-  }
+  for (std::size_t n = 0; n < expected.orbits.size(); ++n)
+    lines.emplace_back("orbit", core::printable(expected.orbits[n]) + named(scene.orbits[n].name));
+  if (scene.recurrences)
+    lines.emplace_back("recurrences",
+                       fmt::format("{} returns to {:g} within T = {:g}, each a guess to correct; at most {} orbits "
+                                   "are followed",
+                                   expected.near_returns, scene.recurrences->tolerance, scene.recurrences->time,
+                                   scene.recurrences->most));
   print_group("Starts", lines);
 }
 
@@ -371,12 +369,13 @@ int check(const SceneOptions& options, const Invocation& invocation) {
   const scene::Scene scene = options.load();
   const auto bound = scene::bound_system(scene.system);
   const systems::System& system = *bound;
+  const survey::ScaledScene scaled(scene, bound);
+  const survey::ExpectedStarts expected = survey::expected_starts(scaled.scene(), *scaled.system());
   const std::vector<std::vector<double>> points = resting_points(scene, system);
-  systems::require_identities(system, points);
   fmt::print("{}: a valid scene, \"{}\"\n", core::printable(options.file.string()), scene.name);
-  print_system(scene, system);
+  print_system(scene, system, scaled.system()->scales());
   print_simulated(scene, system, points);
-  print_starts(scene, bound);
+  print_starts(scene, system, expected);
   print_continuation(scene, system);
   print_survey(scene);
   print_limits(scene, system);

@@ -44,7 +44,7 @@ int compare(const CompareOptions& options, const Invocation& invocation) {
 Command make_compare_command(CLI::App& program) {
   CLI::App* parser = program.add_subcommand("compare", "Say what differs between two atlases, as trees of families");
   auto options = std::make_shared<CompareOptions>();
-  parser->add_option("A", options->a, "The atlas.h5 of a survey")->required();
+  parser->add_option("A", options->a, "The atlas.h5 of a survey, or the survey's folder")->required();
   parser->add_option("B", options->b, "Another one")->required();
   parser->add_option("--tolerance", options->compare.tolerance, "Relative deviation that does not count")
       ->capture_default_str();

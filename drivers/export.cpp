@@ -56,7 +56,7 @@ int run(const ExportOptions& options) {
 Command make_export_command(CLI::App& program) {
   const auto options = std::make_shared<ExportOptions>();
   CLI::App* parser = program.add_subcommand("export", "Initial states and periods of orbits for other programs");
-  parser->add_option("atlas", options->atlas, "The atlas.h5 of a survey")->required();
+  parser->add_option("atlas", options->atlas, "The atlas.h5 of a survey, or the survey's folder")->required();
   parser->add_option("--format", options->format, "csv, json, or auto: the file from which AUTO-07p restarts")
       ->required()
       ->check(CLI::IsMember({"csv", "json", "auto"}));

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "orbweaver/archive/file/survey_folder.hpp"
 #include "orbweaver/core/error.hpp"
 
 namespace orbweaver::drivers {
@@ -74,7 +75,7 @@ void write_output_file(const fs::path& path, const std::function<void(std::ostre
 
 void require_output_file(const fs::path& path, const fs::path& input) {
   std::error_code ignored;
-  if (fs::equivalent(path, input, ignored))
+  if (fs::equivalent(path, archive::atlas_named(input), ignored))
     throw core::InputError(
         fmt::format("cannot write {}: it is the file that is read; give another name", path.string()));
   if (is_device_or_pipe(path)) return;

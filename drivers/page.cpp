@@ -42,7 +42,7 @@ int run(const PageOptions& options) {
 Command make_page_command(CLI::App& program) {
   const auto options = std::make_shared<PageOptions>();
   CLI::App* parser = program.add_subcommand("page", "An atlas to look at: one HTML file for any browser, offline");
-  parser->add_option("atlas", options->atlas, "The atlas.h5 of a survey")->required();
+  parser->add_option("atlas", options->atlas, "The atlas.h5 of a survey, or the survey's folder")->required();
   parser->add_option("-o,--output", options->output, "The file to write")
       ->required()
       ->check(named_path())

@@ -76,7 +76,7 @@ int run(const PlotOptions& options, const Invocation& invocation) {
 Command make_plot_command(CLI::App& program) {
   const auto options = std::make_shared<PlotOptions>();
   CLI::App* parser = program.add_subcommand("plot", "A static picture of an atlas, for a paper or a slide");
-  parser->add_option("atlas", options->atlas, "The atlas.h5 of a survey")->required();
+  parser->add_option("atlas", options->atlas, "The atlas.h5 of a survey, or the survey's folder")->required();
   parser
       ->add_option("what", options->request.what,
                    fmt::format("What to draw: {}", fmt::join(report::plot_names(), ", ")))

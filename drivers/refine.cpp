@@ -111,7 +111,7 @@ int refine_command(const RefineOptions& options) {
 Command make_refine_command(CLI::App& program) {
   CLI::App* parser = program.add_subcommand("refine", "Compute an orbit or a crossing of an atlas to many digits");
   auto options = std::make_shared<RefineOptions>();
-  parser->add_option("ATLAS", options->atlas, "The atlas.h5 of a survey")->required();
+  parser->add_option("ATLAS", options->atlas, "The atlas.h5 of a survey, or the survey's folder")->required();
   parser->add_option("FAMILY", options->family, "The name of a family");
   parser->add_option("ORBIT", options->orbit, "T=PERIOD, E=ENERGY or PARAMETER=VALUE, meant exactly, or a step");
   parser->add_option("--crossing", options->crossing, "A row of the table of crossings, counted from 0");

@@ -52,7 +52,7 @@ int show(const ShowOptions& options) {
 Command make_show_command(CLI::App& program) {
   CLI::App* parser = program.add_subcommand("show", "Print what an atlas holds");
   auto options = std::make_shared<ShowOptions>();
-  parser->add_option("atlas", options->atlas, "The atlas.h5 of a survey")->required();
+  parser->add_option("atlas", options->atlas, "The atlas.h5 of a survey, or the survey's folder")->required();
   CLI::Option* table =
       parser
           ->add_option("table", options->table,

@@ -127,7 +127,8 @@ Command make_verify_command(CLI::App& program) {
   const auto options = std::make_shared<VerifyOptions>();
   CLI::App* parser = program.add_subcommand(
       "verify", "Compute an atlas again from its modes alone and say what does not hold (under mpirun or alone)");
-  parser->add_option("ATLAS", options->atlas, "The atlas.h5 of a survey, or a file of proofs")->required();
+  parser->add_option("ATLAS", options->atlas, "The atlas.h5 of a survey, or the survey's folder, or a file of proofs")
+      ->required();
   parser->add_flag("--prove", options->prove, "Prove orbits instead: enclose them by ball arithmetic");
   parser->add_option("ORBITS", options->orbits,
                      "With --prove: FAMILY T=PERIOD|E=ENERGY|PARAMETER=VALUE|STEP, for each orbit");

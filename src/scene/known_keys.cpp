@@ -121,7 +121,7 @@ constexpr std::array table_of_keys{
     KnownKey{"limits", "a map", "none", "", "where a family ends if nothing else ends it first"},
     KnownKey{"limits.period", "a number > 0 or infinite", "`30`", "time", "the longest period"},
     KnownKey{"limits.energy", "a list of two numbers, from and to, which may be infinite", "`[-.inf, .inf]`", "energy",
-             "the least and the greatest energy"},
+             "the least and the greatest energy, where one is conserved"},
     KnownKey{"limits.parameter", "a list of two numbers, from and to, which may be infinite", "what the model allows",
              "the parameter's", "with `continuation.free`: the least and the greatest value of that parameter"},
     KnownKey{"limits.guards", "a map", "no limits", "each its own",
@@ -135,7 +135,8 @@ constexpr std::array table_of_keys{
 
     KnownKey{"events", "a map", "none", "", "orbits to be located exactly, besides crossings"},
     KnownKey{"events.periods", "a list", "`[]`", "time", "where a family has one of these periods"},
-    KnownKey{"events.energies", "a list", "`[]`", "energy", "where a family has one of these energies"},
+    KnownKey{"events.energies", "a list", "`[]`", "energy",
+             "where a family has one of these energies, where one is conserved"},
 
     KnownKey{"section", "a map", "no section", "", "a Poincare section"},
     KnownKey{"section.coordinate", "one of the system's coordinates", must_be_given, "",

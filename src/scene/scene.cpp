@@ -47,7 +47,7 @@ Scene read_scene(const Field& root, const std::optional<std::filesystem::path>& 
                                fmt::format("false, with survey.depth {}", scene.survey.depth), "leave one of them out");
   keep_to_model(scene.system, system, scene.limits);
   if (const auto field = keys.find("limits")) read_limits(*field, system, scene.limits);
-  if (const auto field = keys.find("events")) read_events(*field, scene.events);
+  if (const auto field = keys.find("events")) read_events(*field, system, scene.events);
   if (const auto field = keys.find("section")) read_section(*field, system, scene.section);
   if (const auto field = keys.find("loci")) read_loci(*field, scene, system);
   if (const auto field = keys.find("output")) read_output(*field, scene.output);

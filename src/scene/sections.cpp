@@ -1,6 +1,7 @@
 #include "sections.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -129,12 +130,26 @@ void keep_to_model(const SystemChoice& choice, const systems::System& system, Li
       std::tie(limits.parameter_from, limits.parameter_to) = std::pair(parameter.lower, parameter.upper);
 }
 
+namespace {
+
+/// Of a key that holds energies.
+void require_energy(const Field& field, const systems::System& system) {
+  if (system.structure().conservative()) return;
+  const bool loses_it = system.structure().dissipative || system.structure().driven;
+  field.fail(fmt::format("no energies, as {} conserves none", system.info().title), field.got(),
+             loses_it ? "leave it out" : "leave it out, or name the energy in the model's structure.conserved");
+}
+
+}  // namespace
+
 void read_limits(const Field& field, const systems::System& system, Limits& limits) {
   const Keys keys(field, "limits: {period: 30}");
   if (const auto period = keys.find("period"))
     limits.period = period->number({.lower = 0, .lower_open = true, .infinite = true, .example = "30"});
-  if (const auto energy = keys.find("energy"))
+  if (const auto energy = keys.find("energy")) {
     std::tie(limits.energy_from, limits.energy_to) = energy->range({.infinite = true, .example = "[-.inf, .inf]"});
+    if (std::isfinite(limits.energy_from) || std::isfinite(limits.energy_to)) require_energy(*energy, system);
+  }
   if (const auto parameter = keys.find("parameter")) {
     if (system.family_scalars().free.empty())
       parameter->fail("no such key, as no parameter moves", parameter->got(),
@@ -159,11 +174,14 @@ void read_limits(const Field& field, const systems::System& system, Limits& limi
     limits.task_time = time->number({.lower = 0, .lower_open = true, .infinite = true, .example = "3600"});
 }
 
-void read_events(const Field& field, Events& events) {
+void read_events(const Field& field, const systems::System& system, Events& events) {
   const Keys keys(field, "events: {periods: [10], energies: [0]}");
   if (const auto periods = keys.find("periods"))
     events.periods = periods->numbers({.lower = 0, .lower_open = true, .example = "10"});
-  if (const auto energies = keys.find("energies")) events.energies = energies->numbers({.example = "0.5"});
+  if (const auto energies = keys.find("energies")) {
+    events.energies = energies->numbers({.example = "0.5"});
+    if (!events.energies.empty()) require_energy(*energies, system);
+  }
 }
 
 void read_section(const Field& field, const systems::System& system, Section& section) {
@@ -204,6 +222,8 @@ std::pair<std::string, std::string> obstacle_of(Loci::Of of, const systems::Syst
     case Loci::Of::fold_energy:
       if (moves)
         return {fmt::format("families in {} fold in it", system.family_scalars().free.front()), "say fold-parameter"};
+      if (of == Loci::Of::fold_energy && !structure.conservative())
+        return {fmt::format("{} conserves no energy", system.info().title), "leave it out"};
       break;
     case Loci::Of::fold_parameter:
       if (!moves) return {"no parameter moves along the families", "say fold-period or fold-energy"};

@@ -20,7 +20,7 @@ void read_compute(const Field& field, Compute& compute);
 /// Families end at the least and the greatest value that the model allows the parameter that moves.
 void keep_to_model(const SystemChoice& choice, const systems::System& system, Limits& limits);
 void read_limits(const Field& field, const systems::System& system, Limits& limits);
-void read_events(const Field& field, Events& events);
+void read_events(const Field& field, const systems::System& system, Events& events);
 void read_section(const Field& field, const systems::System& system, Section& section);
 /// `scene`: what was read of it before, whose system's kind of families decides what has loci.
 void read_loci(const Field& field, Scene& scene, const systems::System& system);

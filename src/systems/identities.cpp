@@ -225,10 +225,30 @@ IdentityError pairing_error(const System& system, const std::vector<double>& equ
   return worst;
 }
 
+namespace {
+
+/// Reversible fields have paired eigenvalues at their equilibria too: Hamiltonian ones have no divergence anywhere.
+bool keeps_volumes(const System& system, const std::vector<std::vector<double>>& equilibria) {
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const auto d = static_cast<Eigen::Index>(system.dimension());
+  const double size = std::max(1.0, largest_coordinate(system.structure(), equilibria));
+  VectorXd f(d);
+  Matrix jacobian(d, d);
+  for (const std::vector<double>& state : states_around(system.structure(), equilibria, states_each, size)) {
+    system.field_jacobian(1, state.data(), f.data(), jacobian.data());
+    if (!jacobian.allFinite()) continue;
+    if (std::abs(jacobian.trace()) > beyond_rounding * jacobian.cwiseAbs().maxCoeff()) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 bool may_be_symplectic(const System& system, const std::vector<std::vector<double>>& equilibria) {
   const Structure& structure = system.structure();
-  if (structure.symplectic || !structure.conservative() || system.dimension() % 2 != 0 || equilibria.empty())
-    return false;
+  const bool is_told = structure.symplectic || structure.dissipative || structure.driven;
+  if (is_told || system.dimension() % 2 != 0 || equilibria.empty()) return false;
+  if (!structure.conservative() && !keeps_volumes(system, equilibria)) return false;
   return std::all_of(equilibria.begin(), equilibria.end(), [&](const std::vector<double>& point) {
     return pairing_error(system, point).error <= beyond_rounding;
   });

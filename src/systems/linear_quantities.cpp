@@ -12,6 +12,7 @@
 #include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/systems/identities.hpp"
 #include "orbweaver/systems/quad_system.hpp"
+#include "orbweaver/systems/undeclared_symmetries.hpp"
 
 namespace orbweaver::systems {
 
@@ -254,6 +255,19 @@ LinearSearch find_linear_quantities(const System& system) {
   else
     search.obstacle = Search(system).run(search);
   return search;
+}
+
+std::vector<std::string> undeclared_translations(const System& system) {
+  const Structure& structure = system.structure();
+  if (!structure.symplectic || structure.driven || structure.conserved.size() != 1) return {};
+  const std::vector<Trial> trials = trials_of(system);
+  if (trials.empty()) return {};
+  const MatrixXd kernel = common_kernel(trials);
+  std::vector<std::string> moved;
+  for (Index i = 0; i < kernel.rows(); ++i)
+    if (kernel.cols() > 0 && kernel.row(i).cwiseAbs().maxCoeff() > half_the_digits * kernel.cwiseAbs().maxCoeff())
+      moved.push_back(system.info().state_names[static_cast<std::size_t>(i)]);
+  return moved;
 }
 
 MatrixXd rows_of(const MatrixXd& matrix, const std::vector<int>& rows) {

@@ -141,9 +141,19 @@ TEST_F(BadFiles, NoMoreIsReadThanTheFileHolds) {
               HasSubstr("has a dataset /findings/text of shape (1) with values of 268435456 bytes"));
 }
 
+TEST_F(BadFiles, AFolderStandsForItsAtlas) {
+  EXPECT_EQ(Archive(folder).path(), folder / "atlas.h5");
+  EXPECT_EQ(Archive(folder / "").path(), folder / "atlas.h5");
+  std::filesystem::create_directories(folder / "other" / "segments");
+  EXPECT_THAT(atlas_refusal(folder / "other"),
+              AllOf(HasSubstr("other' is the folder of a survey that has not come to its end"),
+                    HasSubstr("other --resume`"), HasSubstr("`orbweaver consolidate")));
+  std::filesystem::create_directory(folder / "empty");
+  EXPECT_THAT(atlas_refusal(folder / "empty"), HasSubstr("empty' is a folder; an Orbweaver atlas was expected"));
+}
+
 TEST_F(BadFiles, AbsentAndForeignFilesAreNamed) {
   EXPECT_THAT(atlas_refusal(folder / "none.h5"), AllOf(HasSubstr("none.h5' does not exist"), HasSubstr("survey")));
-  EXPECT_THAT(atlas_refusal(folder), HasSubstr("is a folder"));
   std::ofstream(folder / "text.h5") << "name: double-pendulum\n";
   EXPECT_THAT(atlas_refusal(folder / "text.h5"), HasSubstr("is not an HDF5 file"));
   std::ofstream(folder / "nothing.h5").close();

@@ -67,6 +67,12 @@ sed 's/"wrong"/"false"/; s/{"energy", "momentum"}/{"energy"}/; s/{"R", back}/{"R
 sed 's/two_masses.so/false.so/' two_masses.yaml >false.yaml
 orbweaver build-system false.cpp -o false.so
 expect_refusal "false.so) contradicts its structure: expected f(R z) = -R f(z)" mpirun -n 2 orbweaver survey false.yaml -o false
+# A Hamiltonian system that forgets to name its energy.
+sed 's/"two_masses"/"forgetful"/; /structure.conserved =/d; /structure.symplectic =/d' two_masses.cpp >forgetful.cpp
+sed 's/two_masses.so/forgetful.so/' two_masses.yaml >forgetful.yaml
+orbweaver build-system forgetful.cpp -o forgetful.so
+expect_refusal "forgetful.so): structure.conserved does not name conserved<0>, which the field keeps" orbweaver check forgetful.yaml
+expect_refusal "forgetful.so): structure.conserved does not name conserved<0>, which the field keeps" mpirun -n 2 orbweaver survey forgetful.yaml -o forgetful
 echo 'int nothing;' >nothing.cpp
 expect_refusal "has no symbol \`orbweaver_plugin\`" orbweaver build-system nothing.cpp -o nothing.so
 echo 'int nothing' >nothing.cpp

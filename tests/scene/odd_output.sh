@@ -33,6 +33,8 @@ ended 2 "$itself" export atlas.h5 --format csv -o atlas.h5
 ended 2 "$itself" export atlas.h5 --format csv -o link.svg
 ended 2 "$itself" export atlas.h5 --format auto --family Out-Phase -o s.out --equations ./atlas.h5
 ended 2 "$itself" plot atlas.h5 tree -o link.svg
+ended 2 "$itself" page . -o atlas.h5
+ended 0 "Out-Phase" export . --format csv -o /dev/stdout
 ended 2 "$itself" page atlas.h5 -o atlas.h5
 ended 2 "$itself" refine atlas.h5 Out-Phase 3 -o atlas.h5
 ended 2 "$itself" verify atlas.h5 --prove Out-Phase 3 -o atlas.h5

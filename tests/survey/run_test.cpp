@@ -311,14 +311,16 @@ TEST(RunSurvey, WhyNothingWasFoundIsSaid) {
               comm.is_root() ? HasSubstr("all their periods lie outside starts.sweep.period") : HasSubstr(""));
 
   const auto damped = test::fresh_folder(own_folder(comm, "damped"), comm.get());
-  const survey::Summary rest =
-      survey::run_survey(comm,
-                         test::quick_scene({"starts.fixed_points.grid=[[0],[0]]", "starts.fixed_points.names={}",
-                                            "starts.fixed_points.letters={}"}),
-                         std::make_shared<Damped>(), damped, {});
-  EXPECT_EQ(rest.failures, 1U);
-  if (!comm.is_root()) return;
-  EXPECT_THAT(rest.failed_tasks, ElementsAre(AllOf(HasSubstr("no family found"), HasSubstr("conserves nothing"))));
+  EXPECT_THAT(
+      [&] {
+        (void)survey::run_survey(comm,
+                                 test::quick_scene({"starts.fixed_points.grid=[[0],[0]]",
+                                                    "starts.fixed_points.names={}", "starts.fixed_points.letters={}"}),
+                                 std::make_shared<Damped>(), damped, {});
+      },
+      ::testing::ThrowsMessage<core::InputError>(AllOf(HasSubstr("expected `continuation: {free: ...}`"),
+                                                       HasSubstr("conserves nothing: the model wants one"),
+                                                       HasSubstr("name that in the model's structure.conserved"))));
 }
 
 TEST(RunSurvey, GridPointsWithoutAFieldArePassedOverAndTold) {

@@ -206,6 +206,14 @@ TEST(Contradictions, ASymplecticFormThatIsNotDeclaredShowsInPairs) {
   const auto friction = [](const std::vector<double>& z, double* f) { f[2] -= 1e-6 * z[2]; };
   EXPECT_FALSE(may_be_symplectic(Altered(system, undeclared, friction), rest)) << "no pairs";
   EXPECT_FALSE(may_be_symplectic(*make_system("lorenz"), {{0, 0, 0}})) << "it conserves nothing";
+  const auto without_energy = [](Structure& structure) {
+    structure.symplectic = false;
+    structure.conserved.clear();
+  };
+  EXPECT_TRUE(may_be_symplectic(Altered(system, without_energy), rest)) << "its energy is not named either";
+  const auto reversible = [](const std::vector<double>& z, double* f) { f[2] += 1e-6 * z[0] * z[2] * z[2]; };
+  EXPECT_FALSE(may_be_symplectic(Altered(system, without_energy, reversible), rest))
+      << "pairs at rest, where no volume is kept elsewhere";
 }
 
 }  // namespace

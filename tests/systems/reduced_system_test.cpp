@@ -14,6 +14,8 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/identities.hpp"
 #include "orbweaver/systems/quad_system.hpp"
+#include "orbweaver/systems/registry.hpp"
+#include "orbweaver/systems/undeclared_symmetries.hpp"
 #include "support/lattice.hpp"
 
 namespace orbweaver::systems::reduced_system_test {
@@ -227,7 +229,7 @@ template <Told told>
 class ToldLattice {
  public:
   static constexpr int dimension = 6;
-  static constexpr int quantities = 3;
+  static constexpr int quantities = told == Told::twice ? 3 : 2;
   static ModelInfo info() { return Lattice::info(); }
   static Structure structure(const Bound& bound) {
     Structure structure = Lattice::structure(bound);
@@ -262,6 +264,27 @@ TEST(ReducedSystem, SaysWhyItCannotBe) {
   EXPECT_EQ(obstacle<Told::twice>(),
             "its field stays the same along 1 translation of the coordinates, and 2 of its conserved quantities are "
             "linear in them, where each belongs to one");
+}
+
+/// A system that names its energy alone.
+template <class Model>
+class EnergyAlone : public Model {
+ public:
+  static constexpr int quantities = 1;
+  static Structure structure(const Bound& bound) {
+    Structure structure = Model::structure(bound);
+    structure.conserved.resize(1);
+    return structure;
+  }
+};
+
+TEST(ReducedSystem, AMomentumThatIsNotNamedIsTold) {
+  const auto made = []<class Model>() { return Registered<EnergyAlone<Model>>::make(bound_to(Model::info(), {}, {})); };
+  EXPECT_THAT(undeclared_translations(*made.operator()<Lattice>()), ElementsAre("x1", "x2", "x3"));
+  EXPECT_THAT(undeclared_translations(*made.operator()<CentralField>()), ElementsAre("phi"));
+  EXPECT_THAT(undeclared_translations(*reduced_model<Lattice>()), ElementsAre());
+  EXPECT_THAT(undeclared_translations(*make_system("henon_heiles")), ElementsAre());
+  EXPECT_THAT(undeclared_translations(*make_system("double_pendulum")), ElementsAre());
 }
 
 TEST(ReducedSystem, AStateOfAnotherValueIsRefused) {

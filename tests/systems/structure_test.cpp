@@ -1,4 +1,5 @@
 // What holds depends on parameter values and effects, and the system evaluates what its structure names.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -97,6 +98,18 @@ class Springs {
     P _b;
     P _friction;
   };
+};
+
+/// The same, with the names of what is conserved left out from the `named`-th on.
+template <int named>
+class Forgetful : public Springs {
+ public:
+  static Structure structure(const Bound& bound) {
+    Structure structure = Springs::structure(bound);
+    structure.conserved.resize(std::min<std::size_t>(structure.conserved.size(), named));
+    structure.symplectic = structure.symplectic && !structure.conserved.empty();
+    return structure;
+  }
 };
 
 std::shared_ptr<const System> springs(const std::map<std::string, double>& given,
@@ -247,11 +260,35 @@ TEST(Structure, OnesThatDoNotFitTheirModelAreRefusedByTheItemThatDoesNot) {
                   testing::HasSubstr("info.winding_names has 3 names, and the state 4 coordinates")));
 }
 
+TEST(Structure, WhatTheFieldKeepsIsNamed) {
+  const auto made = []<class Model>(const std::map<std::string, double>& given,
+                                    const std::vector<std::string>& effects = {}) {
+    return [=] { static_cast<void>(Registered<Model>::make(bound_to(Springs::info(), given, effects))); };
+  };
+  EXPECT_THAT((made.operator()<Forgetful<0>>({})),
+              testing::ThrowsMessage<StructureError>(testing::AllOf(
+                  testing::HasSubstr("structure.conserved does not name conserved<0>, which the field keeps"),
+                  testing::HasSubstr(R"(structure.conserved = {"energy"})"))));
+  EXPECT_NO_THROW((made.operator()<Forgetful<1>>({})())) << "springs that differ keep the energy alone";
+  EXPECT_THAT((made.operator()<Forgetful<1>>({{"a", 2.0}})),
+              testing::ThrowsMessage<StructureError>(testing::HasSubstr("does not name conserved<1>")));
+  EXPECT_NO_THROW((made.operator()<Forgetful<0>>({{"c", 1e-12}}, {"friction"})())) << "the least friction ends it";
+}
+
 TEST(Structure, GuardsWantAFunction) {
   Structure structure = springs({})->structure();
   structure.guards = {{"r", "the centre"}};
   EXPECT_THAT([&] { check_without_guards(structure); },
               testing::ThrowsMessage<StructureError>(testing::HasSubstr("structure.guards names 'r'")));
+}
+
+TEST(Structure, AnEnergyWantsAnActionDensity) {
+  Structure structure = springs({})->structure();
+  EXPECT_THAT([&] { check_without_action_density(structure); },
+              testing::ThrowsMessage<StructureError>(testing::HasSubstr("names 'energy', and the model has no action "
+                                                                        "density")));
+  structure.conserved.clear();
+  EXPECT_NO_THROW(check_without_action_density(structure));
 }
 
 TEST(Bound, AParameterThatInfoDoesNotNameIsTold) {

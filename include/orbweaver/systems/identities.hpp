@@ -33,9 +33,9 @@ struct IdentityError {
 /// (Elsewhere the trace of J need not vanish: the form may vary.)
 [[nodiscard]] IdentityError pairing_error(const System& system, const std::vector<double>& equilibrium);
 
-/// Whether a system that conserves an energy and declares no symplectic form may have one all the same: its dimension
-/// is even, and the pairs of `pairing_error` are there at each of these equilibria (at least one). They may be there
-/// without a form.
+/// Whether a system that declares no symplectic form may have one all the same: its dimension is even, the pairs of
+/// `pairing_error` are there at each of these equilibria (at least one) and, where it names no energy, the field keeps
+/// volumes. All that may be so without a form.
 [[nodiscard]] bool may_be_symplectic(const System& system, const std::vector<std::vector<double>>& equilibria);
 
 /// States to try identities at: `count` of them around each of `points`, repeatable, angles up to 1 rad away, other

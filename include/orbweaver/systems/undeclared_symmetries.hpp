@@ -15,6 +15,11 @@ namespace orbweaver::systems {
 [[nodiscard]] std::vector<std::string> undeclared_symmetries(const System& system,
                                                              const std::vector<std::vector<double>>& points);
 
+/// The coordinates that move along translations which keep the field of a Hamiltonian system: to each translation
+/// belongs a momentum that is conserved and that the structure does not name. Empty where there are none, and for other
+/// systems.
+[[nodiscard]] std::vector<std::string> undeclared_translations(const System& system);
+
 inline constexpr int most_sign_changes = 10;
 
 }  // namespace orbweaver::systems

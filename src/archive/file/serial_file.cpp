@@ -46,8 +46,8 @@ std::string shape_text(const std::vector<hsize_t>& extents) { return fmt::format
 
 const FileKind& atlas_kind() {
   static const FileKind kind{atlas_format, "an Orbweaver atlas",
-                             "Give the atlas.h5 of a finished survey; if it was damaged, copy it again or repeat "
-                             "`orbweaver survey`"};
+                             "Give the atlas.h5 of a finished survey, or its folder; if it was damaged, copy it again "
+                             "or repeat `orbweaver survey`"};
   return kind;
 }
 

@@ -7,6 +7,7 @@
 
 #include "certify_orbits.hpp"
 #include "orbweaver/archive/file/folder_lock.hpp"
+#include "orbweaver/archive/file/survey_folder.hpp"
 #include "orbweaver/archive/write/consolidate.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
@@ -228,7 +229,7 @@ Summary archive_survey(const core::Communicator& comm, const std::filesystem::pa
     found.checkpoint.stage = stage;
   });
   Summary summary;
-  summary.atlas = directory / "atlas.h5";
+  summary.atlas = archive::atlas_in(directory);
   summary.stopped_early = core::agreed(comm.get(), found.checkpoint.stage != Stage::finished);
   summary.archived = true;
   write_archive(comm, scene, system, found.checkpoint, tree, sweeps, summary);

@@ -36,7 +36,8 @@ double scale_of_parameter(double value, const scene::Limits& limits) {
   return largest > 0.0 ? std::exp2(std::floor(std::log2(largest))) : 1.0;
 }
 
-/// Systems whose structure says neither, as a test's may, are let through: their surveys find no family and say so.
+/// Orbits that no conserved quantity and no reversor holds are isolated. A system that has reversors and says no more
+/// may be a reversible one, with families in the period.
 void require_families(const systems::System& system) {
   const systems::Structure& structure = system.structure();
   if (structure.decays)
@@ -44,13 +45,18 @@ void require_families(const systems::System& system) {
         "expected a system that has families of periodic orbits, got {}: damped and without a drive, all its motions "
         "come to rest; add an effect that drives it, or leave out the damping (orbweaver systems lists the effects)",
         system.info().title));
-  if ((structure.dissipative || structure.driven) && system.family_scalars().free.empty()) {
+  const bool isolated =
+      !structure.conservative() && (structure.dissipative || structure.driven || structure.reversors.empty());
+  if (isolated && system.family_scalars().free.empty()) {
     std::vector<std::string> names;
     for (const auto& [name, value] : system.parameters()) names.push_back(name);
     throw core::InputError(fmt::format(
         "expected `continuation: {{free: ...}}`, the parameter that moves along the families of {}, which conserves "
-        "nothing: one of {}",
-        system.info().title, fmt::join(names, ", ")));
+        "nothing: {}{}",
+        system.info().title, names.empty() ? "the model wants one" : fmt::format("one of {}", fmt::join(names, ", ")),
+        structure.dissipative || structure.driven
+            ? ""
+            : "; if it keeps an energy, name that in the model's structure.conserved and give conserved<0>"));
   }
 }
 

@@ -15,6 +15,7 @@
 #include "archive_writer.hpp"
 #include "display.hpp"
 #include "orbweaver/archive/file/folder_lock.hpp"
+#include "orbweaver/archive/file/survey_folder.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/interruption.hpp"
 #include "orbweaver/core/log/log.hpp"
@@ -86,7 +87,7 @@ class Run {
     _queue_options.flush_rows = scene.output.flush_orbits;
     if (scene.survey.team_size > 1) _queue_options.root_works_up_to = 1;  // rank 0 is in no team
     if (std::isfinite(scene.limits.task_time)) _queue_options.task_seconds = scene.limits.task_time;
-    _summary.atlas = directory / "atlas.h5";
+    _summary.atlas = archive::atlas_in(directory);
   }
 
   Summary run(bool resume) {

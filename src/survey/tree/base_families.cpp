@@ -15,6 +15,7 @@
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
+#include "orbweaver/survey/tree/expected_starts.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
 #include "orbweaver/systems/identities.hpp"
 #include "orbweaver/systems/undeclared_symmetries.hpp"
@@ -85,10 +86,17 @@ void remark_undeclared(const systems::System& system, const std::vector<SweepOut
         fmt::format("the field has {}, which the system does not declare: with it the survey is faster, and says which "
                     "crossings it forces",
                     symmetry));
-  if (systems::may_be_symplectic(system, points))
+  if (const std::vector<std::string> moved = systems::undeclared_translations(system); !moved.empty())
     summary.remarks.push_back(
+        fmt::format("the field stays the same along translations of {}: declare the momentum that is conserved with "
+                    "them, without which orbits and crossings are not isolated (docs/your_own_system.md, \"More "
+                    "conserved quantities\")",
+                    fmt::join(moved, ", ")));
+  if (systems::may_be_symplectic(system, points))
+    summary.remarks.push_back(fmt::format(
         "the eigenvalues at every equilibrium come in pairs +-lambda, as those of Hamiltonian systems do: if this is "
-        "one, declare `symplectic`, without which its period doublings and subharmonics are not found");
+        "one, declare {}, without which its period doublings and subharmonics are not found",
+        system.structure().conservative() ? "`symplectic`" : "its energy (`conserved`) and `symplectic`"));
 }
 
 /// What to do where a survey has found no family at all.
@@ -176,22 +184,62 @@ void add_tasks(const std::string& name, const std::string& branch_key, const std
 
 }  // namespace
 
-std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::System& system) {
-  std::vector<queue::Task> tasks;
-  std::vector<std::vector<double>> points;
-  if (!scene.fixed_points.grid.empty()) points = starts::find_fixed_points(system, scene.fixed_points.grid);
+namespace {
+
+/// Where a survey would begin.
+struct Starts {
+  std::vector<std::vector<double>> equilibria;  ///< also those that no family of the system begins at
+  std::vector<SweepWork> given;
+};
+
+/// Throws InputError for whatever a survey is refused for before its first task.
+Starts starts_of(const scene::Scene& scene, const systems::System& system) {
+  Starts starts;
+  if (!scene.fixed_points.grid.empty()) starts.equilibria = starts::find_fixed_points(system, scene.fixed_points.grid);
+  starts.given = given_starts(scene, system);
   std::vector<std::vector<double>> known;
-  std::vector<SweepWork> given = given_starts(scene, system);
-  for (const SweepWork& work : given)
+  for (const SweepWork& work : starts.given)
     if (!work.given.front().is_return()) known.push_back(work.point);
   if (scene.recurrences) known.push_back(scene.recurrences->state);
-  systems::require_identities(system, points, known);
+  systems::require_identities(system, starts.equilibria, known);
+  const bool begins_at_equilibria = has_equilibrium_families(system);
+  if (!starts.given.empty() || (begins_at_equilibria && !starts.equilibria.empty())) return starts;
+  if (scene.recurrences)
+    throw core::InputError(
+        "starts.recurrences: the trajectory has no return: give it more time, longer periods or a "
+        "larger tolerance");
+  if (!begins_at_equilibria)
+    throw core::InputError("a conservative family in a parameter starts at an orbit: give one with starts.states");
+  throw core::InputError(
+      system.structure().driven
+          ? "nothing rests at every phase of the drive near starts.fixed_points.grid: give the drive the amplitude 0 "
+            "and let it move (continuation.free), or an orbit with starts.states"
+          : "Newton's method finds no equilibrium from starts.fixed_points.grid: give start values nearer to one");
+}
+
+}  // namespace
+
+ExpectedStarts expected_starts(const scene::Scene& scene, const systems::System& system) {
+  ExpectedStarts expected;
+  const Starts starts = starts_of(scene, system);
+  if (has_equilibrium_families(system)) expected.equilibria = starts.equilibria.size();
+  for (const SweepWork& work : starts.given) {
+    const GivenStart& given = work.given.front();
+    if (given.is_return()) ++expected.near_returns;
+    if (given.from == GivenStart::From::archive) expected.orbits.push_back(given.told);
+  }
+  return expected;
+}
+
+std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::System& system) {
+  Starts starts = starts_of(scene, system);
+  std::vector<queue::Task> tasks;
   if (has_equilibrium_families(system))
-    for (const std::vector<double>& point : points)
+    for (const std::vector<double>& point : starts.equilibria)
       tasks.push_back(task_of(SweepWork{static_cast<int>(tasks.size()), point}));
   const std::size_t equilibria = tasks.size();
   std::size_t returns = 0;
-  for (SweepWork& work : given) {
+  for (SweepWork& work : starts.given) {
     work.index = static_cast<int>(tasks.size());
     returns += work.given.front().is_return() ? 1 : 0;
     tasks.push_back(task_of(work));
@@ -205,20 +253,8 @@ std::vector<queue::Task> sweep_tasks(const scene::Scene& scene, const systems::S
                                : fmt::format("{} each in {}", system.structure().driven ? "driving" : "following",
                                              system.family_scalars().free.front());
   if (equilibria > 0) core::log_info(fmt::format("{} equilibria; {}", equilibria, look));
-  if (given.size() > returns) core::log_info(fmt::format("{} given orbits", given.size() - returns));
+  if (starts.given.size() > returns) core::log_info(fmt::format("{} given orbits", starts.given.size() - returns));
   if (scene.recurrences) core::log_info(fmt::format("{} returns of the trajectory", returns));
-  if (tasks.empty() && scene.recurrences)
-    throw core::InputError(
-        "starts.recurrences: the trajectory has no return: give it more time, longer periods or a "
-        "larger tolerance");
-  if (tasks.empty() && !has_equilibrium_families(system))
-    throw core::InputError("a conservative family in a parameter starts at an orbit: give one with starts.states");
-  if (tasks.empty())
-    throw core::InputError(
-        system.structure().driven
-            ? "nothing rests at every phase of the drive near starts.fixed_points.grid: give the drive the amplitude 0 "
-              "and let it move (continuation.free), or an orbit with starts.states"
-            : "Newton's method finds no equilibrium from starts.fixed_points.grid: give start values nearer to one");
   return tasks;
 }
 

@@ -15,7 +15,6 @@
 #include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/starts/loop_guess.hpp"
 #include "orbweaver/starts/near_returns.hpp"
-#include "orbweaver/survey/tree/expected_starts.hpp"
 
 namespace orbweaver::survey {
 
@@ -134,16 +133,6 @@ std::vector<SweepWork> given_starts(const scene::Scene& scene, const systems::Sy
     works.push_back(
         {0, found.state, {{From::trajectory, "", "starts.recurrences", found.time, found.symmetry, found.order, {}}}});
   return works;
-}
-
-ExpectedStarts expected_starts(const scene::Scene& scene, const systems::System& system) {
-  ExpectedStarts expected;
-  for (const SweepWork& work : given_starts(scene, system)) {
-    const GivenStart& given = work.given.front();
-    if (given.is_return()) ++expected.near_returns;
-    if (given.from == From::archive) expected.orbits.push_back(given.told);
-  }
-  return expected;
 }
 
 }  // namespace orbweaver::survey

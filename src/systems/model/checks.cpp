@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/numerics/random.hpp"
 #include "structure_error.hpp"
 
 namespace orbweaver::systems {
@@ -17,6 +19,9 @@ namespace {
 constexpr const char* identity_name = "1";
 /// Entries of matrices that turn by a part of a circle are wrong by rounding; what is no symmetry is off by much more.
 constexpr double rounding_of_maps = 1e-9;
+/// Half the digits: of a gradient's product with the field, against the sum of its terms' sizes.
+constexpr double rounding_of_products = 1.5e-8;
+constexpr std::uint64_t seed_of_states = 20261125;
 
 template <class Named>
 std::string names_of(const std::vector<Named>& list) {
@@ -185,6 +190,62 @@ void check_without_guards(const Structure& structure) {
         fmt::format("structure.guards names '{}', and the model has no function for it: give it `double guard(int k, "
                     "const double* z) const`, or leave the guard out",
                     structure.guards.front().name));
+}
+
+void check_without_action_density(const Structure& structure) {
+  if (structure.conservative())
+    throw StructureError(fmt::format(
+        "structure.conserved names '{}', and the model has no action density: give it `template <class S> S "
+        "action_density(const S* z) const`, p dq/dt, by which the energy is checked, or NaN where there is "
+        "none",
+        structure.conserved.front()));
+}
+
+namespace {
+
+/// Whether the field keeps the function, as it does no other than a conserved quantity: coordinates have sizes of many
+/// decades, so that each of the field's terms is the largest somewhere. A function that is constant tells nothing.
+bool keeps(int dimension, int k, const FunctionAt& at) {
+  constexpr int states = 64;
+  constexpr int enough = 8;  // of them at which all is finite
+  constexpr double decades = 12.0;
+  numerics::Random random(seed_of_states);
+  const auto d = static_cast<std::size_t>(dimension);
+  std::vector<double> z(d), f(d), gradient(d);
+  int finite = 0;
+  bool varies = false;
+  for (int n = 0; n < states; ++n) {
+    for (double& value : z) value = std::copysign(std::pow(10.0, decades * random()), random());
+    at(k, z.data(), f.data(), gradient.data());
+    double change = 0.0;
+    double size = 0.0;
+    for (std::size_t i = 0; i < d; ++i) {
+      change += gradient[i] * f[i];
+      size += std::abs(gradient[i] * f[i]);
+    }
+    if (!std::isfinite(size)) continue;
+    if (std::abs(change) > rounding_of_products * size) return false;
+    ++finite;
+    varies = varies || size > 0.0;
+  }
+  return varies && finite >= enough;
+}
+
+}  // namespace
+
+void check_unnamed(const Structure& structure, int quantities, const FunctionAt& at) {
+  if (structure.dissipative || structure.driven) return;
+  for (int k = static_cast<int>(structure.conserved.size()); k < quantities; ++k) {
+    if (!keeps(structure.dimension, k, at)) continue;
+    throw StructureError(fmt::format(
+        "structure.conserved does not name conserved<{}>, which the field keeps: name it there{}, or set `quantities` "
+        "to {}; or set structure.dissipative to true if it is kept at these values of the parameters only",
+        k,
+        k == 0 ? R"(, structure.conserved = {"energy"}, and set structure.symplectic to true if the system is )"
+                 "Hamiltonian"
+               : "",
+        k));
+  }
 }
 
 std::string joined(const std::vector<std::string>& names) {

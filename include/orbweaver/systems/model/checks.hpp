@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -23,6 +24,16 @@ namespace orbweaver::systems {
 void check(const Structure& structure, const ModelInfo& info, int dimension, int quantities);
 /// Throws StructureError if the structure of a model without a function for them names guards.
 void check_without_guards(const Structure& structure);
+
+/// Throws StructureError if the structure of a model without an action density names an energy.
+void check_without_action_density(const Structure& structure);
+
+/// Of a function `conserved<k>` of a model, at a state: the field and the function's gradient (`dimension` numbers
+/// each).
+using FunctionAt = std::function<void(int k, const double* z, double* field, double* gradient)>;
+/// Throws StructureError if the field keeps one of the model's `quantities` functions that the structure does not name,
+/// though it says neither `dissipative` nor `driven`: its families would be followed as those of a system without it.
+void check_unnamed(const Structure& structure, int quantities, const FunctionAt& at);
 
 /// "a, b, c", or "none" where the list is empty.
 [[nodiscard]] std::string joined(const std::vector<std::string>& names);

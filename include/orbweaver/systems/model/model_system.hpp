@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -25,9 +26,10 @@ namespace orbweaver::systems {
 
 /// Adapts a model to the System interface, with derivatives by AD, over nodes in SIMD lanes. A model has
 ///   static constexpr int dimension;
-///   static constexpr int quantities;                          // functions that can be conserved
+///   static constexpr int quantities;                          // functions that may be conserved
 ///   static ModelInfo info();
-///   static Structure structure(const Bound& bound);           // what holds with these parameters and effects
+///   static Structure structure(const Bound& bound);           // what holds with these parameters and effects; names
+///                                                             // each of the functions that is conserved
 ///   static std::vector<EffectRules> effects();                // composed into it (effects/composition.hpp), if any
 ///   `template <class P> class With;`                          // the model with parameters of type P
 /// and With<P>, P being double or (to differentiate by a parameter, in quadruple precision, and in formulas) the scalar
@@ -35,7 +37,7 @@ namespace orbweaver::systems {
 ///   explicit With(const BoundTo<P>& bound);
 ///   `template <class S> void field(const S* z, S* f) const;`
 ///   `template <int K, class S> S conserved(const S* z) const;` // quantity K of the structure, K < quantities
-///   `template <class S> S action_density(const S* z) const;`   // NaN where there is none
+///   `template <class S> S action_density(const S* z) const;`   // if it conserves an energy; NaN where there is none
 /// and, if its structure may name guards,
 ///   double guard(int k, const double* z) const;
 /// Constants are doubles; what none is exactly (1/3) is written as S(1.0) / 3.0, so that more digits than those of a
@@ -47,6 +49,17 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
     check(_structure, Registered<Model>::info(), Model::dimension, Model::quantities);
     if constexpr (!requires(const Numeric& model, const double* z) { model.guard(0, z); })
       check_without_guards(_structure);
+    if constexpr (!has_action_density) check_without_action_density(_structure);
+  }
+
+  /// Throws StructureError if the field keeps a function of the model that the structure does not name. Asked once for
+  /// each system that is made by name, not for those whose parameters have moved.
+  void require_names() const {
+    if constexpr (Model::quantities > 0)
+      check_unnamed(_structure, Model::quantities, [this](int k, const double* z, double* f, double* gradient) {
+        field(1, z, f);
+        with_function(k, [&]<int K>(std::integral_constant<int, K>) { gradients_of<K>(1, z, gradient); });
+      });
   }
 
   [[nodiscard]] const ModelInfo& info() const override { return Registered<Model>::info(); }
@@ -158,13 +171,7 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
   }
 
   void conserved_gradients(int k, std::size_t nodes, const double* z, double* gradients) const override {
-    with_quantity(k, [&]<int K>(std::integral_constant<int, K>) {
-      const auto quantity = [this]<class S>(const S* state) { return _model.template conserved<K, S>(state); };
-      for_each_group(nodes, [=](std::size_t j, std::size_t count) {
-        const auto result = ad::value_gradient<Model::dimension>(quantity, load(nodes, j, count, z).data());
-        store(nodes, j, count, result.gradient, gradients);
-      });
-    });
+    with_quantity(k, [&]<int K>(std::integral_constant<int, K>) { gradients_of<K>(nodes, z, gradients); });
   }
 
   [[nodiscard]] double conserved(int k, std::span<const double> z) const override {
@@ -187,7 +194,10 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
   }
 
   [[nodiscard]] double action_density(std::span<const double> z) const override {
-    return _model.template action_density<double>(z.data());
+    if constexpr (has_action_density)
+      return _model.template action_density<double>(z.data());
+    else
+      return std::numeric_limits<double>::quiet_NaN();
   }
 
   void complex_field(const std::complex<double>* z, std::complex<double>* f) const override { _model.field(z, f); }
@@ -203,6 +213,9 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
   using State = std::array<ad::Lanes, size>;
 
   using Numeric = typename Model::template With<double>;
+  static constexpr bool has_action_density = requires(const Numeric& model, const double* z) {
+    model.template action_density<double>(z);
+  };
 
   struct Field {
     const Numeric& model;
@@ -217,10 +230,24 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
   void with_quantity(int k, const Evaluate& evaluate) const {
     core::require(k >= 0 && k < static_cast<int>(_structure.conserved.size()),
                   "the structure names no such conserved quantity");
+    with_function(k, evaluate);
+  }
+
+  template <class Evaluate>
+  static void with_function(int k, const Evaluate& evaluate) {
     [&]<int... K>(std::integer_sequence<int, K...>) {
       static_cast<void>(((k == K && (evaluate(std::integral_constant<int, K>{}), true)) || ...));
     }
     (std::make_integer_sequence<int, Model::quantities>{});
+  }
+
+  template <int K>
+  void gradients_of(std::size_t nodes, const double* z, double* gradients) const {
+    const auto quantity = [this]<class S>(const S* state) { return _model.template conserved<K, S>(state); };
+    for_each_group(nodes, [=](std::size_t j, std::size_t count) {
+      const auto result = ad::value_gradient<Model::dimension>(quantity, load(nodes, j, count, z).data());
+      store(nodes, j, count, result.gradient, gradients);
+    });
   }
 
   // One body serves full groups and the last one, so that a node's bits do not depend on where it stands.
@@ -273,7 +300,9 @@ const std::vector<std::string>& Registered<Model>::effects() {
 
 template <class Model>
 std::shared_ptr<const System> Registered<Model>::make(const Bound& bound) {
-  return std::make_shared<const ModelSystem<Model>>(bound);
+  const auto system = std::make_shared<const ModelSystem<Model>>(bound);
+  system->require_names();
+  return system;
 }
 
 template <class Model>
