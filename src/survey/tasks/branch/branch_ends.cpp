@@ -119,8 +119,11 @@ std::vector<continuation::Orbit> BranchEnds::look_behind_last(const std::optiona
     return {};
   }
   add_behind(way.points);
+  _events.go_to_meeting(_followed.last->arclength);
   std::vector<continuation::Orbit> behind = orbits_to_zeros(way.points);
-  _events.add_folds(folds_on(*_followed.system, _followed.start.isotropy, way), _followed.curve.known());
+  const std::vector<bifurcation::Fold> folds = folds_on(*_followed.system, _followed.start.isotropy, way);
+  _events.add_folds(folds, _followed.curve.known());
+  for (const bifurcation::Fold& fold : folds) add_orbits(way.points, fold.to, behind);
   if (way.points.size() > 1) {
     const continuation::Orbit near = orbit_of(*_followed.system, way.points.back().loop, way.points.back().position);
     for (continuation::Orbit& wanted : requested_orbits(_followed.scene, *_followed.system, _followed.curve,
@@ -140,16 +143,21 @@ void BranchEnds::add_behind(std::vector<continuation::CurvePoint>& places) {
   }
 }
 
-/// Of the places behind the last orbit those up to the last zero of a test function: crossings lie within families.
+/// Of the places behind the last orbit those up to the one at `to` become orbits: crossings lie within families.
+void BranchEnds::add_orbits(const std::vector<continuation::CurvePoint>& places, double to,
+                            std::vector<continuation::Orbit>& orbits) const {
+  while (orbits.size() + 1 < places.size() && places[orbits.size()].position < to) {
+    const continuation::CurvePoint& place = places[orbits.size() + 1];
+    orbits.push_back(orbit_of(*_followed.system, place.loop, place.position));
+  }
+}
+
 std::vector<continuation::Orbit> BranchEnds::orbits_to_zeros(const std::vector<continuation::CurvePoint>& places) {
   std::vector<continuation::Orbit> orbits;
   for (std::size_t n = 1; n < places.size(); ++n) {
     const int known = _events.count();
-    _events.detect_zeros(_followed.test_point(places[n].position, _followed.asked_stability(places[n].loop)));
-    while (_events.count() > known && orbits.size() < n) {
-      const continuation::CurvePoint& place = places[orbits.size() + 1];
-      orbits.push_back(orbit_of(*_followed.system, place.loop, place.position));
-    }
+    _events.detect_zeros(_events.test_point(places[n].position, _followed.asked_stability(places[n].loop)));
+    if (_events.count() > known) add_orbits(places, places[n].position, orbits);
   }
   return orbits;
 }

@@ -34,6 +34,8 @@ class BranchEnds {
   void folds_from_birth(const std::vector<continuation::FamilyCurve::Known>& known);
   void folds_at_start();
   void add_behind(std::vector<continuation::CurvePoint>& places);
+  void add_orbits(const std::vector<continuation::CurvePoint>& places, double to,
+                  std::vector<continuation::Orbit>& orbits) const;
   [[nodiscard]] std::vector<continuation::Orbit> orbits_to_zeros(const std::vector<continuation::CurvePoint>& places);
 
   FollowedBranch& _followed;

@@ -16,6 +16,18 @@
 
 namespace orbweaver::survey {
 
+namespace {
+
+/// Of its bound, the error that a function of the multiplier 1 may have on the way to a meeting, where rounding is all
+/// that is left of it: the bound is an estimate, good to a factor (as in `bifurcation::is_isolated`).
+constexpr double error_margin = 10.0;
+
+bool is_of_one(const bifurcation::TestFunction& function) {
+  return bifurcation::has_sector(function.kind) && function.sector.q == 1;
+}
+
+}  // namespace
+
 void BranchEvents::go_on(bifurcation::DetectorState detector, const bifurcation::FoldWatch& folds, int count,
                          double passed_one, std::vector<queue::Task> tasks) {
   _detector = bifurcation::Detector(std::move(detector), {});
@@ -34,22 +46,30 @@ std::optional<bifurcation::TestPoint> BranchEvents::probe(double position) {
   if (position < _followed.curve.known().front().position) return std::nullopt;  // so far back no orbits are kept
   const std::optional<continuation::CurvePoint> point = _followed.curve.at(position);
   if (!point) return std::nullopt;
-  return _followed.test_point(position,
-                              stability_of(*_followed.system, point->loop, _followed.start.isotropy, _followed.team));
+  return test_point(position, stability_of(*_followed.system, point->loop, _followed.start.isotropy, _followed.team));
+}
+
+bifurcation::TestPoint BranchEvents::test_point(double position,
+                                                const std::optional<spectrum::Stability>& stability) const {
+  bifurcation::TestPoint point = _followed.test_point(position, stability);
+  if (position > _last)
+    for (std::size_t f = 0; f < point.readings.size(); ++f)
+      if (is_of_one(_followed.functions[f])) point.readings[f].error *= error_margin;
+  return point;
 }
 
 void BranchEvents::detect_zeros(const bifurcation::TestPoint& point) {
   const auto probing = [this](double position) { return probe(position); };
   for (const bifurcation::Bracket& b : _detector.advance(point, probing)) {
     const bifurcation::TestFunction& function = _followed.functions[b.function];
-    if (bifurcation::has_sector(function.kind) && function.sector.q == 1 && !b.tangency) _passed_one = b.to;
+    if (is_of_one(function) && !b.tangency) _passed_one = b.to;
     add_event({bifurcation::Event::Kind::test_function, _followed.functions[b.function], b.tangency, b.passed}, b.from,
               b.to, _followed.curve.known());
   }
 }
 
 void BranchEvents::detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability) {
-  detect_zeros(_followed.test_point(orbit.arclength, stability));
+  detect_zeros(test_point(orbit.arclength, stability));
   // Where a parameter moves only it folds; T and the energy have extrema that say nothing.
   const bool moves = !orbit.loop.parameters.empty();
   const auto watched = [&](bifurcation::Fold::Quantity quantity, const bifurcation::FoldWatch::Turn& turn) {
@@ -120,7 +140,7 @@ void BranchEvents::add_event(const bifurcation::Event& event, double from, doubl
   const bool at_birth = _followed.work.lineage.depth > 0 && from <= 0.0;
   const bool is_fold = event.kind != bifurcation::Event::Kind::test_function;
   const bool is_in_sector = !is_fold && bifurcation::has_sector(event.function.kind);
-  if (at_birth && is_in_sector && event.function.sector.q == 1) return;
+  if (at_birth && !is_fold && is_of_one(event.function)) return;
   LocateWork work;
   work.event = event;
   const std::string what = is_fold        ? "fold"

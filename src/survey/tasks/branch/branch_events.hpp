@@ -36,6 +36,12 @@ class BranchEvents {
   void watch_from_rest(const continuation::Orbit& first);
   void detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability);
   void detect_zeros(const bifurcation::TestPoint& point);
+  /// The branch meets another family behind the orbit at `last`. A multiplier is 1 there, which is no event: on the way
+  /// a function of that goes to zero like a power of the distance, and counts only where rounding cannot have made it.
+  void go_to_meeting(double last) { _last = last; }
+  /// The test functions of the branch at an orbit, as they count there.
+  [[nodiscard]] bifurcation::TestPoint test_point(double position,
+                                                  const std::optional<spectrum::Stability>& stability) const;
   /// What only the family's end shows of test functions, from the stored orbits alone, whatever was probed before.
   void finish_zeros();
 
@@ -61,6 +67,7 @@ class BranchEvents {
   bifurcation::FoldWatch _folds;
   int _count = 0;
   double _passed_one = std::numeric_limits<double>::quiet_NaN();
+  double _last = std::numeric_limits<double>::infinity();
   std::vector<queue::Task> _tasks;
 };
 

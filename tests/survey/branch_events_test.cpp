@@ -1,0 +1,54 @@
+#include "tasks/branch/branch_events.hpp"
+
+#include <cstddef>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/scene/scene.hpp"
+#include "orbweaver/systems/registry.hpp"
+
+namespace branch_events_test {
+namespace {
+
+using namespace orbweaver;
+using namespace orbweaver::survey;
+
+/// An orbit whose one index is `distance` from 2, and its bound.
+spectrum::Stability beside_two(double distance, double bound) {
+  spectrum::Stability stability;
+  stability.fundamental = {2.0 + distance};
+  stability.fundamental_error = {bound};
+  return stability;
+}
+
+// Three oscillators without a symmetry: along a family that ends on one four times around k - 2 was 1.3e-9, 4e-12 and
+// -1.8e-14 at the last places before it, the last by more than its bound. Two branch points were stored there.
+TEST(BranchEvents, OnTheWayToAMeetingRoundingMakesNoSign) {
+  const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/henon_heiles.yaml", {});
+  const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  BranchWork work;
+  work.base = loop::constant_loop(std::vector<double>(4, 0.0), 6.0, 8);
+  work.direction = {std::vector<double>(work.base.modes.size(), 1.0), {}};
+  FollowedBranch followed(scene, system, work, nullptr);
+  BranchEvents events(followed, nullptr);
+  const auto sign_of = [&](int q, double position, const spectrum::Stability& stability) {
+    const bifurcation::TestPoint point = events.test_point(position, stability);
+    for (std::size_t f = 0; f < point.readings.size(); ++f)
+      if (followed.functions[f].kind == bifurcation::TestFunction::Kind::sector && followed.functions[f].sector.q == q)
+        return point.readings[f].sign();
+    ADD_FAILURE() << "no function of q = " << q;
+    return 0;
+  };
+  const spectrum::Stability noise = beside_two(-4e-14, 1e-14);
+  const spectrum::Stability elliptic = beside_two(-1e-11, 1e-14);
+  events.go_to_meeting(1.0);
+  EXPECT_EQ(sign_of(1, 1.0, noise), -1) << "within the family a value beyond its bound has its sign";
+  EXPECT_EQ(sign_of(1, 1.5, noise), 0);
+  EXPECT_EQ(sign_of(1, 1.5, elliptic), -1);
+  EXPECT_EQ(sign_of(2, 1.5, noise), 1);
+}
+
+}  // namespace
+}  // namespace branch_events_test
