@@ -190,6 +190,11 @@ std::string to_text(const NotLocated& why) {
           "than {:.2g}, and its error bound is {:.2g}; no family crosses there",
           why.position, why.period, why.at_from, why.at_to);
     case NotLocated::Reason::no_event: return "two multipliers pass one another there: nothing leaves";
+    case NotLocated::Reason::unclear_event:
+      return fmt::format(
+          "at position {:.12g} (T = {:.12g}) two multipliers are each other's inverse, and so nearly equal that their "
+          "error bounds hide whether they are on the unit circle",
+          why.position, why.period);
   }
   return "unknown";
 }
@@ -230,10 +235,15 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
            .period = crossing->point.loop.period};
     return std::nullopt;
   }
-  if (event.kind == Event::Kind::test_function &&
-      !is_event(event.function, system.structure(), crossing->stability, event.tangency)) {
-    why = {.reason = NotLocated::Reason::no_event, .position = located->position};
-    return std::nullopt;
+  if (event.kind == Event::Kind::test_function) {
+    const std::optional<bool> is_one =
+        is_event(event.function, system.structure(), crossing->stability, event.tangency);
+    if (!is_one.value_or(false)) {
+      why = {.reason = is_one ? NotLocated::Reason::no_event : NotLocated::Reason::unclear_event,
+             .position = located->position,
+             .period = crossing->point.loop.period};
+      return std::nullopt;
+    }
   }
   crossing->width = located->width;
   return crossing;

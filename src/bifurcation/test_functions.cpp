@@ -138,11 +138,11 @@ double zeros_passed(const TestFunction& function, const spectrum::Stability& sta
 double torus_sum(const systems::Structure& system, const spectrum::Stability& stability) {
   const TestFunction torus{TestFunction::Kind::torus, {}};
   const std::vector<Bounded> indices = indices_of(system, stability);
-  return sum_at_smallest(indices, checked_rule(torus, system).factors(system, torus.sector, indices));
+  return sum_at_smallest(indices, checked_rule(torus, system).factors(system, torus.sector, indices)).value.real();
 }
 
-bool is_event(const TestFunction& function, const systems::Structure& system, const spectrum::Stability& stability,
-              bool tangency) {
+std::optional<bool> is_event(const TestFunction& function, const systems::Structure& system,
+                             const spectrum::Stability& stability, bool tangency) {
   const Rule& rule = checked_rule(function, system);
   const std::vector<Bounded> indices = indices_of(system, stability);
   return rule.is_event(indices, rule.factors(system, function.sector, indices), tangency);

@@ -175,9 +175,9 @@ TEST(TestFunctions, KreinChangesSignWhereTwoIndicesBecomeComplex) {
     EXPECT_NEAR(reading.value, 0.5, 1e-15) << huge;
     EXPECT_EQ(reading.sign(), 1);
   }
-  EXPECT_TRUE(is_event(krein, three, stability_of({0.6, 0.6, 3.0}, 1e-9), false));
-  EXPECT_FALSE(is_event(krein, three, stability_of({0.6, 0.6, 3.0}, 1e-9), true));
-  EXPECT_FALSE(is_event(krein, three, stability_of({0.6, 3.0, 3.0}, 1e-9), false));
+  EXPECT_EQ(is_event(krein, three, stability_of({0.6, 0.6, 3.0}, 1e-9), false), true);
+  EXPECT_EQ(is_event(krein, three, stability_of({0.6, 0.6, 3.0}, 1e-9), true), false);
+  EXPECT_EQ(is_event(krein, three, stability_of({0.6, 3.0, 3.0}, 1e-9), false), false);
 }
 
 TEST(TestFunctions, TorusIsForComplexPairs) {
@@ -187,8 +187,11 @@ TEST(TestFunctions, TorusIsForComplexPairs) {
     return stability_of({std::polar(modulus, 1.2), std::polar(modulus, -1.2), 0.3}, 1e-9);
   };
   EXPECT_EQ(evaluate(torus, three, pair(0.99)).sign(), -evaluate(torus, three, pair(1.01)).sign());
-  EXPECT_TRUE(is_event(torus, three, pair(1.0), false));
-  EXPECT_FALSE(is_event(torus, three, stability_of({4.0, 0.25, 0.3}, 1e-9), false));
+  EXPECT_EQ(is_event(torus, three, pair(1.0), false), true);
+  EXPECT_EQ(is_event(torus, three, stability_of({4.0, 0.25, 0.3}, 1e-9), false), false);
+  // A neutral saddle so near to 1 that the sum of its two multipliers is 2 to rounding.
+  EXPECT_EQ(is_event(torus, three, stability_of({std::exp(1e-9), std::exp(-1e-9), 0.3}, 1e-14), false), std::nullopt);
+  EXPECT_EQ(is_event(torus, three, stability_of({std::exp(1e-3), std::exp(-1e-3), 0.3}, 1e-9), false), false);
 }
 
 TEST(TestFunctions, TorusKeepsItsValueBesideLargeMultipliers) {

@@ -48,6 +48,7 @@ struct NotLocated {
     no_value,        ///< the function of these multipliers is not a number at `position`
     no_crossing,     ///< the sign changes by a jump: the function is `at_from` at `position`, its error bound `at_to`
     no_event,        ///< the function vanishes at `position` for another reason than the event that it stands for
+    unclear_event,   ///< whether it does so is within the error bounds of the multipliers at `position`
   };
   Reason reason = Reason::no_zero;
   double from = 0.0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -90,8 +91,9 @@ struct TestFunction {
 
 /// Whether a zero of the function, located at an orbit with this stability, is what the function is for. No continuous
 /// function can tell: krein vanishes as well where two pairs meet off the unit circle (k_i = k_j outside [-2, 2]) and,
-/// touching zero (`tangency`), where two pairs pass one another; torus where mu_i mu_j = 1 with both real.
-[[nodiscard]] bool is_event(const TestFunction& function, const systems::Structure& system,
-                            const spectrum::Stability& stability, bool tangency);
+/// touching zero (`tangency`), where two pairs pass one another; torus where mu_i mu_j = 1 with both real. None where
+/// the two are so near to a double multiplier on the circle that their error bounds leave it open.
+[[nodiscard]] std::optional<bool> is_event(const TestFunction& function, const systems::Structure& system,
+                                           const spectrum::Stability& stability, bool tangency);
 
 }  // namespace orbweaver::bifurcation

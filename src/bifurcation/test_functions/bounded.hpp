@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <optional>
 #include <vector>
 
 namespace orbweaver::bifurcation {
@@ -44,12 +45,21 @@ std::vector<Bounded> over_pairs(const std::vector<Bounded>& indices, const Facto
 }
 
 /// Of the pair whose factor is the smallest (`factors` over pairs of `indices`): the sum of the two.
-inline double sum_at_smallest(const std::vector<Bounded>& indices, const std::vector<Bounded>& factors) {
-  const auto sums = over_pairs(indices, [](const Bounded& a, const Bounded& b) { return Bounded{a.value + b.value}; });
+inline Bounded sum_at_smallest(const std::vector<Bounded>& indices, const std::vector<Bounded>& factors) {
+  const auto sums = over_pairs(
+      indices, [](const Bounded& a, const Bounded& b) { return Bounded{a.value + b.value, a.error + b.error}; });
   const auto smallest = std::min_element(factors.begin(), factors.end(), [](const Bounded& a, const Bounded& b) {
     return std::abs(a.value) < std::abs(b.value);
   });
-  return sums[static_cast<std::size_t>(smallest - factors.begin())].value.real();
+  const Bounded& sum = sums[static_cast<std::size_t>(smallest - factors.begin())];
+  return {sum.value.real(), sum.error};
+}
+
+/// Whether |x| is at most `most`. None where x is known too badly.
+inline std::optional<bool> is_within(const Bounded& x, double most) {
+  const double beyond = std::abs(x.value) - most;
+  if (std::abs(beyond) <= x.error) return std::nullopt;
+  return beyond < 0.0;
 }
 
 }  // namespace orbweaver::bifurcation

@@ -24,9 +24,10 @@ class Krein final : public Rule {
       return distance_squared(part(a), part(b), 0.0);
     });
   }
-  [[nodiscard]] bool is_event(const std::vector<Bounded>& indices, const std::vector<Bounded>& factors,
-                              bool tangency) const override {
-    return !tangency && std::abs(sum_at_smallest(indices, factors)) <= largest_sum;
+  [[nodiscard]] std::optional<bool> is_event(const std::vector<Bounded>& indices, const std::vector<Bounded>& factors,
+                                             bool tangency) const override {
+    if (tangency) return false;
+    return is_within(sum_at_smallest(indices, factors), largest_sum);
   }
 
  private:

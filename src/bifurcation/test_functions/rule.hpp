@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -31,9 +32,10 @@ class Rule {
   /// Each within [-1, 1], and of one sign where the indices are apart from what the function is for.
   [[nodiscard]] virtual std::vector<Bounded> factors(const systems::Structure& system, const Sector& sector,
                                                      const std::vector<Bounded>& indices) const = 0;
-  /// Whether a zero is what the function is for; `tangency`: it touches zero there.
-  [[nodiscard]] virtual bool is_event(const std::vector<Bounded>& /*indices*/, const std::vector<Bounded>& /*factors*/,
-                                      bool /*tangency*/) const {
+  /// Whether a zero is what the function is for, none where error bounds leave that open; `tangency`: it touches zero
+  /// there.
+  [[nodiscard]] virtual std::optional<bool> is_event(const std::vector<Bounded>& /*indices*/,
+                                                     const std::vector<Bounded>& /*factors*/, bool /*tangency*/) const {
     return true;
   }
 };

@@ -16,9 +16,9 @@ class Torus final : public Rule {
                                              const std::vector<Bounded>& indices) const override {
     return over_pairs(indices, scaled_product);
   }
-  [[nodiscard]] bool is_event(const std::vector<Bounded>& indices, const std::vector<Bounded>& factors,
-                              bool /*tangency*/) const override {
-    return std::abs(sum_at_smallest(indices, factors)) <= largest_sum;
+  [[nodiscard]] std::optional<bool> is_event(const std::vector<Bounded>& indices, const std::vector<Bounded>& factors,
+                                             bool /*tangency*/) const override {
+    return is_within(sum_at_smallest(indices, factors), largest_sum);
   }
 
  private:

@@ -65,7 +65,7 @@ class Location {
     add_known(fast);
     auto crossing = bifurcation::locate(*_system, fast, _event, _work.from, _work.to, why);
     // A zero that was found and is no event is none another way either.
-    const bool is_settled = _event.tangency || why.reason == bifurcation::NotLocated::Reason::no_event;
+    const bool is_settled = _event.tangency || is_zero(why);
     if (crossing || is_settled) return crossing ? located(*crossing, fast) : without_crossing(why, fast);
     // Newton's method on whole loops is slower, and finds orbits that the fast way misses. Its positions between known
     // orbits are a little different ones.
@@ -150,13 +150,20 @@ class Location {
     return kind == CrossingKind::fold_energy ? Event::Kind::fold_energy : Event::Kind::fold_parameter;
   }
 
+  /// Whether a zero was found, which is no event or may be none.
+  [[nodiscard]] static bool is_zero(const bifurcation::NotLocated& why) {
+    return why.reason == bifurcation::NotLocated::Reason::no_event ||
+           why.reason == bifurcation::NotLocated::Reason::unclear_event;
+  }
+
   queue::TaskOutcome without_crossing(bifurcation::NotLocated why, const continuation::FamilyCurve& family) {
     queue::TaskOutcome done;
     why.period *= Units(*_system).time;
     // Only minima that come near zero, and functions that vanish for other reasons, may turn out to be nothing.
-    done.failed = !_event.tangency && why.reason != bifurcation::NotLocated::Reason::no_event;
+    done.failed = !_event.tangency && !is_zero(why);
     _outcome.remark = to_text(why);
-    _outcome.undecided = _event.passed || (_event.tangency && why.reason != bifurcation::NotLocated::Reason::no_event);
+    const bool is_told = why.reason == bifurcation::NotLocated::Reason::no_event;
+    _outcome.undecided = _event.passed || (!is_told && (_event.tangency || is_zero(why)));
     if (done.failed)
       if (const std::string hidden = hidden_in(family, why.reason); !hidden.empty()) {
         done.failed = false;
