@@ -61,8 +61,8 @@ inline Detection detect(const systems::Structure& system, const StabilityAt& sta
       ADD_FAILURE() << "nothing located in [" << bracket.from << ", " << bracket.to << "]";
       continue;
     }
-    result.events.push_back({function, located->position, bracket.tangency,
-                             is_event(function, system, stability_at(located->position), bracket.tangency)});
+    const bool is_one = is_event(function, system, stability_at(located->position), bracket.tangency) == true;
+    result.events.push_back({function, located->position, bracket.tangency, is_one});
   }
   return result;
 }
