@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "orbweaver/archive/file/survey_folder.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/survey_folder.hpp"
 
 namespace orbweaver::drivers {
 
@@ -75,7 +75,7 @@ void write_output_file(const fs::path& path, const std::function<void(std::ostre
 
 void require_output_file(const fs::path& path, const fs::path& input) {
   std::error_code ignored;
-  if (fs::equivalent(path, archive::atlas_named(input), ignored))
+  if (fs::equivalent(path, core::atlas_named(input), ignored))
     throw core::InputError(
         fmt::format("cannot write {}: it is the file that is read; give another name", path.string()));
   if (is_device_or_pipe(path)) return;

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "stored_system.hpp"
+
 namespace orbweaver::report {
 
 namespace {
@@ -17,9 +19,7 @@ constexpr double largest_error = 1e-3;
 bool holds_multipliers(const archive::Archive& atlas) {
   if (!archive::has_complex_stability(atlas.header())) return false;
   if (atlas.header().pairs == 1) return true;
-  for (const double energy : atlas.orbits().reals("energy"))
-    if (!std::isnan(energy)) return false;
-  return true;
+  return !has_energies(atlas);
 }
 
 OrbitStability::OrbitStability(const archive::Archive& atlas)

@@ -40,11 +40,13 @@ std::vector<std::string> parameter_texts(const archive::Header& header) {
   return texts;
 }
 
-std::vector<std::string> units_texts(const archive::Header& header) {
+std::vector<std::string> units_texts(const archive::Archive& atlas) {
+  const archive::Header& header = atlas.header();
   std::vector<std::string> angles;
   if (info_of(header) != nullptr)
     for (const int angle : angles_of(header)) angles.push_back(header.state_names[static_cast<std::size_t>(angle)]);
-  std::vector<std::string> texts{"times, energies and states in the units of the parameters"};
+  std::vector<std::string> texts{
+      fmt::format("times{} and states in the units of the parameters", has_energies(atlas) ? ", energies" : "")};
   if (!angles.empty()) texts.insert(texts.begin(), fmt::format("{} in radians", fmt::join(angles, ", ")));
   return texts;
 }
@@ -60,7 +62,7 @@ void print_head(std::ostream& out, const archive::Archive& atlas, std::size_t wi
   if (!header.effects.empty()) out << fmt::format(", with {}", fmt::join(header.effects, ", "));
   out << '\n';
   if (!header.parameter_names.empty()) print_labelled(out, "parameters", parameter_texts(header), width);
-  print_labelled(out, "units", units_texts(header), width);
+  print_labelled(out, "units", units_texts(atlas), width);
 }
 
 }  // namespace orbweaver::report

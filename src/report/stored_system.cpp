@@ -1,6 +1,7 @@
 #include "stored_system.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -21,6 +22,11 @@ std::shared_ptr<const systems::System> system_of(const archive::Header& header) 
 }
 
 }  // namespace
+
+bool has_energies(const archive::Archive& atlas) {
+  const std::vector<double>& energies = atlas.orbits().reals("energy");
+  return std::any_of(energies.begin(), energies.end(), [](double energy) { return !std::isnan(energy); });
+}
 
 const systems::ModelInfo* info_of(const archive::Header& header) {
   const std::vector<std::string> known = systems::system_names();

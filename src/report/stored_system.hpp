@@ -12,6 +12,9 @@ namespace orbweaver::report {
 /// loaded).
 [[nodiscard]] const systems::ModelInfo* info_of(const archive::Header& header);
 
+/// Whether any orbit has an energy: none has where the system conserves none.
+[[nodiscard]] bool has_energies(const archive::Archive& atlas);
+
 /// One a parameter of the header; empty where it is not known.
 [[nodiscard]] std::vector<std::string> units_of(const archive::Header& header);
 

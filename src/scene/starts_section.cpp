@@ -8,6 +8,7 @@
 #include "fixed_points.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/file_hash.hpp"
+#include "orbweaver/core/survey_folder.hpp"
 #include "orbweaver/systems/reduced_system.hpp"
 #include "sections.hpp"
 #include "units.hpp"
@@ -74,17 +75,30 @@ void read_states(const Field& field, const systems::System& system, std::vector<
   }
 }
 
+enum class Kind { atlas, table };
+
+/// An atlas may be named by its survey's folder.
+std::filesystem::path file_at(const std::filesystem::path& place, Kind kind, const Field& path) {
+  std::filesystem::path file = place;
+  try {
+    if (kind == Kind::atlas) file = core::atlas_named(place);
+  } catch (const core::InputError& error) {
+    path.fail(error.what());
+  }
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(file, code))
+    path.fail("a file that can be read, told from the scene's folder", path.got(), "check the path");
+  return file;
+}
+
 /// Of the file itself where it can be read, and then the one that stands beside it, if any.
-StartFile read_file(const Field& path, const std::optional<Field>& hash,
+StartFile read_file(Kind kind, const Field& path, const std::optional<Field>& hash,
                     const std::optional<std::filesystem::path>& folder) {
   StartFile file{path.text("other/atlas.h5", longest_path), {}, {}};
   if (hash) file.hash = hash->text("the hash that a stored scene has");
   if (!folder) return file;
-  file.file = *folder / file.path;
+  file.file = file_at(*folder / file.path, kind, path);
   std::string found;
-  std::error_code code;
-  if (!std::filesystem::is_regular_file(file.file, code))
-    path.fail("a file that can be read, told from the scene's folder", path.got(), "check the path");
   try {
     found = core::file_hash({file.file});
   } catch (const core::InputError& error) {
@@ -104,7 +118,7 @@ void read_orbits(const Field& field, const std::optional<std::filesystem::path>&
     const Keys keys(entry, example);
     const std::vector<Field> given = required(keys, entry, {"archive", "family", "near"}, example);
     OrbitStart start;
-    start.archive = read_file(given[0], keys.find("hash"), folder);
+    start.archive = read_file(Kind::atlas, given[0], keys.find("hash"), folder);
     start.family = given[1].text("In-Phase");
     start.name = read_name(keys);
     const Keys near(given[2], "near: {period: 9}");
@@ -127,7 +141,7 @@ void read_loops(const Field& field, const systems::System& system, const std::op
     const Keys keys(entry, example);
     const std::vector<Field> given = required(keys, entry, {"file", "period"}, example);
     LoopStart start;
-    start.file = read_file(given[0], keys.find("hash"), folder);
+    start.file = read_file(Kind::table, given[0], keys.find("hash"), folder);
     start.period = read_period(given[1]);
     start.name = read_name(keys);
     if (folder) {

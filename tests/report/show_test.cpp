@@ -199,6 +199,11 @@ TEST(Show, TheHeadHasTheSystemItsParametersAndUnits) {
   EXPECT_EQ(unknown.str(),
             "made_up, with friction\nparameters   m = 0.1, g = 9.81\n"
             "units        times, energies and states in the units of the parameters\n\n");
+  Records records = test::sample_records(header);
+  for (OrbitRecord& orbit : records.orbits) orbit.energy = not_computed;
+  std::ostringstream without_energy;
+  print_table_head(without_energy, Archive(test::write_sample_atlas(test::fresh_folder("head_nan"), header, records)));
+  EXPECT_THAT(without_energy.str(), HasSubstr("units        times and states in the units of the parameters"));
   header.system = "double_pendulum";
   header.effects = {"damping"};
   header.parameter_names = {"c1", "c2", "g", "l1", "l2", "m1", "m2"};

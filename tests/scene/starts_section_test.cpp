@@ -87,6 +87,19 @@ TEST(StartsSection, RefusesWhatItCannotStartFrom) {
   EXPECT_THAT(refusal("states: [{state: [1, 0]}]"), HasSubstr("expected the key `period`"));
 }
 
+TEST(StartsSection, TakesAnAtlasByItsSurveysFolder) {
+  const std::string starts = "orbits: [{archive: other, family: A, near: {period: 9}}]";
+  fs::remove_all(folder / "other");
+  fs::create_directories(folder / "other" / "segments");
+  EXPECT_THAT(refusal(starts), HasSubstr("other' is the folder of a survey that has not come to its end"));
+  write("other/atlas.h5", "nothing");
+  const scene::Scene read = loaded(starts);
+  ASSERT_EQ(read.orbits.size(), 1U);
+  EXPECT_EQ(read.orbits[0].archive.file, folder / "other" / "atlas.h5");
+  EXPECT_EQ(read.orbits[0].archive.hash, orbweaver::core::file_hash({folder / "other" / "atlas.h5"}));
+  EXPECT_THAT(refusal("loops: [{file: other, period: 6.3}]"), HasSubstr("expected a file that can be read"));
+}
+
 TEST(StartsSection, NamesWhatDiffersOfRecurrences) {
   const auto with = [](const std::string& key, const std::string& value) {
     std::map<std::string, std::string> keys{

@@ -1,3 +1,5 @@
+#include <limits>
+
 #include <gmock/gmock.h>
 
 #include "run/display.hpp"
@@ -31,6 +33,12 @@ TEST(Display, AFamilyLosesNumbersBeforeItsEnd) {
   EXPECT_EQ(line_of(f, "E", 60), "Out-Phase    153 orbits  T 30.0000  period limit (T = 30)");
   EXPECT_EQ(line_of(f, "E", 50), "Out-Phase    153 orbits period limit (T = 30)");
   EXPECT_EQ(line_of(f, "E", 30), "Out-Phase    153 orbits  perio");
+}
+
+TEST(Display, AFamilyWithoutAnEnergyHasNone) {
+  FamilyState f = family("Out-Phase");
+  f.level = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(line_of(f, "E", 160), "Out-Phase    153 orbits  T 30.0000 K 447  period limit (T = 30)");
 }
 
 TEST(Display, OfALongNameTheEndIsKept) {

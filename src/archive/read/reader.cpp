@@ -4,7 +4,7 @@
 
 #include "check_indices.hpp"
 #include "file/serial_file.hpp"
-#include "orbweaver/archive/file/survey_folder.hpp"
+#include "orbweaver/core/survey_folder.hpp"
 #include "schema/row_checksum.hpp"
 
 namespace orbweaver::archive {
@@ -19,7 +19,7 @@ Table read_table(SerialFile& file, TableSpec spec) {
 }  // namespace
 
 Archive::Archive(const std::filesystem::path& path, ChangedRows changed)
-    : _file(std::make_unique<SerialFile>(atlas_named(path), atlas_kind())) {
+    : _file(std::make_unique<SerialFile>(core::atlas_named(path), atlas_kind())) {
   const Header& header = _file->header();
   _families = read_table(*_file, families_spec());
   _orbits = read_table(*_file, orbits_spec(header));

@@ -32,6 +32,10 @@ std::string orbit_text(const TreeFamily& family, std::size_t orbit) {
   return fmt::format("T = {:.12g}, E = {:.12g}", x.value(Invariant::period), x.value(Invariant::level));
 }
 
+std::string level_text(const AtlasTree& tree, double level) {
+  return std::isnan(level) ? "" : fmt::format(" ({} = {:.9g})", tree.in_parameter() ? tree.parameter : "E", level);
+}
+
 // Orbits at the beginning and at the end of a family that have no place on the other's curve.
 struct Overhang {
   std::size_t before;  // orbits
@@ -404,14 +408,14 @@ void FamilyDifferences::compare_crossings(const Pair& pair) {
       compare_places(pair, crossing, other);
     else
       add(DifferenceKind::crossing_only_in_a, pair,
-          fmt::format("{} ({} = {:.9g}) is in A only", place_text(_a.crossings[index(crossing)]),
-                      _a.in_parameter() ? _a.parameter : "E", _a.crossings[index(crossing)].level));
+          fmt::format("{}{} is in A only", place_text(_a.crossings[index(crossing)]),
+                      level_text(_a, _a.crossings[index(crossing)].level)));
   }
   for (const int crossing : pair.b.crossings)
     if (_match.crossing_of_b[index(crossing)] < 0)
       add(DifferenceKind::crossing_only_in_b, pair,
-          fmt::format("{} ({} = {:.9g}) is in B only", place_text(_b.crossings[index(crossing)]),
-                      _b.in_parameter() ? _b.parameter : "E", _b.crossings[index(crossing)].level));
+          fmt::format("{}{} is in B only", place_text(_b.crossings[index(crossing)]),
+                      level_text(_b, _b.crossings[index(crossing)].level)));
 }
 
 void FamilyDifferences::compare_places(const Pair& pair, int crossing_a, int crossing_b) {

@@ -7,10 +7,10 @@
 
 #include "certify_orbits.hpp"
 #include "orbweaver/archive/file/folder_lock.hpp"
-#include "orbweaver/archive/file/survey_folder.hpp"
 #include "orbweaver/archive/write/consolidate.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
+#include "orbweaver/core/survey_folder.hpp"
 #include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/survey/run/scaled_scene.hpp"
 #include "orbweaver/systems/registry.hpp"
@@ -229,7 +229,7 @@ Summary archive_survey(const core::Communicator& comm, const std::filesystem::pa
     found.checkpoint.stage = stage;
   });
   Summary summary;
-  summary.atlas = archive::atlas_in(directory);
+  summary.atlas = core::atlas_in(directory);
   summary.stopped_early = core::agreed(comm.get(), found.checkpoint.stage != Stage::finished);
   summary.archived = true;
   write_archive(comm, scene, system, found.checkpoint, tree, sweeps, summary);

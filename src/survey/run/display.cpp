@@ -74,7 +74,7 @@ std::string line_of(const FamilyState& f, const std::string& level, std::size_t 
   const std::string rate = seconds > 0.0 ? fmt::format("{:.1f} orbits/s", static_cast<double>(f.orbits) / seconds) : "";
   const std::string& last = f.running ? rate : f.end;
   const std::string place = fmt::format("  T {:<8.4f}", f.period);
-  const std::string at_level = fmt::format(" {} {:<10.6f}", level, f.level);
+  const std::string at_level = std::isnan(f.level) ? "" : fmt::format(" {} {:<10.6f}", level, f.level);
   const std::string cutoff = fmt::format(" K {:<4}", f.cutoff);
   for (const std::string& numbers : {place + at_level + cutoff, place + at_level, place, std::string()}) {
     const std::string text = fmt::format("{}{} {}", count, numbers, last);

@@ -15,12 +15,12 @@
 #include "archive_writer.hpp"
 #include "display.hpp"
 #include "orbweaver/archive/file/folder_lock.hpp"
-#include "orbweaver/archive/file/survey_folder.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/interruption.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/core/petsc/check.hpp"
+#include "orbweaver/core/survey_folder.hpp"
 #include "orbweaver/queue/run.hpp"
 #include "orbweaver/queue/stop.hpp"
 #include "orbweaver/survey/run/scaled_scene.hpp"
@@ -87,7 +87,7 @@ class Run {
     _queue_options.flush_rows = scene.output.flush_orbits;
     if (scene.survey.team_size > 1) _queue_options.root_works_up_to = 1;  // rank 0 is in no team
     if (std::isfinite(scene.limits.task_time)) _queue_options.task_seconds = scene.limits.task_time;
-    _summary.atlas = archive::atlas_in(directory);
+    _summary.atlas = core::atlas_in(directory);
   }
 
   Summary run(bool resume) {

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "orbweaver/archive/file/sealed_file.hpp"
-#include "orbweaver/archive/file/survey_folder.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/survey_folder.hpp"
 #include "tasks/payload/payload.hpp"
 
 namespace orbweaver::survey {
@@ -45,7 +45,7 @@ T unsealed(const std::filesystem::path& path, const archive::Seal& seal) {
 
 }  // namespace
 
-std::filesystem::path state_folder(const std::filesystem::path& directory) { return archive::segments_in(directory); }
+std::filesystem::path state_folder(const std::filesystem::path& directory) { return core::segments_in(directory); }
 std::filesystem::path checkpoint_path(const std::filesystem::path& folder) { return folder / "checkpoint"; }
 std::filesystem::path previous_checkpoint_path(const std::filesystem::path& folder) {
   return folder / "checkpoint.previous";

@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include "checkpoint.hpp"
-#include "orbweaver/archive/file/survey_folder.hpp"
 #include "orbweaver/archive/read/reader.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/survey_folder.hpp"
 #include "orbweaver/scene/differences.hpp"
 #include "orbweaver/survey/tree/family_end.hpp"
 #include "resume.hpp"
@@ -76,10 +76,10 @@ DirectoryStatus status_of(const Checkpoint& checkpoint, const std::filesystem::p
   const bool widened = std::any_of(differences.begin(), differences.end(), [](const scene::Difference& difference) {
     return difference.change == scene::Change::widened;
   });
-  if (checkpoint.stage != Stage::finished || !std::filesystem::exists(archive::atlas_in(directory)))
+  if (checkpoint.stage != Stage::finished || !std::filesystem::exists(core::atlas_in(directory)))
     return DirectoryStatus::unfinished;
   if (widened) return DirectoryStatus::finished_within_narrower_limits;
-  require_whole(archive::atlas_in(directory));
+  require_whole(core::atlas_in(directory));
   return checkpoint.failures > 0 ? DirectoryStatus::finished_with_failures : DirectoryStatus::finished;
 }
 
@@ -88,7 +88,7 @@ DirectoryStatus status_of(const Checkpoint& checkpoint, const std::filesystem::p
 DirectoryStatus status_of(const std::filesystem::path& directory, const scene::Scene& scene) {
   const std::filesystem::path folder = state_folder(directory);
   if (const auto checkpoint = newest_readable(folder)) return status_of(*checkpoint, directory, scene);
-  const std::filesystem::path atlas = archive::atlas_in(directory);
+  const std::filesystem::path atlas = core::atlas_in(directory);
   if (!std::filesystem::exists(atlas)) return holds_files(folder) ? DirectoryStatus::unfinished : DirectoryStatus::none;
   const archive::Archive archive(atlas);
   if (archive.header().scene != scene.text)

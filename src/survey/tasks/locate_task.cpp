@@ -310,9 +310,9 @@ class Location {
     _outcome.kind.reset();
     _outcome.undecided = _event.passed || kernel.dimension() > 0 || std::abs(away) <= error;
     _outcome.remark = fmt::format(
-        "at T = {:.9g}, {} = {:.9g} an index turns {:.2g} from {:.6g} (error bound {:.2g}), {} of {} directions being "
+        "at T = {:.9g}{} an index turns {:.2g} from {:.6g} (error bound {:.2g}), {} of {} directions being "
         "flat (smallest singular value {:.2g}): rounding hides whether families cross there",
-        _outcome.period * units.time, units.level_name(), _outcome.level() * units.level(), away,
+        _outcome.period * units.time, units.level_text(_outcome.level() * units.level()), away,
         sector.value(_system->structure().symplectic), error, kernel.dimension(), expected,
         kernel.singular_values.empty() ? archive::not_computed : kernel.singular_values[0]);
   }
@@ -327,9 +327,9 @@ class Location {
     const Units units(*_system);
     _outcome.kind.reset();
     _outcome.remark = fmt::format(
-        "at T = {:.9g}, {} = {:.9g} an index turns {:.2g} from {:.6g} (error bound {:.2g}), and no kernel says whether "
+        "at T = {:.9g}{} an index turns {:.2g} from {:.6g} (error bound {:.2g}), and no kernel says whether "
         "families cross there: {}",
-        _outcome.period * units.time, units.level_name(), _outcome.level() * units.level(), away,
+        _outcome.period * units.time, units.level_text(_outcome.level() * units.level()), away,
         sector.value(_system->structure().symplectic), error, _outcome.remark);
   }
 

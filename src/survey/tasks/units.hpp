@@ -20,6 +20,8 @@ struct Units : systems::Scales {
   [[nodiscard]] bool in_parameter() const { return !parameter_name.empty(); }
   [[nodiscard]] double level() const { return in_parameter() ? parameter(0) : energy(); }
   [[nodiscard]] std::string level_name() const { return in_parameter() ? parameter_name : "E"; }
+  /// ", E = 0.5", of a value in the system's units; nothing where it is no number, since nothing is conserved.
+  [[nodiscard]] std::string level_text(double value, int digits = 9) const;
 };
 
 }  // namespace orbweaver::survey

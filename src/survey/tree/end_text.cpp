@@ -12,9 +12,9 @@ std::string end_text(const BranchOutcome& outcome, const Units& units) {
   const ArrivalRecord& arrival = outcome.arrival.front();
   const double period = arrival.period * units.time;
   const double level = arrival.level * units.level();
-  std::string where = fmt::format("T = {:.9g}, {} = {:.9g}", period, units.level_name(), level);
+  std::string where = fmt::format("T = {:.9g}{}", period, units.level_text(level));
   if (!arrival.beneath.empty())
-    where = fmt::format("T = {:.12g}, {} = {:.12g}, {} times around T = {:.12g}", period, units.level_name(), level,
+    where = fmt::format("T = {:.12g}{}, {} times around T = {:.12g}", period, units.level_text(level, 12),
                         arrival.multiplicity, period / arrival.multiplicity);
   return fmt::format("{} ({})", name_of(EndKind::met), where);
 }

@@ -49,11 +49,10 @@ std::vector<std::string> passed_texts(const std::vector<FamilySide>& kept, const
   for (const FamilySide branch : kept) {
     if (!branch->second.outcome) continue;
     for (const PassedStart& start : branch->second.outcome->passed) {
-      const std::string level =
-          std::isnan(start.level) ? "" : fmt::format(", {} = {:.9g}", units.level_name(), start.level);
       texts.try_emplace(start.family,
                         fmt::format("{}: {} lies on {}, at T = {:.9g}{}, and is no family of its own", start.told,
-                                    start.name, names.at(branch->second.lineage.family), start.period, level));
+                                    start.name, names.at(branch->second.lineage.family), start.period,
+                                    units.level_text(start.level)));
     }
   }
   std::vector<std::string> out;

@@ -11,6 +11,7 @@
 
 #include "orbweaver/bifurcation/identity.hpp"
 #include "orbweaver/continuation/orbit.hpp"
+#include "tasks/units.hpp"
 
 namespace orbweaver::survey {
 
@@ -34,12 +35,11 @@ std::string name_of(const systems::System& system, const Candidate& of) {
       numbers.push_back(static_cast<int>(of.mode.base.winding[static_cast<std::size_t>(angle)]));
     winding = fmt::format("n({}) ", fmt::join(numbers, ","));
   }
-  const systems::Scales& units = system.scales();
-  const bool in_parameter = !system.family_scalars().free.empty();
-  const std::string quantity = in_parameter ? system.family_scalars().free.front() : "E";
+  const Units units(system);
   const double level = std::abs(of.level) < no_level ? 0.0 : of.level;
-  return fmt::format("Orbit {}T={:.6g} {}={:.6g}", winding, of.mode.period * units.time, quantity,
-                     level * (in_parameter ? units.parameter(0) : units.energy()));
+  const std::string at_level =
+      std::isnan(level) ? "" : fmt::format(" {}={:.6g}", units.level_name(), level * units.level());
+  return fmt::format("Orbit {}T={:.6g}{}", winding, of.mode.period * units.time, at_level);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ struct ChangedRow {
 /// asked for; tables are read column by column, whole.
 class Archive {
  public:
-  /// `path` is an atlas, or the folder of a survey that has one (atlas_named).
+  /// `path` is an atlas, or the folder of a survey that has one (core::atlas_named).
   /// Opens and checks everything but the numbers: format and version, that all columns of docs/file_format.md exist
   /// with the right type, shape and equal lengths, and that every index and every range of modes lies within its table.
   /// The rows must give their checksums, where the file has any; with `listed` it opens all the same, and where

@@ -1,10 +1,10 @@
-#include "orbweaver/archive/file/survey_folder.hpp"
+#include "orbweaver/core/survey_folder.hpp"
 
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
 
-namespace orbweaver::archive {
+namespace orbweaver::core {
 
 std::filesystem::path atlas_in(const std::filesystem::path& directory) { return directory / "atlas.h5"; }
 
@@ -15,7 +15,7 @@ std::filesystem::path atlas_named(const std::filesystem::path& path) {
   if (!std::filesystem::is_directory(path, ignored)) return path;
   if (std::filesystem::exists(atlas_in(path), ignored)) return atlas_in(path);
   if (std::filesystem::is_directory(segments_in(path), ignored))
-    throw core::InputError(
+    throw InputError(
         fmt::format("'{0}' is the folder of a survey that has not come to its end, and has no atlas.h5 yet. Go on with "
                     "it by `orbweaver survey SCENE -o {0} --resume`, or make an archive of what it has found by "
                     "`orbweaver consolidate {0}`.",
@@ -23,4 +23,4 @@ std::filesystem::path atlas_named(const std::filesystem::path& path) {
   return path;
 }
 
-}  // namespace orbweaver::archive
+}  // namespace orbweaver::core

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-namespace orbweaver::archive {
+namespace orbweaver::core {
 
 /// What a survey leaves in its folder: the archive, and beside it what it needs to go on.
 [[nodiscard]] std::filesystem::path atlas_in(const std::filesystem::path& directory);
@@ -12,4 +12,4 @@ namespace orbweaver::archive {
 /// Throws InputError where a survey has begun in the folder and left no atlas yet.
 [[nodiscard]] std::filesystem::path atlas_named(const std::filesystem::path& path);
 
-}  // namespace orbweaver::archive
+}  // namespace orbweaver::core
