@@ -40,11 +40,14 @@ class Actions {
   posix_spawn_file_actions_t _actions{};
 };
 
-std::vector<std::string> environment_with_one_thread() {
-  constexpr std::string_view name = "OMP_NUM_THREADS=";
-  std::vector<std::string> all{std::string(name) + "1"};
-  for (char** entry = environ; *entry != nullptr; ++entry)
-    if (!std::string_view(*entry).starts_with(name)) all.emplace_back(*entry);
+std::vector<std::string> environment_with(std::map<std::string, std::string> variables) {
+  variables.try_emplace("OMP_NUM_THREADS", "1");
+  std::vector<std::string> all;
+  for (const auto& [name, value] : variables) all.push_back(name + "=" + value);
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string_view text(*entry);
+    if (!variables.contains(std::string(text.substr(0, text.find('='))))) all.emplace_back(text);
+  }
   return all;
 }
 
@@ -59,7 +62,7 @@ std::vector<char*> pointers_to(std::vector<std::string>& words) {
 
 std::optional<int> run_program(const std::vector<std::string>& words, const ProcessOptions& options) {
   std::vector<std::string> arguments = words;
-  std::vector<std::string> environment = environment_with_one_thread();
+  std::vector<std::string> environment = environment_with(options.environment);
   const Actions actions(options);
   pid_t process = 0;
   const int failed = posix_spawnp(&process, words.front().c_str(), actions.get(), nullptr,

@@ -125,7 +125,7 @@ void write(const std::filesystem::path& path, const std::string& text) {
 
 std::string AutoProgram::obstacle(const TrueOrbit& truth) {
   if (!std::filesystem::is_directory(auto_folder() / "lib")) return "not installed (auto-07p)";
-  if (core::run_program({"gfortran", "--version"}, {{}, {}, true}) != 0) return "gfortran is not installed";
+  if (core::run_program({"gfortran", "--version"}, {.quiet = true}) != 0) return "gfortran is not installed";
   if (truth.held().quantity != refine::HeldValue::Quantity::period) return "the period does not pick the orbit";
   return {};
 }
@@ -140,7 +140,7 @@ AutoProgram::AutoProgram(const Setting& setting, const Directed& guess)
                                  "system.f90", "-o",  "program"};
   for (const auto& entry : std::filesystem::directory_iterator(auto_folder() / "lib"))
     if (entry.path().extension() == ".o") words.push_back(entry.path().string());
-  if (core::run_program(words, {_folder, {}, false}) != 0)
+  if (core::run_program(words, {.folder = _folder}) != 0)
     throw core::EnvironmentError("gfortran could not compile the system for AUTO-07p; its messages are above");
 }
 
@@ -174,7 +174,8 @@ void AutoProgram::prepare(int intervals, double tolerance) const {
 bool AutoProgram::run() const {
   std::error_code ignored;
   std::filesystem::remove(_folder / "found.dat", ignored);
-  return core::run_program({(_folder / "program").string()}, {_folder, _folder / "c.run", true}) == 0;
+  return core::run_program({(_folder / "program").string()},
+                           {.folder = _folder, .input = _folder / "c.run", .quiet = true}) == 0;
 }
 
 refine::ShotOrbit AutoProgram::found() const {

@@ -32,7 +32,9 @@ bool run_gnuplot(const std::filesystem::path& folder, const std::string& name, c
   file << "cd " << gnuplot_text(std::filesystem::absolute(folder).string()) << "\n" << script;
   file.close();
   if (!file) throw core::EnvironmentError(fmt::format("cannot write {}", path.string()));
-  const std::optional<int> status = core::run_program({"gnuplot", path.string()});
+  // Without a locale, as in containers, gnuplot says that it cannot write the degree sign.
+  const std::optional<int> status =
+      core::run_program({"gnuplot", path.string()}, {.environment = {{"LC_ALL", "C.UTF-8"}}});
   if (!status) return false;
   if (*status != 0)
     throw core::EnvironmentError(fmt::format("gnuplot could not draw {}; its messages are above", path.string()));

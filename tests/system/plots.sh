@@ -39,6 +39,7 @@ draw sweep_all.svg sweep --style wide
 draw convergence.svg convergence --family In-Phase --step 3
 draw tree.pdf tree --family In-Phase --family Up-Down
 draw tree.png tree --style slide
+(unset LANG LC_ALL LC_CTYPE; draw without_locale.svg sweep --style wide)
 draw orbit.png orbit --family In-Phase --step 3
 # What stands in the pictures.
 grep -q '>In-Phase<' tree.svg || fail "the tree does not name In-Phase"
