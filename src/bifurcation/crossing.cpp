@@ -25,6 +25,10 @@ constexpr double off_ends = 1e-3;
 /// be left at the zero: of a smooth function it is about the share of the two distances, 1e-4 or less.
 constexpr double beside_zero = 1e-4;
 constexpr double left_at_zero = 0.1;
+/// More than this share is not believed of a smooth function: then it is asked nearer to the zero, at a tenth and at a
+/// hundredth of that distance, whether it falls towards it. Of a smooth function a tenth is left.
+constexpr double smooth_at_zero = 1e-3;
+constexpr double falls = 0.5;
 /// What is left in error bounds, which are estimates.
 constexpr double error_margin = 10.0;
 
@@ -115,18 +119,26 @@ std::optional<numerics::Located> extremum(const systems::System& system, continu
 }
 
 /// Whether the sign changes by a jump: at the zero the function is far more than its error bound, and about as large as
-/// beside it. Orbits on either side belong to two families then, or rounding makes them what they are. Over intervals
-/// as short as `smallest` nothing is asked: families as near as that count as crossing.
+/// beside it, or on both sides as large near it as further away: at the zero itself rounding may leave anything between
+/// the two. Orbits on either side belong to two families then, or rounding makes them what they are. Over intervals as
+/// short as `smallest` nothing is asked: families as near as that count as crossing.
 bool is_discontinuous(EventFunction& function, const Crossing& zero, double from, double to, double smallest) {
   const double value = std::abs(zero.reading.value);
   if (!(value > error_margin * zero.reading.error) || to - from <= smallest) return false;
   const double position = zero.point.position;
   const double away = beside_zero * (to - from);
+  bool is_smooth = true;
   for (const double beside : {position - away, position + away}) {
     if (beside < from || beside > to) continue;
-    if (value > left_at_zero * std::abs(function(beside))) return true;
+    const double there = std::abs(function(beside));
+    if (value > left_at_zero * there) return true;
+    is_smooth = is_smooth && !(value > smooth_at_zero * there);
   }
-  return false;
+  const auto falls_towards_it = [&](double side) {
+    const double near = std::abs(function(position + 0.01 * side * away));
+    return !(near > falls * std::abs(function(position + 0.1 * side * away)));
+  };
+  return !is_smooth && !falls_towards_it(-1.0) && !falls_towards_it(1.0);
 }
 
 }  // namespace
