@@ -11,6 +11,7 @@ by processor time / wall-clock time of the same run.
                 and the rest (starts of families, events, sections, distances of loops, the tree, checkpoints)
   by task       the same time once more: sweeps (with the small oscillations), branches, first orbits of branches,
                 locations of crossings
+  validation    of steps, in percent of the branches: what holds them on their family beside the corrector
 With --switches also each thing that the scene can switch off: what the survey takes without it.
 """
 
@@ -65,6 +66,7 @@ class Waits:
     total: float = 0.0
     start: float = 0.0
     orbits: int = 0
+    validation: float = 0.0
     stages: dict[str, float] = field(default_factory=lambda: defaultdict(float))
     tasks: dict[str, float] = field(default_factory=lambda: defaultdict(float))
 
@@ -102,6 +104,8 @@ def survey(program: str, scene: Path, settings: list[str], folder: Path) -> Wait
     with log.open(newline="") as rows:
         for row in csv.DictReader(rows):
             stage, event, seconds = row["Stage Name"], row["Event Name"], share * float(row["Time"])
+            if event == "StepValidation":
+                waits.validation += seconds
             if stage == "Spectrum" and event == "Multipliers":
                 waits.stages["multipliers"] += seconds
                 waits.stages["kernels"] -= seconds
@@ -151,7 +155,7 @@ def main() -> int:
     by_stage = ["orbits", "multipliers", "kernels", "sweep", "certificates", "archive", "rest"]
     by_task = ["sweeps", "branches", "first", "locations"]
     without = list(SWITCHES) if arguments.switches else []
-    head = ["scene", "with", "orbits", "all", "start", *by_stage, *(f"*{kind}*" for kind in by_task),
+    head = ["scene", "with", "orbits", "all", "start", *by_stage, *(f"*{kind}*" for kind in by_task), "validation",
             *(f"no {name}" for name in without)]
     row(*head)
     row(*("---" for _ in head))
@@ -164,7 +168,8 @@ def main() -> int:
             waits = survey(program, path, settings, folder)
             cells = [label, ", ".join(f"`{s}`" for s in settings), str(waits.orbits), milliseconds(waits.total),
                      milliseconds(waits.start), *(milliseconds(waits.stages[k]) for k in by_stage),
-                     *(milliseconds(waits.tasks[k]) for k in by_task)]
+                     *(milliseconds(waits.tasks[k]) for k in by_task),
+                     f"{100.0 * waits.validation / waits.tasks['branches']:.1f}" if waits.tasks["branches"] else ""]
             for switch in without:
                 seconds = without_it(program, path, settings, switch, folder)
                 cells.append("" if seconds is None else milliseconds(seconds))
