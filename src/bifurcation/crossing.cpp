@@ -119,9 +119,9 @@ std::optional<numerics::Located> extremum(const systems::System& system, continu
 }
 
 /// Whether the sign changes by a jump: at the zero the function is far more than its error bound, and about as large as
-/// beside it, or on both sides as large near it as further away: at the zero itself rounding may leave anything between
-/// the two. Orbits on either side belong to two families then, or rounding makes them what they are. Over intervals as
-/// short as `smallest` nothing is asked: families as near as that count as crossing.
+/// beside it, or on one side as large near it as further away: one of two families may come near the value by itself.
+/// Orbits on either side belong to two families then, or rounding makes them what they are. Over intervals as short as
+/// `smallest` nothing is asked: families as near as that count as crossing.
 bool is_discontinuous(EventFunction& function, const Crossing& zero, double from, double to, double smallest) {
   const double value = std::abs(zero.reading.value);
   if (!(value > error_margin * zero.reading.error) || to - from <= smallest) return false;
@@ -138,7 +138,7 @@ bool is_discontinuous(EventFunction& function, const Crossing& zero, double from
     const double near = std::abs(function(position + 0.01 * side * away));
     return !(near > falls * std::abs(function(position + 0.1 * side * away)));
   };
-  return !is_smooth && !falls_towards_it(-1.0) && !falls_towards_it(1.0);
+  return !is_smooth && !(falls_towards_it(-1.0) && falls_towards_it(1.0));
 }
 
 }  // namespace
