@@ -38,7 +38,7 @@ TEST(Display, AFamilyLosesNumbersBeforeItsEnd) {
 TEST(Display, AFamilyWithoutAnEnergyHasNone) {
   FamilyState f = family("Out-Phase");
   f.level = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(line_of(f, "E", 160), "Out-Phase    153 orbits  T 30.0000 K 447  period limit (T = 30)");
+  EXPECT_EQ(line_of(f, "E", 160), "Out-Phase    153 orbits  T 30.0000  K 447  period limit (T = 30)");
 }
 
 TEST(Display, OfALongNameTheEndIsKept) {

@@ -16,8 +16,8 @@ struct ProcessOptions {
   std::map<std::string, std::string> environment{};  ///< variables that it has instead of this program's
 };
 
-/// Runs a program, found along PATH, to its end, with one thread for OpenMP unless told otherwise. Its exit status; none
-/// where there is no such program. Throws EnvironmentError where it cannot be started or a signal ends it.
+/// Runs a program, found along PATH, to its end, with one thread for OpenMP unless told otherwise. Its exit status;
+/// none where there is no such program. Throws EnvironmentError where it cannot be started or a signal ends it.
 [[nodiscard]] std::optional<int> run_program(const std::vector<std::string>& words, const ProcessOptions& options = {});
 
 }  // namespace orbweaver::core
