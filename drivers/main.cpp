@@ -51,10 +51,11 @@ Invocation take_petsc_options(std::vector<std::string>& words) {
   return invocation;
 }
 
-/// A closed stdin, stdout or stderr becomes /dev/null, so that no file of ours gets its number.
+/// A closed stdin, stdout or stderr becomes /dev/null, so that no file of ours gets its number; what is written to a
+/// closed stdout fails all the same, as results are.
 void open_standard_streams() {
   for (int fd = 0; fd <= 2; ++fd)
-    if (fcntl(fd, F_GETFD) == -1) static_cast<void>(open("/dev/null", fd == 0 ? O_RDONLY : O_WRONLY));
+    if (fcntl(fd, F_GETFD) == -1) static_cast<void>(open("/dev/null", fd == 2 ? O_WRONLY : O_RDONLY));
 }
 
 int run(std::vector<std::string> words) {

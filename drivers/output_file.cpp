@@ -16,7 +16,15 @@ namespace fs = std::filesystem;
 /// A file on its way; what is not published goes with the object.
 class Part {
  public:
-  explicit Part(const fs::path& path) : _path(fs::path(path) += ".part") {}
+  explicit Part(const fs::path& path) : _path(fs::path(path) += ".part") {
+    std::error_code ignored;
+    const fs::file_status status = fs::status(_path, ignored);
+    if (fs::exists(status) && !fs::is_regular_file(status))
+      throw core::EnvironmentError(
+          fmt::format("cannot write {}: it is written as {} first, and what lies there is no file; remove that, or "
+                      "give another name",
+                      path.string(), _path.string()));
+  }
   ~Part() {
     std::error_code ignored;
     fs::remove(_path, ignored);

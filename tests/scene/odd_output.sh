@@ -64,6 +64,38 @@ ended 0 "" export atlas.h5 --format csv -o /dev/null
 [ -c /dev/full ] && [ -c /dev/null ] && [ "$link" = "$(ls -l /dev/stdout)" ] || fail "a device is gone"
 ended 2 "proofs need a file" verify atlas.h5 --prove Out-Phase 3 -o /dev/null
 
+# Something else where a file is on its way: it is refused, named, not waited for, and still there.
+mkfifo way.part way.svg.part
+for words in "export atlas.h5 --format csv" "page atlas.h5" "refine atlas.h5 Out-Phase 3" \
+  "verify atlas.h5 --prove Out-Phase 3 --quiet"; do
+  ended 3 "way.part" $words -o way
+done
+ended 3 "way.part" sweep scene.yaml --csv way
+ended 3 "way.svg.part" plot atlas.h5 tree -o way.svg
+rm way.part way.svg.part
+mkdir way.part
+ended 3 "way.part" export atlas.h5 --format csv -o way
+[ -d way.part ] || fail "a folder of the user's is gone"
+rmdir way.part
+mkdir stopped
+mkfifo stopped/atlas.h5.part
+ended 3 "stopped/atlas.h5.part" survey scene.yaml -o stopped -q --set limits.period=5 --set survey.depth=0
+rm stopped/atlas.h5.part
+mkfifo stopped/segments/checkpoint.part
+ended 3 "stopped/segments/checkpoint.part" survey scene.yaml -o stopped --resume -q --set limits.period=5 --set survey.depth=0
+rm stopped/segments/checkpoint.part
+ended 0 "" survey scene.yaml -o stopped --resume -q --set limits.period=5 --set survey.depth=0
+
+# What PETSc would read by itself.
+mkfifo .petscrc
+ended 0 "" survey scene.yaml -o without_petscrc -q --set limits.period=5 --set survey.depth=0
+rm .petscrc
+
+# Results for which nobody is there.
+got=0
+"$program" export atlas.h5 --format csv >&- 2> said || got=$?
+((got == 3)) && grep -qF "or the output closed?" said || fail "a closed output: status $got"
+
 long=$(printf 'x%.0s' {1..300})
 ended 3 ": File name too long" survey scene.yaml -o "$long"
 left=$(find . -name '*.part')

@@ -1,6 +1,7 @@
 #include "posix_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -26,11 +27,21 @@ constexpr std::size_t bytes_at_once = std::size_t{16} << 20;
                                            doing, path.string(), std::strerror(code)));
 }
 
+/// Of a file or a folder: a pipe is refused, and not waited for.
 class Descriptor {
  public:
   Descriptor(const std::filesystem::path& path, int flags, const char* doing)
-      : _number(open(path.c_str(), flags | O_CLOEXEC, 0666)) {
-    if (_number < 0) throw_system_error(doing, path);
+      : _number(open(path.c_str(), flags | O_CLOEXEC | O_NONBLOCK, 0666)) {
+    const bool has_no_reader = _number < 0 && errno == ENXIO;
+    if (_number < 0 && !has_no_reader) throw_system_error(doing, path);
+    struct stat kind {};
+    const bool is_file =
+        !has_no_reader && fstat(_number, &kind) == 0 && (S_ISREG(kind.st_mode) || S_ISDIR(kind.st_mode));
+    if (is_file) return;
+    if (_number >= 0) close(_number);
+    throw core::EnvironmentError(fmt::format(
+        "cannot {} '{}': a pipe, a socket or a device lies there. Remove it, or give another place.", doing,
+        path.string()));
   }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;

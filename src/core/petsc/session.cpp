@@ -45,7 +45,8 @@ Session::Session(const std::vector<std::string>& petsc_options) : _options(petsc
     _owns_mpi = true;
   }
   Arguments& a = arguments();
-  a.words = {"orbweaver", "-no_signal_handler"};
+  // What lies in a folder must not change results, nor a pipe in it hold up the start.
+  a.words = {"orbweaver", "-no_signal_handler", "-skip_petscrc"};
   a.words.insert(a.words.end(), petsc_options.begin(), petsc_options.end());
   a.pointers.clear();
   for (std::string& word : a.words) a.pointers.push_back(word.data());
