@@ -31,7 +31,9 @@ class Mark {
     const char* folder = std::getenv("TMPDIR");
     _path = fmt::format("{}/orbweaver-launch-XXXXXX", folder != nullptr ? folder : "/tmp");
     const int file = mkstemp(_path.data());
-    if (file < 0) throw core::EnvironmentError(fmt::format("cannot write {}: {}", _path, std::strerror(errno)));
+    if (file < 0)
+      throw core::EnvironmentError(
+          fmt::format("cannot write {}: {}. TMPDIR names another folder.", _path, std::strerror(errno)));
     close(file);
     setenv(mark_variable, _path.c_str(), 1);
   }

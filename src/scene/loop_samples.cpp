@@ -163,6 +163,8 @@ LoopSamples read_loop_samples(const std::filesystem::path& file, const systems::
   if (text.size() > longest_loop_file)
     throw core::InputError(
         fmt::format("{}: expected at most {} bytes, got more; give fewer samples", origin, longest_loop_file));
+  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";  // as spreadsheets begin their UTF-8
+  if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
   return parse_loop_samples(text, origin, system, period);
 }
 

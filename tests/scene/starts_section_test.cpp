@@ -72,6 +72,11 @@ TEST(StartsSection, KeepsTheHashOfAFileInTheScene) {
               HasSubstr("starts.loops[0].hash: expected a file with this hash, " + read.loops[0].file.hash));
 }
 
+TEST(StartsSection, TakesATableWithAByteOrderMark) {
+  write("loop.csv", "\xef\xbb\xbf" + table(0.0));
+  EXPECT_EQ(loaded("loops: [{file: loop.csv, period: 6.3}]").loops[0].samples.states.size(), 8U);
+}
+
 TEST(StartsSection, RefusesWhatItCannotStartFrom) {
   write("other.h5", "nothing");
   EXPECT_THAT(refusal("loops: [{file: none.csv, period: 6.3}]"),
