@@ -33,7 +33,7 @@ class Mark {
     const int file = mkstemp(_path.data());
     if (file < 0)
       throw core::EnvironmentError(
-          fmt::format("cannot write {}: {}. TMPDIR names another folder.", _path, std::strerror(errno)));
+          fmt::format("cannot write {}: {}. Set TMPDIR to a folder that can be written.", _path, std::strerror(errno)));
     close(file);
     setenv(mark_variable, _path.c_str(), 1);
   }
