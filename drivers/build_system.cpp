@@ -16,8 +16,10 @@
 #include "installed_files.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/file_hash.hpp"
+#include "orbweaver/core/input_file.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/core/process.hpp"
+#include "orbweaver/core/scratch_file.hpp"
 #include "orbweaver/systems/plugins.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "output_file.hpp"
@@ -46,22 +48,6 @@ std::vector<std::string> compiler_words(const InstalledFiles& at) {
   return words;
 }
 
-/// A file that is gone when it is not needed any more.
-class ScratchFile {
- public:
-  explicit ScratchFile(fs::path path) : _path(std::move(path)) {}
-  ~ScratchFile() {
-    std::error_code code;
-    fs::remove(_path, code);
-  }
-  ScratchFile(const ScratchFile&) = delete;
-  ScratchFile& operator=(const ScratchFile&) = delete;
-  [[nodiscard]] const fs::path& path() const { return _path; }
-
- private:
-  fs::path _path;
-};
-
 void compile(const std::vector<std::string>& words, const std::string& what) {
   const auto status = core::run_program(words);
   if (!status)
@@ -75,7 +61,7 @@ void compile(const std::vector<std::string>& words, const std::string& what) {
 
 /// The source and the files beside it that it includes: what a rule of make lists.
 std::vector<fs::path> sources_of(const fs::path& source, std::vector<std::string> words, const fs::path& output) {
-  const ScratchFile rule(fs::path(output).concat(".d"));
+  const core::ScratchFile rule(fs::path(output).concat(".d"));
   words.insert(words.end(), {"-MM", source.string(), "-MF", rule.path().string()});
   compile(words, source.string());
   std::ifstream stream(rule.path());
@@ -102,18 +88,20 @@ int run(const BuildSystemOptions& options, const Invocation& invocation) {
   if (options.source.empty() == false && !options.effects.empty())
     throw core::InputError("--effects are those of a --model of the program; a source names its own");
   require_output_file(options.output, options.source);
-  std::unique_ptr<ScratchFile> generated;
+  std::unique_ptr<core::ScratchFile> generated;
   fs::path source = options.source;
   if (source.empty()) {
-    generated = std::make_unique<ScratchFile>(fs::path(options.output).concat(".cpp"));
+    generated = std::make_unique<core::ScratchFile>(fs::path(options.output).concat(".cpp"));
     source = generated->path();
     std::ofstream(source) << combination(options);
   }
-  if (!fs::is_regular_file(source)) throw core::InputError(fmt::format("there is no file '{}'", source.string()));
+  if (const std::string got = core::unreadable_input(source); !got.empty())
+    throw core::InputError(
+        fmt::format("'{}': expected a source that can be read, got {}; check the path", source.string(), got));
 
   const std::vector<std::string> words = compiler_words(installed_files());
   const std::string hash = core::file_hash(sources_of(source, words, options.output));
-  const ScratchFile unfinished(fs::path(options.output).concat(".part"));
+  const core::ScratchFile unfinished(fs::path(options.output).concat(".part"));
   std::vector<std::string> build = words;
   build.insert(build.end(), {fmt::format("-DORBWEAVER_PLUGIN_SOURCE=\"{}\"", hash),
                              "-DORBWEAVER_PLUGIN_VERSION=\"" ORBWEAVER_VERSION "\"", "-shared", "-fPIC", "-Wl,-z,lazy",

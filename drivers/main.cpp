@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <csignal>
 #include <exception>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -80,7 +81,12 @@ int run(std::vector<std::string> words) {
   try {
     program.parse(words);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return program.exit(error);  // --help, --version
+    if (error.get_exit_code() == 0) {  // --help, --version
+      std::ostringstream text;
+      const int status = program.exit(error, text, text);
+      orbweaver::drivers::print_as_it_is(text.str());
+      return status;
+    }
     const bool lacks_command = program.get_subcommands().empty();
     throw orbweaver::core::InputError(
         lacks_command

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/scratch_file.hpp"
 #include "orbweaver/core/survey_folder.hpp"
 
 namespace orbweaver::drivers {
@@ -13,30 +14,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file on its way; what is not published goes with the object.
-class Part {
- public:
-  explicit Part(const fs::path& path) : _path(fs::path(path) += ".part") {
-    std::error_code ignored;
-    const fs::file_status status = fs::status(_path, ignored);
-    if (fs::exists(status) && !fs::is_regular_file(status))
-      throw core::EnvironmentError(
-          fmt::format("cannot write {}: it is written as {} first, and what lies there is no file; remove that, or "
-                      "give another name",
-                      path.string(), _path.string()));
-  }
-  ~Part() {
-    std::error_code ignored;
-    fs::remove(_path, ignored);
-  }
-  Part(const Part&) = delete;
-  Part& operator=(const Part&) = delete;
-
-  [[nodiscard]] const fs::path& path() const { return _path; }
-
- private:
-  fs::path _path;
-};
+/// Where a file lies while it is written.
+fs::path part_of(const fs::path& path) {
+  fs::path part = path;
+  part += ".part";
+  std::error_code ignored;
+  const fs::file_status status = fs::status(part, ignored);
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    throw core::EnvironmentError(
+        fmt::format("cannot write {}: it is written as {} first, and what lies there is no file; remove that, or "
+                    "give another name",
+                    path.string(), part.string()));
+  return part;
+}
 
 /// `asked`: the file of the user's words.
 std::ofstream opened(const fs::path& path, const fs::path& asked) {
@@ -72,7 +62,7 @@ void write_output_file(const fs::path& path, const std::function<void(std::ostre
     write(file);
     return finish(file, path);
   }
-  const Part part(path);
+  const core::ScratchFile part(part_of(path));
   std::ofstream file = opened(part.path(), path);
   write(file);
   finish(file, path);
@@ -87,7 +77,7 @@ void require_output_file(const fs::path& path, const fs::path& input) {
     throw core::InputError(
         fmt::format("cannot write {}: it is the file that is read; give another name", path.string()));
   if (is_device_or_pipe(path)) return;
-  const Part part(path);
+  const core::ScratchFile part(part_of(path));
   static_cast<void>(opened(part.path(), path));
 }
 

@@ -13,7 +13,7 @@ std::filesystem::path segments_in(const std::filesystem::path& directory) { retu
 std::filesystem::path atlas_named(const std::filesystem::path& path) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(path, ignored)) return path;
-  if (std::filesystem::exists(atlas_in(path), ignored)) return atlas_in(path);
+  if (std::filesystem::exists(std::filesystem::symlink_status(atlas_in(path), ignored))) return atlas_in(path);
   if (std::filesystem::is_directory(segments_in(path), ignored))
     throw InputError(
         fmt::format("'{0}' is the folder of a survey that has not come to its end, and has no atlas.h5 yet. Go on with "

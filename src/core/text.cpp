@@ -1,6 +1,7 @@
 #include "orbweaver/core/text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -72,10 +73,18 @@ std::size_t character_length(std::string_view text, std::size_t at) {
   return lead.length;
 }
 
+char32_t code_point(std::string_view character) {
+  constexpr std::array<unsigned char, 5> lead_bits{0, 0x7F, 0x1F, 0x0F, 0x07};
+  char32_t number = byte_at(character, 0) & lead_bits.at(character.size());
+  for (std::size_t i = 1; i < character.size(); ++i) number = number << 6 | (byte_at(character, i) & 0x3Fu);
+  return number;
+}
+
 bool is_control(std::string_view character) {
-  const unsigned char first = byte_at(character, 0);
-  if (character.size() == 1) return first < 0x20 || first == 0x7F;
-  return first == 0xC2 && byte_at(character, 1) < 0xA0;  // U+0080 to U+009F
+  const char32_t point = code_point(character);
+  const auto within = [point](char32_t first, char32_t last) { return point >= first && point <= last; };
+  return within(0, 0x1F) || within(0x7F, 0x9F) || point == 0x061C || within(0x200E, 0x200F) ||
+         within(0x2028, 0x202E) || within(0x2066, 0x2069);
 }
 
 std::size_t first_untextual(std::string_view text) {

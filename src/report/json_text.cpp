@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include <fmt/format.h>
 
@@ -21,7 +22,7 @@ std::string json_text(const std::string& text) {
     else if (character == "\"" || character == "\\")
       quoted += "\\" + character;
     else if (core::is_control(character))
-      quoted += fmt::format("\\u{:04x}", static_cast<unsigned char>(character.back()));  // below U+0100: its last byte
+      quoted += fmt::format("\\u{:04x}", static_cast<std::uint32_t>(core::code_point(character)));  // below U+10000
     else
       quoted += character;
     at += character.size();

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/input_file.hpp"
 #include "orbweaver/core/text.hpp"
 #include "orbweaver/systems/reduced_system.hpp"
 #include "source.hpp"
@@ -152,11 +153,11 @@ LoopSamples parse_loop_samples(const std::string& text, const std::string& origi
 
 LoopSamples read_loop_samples(const std::filesystem::path& file, const systems::System& system, double period) {
   const std::string origin = quoted(file.string());
+  if (const std::string got = core::unreadable_input(file); !got.empty())
+    throw core::InputError(
+        fmt::format("{}: expected a table in CSV that can be read, got {}; check the path", origin, got));
   std::error_code code;
-  std::ifstream stream;
-  if (std::filesystem::is_regular_file(file, code)) stream.open(file, std::ios::binary);  // to open a pipe may wait
-  if (!stream.is_open())
-    throw core::InputError(fmt::format("expected a table in CSV that can be read, got {}; check the path", origin));
+  std::ifstream stream(file, std::ios::binary);
   std::string text(std::min<std::uintmax_t>(std::filesystem::file_size(file, code), longest_loop_file + 1), '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(stream.gcount()));

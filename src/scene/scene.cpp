@@ -8,6 +8,7 @@
 
 #include "document.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/input_file.hpp"
 #include "orbweaver/systems/model/plugin_table.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "overrides.hpp"
@@ -60,26 +61,13 @@ std::string emit(const YAML::Node& root) {
   return std::string(emitter.c_str()) + "\n";
 }
 
-std::string_view kind_of(std::filesystem::file_type type) {
-  switch (type) {
-    case std::filesystem::file_type::directory: return "a folder";
-    case std::filesystem::file_type::fifo: return "a pipe";
-    case std::filesystem::file_type::socket: return "a socket";
-    case std::filesystem::file_type::block:
-    case std::filesystem::file_type::character: return "a device";
-    default: return "none";
-  }
-}
-
 // No more than a byte beyond what a scene may have, which parse_document refuses.
 std::string read_file(const std::filesystem::path& file) {
+  if (const std::string got = core::unreadable_input(file); !got.empty())
+    throw core::InputError(
+        fmt::format("{}: expected a scene file that can be read, got {}; check the path", quoted(file.string()), got));
   std::error_code code;
-  const std::filesystem::file_type type = std::filesystem::status(file, code).type();
-  std::ifstream stream;
-  if (type == std::filesystem::file_type::regular) stream.open(file, std::ios::binary);  // to open a pipe may wait
-  if (!stream.is_open())
-    throw core::InputError(fmt::format("{}: expected a scene file that can be read, got {}; check the path",
-                                       quoted(file.string()), kind_of(type)));
+  std::ifstream stream(file, std::ios::binary);
   require_scene_size(std::filesystem::file_size(file, code), quoted(file.string()));
   std::string text(longest_scene + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));

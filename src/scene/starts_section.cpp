@@ -8,6 +8,7 @@
 #include "fixed_points.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/file_hash.hpp"
+#include "orbweaver/core/input_file.hpp"
 #include "orbweaver/core/survey_folder.hpp"
 #include "orbweaver/systems/reduced_system.hpp"
 #include "sections.hpp"
@@ -85,9 +86,9 @@ std::filesystem::path file_at(const std::filesystem::path& place, Kind kind, con
   } catch (const core::InputError& error) {
     path.fail(error.what());
   }
-  std::error_code code;
-  if (!std::filesystem::is_regular_file(file, code))
-    path.fail("a file that can be read, told from the scene's folder", path.got(), "check the path");
+  if (const std::string got = core::unreadable_input(file); !got.empty())
+    path.fail(fmt::format("a file that can be read, told from the scene's folder, where this is {}", got), path.got(),
+              "check the path");
   return file;
 }
 

@@ -10,6 +10,7 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/file_hash.hpp"
+#include "orbweaver/core/input_file.hpp"
 #include "orbweaver/core/text.hpp"
 #include "orbweaver/systems/model/plugin_table.hpp"
 #include "registry_lines.hpp"
@@ -74,9 +75,8 @@ const PluginTable& table_of(const std::filesystem::path& file) {
 }  // namespace
 
 const Plugin& load_plugin(const std::filesystem::path& file) {
-  std::error_code code;
-  const std::filesystem::path path = std::filesystem::canonical(file, code);
-  if (code || !std::filesystem::is_regular_file(path, code)) refuse(file, "there is no such file");
+  if (const std::string problem = core::input_problem(file); !problem.empty()) refuse(file, "it " + problem);
+  const std::filesystem::path path = std::filesystem::canonical(file);
   for (const Plugin& plugin : plugins())
     if (plugin.file == path) return plugin;
   const PluginTable& table = table_of(path);

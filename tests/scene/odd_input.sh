@@ -39,8 +39,18 @@ mkfifo pipe
 refused "pipe: expected a scene file that can be read, got a pipe" check pipe
 refused "/dev/zero: expected a scene file that can be read, got a device" check /dev/zero
 mkfifo archive.h5
-refused "archive.h5' is not a regular file" show archive.h5
-refused "/dev/zero' is not a regular file" show /dev/zero
+refused "archive.h5' is a pipe; an Orbweaver atlas was expected. Give" show archive.h5
+refused "/dev/zero' is a device" show /dev/zero
+refused "the plugin 'pipe': it is a pipe" systems --plugin pipe
+refused "'pipe': expected a source that can be read, got a pipe" build-system pipe -o out.so
+ln -s circle circle
+ln -s nowhere broken
+mkdir survey && ln -s atlas.h5 survey/atlas.h5
+refused "circle: expected a scene file that can be read, got a link in a circle; check" check circle
+refused "broken: expected a scene file that can be read, got a link to nothing" check broken
+refused "survey/atlas.h5' is a link in a circle; an Orbweaver atlas was expected. Give" show survey
+touch locked && chmod 0 locked
+[ -r locked ] || refused "locked: expected a scene file that can be read, got one that may not be read" check locked
 
 # 8 million unknowns take more than the limit above leaves.
 for command in check "survey -o out"; do
@@ -55,6 +65,7 @@ many=()
 for n in {1..1000}; do many+=(--set "limits.period=$n"); done
 refused "at most 200 overrides" check "$scene" "${many[@]}"
 
+refused 'na\xe2\x80\xaeme' check "$scene" --set $'na\xe2\x80\xaeme=3'
 refused 'got the byte 0xff' check "$scene" --set $'name=a\xff'
 refused 'na\x1b[31m' check "$scene" --set $'na\x1b[31m=3'
 refused 'nowhere\x1b[31m\xff' check $'nowhere\x1b[31m\xff'

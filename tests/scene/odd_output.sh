@@ -80,10 +80,10 @@ rmdir way.part
 mkdir stopped
 mkfifo stopped/atlas.h5.part
 ended 3 "stopped/atlas.h5.part" survey scene.yaml -o stopped -q --set limits.period=5 --set survey.depth=0
-rm stopped/atlas.h5.part
+rm -f stopped/atlas.h5.part
 mkfifo stopped/segments/checkpoint.part
 ended 3 "stopped/segments/checkpoint.part" survey scene.yaml -o stopped --resume -q --set limits.period=5 --set survey.depth=0
-rm stopped/segments/checkpoint.part
+rm -f stopped/segments/checkpoint.part
 ended 0 "" survey scene.yaml -o stopped --resume -q --set limits.period=5 --set survey.depth=0
 
 # What PETSc would read by itself.
@@ -95,6 +95,12 @@ rm .petscrc
 got=0
 "$program" export atlas.h5 --format csv >&- 2> said || got=$?
 ((got == 3)) && grep -qF "or the output closed?" said || fail "a closed output: status $got"
+
+for words in --version --help "survey --help"; do
+  got=0
+  "$program" $words > /dev/full 2> said || got=$?
+  ((got == 3)) && grep -qF "is the disk full" said || fail "$words to a full disk: status $got"
+done
 
 long=$(printf 'x%.0s' {1..300})
 ended 3 ": File name too long" survey scene.yaml -o "$long"

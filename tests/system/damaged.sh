@@ -67,7 +67,7 @@ case $case in
   torn_checkpoint) says=("$fallback" "segments/checkpoint: " "it is torn") ;;
   wrong_checksum) says=("$fallback" "segments/checkpoint: its checksum is wrong") ;;
   torn_first_segment) status=2 says=("segment-000001.h5" "were written: it is torn" "nothing was changed" "from a copy") ;;
-  deleted_first_segment) status=2 says=("segment-000001.h5" "does not exist" "nothing was changed" "from a copy") ;;
+  deleted_first_segment) status=2 says=("segment-000001.h5" "does not exist" "has to come from a copy" "nothing was changed" "from a copy") ;;
   exchanged_segments) status=2 says=("segment-000001.h5" "nothing was changed" "from a copy") ;;
   deleted_payloads) says=("$fallback" "segments/payloads-" "bytes from" "the file is not there") ;;
   changed_payloads) says=("$fallback" "segments/payloads-" "bytes from" "checksum is wrong: they were damaged") ;;

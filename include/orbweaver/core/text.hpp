@@ -9,7 +9,11 @@ namespace orbweaver::core {
 /// Bytes of the character of UTF-8 that begins at `at`; 0: none does.
 [[nodiscard]] std::size_t character_length(std::string_view text, std::size_t at);
 
-/// Whether a character is a control character: U+0000 to U+001F, U+007F to U+009F.
+/// The number that Unicode gives a character of UTF-8.
+[[nodiscard]] char32_t code_point(std::string_view character);
+
+/// Whether a character changes how others are shown: the control characters (U+0000 to U+001F, U+007F to U+009F), the
+/// breaks U+2028 and U+2029, and what turns the direction of writing (Unicode's property Bidi_Control).
 [[nodiscard]] bool is_control(std::string_view character);
 
 /// The first byte that belongs to no character of UTF-8 (RFC 3629: no overlong forms, no surrogates, nothing above

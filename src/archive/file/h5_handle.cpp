@@ -28,6 +28,7 @@ std::string h5_error_text() {
   std::string text;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, append_error, &text);
   H5Eclear2(H5E_DEFAULT);
+  std::erase(text, '\n');  // HDF5's times end with one
   return text.empty() ? "no further detail" : text;
 }
 

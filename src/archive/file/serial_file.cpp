@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "h5_types.hpp"
+#include "orbweaver/core/input_file.hpp"
 #include "own_dataset.hpp"
 #include "schema/row_checksum.hpp"
 
@@ -53,7 +54,7 @@ const FileKind& atlas_kind() {
 
 const FileKind& segment_kind() {
   static const FileKind kind{segment_format, "an Orbweaver segment",
-                             "The segment is torn or foreign: leave it out, and its orbits will be computed again"};
+                             "A segment that is torn, foreign or lost has to come from a copy"};
   return kind;
 }
 
@@ -68,13 +69,10 @@ void SerialFile::expect(bool condition, const std::string& problem) const {
 }
 
 void SerialFile::open() {
-  std::error_code code;
-  const auto status = std::filesystem::status(_path, code);
-  expect(std::filesystem::exists(status), "does not exist");
-  expect(!std::filesystem::is_directory(status), fmt::format("is a folder; {} was expected", _kind->noun));
-  expect(std::filesystem::is_regular_file(status), fmt::format("is not a regular file; {} was expected", _kind->noun));
+  if (const std::string problem = core::input_problem(_path); !problem.empty())
+    expect(false, fmt::format("{}; {} was expected", problem, _kind->noun));
   expect(H5Fis_hdf5(_path.c_str()) > 0,
-         fmt::format("is not an HDF5 file, or was cut short, or may not be read; {} was expected", _kind->noun));
+         fmt::format("is not an HDF5 file, or was cut short; {} was expected", _kind->noun));
   const H5Handle access(check_h5(H5Pcreate(H5P_FILE_ACCESS), "H5Pcreate"), H5Pclose);
   check_h5(H5Pset_file_locking(access.get(), false, true), "H5Pset_file_locking");
   const hid_t file = H5Fopen(_path.c_str(), H5F_ACC_RDONLY, access.get());

@@ -9,6 +9,8 @@
 
 #include "h5_types.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/input_file.hpp"
+#include "orbweaver/core/scratch_file.hpp"
 #include "orbweaver/core/text.hpp"
 #include "own_dataset.hpp"
 #include "posix_file.hpp"
@@ -115,7 +117,8 @@ void write_text_table(const std::filesystem::path& path, const TextTable& table)
   for (const std::vector<std::string>& column : table.values)
     core::require(column.size() == table.values.front().size(), "columns are of one length");
   quiet_h5();
-  const std::filesystem::path part = path.string() + ".part";
+  const core::ScratchFile scratch(path.string() + ".part");
+  const std::filesystem::path& part = scratch.path();
   try_out_file(part, 1);
   {
     const H5Handle creation = timeless(H5P_FILE_CREATE);
@@ -143,11 +146,8 @@ void write_text_table(const std::filesystem::path& path, const TextTable& table)
 
 TextTable read_text_table(const std::filesystem::path& path, const TextTable& expected) {
   quiet_h5();
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored))
-    throw core::InputError(fmt::format("'{}' does not exist", path.string()));
-  if (!std::filesystem::is_regular_file(path, ignored))
-    throw core::InputError(fmt::format("'{}' is not a regular file", path.string()));
+  if (const std::string problem = core::input_problem(path); !problem.empty())
+    throw core::InputError(fmt::format("'{}' {}", path.string(), problem));
   const H5Handle file = opened(path);
   const std::optional<std::string> format = text_attribute(file, "format");
   if (format != expected.format)
@@ -181,8 +181,7 @@ TextTable read_text_table(const std::filesystem::path& path, const TextTable& ex
 
 std::optional<std::string> format_of(const std::filesystem::path& path) {
   quiet_h5();
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored) || H5Fis_hdf5(path.c_str()) <= 0) return std::nullopt;
+  if (!core::unreadable_input(path).empty() || H5Fis_hdf5(path.c_str()) <= 0) return std::nullopt;
   try {
     return text_attribute(opened(path), "format");
   } catch (const core::InputError&) {

@@ -97,8 +97,14 @@ class Run {
       if (!_summary.stopped_early) follow();
       end();
     } catch (const core::EnvironmentError& error) {
+      std::error_code ignored;
+      const bool stands = std::filesystem::exists(checkpoint_path(_folder), ignored);
       throw core::EnvironmentError(
-          fmt::format("{}\nThe last checkpoint stands: --resume goes on from it.", error.what()));
+          fmt::format("{}\n{}", error.what(),
+                      stands ? "The last checkpoint stands: --resume goes on from it."
+                             : fmt::format("No checkpoint is in {} any more: bring the folder back from a copy, or "
+                                           "begin anew.",
+                                           _folder.string())));
     }
     _summary.seconds = std::chrono::duration<double>(Clock::now() - _began).count();
     return std::move(_summary);
