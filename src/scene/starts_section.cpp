@@ -86,8 +86,8 @@ std::filesystem::path file_at(const std::filesystem::path& place, Kind kind, con
   } catch (const core::InputError& error) {
     path.fail(error.what());
   }
-  if (const std::string got = core::unreadable_input(file); !got.empty())
-    path.fail(fmt::format("a file that can be read, told from the scene's folder, where this is {}", got), path.got(),
+  if (const std::string problem = core::input_problem(file); !problem.empty())
+    path.fail("a file that can be read, told from the scene's folder", fmt::format("{}, which {}", path.got(), problem),
               "check the path");
   return file;
 }

@@ -81,7 +81,7 @@ TEST(StartsSection, RefusesWhatItCannotStartFrom) {
   write("other.h5", "nothing");
   EXPECT_THAT(refusal("loops: [{file: none.csv, period: 6.3}]"),
               HasSubstr("starts.loops[0].file: expected a file that can be read, told from the scene's folder, got "
-                        "`none.csv`"));
+                        "`none.csv`, which does not exist; check the path"));
   EXPECT_THAT(refusal("orbits: [{archive: other.h5, family: A, near: {period: 9, energy: 1}}]"),
               HasSubstr("starts.orbits[0].near: expected one of `period`, `energy` and `step`"));
   EXPECT_THAT(refusal("orbits: [{archive: other.h5, near: {period: 9}}]"), HasSubstr("expected the key `family`"));
