@@ -318,7 +318,8 @@ TEST_F(BadFiles, ATornSegmentIsToldFromAWholeOne) {
   const auto bad = [&](const char* name, hsize_t row, std::int64_t value) {
     return refusal([&] { inspect_segment(alter(segment, [&](hid_t file) { set_integer(file, name, row, value); })); });
   };
-  EXPECT_THAT(bad("orbits/modes_begin", 4, 0), AllOf(HasSubstr("modes_begin = 0"), HasSubstr("has to come from a copy")));
+  EXPECT_THAT(bad("orbits/modes_begin", 4, 0),
+              AllOf(HasSubstr("modes_begin = 0"), HasSubstr("has to come from a copy")));
   EXPECT_THAT(bad("orbits/cutoff", 4, 0), HasSubstr("cutoff 0"));
   EXPECT_THAT(bad("orbits/cutoff", 4, std::int64_t{1} << 62), HasSubstr("cutoff 4611686018427387904"));
   EXPECT_THAT(bad("orbits/time_map_count", 28, 1000), HasSubstr("add up to more: 1000 in row 28"));
