@@ -11,6 +11,7 @@
 #include "collocation_metric.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/equations/damped_newton.hpp"
+#include "orbweaver/equations/family_direction.hpp"
 #include "orbweaver/loop/grid/time_map_fit.hpp"
 #include "regrid.hpp"
 

@@ -143,10 +143,4 @@ class Collocation final : public PreconditionedEquations {
   mutable std::vector<double> _z, _f, _gradient, _blocks, _columns, _nodal, _slope, _node_field, _difference;
 };
 
-/// The direction of the family through the orbit `u`: the solution of the linearised equations that the first condition
-/// of `equations`, or the one with the number `condition`, sees as 1 and the others as 0. Builds the preconditioner at
-/// `u`. Throws NumericalError where it does not converge.
-[[nodiscard]] std::vector<double> family_direction(Collocation& equations, const std::vector<double>& u,
-                                                   int condition = 0);
-
 }  // namespace orbweaver::equations
