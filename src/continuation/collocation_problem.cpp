@@ -35,6 +35,9 @@ constexpr double good_enough = 0.3;
 /// and slow motions are 50 times apart the changes shrink by 0.9 each (m2 = 1000).
 constexpr double sharpened = 0.3;
 constexpr int patience = 60;
+/// The residual from which on a solver that came to rest has not solved its equations, in parts of what rounding
+/// leaves. Solved ones were seen at 0.2 to 2, those beside a narrow gap at 4 to 4000 (mu = 0.001, 13 turns).
+constexpr double at_rest = 3.0;
 /// Roundings of a mode, some of the transforms' own: their number was not measured.
 constexpr double mode_rounding = 4.0 * std::numeric_limits<double>::epsilon();
 /// What the harmonics that a new time map leaves out may add to the loss, in parts of its threshold: the rest is
@@ -284,6 +287,7 @@ Trial CollocationProblem::solve(Prediction prediction, const std::vector<double>
     trial.prediction_error = result.first_change;
     trial.converged = result.converged;
     last_change = result.last_change;
+    trial.stagnated = result.stagnated;
     if (result.factored) {
       state().factor_point = std::move(result.factor_point);
       state().factor_conditions = conditions;
@@ -301,6 +305,7 @@ Trial CollocationProblem::solve(Prediction prediction, const std::vector<double>
     trial.reason = not_finite_at(trial.values, predicted, error.what());
   }
   if (trial.converged) judge(trial);
+  if (trial.converged && rests_aside(trial)) solve_by_gmres(trial, predicted, conditions);
   if (trial.converged && may_be_sharper(trial)) sharpen(trial, last_change, conditions);
   if (state().preconditioner == Preconditioner::exact && !is_affordable(e) && (!trial.converged || trial.unsolved)) {
     trial.converged = false;
@@ -314,6 +319,38 @@ void CollocationProblem::note_what_is_open(Trial& trial, double last_change) {
   if (!(trial.values[scalars_at()] > 0.0)) return;
   const Collocation::Quality quality = equations().quality(trial.values.data());
   if (quality.asked < rounding_floor(equations(), quality, trial.values[scalars_at()])) trial.known_to = last_change;
+}
+
+/// Whether the solver came to rest where its equations do not hold: along some direction they are so flat that the box
+/// scheme's own error is all that is seen of it.
+bool CollocationProblem::rests_aside(const Trial& trial) {
+  if (!trial.stagnated || trial.unsolved || state().preconditioner == Preconditioner::exact) return false;
+  const Collocation& e = equations();
+  Eigen::VectorXd residual(e.size());
+  e.residual(trial.values.data(), residual.data());
+  return residual.norm() > at_rest * e.residual_rounding(trial.values.data());
+}
+
+/// Anew by GMRES, and so the branch from here on. From the prediction: where the solver came to rest the equations may
+/// be flatter than at the orbit, and Newton's steps lead away. What does not solve them either is no orbit.
+void CollocationProblem::solve_by_gmres(Trial& trial, const std::vector<double>& predicted,
+                                        const std::vector<double>& conditions) {
+  Collocation& e = equations();
+  if (state().preconditioner != Preconditioner::krylov) {
+    Trial from = trial;
+    from.values = predicted;
+    e.precondition_by(Preconditioner::krylov);
+    std::optional<Trial> other = solved_anew(solver_options(), conditions, std::move(from));
+    if (other && other->converged && !rests_aside(*other)) {
+      trial = std::move(*other);
+      state().preconditioner = Preconditioner::krylov;
+      return;
+    }
+    e.precondition_by(preconditioner_of(e));
+  }
+  state().factor_point.clear();
+  trial.converged = trial.is_orbit = trial.at_rounding = false;
+  trial.reason = fmt::format("the corrector comes to rest at a residual of {:.2g}", trial.asked_rms);
 }
 
 /// Harmonics that the solver has left wrong say nothing of the resolution: the equations must hold first.
@@ -345,26 +382,34 @@ void CollocationProblem::sharpen(Trial& trial, double last_change, const std::ve
     state().factor_point.clear();
 }
 
+/// From the trial's values with a new factor, and judged; none where that meets what is not finite.
+std::optional<Trial> CollocationProblem::solved_anew(const equations::AndersonSolver::Options& options,
+                                                     const std::vector<double>& conditions, Trial trial) {
+  try {
+    auto result = _solver.solve(equations(), trial.values, false, options);
+    trial.stagnated = result.stagnated || !result.converged;
+    state().factor_point = std::move(result.factor_point);
+    state().factor_conditions = conditions;
+    trial.iterations += result.iterations;
+  } catch (const core::NumericalError&) {
+    state().factor_point.clear();
+    return std::nullopt;
+  }
+  trial.is_orbit = trial.at_rounding = trial.truncated = trial.unsolved = trial.to_rounding = false;
+  trial.lost_in_rounding = false;
+  judge(trial);
+  return trial;
+}
+
 /// False where the trial is no better than it was.
 bool CollocationProblem::sharpen_with(const equations::AndersonSolver::Options& options,
                                       const std::vector<double>& conditions, Trial& trial) {
-  Trial other = trial;
-  try {
-    auto result = _solver.solve(equations(), other.values, false, options);
-    state().factor_point = std::move(result.factor_point);
-    state().factor_conditions = conditions;
-    other.iterations += result.iterations;
-  } catch (const core::NumericalError&) {
-    state().factor_point.clear();
-    return false;
-  }
-  other.is_orbit = other.at_rounding = other.truncated = other.unsolved = other.to_rounding = false;
-  other.lost_in_rounding = false;
-  judge(other);
+  std::optional<Trial> other = solved_anew(options, conditions, trial);
+  if (!other) return false;
   const bool asks = trial.unsolved || trial.is_beside_the_way;
-  const bool better = asks ? other.asked_rms < trial.asked_rms : other.loss_rms < trial.loss_rms;
-  if (!other.converged || !better) return false;
-  trial = std::move(other);
+  const bool better = asks ? other->asked_rms < trial.asked_rms : other->loss_rms < trial.loss_rms;
+  if (!other->converged || !better) return false;
+  trial = std::move(*other);
   return true;
 }
 

@@ -60,10 +60,14 @@ class CollocationProblem final : public PointProblem {
   [[nodiscard]] double rounding_of_nodes();
   void note_what_is_open(Trial& trial, double last_change);
   [[nodiscard]] bool may_be_sharper(Trial& trial);
+  [[nodiscard]] std::optional<Trial> solved_anew(const equations::AndersonSolver::Options& options,
+                                                 const std::vector<double>& conditions, Trial trial);
   [[nodiscard]] bool sharpen_with(const equations::AndersonSolver::Options& options,
                                   const std::vector<double>& conditions, Trial& trial);
   [[nodiscard]] equations::Preconditioner preconditioner_of(const equations::Collocation& equations);
   void sharpen(Trial& trial, double last_change, const std::vector<double>& conditions);
+  [[nodiscard]] bool rests_aside(const Trial& trial);
+  void solve_by_gmres(Trial& trial, const std::vector<double>& predicted, const std::vector<double>& conditions);
   void judge(Trial& trial);
   [[nodiscard]] std::string not_finite_at(const std::vector<double>& values, const std::vector<double>& predicted,
                                           const std::string& otherwise);

@@ -126,6 +126,7 @@ AndersonSolver::Result AndersonSolver::solve(PreconditionedEquations& equations,
     const double near = (at_end ? options.stagnation_at_end : options.stagnation) * options.tolerance;
     const bool stagnant = shrinks_no_more && size < near;
     if (stagnant) {
+      result.stagnated = true;
       result.last_change = size;
       result.converged = true;
       return result;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/numerics/two_pi.hpp"
+#include "shell_gmres.hpp"
 
 namespace orbweaver::equations {
 
@@ -20,11 +22,15 @@ namespace {
 
 using numerics::two_pi;
 
+/// Of the right side: across a gap of 1e-8 what a residual leaves is magnified as much.
+constexpr double of_linear_residual = 1e-10;
+
 }  // namespace
 
 void Collocation::factor(const double* u) {
   const core::LogEvent event(core::Event::factor);
   _exact.reset();
+  _gmres.reset();
   const int m = cells();
   const int d = dimension();
   const int stride = _grid.stride();
@@ -57,8 +63,9 @@ void Collocation::factor(const double* u) {
   }
   if (_preconditioner == Preconditioner::exact) return factor_jacobian();
   const std::vector<double> fitted =
-      _preconditioner == Preconditioner::fitted_box ? fitted_cells(_blocks.data(), d, m, 1.0) : std::vector<double>{};
+      _preconditioner == Preconditioner::box ? std::vector<double>{} : fitted_cells(_blocks.data(), d, m, 1.0);
   factor_box(fitted.empty() ? _blocks.data() : fitted.data());
+  if (_preconditioner == Preconditioner::krylov) begin_gmres(u);
 }
 
 bool Collocation::has_cells_to_fit() const {
@@ -100,11 +107,48 @@ void Collocation::factor_jacobian() {
                                          [this](const double* v, double* r) { apply_jacobian(v, r); });
 }
 
+double Collocation::residual_rounding(const double* u) const {
+  const int m = cells();
+  const int d = dimension();
+  midpoint_states(u);
+  double square = 0.0;
+  for (int i = 0; i < d; ++i)
+    for (int j = 0; j < m; ++j) {
+      double terms = std::abs(u[i * _grid.stride() + j]) + std::abs(u[i * _grid.stride() + j + 1]);
+      for (int l = 0; l < d; ++l) terms += std::abs(_blocks[at((i * d + l) * m + j)] * _z[at(l * m + j)]);
+      square += terms * terms;
+    }
+  return std::numeric_limits<double>::epsilon() * std::sqrt(square);
+}
+
+void Collocation::begin_gmres(const double* u) {
+  _rounding = residual_rounding(u);
+  _gmres = std::make_unique<ShellGmres>(
+      size(), "collocation_",
+      ShellGmres::Actions{
+          .multiply = [this](const ShellGmres::In& x, ShellGmres::Out y) { apply_jacobian(x.data(), y.data()); },
+          .precondition =
+              [this](const ShellGmres::In& x, ShellGmres::Out y) {
+                y = x;
+                _box->solve(y.data());
+              }});
+}
+
+/// No further than to rounding: what it leaves of a residual would be magnified along directions that it hides. What
+/// GMRES leaves is for the nonlinear solver to see.
+void Collocation::solve_linearised(double* r) const {
+  Eigen::Map<Eigen::VectorXd> values(r, size());
+  if (!values.allFinite()) return;
+  values = _gmres->solve(values, {of_linear_residual, _rounding}).x;
+}
+
 void Collocation::precondition(double* r) const {
   const core::LogEvent event(core::Event::precondition);
   core::require(_exact || _box, "collocation points are preconditioned before their matrices are factored");
   if (_exact)
     _exact->solve(r);
+  else if (_gmres)
+    solve_linearised(r);
   else
     _box->solve(r);
   keep_symmetries(r);

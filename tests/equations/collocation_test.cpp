@@ -1,6 +1,8 @@
 #include "orbweaver/equations/collocation.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 
@@ -58,6 +60,14 @@ class Equations : public testing::TestWithParam<Case> {
     equations.from_loop(loop, u.data());
     return u;
   }
+  /// What fills the strides is no unknown.
+  [[nodiscard]] std::vector<double> random_unknowns() const {
+    std::vector<double> v = test::random_values(static_cast<std::size_t>(equations.size()), 11);
+    for (int i = 0; i < equations.dimension(); ++i)
+      for (int j = equations.cells() + 1; j < equations.grid().stride(); ++j)
+        v[static_cast<std::size_t>(i * equations.grid().stride() + j)] = 0.0;
+    return v;
+  }
   void set_random_conditions(const std::vector<double>& reference) {
     equations.set_conditions(test::random_values(static_cast<std::size_t>(equations.borders() * equations.size()), 9),
                              reference);
@@ -103,10 +113,7 @@ TEST_P(Equations, TheDerivativeItselfIsItsOwnPreconditioner) {
   set_random_conditions(u);
   equations.precondition_by(Preconditioner::exact);
   equations.factor(u.data());
-  std::vector<double> v = test::random_values(u.size(), 11);
-  for (int i = 0; i < equations.dimension(); ++i)  // what fills the strides is no unknown
-    for (int j = equations.cells() + 1; j < equations.grid().stride(); ++j)
-      v[static_cast<std::size_t>(i * equations.grid().stride() + j)] = 0.0;
+  const std::vector<double> v = random_unknowns();
   std::vector<double> r(u.size());
   equations.apply_jacobian(v.data(), r.data());
   equations.precondition(r.data());
@@ -119,6 +126,45 @@ TEST_P(Equations, TheDerivativeItselfIsItsOwnPreconditioner) {
   double apart = 0.0;
   for (std::size_t n = 0; n < u.size(); ++n) apart = std::max(apart, std::abs(r[n] - v[n]));
   EXPECT_GT(apart, 1e-3);
+}
+
+TEST_P(Equations, GmresAroundTheBoxInvertsTheDerivative) {
+  const std::vector<double> u = point_of(sample());
+  set_random_conditions(u);
+  equations.precondition_by(Preconditioner::krylov);
+  equations.factor(u.data());
+  const std::vector<double> v = random_unknowns();
+  std::vector<double> r(u.size());
+  equations.apply_jacobian(v.data(), r.data());
+  equations.precondition(r.data());
+  for (std::size_t n = 0; n < u.size(); ++n) EXPECT_NEAR(r[n], v[n], 1e-7) << n;
+}
+
+// A relative change of all that is rounded changes the residual by as much as is said of rounding, or less, as signs
+// differ.
+TEST_P(Equations, RoundingOfTheResidualIsThatOfTheStates) {
+  const std::vector<double> u = point_of(sample());
+  set_random_conditions(u);
+  equations.factor(u.data());
+  const std::vector<double> signs = test::random_values(u.size(), 12);
+  std::vector<double> moved = u;
+  const double relative = 1e-7;
+  for (int n = 0; n < equations.period_at(); ++n) {
+    const auto at = static_cast<std::size_t>(n);
+    moved[at] *= 1.0 + std::copysign(relative, signs[at]);
+  }
+  std::vector<double> before(u.size());
+  std::vector<double> after(u.size());
+  equations.residual(u.data(), before.data());
+  equations.residual(moved.data(), after.data());
+  double square = 0.0;
+  for (int n = 0; n < equations.period_at(); ++n) {
+    const auto at = static_cast<std::size_t>(n);
+    square += std::pow((after[at] - before[at]) / relative, 2);
+  }
+  const double rounding = equations.residual_rounding(u.data()) / std::numeric_limits<double>::epsilon();
+  EXPECT_LT(std::sqrt(square), 2.0 * rounding);
+  EXPECT_GT(std::sqrt(square), 0.1 * rounding);
 }
 
 // A chain of any number of particles: no dimension is left out.
@@ -228,6 +274,30 @@ TEST(OrbitSolver, ConvergesWithAKeptFactorAndRenewsAPoorOne) {
   EXPECT_TRUE(renewed.factored);
   EXPECT_EQ(renewed.factor_point.size(), 3u);
   EXPECT_NEAR(u[2], std::sqrt(1200.0), 1e-10);
+}
+
+/// Their residuals are wrong by something that no point makes smaller.
+class Rough final : public PreconditionedEquations {
+ public:
+  [[nodiscard]] int size() const override { return 1; }
+  void residual(const double* u, double* r) const override { r[0] = u[0] - 1.0 + 1e-9 * std::cos(1e12 * u[0]); }
+  void factor(const double*) override {}
+  void precondition(double*) const override {}
+};
+
+TEST(OrbitSolver, SaysThatItsChangesShrinkNoMore) {
+  OrbitSolver solver;
+  std::vector<double> u{1.3};
+  AndersonSolver::Options options;
+  options.tolerance = 1e-11;
+  options.rounding = 1e-13;
+  Rough rough;
+  const AndersonSolver::Result at_rest = solver.solve(rough, u, false, options);
+  EXPECT_TRUE(at_rest.converged);
+  EXPECT_TRUE(at_rest.stagnated);
+  Square smooth;
+  u = {1.1, 1.3, 1.6};
+  EXPECT_FALSE(solver.solve(smooth, u, false, {}).stagnated);
 }
 
 /// A value in the options database while it lives.

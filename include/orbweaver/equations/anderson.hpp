@@ -35,6 +35,7 @@ class AndersonSolver {
   struct Result {
     bool converged = false;
     bool finite = true;
+    bool stagnated = false;            ///< converged, as its changes shrink no more
     int iterations = 0;                ///< over all factors
     bool factored = false;             ///< the factor was renewed,
     std::vector<double> factor_point;  ///< here

@@ -16,6 +16,7 @@ namespace orbweaver::equations {
 
 class BoxScheme;
 class DenseFactor;
+class ShellGmres;
 
 /// The bordered equations of an orbit on a fundamental domain, and their preconditioner (docs/mathematics.md,
 /// "Collocation on the fundamental domain"):
@@ -75,6 +76,9 @@ class Collocation final : public PreconditionedEquations {
   /// Whether the fitted box differs from the plain one in any cell, as of where the preconditioner was last built.
   [[nodiscard]] bool has_cells_to_fit() const;
   void precondition(double* r) const override;
+  /// What rounding leaves of the residual at `u`, near where the preconditioner was built, as a norm: that of the
+  /// values at the nodes, and of the states as the field multiplies it.
+  [[nodiscard]] double residual_rounding(const double* u) const;
   /// The derivative of `residual` where the preconditioner was built, applied to a perturbation of the point.
   void apply_jacobian(const double* v, double* r) const;
 
@@ -116,6 +120,8 @@ class Collocation final : public PreconditionedEquations {
   void node_states(const double* u) const;
   void factor_box(const double* blocks);
   void factor_jacobian();
+  void begin_gmres(const double* u);
+  void solve_linearised(double* r) const;
   /// The system with the parameters of `u`.
   [[nodiscard]] const systems::System& system_at(const double* u) const;
   /// df/ds at the midpoints for a scalar s other than T, into _gradient.
@@ -137,6 +143,8 @@ class Collocation final : public PreconditionedEquations {
   std::vector<double> _reference;
   std::unique_ptr<BoxScheme> _box;
   std::unique_ptr<DenseFactor> _exact;  // in place of it
+  std::unique_ptr<ShellGmres> _gmres;   // around it
+  double _rounding = 0.0;               // of the residual, where GMRES was begun
   Preconditioner _preconditioner = Preconditioner::box;
   double _jacobian_rms = 0.0;
   mutable std::shared_ptr<const systems::System> _moved;  // with the parameters of the last point, where any moves
