@@ -276,6 +276,7 @@ Trial CollocationProblem::solve(Prediction prediction, const std::vector<double>
   }
   const std::vector<double> predicted = trial.values;
   double last_change = 0.0;
+  bool has_new_factor = false;
   try {
     auto result = _solver.solve(e, trial.values, !state().factor_point.empty(), solver_options());
     if (!result.converged && _options.base_is_far) {
@@ -288,6 +289,7 @@ Trial CollocationProblem::solve(Prediction prediction, const std::vector<double>
     trial.converged = result.converged;
     last_change = result.last_change;
     trial.stagnated = result.stagnated;
+    has_new_factor = result.factored;
     if (result.factored) {
       state().factor_point = std::move(result.factor_point);
       state().factor_conditions = conditions;
@@ -305,7 +307,7 @@ Trial CollocationProblem::solve(Prediction prediction, const std::vector<double>
     trial.reason = not_finite_at(trial.values, predicted, error.what());
   }
   if (trial.converged) judge(trial);
-  if (trial.converged && rests_aside(trial)) solve_by_gmres(trial, predicted, conditions);
+  if (trial.converged && rests_aside(trial)) solve_by_gmres(trial, has_new_factor, predicted, conditions);
   if (trial.converged && may_be_sharper(trial)) sharpen(trial, last_change, conditions);
   if (state().preconditioner == Preconditioner::exact && !is_affordable(e) && (!trial.converged || trial.unsolved)) {
     trial.converged = false;
@@ -332,11 +334,11 @@ bool CollocationProblem::rests_aside(const Trial& trial) {
 }
 
 /// Anew by GMRES, and so the branch from here on. From the prediction: where the solver came to rest the equations may
-/// be flatter than at the orbit, and Newton's steps lead away. What does not solve them either is no orbit.
-void CollocationProblem::solve_by_gmres(Trial& trial, const std::vector<double>& predicted,
+/// be flatter than at the orbit, and Newton's steps lead away. What does not solve them with a new factor is no orbit.
+void CollocationProblem::solve_by_gmres(Trial& trial, bool has_new_factor, const std::vector<double>& predicted,
                                         const std::vector<double>& conditions) {
   Collocation& e = equations();
-  if (state().preconditioner != Preconditioner::krylov) {
+  if (state().preconditioner != Preconditioner::krylov || !has_new_factor) {
     Trial from = trial;
     from.values = predicted;
     e.precondition_by(Preconditioner::krylov);

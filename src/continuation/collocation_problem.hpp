@@ -67,7 +67,8 @@ class CollocationProblem final : public PointProblem {
   [[nodiscard]] equations::Preconditioner preconditioner_of(const equations::Collocation& equations);
   void sharpen(Trial& trial, double last_change, const std::vector<double>& conditions);
   [[nodiscard]] bool rests_aside(const Trial& trial);
-  void solve_by_gmres(Trial& trial, const std::vector<double>& predicted, const std::vector<double>& conditions);
+  void solve_by_gmres(Trial& trial, bool has_new_factor, const std::vector<double>& predicted,
+                      const std::vector<double>& conditions);
   void judge(Trial& trial);
   [[nodiscard]] std::string not_finite_at(const std::vector<double>& values, const std::vector<double>& predicted,
                                           const std::string& otherwise);
