@@ -36,7 +36,7 @@ constexpr double good_enough = 0.3;
 constexpr double sharpened = 0.3;
 constexpr int patience = 60;
 /// The residual from which on a solver that came to rest has not solved its equations, in parts of what rounding
-/// leaves. Solved ones were seen at 0.2 to 2, those beside a narrow gap at 4 to 4000 (mu = 0.001, 13 turns).
+/// leaves. Solved ones were seen at 0.25 to 2, those beside a narrow gap at 4 to 4000 (mu = 0.001, 13 turns).
 constexpr double at_rest = 3.0;
 /// Roundings of a mode, some of the transforms' own: their number was not measured.
 constexpr double mode_rounding = 4.0 * std::numeric_limits<double>::epsilon();
