@@ -326,7 +326,7 @@ void CollocationProblem::note_what_is_open(Trial& trial, double last_change) {
 /// Whether the solver came to rest where its equations do not hold: along some direction they are so flat that the box
 /// scheme's own error is all that is seen of it.
 bool CollocationProblem::rests_aside(const Trial& trial) {
-  if (!trial.stagnated || trial.unsolved || state().preconditioner == Preconditioner::exact) return false;
+  if (!trial.stagnated || !trial.is_orbit || state().preconditioner == Preconditioner::exact) return false;
   const Collocation& e = equations();
   Eigen::VectorXd residual(e.size());
   e.residual(trial.values.data(), residual.data());
@@ -343,7 +343,7 @@ void CollocationProblem::solve_by_gmres(Trial& trial, bool has_new_factor, const
     from.values = predicted;
     e.precondition_by(Preconditioner::krylov);
     std::optional<Trial> other = solved_anew(solver_options(), conditions, std::move(from));
-    if (other && other->converged && !rests_aside(*other)) {
+    if (other && other->is_orbit && !rests_aside(*other)) {
       trial = std::move(*other);
       state().preconditioner = Preconditioner::krylov;
       return;
