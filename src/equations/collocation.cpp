@@ -2,23 +2,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "box_scheme.hpp"
 #include "dense_factor.hpp"
+#include "fitted_cells.hpp"
 #include "index.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/loss/linearization.hpp"
 #include "orbweaver/numerics/two_pi.hpp"
+#include "shell_gmres.hpp"
 
 namespace orbweaver::equations {
 
 namespace {
 
 using numerics::two_pi;
+
+/// Of the right side: across a gap of 1e-8 what a residual leaves is magnified as much.
+constexpr double of_linear_residual = 1e-10;
 
 }  // namespace
 
@@ -224,6 +232,302 @@ void Collocation::check_field(const double* u) const {
   f.resize(at(dimension()) * (m + 1));
   system.field(m + 1, _nodal.data(), f.data());
   check(f, "vector field", _nodal, m + 1, 0.0);
+}
+
+void Collocation::factor(const double* u) {
+  const core::LogEvent event(core::Event::factor);
+  _exact.reset();
+  _gmres.reset();
+  const int m = cells();
+  const int d = dimension();
+  const int stride = _grid.stride();
+  const systems::System& system = system_at(u);
+  midpoint_states(u);
+  system.field_jacobian(at(m), _z.data(), _f.data(), _blocks.data());
+  const double period = u[period_at()];
+  const double scale = _grid.spacing() * period / two_pi;
+  double square = 0.0;
+  for (int e = 0; e < d * d; ++e) {
+    double* block = _blocks.data() + e * m;
+    for (int j = 0; j < m; ++j) {
+      square += block[j] * block[j];
+      block[j] *= scale * _density[at(j)];
+    }
+  }
+  _jacobian_rms = std::sqrt(square / m);
+  for (int i = 0; i < d; ++i)
+    for (int j = 0; j < m; ++j) {
+      const double c = scale * _density[at(j)];
+      _columns[at(i * stride + j)] = -c * _f[at(i * m + j)] / period;
+    }
+  for (int p = 1; p < borders(); ++p) {
+    derivatives_by(system, _scalars[at(p)]);
+    for (int i = 0; i < d; ++i)
+      for (int j = 0; j < m; ++j) {
+        const double c = scale * _density[at(j)];
+        _columns[at((p * d + i) * stride + j)] = -c * _gradient[at(i * m + j)];
+      }
+  }
+  if (_preconditioner == Preconditioner::exact) return factor_jacobian();
+  const std::vector<double> fitted =
+      _preconditioner == Preconditioner::box ? std::vector<double>{} : fitted_cells(_blocks.data(), d, m, 1.0);
+  factor_box(fitted.empty() ? _blocks.data() : fitted.data());
+  if (_preconditioner == Preconditioner::krylov) begin_gmres(u);
+}
+
+bool Collocation::has_cells_to_fit() const {
+  return _jacobian_rms > 0.0 && !fitted_cells(_blocks.data(), dimension(), cells(), 1.0).empty();
+}
+
+void Collocation::factor_box(const double* blocks) {
+  const int m = cells();
+  const int d = dimension();
+  const int stride = _grid.stride();
+  BoxScheme::Matrices matrices;
+  matrices.cells = m;
+  matrices.count = m;
+  matrices.column_stride = stride;
+  matrices.stride = stride;
+  matrices.blocks = blocks;
+  matrices.columns = _columns.data();
+  matrices.borders = borders();
+  matrices.left = _ends.left;
+  matrices.right = _ends.right;
+  std::vector<double> rows(at(borders() * d * stride));
+  std::vector<double> corner(at(borders() * borders()));
+  for (int q = 0; q < borders(); ++q) {
+    std::copy_n(_weights.data() + q * size(), d * stride, rows.data() + q * d * stride);
+    for (int p = 0; p < borders(); ++p) corner[at(q * borders() + p)] = _weights[at(q * size() + period_at() + p)];
+  }
+  matrices.rows = rows.data();
+  matrices.corner = corner.data();
+  if (!_box) _box = BoxScheme::of_dimension(dimension(), BoxScheme::Storage::lanes);
+  _box->factor(matrices);
+}
+
+void Collocation::factor_jacobian() {
+  std::vector<int> entries;  // without what fills the strides
+  for (int i = 0; i < dimension(); ++i)
+    for (int j = 0; j <= cells(); ++j) entries.push_back(i * _grid.stride() + j);
+  for (int q = 0; q < borders(); ++q) entries.push_back(period_at() + q);
+  _exact = std::make_unique<DenseFactor>(size(), std::move(entries),
+                                         [this](const double* v, double* r) { apply_jacobian(v, r); });
+}
+
+double Collocation::residual_rounding(const double* u) const {
+  const int m = cells();
+  const int d = dimension();
+  midpoint_states(u);
+  double square = 0.0;
+  for (int i = 0; i < d; ++i)
+    for (int j = 0; j < m; ++j) {
+      double terms = std::abs(u[i * _grid.stride() + j]) + std::abs(u[i * _grid.stride() + j + 1]);
+      for (int l = 0; l < d; ++l) terms += std::abs(_blocks[at((i * d + l) * m + j)] * _z[at(l * m + j)]);
+      square += terms * terms;
+    }
+  return std::numeric_limits<double>::epsilon() * std::sqrt(square);
+}
+
+void Collocation::begin_gmres(const double* u) {
+  _rounding = residual_rounding(u);
+  _gmres = std::make_unique<ShellGmres>(
+      size(), "collocation_",
+      ShellGmres::Actions{
+          .multiply = [this](const ShellGmres::In& x, ShellGmres::Out y) { apply_jacobian(x.data(), y.data()); },
+          .precondition =
+              [this](const ShellGmres::In& x, ShellGmres::Out y) {
+                y = x;
+                _box->solve(y.data());
+              }});
+}
+
+/// No further than to rounding: what it leaves of a residual would be magnified along directions that it hides. What
+/// GMRES leaves is for the nonlinear solver to see.
+void Collocation::solve_linearised(double* r) const {
+  Eigen::Map<Eigen::VectorXd> values(r, size());
+  if (!values.allFinite()) return;
+  values = _gmres->solve(values, {of_linear_residual, _rounding}).x;
+}
+
+void Collocation::precondition(double* r) const {
+  const core::LogEvent event(core::Event::precondition);
+  core::require(_exact || _box, "collocation points are preconditioned before their matrices are factored");
+  if (_exact)
+    _exact->solve(r);
+  else if (_gmres)
+    solve_linearised(r);
+  else
+    _box->solve(r);
+  keep_symmetries(r);
+}
+
+Collocation::Quality Collocation::quality(const double* u) const {
+  const int m = cells();
+  const int d = dimension();
+  const int stride = _grid.stride();
+  const double rate = two_pi / u[period_at()];
+  const systems::System& system = system_at(u);
+  midpoint_states(u);
+  system.field(at(m), _z.data(), _f.data());
+  double loss = 0.0;
+  double speed = 0.0;
+  for (int j = 0; j < m; ++j) {
+    double square = 0.0;
+    double moved = 0.0;
+    for (int i = 0; i < d; ++i) {
+      const double* y = u + i * stride;
+      const double f = _f[at(i * m + j)];
+      const double r = rate / _density[at(j)] * ((y[j + 1] - y[j]) / _grid.spacing() + _winding[at(i)]) - f;
+      square += r * r;
+      moved += f * f;
+    }
+    loss += _density[at(j)] * square / m;
+    speed += _density[at(j)] * moved / m;
+  }
+  double amplitude = 0.0;
+  double size = 0.0;
+  for (int i = 0; i < d; ++i) {
+    double mean = 0.0;
+    double square = 0.0;
+    for (int j = 0; j < m; ++j) {
+      const double z = _z[at(i * m + j)] - _centre[at(i)] - _winding[at(i)] * (j + 0.5) * _grid.spacing();
+      mean += _density[at(j)] * z / m;
+      square += _density[at(j)] * z * z / m;
+    }
+    // Over the whole loop the mean survives in coordinates that the symmetries leave alone.
+    if (!keeps_mean(i)) mean = 0.0;
+    amplitude += std::max(0.0, square - mean * mean);
+    size += square + (2.0 * mean + _centre[at(i)]) * _centre[at(i)];
+  }
+  // The loop between the points where it was solved.
+  node_states(u);
+  const int count = m + 1;
+  std::vector<double>& f = _node_field;
+  f.resize(at(d * count));
+  system.field(at(count), _nodal.data(), f.data());
+  double between = 0.0;
+  for (int j = 0; j < count; ++j) {
+    double square = 0.0;
+    for (int i = 0; i < d; ++i) {
+      const double r =
+          rate / _node_density[at(j)] * (_slope[at(i * stride + j)] + _winding[at(i)]) - f[at(i * count + j)];
+      square += r * r;
+    }
+    between += _node_density[at(j)] * _node_weights[at(j)] * square;
+  }
+  return {std::sqrt(0.5 * (loss + between)),
+          std::sqrt(loss),
+          std::sqrt(between),
+          std::sqrt(speed),
+          std::sqrt(amplitude),
+          std::sqrt(size)};
+}
+
+double Collocation::distance(const double* a, const double* b) const {
+  const int m = cells();
+  std::vector<double>& difference = _difference;
+  difference.resize(at(dimension() * _grid.stride()));
+  for (std::size_t q = 0; q < difference.size(); ++q) difference[q] = a[q] - b[q];
+  _grid.to_midpoints(difference.data(), _z.data());
+  double square = 0.0;
+  for (int i = 0; i < dimension(); ++i)
+    for (int j = 0; j < m; ++j) square += _density[at(j)] * _z[at(i * m + j)] * _z[at(i * m + j)] / m;
+  double apart = std::hypot(std::sqrt(square), (a[period_at()] - b[period_at()]) / b[period_at()]);
+  for (std::size_t n = 0; n < _system.family_scalars().free.size(); ++n) {
+    const int p = period_at() + 1 + static_cast<int>(n);
+    apart = std::hypot(apart, a[p] - b[p]);
+  }
+  return apart;
+}
+
+double Collocation::action(const double* u) const {
+  const int m = cells();
+  const auto d = at(dimension());
+  const systems::System& system = system_at(u);
+  midpoint_states(u);
+  std::vector<double> state(d);
+  double sum = 0.0;
+  for (int j = 0; j < m; ++j) {
+    for (std::size_t i = 0; i < d; ++i) state[i] = _z[i * at(m) + at(j)];
+    sum += _density[at(j)] * system.action_density(state);
+  }
+  return u[period_at()] * sum / m;
+}
+
+loop::Loop Collocation::to_loop(const double* u) const {
+  loop::Loop out;
+  out.dimension = dimension();
+  out.cutoff = _grid.cutoff();
+  out.period = u[period_at()];
+  out.winding = _winding;
+  out.time_map = _map;
+  out.modes.resize((2 * at(out.cutoff) + 1) * at(out.dimension));
+  _grid.to_modes(u, out.modes.data());
+  for (std::size_t i = 0; i < at(out.dimension); ++i) out.modes[i] += _centre[i];
+  for (std::size_t n = 0; n < _system.family_scalars().free.size(); ++n)
+    out.parameters.push_back(u[period_at() + 1 + static_cast<int>(n)]);
+  return out;
+}
+
+void Collocation::from_loop(const loop::Loop& loop, double* u) const {
+  core::require(loop.time_map == _map, "the loop has another time map than the collocation points");
+  std::vector<double> modes = loop.modes;
+  for (std::size_t i = 0; i < at(dimension()); ++i) modes[i] -= _centre[i];
+  _grid.from_modes(loop.cutoff, modes.data(), u);
+  u[period_at()] = loop.period;
+  for (int p = 1; p < borders(); ++p) {
+    double& value = u[period_at() + p];
+    const std::string& name = _scalars[at(p)].parameter;
+    if (_scalars[at(p)].kind != loss::Scalar::Kind::parameter)
+      value = 0.0;
+    else if (at(p) <= loop.parameters.size())
+      value = loop.parameters[at(p - 1)];
+    else
+      value = _system.parameters().at(name) / _system.parameter_scale(name);
+  }
+}
+
+std::vector<double> Collocation::resampled(const Collocation& from, const std::vector<double>& u) const {
+  std::vector<double> out(at(size()), 0.0);
+  const int d = dimension();
+  const int count = cells() + 1;
+  const auto modes = std::make_unique_for_overwrite<double[]>((2 * at(from._grid.cutoff()) + 1) * at(d));
+  from._grid.to_modes(u.data(), modes.get());
+  if (from._map == _map) {
+    _grid.from_modes(from._grid.cutoff(), modes.get(), out.data());
+  } else {
+    // z at this grid's nodes, which the other map has elsewhere: harmonics by rotation, node by node.
+    std::vector<double> turn_cos(at(count)), turn_sin(at(count)), c(at(count), 1.0), s(at(count), 0.0);
+    std::vector<double> z(at(d * _grid.stride()), 0.0);
+    std::vector<double> here(at(count));
+    for (int j = 0; j < count; ++j) here[at(j)] = j * _grid.spacing();
+    const std::vector<double> there = from._map.parameters_at(_map, here);
+    for (int j = 0; j < count; ++j) {
+      turn_cos[at(j)] = std::cos(there[at(j)]);
+      turn_sin[at(j)] = std::sin(there[at(j)]);
+    }
+    for (int k = 0; k <= from._grid.cutoff(); ++k) {
+      for (int i = 0; i < d; ++i) {
+        const double a = modes[at((k == 0 ? 0 : 2 * k - 1) * d + i)];
+        const double b = k == 0 ? 0.0 : modes[at(2 * k * d + i)];
+        if (a == 0.0 && b == 0.0) continue;
+        double* to = z.data() + i * _grid.stride();
+        for (int j = 0; j < count; ++j) to[j] += a * c[at(j)] + b * s[at(j)];
+      }
+      for (int j = 0; j < count; ++j) {
+        const double next = c[at(j)] * turn_cos[at(j)] - s[at(j)] * turn_sin[at(j)];
+        s[at(j)] = c[at(j)] * turn_sin[at(j)] + s[at(j)] * turn_cos[at(j)];
+        c[at(j)] = next;
+      }
+    }
+    // Where angles turn over, n s changes with the map as well.
+    for (int i = 0; i < d; ++i)
+      if (_winding[at(i)] != 0.0)
+        for (int j = 0; j < count; ++j) z[at(i * _grid.stride() + j)] += _winding[at(i)] * (there[at(j)] - here[at(j)]);
+    _grid.from_nodal(z.data(), out.data());
+  }
+  for (int q = 0; q < borders(); ++q) out[at(period_at() + q)] = u[at(from.period_at() + q)];
+  return out;
 }
 
 }  // namespace orbweaver::equations
