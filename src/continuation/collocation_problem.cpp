@@ -334,23 +334,25 @@ bool CollocationProblem::rests_aside(const Trial& trial) {
 }
 
 /// Anew by GMRES, and so the branch from here on. From the prediction: where the solver came to rest the equations may
-/// be flatter than at the orbit, and Newton's steps lead away. What does not solve them with a new factor is no orbit.
+/// be flatter than at the orbit, and Newton's steps lead away. What does not solve them either is no orbit to begin
+/// with; on a branch that GMRES has begun it is as far as rounding lets them be solved.
 void CollocationProblem::solve_by_gmres(Trial& trial, bool has_new_factor, const std::vector<double>& predicted,
                                         const std::vector<double>& conditions) {
   Collocation& e = equations();
-  if (state().preconditioner != Preconditioner::krylov || !has_new_factor) {
-    Trial from = trial;
-    from.values = predicted;
-    e.precondition_by(Preconditioner::krylov);
-    std::optional<Trial> other = solved_anew(solver_options(), conditions, std::move(from));
-    if (other && other->is_orbit && !rests_aside(*other)) {
-      trial = std::move(*other);
-      state().preconditioner = Preconditioner::krylov;
-      return;
-    }
-    e.precondition_by(preconditioner_of(e));
+  const bool is_first = state().preconditioner != Preconditioner::krylov;
+  if (!is_first && has_new_factor) return;
+  Trial from = trial;
+  from.values = predicted;
+  e.precondition_by(Preconditioner::krylov);
+  std::optional<Trial> other = solved_anew(solver_options(), conditions, std::move(from));
+  if (other && other->is_orbit && !rests_aside(*other)) {
+    trial = std::move(*other);
+    state().preconditioner = Preconditioner::krylov;
+    return;
   }
+  e.precondition_by(preconditioner_of(e));
   state().factor_point.clear();
+  if (!is_first) return;
   trial.converged = trial.is_orbit = trial.at_rounding = false;
   trial.reason = fmt::format("the corrector comes to rest at a residual of {:.2g}", trial.asked_rms);
 }
