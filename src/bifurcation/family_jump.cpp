@@ -16,6 +16,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/numerics/locate.hpp"
+#include "turning_sense.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -130,36 +131,33 @@ std::optional<spectrum::Stability> known_stability(const systems::System& system
 /// Whether the angle passes a whole turn between two elliptic orbits as it does along one family: beside that place, on
 /// either side, there are orbits as near to one another as steps that are not asked. Across a gap there are none.
 bool passes_one_without_gap(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
-                            const continuation::Options& options, const KnownStability& from,
-                            const KnownStability& to) {
-  if (!are_counted(from.stability, to.stability)) return false;
+                            const continuation::Options& options, const KnownStability& from, const KnownStability& to,
+                            TurningSense sense) {
   struct Place {
     double position;
-    double twist;
     loop::Loop loop;
+    double weight;  // the sense there, or less of it: for the false position method
   };
-  Place before{0.0, from.stability.twist, from.orbit.loop};
-  Place after{1.0, to.stability.twist, to.orbit.loop};
+  Place before{0.0, from.orbit.loop, sense.at(from.stability).value_or(1.0)};
+  Place after{1.0, to.orbit.loop, sense.at(to.stability).value_or(-1.0)};
   continuation::FamilyCurve step(system, isotropy, options);
   step.add(before.position, before.loop);
   step.add(after.position, after.loop);
   const double least_width = options.smallest_jump / continuation::arclength_between(before.loop, after.loop);
-  double weight_before = before.twist;
-  double weight_after = after.twist;
   for (int n = 1; n <= most_places && after.position - before.position > least_width; ++n) {
     const double width = after.position - before.position;
-    const double share = n % before_halving == 0 ? 0.5 : weight_before / (weight_before - weight_after);
+    const double share = n % before_halving == 0 ? 0.5 : before.weight / (before.weight - after.weight);
     const double least = std::min(0.5, beside_root * least_width / width);
     const double position = before.position + std::clamp(share, least, 1.0 - least) * width;
     std::optional<continuation::CurvePoint> point = step.at(position);
     const std::optional<spectrum::Stability> here =
         point ? known_stability(*system, point->loop, isotropy) : std::nullopt;
-    if (!here || std::isnan(here->twist) || here->fundamental[0].real() - here->fundamental_error[0] > 2.0)
-      return false;
-    const bool is_before = here->twist * before.twist > 0.0;
-    (is_before ? before : after) = {position, here->twist, std::move(point->loop)};
-    weight_before = is_before ? here->twist : 0.5 * weight_before;
-    weight_after = is_before ? 0.5 * weight_after : here->twist;
+    const std::optional<double> turning = here ? sense.at(*here) : std::nullopt;
+    if (!turning) return false;
+    const bool is_before = *turning > 0.0;
+    (is_before ? before : after) = {position, std::move(point->loop), *turning};
+    (is_before ? after : before).weight *= 0.5;
+    if (is_before) sense.carry_to(*here);
   }
   return continuation::arclength_between(before.loop, after.loop) <= most_apart * options.smallest_jump;
 }
@@ -175,8 +173,7 @@ bool passes_two_only_at_folds(const systems::Structure& system, const loop::Isot
 }
 
 bool passes_one_unseen(const spectrum::Stability& from, const spectrum::Stability& to) {
-  if (!is_elliptic(from) || !is_elliptic(to)) return false;
-  return from.twist * to.twist < 0.0 && from.fundamental[0].real() + to.fundamental[0].real() > 0.0;
+  return TurningSense::reversed_between(from, to).has_value();
 }
 
 bool rotates_too_far(const spectrum::Stability& from, const spectrum::Stability& to) {
@@ -241,8 +238,10 @@ bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop
   const bool has_turned = are_turns_asked(from.stability, to.stability, length, options.smallest_jump) &&
                           rotates_too_far(from.stability, to.stability);
   if (has_turned && are_counted(from.stability, to.stability)) return true;
-  if (passes_one_unseen(from.stability, to.stability))
-    return !passes_one_without_gap(system, isotropy, options, from, to);
+  if (const auto sense = TurningSense::reversed_between(from.stability, to.stability)) {
+    const bool is_told = std::isnan(from.stability.twist) || are_counted(from.stability, to.stability);
+    return !is_told || !passes_one_without_gap(system, isotropy, options, from, to, *sense);
+  }
   if (has_turned &&
       loop::mean_distance(from.orbit.loop, to.orbit.loop) > rotating_steps * loop::rms_amplitude(to.orbit.loop))
     return true;

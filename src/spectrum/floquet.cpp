@@ -23,6 +23,7 @@
 #include "orbweaver/numerics/quad.hpp"
 #include "orbweaver/numerics/random.hpp"
 #include "orbweaver/systems/quad_system.hpp"
+#include "rotations.hpp"
 #include "transverse_flow.hpp"
 #include "transverse_turns.hpp"
 
@@ -356,6 +357,8 @@ Stability floquet(const systems::System& family, const loop::Loop& loop, const l
   }
   if (is_single_pair(structure, flow) && flow.bases.cols() > 0)
     stability.turns = transverse_turns(chain, flow, group, stability.fundamental[0].real(), stability.twist);
+  if (structure.symplectic && std::isnan(stability.twist))
+    stability.rotations = rotations(system, chain, flow, stability);
   mark_beyond_range(stability.full, stability.full_error);
   mark_beyond_range(stability.fundamental, stability.fundamental_error);
   if (structure.conservative() && !structure.symplectic) {

@@ -258,6 +258,36 @@ TEST(Jumps, ASenseOfRotationThatChangesUnseenIsOne) {
   EXPECT_FALSE(bifurcation::passes_one_unseen(elliptic(1.5, std::nan("")), elliptic(1.9, -0.4)));
 }
 
+TEST(Jumps, OfSeveralPairsEachIsAskedInItsOwnPlane) {
+  // Pairs by index, and whether neighbours go around the other way: each in a plane of its own, turned by `turned`.
+  struct Pair {
+    double index;
+    bool is_reversed;
+  };
+  const auto orbit = [](const std::vector<Pair>& pairs, double turned) {
+    spectrum::Stability out;
+    for (std::size_t n = 0; n < pairs.size(); ++n) {
+      out.fundamental.emplace_back(pairs[n].index);
+      out.fundamental_error.push_back(1e-9);
+      spectrum::Rotation rotation{std::acos(0.5 * pairs[n].index), {}};
+      rotation.plane.setZero(6, 2);
+      const auto q = static_cast<Eigen::Index>(2 * n);
+      rotation.plane(q, 0) = std::cos(turned);
+      rotation.plane((q + 2) % 6, 0) = std::sin(turned);
+      rotation.plane(q + 1, 1) = pairs[n].is_reversed ? -1.0 : 1.0;
+      out.rotations.push_back(rotation);
+    }
+    return out;
+  };
+  const auto first = orbit({{1.5, false}, {1.2, true}}, 0.0);
+  EXPECT_FALSE(bifurcation::passes_one_unseen(first, orbit({{1.9, false}, {1.1, true}}, 0.3)));
+  EXPECT_TRUE(bifurcation::passes_one_unseen(first, orbit({{1.9, true}, {1.1, true}}, 0.3)));
+  EXPECT_TRUE(bifurcation::passes_one_unseen(first, orbit({{1.9, false}, {1.1, false}}, -0.3)));
+  EXPECT_FALSE(bifurcation::passes_one_unseen(first, orbit({{1.9, false}, {-1.3, false}}, 0.3))) << "nearer to -2";
+  EXPECT_FALSE(bifurcation::passes_one_unseen(first, orbit({{1.9, true}, {1.1, true}}, 1.3))) << "planes too far apart";
+  EXPECT_FALSE(bifurcation::passes_one_unseen(first, orbit({{1.9, false}}, 0.3))) << "not elliptic";
+}
+
 // Orbits of which neighbours go around by so many degrees.
 TEST(FamilyJump, AnAngleThatChangesByMoreThanAQuarterOfATurnIsNotTrusted) {
   const auto rotating = [](double degrees) {

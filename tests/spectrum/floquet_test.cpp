@@ -67,6 +67,36 @@ TEST(Floquet, SecondOscillatorTurnsByItsFrequency) {
   }
 }
 
+// q goes towards -p: by 108 degrees in the second plane, and in the third by 234, which is 126 the other way.
+TEST(Floquet, EachOfSeveralPairsGoesAroundInItsPlane) {
+  const test::Oscillators system({1.0, 0.3 * 0.3, 0.65 * 0.65, 1.25 * 1.25});
+  const Stability stability = floquet(system, first_oscillation(8), {});
+  EXPECT_TRUE(std::isnan(stability.twist));
+  ASSERT_EQ(stability.rotations.size(), 3u);
+  const auto rotation_of = [&](Eigen::Index coordinate) {
+    for (const spectrum::Rotation& rotation : stability.rotations) {
+      const double overlap = rotation.plane.middleRows(coordinate, 2).determinant();
+      if (std::abs(overlap) > 0.5) return std::pair(rotation.angle, overlap);
+    }
+    return std::pair(0.0, 0.0);
+  };
+  const std::vector<double> angles{0.6 * pi, 0.7 * pi, 0.5 * pi};
+  const std::vector<double> senses{-1.0, 1.0, -1.0};
+  for (const std::size_t n : {0u, 1u, 2u}) {
+    const auto [angle, overlap] = rotation_of(static_cast<Eigen::Index>(2 * n + 2));
+    EXPECT_NEAR(angle, angles[n], 1e-10);
+    EXPECT_NEAR(overlap, senses[n], 1e-10);
+  }
+}
+
+TEST(Floquet, APairThatIsNotOnTheUnitCircleHasNoPlane) {
+  const test::Oscillators system({1.0, 0.3 * 0.3, -0.2 * 0.2});
+  const Stability stability = floquet(system, first_oscillation(6), {});
+  ASSERT_EQ(stability.rotations.size(), 1u);
+  EXPECT_NEAR(stability.rotations[0].angle, 0.6 * pi, 1e-10);
+  EXPECT_TRUE(floquet(test::Oscillators({1.0, 0.3 * 0.3}), first_oscillation(4), {}).rotations.empty()) << "one pair";
+}
+
 /// A particle in the plane under the force -(1 + r^2) q, state x, y, px, py; a half turn S and a third of a turn C are
 /// declared. On the circle r = a it turns at w^2 = 1 + a^2, and oscillates across it at v^2 = 4 + 6 a^2.
 class RoundBowl final : public test::PointSystem {

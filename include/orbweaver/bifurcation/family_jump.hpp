@@ -22,8 +22,9 @@ struct KnownStability {
   const spectrum::Stability& stability;
 };
 
-/// True if the sense in which neighbours go around (`Stability::twist`) differs between two elliptic orbits that are
-/// nearer to the index 2 than to -2. Along one family it would have had to pass 2 twice on the way.
+/// True if the sense in which neighbours go around (`Stability::twist`, of several pairs that in one plane of
+/// `Stability::rotations`) differs between two orbits whose index is nearer to 2 than to -2. Along one family it would
+/// have had to pass 2 twice on the way.
 [[nodiscard]] bool passes_one_unseen(const spectrum::Stability& from, const spectrum::Stability& to);
 
 /// True if the angles by which neighbours of two elliptic orbits go around in a fundamental period differ by more than

@@ -4,6 +4,8 @@
 #include <limits>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "orbweaver/core/mpi/team.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
@@ -18,6 +20,13 @@ struct FloquetOptions {
   int refinements = 3;       ///< how often, by at most a half each time
   core::Team* team =
       nullptr;  ///< ranks that divide segments and probes among them, with the same bits; then collective
+};
+
+/// How neighbours of an orbit go around in the invariant plane of one pair of multipliers on the unit circle.
+struct Rotation {
+  double angle = 0.0;  ///< of the multiplier, between 0 and pi
+  /// Two orthonormal vectors at s = 0, a column each: neighbours go from the first towards the second.
+  Eigen::Matrix<double, Eigen::Dynamic, 2> plane;
 };
 
 /// The linear stability of one orbit. Multipliers that belong to the flow and to the conserved energy are taken out by
@@ -46,6 +55,10 @@ struct Stability {
   /// 2) or half (k <= -2) number. Along a family it is continuous, and so says what is passed between two orbits. NaN
   /// otherwise, and where the chain's segments are too long to tell.
   double turns = std::numeric_limits<double>::quiet_NaN();
+  /// Symplectic, where there is no `twist`: one of each pair that is on the unit circle by more than its error. Along a
+  /// family planes are continuous, and the sense in which neighbours go around in one changes only where its index
+  /// passes 2 or -2.
+  std::vector<Rotation> rotations;
 };
 
 /// Stability of an accepted orbit, at a cost proportional to the number of its harmonics.

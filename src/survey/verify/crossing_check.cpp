@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -29,6 +28,7 @@
 #include "tasks/locate_task.hpp"
 #include "tasks/orbit_row.hpp"
 #include "tasks/units.hpp"
+#include "verify/distance_to_orbit.hpp"
 
 namespace orbweaver::survey {
 
@@ -61,10 +61,6 @@ constexpr double vanishing_slope = 1e-5;
 /// to the next orbit or of the orbit's amplitude, whichever is more.
 constexpr double steps_away = 3.0;
 constexpr double amplitudes_away = 0.1;
-
-/// Stretches of the orbit where a stored state may be, and halvings of them: to rounding.
-constexpr std::size_t nearest_nodes = 6;
-constexpr int golden_sections = 80;
 
 struct Place {
   continuation::CurvePoint point;
@@ -177,15 +173,18 @@ class CrossingCheck {
     const double length = b.position - a.position;
     const double share = std::clamp((arclength - a.arclength) / (b.arclength - a.arclength), 0.0, 1.0);
     const double told = a.position + share * length;
-    const std::optional<double> found = position_of(curve, a, b, told);
+    const bool both = both_turn(curve, a.position, b.position);
+    const std::optional<double> found = position_of(curve, a, b, told, both);
     if (!found) {
       claims.object("period", fmt::format("{:.17g} with {} {:.17g}: no orbit between those beside it has it",
                                           real("period"), level(), real(level())));
       return std::nullopt;
     }
-    const double way = _atlas.has_reversor(static_cast<std::size_t>(_crossing.family)) && !is_placed()
-                           ? same_place * (1.0 + std::abs(arclength))
-                           : same_chord * std::abs(b.arclength - a.arclength);
+    double way = _atlas.has_reversor(static_cast<std::size_t>(_crossing.family)) && !is_placed()
+                     ? same_place * (1.0 + std::abs(arclength))
+                     : same_chord * std::abs(b.arclength - a.arclength);
+    // A slope that is one part of those beside it lies as far away.
+    if (both) way = std::max(way, vanishing_slope * std::abs(b.arclength - a.arclength));
     claims.agree("arclength", arclength, a.arclength + (*found - a.position) / length * (b.arclength - a.arclength),
                  way);
     std::optional<continuation::CurvePoint> point = curve.at(*found, true);
@@ -199,7 +198,8 @@ class CrossingCheck {
 
   [[nodiscard]] std::optional<double> position_of(continuation::FamilyCurve& curve,
                                                   const continuation::FamilyCurve::Known& a,
-                                                  const continuation::FamilyCurve::Known& b, double told) const {
+                                                  const continuation::FamilyCurve::Known& b, double told,
+                                                  bool both_turn) const {
     const Units units(_system);
     const double level_a = continuation::level_of(_system, a.loop);
     const double level_b = continuation::level_of(_system, b.loop);
@@ -209,7 +209,7 @@ class CrossingCheck {
     const bool turns_in_level = _kind == CrossingKind::fold_energy || _kind == CrossingKind::fold_parameter;
     const bool by_level = _kind == CrossingKind::fold_period || (!turns_in_level && in_level > in_period);
     // A drive ties the period to its frequency: both turn there, or the period does not change at all.
-    const bool by_slope = _kind == CrossingKind::fold_parameter;
+    const bool by_slope = _kind == CrossingKind::fold_parameter || both_turn;
     const double wanted = by_level ? real(level()) / units.level() : real("period") / units.time;
     const auto off = [&](double position) {
       const auto point = curve.at(position, by_slope);
@@ -226,6 +226,16 @@ class CrossingCheck {
       if (place) return place->position;
     }
     return std::nullopt;
+  }
+
+  /// Whether period and level turn so near to one another that neither says where the other does: in a narrow gap
+  /// between two families both turn with the curve.
+  [[nodiscard]] bool both_turn(continuation::FamilyCurve& curve, double from, double to) const {
+    if (!archive::is_fold(_kind)) return false;
+    const auto before = curve.at(from, true);
+    const auto after = curve.at(to, true);
+    return before && after && bifurcation::period_slope(*before) * bifurcation::period_slope(*after) < 0.0 &&
+           bifurcation::level_slope(_system, *before) * bifurcation::level_slope(_system, *after) < 0.0;
   }
 
   /// The column of the energy, or of the parameter that moves.
@@ -281,55 +291,8 @@ class CrossingCheck {
     const auto stored = _table.reals("state").begin() + static_cast<std::ptrdiff_t>(_row * dimension);
     std::vector<double> target(stored, stored + static_cast<std::ptrdiff_t>(dimension));
     for (std::size_t i = 0; i < dimension; ++i) target[i] /= _system.scales().coordinate(i);
-    claims.below("state", distance_to(loop, target), allowed * (1.0 + loop::rms_size(loop)),
+    claims.below("state", distance_to_orbit(_system.structure(), loop, target), allowed * (1.0 + loop::rms_size(loop)),
                  "the distance of the state from the orbit there");
-  }
-
-  [[nodiscard]] double distance_to(const loop::Loop& loop, const std::vector<double>& target) const {
-    const auto gap = [&](double time) {
-      const std::vector<double> z = loop::state_at(loop, time);
-      double sum = 0.0;
-      for (std::size_t i = 0; i < z.size(); ++i) {
-        double off = z[i] - target[i];
-        const auto& angles = _system.structure().angles;
-        if (std::find(angles.begin(), angles.end(), static_cast<int>(i)) != angles.end())
-          off = std::remainder(off, 2.0 * std::numbers::pi);
-        sum += off * off;
-      }
-      return std::sqrt(sum);
-    };
-    // Golden sections beside the nodes, even in s, that are nearer than their neighbours: the nearest ones.
-    const int nodes = 4 * loop.cutoff + 8;
-    std::vector<double> times;
-    std::vector<double> gaps;
-    for (int j = 0; j <= nodes; ++j) {
-      times.push_back(loop.period * loop.time_map.phase(2.0 * std::numbers::pi * j / nodes) / (2.0 * std::numbers::pi));
-      gaps.push_back(gap(times.back()));
-    }
-    std::vector<std::size_t> minima;
-    for (std::size_t j = 0; j < gaps.size(); ++j)
-      if ((j == 0 || gaps[j] <= gaps[j - 1]) && (j + 1 == gaps.size() || gaps[j] <= gaps[j + 1])) minima.push_back(j);
-    std::sort(minima.begin(), minima.end(), [&](std::size_t a, std::size_t b) { return gaps[a] < gaps[b]; });
-    minima.resize(std::min(minima.size(), nearest_nodes));
-    double least = std::numeric_limits<double>::infinity();
-    for (const std::size_t j : minima)
-      least = std::min(least, least_between(gap, times[j > 0 ? j - 1 : 0], times[std::min(j + 1, times.size() - 1)]));
-    return least;
-  }
-
-  template <class Gap>
-  static double least_between(const Gap& gap, double from, double to) {
-    const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
-    double least = std::min(gap(from), gap(to));
-    for (int n = 0; n < golden_sections; ++n) {
-      const double a = to - golden * (to - from);
-      const double b = from + golden * (to - from);
-      const double at_a = gap(a);
-      const double at_b = gap(b);
-      least = std::min({least, at_a, at_b});
-      (at_a < at_b ? to : from) = at_a < at_b ? b : a;
-    }
-    return least;
   }
 
   /// Multiplicity, sector and kind say the same.
