@@ -76,6 +76,27 @@ TEST(PendulumChain, ItsFirstModeTurnsAsideWithLongStepsToo) {
   }
 }
 
+// Mode 2 of ten links: pairs meet, leave the circle and come back within steps. The places are those that steps of 0.02
+// rad give too.
+TEST(PendulumChain, PairsThatMeetWithinAStepAreFound) {
+  const core::Communicator comm;
+  const scene::Scene scene =
+      scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/chain.yaml",
+                  {"starts.sweep.period=[7.3, 7.4]", "limits.energy=[-.inf, -54.1]", "survey.subharmonics=1"});
+  const survey::Summary summary = test::run(comm, scene, "meeting");
+  EXPECT_TRUE(survey::verify(comm, summary.atlas).objections.empty());
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  const test::Atlas atlas(summary.atlas);
+  std::vector<double> periods;
+  for (std::size_t n = 0; n < atlas.crossings().rows(); ++n)
+    if (atlas.crossings().texts("kind")[n] == "krein") periods.push_back(atlas.crossings().reals("period")[n]);
+  std::sort(periods.begin(), periods.end());
+  EXPECT_THAT(periods, testing::Pointwise(testing::DoubleNear(1e-8),
+                                          {7.447393546, 7.447394146, 7.707613521, 7.707615146, 7.722351003, 7.722546141,
+                                           7.735252631, 7.735252850}));
+}
+
 // Of sixteen links several short periods nearly are multiples of others: a search for the families along their
 // combinations takes most of the time, and nothing that is asked for here depends on it.
 TEST(PendulumChain, WhatIsOutsideTheRangeIsNotSearched) {

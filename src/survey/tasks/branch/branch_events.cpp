@@ -42,6 +42,12 @@ void BranchEvents::watch_from_rest(const continuation::Orbit& first) {
                        _followed.start.base.period, continuation::energy_of(*_followed.system, _followed.start.base));
 }
 
+std::optional<spectrum::Stability> BranchEvents::stability_between(double position) {
+  const std::optional<continuation::CurvePoint> point = _followed.curve.at(position);
+  if (!point) return std::nullopt;
+  return stability_of(*_followed.system, point->loop, _followed.start.isotropy, _followed.team);
+}
+
 std::optional<bifurcation::TestPoint> BranchEvents::probe(double position) {
   if (position < _followed.curve.known().front().position) return std::nullopt;  // so far back no orbits are kept
   const std::optional<continuation::CurvePoint> point = _followed.curve.at(position);
@@ -66,6 +72,12 @@ void BranchEvents::detect_zeros(const bifurcation::TestPoint& point) {
     add_event({bifurcation::Event::Kind::test_function, _followed.functions[b.function], b.tangency, b.passed}, b.from,
               b.to, _followed.curve.known());
   }
+}
+
+void BranchEvents::detect_meetings(const bifurcation::StabilityAt& from, const bifurcation::StabilityAt& to) {
+  const auto between = [this](double position) { return stability_between(position); };
+  for (const bifurcation::StabilityAt& met : bifurcation::meetings_between(from, to, between))
+    detect_zeros(test_point(met.position, met.stability));
 }
 
 void BranchEvents::detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability) {

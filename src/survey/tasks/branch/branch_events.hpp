@@ -8,6 +8,7 @@
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/bifurcation/detector.hpp"
 #include "orbweaver/bifurcation/fold_watch.hpp"
+#include "orbweaver/bifurcation/meetings.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/queue/task.hpp"
@@ -35,6 +36,8 @@ class BranchEvents {
   /// A fold may lie between the first orbit of a family that begins at an equilibrium and the next.
   void watch_from_rest(const continuation::Orbit& first);
   void detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability);
+  /// Between two orbits: what the test functions at both do not show. Before `detect` of the second.
+  void detect_meetings(const bifurcation::StabilityAt& from, const bifurcation::StabilityAt& to);
   void detect_zeros(const bifurcation::TestPoint& point);
   /// The branch meets another family behind the orbit at `last`. A multiplier is 1 there, which is no event: on the way
   /// a function of that goes to zero like a power of the distance, and counts only where rounding cannot have made it.
@@ -59,6 +62,7 @@ class BranchEvents {
 
  private:
   [[nodiscard]] bool is_in_known(const bifurcation::Fold& fold) const;
+  [[nodiscard]] std::optional<spectrum::Stability> stability_between(double position);
   [[nodiscard]] std::optional<bifurcation::TestPoint> probe(double position);
 
   FollowedBranch& _followed;

@@ -210,6 +210,8 @@ bool BranchTask::take(const continuation::Orbit& orbit) {
   if (!_followed.last && _options.too_far && !(_followed.work.amplitude > 0.0) && !_followed.work.base_is_orbit)
     _events.watch_from_rest(orbit);
   const std::optional<spectrum::Stability>& stability = _followed.stability_at(orbit);
+  if (_followed.last && _last_stability && stability)
+    _events.detect_meetings({_followed.last->arclength, *_last_stability}, {orbit.arclength, *stability});
   _events.detect(orbit, stability);
   if (_followed.last) {
     solve_requested(orbit);
