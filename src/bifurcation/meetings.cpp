@@ -25,8 +25,8 @@ constexpr int halvings_of_a_step = 3;
 constexpr double together = 1e-7;
 /// Of two planes that are mixtures of two others: how much of each is in these, at least.
 constexpr double most_of_both = 0.5;
-/// In lengths over which the square of a distance doubles: how well the place of the least one is known, how near orbits
-/// on both sides of it are, and where others are taken where they are not.
+/// In lengths over which the square of a distance doubles: how well the place of the least one is known, how near
+/// orbits on both sides of it are, and where others are taken where they are not.
 constexpr double known_place = 0.1;
 constexpr double near_enough = 10.0;
 constexpr double beside = 4.0;
@@ -64,7 +64,8 @@ struct Two {
 /// Looks for an orbit where two pairs are off the circle, between orbits where their angles are in different order.
 class MeetingSearch {
  public:
-  MeetingSearch(std::ptrdiff_t off_at_ends, const StabilityBetween& between) : _off_at_ends(off_at_ends), _between(between) {}
+  MeetingSearch(std::ptrdiff_t off_at_ends, const StabilityBetween& between)
+      : _off_at_ends(off_at_ends), _between(between) {}
 
   /// Follows the pairs towards where their angles are equal, by the false position method, as long as their planes are
   /// told from one another.
@@ -153,8 +154,8 @@ class MeetingSearch {
   bool _is_found = false;
 };
 
-/// Whether each pair that is on the circle at both orbits is told at the other one, and at most one event can be between
-/// of those at which the number of pairs off it changes.
+/// Whether each pair that is on the circle at both orbits is told at the other one, and at most one event can be
+/// between of those at which the number of pairs off it changes.
 bool are_followed(const Stability& from, const Stability& to) {
   if (std::abs(pairs_off_circle(from) - pairs_off_circle(to)) > 2) return false;
   const auto followed = std::count_if(from.rotations.begin(), from.rotations.end(),

@@ -6,8 +6,8 @@ namespace orbweaver::bifurcation {
 
 namespace {
 
-/// Overlap above which two planes are one that has turned. Of planes that are orthogonal to one another only one can have
-/// as much of another plane.
+/// Overlap above which two planes are one that has turned. Of planes that are orthogonal to one another only one can
+/// have as much of another plane.
 constexpr double same_plane = 0.75;
 
 }  // namespace
