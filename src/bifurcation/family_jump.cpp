@@ -242,6 +242,7 @@ bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop
     const bool is_told = std::isnan(from.stability.twist) || are_counted(from.stability, to.stability);
     return !is_told || !passes_one_without_gap(system, isotropy, options, from, to, *sense);
   }
+  if (TurningSense::is_untold(from.stability, to.stability) && length >= options.smallest_jump) return true;
   if (has_turned &&
       loop::mean_distance(from.orbit.loop, to.orbit.loop) > rotating_steps * loop::rms_amplitude(to.orbit.loop))
     return true;

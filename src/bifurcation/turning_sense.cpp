@@ -1,5 +1,6 @@
 #include "turning_sense.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -11,6 +12,19 @@ namespace orbweaver::bifurcation {
 using spectrum::Rotation;
 using spectrum::Stability;
 
+namespace {
+
+/// Radians, below which a pair may come to 1 within a step.
+constexpr double near_one = 0.5;
+
+bool all_are_told(const Stability& here, const Stability& there) {
+  return std::all_of(here.rotations.begin(), here.rotations.end(), [&](const Rotation& rotation) {
+    return rotation.angle > near_one || counterpart(rotation, there);
+  });
+}
+
+}  // namespace
+
 std::optional<TurningSense> TurningSense::reversed_between(const Stability& from, const Stability& to) {
   if (is_elliptic(from) && is_elliptic(to) && from.twist * to.twist < 0.0 &&
       from.fundamental[0].real() + to.fundamental[0].real() > 0.0)
@@ -21,6 +35,10 @@ std::optional<TurningSense> TurningSense::reversed_between(const Stability& from
       return TurningSense(rotation);
   }
   return std::nullopt;
+}
+
+bool TurningSense::is_untold(const Stability& from, const Stability& to) {
+  return from.rotations.size() == to.rotations.size() && !(all_are_told(from, to) && all_are_told(to, from));
 }
 
 std::optional<double> TurningSense::at(const Stability& orbit) const {

@@ -17,6 +17,10 @@ class TurningSense {
   [[nodiscard]] static std::optional<TurningSense> reversed_between(const spectrum::Stability& from,
                                                                     const spectrum::Stability& to);
 
+  /// Whether a pair near 1 has no plane at the other orbit that is told to be its own, though as many are on the unit
+  /// circle at both: which sense it has there only a shorter step tells.
+  [[nodiscard]] static bool is_untold(const spectrum::Stability& from, const spectrum::Stability& to);
+
   /// How far they go around at an orbit, on some scale: positive in the sense that was carried there. Nothing where
   /// that is not told, or the index is above 2.
   [[nodiscard]] std::optional<double> at(const spectrum::Stability& orbit) const;

@@ -9,6 +9,7 @@
 #include "orbweaver/ad/derivatives.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "support/delegating_system.hpp"
+#include "turning_sense.hpp"
 
 namespace family_jump_test {
 namespace {
@@ -284,8 +285,14 @@ TEST(Jumps, OfSeveralPairsEachIsAskedInItsOwnPlane) {
   EXPECT_TRUE(bifurcation::passes_one_unseen(first, orbit({{1.9, true}, {1.1, true}}, 0.3)));
   EXPECT_TRUE(bifurcation::passes_one_unseen(first, orbit({{1.9, false}, {1.1, false}}, -0.3)));
   EXPECT_FALSE(bifurcation::passes_one_unseen(first, orbit({{1.9, false}, {-1.3, false}}, 0.3))) << "nearer to -2";
-  EXPECT_FALSE(bifurcation::passes_one_unseen(first, orbit({{1.9, true}, {1.1, true}}, 1.3))) << "planes too far apart";
-  EXPECT_FALSE(bifurcation::passes_one_unseen(first, orbit({{1.9, false}}, 0.3))) << "not elliptic";
+  const auto turned_far = orbit({{1.9, true}, {1.1, true}}, 1.3);
+  EXPECT_FALSE(bifurcation::passes_one_unseen(first, turned_far)) << "planes too far apart";
+  EXPECT_TRUE(bifurcation::TurningSense::is_untold(first, turned_far)) << "which a shorter step may tell";
+  const auto one_left = orbit({{1.9, false}}, 0.3);
+  EXPECT_FALSE(bifurcation::passes_one_unseen(first, one_left)) << "not elliptic";
+  EXPECT_FALSE(bifurcation::TurningSense::is_untold(first, one_left)) << "one has left the circle, which signs show";
+  EXPECT_FALSE(bifurcation::TurningSense::is_untold(orbit({{1.2, false}}, 0.0), orbit({{1.2, false}}, 1.3)))
+      << "far from 1";
 }
 
 // Orbits of which neighbours go around by so many degrees.

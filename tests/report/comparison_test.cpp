@@ -62,6 +62,23 @@ TEST(Comparison, RootsAreMatchedByTheirOrbits) {
   EXPECT_THAT(comparison.renamed, SizeIs(2));
 }
 
+// By their orbits two mirror images are one family; which is which their names say.
+TEST(Comparison, MirrorImagesGoByTheirNames) {
+  const auto with_image = [](double spacing, bool is_first) {
+    Records records = tree(spacing);
+    Curve image = other_root;
+    image.key = is_first ? "00000" : "0002";
+    records.families.push_back(test::family_of(image.key, "Image", "", -1, 1));
+    test::add_orbits(records, image, 0.9 * spacing);
+    return records;
+  };
+  for (const bool is_first : {true, false}) {
+    const Comparison comparison = compared(with_image(0.1, false), with_image(0.09, is_first));
+    EXPECT_THAT(comparison.differences, IsEmpty());
+    EXPECT_THAT(comparison.renamed, IsEmpty());
+  }
+}
+
 /// The tree with other energies on one family, from s = `from` on.
 Records bent(
     const std::string& key, double from, const std::function<void(Records&)>& change = [](Records&) {}) {
@@ -184,6 +201,25 @@ TEST(Comparison, OneMayGoFurther) {
                          });
                        }))
                   .same());
+}
+
+// Nothing but the steps says how near to a collision, or how far, a family is followed.
+TEST(Comparison, OpenEndsHaveNoPlace) {
+  const auto ended = [](const std::string& reason, double last) {
+    return changed([&](Records& records) {
+      records.families[1].end_reason = reason;
+      std::erase_if(records.orbits, [last](const archive::OrbitRecord& orbit) {
+        return orbit.family_key == other_root.key && orbit.arclength > last;
+      });
+    });
+  };
+  for (const std::string reason : {"collision with the Moon (r2 = 1e-5)", "period divergence (T = 70)"}) {
+    const Comparison comparison = compared(ended(reason, 3.0), ended(reason, 1.45));
+    EXPECT_TRUE(comparison.same()) << reason;
+    EXPECT_THAT(comparison.notes, ElementsAre(HasSubstr("goes 6 orbits further in A")));
+  }
+  EXPECT_THAT(kinds(compared(ended("guard limit (r2 = 0.01)", 3.0), ended("guard limit (r2 = 0.01)", 1.45))),
+              ElementsAre(DifferenceKind::range));
 }
 
 TEST(Comparison, OrbitsLieOnACurve) {

@@ -53,6 +53,24 @@ TEST(RestrictedProblem, LongFamilyOfL5EndsAtItsResonance) {
   test::expect_long_family_to_end(comm, {.y = "-0.866"});
 }
 
+// Earth and Moon, at T = 25.29431: beside the short-period family gone around four times an index is 2 to 1e-8 without a
+// crossing. One of the two mirror images with these steps had one there.
+TEST(RestrictedProblem, MirrorImagesHaveTheSameCrossingsWhereTheyEnd) {
+  const core::Communicator comm;
+  const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_earth_moon.yaml",
+                                         {"starts.sweep.period=[20, 22]", "continuation.step=0.03", "limits.steps=300",
+                                          "survey.depth=0", "survey.subharmonics=1"});
+  const survey::Summary summary = test::run(comm, scene, "mirror");
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.failures, 0U);
+  ASSERT_EQ(summary.families.size(), 2U);
+  const test::Atlas atlas(summary.atlas);
+  for (const std::string family : {"Long-4", "Long-5"}) {
+    EXPECT_FALSE(atlas.crossing(family, "branch-point", 25.2943).has_value()) << family;
+    EXPECT_NE(atlas.end_of(family).find("4 times around"), std::string::npos) << atlas.end_of(family);
+  }
+}
+
 // The short-period families are not looked at for 13 turns: the crossings are those of the branches that end there.
 TEST(RestrictedProblem, CrossingsOfHigherOrderLieOnTheirFamilies) {
   const core::Communicator comm;

@@ -88,6 +88,13 @@ bool has_end_at(const TreeFamily& family, std::size_t orbit) {
                      [orbit](const FamilyEnd& end) { return end.orbit == orbit; });
 }
 
+/// How far a family is followed there is a matter of the steps: it goes on beyond what can be computed.
+bool is_open_end(const TreeFamily& family, std::size_t orbit) {
+  return std::any_of(family.ends.begin(), family.ends.end(), [orbit](const FamilyEnd& end) {
+    return end.orbit == orbit && (end.kind == survey::EndKind::collision || end.kind == survey::EndKind::period_divergence);
+  });
+}
+
 double relative_distance(const Invariants& x, const Invariants& y, Invariant i) {
   return std::abs(x.value(i) - y.value(i)) / x.scale_of(i);
 }
@@ -308,11 +315,14 @@ void FamilyDifferences::compare_reach(const Pair& pair, const std::vector<CurveF
     const bool is_end = has_end_at(pair.a, last_a) || has_end_at(pair.b, last_b);
     const double allowed = (is_end ? reach : reach_at_birth) * step;
     if (beyond <= allowed) return;
-    add(DifferenceKind::range, pair,
+    const std::string text =
         fmt::format("goes {} orbits further in {}, to {}, than in {}, which {} at {}", more, a_goes_on ? "A" : "B",
                     orbit_text(longer, a_goes_on ? last_a : last_b), a_goes_on ? "B" : "A", is_end ? "ends" : "begins",
-                    orbit_text(shorter, a_goes_on ? last_b : last_a)),
-        beyond, allowed);
+                    orbit_text(shorter, a_goes_on ? last_b : last_a));
+    if (is_open_end(pair.a, last_a) && is_open_end(pair.b, last_b))
+      _result.notes.push_back(fmt::format("{} {}", pair.a.name, text));
+    else
+      add(DifferenceKind::range, pair, text, beyond, allowed);
   };
   compare_side(false);
   compare_side(true);

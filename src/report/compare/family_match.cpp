@@ -120,6 +120,10 @@ class Matcher {
     for (const Candidate& pair : pairs)
       if (!is_one_of_several(pair) || _loops.are_same(_a, _a.families[index(pair.a)], _b, _b.families[index(pair.b)]))
         kept.push_back(pair);
+    // Mirror images are the same by their orbits and by their loops.
+    std::stable_partition(kept.begin(), kept.end(), [&](const Candidate& pair) {
+      return _a.families[index(pair.a)].name == _b.families[index(pair.b)].name;
+    });
     std::vector<std::pair<int, int>> taken;
     for (const Candidate& pair : kept) {
       if (!is_free(pair.a, pair.b)) continue;

@@ -66,11 +66,18 @@ bifurcation::TestPoint BranchEvents::test_point(double position,
 
 void BranchEvents::detect_zeros(const bifurcation::TestPoint& point) {
   const auto probing = [this](double position) { return probe(position); };
-  for (const bifurcation::Bracket& b : _detector.advance(point, probing)) {
+  add_zeros(_detector.advance(point, probing));
+}
+
+void BranchEvents::add_zeros(const std::vector<bifurcation::Bracket>& brackets) {
+  for (const bifurcation::Bracket& b : brackets) {
     const bifurcation::TestFunction& function = _followed.functions[b.function];
-    if (is_of_one(function) && !b.tangency) _passed_one = b.to;
-    add_event({bifurcation::Event::Kind::test_function, _followed.functions[b.function], b.tangency, b.passed}, b.from,
-              b.to, _followed.curve.known());
+    if (is_of_one(function)) {
+      if (b.tangency && b.to > _last) continue;  // it goes to zero there at the meeting
+      if (!b.tangency) _passed_one = b.to;
+    }
+    add_event({bifurcation::Event::Kind::test_function, function, b.tangency, b.passed}, b.from, b.to,
+              _followed.curve.known());
   }
 }
 
@@ -181,9 +188,7 @@ void BranchEvents::add_missed(const bifurcation::MissedZeros& missed) {
 
 void BranchEvents::finish_zeros() {
   const auto probing = [this](double position) { return probe(position); };
-  for (const bifurcation::Bracket& b : _detector.finish(probing))
-    add_event({bifurcation::Event::Kind::test_function, _followed.functions[b.function], b.tangency, b.passed}, b.from,
-              b.to, _followed.curve.known());
+  add_zeros(_detector.finish(probing));
   for (const bifurcation::MissedZeros& missed : _detector.missed()) add_missed(missed);
 }
 

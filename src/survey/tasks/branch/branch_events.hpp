@@ -61,6 +61,7 @@ class BranchEvents {
   void add_missed(const bifurcation::MissedZeros& missed);
 
  private:
+  void add_zeros(const std::vector<bifurcation::Bracket>& brackets);
   [[nodiscard]] bool is_in_known(const bifurcation::Fold& fold) const;
   [[nodiscard]] std::optional<spectrum::Stability> stability_between(double position);
   [[nodiscard]] std::optional<bifurcation::TestPoint> probe(double position);
