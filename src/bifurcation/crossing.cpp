@@ -32,6 +32,10 @@ constexpr double falls = 0.5;
 /// What is left in error bounds, which are estimates.
 constexpr double error_margin = 10.0;
 
+/// Of the interval in which a fold is looked for, how far beside a place without an orbit one is taken: a family may
+/// turn where it crosses another one, and there Newton's method finds no orbit if it is asked for exactly that one.
+constexpr double beside_singular = 1e-4;
+
 double slope(const systems::System& system, Event::Kind kind, const continuation::CurvePoint& point) {
   if (kind == Event::Kind::fold_period) return period_slope(point);
   return kind == Event::Kind::fold_energy ? energy_slope(system, point) : parameter_slope(point);
@@ -39,8 +43,8 @@ double slope(const systems::System& system, Event::Kind kind, const continuation
 
 class EventFunction {
  public:
-  EventFunction(const systems::System& system, continuation::FamilyCurve& family, const Event& event)
-      : _system(system), _family(family), _event(event) {}
+  EventFunction(const systems::System& system, continuation::FamilyCurve& family, const Event& event, double length)
+      : _system(system), _family(family), _event(event), _beside(beside_singular * length) {}
 
   double operator()(double position) {
     const std::optional<Crossing> there = at(position);
@@ -59,6 +63,7 @@ class EventFunction {
   std::optional<Crossing> at(double position, bool whole = false) {
     const bool fold = _event.kind != Event::Kind::test_function;
     std::optional<continuation::CurvePoint> point = _family.at(position, whole || fold);
+    if (!point && fold) point = _family.at(position + _beside, whole || fold);
     if (!point) return without_value(NotLocated::Reason::no_orbit, position, period_before(position));
     Crossing out;
     out.point = std::move(*point);
@@ -96,6 +101,7 @@ class EventFunction {
   const systems::System& _system;
   continuation::FamilyCurve& _family;
   const Event& _event;
+  double _beside;
   std::optional<NotLocated> _without_value;
 };
 
@@ -103,7 +109,8 @@ class EventFunction {
 std::optional<numerics::Located> extremum(const systems::System& system, continuation::FamilyCurve& family,
                                           const Event& event, double from, double to, double tolerance) {
   const auto quantity = [&](double position) {
-    const std::optional<continuation::CurvePoint> point = family.at(position);
+    std::optional<continuation::CurvePoint> point = family.at(position);
+    if (!point) point = family.at(position + beside_singular * (to - from));
     if (!point) return nan;
     if (event.kind == Event::Kind::fold_parameter) return point->loop.parameters.front();
     return event.kind == Event::Kind::fold_period ? point->loop.period : continuation::energy_of(system, point->loop);
@@ -213,7 +220,7 @@ std::string to_text(const NotLocated& why) {
 
 std::optional<Crossing> locate(const systems::System& system, continuation::FamilyCurve& family, const Event& event,
                                double from, double to, NotLocated& why, double tolerance) {
-  EventFunction function(system, family, event);
+  EventFunction function(system, family, event, to - from);
   constexpr double widest = 1e-10;  // what |index - value| <= |dk/ds| 1e-10 allows
   const double absolute = std::min(tolerance * (1.0 + std::max(std::abs(from), std::abs(to))), widest);
   const auto along = [&](double position) { return function(position); };
