@@ -16,6 +16,7 @@ namespace {
 
 using namespace orbweaver;
 using namespace orbweaver::test;
+using ::testing::Contains;
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -216,7 +217,7 @@ TEST(Comparison, OpenEndsHaveNoPlace) {
   for (const std::string reason : {"collision with the Moon (r2 = 1e-5)", "period divergence (T = 70)"}) {
     const Comparison comparison = compared(ended(reason, 3.0), ended(reason, 1.45));
     EXPECT_TRUE(comparison.same()) << reason;
-    EXPECT_THAT(comparison.notes, ElementsAre(HasSubstr("goes 6 orbits further in A")));
+    EXPECT_THAT(comparison.notes, Contains(HasSubstr("goes 6 orbits further in A")));
   }
   EXPECT_THAT(kinds(compared(ended("guard limit (r2 = 0.01)", 3.0), ended("guard limit (r2 = 0.01)", 1.45))),
               ElementsAre(DifferenceKind::range));

@@ -53,8 +53,8 @@ TEST(RestrictedProblem, LongFamilyOfL5EndsAtItsResonance) {
   test::expect_long_family_to_end(comm, {.y = "-0.866"});
 }
 
-// Earth and Moon, at T = 25.29431: beside the short-period family gone around four times an index is 2 to 1e-8 without a
-// crossing. One of the two mirror images with these steps had one there.
+// Earth and Moon, at T = 25.29431: beside the short-period family gone around four times an index is 2 to 1e-8 without
+// a crossing. One of the two mirror images with these steps had one there.
 TEST(RestrictedProblem, MirrorImagesHaveTheSameCrossingsWhereTheyEnd) {
   const core::Communicator comm;
   const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/pcr3bp_earth_moon.yaml",

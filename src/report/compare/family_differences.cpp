@@ -91,7 +91,8 @@ bool has_end_at(const TreeFamily& family, std::size_t orbit) {
 /// How far a family is followed there is a matter of the steps: it goes on beyond what can be computed.
 bool is_open_end(const TreeFamily& family, std::size_t orbit) {
   return std::any_of(family.ends.begin(), family.ends.end(), [orbit](const FamilyEnd& end) {
-    return end.orbit == orbit && (end.kind == survey::EndKind::collision || end.kind == survey::EndKind::period_divergence);
+    const bool is_open = end.kind == survey::EndKind::collision || end.kind == survey::EndKind::period_divergence;
+    return is_open && end.orbit == orbit;
   });
 }
 
