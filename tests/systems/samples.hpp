@@ -28,13 +28,17 @@ struct Built {
   }
 };
 
-/// All that is compiled.
-inline std::vector<Built> all_built() {
-  std::vector<Built> all;
-  for (const std::string& name : system_names())
-    for (const std::vector<std::string>& effects : built_effects(name)) all.push_back({name, effects});
-  return all;
+/// All that is compiled: what is known before a test has loaded a plugin.
+inline const std::vector<Built>& all_built() {
+  static const std::vector<Built> built = [] {
+    std::vector<Built> all;
+    for (const std::string& name : system_names())
+      for (const std::vector<std::string>& effects : built_effects(name)) all.push_back({name, effects});
+    return all;
+  }();
+  return built;
 }
+inline const std::vector<Built>& built_before_tests = all_built();
 
 /// A whole number, which can neither be drawn nor differentiated by.
 inline bool is_count(const std::string& parameter) { return parameter == "links"; }
