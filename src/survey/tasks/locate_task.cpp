@@ -183,14 +183,15 @@ class Location {
                                       bifurcation::NotLocated::Reason reason) const {
     if (reason == bifurcation::NotLocated::Reason::no_zero && is_cut(family))
       return "on all orbits that are known between both signs of the function it is within its error bound";
-    const loop::Loop* beside = nullptr;
-    std::string why;
-    for (const continuation::FamilyCurve::Known& known : family.known()) {
-      if (known.position != _work.from && known.position != _work.to) continue;
-      if (why.empty()) why = not_told_apart(*_system, known.loop, beside, family.isotropy(), _team);
-      beside = &known.loop;
+    std::vector<const loop::Loop*> ends;
+    for (const continuation::FamilyCurve::Known& known : family.known())
+      if (known.position == _work.from || known.position == _work.to) ends.push_back(&known.loop);
+    for (std::size_t n = 0; n < ends.size(); ++n) {
+      const loop::Loop* beside = ends.size() > 1 ? ends[n == 0 ? 1 : n - 1] : nullptr;
+      std::string why = not_told_apart(*_system, *ends[n], beside, family.isotropy(), _team);
+      if (!why.empty()) return why;
     }
-    return why.empty() ? steep_in(family) : why;
+    return steep_in(family);
   }
 
   /// Whether the function had its sign before the event on the first known orbit, or before it: those since have none.

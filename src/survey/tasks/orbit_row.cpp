@@ -20,7 +20,12 @@ std::string not_told_apart(const systems::System& system, const loop::Loop& orbi
   const std::optional<spectrum::Stability> stability = stability_of(system, orbit, isotropy, team);
   if (stability && !bifurcation::is_isolated(*stability)) return "an index is 2 to rounding";
   if (neighbour == nullptr) return {};
-  const double apart = continuation::arclength_between(*neighbour, orbit);
+  return nearer_than_rounding(system, orbit, *neighbour, isotropy);
+}
+
+std::string nearer_than_rounding(const systems::System& system, const loop::Loop& orbit, const loop::Loop& neighbour,
+                                 const loop::Isotropy& isotropy) {
+  const double apart = continuation::arclength_between(neighbour, orbit);
   const double open = continuation::left_open_by_rounding(system, orbit, isotropy).across;
   if (!(open > apart)) return {};
   return fmt::format("rounding leaves an orbit open by {:.2g}, and its neighbour is {:.2g} away", open, apart);

@@ -24,6 +24,10 @@ namespace orbweaver::survey {
 [[nodiscard]] std::string not_told_apart(const systems::System& system, const loop::Loop& orbit,
                                          const loop::Loop* neighbour, const loop::Isotropy& isotropy, core::Team* team);
 
+/// The same where rounding leaves the orbit open by more than its neighbour is away.
+[[nodiscard]] std::string nearer_than_rounding(const systems::System& system, const loop::Loop& orbit,
+                                               const loop::Loop& neighbour, const loop::Isotropy& isotropy);
+
 /// The row of an accepted orbit, with its certificate if `certifier` is given. `stored`: its loop in standard phase
 /// (loop::in_standard_phase).
 [[nodiscard]] archive::OrbitRecord orbit_row(const systems::System& system, const std::string& family,

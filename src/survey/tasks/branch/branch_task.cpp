@@ -133,6 +133,10 @@ continuation::Ending BranchTask::follow() {
                           there.on_parameter_limit || there.on_guard_limit >= 0;
     if (on_limit || _branch->met_limit()) limited_by(orbit_limited, before);
     const double period = orbit->loop.period * units().time;
+    if (const auto lost = lost_in_rounding(*orbit)) {
+      note_limits(*lost, before);
+      return *lost;
+    }
     if (!take(*orbit)) return met();
     if (on_limit) continue;
     const double level = continuation::level_of(*_followed.system, orbit->loop) * units().level();
@@ -140,6 +144,18 @@ continuation::Ending BranchTask::follow() {
                                 [&] { return pack(state_at(_branch->restart_frontier())); });
     if (_stopped) return {continuation::EndReason::stopped, fmt::format("T = {:.9g}", period)};
   }
+}
+
+/// Where rounding hides what the indices pass it may hide on which side of its neighbour an orbit lies, too: the branch
+/// would go to and fro.
+std::optional<continuation::Ending> BranchTask::lost_in_rounding(const continuation::Orbit& orbit) {
+  if (!_followed.last || !_options.jumped) return std::nullopt;
+  const std::optional<spectrum::Stability>& stability = _followed.stability_at(orbit);
+  if (!stability || bifurcation::are_decided(*stability)) return std::nullopt;
+  const std::string why =
+      nearer_than_rounding(*_followed.system, orbit.loop, _followed.last->loop, _followed.start.isotropy);
+  if (why.empty()) return std::nullopt;
+  return continuation::Ending{continuation::EndReason::undecided, why};
 }
 
 /// Where its last orbits are not told apart a branch may fail for no other reason.

@@ -46,6 +46,7 @@ class BranchTask {
   bool arrive(const continuation::Orbit& orbit);
   [[nodiscard]] static bool is_nearly_two(const spectrum::Stability& stability);
   bool arrives_ahead();
+  [[nodiscard]] std::optional<continuation::Ending> lost_in_rounding(const continuation::Orbit& orbit);
   void decide(continuation::Ending& ending) const;
   [[nodiscard]] continuation::Ending met() const;
   void solve_requested(const continuation::Orbit& orbit);
