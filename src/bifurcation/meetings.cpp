@@ -17,7 +17,7 @@ namespace {
 using spectrum::Rotation;
 using spectrum::Stability;
 
-/// Of one meeting, orbits that are asked at most: pairs that pass one another and stay on the circle take four to six.
+/// Of one meeting, orbits that are asked at most: pairs that pass one another where nothing holds them take four.
 constexpr int most_orbits = 16;
 /// Of a step, where planes of pairs are not told from one another over the whole.
 constexpr int halvings_of_a_step = 3;
