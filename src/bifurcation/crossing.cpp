@@ -1,5 +1,7 @@
 #include "orbweaver/bifurcation/crossing.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -32,9 +34,28 @@ constexpr double falls = 0.5;
 /// What is left in error bounds, which are estimates.
 constexpr double error_margin = 10.0;
 
-/// Of the interval in which a fold is looked for, how far beside a place without an orbit one is taken: a family may
-/// turn where it crosses another one, and there Newton's method finds no orbit if it is asked for exactly that one.
-constexpr double beside_singular = 1e-4;
+/// How far beside a place without an orbit a fold's neighbours are taken, in parts of the interval in which it is looked
+/// for, the first two that there are: a family may turn where it crosses another one, and there Newton's method finds no
+/// orbit if it is asked for exactly that one.
+constexpr double beside_singular[] = {1e-4, 1e-3, 1e-2};
+
+struct Interval {
+  double from;
+  double to;
+};
+
+/// The orbits as far before a place as behind it: what is smooth is their mean there, to the square of the distance.
+std::optional<std::array<continuation::CurvePoint, 2>> both_sides(continuation::FamilyCurve& family, double position,
+                                                                  const Interval& within, bool with_tangent) {
+  for (const double share : beside_singular) {
+    const double away = share * (within.to - within.from);
+    if (position - away < within.from || position + away > within.to) break;
+    auto before = family.at(position - away, with_tangent);
+    auto behind = before ? family.at(position + away, with_tangent) : std::nullopt;
+    if (behind) return std::array{*std::move(before), *std::move(behind)};
+  }
+  return std::nullopt;
+}
 
 double slope(const systems::System& system, Event::Kind kind, const continuation::CurvePoint& point) {
   if (kind == Event::Kind::fold_period) return period_slope(point);
@@ -43,12 +64,16 @@ double slope(const systems::System& system, Event::Kind kind, const continuation
 
 class EventFunction {
  public:
-  EventFunction(const systems::System& system, continuation::FamilyCurve& family, const Event& event, double length)
-      : _system(system), _family(family), _event(event), _beside(beside_singular * length) {}
+  EventFunction(const systems::System& system, continuation::FamilyCurve& family, const Event& event,
+                const Interval& within)
+      : _system(system), _family(family), _event(event), _within(within) {}
 
   double operator()(double position) {
-    const std::optional<Crossing> there = at(position);
-    return there ? there->reading.value : nan;
+    std::optional<Crossing> there = at(position);
+    if (!there) return nan;
+    if (!_event.from_birth || position != _within.from) return there->reading.value;
+    tell_birth(_system.structure(), there->stability);
+    return evaluate(_event.function, _system.structure(), there->stability).value;
   }
 
   double twist_at(double position) {
@@ -63,7 +88,16 @@ class EventFunction {
   std::optional<Crossing> at(double position, bool whole = false) {
     const bool fold = _event.kind != Event::Kind::test_function;
     std::optional<continuation::CurvePoint> point = _family.at(position, whole || fold);
-    if (!point && fold) point = _family.at(position + _beside, whole || fold);
+    std::optional<Reading> mean_slope;
+    if (!point && fold)
+      if (auto sides = both_sides(_family, position, _within, true); sides && !sides->front().tangent.empty()) {
+        mean_slope = {0.5 * (slope(_system, _event.kind, sides->front()) + slope(_system, _event.kind, sides->back())),
+                      0.0};
+        const double step = position - sides->front().position;
+        point = std::move(sides->front());
+        point->loop = loop::moved(std::move(point->loop), point->tangent, step);
+        point->position = position;
+      }
     if (!point) return without_value(NotLocated::Reason::no_orbit, position, period_before(position));
     Crossing out;
     out.point = std::move(*point);
@@ -78,7 +112,7 @@ class EventFunction {
     if (_event.kind == Event::Kind::test_function)
       out.reading = evaluate(_event.function, _system.structure(), out.stability);
     else
-      out.reading = {slope(_system, _event.kind, out.point), 0.0};
+      out.reading = mean_slope.value_or(Reading{slope(_system, _event.kind, out.point), 0.0});
     if (std::isnan(out.reading.value))
       return without_value(NotLocated::Reason::no_value, position, out.point.loop.period);
     return out;
@@ -101,19 +135,21 @@ class EventFunction {
   const systems::System& _system;
   continuation::FamilyCurve& _family;
   const Event& _event;
-  double _beside;
+  Interval _within;
   std::optional<NotLocated> _without_value;
 };
 
 /// The least or largest period or energy between two positions, if it lies within.
 std::optional<numerics::Located> extremum(const systems::System& system, continuation::FamilyCurve& family,
                                           const Event& event, double from, double to, double tolerance) {
+  const auto of = [&](const loop::Loop& loop) {
+    if (event.kind == Event::Kind::fold_parameter) return loop.parameters.front();
+    return event.kind == Event::Kind::fold_period ? loop.period : continuation::energy_of(system, loop);
+  };
   const auto quantity = [&](double position) {
-    std::optional<continuation::CurvePoint> point = family.at(position);
-    if (!point) point = family.at(position + beside_singular * (to - from));
-    if (!point) return nan;
-    if (event.kind == Event::Kind::fold_parameter) return point->loop.parameters.front();
-    return event.kind == Event::Kind::fold_period ? point->loop.period : continuation::energy_of(system, point->loop);
+    if (const std::optional<continuation::CurvePoint> point = family.at(position)) return of(point->loop);
+    const auto sides = both_sides(family, position, {from, to}, false);
+    return sides ? 0.5 * (of(sides->front().loop) + of(sides->back().loop)) : nan;
   };
   const double ends = 0.5 * (quantity(from) + quantity(to));
   for (const double sign : {1.0, -1.0}) {
@@ -171,6 +207,13 @@ double level_slope(const systems::System& system, const continuation::CurvePoint
   return system.family_scalars().free.empty() ? energy_slope(system, point) : parameter_slope(point);
 }
 
+void tell_birth(const systems::Structure& system, spectrum::Stability& birth) {
+  std::fill(birth.fundamental_error.begin(), birth.fundamental_error.end(), 0.0);
+  if (!system.symplectic || birth.fundamental.empty()) return;
+  *std::min_element(birth.fundamental.begin(), birth.fundamental.end(),
+                    [](const auto& x, const auto& y) { return std::abs(x - 2.0) < std::abs(y - 2.0); }) = 2.0;
+}
+
 Reading index_deviation(const systems::Structure& system, const spectrum::Stability& stability, const Sector& sector) {
   Reading nearest{nan, nan};
   double least = std::numeric_limits<double>::infinity();
@@ -220,7 +263,7 @@ std::string to_text(const NotLocated& why) {
 
 std::optional<Crossing> locate(const systems::System& system, continuation::FamilyCurve& family, const Event& event,
                                double from, double to, NotLocated& why, double tolerance) {
-  EventFunction function(system, family, event, to - from);
+  EventFunction function(system, family, event, {from, to});
   constexpr double widest = 1e-10;  // what |index - value| <= |dk/ds| 1e-10 allows
   const double absolute = std::min(tolerance * (1.0 + std::max(std::abs(from), std::abs(to))), widest);
   const auto along = [&](double position) { return function(position); };

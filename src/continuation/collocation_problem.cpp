@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
 
 #include "cell_counts.hpp"
+#include "collocation_judgement.hpp"
 #include "collocation_metric.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/equations/damped_newton.hpp"
@@ -25,21 +25,12 @@ namespace {
 /// Of the corrector's tolerance on sqrt(loss), for the estimated error of the nodal values: the residual multiplies it
 /// by the field's Jacobian and 2 pi K/T, and the loss judges afterwards. Not measured.
 constexpr double of_loss_tolerance = 1e-2;
-/// The tolerance on sqrt(loss) to which the way is solved where the scene's is larger: a scene's tolerance may decide
-/// how well an orbit is resolved, but not on which side of a narrow gap the branch goes on, nor how far beside the
-/// family a step begins (a residual of 6e-9 was seen to leave 2.6e-5 where an index is 2 to 1e-6). The default.
-constexpr double of_the_way = 1e-10;
 /// A change that small, in parts of that tolerance, is good enough even if it shrinks no more. Not measured.
 constexpr double good_enough = 0.3;
 /// Of the change that would bring the loss to its threshold, and iterations spent on it with a new factor: where fast
 /// and slow motions are 50 times apart the changes shrink by 0.9 each (m2 = 1000).
 constexpr double sharpened = 0.3;
 constexpr int patience = 60;
-/// The residual from which on a solver that came to rest has not solved its equations, in parts of what rounding
-/// leaves. Solved ones were seen at 0.25 to 2, those beside a narrow gap at 4 to 4000 (mu = 0.001, 13 turns).
-constexpr double at_rest = 3.0;
-/// Roundings of a mode, some of the transforms' own: their number was not measured.
-constexpr double mode_rounding = 4.0 * std::numeric_limits<double>::epsilon();
 /// What the harmonics that a new time map leaves out may add to the loss, in parts of its threshold: the rest is
 /// for the equations. Not measured.
 constexpr double left_to_truncation = 0.3;
@@ -51,26 +42,9 @@ constexpr double guarded_density = 1e-6;
 /// times the harmonics at mu = 75 without (docs/mathematics.md, "Time map"). From fewer cells on multipliers cost more
 /// than is saved: their segments are long where s is slow.
 constexpr int dissipative_map_cells = 768;
-/// The residual between the places where the equations ask, in parts of that at them, from which on it is truncation's,
-/// and not the solver's or rounding's, which are alike at both. Truncation was seen at 900.
-constexpr double shows_truncation = 10.0;
-/// Of the loss of the loop that is stored, what its mean over the nodes shows at least: a third is missed beside a
-/// collision.
-constexpr double seen_by_nodes = 0.7;
 /// Keeps quotients by the amplitude finite.
 constexpr double least_amplitude = 1e-300;
-/// Where the field is finite, and what the correction made of it is not.
-constexpr const char* beyond_numbers = "the correction met numbers that are not finite";
-
 bool is_affordable(const Collocation& equations) { return equations.size() <= equations::exact_unknowns; }
-
-/// Over the last quarter harmonics that truncation leaves fall by a hundred where they end below 1e-8 of the first:
-/// what is more than this part of those before it is rounding, of which further ones have as much.
-constexpr double fallen = 0.3;
-
-bool falls_no_further(const loop::Loop& loop, double tail) {
-  return tail > fallen * loop::tail(loop::with_cutoff(loop, loop.cutoff - loop.cutoff / 4));
-}
 
 }  // namespace
 
@@ -295,20 +269,25 @@ Trial CollocationProblem::solve(Prediction prediction, const std::vector<double>
       state().factor_conditions = conditions;
     }
     if (!result.converged) {
-      if (result.finite) note_what_is_open(trial, last_change);
+      // Where the linearised equations are singular to rounding a solve goes astray among points at all of which they
+      // hold.
+      if (result.finite && holds_to_rounding(e, trial.values)) trial.known_to = last_change;
       state().factor_point.clear();
       trial.reason = result.finite ? fmt::format("no convergence in {} iterations, the last change {:.2g}",
                                                  result.iterations, result.last_change)
-                                   : not_finite_at(trial.values, predicted, beyond_numbers);
+                                   : not_finite_at(e, trial.values, predicted, beyond_numbers);
     }
   } catch (const core::NumericalError& error) {
     state().factor_point.clear();
     trial.converged = false;
-    trial.reason = not_finite_at(trial.values, predicted, error.what());
+    trial.reason = not_finite_at(e, trial.values, predicted, error.what());
   }
-  if (trial.converged) judge(trial);
+  if (trial.converged) judge(e, _winding, _options, trial);
   if (trial.converged && rests_aside(trial)) solve_by_gmres(trial, has_new_factor, predicted, conditions);
-  if (trial.converged && may_be_sharper(trial)) sharpen(trial, last_change, conditions);
+  if (trial.converged && may_be_sharper(trial)) {  // the loss's threshold may lie far above rounding
+    sharpen(trial, last_change, conditions);
+    if (rests_aside(trial)) solve_by_gmres(trial, true, predicted, conditions);
+  }
   if (state().preconditioner == Preconditioner::exact && !is_affordable(e) && (!trial.converged || trial.unsolved)) {
     trial.converged = false;
     trial.under_resolved = true;  // once the cells resolve the fast motion they precondition it
@@ -316,21 +295,10 @@ Trial CollocationProblem::solve(Prediction prediction, const std::vector<double>
   return trial;
 }
 
-/// Where the linearised equations are singular to rounding a solve goes astray among points at all of which they hold.
-void CollocationProblem::note_what_is_open(Trial& trial, double last_change) {
-  if (!(trial.values[scalars_at()] > 0.0)) return;
-  const Collocation::Quality quality = equations().quality(trial.values.data());
-  if (quality.asked < rounding_floor(equations(), quality, trial.values[scalars_at()])) trial.known_to = last_change;
-}
-
-/// Whether the solver came to rest where its equations do not hold: along some direction they are so flat that the box
-/// scheme's own error is all that is seen of it.
+/// Whether the box scheme's error may be all that is seen along some direction of an orbit where the solver came to rest.
 bool CollocationProblem::rests_aside(const Trial& trial) {
   if (!trial.stagnated || !trial.is_orbit || state().preconditioner == Preconditioner::exact) return false;
-  const Collocation& e = equations();
-  Eigen::VectorXd residual(e.size());
-  e.residual(trial.values.data(), residual.data());
-  return residual.norm() > at_rest * e.residual_rounding(trial.values.data());
+  return continuation::rests_aside(equations(), trial.values);
 }
 
 /// Anew by GMRES, and so the branch from here on. From the prediction: where the solver came to rest the equations may
@@ -401,7 +369,7 @@ std::optional<Trial> CollocationProblem::solved_anew(const equations::AndersonSo
   }
   trial.is_orbit = trial.at_rounding = trial.truncated = trial.unsolved = trial.to_rounding = false;
   trial.lost_in_rounding = false;
-  judge(trial);
+  judge(equations(), _winding, _options, trial);
   return trial;
 }
 
@@ -413,88 +381,15 @@ bool CollocationProblem::sharpen_with(const equations::AndersonSolver::Options& 
   const bool asks = trial.unsolved || trial.is_beside_the_way;
   const bool better = asks ? other->asked_rms < trial.asked_rms : other->loss_rms < trial.loss_rms;
   if (!other->converged || !better) return false;
+  other->stagnated = other->stagnated || trial.stagnated;  // the tolerance of before decides
   trial = std::move(*other);
   return true;
-}
-
-/// Accepts by the loss over the whole loop.
-void CollocationProblem::judge(Trial& trial) {
-  Collocation& e = equations();
-  const Collocation::Quality quality = e.quality(trial.values.data());
-  trial.loss_rms = quality.loss_rms;
-  trial.asked_rms = quality.asked;
-  trial.amplitude = quality.amplitude;
-  trial.size = extent_of(_winding, quality.size);
-  double centre = 0.0;
-  for (const double c : e.centre()) centre += c * c;
-  const double size = std::sqrt(centre);
-  const double jacobian = e.field_jacobian_rms();
-  const double tolerance = _options.corrector.tolerance;
-  trial.threshold = corrector::acceptance_threshold(tolerance, quality.speed_rms, size, jacobian);
-  trial.tolerance_met = corrector::tolerance_met(tolerance, trial.loss_rms, quality.speed_rms, size, jacobian);
-  const double floor = rounding_floor(equations(), quality, trial.values[scalars_at()]);
-  trial.unsolved = quality.asked > std::max(trial.threshold, floor) && e.has_cells_to_fit();
-  trial.to_rounding = quality.unasked < floor;
-  trial.threshold_of_the_way =
-      corrector::acceptance_threshold(std::min(tolerance, of_the_way), quality.speed_rms, size, jacobian);
-  trial.is_beside_the_way = tolerance > of_the_way && quality.asked > std::max(trial.threshold_of_the_way, floor);
-  if (!(trial.values[static_cast<std::size_t>(e.period_at())] > 0.0)) {
-    trial.converged = false;
-    trial.reason = "the period is not positive";
-  } else if (!std::isfinite(trial.loss_rms)) {
-    trial.converged = false;
-    trial.reason = not_finite_at(trial.values, trial.values, beyond_numbers);
-  } else if (trial.loss_rms < seen_by_nodes * trial.threshold) {
-    trial.is_orbit = true;
-  } else if (trial.loss_rms < floor) {
-    trial.is_orbit = trial.at_rounding = true;  // unless truncation explains the loss: `resolved`
-  } else {
-    trial.truncated = quality.unasked > shows_truncation * quality.asked;
-    trial.reason = fmt::format("sqrt(loss) = {:.3g} falls no further, wanted {:.3g}", trial.loss_rms, trial.threshold);
-  }
-  if (!trial.is_orbit || quality.speed_rms >= corrector::least_known_speed(size, jacobian)) return;
-  trial.is_orbit = trial.at_rounding = false;
-  trial.lost_in_rounding = true;
-  trial.reason = corrector::lost_in_rounding_text(quality.speed_rms, size, jacobian);
-}
-
-/// The sentence that the loss has for a field that is not finite, there or at what was predicted; `otherwise` where it
-/// is.
-std::string CollocationProblem::not_finite_at(const std::vector<double>& values, const std::vector<double>& predicted,
-                                              const std::string& otherwise) {
-  const Collocation& e = equations();
-  for (const std::vector<double>* point : {&predicted, &values}) {
-    std::vector<double> there = *point;
-    // The field does not depend on T, which a correction that fails may have taken below 0.
-    double& period = there[scalars_at()];
-    if (!(period > 0.0) || !std::isfinite(period)) period = predicted[scalars_at()];
-    if (!std::all_of(there.begin(), there.end(), [](double v) { return std::isfinite(v); })) continue;
-    try {
-      e.check_field(there.data());
-    } catch (const core::NotFiniteError& error) {
-      return error.what();
-    }
-  }
-  return otherwise;
 }
 
 /// At a small amplitude the period is known to eps / amplitude only: it must not decide how far a step went.
 double CollocationProblem::period_unit(double period) { return period / std::min(1.0, state().amplitude); }
 
-/// The residual that truncation leaves is about 2 pi / T K tail: only where that explains a loss above its threshold
-/// do more harmonics help. The tail sees nothing where the harmonics come in bands about the multiples of a fast
-/// oscillation's, and K lies between two: there the residual between the cells' middles shows it.
-bool CollocationProblem::resolved(Trial& trial) {
-  trial.loop = equations().to_loop(trial.values.data());
-  const double last = loop::tail(trial.loop);
-  // Beside a fast motion rounding is magnified in the harmonics near it, and the residual does not see them.
-  if (trial.to_rounding && falls_no_further(trial.loop, last) && equations().has_cells_to_fit()) return true;
-  if (last > tail_limit(trial.amplitude, trial.size, _options) || trial.truncated) return false;
-  // A tail of the size of the modes' own rounding says nothing of the resolution.
-  if (last <= mode_rounding * trial.size) return true;
-  const double truncation = 2.0 * std::numbers::pi / trial.loop.period * trial.loop.cutoff * last;
-  return trial.loss_rms < trial.threshold || truncation < corrector::least_explained * trial.loss_rms;
-}
+bool CollocationProblem::resolved(Trial& trial) { return is_resolved(equations(), _options, trial); }
 
 std::optional<Resolution> CollocationProblem::finer(const Trial& trial, const std::vector<double>& settled,
                                                     bool may_fit) {

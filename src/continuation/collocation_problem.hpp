@@ -58,7 +58,6 @@ class CollocationProblem final : public PointProblem {
   [[nodiscard]] equations::AndersonSolver::Options solver_options();
   [[nodiscard]] double bounded_amplitude();
   [[nodiscard]] double rounding_of_nodes();
-  void note_what_is_open(Trial& trial, double last_change);
   [[nodiscard]] bool may_be_sharper(Trial& trial);
   [[nodiscard]] std::optional<Trial> solved_anew(const equations::AndersonSolver::Options& options,
                                                  const std::vector<double>& conditions, Trial trial);
@@ -69,9 +68,6 @@ class CollocationProblem final : public PointProblem {
   [[nodiscard]] bool rests_aside(const Trial& trial);
   void solve_by_gmres(Trial& trial, bool has_new_factor, const std::vector<double>& predicted,
                       const std::vector<double>& conditions);
-  void judge(Trial& trial);
-  [[nodiscard]] std::string not_finite_at(const std::vector<double>& values, const std::vector<double>& predicted,
-                                          const std::string& otherwise);
   [[nodiscard]] double period_unit(double period);
   [[nodiscard]] std::optional<Resolution> remapped(const Trial& of, const std::vector<double>& settled);
 

@@ -33,7 +33,7 @@ constexpr double pulse_pays = 0.97;
 /// kappa is kept to thousandths, finer than harmonics can tell: maps of one pulse then compare equal.
 constexpr double kappa_parts = 1000.0;
 /// Of the bound on the tail: harmonics below it are dropped. At the bound itself cells would come and go.
-constexpr double dropped = 0.1;
+constexpr double dropped_from_cells = 0.1;
 
 double harmonic_norm(const loop::Loop& loop, int k) {
   double square = 0.0;
@@ -119,8 +119,8 @@ std::optional<int> coarser_cells(const loop::Loop& loop, const loop::Fundamental
                                  int least_cutoff) {
   const int two_thirds = 2 * loop.cutoff / 3;
   for (int k = two_thirds; k <= loop.cutoff; ++k)
-    if (harmonic_norm(loop, k) > dropped * tail_limit) return std::nullopt;
-  const int needed = harmonics_needed(loop, dropped * tail_limit);
+    if (harmonic_norm(loop, k) > dropped_from_cells * tail_limit) return std::nullopt;
+  const int needed = harmonics_needed(loop, dropped_from_cells * tail_limit);
   return cell_counts::at_least_for_cutoff(domain, std::max(with_room(needed), least_cutoff));
 }
 

@@ -81,6 +81,41 @@ TEST(Crossings, AZeroThatIsNotThereIsSaid) {
   EXPECT_NE(to_text(why).find("no zero between"), std::string::npos);
 }
 
+TEST(Crossings, AtABirthTheIndexNearestToTwoIsTwo) {
+  spectrum::Stability stability;
+  stability.fundamental = {-130.0, 1e9};
+  stability.fundamental_error = {1e5, 1e5};
+  bifurcation::tell_birth(test::pendulum()->structure(), stability);
+  EXPECT_EQ(stability.fundamental[0], 2.0);
+  EXPECT_EQ(stability.fundamental[1], 1e9);
+  EXPECT_EQ(stability.fundamental_error, (std::vector<double>{0.0, 0.0}));
+}
+
+// From a birth the index falls from 2, however it is computed there; but not by a jump that it is known to make.
+TEST(Crossings, AJumpFromABirthIsNoCrossing) {
+  const double period = 8.442930704977588;
+  Curve curve(test::family_to_twelve(test::in_phase()), period);
+  Event event{.function = {bifurcation::TestFunction::Kind::sector, {4, 1}}};
+  const auto& known = curve.known();
+  const auto after = std::find_if(known.begin(), known.end(), [&](const auto& k) { return k.loop.period > period; });
+  ASSERT_GE(after - known.begin(), 2);
+  ASSERT_GE(known.end() - after, 2);
+  int negative = 0;
+  for (const auto from : {after - 2, after}) {
+    const spectrum::Stability stability = spectrum::floquet(*test::pendulum(), from->loop, curve.isotropy(), {});
+    if (bifurcation::evaluate(event.function, test::pendulum()->structure(), stability).sign() > 0) continue;
+    ++negative;
+    bifurcation::NotLocated why;
+    event.from_birth = false;
+    EXPECT_FALSE(bifurcation::locate(*test::pendulum(), curve, event, from->position, (from + 1)->position, why));
+    EXPECT_EQ(why.reason, bifurcation::NotLocated::Reason::no_zero);
+    event.from_birth = true;
+    EXPECT_FALSE(bifurcation::locate(*test::pendulum(), curve, event, from->position, (from + 1)->position, why));
+    EXPECT_EQ(why.reason, bifurcation::NotLocated::Reason::no_crossing) << to_text(why);
+  }
+  EXPECT_EQ(negative, 1);
+}
+
 TEST(Crossings, WithoutAnOrbitThePlaceIsSaid) {
   continuation::FamilyCurve curve(test::pendulum(), test::pendulum_isotropy(*test::pendulum()), {});
   curve.add(0.0, test::orbit_at(test::family_to_twelve(test::in_phase()), 8.3).loop);

@@ -23,11 +23,13 @@ struct Event {
   /// A tangency at which a multiplier passes 1 or -1 and stays on the unit circle, to rounding: there
   /// `Stability::twist` changes its sign, by which it is located.
   bool passed = false;
+  /// It is looked for from the orbit on which the family is born (`tell_birth`).
+  bool from_birth = false;
 
-  static constexpr int wire_version = 2;
+  static constexpr int wire_version = 3;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, kind, function, tangency, passed);
+    core::serialize_members(archive, kind, function, tangency, passed, from_birth);
   }
 };
 
@@ -68,6 +70,11 @@ struct NotLocated {
 [[nodiscard]] std::optional<Crossing> locate(const systems::System& system, continuation::FamilyCurve& family,
                                              const Event& event, double from, double to, NotLocated& why,
                                              double tolerance = 1e-11);
+
+/// Of the orbit on which a family is born, in the family's symmetries: an index is 2, which computed it may miss by any
+/// amount where indices are of 1e13 beside it. The others' values tell: their error bounds are those of a place where
+/// orbits are not isolated.
+void tell_birth(const systems::Structure& system, spectrum::Stability& birth);
 
 /// The multiplier pair that is nearest to the sector: k - 2 cos(2 pi j/q), with its error bound; of a system that is
 /// not symplectic the nontrivial multiplier, mu - cos(2 pi j/q).

@@ -22,15 +22,6 @@ constexpr double nearer_to_birth = 0.25;
 /// nothing: they take a Newton step, and the orbits of two families lie side by side. The crossing is located to 1e-9.
 constexpr double zero_at_birth = 1e-6;
 
-/// A family is born where an index is 2, which computed it may miss by any amount where indices are of 1e13 beside it.
-/// The others' values tell: their error bounds are those of a place where orbits are not isolated.
-void tell_birth(const systems::Structure& structure, spectrum::Stability& birth) {
-  std::fill(birth.fundamental_error.begin(), birth.fundamental_error.end(), 0.0);
-  if (!structure.symplectic || birth.fundamental.empty()) return;
-  *std::min_element(birth.fundamental.begin(), birth.fundamental.end(),
-                    [](const auto& x, const auto& y) { return std::abs(x - 2.0) < std::abs(y - 2.0); }) = 2.0;
-}
-
 }  // namespace
 
 void BranchEnds::look_before_first(const std::optional<Arrival>& arrival) {
@@ -55,7 +46,7 @@ void BranchEnds::detect_from_birth(const std::optional<Arrival>& arrival) {
 void BranchEnds::indices_from_birth(const std::vector<continuation::FamilyCurve::Known>& known) {
   std::optional<spectrum::Stability> birth =
       stability_of(*_followed.system, _followed.start.base, _followed.start.isotropy, _followed.team);
-  if (birth) tell_birth(_followed.system->structure(), *birth);
+  if (birth) bifurcation::tell_birth(_followed.system->structure(), *birth);
   const auto at_birth = _followed.test_point(0.0, birth);
   const auto at_first = _followed.test_point(
       0.0, stability_of(*_followed.system, known[1].loop, _followed.start.isotropy, _followed.team));
@@ -64,8 +55,8 @@ void BranchEnds::indices_from_birth(const std::vector<continuation::FamilyCurve:
     const int after = at_first.readings[f].sign();
     const bool is_shown = std::abs(before) > zero_at_birth && before * after < 0.0;
     if (is_shown)
-      _events.add_event({bifurcation::Event::Kind::test_function, _followed.functions[f], false}, known[0].position,
-                        known[1].position, known);
+      _events.add_event({.function = _followed.functions[f], .from_birth = true}, known[0].position, known[1].position,
+                        known);
     // Of two places of one function signs show none. The one where a family is born is none.
     const double passed = std::abs(at_first.passed[f] - at_birth.passed[f]);
     if (_followed.functions[f].sector.q > 2 && passed > 1.0)
