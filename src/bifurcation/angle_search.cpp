@@ -69,21 +69,6 @@ struct Circle {
   }
 };
 
-/// The sum of loops with weights that add up to 1, periods too.
-loop::Loop weighted(const std::vector<const loop::Loop*>& loops, const std::vector<double>& weights) {
-  int cutoff = 0;
-  for (const loop::Loop* l : loops) cutoff = std::max(cutoff, l->cutoff);
-  loop::Loop out = loop::with_cutoff(*loops.front(), cutoff);
-  std::fill(out.modes.begin(), out.modes.end(), 0.0);
-  out.period = 0.0;
-  for (std::size_t n = 0; n < loops.size(); ++n) {
-    const loop::Loop one = loop::with_cutoff(*loops[n], cutoff);
-    for (std::size_t c = 0; c < out.modes.size(); ++c) out.modes[c] += weights[n] * one.modes[c];
-    out.period += weights[n] * one.period;
-  }
-  return out;
-}
-
 class Plane {
  public:
   Plane(const systems::System& system, const loop::Loop& base, const KernelActions& group,
@@ -124,7 +109,7 @@ class Plane {
     const auto angles = std::span(circle.angles).subspan(from, used);
     std::vector<const loop::Loop*> loops;
     for (const Held& orbit : std::span(circle.orbits).subspan(from, used)) loops.push_back(&orbit.loop);
-    return weighted(loops, numerics::lagrange_weights({angles.begin(), angles.end()}, angle).value);
+    return loop::weighted_sum(loops, numerics::lagrange_weights({angles.begin(), angles.end()}, angle).value);
   }
 
   /// The orbit of another amplitude: by the polynomial in it through the base and the last circles' orbits of this
@@ -138,7 +123,7 @@ class Plane {
       amplitudes.push_back(circle.amplitude);
       loops.push_back(&circle.orbits[place].loop);
     }
-    return weighted(loops, numerics::lagrange_weights(amplitudes, amplitude).value);
+    return loop::weighted_sum(loops, numerics::lagrange_weights(amplitudes, amplitude).value);
   }
 
  private:

@@ -44,7 +44,8 @@ struct Interval {
   double to;
 };
 
-/// The orbits as far before a place as behind it: what is smooth is their mean there, to the square of the distance.
+/// The orbits as far before a place as behind it, on one grid: what is smooth is their mean there, to the square of the
+/// distance. Tangents are not: beside a crossing they may hold a part of the other family's.
 std::optional<std::array<continuation::CurvePoint, 2>> both_sides(continuation::FamilyCurve& family, double position,
                                                                   const Interval& within, bool with_tangent) {
   for (const double share : beside_singular) {
@@ -52,9 +53,16 @@ std::optional<std::array<continuation::CurvePoint, 2>> both_sides(continuation::
     if (position - away < within.from || position + away > within.to) break;
     auto before = family.at(position - away, with_tangent);
     auto behind = before ? family.at(position + away, with_tangent) : std::nullopt;
-    if (behind) return std::array{*std::move(before), *std::move(behind)};
+    if (behind && before->loop.time_map == behind->loop.time_map)
+      return std::array{*std::move(before), *std::move(behind)};
   }
   return std::nullopt;
+}
+
+/// What turns at a fold.
+double turning(const systems::System& system, Event::Kind kind, const loop::Loop& loop) {
+  if (kind == Event::Kind::fold_parameter) return loop.parameters.front();
+  return kind == Event::Kind::fold_period ? loop.period : continuation::energy_of(system, loop);
 }
 
 double slope(const systems::System& system, Event::Kind kind, const continuation::CurvePoint& point) {
@@ -88,15 +96,14 @@ class EventFunction {
   std::optional<Crossing> at(double position, bool whole = false) {
     const bool fold = _event.kind != Event::Kind::test_function;
     std::optional<continuation::CurvePoint> point = _family.at(position, whole || fold);
-    std::optional<Reading> mean_slope;
+    std::optional<Reading> slope_between;
     if (!point && fold)
-      if (auto sides = both_sides(_family, position, _within, true); sides && !sides->front().tangent.empty()) {
-        mean_slope = {0.5 * (slope(_system, _event.kind, sides->front()) + slope(_system, _event.kind, sides->back())),
-                      0.0};
-        const double step = position - sides->front().position;
-        point = std::move(sides->front());
-        point->loop = loop::moved(std::move(point->loop), point->tangent, step);
-        point->position = position;
+      if (auto sides = both_sides(_family, position, _within, true)) {
+        const auto& [before, behind] = *sides;
+        slope_between = {(turning(_system, _event.kind, behind.loop) - turning(_system, _event.kind, before.loop)) /
+                             (behind.position - before.position),
+                         0.0};
+        point = {position, loop::weighted_sum({&before.loop, &behind.loop}, {0.5, 0.5}), before.tangent};
       }
     if (!point) return without_value(NotLocated::Reason::no_orbit, position, period_before(position));
     Crossing out;
@@ -112,7 +119,7 @@ class EventFunction {
     if (_event.kind == Event::Kind::test_function)
       out.reading = evaluate(_event.function, _system.structure(), out.stability);
     else
-      out.reading = mean_slope.value_or(Reading{slope(_system, _event.kind, out.point), 0.0});
+      out.reading = slope_between.value_or(Reading{slope(_system, _event.kind, out.point), 0.0});
     if (std::isnan(out.reading.value))
       return without_value(NotLocated::Reason::no_value, position, out.point.loop.period);
     return out;
@@ -142,10 +149,7 @@ class EventFunction {
 /// The least or largest period or energy between two positions, if it lies within.
 std::optional<numerics::Located> extremum(const systems::System& system, continuation::FamilyCurve& family,
                                           const Event& event, double from, double to, double tolerance) {
-  const auto of = [&](const loop::Loop& loop) {
-    if (event.kind == Event::Kind::fold_parameter) return loop.parameters.front();
-    return event.kind == Event::Kind::fold_period ? loop.period : continuation::energy_of(system, loop);
-  };
+  const auto of = [&](const loop::Loop& loop) { return turning(system, event.kind, loop); };
   const auto quantity = [&](double position) {
     if (const std::optional<continuation::CurvePoint> point = family.at(position)) return of(point->loop);
     const auto sides = both_sides(family, position, {from, to}, false);

@@ -27,6 +27,7 @@ class CollocationProblem final : public PointProblem {
   Transfer resolve(const Resolution& to) override;
   void state_replaced() override { _equations.reset(); }
   [[nodiscard]] bool can_fit_cells() override { return equations().has_cells_to_fit(); }
+  [[nodiscard]] bool is_preconditioned() const override { return true; }
 
   [[nodiscard]] std::vector<double> from_loop(const loop::Loop& loop) override;
   [[nodiscard]] std::vector<double> from_change(const loop::Loop& change) override;

@@ -74,6 +74,7 @@ std::optional<CurvePoint> CurveInterval::at(double position, bool with_tangent) 
     trial = solve(position);
   }
   if (!trial) trial = known_at(position);
+  if (!trial) trial = solve_by_gmres(position);
   if (!trial) return std::nullopt;
   CurvePoint found{position, std::move(trial->loop), {}};
   if (with_tangent)
@@ -81,6 +82,20 @@ std::optional<CurvePoint> CurveInterval::at(double position, bool with_tangent) 
   _points.push_back({std::move(trial->values), position});
   _found.push_back(found);
   return found;
+}
+
+/// Near a place where two families meet the box scheme, whose phase is a little wrong, meets them elsewhere, and what it
+/// stands for there is not the derivative at all.
+std::optional<Trial> CurveInterval::solve_by_gmres(double position) {
+  using equations::Preconditioner;
+  const bool is_solved_so = _state.preconditioner == Preconditioner::exact || _state.preconditioner == Preconditioner::krylov;
+  if (!_problem->is_preconditioned() || is_solved_so) return std::nullopt;
+  const Preconditioner before = std::exchange(_state.preconditioner, Preconditioner::krylov);
+  _state.factor_point.clear();
+  std::optional<Trial> trial = solve(position);
+  _state.preconditioner = before;
+  _state.factor_point.clear();
+  return trial;
 }
 
 std::optional<Trial> CurveInterval::known_at(double position) const {

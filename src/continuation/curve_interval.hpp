@@ -25,6 +25,7 @@ class CurveInterval {
   [[nodiscard]] std::optional<Trial> solve(double position);
   /// A known orbit itself, which the corrector may fail to find again; none between the two.
   [[nodiscard]] std::optional<Trial> known_at(double position) const;
+  [[nodiscard]] std::optional<Trial> solve_by_gmres(double position);
   [[nodiscard]] bool slipped(const Trial& trial, const Prediction& prediction);
   [[nodiscard]] Prediction prediction_at(double position);
 

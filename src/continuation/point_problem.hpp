@@ -83,6 +83,8 @@ class PointProblem {
   /// Whether cells would have been preconditioned in another way in the last correction, had the state's
   /// `preconditioner` been the fitted box.
   [[nodiscard]] virtual bool can_fit_cells() { return false; }
+  /// Whether the state's `preconditioner` takes part in corrections.
+  [[nodiscard]] virtual bool is_preconditioned() const { return false; }
 
   [[nodiscard]] virtual std::vector<double> from_loop(const loop::Loop& loop) = 0;
   /// The change of a loop (without winding) as a change of a point; scalars stay.

@@ -104,6 +104,22 @@ TEST(Loop, FewerHarmonicsDropTheLastOnes) {
   EXPECT_EQ(shorter.period, loop.period);
 }
 
+TEST(Loop, WeightedSumsAreThoseOfStatesAndScalars) {
+  Loop a = winding_loop();
+  a.parameters = {1.0, 5.0};
+  Loop b = with_cutoff(a, 13);
+  for (double& c : b.modes) c *= 3.0;
+  b.period = 2.0 * a.period;
+  b.parameters = {2.0, 1.0};
+  const Loop sum = weighted_sum({&a, &b}, {0.25, 0.75});
+  EXPECT_EQ(sum.cutoff, 13);
+  EXPECT_DOUBLE_EQ(sum.period, 1.75 * a.period);
+  EXPECT_EQ(sum.parameters, (std::vector<double>{1.75, 2.0}));
+  EXPECT_EQ(sum.winding, a.winding);
+  for (std::size_t c = 0; c < a.modes.size(); ++c) EXPECT_DOUBLE_EQ(sum.modes[c], 2.5 * a.modes[c]);
+  EXPECT_THROW(static_cast<void>(weighted_sum({&a}, {0.5, 0.5})), core::MisuseError);
+}
+
 TEST(Loop, ShiftedLoopIsTheSameOrbitStartedLater) {
   const Loop loop = winding_loop();
   for (const double fraction : {0.25, 0.5, 1.0 / 3.0, -0.2, 1.7, 0.0}) {

@@ -109,6 +109,25 @@ Loop with_cutoff(const Loop& loop, int cutoff) {
   return out;
 }
 
+Loop weighted_sum(const std::vector<const Loop*>& loops, const std::vector<double>& weights) {
+  core::require(!loops.empty() && loops.size() == weights.size(), "a sum of loops needs a weight for each");
+  int cutoff = 0;
+  for (const Loop* loop : loops) cutoff = std::max(cutoff, loop->cutoff);
+  Loop out = with_cutoff(*loops.front(), cutoff);
+  std::fill(out.modes.begin(), out.modes.end(), 0.0);
+  std::fill(out.parameters.begin(), out.parameters.end(), 0.0);
+  out.period = 0.0;
+  for (std::size_t n = 0; n < loops.size(); ++n) {
+    const Loop one = with_cutoff(*loops[n], cutoff);
+    core::require(one.dimension == out.dimension && one.parameters.size() == out.parameters.size(),
+                  "a sum of loops needs loops of one system");
+    for (std::size_t c = 0; c < out.modes.size(); ++c) out.modes[c] += weights[n] * one.modes[c];
+    for (std::size_t p = 0; p < out.parameters.size(); ++p) out.parameters[p] += weights[n] * one.parameters[p];
+    out.period += weights[n] * one.period;
+  }
+  return out;
+}
+
 Loop with_time_map(const Loop& loop, const TimeMap& map, int cutoff) {
   Loop out = with_cutoff(loop, cutoff);
   if (map == loop.time_map) return out;
