@@ -77,11 +77,8 @@ class EventFunction {
       : _system(system), _family(family), _event(event), _within(within) {}
 
   double operator()(double position) {
-    std::optional<Crossing> there = at(position);
-    if (!there) return nan;
-    if (!_event.from_birth || position != _within.from) return there->reading.value;
-    tell_birth(_system.structure(), there->stability);
-    return evaluate(_event.function, _system.structure(), there->stability).value;
+    const std::optional<Crossing> there = at(position, false, _event.from_birth && position == _within.from);
+    return there ? there->reading.value : nan;
   }
 
   double twist_at(double position) {
@@ -92,8 +89,9 @@ class EventFunction {
   /// Why the function had no value where it was asked for last without one.
   [[nodiscard]] const std::optional<NotLocated>& without_value() const { return _without_value; }
 
-  /// `whole`: with the tangent and the multipliers also where the function does not need them.
-  std::optional<Crossing> at(double position, bool whole = false) {
+  /// `whole`: with the tangent and the multipliers also where the function does not need them. `is_birth`: with what is
+  /// known of the index at a birth.
+  std::optional<Crossing> at(double position, bool whole = false, bool is_birth = false) {
     const bool fold = _event.kind != Event::Kind::test_function;
     std::optional<continuation::CurvePoint> point = _family.at(position, whole || fold);
     std::optional<Reading> slope_between;
@@ -103,7 +101,8 @@ class EventFunction {
         slope_between = {(turning(_system, _event.kind, behind.loop) - turning(_system, _event.kind, before.loop)) /
                              (behind.position - before.position),
                          0.0};
-        point = {position, loop::weighted_sum({&before.loop, &behind.loop}, {0.5, 0.5}), before.tangent};
+        point = {position, loop::weighted_sum({&before.loop, &behind.loop}, {0.5, 0.5}), {}};
+        point->tangent = loop::with_cutoff(before.tangent, point->loop.cutoff, point->loop.dimension);
       }
     if (!point) return without_value(NotLocated::Reason::no_orbit, position, period_before(position));
     Crossing out;
@@ -116,10 +115,11 @@ class EventFunction {
         if (_event.kind == Event::Kind::test_function)
           return without_value(NotLocated::Reason::no_multipliers, position, out.point.loop.period, error.what());
       }
+    if (is_birth) tell_birth(_system.structure(), out.stability);
     if (_event.kind == Event::Kind::test_function)
       out.reading = evaluate(_event.function, _system.structure(), out.stability);
     else
-      out.reading = slope_between.value_or(Reading{slope(_system, _event.kind, out.point), 0.0});
+      out.reading = slope_between ? *slope_between : Reading{slope(_system, _event.kind, out.point), 0.0};
     if (std::isnan(out.reading.value))
       return without_value(NotLocated::Reason::no_value, position, out.point.loop.period);
     return out;
@@ -182,6 +182,7 @@ bool is_discontinuous(EventFunction& function, const Crossing& zero, double from
     is_smooth = is_smooth && !(value > smooth_at_zero * there);
   }
   const auto falls_towards_it = [&](double side) {
+    if (position + side * away < from || position + side * away > to) return true;
     const double near = std::abs(function(position + 0.01 * side * away));
     return !(near > falls * std::abs(function(position + 0.1 * side * away)));
   };
@@ -293,7 +294,10 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
     return std::nullopt;
   }
   const bool is_zero = event.kind == Event::Kind::test_function && !event.tangency && !event.passed;
-  if (is_zero && is_discontinuous(function, *crossing, from, to, family.options().smallest_jump)) {
+  const bool is_jump_from_birth = event.from_birth && located->position - from <= absolute &&
+                                  std::abs(crossing->reading.value) > error_margin * crossing->reading.error;
+  if (is_jump_from_birth ||
+      (is_zero && is_discontinuous(function, *crossing, from, to, family.options().smallest_jump))) {
     why = {.reason = NotLocated::Reason::no_crossing,
            .at_from = std::abs(crossing->reading.value),
            .at_to = crossing->reading.error,

@@ -24,7 +24,7 @@ inline constexpr const char* beyond_numbers = "the correction met numbers that a
 void judge(const equations::Collocation& equations, const std::vector<double>& winding, const Options& options,
            Trial& trial);
 
-/// Whether more harmonics would not help a judged trial, whose loop is set.
+/// Whether more harmonics would not help a judged trial. Sets its loop.
 [[nodiscard]] bool is_resolved(const equations::Collocation& equations, const Options& options, Trial& trial);
 
 /// Whether the equations hold to rounding where they ask.

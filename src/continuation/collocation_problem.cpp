@@ -286,7 +286,8 @@ Trial CollocationProblem::solve(Prediction prediction, const std::vector<double>
   if (trial.converged && rests_aside(trial)) solve_by_gmres(trial, has_new_factor, predicted, conditions);
   if (trial.converged && may_be_sharper(trial)) {  // the loss's threshold may lie far above rounding
     sharpen(trial, last_change, conditions);
-    if (rests_aside(trial)) solve_by_gmres(trial, true, predicted, conditions);
+    // Beside a fast motion the box scheme's error is what patience is for.
+    if (!e.has_cells_to_fit() && rests_aside(trial)) solve_by_gmres(trial, true, predicted, conditions);
   }
   if (state().preconditioner == Preconditioner::exact && !is_affordable(e) && (!trial.converged || trial.unsolved)) {
     trial.converged = false;
@@ -322,6 +323,7 @@ void CollocationProblem::solve_by_gmres(Trial& trial, bool has_new_factor, const
   state().factor_point.clear();
   if (!is_first) return;
   trial.converged = trial.is_orbit = trial.at_rounding = false;
+  trial.is_refused = true;
   trial.reason = fmt::format("the corrector comes to rest at a residual of {:.2g}", trial.asked_rms);
 }
 

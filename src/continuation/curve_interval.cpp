@@ -74,28 +74,30 @@ std::optional<CurvePoint> CurveInterval::at(double position, bool with_tangent) 
     trial = solve(position);
   }
   if (!trial) trial = known_at(position);
-  if (!trial) trial = solve_by_gmres(position);
-  if (!trial) return std::nullopt;
-  CurvePoint found{position, std::move(trial->loop), {}};
-  if (with_tangent)
-    found.tangent = _problem->tangent_of(_problem->direction_at(trial->values, prediction_at(position)), found.loop);
-  _points.push_back({std::move(trial->values), position});
-  _found.push_back(found);
+  // Near a place where two families meet the box scheme, whose phase is a little wrong, meets them elsewhere, and what it
+  // stands for there is not the derivative at all.
+  const equations::Preconditioner usual = _state.preconditioner;
+  const bool is_by_gmres = !trial && !_is_refused && _problem->is_preconditioned();
+  if (is_by_gmres) {
+    _state.preconditioner = equations::Preconditioner::krylov;
+    _state.factor_point.clear();
+    trial = solve(position);
+  }
+  std::optional<CurvePoint> found = trial ? std::optional(taken(position, *std::move(trial), with_tangent)) : std::nullopt;
+  if (is_by_gmres) {
+    _state.preconditioner = usual;
+    _state.factor_point.clear();
+  }
   return found;
 }
 
-/// Near a place where two families meet the box scheme, whose phase is a little wrong, meets them elsewhere, and what it
-/// stands for there is not the derivative at all.
-std::optional<Trial> CurveInterval::solve_by_gmres(double position) {
-  using equations::Preconditioner;
-  const bool is_solved_so = _state.preconditioner == Preconditioner::exact || _state.preconditioner == Preconditioner::krylov;
-  if (!_problem->is_preconditioned() || is_solved_so) return std::nullopt;
-  const Preconditioner before = std::exchange(_state.preconditioner, Preconditioner::krylov);
-  _state.factor_point.clear();
-  std::optional<Trial> trial = solve(position);
-  _state.preconditioner = before;
-  _state.factor_point.clear();
-  return trial;
+CurvePoint CurveInterval::taken(double position, Trial trial, bool with_tangent) {
+  CurvePoint found{position, std::move(trial.loop), {}};
+  if (with_tangent)
+    found.tangent = _problem->tangent_of(_problem->direction_at(trial.values, prediction_at(position)), found.loop);
+  _points.push_back({std::move(trial.values), position});
+  _found.push_back(found);
+  return found;
 }
 
 std::optional<Trial> CurveInterval::known_at(double position) const {
@@ -115,6 +117,7 @@ std::optional<Trial> CurveInterval::solve(double position) {
     // Conditions of the interval, not of the guess: the orbit must not depend on how it is found.
     const std::vector<double> conditions = _problem->conditions_at({_points[_first].values, prediction.tangent, 1});
     Trial trial = _problem->correct(prediction, conditions);
+    _is_refused = trial.is_refused;
     if (trial.converged && slipped(trial, prediction)) return std::nullopt;
     const bool unresolved = trial.converged ? !_problem->resolved(trial) : trial.under_resolved;
     if (!unresolved) return trial.is_orbit ? std::optional(std::move(trial)) : std::nullopt;

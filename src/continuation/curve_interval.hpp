@@ -25,7 +25,7 @@ class CurveInterval {
   [[nodiscard]] std::optional<Trial> solve(double position);
   /// A known orbit itself, which the corrector may fail to find again; none between the two.
   [[nodiscard]] std::optional<Trial> known_at(double position) const;
-  [[nodiscard]] std::optional<Trial> solve_by_gmres(double position);
+  [[nodiscard]] CurvePoint taken(double position, Trial trial, bool with_tangent);
   [[nodiscard]] bool slipped(const Trial& trial, const Prediction& prediction);
   [[nodiscard]] Prediction prediction_at(double position);
 
@@ -39,6 +39,7 @@ class CurveInterval {
   std::size_t _last = 0;
   std::array<loop::Loop, 2> _ends;  // under the interval's time map
   std::vector<CurvePoint> _found;
+  bool _is_refused = false;  // the last solve, by GMRES too
 };
 
 }  // namespace orbweaver::continuation

@@ -20,6 +20,7 @@ struct Trial {
   bool is_orbit = false;        ///< converged, and the loss over the whole loop is under its threshold
   bool unsolved = false;        ///< beside a fast motion: the loss where the equations ask is above threshold
   bool stagnated = false;       ///< the solver's changes shrank no more
+  bool is_refused = false;      ///< it came to rest beside its equations, by GMRES too
   bool to_rounding = false;     ///< the loss between the places where the equations ask is no more than rounding leaves
   bool is_beside_the_way = false;  ///< its equations are not solved as far as the way asks, whatever the scene does
   bool truncated = false;       ///< its equations hold where they ask, and the loop does not obey them in between
