@@ -34,9 +34,9 @@ constexpr double falls = 0.5;
 /// What is left in error bounds, which are estimates.
 constexpr double error_margin = 10.0;
 
-/// How far beside a place without an orbit a fold's neighbours are taken, in parts of the interval in which it is looked
-/// for, the first two that there are: a family may turn where it crosses another one, and there Newton's method finds no
-/// orbit if it is asked for exactly that one.
+/// How far beside a place without an orbit a fold's neighbours are taken, in parts of the interval in which it is
+/// looked for, the first two that there are: a family may turn where it crosses another one, and there Newton's method
+/// finds no orbit if it is asked for exactly that one.
 constexpr double beside_singular[] = {1e-4, 1e-3, 1e-2};
 
 struct Interval {

@@ -296,7 +296,8 @@ Trial CollocationProblem::solve(Prediction prediction, const std::vector<double>
   return trial;
 }
 
-/// Whether the box scheme's error may be all that is seen along some direction of an orbit where the solver came to rest.
+/// Whether the box scheme's error may be all that is seen along some direction of an orbit where the solver came to
+/// rest.
 bool CollocationProblem::rests_aside(const Trial& trial) {
   if (!trial.stagnated || !trial.is_orbit || state().preconditioner == Preconditioner::exact) return false;
   return continuation::rests_aside(equations(), trial.values);

@@ -74,8 +74,8 @@ std::optional<CurvePoint> CurveInterval::at(double position, bool with_tangent) 
     trial = solve(position);
   }
   if (!trial) trial = known_at(position);
-  // Near a place where two families meet the box scheme, whose phase is a little wrong, meets them elsewhere, and what it
-  // stands for there is not the derivative at all.
+  // Near a place where two families meet the box scheme, whose phase is a little wrong, meets them elsewhere, and what
+  // it stands for there is not the derivative at all.
   const equations::Preconditioner usual = _state.preconditioner;
   const bool is_by_gmres = !trial && !_is_refused && _problem->is_preconditioned();
   if (is_by_gmres) {
@@ -83,7 +83,8 @@ std::optional<CurvePoint> CurveInterval::at(double position, bool with_tangent) 
     _state.factor_point.clear();
     trial = solve(position);
   }
-  std::optional<CurvePoint> found = trial ? std::optional(taken(position, *std::move(trial), with_tangent)) : std::nullopt;
+  std::optional<CurvePoint> found;
+  if (trial) found = taken(position, *std::move(trial), with_tangent);
   if (is_by_gmres) {
     _state.preconditioner = usual;
     _state.factor_point.clear();

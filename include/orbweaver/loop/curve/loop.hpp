@@ -78,8 +78,8 @@ inline constexpr int most_in_time = 32;
 /// Throws MisuseError for times < 1 or a time map that is not the identity.
 [[nodiscard]] Loop repeated(const Loop& loop, int times);
 
-/// The sum of loops of one system and time map with weights that add up to 1: modes, periods and parameters. The winding
-/// is that of the first.
+/// The sum of loops of one system and time map with weights that add up to 1: modes, periods and parameters. The
+/// winding is that of the first.
 [[nodiscard]] Loop weighted_sum(const std::vector<const Loop*>& loops, const std::vector<double>& weights);
 
 /// The same curve with s counted from `turns` of s (not of time) later: z(s + 2 pi turns), the time map moved along.
