@@ -43,6 +43,24 @@ TEST(FirstOrbits, FarOutNothingBetweenThemAndTheEquilibriumIsLost) {
   }
 }
 
+// A double pendulum on springs, in mm: on one side of a crossing of order 3 an index of 2.04 at the first orbit is
+// -0.24 at the second. What lies between was taken for the birth.
+TEST(FirstOrbits, WhatIsPassedOnTheFirstStepIsNotTheBirth) {
+  const core::Communicator comm;
+  const scene::Scene scene = scene::load(
+      ORBWEAVER_SOURCE_DIR "/drivers/scenes/double_pendulum.yaml",
+      {"system.effects=[torsion_springs]",
+       "system.parameters={m1: 3, m2: 1.7, l1: 250, l2: 180, g: 9810, spring1: 2.6e7, spring2: 0.7e7, rest1: 1.1, "
+       "rest2: -0.6}",
+       "starts.fixed_points.grid=[[0.5], [0]]", "starts.fixed_points.names={}", "starts.fixed_points.letters={}",
+       "starts.sweep.period=auto", "continuation={}", "survey.depth=2", "survey.subharmonics=4", "limits.period=5",
+       "limits.energy=[-.inf, 2e7]"});
+  const survey::Summary summary = test::run(comm, scene, "springs");
+  EXPECT_EQ(summary.failures, 0U) << testing::PrintToString(summary.failed_tasks);
+  const test::Atlas atlas(summary.atlas);
+  EXPECT_TRUE(atlas.crossing("Equilibrium 1, mode 1 D3T3", "branch-point", 4.615477929).has_value());
+}
+
 // On one side of where Cap and Cup are gone around three times (T = 17.22, 25.92) E and T turn beside the birth, nearer
 // than the first orbits of the larger start.
 TEST(FirstOrbits, FarOutNoFoldBesideABirthIsLost) {

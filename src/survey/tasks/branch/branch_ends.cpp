@@ -18,10 +18,6 @@ namespace {
 constexpr std::size_t places_from_birth = 7;
 constexpr double nearer_to_birth = 0.25;
 
-/// Test functions of a family's birth that are smaller vanish there, the family's own for one. Their error bounds say
-/// nothing: they take a Newton step, and the orbits of two families lie side by side. The crossing is located to 1e-9.
-constexpr double zero_at_birth = 1e-6;
-
 }  // namespace
 
 void BranchEnds::look_before_first(const std::optional<Arrival>& arrival) {
@@ -53,7 +49,7 @@ void BranchEnds::indices_from_birth(const std::vector<continuation::FamilyCurve:
   for (std::size_t f = 0; f < _followed.functions.size(); ++f) {
     const double before = at_birth.readings[f].value;
     const int after = at_first.readings[f].sign();
-    const bool is_shown = std::abs(before) > zero_at_birth && before * after < 0.0;
+    const bool is_shown = std::abs(before) > bifurcation::zero_at_birth && before * after < 0.0;
     if (is_shown)
       _events.add_event({.function = _followed.functions[f], .from_birth = true}, known[0].position, known[1].position,
                         known);

@@ -58,9 +58,13 @@ std::optional<bifurcation::TestPoint> BranchEvents::probe(double position) {
 bifurcation::TestPoint BranchEvents::test_point(double position,
                                                 const std::optional<spectrum::Stability>& stability) const {
   bifurcation::TestPoint point = _followed.test_point(position, stability);
-  if (position > _last)
-    for (std::size_t f = 0; f < point.readings.size(); ++f)
-      if (is_of_one(_followed.functions[f])) point.readings[f].error *= error_margin;
+  const bool is_first = _followed.work.lineage.depth > 0 && position <= 0.0;
+  for (std::size_t f = 0; f < point.readings.size(); ++f) {
+    if (!is_of_one(_followed.functions[f])) continue;
+    double& error = point.readings[f].error;
+    if (is_first || position > _last) error *= error_margin;
+    if (is_first) error = std::max(error, bifurcation::zero_at_birth);  // of the birth, not an event
+  }
   return point;
 }
 
@@ -155,11 +159,8 @@ void BranchEvents::add_folds(const std::vector<bifurcation::Fold>& folds,
 
 void BranchEvents::add_event(const bifurcation::Event& event, double from, double to,
                              std::vector<continuation::FamilyCurve::Known> known) {
-  // A family's own birth is no event: its index leaves 2 there like a power of the distance, first within its error.
-  const bool at_birth = _followed.work.lineage.depth > 0 && from <= 0.0;
   const bool is_fold = event.kind != bifurcation::Event::Kind::test_function;
   const bool is_in_sector = !is_fold && bifurcation::has_sector(event.function.kind);
-  if (at_birth && !is_fold && is_of_one(event.function)) return;
   LocateWork work;
   work.event = event;
   const std::string what = is_fold        ? "fold"

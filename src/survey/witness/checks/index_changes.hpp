@@ -9,6 +9,7 @@
 
 #include "orbweaver/archive/schema/crossing_kind.hpp"
 #include "orbweaver/archive/schema/schema.hpp"
+#include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/bifurcation/test_functions.hpp"
 #include "orbweaver/loop/symmetry/isotropy_text.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
@@ -79,15 +80,14 @@ class IndexChanges final : public Check {
       }
       for (std::size_t f = 0; f < functions.size(); ++f) {
         if (!bifurcation::has_sector(functions[f].kind)) continue;
-        const int sign = bifurcation::evaluate(functions[f], structure, stability).sign();
+        const bifurcation::Reading reading = bifurcation::evaluate(functions[f], structure, stability);
+        // The index leaves 2 at a birth like a power of the distance, first within its error.
+        const bool is_birth = family.parent >= 0 && functions[f].sector.q == 1 && n == side.nearest;
+        const int sign = is_birth && std::abs(reading.value) <= bifurcation::zero_at_birth ? 0 : reading.sign();
         if (sign == 0) continue;
         const std::optional<Signed> before = std::exchange(last[f], Signed{n, sign});
         if (!before || before->sign == sign) continue;
-        // The index leaves 2 at a birth like a power of the distance, first within its error.
-        const bool at_birth =
-            family.parent >= 0 && functions[f].sector.q == 1 && (before->orbit == side.nearest || n == side.nearest);
-        if (!at_birth &&
-            !is_listed(evidence, family, functions[f].sector, family.arclengths[before->orbit], family.arclengths[n]))
+        if (!is_listed(evidence, family, functions[f].sector, family.arclengths[before->orbit], family.arclengths[n]))
           found.push_back(finding_at(evidence, row, functions[f].sector, n, stability, evidence.severity_about(row)));
       }
     }
