@@ -211,7 +211,9 @@ void print_starts(const scene::Scene& scene, const systems::System& system, cons
 
 void print_continuation(const scene::Scene& scene, const systems::System& system) {
   const scene::Continuation& c = scene.continuation;
-  print_group("Continuation", {{"first orbit", length_text(system, c.start_amplitude) + " from its equilibrium"},
+  const bool is_in_scales = !c.start_is_given && !system.structure().has_angles();
+  print_group("Continuation", {{"first orbit", length_text(system, c.start_amplitude) +
+                                                   (is_in_scales ? " of the scales" : "") + " from its equilibrium"},
                                {"step", c.fixed_step ? "fixed, " + length_text(system, *c.fixed_step) : "adaptive"},
                                {"tolerance", fmt::format("sqrt(loss) < {:g} * min(1, rms |dz/dt|)", c.tolerance)},
                                {"harmonics", fmt::format("K from {} to {}", c.cutoff_from, c.cutoff_to)},

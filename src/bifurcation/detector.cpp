@@ -51,6 +51,19 @@ Vertex vertex_of(const Node& a, const Node& b, const Node& c) {
           2.0 * half_curvature};
 }
 
+/// A reading on the scale of its logarithm where it comes to its bound of 1, as that of a large index.
+Reading stretched(const Reading& reading) {
+  const double square = reading.value * reading.value;
+  return {std::atanh(reading.value), reading.error / (1.0 - square)};
+}
+
+/// By how much linear interpolation from both sides is off, beyond the errors; below 0 within them, NaN where one is at
+/// its bound.
+double interpolation_error(const Reading& before, const Reading& here, const Reading& after, double share) {
+  const double expected = before.value + share * (after.value - before.value);
+  return std::abs(here.value - expected) - (before.error + here.error + after.error);
+}
+
 double passed_at(const TestPoint& point, std::size_t function) {
   return point.passed.empty() ? std::numeric_limits<double>::quiet_NaN() : point.passed[function];
 }
@@ -113,9 +126,10 @@ bool Detector::badly_extrapolated(const std::vector<TestPoint>& grid, std::size_
     }
     const Reading& before = grid[n - 1].readings[f];
     const double share = (grid[n].position - grid[n - 1].position) / (grid[n + 1].position - grid[n - 1].position);
-    const double expected = before.value + share * (after.value - before.value);
-    const double error = before.error + here.error + after.error;
-    if (std::abs(here.value - expected) > 0.5 * allowed + error) return true;
+    if (interpolation_error(before, here, after, share) > 0.5 * allowed ||
+        interpolation_error(stretched(before), stretched(here), stretched(after), share) >
+            0.5 * _options.logarithm_error)
+      return true;
   }
   return false;
 }

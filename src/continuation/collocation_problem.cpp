@@ -130,12 +130,6 @@ std::vector<double> CollocationProblem::from_change(const loop::Loop& change) {
   return values;
 }
 
-loop::Tangent CollocationProblem::tangent_of(const std::vector<double>& direction, const loop::Loop& at) {
-  loop::Tangent out = change_of(direction, at);
-  out.normalize();
-  return out;
-}
-
 loop::Tangent CollocationProblem::change_of(const std::vector<double>& direction, const loop::Loop& at) {
   const Collocation& own = equations();
   const loop::StaggeredGrid* grid = &own.grid();

@@ -31,7 +31,6 @@ class CollocationProblem final : public PointProblem {
 
   [[nodiscard]] std::vector<double> from_loop(const loop::Loop& loop) override;
   [[nodiscard]] std::vector<double> from_change(const loop::Loop& change) override;
-  [[nodiscard]] loop::Tangent tangent_of(const std::vector<double>& direction, const loop::Loop& at) override;
   [[nodiscard]] std::size_t scalars_at() override { return static_cast<std::size_t>(equations().period_at()); }
 
   [[nodiscard]] double product(const std::vector<double>& a, const std::vector<double>& b, const std::vector<double>& c,

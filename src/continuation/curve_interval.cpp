@@ -20,6 +20,8 @@ constexpr double largest_correction = 0.2;
 /// rounding is multiplied by 1e4, still below what the corrector removes.
 constexpr std::size_t used_orbits = 4;
 constexpr double apart = 1e-4;
+/// Of the way to an orbit that was found far from its prediction. Not measured.
+constexpr int most_halvings = 4;
 
 /// Up to four nodes, nearest to `position` first, well apart so that their rounding is not amplified: what is nearer
 /// than `apart` of the interval's `length` is not.
@@ -74,6 +76,7 @@ std::optional<CurvePoint> CurveInterval::at(double position, bool with_tangent) 
     trial = solve(position);
   }
   if (!trial) trial = known_at(position);
+  if (!trial) trial = approach(position, most_halvings);
   // Near a place where two families meet the box scheme, whose phase is a little wrong, meets them elsewhere, and what
   // it stands for there is not the derivative at all.
   const equations::Preconditioner usual = _state.preconditioner;
@@ -94,11 +97,40 @@ std::optional<CurvePoint> CurveInterval::at(double position, bool with_tangent) 
 
 CurvePoint CurveInterval::taken(double position, Trial trial, bool with_tangent) {
   CurvePoint found{position, std::move(trial.loop), {}};
-  if (with_tangent)
-    found.tangent = _problem->tangent_of(_problem->direction_at(trial.values, prediction_at(position)), found.loop);
+  if (with_tangent) add_tangent(trial.values, found);
   _points.push_back({std::move(trial.values), position});
   _found.push_back(found);
   return found;
+}
+
+void CurveInterval::add_tangent(const std::vector<double>& values, CurvePoint& point) {
+  const Prediction here = prediction_at(point.position);
+  const std::vector<double> direction = _problem->direction_at(values, here);
+  point.tangent = _problem->change_of(direction, point.loop);
+  const double length = point.tangent.norm();
+  point.tangent.normalize();
+  std::vector<double> moved = values;
+  for (std::size_t n = 0; n < moved.size(); ++n) moved[n] += direction[n];
+  const std::vector<double>& first = _points[_first].values;
+  std::vector<double> end = first;
+  for (std::size_t n = 0; n < end.size(); ++n) end[n] += here.tangent[n];
+  const double share =
+      _problem->condition_product(moved, values, end, first) / _problem->condition_product(end, first, end, first);
+  point.advance = share * (_to - _from) / length;
+}
+
+/// By orbits in between, each half way to the next, where the prediction from those around is too far off.
+std::optional<Trial> CurveInterval::approach(double position, int halvings) {
+  if (!_has_slipped || halvings == 0) return std::nullopt;
+  const auto nearest = std::min_element(_points.begin(), _points.end(), [&](const TracePoint& a, const TracePoint& b) {
+    return std::abs(a.parameter - position) < std::abs(b.parameter - position);
+  });
+  const double between = 0.5 * (nearest->parameter + position);
+  std::optional<Trial> nearer = solve(between);
+  if (!nearer) nearer = approach(between, halvings - 1);
+  if (!nearer) return std::nullopt;
+  _points.push_back({std::move(nearer->values), between});
+  return solve(position);
 }
 
 std::optional<Trial> CurveInterval::known_at(double position) const {
@@ -119,7 +151,8 @@ std::optional<Trial> CurveInterval::solve(double position) {
     const std::vector<double> conditions = _problem->conditions_at({_points[_first].values, prediction.tangent, 1});
     Trial trial = _problem->correct(prediction, conditions);
     _is_refused = trial.is_refused;
-    if (trial.converged && slipped(trial, prediction)) return std::nullopt;
+    _has_slipped = trial.converged && slipped(trial, prediction);
+    if (_has_slipped) return std::nullopt;
     const bool unresolved = trial.converged ? !_problem->resolved(trial) : trial.under_resolved;
     if (!unresolved) return trial.is_orbit ? std::optional(std::move(trial)) : std::nullopt;
     // The time map stays: the chord is measured under it.

@@ -23,9 +23,11 @@ class CurveInterval {
 
  private:
   [[nodiscard]] std::optional<Trial> solve(double position);
+  [[nodiscard]] std::optional<Trial> approach(double position, int halvings);
   /// A known orbit itself, which the corrector may fail to find again; none between the two.
   [[nodiscard]] std::optional<Trial> known_at(double position) const;
   [[nodiscard]] CurvePoint taken(double position, Trial trial, bool with_tangent);
+  void add_tangent(const std::vector<double>& values, CurvePoint& point);
   [[nodiscard]] bool slipped(const Trial& trial, const Prediction& prediction);
   [[nodiscard]] Prediction prediction_at(double position);
 
@@ -39,7 +41,9 @@ class CurveInterval {
   std::size_t _last = 0;
   std::array<loop::Loop, 2> _ends;  // under the interval's time map
   std::vector<CurvePoint> _found;
-  bool _is_refused = false;  // the last solve, by GMRES too
+  // Of the last solve.
+  bool _is_refused = false;   // by GMRES too
+  bool _has_slipped = false;  // far from its prediction
 };
 
 }  // namespace orbweaver::continuation

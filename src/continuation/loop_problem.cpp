@@ -104,10 +104,8 @@ std::vector<double> LoopProblem::from_change(const loop::Loop& change) {
   return values;
 }
 
-loop::Tangent LoopProblem::tangent_of(const std::vector<double>& direction, const loop::Loop& at) {
-  loop::Tangent tangent = loop::with_cutoff(as_tangent(direction), at.cutoff, at.dimension);
-  tangent.normalize();
-  return tangent;
+loop::Tangent LoopProblem::change_of(const std::vector<double>& direction, const loop::Loop& at) {
+  return loop::with_cutoff(as_tangent(direction), at.cutoff, at.dimension);
 }
 
 double LoopProblem::product(const std::vector<double>& a, const std::vector<double>& b, const std::vector<double>& c,

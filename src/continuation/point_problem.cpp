@@ -63,8 +63,10 @@ std::array<std::vector<double>, 2> PointProblem::surface_at(const std::vector<do
   throw core::MisuseError("surfaces of orbits are solved for by collocation");
 }
 
-loop::Tangent PointProblem::change_of(const std::vector<double>&, const loop::Loop&) {
-  throw core::MisuseError("surfaces of orbits are solved for by collocation");
+loop::Tangent PointProblem::tangent_of(const std::vector<double>& direction, const loop::Loop& at) {
+  loop::Tangent tangent = change_of(direction, at);
+  tangent.normalize();
+  return tangent;
 }
 
 Trial PointProblem::correct(Prediction prediction, const std::vector<double>& conditions) {

@@ -91,7 +91,9 @@ class PointProblem {
   /// The change of a loop (without winding) as a change of a point; scalars stay.
   [[nodiscard]] virtual std::vector<double> from_change(const loop::Loop& change) = 0;
   /// A direction as the unit tangent of `at`, the loop of a point, which may be of an earlier resolution.
-  [[nodiscard]] virtual loop::Tangent tangent_of(const std::vector<double>& direction, const loop::Loop& at) = 0;
+  [[nodiscard]] loop::Tangent tangent_of(const std::vector<double>& direction, const loop::Loop& at);
+  /// The same of the length that the direction has.
+  [[nodiscard]] virtual loop::Tangent change_of(const std::vector<double>& direction, const loop::Loop& at) = 0;
   [[nodiscard]] virtual std::size_t scalars_at() = 0;
 
   /// The inner product of the steps a - b and c - d in which the branch measures its parameter.
@@ -133,8 +135,6 @@ class PointProblem {
   /// other way round. Throws MisuseError for problems of families, NumericalError where the linear system is singular.
   [[nodiscard]] virtual std::array<std::vector<double>, 2> surface_at(const std::vector<double>& orbit,
                                                                       const Prediction& near);
-  /// As `tangent_of`, of the length that the direction has.
-  [[nodiscard]] virtual loop::Tangent change_of(const std::vector<double>& direction, const loop::Loop& at);
 
  protected:
   PointProblem(const systems::System& system, ProblemState& state) : _family(system), _state(state) {}

@@ -34,13 +34,15 @@ std::optional<bool> OrbitStability::of(std::size_t orbit) const {
   const double error = std::isnan(_errors[orbit]) ? 0.0 : _errors[orbit];
   if (_pairs == 0) return std::nullopt;
   bool stable = true;
+  bool decided = error <= largest_error;
   for (std::size_t pair = 0; pair < _pairs; ++pair) {
     const std::complex<double> k = value(orbit, pair);
     if (std::isnan(k.real()) || std::isnan(k.imag())) return by_volume(orbit);
-    stable = stable && (_multipliers ? std::abs(k) <= 1.0 + error
-                                     : std::abs(k.imag()) <= error && std::abs(k.real()) <= 2.0 + error);
+    const double beyond = _multipliers ? std::abs(k) - 1.0 : std::max(std::abs(k.real()) - 2.0, std::abs(k.imag()));
+    stable = stable && beyond <= error;
+    decided = decided && (_multipliers ? beyond : std::abs(k.real()) - 2.0) < -error;
   }
-  return stable && error > largest_error ? std::nullopt : std::optional<bool>(stable);
+  return stable && !decided ? std::nullopt : std::optional<bool>(stable);
 }
 
 // A single multiplier is all of the volume's change; where it is beyond double precision's range its logarithm is not.

@@ -17,9 +17,10 @@ class OrbitStability {
  public:
   explicit OrbitStability(const archive::Archive& atlas);
 
-  /// True if within `stability_error` all indices are real and between -2 and 2, or all multipliers within the unit
-  /// circle; of a single multiplier that is not known, if its logarithm says so. Nothing where they are not known, or
-  /// the error exceeds 1e-3 and leaves it open whether they are.
+  /// True if all indices are between -2 and 2, and real within `stability_error`, or all multipliers within the unit
+  /// circle, by more than that error; of a single multiplier that is not known, if its logarithm says so. Nothing where
+  /// they are not known, where one is on the border within its error and none beyond, or where the error exceeds 1e-3
+  /// and leaves it open.
   [[nodiscard]] std::optional<bool> of(std::size_t orbit) const;
 
   /// The decimal logarithm of the largest multiplier's absolute value; NaN where it is not known.

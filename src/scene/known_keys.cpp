@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::string_view must_be_given = "required";
 constexpr std::string_view unit_of_states = "deg for angles, else the coordinate's own";
-constexpr std::string_view unit_of_lengths = "deg or rad, behind the number; without angles the coordinates' own";
+constexpr std::string_view unit_of_lengths =
+    "deg or rad, behind the number; without angles those of the coordinate with the largest scale (`check`)";
 
 constexpr std::array table_of_keys{
     KnownKey{"name", "text", "the system's name", "", "what the archive calls the survey"},

@@ -136,9 +136,8 @@ double Field::plain_length(std::string_view also) const {
   const std::optional<std::string> scalar = plain_scalar();
   const std::optional<double> value = scalar ? parse_number(*scalar) : std::nullopt;
   if (!value || !std::isfinite(*value) || !(*value > 0)) {
-    const bool has_unit = scalar && parse_angle(*scalar);
-    fail(fmt::format("{}a number > 0 in the coordinates' own units, for the system has no angles", also), got(),
-         has_unit ? fmt::format("write {:g}", *parse_angle(*scalar)) : "for example 0.01");
+    fail(fmt::format("{}a number > 0 in the units of the coordinate with the largest scale, for the system has no angles", also), got(),
+         "for example 0.01");
   }
   return *value;
 }

@@ -59,7 +59,8 @@ class Field {
   [[nodiscard]] double number(const NumberRule& rule) const;
   [[nodiscard]] int integer(const IntegerRule& rule) const;
   /// A length in the space of states, > 0. Where a coordinate is an angle: with `deg` or `rad`, in radians, at most 90
-  /// degrees. Elsewhere: a bare number, in the coordinates' own units. `also` names what else the key takes.
+  /// degrees. Elsewhere: a bare number, in the units of the coordinate with the largest scale. `also` names what else
+  /// the key takes.
   [[nodiscard]] double length(bool angles, std::string_view also = "") const;
   /// A plain scalar as written; none for anything else.
   [[nodiscard]] std::optional<std::string> plain_scalar() const;

@@ -205,6 +205,15 @@ TEST(Detector, CoarseStepIsSubdivided) {
   }
 }
 
+// An index of 118 that is -10 within a step and 54 behind it: its reading goes from 0.967 to 0.929.
+TEST(Detector, LargeIndexThatDipsWithinAStepIsSeen) {
+  const auto index = [](double x) { return 118.0 - 128.0 * std::exp(-std::pow((x - 2.5) / (x < 2.5 ? 0.2 : 0.6), 2)); };
+  Family family{{exact([&](double x) { return (index(x) - 2.0) / (std::abs(index(x)) + 2.0); })}};
+  const double apart = std::sqrt(std::log(128.0 / 116.0));
+  expect_events(family.run({0, 1, 2, 3, 4, 5}), {{0, 2.5 - 0.2 * apart}, {0, 2.5 + 0.6 * apart}});
+  EXPECT_LE(family.probes, 8);
+}
+
 TEST(Detector, ZerosOfSeveralFunctionsInOneStep) {
   const auto step_like = [](double at) { return exact([at](double x) { return std::tanh(2.0 * (x - at)); }); };
   Family family{{step_like(4.1), step_like(4.5), step_like(4.55), exact([](double x) { return 0.1 * (x - 4.52); })}};

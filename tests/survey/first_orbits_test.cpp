@@ -61,6 +61,51 @@ TEST(FirstOrbits, WhatIsPassedOnTheFirstStepIsNotTheBirth) {
   EXPECT_TRUE(atlas.crossing("Equilibrium 1, mode 1 D3T3", "branch-point", 4.615477929).has_value());
 }
 
+scene::Scene springs_in_ms(const std::vector<std::string>& overrides) {
+  std::vector<std::string> all{
+      "system.effects=[torsion_springs]",
+      "system.parameters={m1: 3, m2: 1.7, l1: 250, l2: 180, g: 9.81e-3, spring1: 26, spring2: 7, rest1: 1.1, "
+      "rest2: -0.6}",
+      "starts.fixed_points.grid=[[0.5], [0]]",
+      "starts.fixed_points.names={}",
+      "starts.fixed_points.letters={}",
+      "starts.sweep.period=auto",
+      "continuation={}",
+      "survey.depth=2"};
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  return scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/double_pendulum.yaml", all);
+}
+
+// E rises from orbit to orbit, at a quarter of the rate of the ways beside, and by 4e-4 of itself falls in between.
+TEST(FirstOrbits, APairOfFoldsWithinAStepIsFoundWhereItsSlopesAreSmall) {
+  const core::Communicator comm;
+  const survey::Summary summary =
+      test::run(comm, springs_in_ms({"survey.subharmonics=3", "limits.period=4700", "limits.energy=[-.inf, 20]"}), "ms");
+  EXPECT_EQ(summary.failures, 0U) << testing::PrintToString(summary.failed_tasks);
+  const test::Atlas atlas(summary.atlas);
+  EXPECT_TRUE(atlas.crossing("Equilibrium 1, mode 1 D1T3", "fold-energy", 4567.15882).has_value());
+  EXPECT_TRUE(atlas.crossing("Equilibrium 1, mode 1 D1T3", "fold-energy", 4569.60070).has_value());
+}
+
+// Steps a third of a family long pass indices of 118, -10 and 52.
+TEST(FirstOrbits, LongStepsLoseNothing) {
+  const core::Communicator comm;
+  const auto by = [&](const std::string& step) {
+    const survey::Summary summary = test::run(
+        comm, springs_in_ms({"survey.subharmonics=4", "limits.period=6100", "limits.energy=[-.inf, 24]",
+                             "continuation.step=" + step}),
+        "steps");
+    EXPECT_EQ(summary.failures, 0U) << testing::PrintToString(summary.failed_tasks);
+    return test::Atlas(summary.atlas);
+  };
+  const test::Atlas usual = by("adaptive");
+  EXPECT_TRUE(usual.crossing("Equilibrium 1, mode 1 D1T4b", "branch-point", 6097.252935).has_value());
+  for (const std::string step : {"0.125", "0.25"}) {
+    SCOPED_TRACE(step);
+    test::expect_same_tree(usual, by(step));
+  }
+}
+
 // On one side of where Cap and Cup are gone around three times (T = 17.22, 25.92) E and T turn beside the birth, nearer
 // than the first orbits of the larger start.
 TEST(FirstOrbits, FarOutNoFoldBesideABirthIsLost) {

@@ -56,6 +56,9 @@ struct DetectorOptions {
   /// largest modulus so far (but 0.1 at least). Zeros in pairs within a step are missed above, steps wasted below; not
   /// measured.
   double extrapolation_error = 0.1;
+  /// The same in half the logarithm of an index that is large (the hyperbolic area tangent of the reading, which hardly
+  /// moves there): it may go from 118 to -10 and back to 52 within a step. Not measured below.
+  double logarithm_error = 0.3;
   /// The same in turns, where they are known: the angle of a multiplier may change evenly while its functions go up and
   /// down. As much as the above is where a function is steepest.
   double turning_error = 0.02;

@@ -20,6 +20,7 @@ struct CurvePoint {
   double position = 0.0;  ///< arclength of known orbits, in proportion to the chord between them
   loop::Loop loop;
   loop::Tangent tangent;  ///< unit direction of the family there, towards larger positions; empty where unknown
+  double advance = 0.0;   ///< of the position with a unit of `tangent`, of a point of a FamilyCurve
 };
 
 class CurveInterval;

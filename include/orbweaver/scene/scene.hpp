@@ -97,7 +97,8 @@ struct Sweep {
 };
 
 struct Continuation {
-  /// |dz(s = 0)|, in radians where the system has angles, elsewhere in the coordinates' own units; none = adaptive
+  /// |dz(s = 0)|, in radians where the system has angles, elsewhere in the units of the coordinate with the largest
+  /// scale; none = adaptive
   std::optional<double> fixed_step;
   /// |dz(s = 0)| of the first orbit, in the same units; the default is the paper's half degree, as a number, in the
   /// survey's scales

@@ -163,7 +163,8 @@ class CrossingCheck {
       loop::Loop loop = _atlas.loop(_family.first_orbit + steps[i]);
       if (i > first) {
         const loop::Loop& last = curve.known().back().loop;
-        loop = _atlas.begun_as(static_cast<std::size_t>(_crossing.family), loop, last);
+        loop = _atlas.begun_as(static_cast<std::size_t>(_crossing.family), loop, last,
+                               std::abs(_family.arclengths[steps[i]] - _family.arclengths[steps[i - 1]]));
         position += continuation::arclength_between(last, loop);
       }
       curve.add({position, loop, _family.arclengths[steps[i]]}, orbits_given);
@@ -192,7 +193,7 @@ class CrossingCheck {
       claims.object("arclength", fmt::format("is {:.12g}: no orbit converges there", arclength));
       return std::nullopt;
     }
-    if (archive::is_fold(_kind)) slopes(curve, a.position, b.position);
+    if (archive::is_fold(_kind)) slopes(curve, a, b);
     return Place{std::move(*point), *found - a.position, b.position - *found};
   }
 
@@ -243,11 +244,30 @@ class CrossingCheck {
 
   [[nodiscard]] bool is_placed() const { return _crossing.multiplicity > _atlas.scene().survey.subharmonics; }
 
-  /// The slopes at the orbits beside a fold.
-  void slopes(continuation::FamilyCurve& curve, double from, double to) {
+  /// The slopes at the orbits beside a fold, or half way to others of its kind that are nearer.
+  void slopes(continuation::FamilyCurve& curve, const continuation::FamilyCurve::Known& a,
+              const continuation::FamilyCurve::Known& b) {
     _slopes.clear();
-    for (const double position : {from, to})
-      if (const auto point = curve.at(position, true)) _slopes.push_back(slope(*point));
+    double from = std::min(a.arclength, b.arclength);
+    double to = std::max(a.arclength, b.arclength);
+    if (const auto before = next_of_kind(-1)) from = std::max(from, 0.5 * (*before + real("arclength")));
+    if (const auto behind = next_of_kind(1)) to = std::min(to, 0.5 * (*behind + real("arclength")));
+    for (const double arclength : {from, to}) {
+      const double share = (arclength - a.arclength) / (b.arclength - a.arclength);
+      if (const auto point = curve.at(a.position + share * (b.position - a.position), true))
+        _slopes.push_back(slope(*point));
+    }
+  }
+
+  /// The arclength of the family's next crossing of this kind, in rows that rise or fall with `way`.
+  [[nodiscard]] std::optional<double> next_of_kind(int way) const {
+    const auto rows = static_cast<std::ptrdiff_t>(_table.rows());
+    for (auto n = static_cast<std::ptrdiff_t>(_row) + way; n >= 0 && n < rows; n += way) {
+      const auto row = static_cast<std::size_t>(n);
+      if (_table.integers("family")[row] != _crossing.family) break;
+      if (_table.texts("kind")[row] == _crossing.kind) return _table.reals("arclength")[row];
+    }
+    return std::nullopt;
   }
 
   [[nodiscard]] double slope(const continuation::CurvePoint& point) const {

@@ -293,13 +293,7 @@ void check_way(const VerifiedAtlas& atlas, std::size_t from, const loop::Loop& a
   const double step = std::abs(arclengths[to] - arclengths[from]);
   const double of_step = has_phase ? same_way : a.parameters.empty() ? same_way_without_phase : same_way_in_parameter;
   const double allowed = of_step * step + rounding;
-  double found;
-  if (has_phase) {
-    found = end(a, b);
-    if (std::abs(found - arclengths[to]) > allowed) found = end(a, atlas.begun_as(family, b, a));
-  } else {
-    found = end(a, atlas.begun_as(family, b, a));
-  }
+  const double found = end(a, atlas.begun_as(family, b, a, step));
   Claims(findings, "orbits", static_cast<std::int64_t>(to)).agree("arclength", arclengths[to], found, allowed);
 }
 

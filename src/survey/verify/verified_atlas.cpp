@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/archive/read/loop_of.hpp"
+#include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
@@ -80,9 +81,16 @@ bool VerifiedAtlas::has_reversor(std::size_t family) const {
                      [](const loop::SymmetryElement& element) { return element.reversing; });
 }
 
-loop::Loop VerifiedAtlas::begun_as(std::size_t family, const loop::Loop& loop, const loop::Loop& neighbour) const {
+loop::Loop VerifiedAtlas::begun_as(std::size_t family, const loop::Loop& loop, const loop::Loop& neighbour,
+                                   double way) const {
   const systems::Structure& system = _system->structure();
-  if (has_reversor(family)) return started_as(system, loop, neighbour);
+  if (has_reversor(family)) {
+    const auto off = [&](const loop::Loop& one) {
+      return std::abs(continuation::arclength_in_units(*_system, neighbour, one) - way);
+    };
+    loop::Loop other = loop::aligned(loop, loop::align(system, loop, neighbour));
+    return off(other) < off(loop) ? other : loop;
+  }
   // Neighbours differ by where they begin, not by a symmetry: only shifts are looked through.
   return loop::aligned(loop, loop::align_in_time(system, loop, neighbour));
 }

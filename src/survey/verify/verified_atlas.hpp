@@ -31,9 +31,11 @@ class VerifiedAtlas {
 
   /// Row `orbit` of /orbits, in the survey's scales. Throws InputError where the row holds no loop.
   [[nodiscard]] loop::Loop loop(std::size_t orbit) const;
-  /// A loop of the family, begun as its neighbour is. Reversors fix where a family's loops begin, to half a period;
-  /// others were begun where they are nearest to their neighbour, and are stored in a standard phase.
-  [[nodiscard]] loop::Loop begun_as(std::size_t family, const loop::Loop& loop, const loop::Loop& neighbour) const;
+  /// A loop of the family, begun as its neighbour is, from which it is `way` of the archive's arclength. Reversors fix
+  /// where a family's loops begin, to half a period, which the way tells; others were begun where they are nearest to
+  /// their neighbour, and are stored in a standard phase.
+  [[nodiscard]] loop::Loop begun_as(std::size_t family, const loop::Loop& loop, const loop::Loop& neighbour,
+                                    double way) const;
   /// Of its orbits' certificates: what the scene asks for; closures at least, which its modes alone give.
   [[nodiscard]] certificate::Level certificate_level() const;
   /// Whether its rows must have a verdict: a survey that stopped early has none where tasks of their own give them.

@@ -15,9 +15,12 @@ namespace {
 using bifurcation::Fold;
 using Known = continuation::FamilyCurve::Known;
 
-/// Slopes are looked at where the change on a way is so much slower than on those beside it: steps that pass a pair of
-/// folds resolve their quantity no better. Not measured.
-constexpr double slower = 0.5;
+/// Slopes are looked at where the change on a way is slower than this times the geometric mean of those beside it: a pair
+/// of folds holds up what would else go on evenly. Not measured.
+constexpr double slower = 0.8;
+/// Where the cubic through the ends has a slope of less than this share of theirs, it is asked what the slope there is.
+constexpr double dipping = 0.5;
+constexpr int most_splits = 4;  ///< of a way at such places, one within the other
 
 /// One quantity on the way from the orbit `way` to the next.
 class WayBetween {
@@ -28,24 +31,26 @@ class WayBetween {
   }
 
   [[nodiscard]] bool may_hide() const {
-    return (!has_before() || is_slower_than(_way - 1)) && (!has_behind() || is_slower_than(_way + 1));
+    const double before = has_before() ? rate(_way - 1) : rate(_way + 1);
+    const double behind = has_behind() ? rate(_way + 1) : before;
+    return before * _rate > 0.0 && behind * _rate > 0.0 && _rate * _rate < slower * slower * before * behind;
   }
 
   /// `curve`: of the known orbits.
   [[nodiscard]] std::vector<Fold> folds(continuation::FamilyCurve& curve, const loop::Isotropy& isotropy) const {
     const double from = position(_way);
     const double to = position(_way + 1);
-    const std::optional<double> first = slope_at(curve, from);
-    const std::optional<double> second = slope_at(curve, to);
+    const std::optional<Place> first = place_at(curve, from);
+    const std::optional<Place> second = place_at(curve, to);
     if (!first || !second) return {};
     std::optional<double> least;
-    const auto is_told = [&](double slope) {  // rounding is asked only where a slope is against the changes
-      if (!(std::abs(slope) > _visible / (to - from))) return false;
+    const auto is_told = [&](const Place& place) {  // rounding is asked only where a slope is against the changes
+      if (!(std::abs(place.slope) > _visible / (to - from))) return false;
       if (!least) least = moved(isotropy);
-      return std::abs(slope) > *least;
+      return std::abs(place.slope) * place.advance > *least;
     };
-    const bool turns_at_first = *first * _rate < 0.0 && is_told(*first);
-    const bool turns_at_second = *second * _rate < 0.0 && is_told(*second);
+    const bool turns_at_first = first->slope * _rate < 0.0 && is_told(*first);
+    const bool turns_at_second = second->slope * _rate < 0.0 && is_told(*second);
     if ((turns_at_first && !has_before()) || (turns_at_second && !has_behind())) return {};  // end_folds finds it
     std::vector<Fold> found;
     if (turns_at_first && is_plain(curve, _way - 1)) found.push_back({_quantity, position(_way - 1), from});
@@ -60,6 +65,13 @@ class WayBetween {
   }
 
  private:
+  struct Place {
+    double position;
+    double value;
+    double slope;    // with the position
+    double advance;  // of CurvePoint
+  };
+
   [[nodiscard]] bool has_before() const { return _way > 0; }
   [[nodiscard]] bool has_behind() const { return _way + 2 < _known.size(); }
   [[nodiscard]] double position(std::size_t n) const { return _known[n].position; }
@@ -67,35 +79,40 @@ class WayBetween {
   [[nodiscard]] double rate(std::size_t way) const {
     return (value(way + 1) - value(way)) / (position(way + 1) - position(way));
   }
-  [[nodiscard]] bool is_slower_than(std::size_t other) const {
-    const double beside = rate(other);
-    return beside * _rate > 0.0 && std::abs(_rate) < slower * std::abs(beside);
-  }
-
-  [[nodiscard]] std::optional<double> slope_at(continuation::FamilyCurve& curve, double position) const {
+  [[nodiscard]] std::optional<Place> place_at(continuation::FamilyCurve& curve, double position) const {
     const auto point = curve.at(position, true);
     if (!point || point->tangent.empty()) return std::nullopt;
-    return slope_of(_system, _quantity, *point);
+    return Place{position, value_of(_system, _quantity, point->loop),
+                 slope_of(_system, _quantity, *point) / point->advance, point->advance};
   }
 
   /// Whether the slope at an orbit has the sign of the changes from orbit to orbit.
   [[nodiscard]] bool is_plain(continuation::FamilyCurve& curve, std::size_t n) const {
-    const auto slope = slope_at(curve, position(n));
-    return slope && *slope * _rate > 0.0;
+    const auto there = place_at(curve, position(n));
+    return there && there->slope * _rate > 0.0;
   }
 
-  /// Between the two a place at which the slope is against those at both of them: where that of the cubic with these
-  /// slopes is least.
-  [[nodiscard]] std::optional<double> turned_between(continuation::FamilyCurve& curve, double first, double second,
-                                                     const std::function<bool(double)>& is_told) const {
-    const double bend = first + second - 2.0 * _rate;
-    const double share = (2.0 * first + second - 3.0 * _rate) / (3.0 * bend);
+  /// Between the two, where their slopes have one sign, a place at which the slope has the other: sought where that of
+  /// the cubic through both is least, and then between that place and each of them.
+  [[nodiscard]] std::optional<double> turned_between(continuation::FamilyCurve& curve, const Place& first,
+                                                     const Place& second,
+                                                     const std::function<bool(const Place&)>& is_told,
+                                                     int splits = most_splits) const {
+    if (first.slope * second.slope < 0.0) return std::nullopt;
+    const double rate = (second.value - first.value) / (second.position - first.position);
+    const double bend = first.slope + second.slope - 2.0 * rate;
+    const double share = (2.0 * first.slope + second.slope - 3.0 * rate) / (3.0 * bend);
     if (!(share > 0.0 && share < 1.0)) return std::nullopt;
-    const double there = first + share * (6.0 * _rate - 4.0 * first - 2.0 * second) + 3.0 * share * share * bend;
-    if (there * second > 0.0) return std::nullopt;
-    const double place = position(_way) + share * (position(_way + 1) - position(_way));
-    const auto slope = slope_at(curve, place);
-    return slope && *slope * second < 0.0 && is_told(*slope) ? std::optional(place) : std::nullopt;
+    const double there =
+        first.slope + share * (6.0 * rate - 4.0 * first.slope - 2.0 * second.slope) + 3.0 * share * share * bend;
+    const double towards = first.slope > 0.0 ? 1.0 : -1.0;
+    if (towards * there > dipping * std::min(std::abs(first.slope), std::abs(second.slope))) return std::nullopt;
+    const auto between = place_at(curve, first.position + share * (second.position - first.position));
+    if (!between) return std::nullopt;
+    if (towards * between->slope < 0.0) return is_told(*between) ? std::optional(between->position) : std::nullopt;
+    if (splits == 0) return std::nullopt;
+    if (const auto before = turned_between(curve, first, *between, is_told, splits - 1)) return before;
+    return turned_between(curve, *between, second, is_told, splits - 1);
   }
 
   /// Of slopes, by rounding, at the two orbits.
