@@ -20,7 +20,7 @@ constexpr double largest_correction = 0.2;
 /// rounding is multiplied by 1e4, still below what the corrector removes.
 constexpr std::size_t used_orbits = 4;
 constexpr double apart = 1e-4;
-/// Of the way to an orbit that was found far from its prediction. Not measured.
+/// Of the way to an orbit that is not found from its prediction, or far from it. Not measured.
 constexpr int most_halvings = 4;
 
 /// Up to four nodes, nearest to `position` first, well apart so that their rounding is not amplified: what is nearer
@@ -121,7 +121,7 @@ void CurveInterval::add_tangent(const std::vector<double>& values, CurvePoint& p
 
 /// By orbits in between, each half way to the next, where the prediction from those around is too far off.
 std::optional<Trial> CurveInterval::approach(double position, int halvings) {
-  if (!_has_slipped || halvings == 0) return std::nullopt;
+  if (_is_refused || halvings == 0) return std::nullopt;
   const auto nearest = std::min_element(_points.begin(), _points.end(), [&](const TracePoint& a, const TracePoint& b) {
     return std::abs(a.parameter - position) < std::abs(b.parameter - position);
   });
@@ -151,8 +151,7 @@ std::optional<Trial> CurveInterval::solve(double position) {
     const std::vector<double> conditions = _problem->conditions_at({_points[_first].values, prediction.tangent, 1});
     Trial trial = _problem->correct(prediction, conditions);
     _is_refused = trial.is_refused;
-    _has_slipped = trial.converged && slipped(trial, prediction);
-    if (_has_slipped) return std::nullopt;
+    if (trial.converged && slipped(trial, prediction)) return std::nullopt;
     const bool unresolved = trial.converged ? !_problem->resolved(trial) : trial.under_resolved;
     if (!unresolved) return trial.is_orbit ? std::optional(std::move(trial)) : std::nullopt;
     // The time map stays: the chord is measured under it.

@@ -41,9 +41,7 @@ class CurveInterval {
   std::size_t _last = 0;
   std::array<loop::Loop, 2> _ends;  // under the interval's time map
   std::vector<CurvePoint> _found;
-  // Of the last solve.
-  bool _is_refused = false;   // by GMRES too
-  bool _has_slipped = false;  // far from its prediction
+  bool _is_refused = false;  // the last solve, by GMRES too
 };
 
 }  // namespace orbweaver::continuation

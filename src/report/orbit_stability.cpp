@@ -31,7 +31,8 @@ OrbitStability::OrbitStability(const archive::Archive& atlas)
       _multipliers(holds_multipliers(atlas)) {}
 
 std::optional<bool> OrbitStability::of(std::size_t orbit) const {
-  const double error = std::isnan(_errors[orbit]) ? 0.0 : _errors[orbit];
+  const bool has_error = !std::isnan(_errors[orbit]);
+  const double error = has_error ? _errors[orbit] : 0.0;
   if (_pairs == 0) return std::nullopt;
   bool stable = true;
   bool decided = error <= largest_error;
@@ -40,7 +41,7 @@ std::optional<bool> OrbitStability::of(std::size_t orbit) const {
     if (std::isnan(k.real()) || std::isnan(k.imag())) return by_volume(orbit);
     const double beyond = _multipliers ? std::abs(k) - 1.0 : std::max(std::abs(k.real()) - 2.0, std::abs(k.imag()));
     stable = stable && beyond <= error;
-    decided = decided && (_multipliers ? beyond : std::abs(k.real()) - 2.0) < -error;
+    decided = decided && (!has_error || (_multipliers ? beyond : std::abs(k.real()) - 2.0) < -error);
   }
   return stable && !decided ? std::nullopt : std::optional<bool>(stable);
 }

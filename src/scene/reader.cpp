@@ -136,7 +136,10 @@ double Field::plain_length(std::string_view also) const {
   const std::optional<std::string> scalar = plain_scalar();
   const std::optional<double> value = scalar ? parse_number(*scalar) : std::nullopt;
   if (!value || !std::isfinite(*value) || !(*value > 0)) {
-    fail(fmt::format("{}a number > 0 in the units of the coordinate with the largest scale, for the system has no angles", also), got(),
+    fail(fmt::format("{}a number > 0 in the units of the coordinate with the largest scale, for the system has no "
+                     "angles",
+                     also),
+         got(),
          "for example 0.01");
   }
   return *value;

@@ -72,8 +72,9 @@ inline std::map<std::string, ListedFamily> listed(const Atlas& atlas, double tim
 }
 
 /// The same families by the same names, born at the same places, with the same crossings and ends. `time`, `energy`: of
-/// the units of `b` in those of `a`.
-inline void expect_same_tree(const Atlas& a, const Atlas& b, double time = 1.0, double energy = 1.0) {
+/// the units of `b` in those of `a`. `size`: an energy of the system, in the units of `a`; 0 is any other.
+inline void expect_same_tree(const Atlas& a, const Atlas& b, double time = 1.0, double energy = 1.0,
+                             double size = 1.0) {
   const auto first = listed(a, 1.0, 1.0);
   const auto second = listed(b, time, energy);
   for (const auto& [name, family] : second) EXPECT_TRUE(first.contains(name)) << name << " is in the second only";
@@ -96,7 +97,7 @@ inline void expect_same_tree(const Atlas& a, const Atlas& b, double time = 1.0, 
       const ListedCrossing& y = other->second.crossings[n];
       EXPECT_EQ(y.what, x.what) << x.period;
       EXPECT_NEAR(y.period, x.period, same_crossing * x.period) << x.what;
-      EXPECT_NEAR(y.energy, x.energy, same_crossing * (1.0 + std::abs(x.energy))) << x.what << " T = " << x.period;
+      EXPECT_NEAR(y.energy, x.energy, same_crossing * (size + std::abs(x.energy))) << x.what << " T = " << x.period;
     }
   }
 }

@@ -15,8 +15,8 @@ namespace {
 using bifurcation::Fold;
 using Known = continuation::FamilyCurve::Known;
 
-/// Slopes are looked at where the change on a way is slower than this times the geometric mean of those beside it: a pair
-/// of folds holds up what would else go on evenly. Not measured.
+/// Slopes are looked at where the change on a way is slower than this times the geometric mean of those beside it: a
+/// pair of folds holds up what would else go on evenly. Not measured.
 constexpr double slower = 0.8;
 /// Where the cubic through the ends has a slope of less than this share of theirs, it is asked what the slope there is.
 constexpr double dipping = 0.5;
