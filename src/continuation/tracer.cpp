@@ -34,6 +34,10 @@ constexpr double still_at_start = 1e-16;
 /// Of the angle between a branch's direction at its crossing and the way to its first orbit, which bends with the
 /// distance: those of the shipped scenes have 0.88 or more, one that had gone over to another family 0.62.
 constexpr double first_cosine = 0.85;
+/// Unless it is the same at half the distance: the cosine of the angle between the two ways, and how far the nearer one's
+/// share of the farther one's length is from a half. On another family it would be as long.
+constexpr double straight_cosine = 0.98;
+constexpr double straight_share = 0.1;
 /// Of a step's length where the step went over to another family: the next attempt.
 constexpr double shortened_after_jump = 0.3;
 /// The same of the length allowed to the attempt before, once an attempt has come out no shorter.
@@ -93,6 +97,7 @@ std::optional<Orbit> Tracer::first_orbit() {
   _frontier.problem.held_energy = energy_of(*_system, _start.base);
   _problem->resolve(_problem->resolution_for(std::max(_start.base.cutoff, _options.cutoff_from), _start.base.time_map,
                                              _options.cutoff_to));
+  std::vector<double> farther;  // an orbit aside, at twice the amplitude
   while (true) {
     // Beside an orbit everything is measured by the orbit, however near the first one of the family lies.
     _frontier.problem.amplitude = extent_of(_start.base.winding, std::max(amplitude, loop::rms_amplitude(_start.base)));
@@ -111,7 +116,9 @@ std::optional<Orbit> Tracer::first_orbit() {
       _problem->resolve(*finer);
       continue;
     }
-    if (trial.is_orbit && !is_at_rest && 0.5 * amplitude >= nearest && is_aside(trial.values, predicted, base)) {
+    if (trial.is_orbit && !is_at_rest && 0.5 * amplitude >= nearest && is_aside(trial.values, predicted, base) &&
+        !is_half_way(trial.values, farther, base)) {
+      farther = trial.values;
       amplitude *= 0.5;
       continue;
     }
@@ -150,6 +157,17 @@ bool Tracer::is_aside(const std::vector<double>& first, const std::vector<double
   const double foreseen = _problem->product(predicted, base, predicted, base);
   const double along = _problem->product(first, base, predicted, base);
   return along < first_cosine * std::sqrt(way * foreseen);
+}
+
+/// Whether a way from the crossing leads to an orbit as straight as to another, twice as far. A family that goes through
+/// a crossing of order 3 has a part of the base's own direction, as large as it likes, and the branch's may lack it.
+bool Tracer::is_half_way(const std::vector<double>& orbit, const std::vector<double>& farther,
+                         const std::vector<double>& base) {
+  if (farther.size() != orbit.size()) return false;
+  const double way = _problem->product(orbit, base, orbit, base);
+  const double both = _problem->product(orbit, base, farther, base);
+  const double longer = _problem->product(farther, base, farther, base);
+  return both > straight_cosine * std::sqrt(way * longer) && std::abs(std::sqrt(way / longer) - 0.5) < straight_share;
 }
 
 std::optional<Orbit> Tracer::base_orbit() {

@@ -19,9 +19,16 @@ constexpr double amplitude_factors[] = {1.0, 0.3, 3.0, 0.1, 10.0, 0.03};
 /// Least cosine between the first orbit's way and the direction in which it was to leave (60 degrees): an orbit of the
 /// base family or of another direction lies beside it. Not measured.
 constexpr double least_share = 0.5;
+/// Two ways are as much aside where their cosines differ by less than this part, one of them being shorter by so much.
+constexpr double same_share = 0.1;
+constexpr double shorter = 0.6;
 
-/// What of the orbit's way from the crossing lies along the direction in which it was to leave: 1 where all does.
-double share_along(const continuation::Start& start, const loop::Loop& orbit) {
+/// What of the orbit's way from the crossing lies along the direction in which it was to leave.
+struct WayAlong {
+  double length = 0.0;
+  double share = 0.0;  ///< 1 where all of the way does
+};
+WayAlong way_along(const continuation::Start& start, const loop::Loop& orbit) {
   const int cutoff = std::min(start.base.cutoff, orbit.cutoff);
   const loop::Loop even = orbit.time_map.is_identity() ? orbit : loop::evenly_in_time(orbit);
   const loop::Loop there = loop::with_cutoff(even, cutoff);
@@ -35,7 +42,14 @@ double share_along(const continuation::Start& start, const loop::Loop& orbit) {
     length += start.direction.modes[n] * start.direction.modes[n];
     moved += step * step;
   }
-  return moved > 0.0 ? along / std::sqrt(length * moved) : 0.0;
+  return {along / std::sqrt(length), moved > 0.0 ? along / std::sqrt(length * moved) : 0.0};
+}
+
+/// Whether a way lies as much aside as one that is longer. A family that goes through a crossing of order 3 has a part of
+/// the base's own direction, as large as it likes; another family would be as far at half the amplitude.
+bool is_straight(const WayAlong& way, const WayAlong& longer) {
+  return way.length > 0.0 && way.length < shorter * longer.length &&
+         std::abs(way.share - longer.share) < same_share * longer.share;
 }
 
 }  // namespace
@@ -47,6 +61,7 @@ queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const 
   const double first = work.branch.amplitude > 0.0 ? work.branch.amplitude : options.start_amplitude;
   std::optional<std::string> why;
   StartOutcome outcome;
+  WayAlong farther;               // of an orbit beside the direction
   bool is_beyond_limits = false;  // the first of these amplitudes that leads to an orbit
   for (const double factor : amplitude_factors) {
     if (is_beyond_limits && factor > 1.0) continue;
@@ -63,10 +78,11 @@ queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const 
       }
       continue;
     }
-    const double share = share_along(begin, orbit->loop);
-    if (share < least_share) {
+    const WayAlong way = way_along(begin, orbit->loop);
+    if (way.share < least_share && !is_straight(way, farther)) {
       why = fmt::format("at amplitude {:.2g} the orbit found lies beside the direction (cosine {:.2f})",
-                        options.start_amplitude, share);
+                        options.start_amplitude, way.share);
+      farther = way;
       continue;
     }
     BranchWork found = work.branch;

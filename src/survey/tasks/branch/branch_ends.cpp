@@ -17,6 +17,9 @@ namespace {
 /// nearer to the birth than the one before: the last is a thousandth of the first orbit's way from it.
 constexpr std::size_t places_from_birth = 7;
 constexpr double nearer_to_birth = 0.25;
+/// The share of the first orbit's way at which indices are looked at first: an index leaves 2 like a power of the way,
+/// and may have come back to it at the first orbit.
+constexpr double nearest_for_indices = 1.0 / 64.0;
 
 }  // namespace
 
@@ -40,23 +43,46 @@ void BranchEnds::detect_from_birth(const std::optional<Arrival>& arrival) {
 }
 
 void BranchEnds::indices_from_birth(const std::vector<continuation::FamilyCurve::Known>& known) {
+  continuation::FamilyCurve curve(_followed.system, _followed.start.isotropy,
+                                  branch_options(_followed.scene, _followed.team));
+  for (const continuation::FamilyCurve::Known& one : known) curve.add(one);
+  const auto probe = [&](double position) -> std::optional<bifurcation::TestPoint> {
+    const auto point = curve.at(position);
+    if (!point) return std::nullopt;
+    return _events.test_point(position, stability_of(*_followed.system, point->loop, _followed.start.isotropy,
+                                                     _followed.team));
+  };
   std::optional<spectrum::Stability> birth =
       stability_of(*_followed.system, _followed.start.base, _followed.start.isotropy, _followed.team);
   if (birth) bifurcation::tell_birth(_followed.system->structure(), *birth);
-  const auto at_birth = _followed.test_point(0.0, birth);
-  const auto at_first = _followed.test_point(
-      0.0, stability_of(*_followed.system, known[1].loop, _followed.start.isotropy, _followed.team));
+  bifurcation::TestPoint at_birth = _followed.test_point(known[0].position, birth);
+  const std::vector<double> passed_at_birth = std::exchange(at_birth.passed, {});
+  for (bifurcation::Reading& reading : at_birth.readings) {
+    const bool is_zero = std::abs(reading.value) <= bifurcation::zero_at_birth;
+    reading.error = is_zero ? bifurcation::zero_at_birth : 0.0;  // orbits are not isolated there, and have no bounds
+  }
+  bifurcation::Detector detector;
+  std::vector<bifurcation::Bracket> found = detector.advance(at_birth, probe);
+  std::vector<bifurcation::TestPoint> places;
+  for (double share = nearest_for_indices; share < 1.0; share /= nearer_to_birth)
+    if (auto place = probe(known[0].position + share * (known[1].position - known[0].position)))
+      places.push_back(*std::move(place));
+  places.push_back(_events.test_point(
+      known[1].position, stability_of(*_followed.system, known[1].loop, _followed.start.isotropy, _followed.team)));
+  for (const bifurcation::TestPoint& place : places)
+    for (const bifurcation::Bracket& bracket : detector.advance(place, probe)) found.push_back(bracket);
+  for (const bifurcation::Bracket& b : found)
+    _events.add_event({.function = _followed.functions[b.function],
+                       .tangency = b.tangency,
+                       .passed = b.passed,
+                       .from_birth = b.from == known[0].position},
+                      b.from, b.to, known);
+  for (const bifurcation::MissedZeros& missed : detector.missed()) _events.add_missed(missed);
+  // Before the first place. Of two zeros of one function signs show none. The one where a family is born is none.
   for (std::size_t f = 0; f < _followed.functions.size(); ++f) {
-    const double before = at_birth.readings[f].value;
-    const int after = at_first.readings[f].sign();
-    const bool is_shown = std::abs(before) > bifurcation::zero_at_birth && before * after < 0.0;
-    if (is_shown)
-      _events.add_event({.function = _followed.functions[f], .from_birth = true}, known[0].position, known[1].position,
-                        known);
-    // Of two places of one function signs show none. The one where a family is born is none.
-    const double passed = std::abs(at_first.passed[f] - at_birth.passed[f]);
+    const double passed = std::abs(places.front().passed[f] - passed_at_birth[f]);
     if (_followed.functions[f].sector.q > 2 && passed > 1.0)
-      _events.add_missed({f, known[0].position, known[1].position, static_cast<int>(passed) - (is_shown ? 1 : 0)});
+      _events.add_missed({f, known[0].position, places.front().position, static_cast<int>(passed)});
   }
 }
 
