@@ -197,6 +197,16 @@ void FamilyDifferences::compare_orbits(const Pair& pair) {
   compare_known(pair);
   std::vector<CurveFit> fits_a = fit_all(pair.b.curve, pair.a.curve.points());
   std::vector<CurveFit> fits_b = fit_all(pair.a.curve, pair.b.curve.points());
+  const bool one_in_a = pair.a.orbits() == 1 && pair.b.orbits() > 1;
+  const bool one_in_b = pair.b.orbits() == 1 && pair.a.orbits() > 1;
+  if (one_in_a || one_in_b) {  // one orbit is no curve on which others could lie
+    _result.notes.push_back(fmt::format("{} has one orbit in {}, which was held against the other's curve; the rest was "
+                                        "not compared",
+                                        pair.a.name, one_in_a ? "A" : "B"));
+    if (one_in_a) report_orbits(pair, "A", pair.a, fits_a);
+    if (one_in_b) report_orbits(pair, "B", pair.b, fits_b);
+    return;
+  }
   decide_by_loops(_a, pair.a, _b, pair.b, fits_a);
   decide_by_loops(_b, pair.b, _a, pair.a, fits_b);
   report_orbits(pair, "A", pair.a, fits_a);

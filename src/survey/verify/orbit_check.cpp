@@ -53,9 +53,13 @@ constexpr double certificate_factor = 16.0;
 constexpr double probes_factor = 4096.0;
 /// Of the way between two orbits; and where no reversor fixes the phase: a branch measures it between loops that were
 /// begun nearly, not quite, where they are nearest to each other. By 8.5e-5 at most in 10,000 steps of the pendulum and
-/// of the restricted problem.
+/// of the restricted problem. A long step is off by more: its phase by a part of it like the step's of the orbit, and the
+/// way by the square of that; where units differ from scales loops are nearest to each other in scales, and their phase
+/// counts itself. Not measured.
 constexpr double same_way = 1e-9;
 constexpr double same_way_without_phase = 3e-4;
+constexpr double by_square_of_step = 0.5;
+constexpr double by_step_in_units = 0.25;
 /// The same of families in a parameter: by 3.1e-4 at most in the responses of Duffing's oscillator.
 constexpr double same_way_in_parameter = 1e-3;
 
@@ -289,9 +293,16 @@ void check_way(const VerifiedAtlas& atlas, std::size_t from, const loop::Loop& a
            continuation::arclength_in_units(*atlas.system(), backwards ? near : start, backwards ? start : near);
   };
   const bool has_phase = atlas.has_reversor(family);
-  const double rounding = sum_rounding * epsilon * (std::abs(arclengths[from]) + std::abs(arclengths[to]));
+  const loop::Loop in_units = loop::in_units(b, atlas.system()->scales());
+  const double rounding =
+      sum_rounding * epsilon * (std::abs(arclengths[from]) + std::abs(arclengths[to]) + loop::rms_size(in_units));
   const double step = std::abs(arclengths[to] - arclengths[from]);
-  const double of_step = has_phase ? same_way : a.parameters.empty() ? same_way_without_phase : same_way_in_parameter;
+  const double of_orbit = std::min(1.0, step / loop::rms_amplitude(in_units));
+  const double by_phase = by_square_of_step * of_orbit * of_orbit +
+                          (atlas.system()->scales().are_one() ? 0.0 : by_step_in_units * of_orbit);
+  const double of_step = has_phase              ? same_way
+                         : a.parameters.empty() ? same_way_without_phase + by_phase
+                                                : same_way_in_parameter;
   const double allowed = of_step * step + rounding;
   const double found = end(a, atlas.begun_as(family, b, a, step));
   Claims(findings, "orbits", static_cast<std::int64_t>(to)).agree("arclength", arclengths[to], found, allowed);
