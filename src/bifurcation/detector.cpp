@@ -57,6 +57,9 @@ Reading stretched(const Reading& reading) {
   return {std::atanh(reading.value), reading.error / (1.0 - square)};
 }
 
+/// Whether its logarithm says more than the reading itself: of an index above some 20.
+bool is_large(const Reading& reading) { return std::abs(reading.value) > 0.8; }
+
 /// By how much linear interpolation from both sides is off, beyond the errors; below 0 within them, NaN where one is at
 /// its bound.
 double interpolation_error(const Reading& before, const Reading& here, const Reading& after, double share) {
@@ -122,13 +125,18 @@ bool Detector::badly_extrapolated(const std::vector<TestPoint>& grid, std::size_
         _options.extrapolation_error * std::clamp(_state.watches[f].scale, least_scale, largest_scale);
     if (n == 0) {
       if (std::abs(after.value - here.value) > 2.0 * allowed + here.error + after.error) return true;
+      const Reading first = stretched(here);
+      const Reading second = stretched(after);
+      if (is_large(here) &&
+          std::abs(second.value - first.value) > 2.0 * _options.logarithm_error + first.error + second.error)
+        return true;
       continue;
     }
     const Reading& before = grid[n - 1].readings[f];
     const double share = (grid[n].position - grid[n - 1].position) / (grid[n + 1].position - grid[n - 1].position);
-    if (interpolation_error(before, here, after, share) > 0.5 * allowed ||
-        interpolation_error(stretched(before), stretched(here), stretched(after), share) >
-            0.5 * _options.logarithm_error)
+    if (interpolation_error(before, here, after, share) > 0.5 * allowed) return true;
+    if (is_large(here) && interpolation_error(stretched(before), stretched(here), stretched(after), share) >
+                              0.5 * _options.logarithm_error)
       return true;
   }
   return false;

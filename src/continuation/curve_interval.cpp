@@ -22,6 +22,9 @@ constexpr std::size_t used_orbits = 4;
 constexpr double apart = 1e-4;
 /// Of the way to an orbit that is not found from its prediction, or far from it. Not measured.
 constexpr int most_halvings = 4;
+/// On such a way the correction may be this times as large as on the whole chord, in parts of the link's share of it:
+/// several links must not add up to another family.
+constexpr double reach_of_link = 4.0;
 
 /// Up to four nodes, nearest to `position` first, well apart so that their rounding is not amplified: what is nearer
 /// than `apart` of the interval's `length` is not.
@@ -76,7 +79,7 @@ std::optional<CurvePoint> CurveInterval::at(double position, bool with_tangent) 
     trial = solve(position);
   }
   if (!trial) trial = known_at(position);
-  if (!trial) trial = approach(position, most_halvings);
+  if (!trial) trial = approach(position);
   // Near a place where two families meet the box scheme, whose phase is a little wrong, meets them elsewhere, and what
   // it stands for there is not the derivative at all.
   const equations::Preconditioner usual = _state.preconditioner;
@@ -109,27 +112,45 @@ void CurveInterval::add_tangent(const std::vector<double>& values, CurvePoint& p
   point.tangent = _problem->change_of(direction, point.loop);
   const double length = point.tangent.norm();
   point.tangent.normalize();
-  std::vector<double> moved = values;
-  for (std::size_t n = 0; n < moved.size(); ++n) moved[n] += direction[n];
+  // As positions are measured: all from the first orbit, in whose unit of the period the products are.
   const std::vector<double>& first = _points[_first].values;
+  std::vector<double> moved = first;
   std::vector<double> end = first;
-  for (std::size_t n = 0; n < end.size(); ++n) end[n] += here.tangent[n];
+  for (std::size_t n = 0; n < end.size(); ++n) {
+    moved[n] += direction[n];
+    end[n] += here.tangent[n];
+  }
   const double share =
-      _problem->condition_product(moved, values, end, first) / _problem->condition_product(end, first, end, first);
+      _problem->condition_product(moved, first, end, first) / _problem->condition_product(end, first, end, first);
   point.advance = share * (_to - _from) / length;
 }
 
 /// By orbits in between, each half way to the next, where the prediction from those around is too far off.
+std::optional<Trial> CurveInterval::approach(double position) {
+  const std::size_t count = _points.size();
+  const bool was_refused = _is_refused;
+  std::optional<Trial> trial = approach(position, most_halvings);
+  _reach = 1.0;
+  if (!trial) {
+    _points.resize(count);
+    _is_refused = was_refused;
+  }
+  return trial;
+}
+
 std::optional<Trial> CurveInterval::approach(double position, int halvings) {
   if (_is_refused || halvings == 0) return std::nullopt;
   const auto nearest = std::min_element(_points.begin(), _points.end(), [&](const TracePoint& a, const TracePoint& b) {
     return std::abs(a.parameter - position) < std::abs(b.parameter - position);
   });
   const double between = 0.5 * (nearest->parameter + position);
+  const double reach = std::min(1.0, reach_of_link * std::abs(position - between) / (_to - _from));
+  _reach = reach;
   std::optional<Trial> nearer = solve(between);
   if (!nearer) nearer = approach(between, halvings - 1);
   if (!nearer) return std::nullopt;
   _points.push_back({std::move(nearer->values), between});
+  _reach = reach;
   return solve(position);
 }
 
@@ -168,7 +189,7 @@ bool CurveInterval::slipped(const Trial& trial, const Prediction& prediction) {
   const std::vector<double>& last = _points[_last].values;
   const std::vector<double>& guess = prediction.values;
   return _problem->product(trial.values, guess, trial.values, guess) >
-         largest_correction * largest_correction * _problem->product(last, first, last, first);
+         std::pow(_reach * largest_correction, 2) * _problem->product(last, first, last, first);
 }
 
 /// On the polynomial through the nearest points, moved along the chord to its share of it.

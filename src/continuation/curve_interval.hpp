@@ -23,6 +23,8 @@ class CurveInterval {
 
  private:
   [[nodiscard]] std::optional<Trial> solve(double position);
+  /// Orbits on the way stay among the points where it leads to one.
+  [[nodiscard]] std::optional<Trial> approach(double position);
   [[nodiscard]] std::optional<Trial> approach(double position, int halvings);
   /// A known orbit itself, which the corrector may fail to find again; none between the two.
   [[nodiscard]] std::optional<Trial> known_at(double position) const;
@@ -42,6 +44,7 @@ class CurveInterval {
   std::array<loop::Loop, 2> _ends;  // under the interval's time map
   std::vector<CurvePoint> _found;
   bool _is_refused = false;  // the last solve, by GMRES too
+  double _reach = 1.0;       // of corrections, in parts of what they may be on the whole chord
 };
 
 }  // namespace orbweaver::continuation

@@ -28,7 +28,8 @@ OrbitStability::OrbitStability(const archive::Archive& atlas)
       _log_volumes(atlas.orbits().reals("log_volume")),
       _pairs(static_cast<std::size_t>(atlas.header().pairs)),
       _complex(archive::has_complex_stability(atlas.header())),
-      _multipliers(holds_multipliers(atlas)) {}
+      _multipliers(holds_multipliers(atlas)),
+      _neutral(_multipliers && has_energies(atlas) ? 1 : 0) {}
 
 std::optional<bool> OrbitStability::of(std::size_t orbit) const {
   const bool has_error = !std::isnan(_errors[orbit]);
@@ -36,12 +37,14 @@ std::optional<bool> OrbitStability::of(std::size_t orbit) const {
   if (_pairs == 0) return std::nullopt;
   bool stable = true;
   bool decided = error <= largest_error;
+  int neutral = _neutral;
   for (std::size_t pair = 0; pair < _pairs; ++pair) {
     const std::complex<double> k = value(orbit, pair);
     if (std::isnan(k.real()) || std::isnan(k.imag())) return by_volume(orbit);
     const double beyond = _multipliers ? std::abs(k) - 1.0 : std::max(std::abs(k.real()) - 2.0, std::abs(k.imag()));
     stable = stable && beyond <= error;
-    decided = decided && (!has_error || (_multipliers ? beyond : std::abs(k.real()) - 2.0) < -error);
+    const bool is_inside = !has_error || (_multipliers ? beyond : std::abs(k.real()) - 2.0) < -error;
+    decided = decided && (is_inside || neutral-- > 0);
   }
   return stable && !decided ? std::nullopt : std::optional<bool>(stable);
 }

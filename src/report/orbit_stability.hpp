@@ -36,6 +36,7 @@ class OrbitStability {
   std::size_t _pairs;
   bool _complex;
   bool _multipliers;
+  int _neutral;  // multipliers that are 1 along all families: the energy's own, where nothing pairs it
 };
 
 }  // namespace orbweaver::report

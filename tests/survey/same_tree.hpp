@@ -16,7 +16,7 @@
 
 namespace orbweaver::test {
 
-/// How far periods and energies of crossings may be apart, relative to the period and to 1 + |E|.
+/// How far periods and energies of crossings may be apart, relative to the period and to an energy of the system + |E|.
 constexpr double same_crossing = 1e-10;
 
 struct ListedCrossing {

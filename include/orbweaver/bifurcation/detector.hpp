@@ -57,7 +57,7 @@ struct DetectorOptions {
   /// measured.
   double extrapolation_error = 0.1;
   /// The same in half the logarithm of an index that is large (the hyperbolic area tangent of the reading, which hardly
-  /// moves there): it may go from 118 to -10 and back to 52 within a step. Not measured below.
+  /// moves there): it may go from 118 to -10 and back to 52 within a step. Readings at their bounds tell nothing so.
   double logarithm_error = 0.3;
   /// The same in turns, where they are known: the angle of a multiplier may change evenly while its functions go up and
   /// down. As much as the above is where a function is steepest.

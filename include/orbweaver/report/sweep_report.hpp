@@ -9,7 +9,7 @@
 namespace orbweaver::report {
 
 /// A normal mode with how well a step along it closes (paper, Table I): after a step of 0.5 degrees, in degrees; in a
-/// system without angles after one of 0.01, in the coordinates' own units.
+/// system without angles after one of 0.01, in the units of the coordinate with the largest scale.
 struct ModeRow {
   std::string name;
   double period = 0.0;          ///< refined

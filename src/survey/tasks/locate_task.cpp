@@ -79,8 +79,10 @@ class Location {
       if (known.position >= _work.to) to = std::min(to, known.position);
     }
     const bifurcation::NotLocated at_first = why;
+    bifurcation::Event event = _event;
+    event.from_birth = event.from_birth || from < 0.0;  // the family's first orbit is at 0
     try {
-      crossing = bifurcation::locate(*_system, any, _event, from, to, why);
+      crossing = bifurcation::locate(*_system, any, event, from, to, why);
     } catch (const core::InputError&) {  // it does not apply, as to driven orbits that a reversor fixes
       return without_crossing(at_first, fast);
     }

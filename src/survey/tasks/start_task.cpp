@@ -19,14 +19,16 @@ constexpr double amplitude_factors[] = {1.0, 0.3, 3.0, 0.1, 10.0, 0.03};
 /// Least cosine between the first orbit's way and the direction in which it was to leave (60 degrees): an orbit of the
 /// base family or of another direction lies beside it. Not measured.
 constexpr double least_share = 0.5;
-/// Two ways are as much aside where their cosines differ by less than this part, one of them being shorter by so much.
+/// Two ways are as much aside where their cosines differ by less than this part, one orbit being nearer by so much.
 constexpr double same_share = 0.1;
-constexpr double shorter = 0.6;
+constexpr double nearer = 0.6;
+/// 84 degrees: what lies farther aside is told from the base family by rounding and curvature no more. Not measured.
+constexpr double least_share_of_straight = 0.1;
 
 /// What of the orbit's way from the crossing lies along the direction in which it was to leave.
 struct WayAlong {
-  double length = 0.0;
-  double share = 0.0;  ///< 1 where all of the way does
+  double along = 0.0;
+  double share = 0.0;  ///< of the whole way
 };
 WayAlong way_along(const continuation::Start& start, const loop::Loop& orbit) {
   const int cutoff = std::min(start.base.cutoff, orbit.cutoff);
@@ -45,11 +47,11 @@ WayAlong way_along(const continuation::Start& start, const loop::Loop& orbit) {
   return {along / std::sqrt(length), moved > 0.0 ? along / std::sqrt(length * moved) : 0.0};
 }
 
-/// Whether a way lies as much aside as one that is longer. A family that goes through a crossing of order 3 has a part of
-/// the base's own direction, as large as it likes; another family would be as far at half the amplitude.
-bool is_straight(const WayAlong& way, const WayAlong& longer) {
-  return way.length > 0.0 && way.length < shorter * longer.length &&
-         std::abs(way.share - longer.share) < same_share * longer.share;
+/// Whether a way lies as much aside as one farther out. A family that goes through a crossing of order 3 has a part of the
+/// base's own direction; one that passes beside the crossing would be as far at half the amplitude.
+bool is_straight(const WayAlong& way, const WayAlong& farther) {
+  return way.share > least_share_of_straight && way.along < nearer * farther.along &&
+         std::abs(way.share - farther.share) < same_share * farther.share;
 }
 
 }  // namespace

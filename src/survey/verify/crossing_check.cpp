@@ -254,7 +254,8 @@ class CrossingCheck {
     if (const auto behind = next_of_kind(1)) to = std::min(to, 0.5 * (*behind + real("arclength")));
     for (const double arclength : {from, to}) {
       const double share = (arclength - a.arclength) / (b.arclength - a.arclength);
-      if (const auto point = curve.at(a.position + share * (b.position - a.position), true))
+      const double position = a.position + share * (b.position - a.position);
+      if (const auto point = curve.at(std::clamp(position, a.position, b.position), true))
         _slopes.push_back(slope(*point));
     }
   }

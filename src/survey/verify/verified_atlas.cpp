@@ -27,6 +27,8 @@ namespace {
 
 /// Relative: an orbit at a period or an energy that the scene asks for is solved for at it.
 constexpr double at_request = 1e-9;
+/// Of a way: a loop so far from its neighbour was begun as that was.
+constexpr double as_it_is = 1e-9;
 
 /// Archives from before there were scales have none.
 void require_scales(const archive::Header& header, const systems::System& system) {
@@ -88,6 +90,7 @@ loop::Loop VerifiedAtlas::begun_as(std::size_t family, const loop::Loop& loop, c
     const auto off = [&](const loop::Loop& one) {
       return std::abs(continuation::arclength_in_units(*_system, neighbour, one) - way);
     };
+    if (off(loop) <= as_it_is * way) return loop;
     loop::Loop other = loop::aligned(loop, loop::align(system, loop, neighbour));
     return off(other) < off(loop) ? other : loop;
   }

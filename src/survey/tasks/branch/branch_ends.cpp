@@ -38,14 +38,15 @@ void BranchEnds::detect_from_birth(const std::optional<Arrival>& arrival) {
        first.arclength - _followed.before_first}};
   known.insert(known.end(), _followed.curve.known().begin(), _followed.curve.known().end());
   if (arrival && known.back().position > _followed.last->arclength) known.pop_back();  // it lies beyond the meeting
-  if (!_followed.functions.empty()) indices_from_birth(known);
-  folds_from_birth(known);
-}
-
-void BranchEnds::indices_from_birth(const std::vector<continuation::FamilyCurve::Known>& known) {
   continuation::FamilyCurve curve(_followed.system, _followed.start.isotropy,
                                   branch_options(_followed.scene, _followed.team));
   for (const continuation::FamilyCurve::Known& one : known) curve.add(one);
+  if (!_followed.functions.empty()) indices_from_birth(curve);
+  folds_from_birth(curve);
+}
+
+void BranchEnds::indices_from_birth(continuation::FamilyCurve& curve) {
+  const std::vector<continuation::FamilyCurve::Known>& known = curve.known();
   const auto probe = [&](double position) -> std::optional<bifurcation::TestPoint> {
     const auto point = curve.at(position);
     if (!point) return std::nullopt;
@@ -71,26 +72,27 @@ void BranchEnds::indices_from_birth(const std::vector<continuation::FamilyCurve:
       known[1].position, stability_of(*_followed.system, known[1].loop, _followed.start.isotropy, _followed.team)));
   for (const bifurcation::TestPoint& place : places)
     for (const bifurcation::Bracket& bracket : detector.advance(place, probe)) found.push_back(bracket);
-  for (const bifurcation::Bracket& b : found)
-    _events.add_event({.function = _followed.functions[b.function],
-                       .tangency = b.tangency,
-                       .passed = b.passed,
-                       .from_birth = b.from == known[0].position},
-                      b.from, b.to, known);
+  _events.add_zeros_from_birth(found, known);
   for (const bifurcation::MissedZeros& missed : detector.missed()) _events.add_missed(missed);
-  // Before the first place. Of two zeros of one function signs show none. The one where a family is born is none.
+  // Before the first place that tells. Of two zeros of one function signs show none. The one where a family is born is
+  // none.
   for (std::size_t f = 0; f < _followed.functions.size(); ++f) {
-    const double passed = std::abs(places.front().passed[f] - passed_at_birth[f]);
-    if (_followed.functions[f].sector.q > 2 && passed > 1.0)
-      _events.add_missed({f, known[0].position, places.front().position, static_cast<int>(passed)});
+    const auto place = std::find_if(places.begin(), places.end(),
+                                    [&](const bifurcation::TestPoint& one) { return !std::isnan(one.passed[f]); });
+    if (_followed.functions[f].sector.q <= 2 || place == places.end()) continue;
+    const double passed = std::abs(place->passed[f] - passed_at_birth[f]);
+    const auto bracketed = std::count_if(found.begin(), found.end(), [&](const bifurcation::Bracket& b) {
+      return b.function == f && b.to <= place->position;
+    });
+    if (passed > 1.0 && passed > static_cast<double>(bracketed))
+      _events.add_missed({f, known[0].position, place->position,
+                          static_cast<int>(passed) - static_cast<int>(bracketed)});
   }
 }
 
 /// Folds that the orbits from the first one on do not show: on the way from the birth to it, and on that to the second.
-void BranchEnds::folds_from_birth(const std::vector<continuation::FamilyCurve::Known>& known) {
-  continuation::FamilyCurve curve(_followed.system, _followed.start.isotropy,
-                                  branch_options(_followed.scene, _followed.team));
-  for (const continuation::FamilyCurve::Known& one : known) curve.add(one);
+void BranchEnds::folds_from_birth(continuation::FamilyCurve& curve) {
+  const std::vector<continuation::FamilyCurve::Known>& known = curve.known();
   const double birth = known[0].position;
   WayToEnd way;
   way.crossing = _followed.start.base;

@@ -30,8 +30,9 @@ class BranchEnds {
 
  private:
   void detect_from_birth(const std::optional<Arrival>& arrival);
-  void indices_from_birth(const std::vector<continuation::FamilyCurve::Known>& known);
-  void folds_from_birth(const std::vector<continuation::FamilyCurve::Known>& known);
+  /// `curve`: of the birth and the first orbits.
+  void indices_from_birth(continuation::FamilyCurve& curve);
+  void folds_from_birth(continuation::FamilyCurve& curve);
   void folds_at_start();
   void add_behind(std::vector<continuation::CurvePoint>& places);
   void add_orbits(const std::vector<continuation::CurvePoint>& places, double to,

@@ -85,6 +85,19 @@ void BranchEvents::add_zeros(const std::vector<bifurcation::Bracket>& brackets) 
   }
 }
 
+void BranchEvents::add_zeros_from_birth(const std::vector<bifurcation::Bracket>& brackets,
+                                        const std::vector<continuation::FamilyCurve::Known>& known) {
+  for (const bifurcation::Bracket& b : brackets) {
+    const bifurcation::TestFunction& function = _followed.functions[b.function];
+    if (is_of_one(function) && b.tangency) continue;
+    add_event({.function = function,
+               .tangency = b.tangency,
+               .passed = b.passed,
+               .from_birth = b.from == known.front().position},
+              b.from, b.to, known);
+  }
+}
+
 void BranchEvents::detect_meetings(const bifurcation::StabilityAt& from, const bifurcation::StabilityAt& to) {
   const auto between = [this](double position) { return stability_between(position); };
   for (const bifurcation::StabilityAt& met : bifurcation::meetings_between(from, to, between))

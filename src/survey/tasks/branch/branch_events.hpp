@@ -48,6 +48,10 @@ class BranchEvents {
   /// What only the family's end shows of test functions, from the stored orbits alone, whatever was probed before.
   void finish_zeros();
 
+  /// Zeros between the birth, which is the first of `known`, and the first orbit. A function of the multiplier 1 goes
+  /// to zero at the birth like a power of the distance, which is no event.
+  void add_zeros_from_birth(const std::vector<bifurcation::Bracket>& brackets,
+                            const std::vector<continuation::FamilyCurve::Known>& known);
   /// `way`: from this known orbit to the next.
   void add_paired_folds(std::size_t way);
   void add_folds(const std::vector<bifurcation::Fold>& folds,
