@@ -125,11 +125,6 @@ bool Detector::badly_extrapolated(const std::vector<TestPoint>& grid, std::size_
         _options.extrapolation_error * std::clamp(_state.watches[f].scale, least_scale, largest_scale);
     if (n == 0) {
       if (std::abs(after.value - here.value) > 2.0 * allowed + here.error + after.error) return true;
-      const Reading first = stretched(here);
-      const Reading second = stretched(after);
-      if (is_large(here) &&
-          std::abs(second.value - first.value) > 2.0 * _options.logarithm_error + first.error + second.error)
-        return true;
       continue;
     }
     const Reading& before = grid[n - 1].readings[f];

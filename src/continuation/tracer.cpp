@@ -34,8 +34,8 @@ constexpr double still_at_start = 1e-16;
 /// Of the angle between a branch's direction at its crossing and the way to its first orbit, which bends with the
 /// distance: those of the shipped scenes have 0.88 or more, one that had gone over to another family 0.62.
 constexpr double first_cosine = 0.85;
-/// Unless it is the same at half the distance: the cosine of the angle between the two ways, and how far the nearer one's
-/// share of the farther one's length is from a half. On another family it would be as long.
+/// Unless it is the same at half the distance: the cosine of the angle between the two ways, and how far the nearer
+/// one's share of the farther one's length is from a half. To a family that passes beside the crossing it is as long.
 constexpr double straight_cosine = 0.98;
 constexpr double straight_share = 0.1;
 /// Of a step's length where the step went over to another family: the next attempt.
@@ -159,8 +159,8 @@ bool Tracer::is_aside(const std::vector<double>& first, const std::vector<double
   return along < first_cosine * std::sqrt(way * foreseen);
 }
 
-/// Whether a way from the crossing leads to an orbit as straight as to another, twice as far. A family that goes through
-/// a crossing of order 3 has a part of the base's own direction, as large as it likes, and the branch's may lack it.
+/// Whether a way from the crossing leads to an orbit as straight as to another, twice as far. A family that goes
+/// through a crossing of order 3 has a part of the base's own direction, which the branch's may lack.
 bool Tracer::is_half_way(const std::vector<double>& orbit, const std::vector<double>& farther,
                          const std::vector<double>& base) {
   if (farther.size() != orbit.size()) return false;

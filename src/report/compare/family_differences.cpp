@@ -200,9 +200,9 @@ void FamilyDifferences::compare_orbits(const Pair& pair) {
   const bool one_in_a = pair.a.orbits() == 1 && pair.b.orbits() > 1;
   const bool one_in_b = pair.b.orbits() == 1 && pair.a.orbits() > 1;
   if (one_in_a || one_in_b) {  // one orbit is no curve on which others could lie
-    _result.notes.push_back(fmt::format("{} has one orbit in {}, which was held against the other's curve; the rest was "
-                                        "not compared",
-                                        pair.a.name, one_in_a ? "A" : "B"));
+    _result.notes.push_back(
+        fmt::format("{} has one orbit in {}, which was held against the other's curve; the rest was not compared",
+                    pair.a.name, one_in_a ? "A" : "B"));
     if (one_in_a) report_orbits(pair, "A", pair.a, fits_a);
     if (one_in_b) report_orbits(pair, "B", pair.b, fits_b);
     return;

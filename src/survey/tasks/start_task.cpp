@@ -47,8 +47,8 @@ WayAlong way_along(const continuation::Start& start, const loop::Loop& orbit) {
   return {along / std::sqrt(length), moved > 0.0 ? along / std::sqrt(length * moved) : 0.0};
 }
 
-/// Whether a way lies as much aside as one farther out. A family that goes through a crossing of order 3 has a part of the
-/// base's own direction; one that passes beside the crossing would be as far at half the amplitude.
+/// Whether a way lies as much aside as one farther out. A family that goes through a crossing of order 3 has a part of
+/// the base's own direction; one that passes beside the crossing would be as far at half the amplitude.
 bool is_straight(const WayAlong& way, const WayAlong& farther) {
   return way.share > least_share_of_straight && way.along < nearer * farther.along &&
          std::abs(way.share - farther.share) < same_share * farther.share;

@@ -53,9 +53,9 @@ constexpr double certificate_factor = 16.0;
 constexpr double probes_factor = 4096.0;
 /// Of the way between two orbits; and where no reversor fixes the phase: a branch measures it between loops that were
 /// begun nearly, not quite, where they are nearest to each other. By 8.5e-5 at most in 10,000 steps of the pendulum and
-/// of the restricted problem. A long step is off by more: its phase by a part of it like the step's of the orbit, and the
-/// way by the square of that; where units differ from scales loops are nearest to each other in scales, and their phase
-/// counts itself. Not measured.
+/// of the restricted problem. A long step is off by more: its phase by a part of it like the step's of the orbit, and
+/// the way by the square of that; where units differ from scales loops are nearest to each other in scales, and their
+/// phase counts itself. Not measured.
 constexpr double same_way = 1e-9;
 constexpr double same_way_without_phase = 3e-4;
 constexpr double by_square_of_step = 0.5;
