@@ -42,6 +42,7 @@ void BranchEnds::detect_from_birth(const std::optional<Arrival>& arrival) {
                                   branch_options(_followed.scene, _followed.team));
   for (const continuation::FamilyCurve::Known& one : known) curve.add(one);
   if (!_followed.functions.empty()) indices_from_birth(curve);
+  curve.forget_found();  // where rounding tells little an orbit hangs on those around: folds on none of the indices'
   folds_from_birth(curve);
 }
 
