@@ -46,6 +46,23 @@ TEST(OrderThree, FamiliesThatLeaveFarAsideOfTheKernelAreFollowed) {
   }
 }
 
+// From one crossing of order 3 to another, each of which is met far aside of its kernel.
+TEST(OrderThree, FamiliesFromCrossingToCrossingAreToldOnce) {
+  const test::Atlas atlas = survey_of({{"w1", 1.0},
+                                       {"w2", 0.798},
+                                       {"a", -0.397},
+                                       {"b", -0.104},
+                                       {"c", -0.414},
+                                       {"d", -0.433},
+                                       {"e", 0.602},
+                                       {"f", 4.606},
+                                       {"g", 1.241}},
+                                      {"limits.energy=[-.inf, 1.5]", "limits.period=12", "survey.subharmonics=3",
+                                       "survey.depth=1"});
+  EXPECT_TRUE(atlas.crossing("Equilibrium 1, mode 2", "subharmonic", 3.7054178845).has_value());
+  EXPECT_TRUE(atlas.crossing("Equilibrium 1, mode 2", "subharmonic", 3.6081558102).has_value());
+}
+
 // Of a family born at E = 0.21868 the first orbit has an index of 2.02 where it is far out; nearer, 1.996.
 TEST(OrderThree, WhatPassesBetweenBirthAndFirstOrbitIsFound) {
   const std::map<std::string, double> well{{"w1", 1.0},     {"w2", 0.773}, {"a", -0.236}, {"b", 0.265}, {"c", -0.025},

@@ -207,7 +207,11 @@ std::vector<bifurcation::SymmetryGain> vanishing(std::vector<bifurcation::Symmet
   return kept;
 }
 
-/// What of a loop (even in time) does not repeat `times` times a period: rms over time.
+/// What harmonics may leave out of a sketch: far below the distances that directions are told by.
+constexpr double of_sketches = 1e-8;
+
+}  // namespace
+
 double not_repeated(const loop::Loop& loop, int times) {
   double square = 0.0;
   for (int k = 1; k <= loop.cutoff; ++k)
@@ -215,11 +219,6 @@ double not_repeated(const loop::Loop& loop, int times) {
       square += 0.5 * (loop.cosine(k, i) * loop.cosine(k, i) + loop.sine(k, i) * loop.sine(k, i));
   return std::sqrt(square);
 }
-
-/// What harmonics may leave out of a sketch: far below the distances that directions are told by.
-constexpr double of_sketches = 1e-8;
-
-}  // namespace
 
 loop::Loop sketch_of(const loop::Loop& loop, int cutoff) {
   // With as many harmonics as the loop has under its map, a close passage would spoil the few that are kept.

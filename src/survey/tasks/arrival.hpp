@@ -49,6 +49,9 @@ bool locate_beneath(const std::shared_ptr<const systems::System>& system, const 
                                                          const continuation::FamilyCurve& family,
                                                          const bifurcation::SymmetryWatch& watch);
 
+/// What of a loop (even in time) does not repeat `times` times a period: rms over time.
+[[nodiscard]] double not_repeated(const loop::Loop& loop, int times);
+
 /// A loop with few harmonics and s even in time, for comparisons.
 [[nodiscard]] loop::Loop sketch_of(const loop::Loop& loop, int cutoff = 60);
 

@@ -6,6 +6,7 @@
 
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
+#include "tasks/arrival.hpp"
 
 namespace orbweaver::survey {
 
@@ -15,7 +16,8 @@ namespace {
 /// along the branch.
 constexpr double arrival_window = 1e-3;
 /// How far the orbit before an arrival may be from a direction, in parts of its distance from the crossing's orbit.
-/// Other directions are further off.
+/// Other directions are further off. At crossings of order 3 both are of what does not repeat as the crossing's orbit
+/// does: a family that goes through one may leave it along the base as far as it likes.
 constexpr double farthest_from_direction = 0.4;
 
 /// Where crossings are mirror images of one another, a branch of one comes as near to the other: an image counts as so
@@ -37,6 +39,13 @@ void for_near(const Map& by_period, double period, const Found& found) {
   for (auto at = by_period.lower_bound(period * (1.0 - 2.0 * arrival_window)); at != end; ++at) found(at->second);
 }
 
+/// Of two loops that run evenly in time.
+loop::Loop gap_between(const loop::Loop& one, const loop::Loop& other) {
+  loop::Loop gap = loop::with_cutoff(one, std::max(one.cutoff, other.cutoff));
+  for (std::size_t n = 0; n < other.modes.size(); ++n) gap.modes[n] -= other.modes[n];
+  return gap;
+}
+
 }  // namespace
 
 bool within_window(const ArrivalRecord& arrival, const LocateOutcome& crossing) {
@@ -47,18 +56,23 @@ bool within_window(const ArrivalRecord& arrival, const LocateOutcome& crossing) 
 std::optional<Meeting> Arrivals::meeting(const ArrivalRecord& arrival, const LocateOutcome& crossing) const {
   if (!within_window(arrival, crossing)) return std::nullopt;
   const loop::Loop& near = arrival.near;
+  const bool is_third = crossing.q == 3 && crossing.multiplicity == 3;
+  const auto size = [&](const loop::Loop& gap) { return not_repeated(gap, crossing.multiplicity); };
   std::optional<Meeting> best;
   double nearest = farthest_from_direction;
   for (const LeavingRecord& leaving : crossing.leaving) {
     const loop::Loop& base = leaving.base;
-    const double distance = loop::align(_system, near, base).distance;
+    const double distance = is_third ? size(near) : loop::align(_system, near, base).distance;
     for (const int side : {1, -1}) {
       if (side < 0 && !leaving.both_sides) continue;
       const loop::Tangent way = leaving.way(side);
-      const double unit = loop::mean_distance(base, loop::moved(base, way, 1.0));
+      const loop::Loop along = loop::moved(base, way, 1.0);
+      const double unit = is_third ? size(along) : loop::mean_distance(base, along);
       const loop::Loop expected = loop::moved(base, way, distance / unit);
       const loop::Alignment alignment = loop::align(_system, near, expected);
-      double away = alignment.distance / distance;
+      const double apart =
+          is_third ? size(gap_between(loop::aligned(near, alignment), expected)) : alignment.distance;
+      double away = apart / distance;
       if (alignment.reversing || alignment.name != "1") away = (1.0 + image_further) * away + least_further;
       if (away < nearest) {
         nearest = away;
