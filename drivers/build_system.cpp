@@ -37,6 +37,16 @@ struct BuildSystemOptions {
   fs::path output;
 };
 
+/// A program that has been copied out of its place has none.
+void require_headers(const InstalledFiles& at) {
+  const fs::path header = at.headers / "orbweaver/systems/plugin.hpp";
+  if (!fs::exists(header))
+    throw core::EnvironmentError(
+        fmt::format("'{}' is not there, which every plugin is compiled with: run the program from where it was built or "
+                    "installed, not a copy of it (docs/packaging.md)",
+                    header.string()));
+}
+
 std::vector<std::string> compiler_words(const InstalledFiles& at) {
   std::vector<std::string> words{plugin_compiler, "-std=c++20", "-O3", "-DNDEBUG", "-DFMT_SHARED", "-Wall", "-Wextra"};
   for (const std::string& flag : plugin_machine_flags)
@@ -99,7 +109,9 @@ int run(const BuildSystemOptions& options, const Invocation& invocation) {
     throw core::InputError(
         fmt::format("'{}': expected a source that can be read, got {}; check the path", source.string(), got));
 
-  const std::vector<std::string> words = compiler_words(installed_files());
+  const InstalledFiles at = installed_files();
+  require_headers(at);
+  const std::vector<std::string> words = compiler_words(at);
   const std::string hash = core::file_hash(sources_of(source, words, options.output));
   const core::ScratchFile unfinished(fs::path(options.output).concat(".part"));
   std::vector<std::string> build = words;

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "archive/sample.hpp"
 #include "orbweaver/archive/read/reader.hpp"
@@ -128,6 +129,19 @@ TEST_F(LeftOut, NothingMayReferToAFamilyThatIsLeftOut) {
               }),
               HasSubstr("family_key '0001'"))
       << "its crossings must go with it";
+}
+
+// A side does not know how far the other side's first orbit lies from the birth.
+TEST_F(LeftOut, OrbitsBehindABirthStandFromIt) {
+  Records born = records;
+  family(born, "0003").birth_arclength = -0.375;
+  const Archive from(write("born", born, born));
+  const Archive otherwise(write("born_nowhere", records, records));
+  EXPECT_THAT(std::vector(from.orbits().reals("arclength").begin() + 15, from.orbits().reals("arclength").begin() + 21),
+              ElementsAre(-1.375, -1.125, -0.875, -0.625, 0.0, 0.25));
+  EXPECT_EQ(otherwise.orbits().reals("arclength")[15], -1.0);
+  EXPECT_EQ(from.families().reals("birth_arclength")[3], -0.375);
+  EXPECT_TRUE(std::isnan(otherwise.families().reals("birth_arclength")[3]));
 }
 
 // Three generations; the youngest goes back to a crossing of the eldest on its side of negative steps.

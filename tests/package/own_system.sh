@@ -73,6 +73,11 @@ sed 's/two_masses.so/forgetful.so/' two_masses.yaml >forgetful.yaml
 orbweaver build-system forgetful.cpp -o forgetful.so
 expect_refusal "forgetful.so): structure.conserved does not name conserved<0>, which the field keeps" orbweaver check forgetful.yaml
 expect_refusal "forgetful.so): structure.conserved does not name conserved<0>, which the field keeps" mpirun -n 2 orbweaver survey forgetful.yaml -o forgetful
+# A copy of the program alone has no headers to compile with: that is not the model's fault.
+status=0
+mkdir -p bare/bin && cp "$prefix/bin/orbweaver" bare/bin/
+bare/bin/orbweaver build-system two_masses.cpp -o bare.so >refused.txt 2>&1 || status=$?
+((status == 3)) && grep -qF "run the program from where it was built or installed" refused.txt || fail "a bare copy: $(cat refused.txt)"
 echo 'int nothing;' >nothing.cpp
 expect_refusal "has no symbol \`orbweaver_plugin\`" orbweaver build-system nothing.cpp -o nothing.so
 echo 'int nothing' >nothing.cpp

@@ -43,9 +43,10 @@ TEST(Show, FamiliesAsCsv) {
   const auto lines = lines_of(shown(atlas, "families", TextFormat::csv));
   ASSERT_EQ(lines.size(), 6u);
   EXPECT_EQ(lines[0],
-            "name,parent,crossing,multiplicity,isotropy,first_orbit,orbit_count,end_reason,end_family,end_crossing");
-  EXPECT_EQ(lines[2], "ID1,0,1,1,S@1/2 R@0,12,3,the period reached the scene's limit,-1,-1");
-  EXPECT_EQ(lines[5], "\"Ästhetik \"\"B\"\", 1\",3,2,2,S@1/2 R@0,24,5,the period reached the scene's limit,1,0");
+            "name,parent,crossing,multiplicity,isotropy,first_orbit,orbit_count,end_reason,end_family,end_crossing,"
+            "birth_arclength");
+  EXPECT_EQ(lines[2], "ID1,0,1,1,S@1/2 R@0,12,3,the period reached the scene's limit,-1,-1,");
+  EXPECT_EQ(lines[5], "\"Ästhetik \"\"B\"\", 1\",3,2,2,S@1/2 R@0,24,5,the period reached the scene's limit,1,0,");
 }
 
 std::string selected(const Archive& atlas, const std::string& name, TextFormat format, const Selection& selection) {

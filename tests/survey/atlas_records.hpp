@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -36,6 +37,7 @@ inline archive::Records records_of(const Atlas& atlas) {
     family.multiplicity = static_cast<int>(families.integers("multiplicity")[row]);
     family.isotropy = families.texts("isotropy")[row];
     family.end_reason = families.texts("end_reason")[row];
+    family.birth_arclength = families.reals("birth_arclength")[row];
     records.families.push_back(family);
   }
   const archive::Table& crossings = atlas.crossings();
@@ -61,6 +63,8 @@ inline archive::Records records_of(const Atlas& atlas) {
     orbit.family_key = key_of(orbits.integers("family")[row]);
     orbit.step = static_cast<int>(orbits.integers("step")[row]);
     orbit.arclength = orbits.reals("arclength")[row];
+    const double birth = families.reals("birth_arclength")[static_cast<std::size_t>(orbits.integers("family")[row])];
+    if (orbit.step < 0 && !std::isnan(birth)) orbit.arclength -= birth;
     orbit.period = orbits.reals("period")[row];
     orbit.energy = orbits.reals("energy")[row];
     orbit.action = orbits.reals("action")[row];

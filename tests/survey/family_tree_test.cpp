@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -285,6 +286,34 @@ Ended with_energies(Ended branch, double from, double to) {
 }
 
 // Both sides of a direction are different orbits: three times around.
+// The first orbits of the two sides may be as far from the birth as they like, and crossings lie between.
+TEST_F(Families, SayWhereTheyWereBornAndCrossingsLieFromThere) {
+  const Place at{"0000.0000/004.q3.j1", 8.0, 1.0, 3};
+  const auto behind = [](Ended branch, double before_first) {
+    BranchOutcome outcome = unpack_branch_outcome(branch.outcome.payload);
+    outcome.before_first = before_first;
+    branch.outcome.payload = pack(outcome);
+    return branch;
+  };
+  const auto on_side = [&](int side, const char* key, double arclength) {
+    Ended crossing = located({at.leaving(0) + (side > 0 ? "+" : "-") + key, 25.0, arclength, 1, at.leaving(0), 1}, 0);
+    LocateOutcome outcome = unpack_locate_outcome(crossing.outcome.payload);
+    outcome.lineage.side = side;
+    crossing.outcome.payload = pack(outcome);
+    return crossing;
+  };
+  const FamilyTree::Result result =
+      resolve({ended(base_work(), EndReason::period_limit, 5, 12), located(at, 1),
+               behind(ended(work_from(at, 0, 1), EndReason::period_limit, 24, 40), 0.5),
+               behind(ended(work_from(at, 0, -1), EndReason::period_limit, 24, 40), 0.125),
+               on_side(1, "/000.q2.j1", -0.375), on_side(-1, "/000.q2.j1", -0.0625), on_side(-1, "/001.q2.j1", -0.5)});
+  EXPECT_TRUE(std::isnan(family(result, "In-Phase").birth_arclength));
+  EXPECT_EQ(family(result, "IT3").birth_arclength, -0.5);
+  std::vector<double> arclengths;
+  for (const archive::CrossingRecord& c : result.tables.crossings) arclengths.push_back(c.arclength);
+  EXPECT_THAT(arclengths, ElementsAre(1.0, -0.375, -0.5625, -1.0));
+}
+
 TEST_F(Families, WithTwoSidesAreOneAndOneSideMayBeLeftOut) {
   const Place at{"0000.0000/000.q3.j1", 8.0, 1.0, 3};
   const Place to{"0000.0000/001.q3.j1", 9.0, 2.0, 3};

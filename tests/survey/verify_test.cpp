@@ -241,8 +241,8 @@ TEST_F(VerifyOf, PointsOfTheSectionThatWereMovedOrLeftOutAreFound) {
   EXPECT_TRUE(named(found).contains(fmt::format("orbits {}", orbit - records.orbits.begin()))) << text_of(found);
 }
 
-/// A family's first orbit lies up to three steps from its birth, where its crossings are not found from orbits beside
-/// them.
+/// Where a family's crossings are not found from orbits beside them. An archive that does not say where the birth is has
+/// it up to three steps before the first orbit.
 TEST_F(VerifyOf, CrossingsBetweenABirthAndItsFirstOrbitAreTakenAsTheyAre) {
   std::size_t row = 0;
   const test::Atlas atlas(whole);
@@ -251,14 +251,31 @@ TEST_F(VerifyOf, CrossingsBetweenABirthAndItsFirstOrbitAreTakenAsTheyAre) {
   std::vector<double> arclengths;
   for (const archive::OrbitRecord& orbit : records.orbits)
     if (orbit.family_key == records.crossings[row].family_key) arclengths.push_back(orbit.arclength);
-  for (const double steps : {2.0, 4.0}) {
+  const auto expect_objection = [&](double birth, double arclength, bool expected) {
     archive::Records changed = records;
-    changed.crossings[row].arclength = arclengths[0] - steps * (arclengths[1] - arclengths[0]);
+    changed.families[static_cast<std::size_t>(families[row])].birth_arclength = birth;
+    changed.crossings[row].arclength = arclength;
     const Verification found = verified(changed);
     if (world->is_root()) {
-      EXPECT_EQ(named(found).contains(fmt::format("crossings {}", row)), steps > 3.0) << text_of(found);
+      EXPECT_EQ(named(found).contains(fmt::format("crossings {}", row)), expected)
+          << birth << " " << arclength << "\n"
+          << text_of(found);
     }
-  }
+  };
+  const double birth = records.families[static_cast<std::size_t>(families[row])].birth_arclength;
+  ASSERT_LT(birth, arclengths[0]);
+  for (const double part : {0.5, 0.99, 1.01})
+    expect_objection(birth, arclengths[0] - part * (arclengths[0] - birth), part > 1.0);
+  for (const double steps : {2.0, 4.0})
+    expect_objection(archive::not_computed, arclengths[0] - steps * (arclengths[1] - arclengths[0]), steps > 3.0);
+}
+
+TEST_F(VerifyOf, ABirthThatIsSaidToLieElsewhereIsFound) {
+  std::size_t born = 0;
+  while (records.families[born].crossing < 0) ++born;
+  archive::Records changed = records;
+  changed.families[born].birth_arclength *= 1.005;
+  expect_found(changed, fmt::format("families {}", born), "birth_arclength");
 }
 
 TEST_F(VerifyOf, IndicesOfFamiliesThatPointElsewhereAreFound) {

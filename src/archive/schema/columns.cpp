@@ -25,6 +25,11 @@ const ColumnDefinitions<FamilyRecord>& family_columns() {
       {"end_reason", &FamilyRecord::end_reason, {"", "why it ends, in words"}},
       {"end_family", row_number, {"", "row of /families that it joined, or -1"}},
       {"end_crossing", row_number, {"", "row of /crossings at which it ends, or -1"}},
+      {"birth_arclength",
+       &FamilyRecord::birth_arclength,
+       {"", "of the crossing at which it was born, on the family, in the survey's scales; NaN: it was born at none"},
+       RowShape::one,
+       births_since},
       {"checksum", checksum, {"", "CRC-32 of the row (docs/file_format.md, Checksums)"}},
   };
   return columns;

@@ -2,6 +2,7 @@
 #include "orbweaver/core/mpi/collective.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "file/parallel_file.hpp"
@@ -46,6 +47,7 @@ Order share_order(MPI_Comm comm, Order order) {
   order.selection.voided_keys = core::agreed(comm, std::move(order.selection.voided_keys));
   order.selection.earlier_scenes = core::agreed(comm, std::move(order.selection.earlier_scenes));
   order.selection.steps = core::gather_rows(comm, order.selection.steps);  // only rank 0 has any
+  order.selection.births = core::gather_rows(comm, order.selection.births);
   order.selection.voided = core::gather_rows(comm, order.selection.voided);
   order.certificates = core::gather_rows(comm, order.certificates);
   order.output = texts[0];
@@ -160,6 +162,15 @@ void number_orbits(Table& block, const Numbering& numbering, Range range) {
   }
 }
 
+// Segments have those of steps below zero from the family's birth.
+void set_arclengths(Table& block, const Order& order, const Numbering& numbering, Range range) {
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    const OrbitRow& orbit = numbering.orbits[i];
+    const double birth = order.selection.births[static_cast<std::size_t>(orbit.family)];
+    if (orbit.step < 0 && !std::isnan(birth)) block.reals("arclength")[i - range.begin] += birth;
+  }
+}
+
 // A row from before there were checksums gets one.
 void check_values(const Run& run, const RowSource& source, Table& block, const std::string& name,
                   const Values& values) {
@@ -191,6 +202,7 @@ void write_orbits(MPI_Comm comm, ParallelFile& file, const Order& order, const N
           check_values(run, *source, block, "time_map", maps);
         }
       });
+      set_arclengths(block, order, numbering, mine);
       if (!order.certificates.empty())
         fill_columns(block, certificate_columns(),
                      [&](std::size_t row) -> const CertificateRecord& { return order.certificates[mine.begin + row]; });

@@ -46,6 +46,7 @@ struct VoidedSteps {
 struct Selection {
   std::vector<std::string> keys;         ///< of the families, sorted
   std::vector<StepRange> steps;          ///< one a key
+  std::vector<double> births;            ///< arclengths, one a key; NaN: of none
   std::vector<std::string> left_out;     ///< keys of families whose rows are left out, sorted
   std::vector<std::string> voided_keys;  ///< of the families that have voided rows, sorted, one an entry of `voided`
   std::vector<VoidedSteps> voided;

@@ -101,12 +101,13 @@ std::vector<int> rows_of_crossings(const Records& tables) {
 }
 
 Selection selection_of(const Records& tables) {
-  std::map<std::string, StepRange> steps;
-  for (const FamilyRecord& family : tables.families) steps[family.key] = {family.first_step, family.last_step};
+  std::map<std::string, const FamilyRecord*> families;
+  for (const FamilyRecord& family : tables.families) families[family.key] = &family;
   Selection selection;
-  for (const auto& [key, range] : steps) {
+  for (const auto& [key, family] : families) {
     selection.keys.push_back(key);
-    selection.steps.push_back(range);
+    selection.steps.push_back({family->first_step, family->last_step});
+    selection.births.push_back(family->birth_arclength);
   }
   selection.left_out = tables.left_out_keys;
   std::sort(selection.left_out.begin(), selection.left_out.end());

@@ -83,6 +83,7 @@ AtlasTree::AtlasTree(const archive::Archive& archive, double tolerance) : atlas(
     family.parent = as_int(table.integers("parent")[row]);
     family.crossing = as_int(table.integers("crossing")[row]);
     family.multiplicity = as_int(table.integers("multiplicity")[row]);
+    family.birth_arclength = table.reals("birth_arclength")[row];
     family.isotropy = table.texts("isotropy")[row];
     family.end_family = as_int(table.integers("end_family")[row]);
     family.end_crossing = as_int(table.integers("end_crossing")[row]);

@@ -102,7 +102,7 @@ void place_crossings(const core::Communicator& comm, const std::vector<std::file
       for (const archive::FamilyRecord& family : tables.families) keys.push_back(family.key);
       std::sort(keys.begin(), keys.end());
       for (const Placement& found : placements(atlas, keys, unplaced, system))
-        tree.place(found.branch, found.family, found.arclength);
+        tree.place(found.branch, found.family, found.side, found.arclength);
     });
     return std::optional<std::vector<archive::FindingRecord>>();
   };

@@ -21,17 +21,15 @@ struct BranchState {
   bifurcation::DetectorState detector;
   bifurcation::FoldWatch folds;
   continuation::Orbit last;
-  double before_first = 0.0;
   int events = 0;
   double passed_one = 0.0;            ///< as of BranchEvents
   BranchOutcome outcome;              ///< so far
   std::vector<queue::Task> children;  ///< so far
 
-  static constexpr int wire_version = 2;
+  static constexpr int wire_version = 3;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, frontier, known, detector, folds, last, before_first, events, passed_one, outcome,
-                            children);
+    core::serialize_members(archive, frontier, known, detector, folds, last, events, passed_one, outcome, children);
   }
 };
 

@@ -32,6 +32,7 @@ struct Family {
   Lineage lineage;
   std::vector<FamilySide> sides;  ///< + first
   std::string name;
+  double birth = 0.0;  ///< arclength of the crossing where it was born; 0: of none
 };
 
 }  // namespace orbweaver::survey

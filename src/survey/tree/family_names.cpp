@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "arclengths.hpp"
+
 namespace orbweaver::survey {
 
 namespace {
@@ -40,12 +42,13 @@ std::string twin_letters(std::size_t n) {
 
 void name_families(std::vector<Family>& families, const Crossings& crossings,
                    const std::map<std::string, std::string>& letters) {
+  const Arclengths arclengths(families);
   std::map<std::pair<std::string, int>, Births> births;  // by parent and multiplicity
   for (const Family& family : families) {
     if (family.lineage.depth == 0) continue;
     const LocateOutcome& crossing = crossings.at(family.lineage.crossing);
     Births& at = births[{crossing.lineage.family, family.lineage.multiplicity}];
-    at.places.insert({crossing.arclength, crossing.key});
+    at.places.insert({arclengths.of(crossing), crossing.key});
     at.born_at[crossing.key].push_back(family.key);
   }
   for (auto& [parent, at] : births)
@@ -65,7 +68,7 @@ void name_families(std::vector<Family>& families, const Crossings& crossings,
     const std::string kind = kind_letter(family.lineage.multiplicity);
     family.name = prefix.at(crossing.lineage.family) + kind;
     if (at.places.size() > 1) {
-      const std::size_t number = ordinal(at.places, std::pair(crossing.arclength, crossing.key)) + 1;
+      const std::size_t number = ordinal(at.places, std::pair(arclengths.of(crossing), crossing.key)) + 1;
       family.name += fmt::format("{}{}", kind.size() > 1 ? "-" : "", number);
     }
     const std::vector<std::string>& born = at.born_at.at(crossing.key);

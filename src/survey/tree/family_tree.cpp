@@ -34,6 +34,8 @@ std::vector<Family> families_of(const std::vector<FamilySide>& branches) {
       Family& family = families[{lineage.depth, lineage.family}];
       if (family.sides.empty()) family = {lineage.family, lineage, {}, branch->second.name};
       family.sides.push_back(branch);
+      const std::optional<BranchOutcome>& outcome = branch->second.outcome;
+      if (family.birth == 0.0 && outcome) family.birth = -outcome->before_first;
     }
   std::vector<Family> ordered;
   for (auto& [place, family] : families) ordered.push_back(std::move(family));
@@ -176,8 +178,7 @@ std::vector<FamilyTree::Unplaced> FamilyTree::unplaced() const {
   return found;
 }
 
-void FamilyTree::place(const std::string& branch, const std::string& family, double arclength) {
-  const int side = arclength < 0.0 ? -1 : 1;
+void FamilyTree::place(const std::string& branch, const std::string& family, int side, double arclength) {
   const auto host = std::find_if(_branches.begin(), _branches.end(), [&](const auto& entry) {
     const Lineage& lineage = entry.second.lineage;
     return lineage.family == family && lineage.side == side && !_pruning.is_dropped(entry.first);
@@ -225,7 +226,7 @@ FamilyTree::Result FamilyTree::resolve() const {
   for (const auto& [key, crossing] : _crossings)
     if (on_kept(key)) crossings.push_back(&crossing);
 
-  const std::map<std::string, int> rows = add_crossings(crossings, _units, result);
+  const std::map<std::string, int> rows = add_crossings(families, crossings, _units, result);
   add_families(
       families, _crossings, rows, _units, [this](const std::string& key) { return _pruning.arrival(key); }, result);
   add_loci(_loci, _crossings, rows, _units, result);

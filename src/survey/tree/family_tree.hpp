@@ -42,8 +42,8 @@ class FamilyTree {
     const ArrivalRecord* arrival = nullptr;
   };
   [[nodiscard]] std::vector<Unplaced> unplaced() const;
-  /// The branch ends at `crossing` of `family`, at this arclength in the scene's units.
-  void place(const std::string& branch, const std::string& family, double arclength);
+  /// The branch ends at the crossing that it has located, which lies at this arclength on that side of the family.
+  void place(const std::string& branch, const std::string& family, int side, double arclength);
 
   using Result = TreeTables;
   [[nodiscard]] Result resolve() const;

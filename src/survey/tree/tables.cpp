@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "arclengths.hpp"
 #include "end_text.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/survey/tree/family_end.hpp"
@@ -21,17 +22,16 @@ namespace {
 class FoldsOnce {
  public:
   /// False for a fold where one of the same kind on the same family has been.
-  bool is_new(const LocateOutcome& crossing) {
+  bool is_new(const LocateOutcome& crossing, double arclength) {
     if (!is_fold(*crossing.kind)) return true;
     std::set<double>& places = _places[{crossing.lineage.family, *crossing.kind}];
     const auto is_same = [&](double place) {
-      return std::abs(place - crossing.arclength) <
-             same_place * (crossing.arclength_unit + std::abs(crossing.arclength));
+      return std::abs(place - arclength) < same_place * (crossing.arclength_unit + std::abs(arclength));
     };
-    const auto above = places.lower_bound(crossing.arclength);
+    const auto above = places.lower_bound(arclength);
     if (above != places.end() && is_same(*above)) return false;
     if (above != places.begin() && is_same(*std::prev(above))) return false;
-    places.insert(crossing.arclength);
+    places.insert(arclength);
     return true;
   }
 
@@ -41,10 +41,10 @@ class FoldsOnce {
   std::map<std::pair<std::string, archive::CrossingKind>, std::set<double>> _places;  // arclengths by family and kind
 };
 
-archive::CrossingRecord row_of(const LocateOutcome& crossing, const Units& units) {
+archive::CrossingRecord row_of(const LocateOutcome& crossing, double arclength, const Units& units) {
   archive::CrossingRecord row;
   row.family_key = crossing.lineage.family;
-  row.arclength = crossing.arclength;
+  row.arclength = arclength;
   row.period = crossing.period * units.time;
   row.energy = crossing.energy * units.energy();
   if (units.in_parameter()) row.parameter = crossing.parameter * units.parameter(0);
@@ -110,14 +110,17 @@ void add_orbits(const BranchOutcome& branch, FamilySummary& summary) {
 
 }  // namespace
 
-std::map<std::string, int> add_crossings(const std::vector<const LocateOutcome*>& crossings, const Units& units,
+std::map<std::string, int> add_crossings(const std::vector<Family>& families,
+                                         const std::vector<const LocateOutcome*>& crossings, const Units& units,
                                          TreeTables& tables) {
+  const Arclengths arclengths(families);
   std::map<std::string, int> rows;
   FoldsOnce folds;
   for (const LocateOutcome* crossing : crossings) {
-    if (!folds.is_new(*crossing)) continue;
+    const double arclength = arclengths.of(*crossing);
+    if (!folds.is_new(*crossing, arclength)) continue;
     rows[crossing->key] = static_cast<int>(tables.tables.crossings.size());
-    tables.tables.crossings.push_back(row_of(*crossing, units));
+    tables.tables.crossings.push_back(row_of(*crossing, arclength, units));
   }
   return rows;
 }
@@ -155,6 +158,7 @@ void add_families(const std::vector<Family>& families, const Crossings& crossing
       const LocateOutcome& born = crossings.at(family.lineage.crossing);
       record.parent_key = born.lineage.family;
       record.crossing = crossing_rows.at(born.key);
+      record.birth_arclength = family.birth;
     }
     summary.depth = family.lineage.depth;
     for (const FamilySide entry : family.sides) {

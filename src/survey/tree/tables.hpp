@@ -24,9 +24,10 @@ struct TreeTables {
   TreeEvidence evidence;  ///< for the witness
 };
 
-/// Adds a row for every crossing (they lie on families that stay) but for the second of two at one fold. Returns the
-/// rows by key.
-[[nodiscard]] std::map<std::string, int> add_crossings(const std::vector<const LocateOutcome*>& crossings,
+/// Adds a row for every crossing (they lie on `families`) but for the second of two at one fold. Returns the rows by
+/// key.
+[[nodiscard]] std::map<std::string, int> add_crossings(const std::vector<Family>& families,
+                                                       const std::vector<const LocateOutcome*>& crossings,
                                                        const Units& units, TreeTables& tables);
 
 /// Adds the points of the loci that begin at crossings with rows. One that has come back to where another begins is the

@@ -61,6 +61,8 @@ constexpr double vanishing_slope = 1e-5;
 /// to the next orbit or of the orbit's amplitude, whichever is more.
 constexpr double steps_away = 3.0;
 constexpr double amplitudes_away = 0.1;
+/// Of the way from the crossing to a first orbit, as the archive says it.
+constexpr double same_birth = 1e-3;
 
 struct Place {
   continuation::CurvePoint point;
@@ -85,10 +87,7 @@ class CrossingCheck {
   void run() {
     const double arclength = real("arclength");
     if (_family.orbits() < 2) return;  // one orbit has no curve
-    // Between its birth and its first orbit: there are no orbits beside it to find it from.
-    const double first = _family.arclengths[0];
-    const bool before_first = arclength < first && arclength > first - steps_away * (_family.arclengths[1] - first);
-    if (_family.parent >= 0 && (before_first || is_between_sides(arclength))) return;
+    if (_family.parent >= 0 && is_beside_birth(arclength)) return;  // no orbits beside it to find it from
     if (arclength < _family.arclengths.front() || arclength > _family.arclengths.back())
       return _claims.object("arclength", fmt::format("is {:.12g}; its family runs from {:.12g} to {:.12g}", arclength,
                                                      _family.arclengths.front(), _family.arclengths.back()));
@@ -416,6 +415,7 @@ class CrossingCheck {
       if (all[n].orbits() < 2 || !(born || ends)) continue;
       Claims claims(findings, "families", static_cast<std::int64_t>(n));
       if (born) near(all[n], first_of(all[n]), orbit(), "crossing", claims);
+      if (born) check_birth(all[n], orbit(), claims);
       if (ends) {
         // Forwards, or backwards where that end has joined.
         Findings forwards;
@@ -445,12 +445,19 @@ class CrossingCheck {
     return false;
   }
 
-  /// Whether it lies between the first orbits on both sides of a birth, as those before the first one of a single side.
-  [[nodiscard]] bool is_between_sides(double arclength) const {
-    const auto& steps = _atlas.archive().orbits().integers("step");
-    const std::size_t first = first_of(_family);
-    return first > 0 && steps[_family.first_orbit + first - 1] < 0 && steps[_family.first_orbit + first] >= 0 &&
-           _family.arclengths[first - 1] < arclength && arclength < _family.arclengths[first];
+  /// Whether no orbit lies between it and the birth of its family, on a side that the family has.
+  [[nodiscard]] bool is_beside_birth(double arclength) const {
+    const std::vector<double>& orbits = _family.arclengths;
+    const auto behind = [&](double s) { return std::lower_bound(orbits.begin(), orbits.end(), s); };
+    double birth = _family.birth_arclength;
+    if (std::isnan(birth)) {  // an archive that does not say where it is
+      const std::size_t first = first_of(_family);
+      birth = first > 0 ? 0.5 * (orbits[first - 1] + orbits[first]) : orbits[0] - steps_away * (orbits[1] - orbits[0]);
+    }
+    const auto next = behind(birth);
+    const double from = next == orbits.begin() ? birth : next[-1];
+    const double to = next == orbits.end() ? birth : *next;
+    return behind(arclength) == next && arclength >= from && arclength <= to;
   }
 
   [[nodiscard]] std::size_t first_of(const TreeFamily& family) const {
@@ -471,6 +478,20 @@ class CrossingCheck {
     const double away = std::hypot(loop::align(system, crossing, own).distance, crossing.period / own.period - 1.0);
     claims.below(column, away, std::max(steps_away * step, amplitudes_away * loop::rms_amplitude(own)),
                  fmt::format("the distance of orbit {} from the crossing in row {}", family.first_orbit + orbit, _row));
+  }
+
+  /// How far the orbits beside the birth lie from the crossing.
+  void check_birth(const TreeFamily& family, const loop::Loop& crossing, Claims& claims) const {
+    const std::vector<double>& orbits = family.arclengths;
+    const double birth = family.birth_arclength;
+    if (std::isnan(birth)) return;
+    const auto behind = static_cast<std::size_t>(std::lower_bound(orbits.begin(), orbits.end(), birth) - orbits.begin());
+    for (std::size_t n = behind > 0 ? behind - 1 : 0; n <= behind && n < orbits.size(); ++n) {
+      const loop::Loop own = _atlas.loop(family.first_orbit + n);
+      const loop::Loop there = loop::aligned(crossing, loop::align(_system.structure(), crossing, own));
+      const double way = continuation::arclength_in_units(_system, there, own);
+      claims.agree("birth_arclength", std::abs(orbits[n] - birth), way, same_birth * way);
+    }
   }
 
   const VerifiedAtlas& _atlas;

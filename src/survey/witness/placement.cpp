@@ -1,6 +1,7 @@
 #include "witness/placement.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "orbweaver/continuation/orbit.hpp"
@@ -32,9 +33,12 @@ std::vector<Placement> placements(const std::filesystem::path& atlas, const std:
       const std::string& key = family_keys[static_cast<std::size_t>(row)];
       const bool is_at_own = equilibrium_index(key) == equilibrium_index(one.branch);
       if (best && !is_at_own) continue;
-      const auto arclength = check.arclength_of(orbit, tree, tree.families[static_cast<std::size_t>(row)], segment);
+      const TreeFamily& family = tree.families[static_cast<std::size_t>(row)];
+      const auto arclength = check.arclength_of(orbit, tree, family, segment);
       if (!arclength) continue;
-      best = Placement{one.branch, key, *arclength};
+      const double birth = std::isnan(family.birth_arclength) ? 0.0 : family.birth_arclength;
+      const bool is_other_side = *arclength < birth;
+      best = Placement{one.branch, key, is_other_side ? -1 : 1, is_other_side ? *arclength - birth : *arclength};
       if (is_at_own) break;
     }
     if (best) found.push_back(std::move(*best));

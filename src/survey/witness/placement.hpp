@@ -14,7 +14,8 @@ namespace orbweaver::survey {
 struct Placement {
   std::string branch;
   std::string family;      ///< key
-  double arclength = 0.0;  ///< in the scene's units
+  int side = 1;            ///< of the family, as in Lineage
+  double arclength = 0.0;  ///< on the branch of that side (signed_arclength), in the scene's units
 };
 
 /// Looks for the families on which the crossings lie among those of the atlas, whose rows of /families have these keys

@@ -24,6 +24,9 @@ struct FamilyRecord {
   std::string end_reason;      ///< sentence-like text, never empty in a finished archive
   std::string end_family_key;  ///< empty: none
   int end_crossing = -1;       ///< as `crossing`
+  /// Of the crossing where it was born, on the family; NaN: it was born at none. Segments tell the arclength of orbits
+  /// with steps below zero from here: that side does not know how far the other side's first orbit is from it.
+  double birth_arclength = not_computed;
   /// Rows of the segments with other steps are left out: a branch that ran on into what another family covers is cut.
   int first_step = std::numeric_limits<int>::min();
   int last_step = std::numeric_limits<int>::max();

@@ -15,8 +15,9 @@ inline constexpr int format_version = 1;
 /// Root attribute `format_minor`: it rises with every table, column or attribute that is added; older files of the
 /// version are read. 1: /findings, system, effects, parameters, scales. 2: checksums. 3: what certificates say. 4:
 /// /sections is filled. 5: the parameter at crossings and findings. 6: /loci. 7: /equilibria. 8:
-/// `log_volume` of /orbits. 9: the attributes `unit` and `meaning` of datasets.
-inline constexpr int format_minor = 9;
+/// `log_volume` of /orbits. 9: the attributes `unit` and `meaning` of datasets. 10:
+/// `birth_arclength` of /families.
+inline constexpr int format_minor = 10;
 /// The first with checksums.
 inline constexpr int checksums_since = 2;
 /// The first with verdicts.
@@ -27,6 +28,8 @@ inline constexpr int sections_since = 4;
 inline constexpr int parameters_since = 5;
 /// The first with log_volume.
 inline constexpr int volumes_since = 8;
+/// The first that says where on a family it was born.
+inline constexpr int births_since = 10;
 
 enum class ColumnType { integer, real, text };
 

@@ -26,6 +26,7 @@ struct TreeFamily {
   int end_crossing = -1;
   std::size_t first_orbit = 0;
   std::vector<double> arclengths;
+  double birth_arclength = archive::not_computed;  ///< of `crossing`, on the family
   InvariantCurve curve;
   std::vector<FamilyEnd> ends;  ///< one, or two: forwards, backwards
   std::vector<int> crossings;   ///< rows of those that lie on it

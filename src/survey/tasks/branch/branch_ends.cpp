@@ -35,7 +35,7 @@ void BranchEnds::detect_from_birth(const std::optional<Arrival>& arrival) {
   const continuation::FamilyCurve::Known& first = _followed.curve.known().front();
   std::vector<continuation::FamilyCurve::Known> known{
       {first.position - continuation::arclength_between(_followed.start.base, first.loop), _followed.start.base,
-       first.arclength - _followed.before_first}};
+       first.arclength - _followed.outcome.before_first}};
   known.insert(known.end(), _followed.curve.known().begin(), _followed.curve.known().end());
   if (arrival && known.back().position > _followed.last->arclength) known.pop_back();  // it lies beyond the meeting
   continuation::FamilyCurve curve(_followed.system, _followed.start.isotropy,

@@ -183,7 +183,7 @@ void BranchEvents::add_event(const bifurcation::Event& event, double from, doubl
   work.name = _followed.work.name;
   work.lineage = _followed.work.lineage;
   work.isotropy = _followed.work.isotropy;
-  work.before_first = _followed.before_first;
+  work.before_first = _followed.outcome.before_first;
   work.from = std::max(from, known.front().position);  // a long way without a sign may begin before
   work.known = std::move(known);
   work.to = to;

@@ -72,14 +72,18 @@ void BranchTask::begin(const std::string& bytes) {
   _events.go_on(std::move(state.detector), state.folds, state.events, state.passed_one, std::move(state.children));
   _sampled = bifurcation::SymmetryWatch::sampled(state.last.loop);
   _followed.last = std::move(state.last);
-  _followed.before_first = state.before_first;
   _followed.outcome = std::move(state.outcome);
 }
 
 BranchState BranchTask::state_at(const continuation::Frontier& frontier) const {
-  return {frontier,        _followed.curve.known(), _events.detector_state(),
-          _events.folds(), _followed.last.value(),  _followed.before_first,
-          _events.count(), _events.passed_one(),    _followed.outcome,
+  return {frontier,
+          _followed.curve.known(),
+          _events.detector_state(),
+          _events.folds(),
+          _followed.last.value(),
+          _events.count(),
+          _events.passed_one(),
+          _followed.outcome,
           _events.tasks()};
 }
 
@@ -215,7 +219,7 @@ void BranchTask::finish() {
 /// False where the branch has arrived at another family.
 bool BranchTask::take(const continuation::Orbit& orbit) {
   if (!_followed.last)
-    _followed.before_first =
+    _followed.outcome.before_first =
         _followed.work.lineage.crossing.empty()
             ? 0.0
             : continuation::arclength_in_units(*_followed.system, _followed.start.base, orbit.loop);
@@ -303,8 +307,8 @@ void BranchTask::store(continuation::Orbit orbit, const std::optional<spectrum::
   _followed.outcome.moved_out = std::max(_followed.outcome.moved_out, orbit.moved_out);
   // The other side of a crossing: counted backwards from it.
   orbit.step = _followed.work.lineage.side > 0 ? _followed.outcome.orbits : -1 - _followed.outcome.orbits;
-  orbit.arclength =
-      signed_arclength(_followed.work.lineage, _followed.before_first, _followed.curve.arclength_at(orbit.arclength));
+  orbit.arclength = signed_arclength(_followed.work.lineage, _followed.outcome.before_first,
+                                     _followed.curve.arclength_at(orbit.arclength));
   const loop::Loop stored =
       loop::in_standard_phase(_followed.system->structure(), orbit.loop, _followed.start.isotropy);
   _rows.orbits.push_back(orbit_row(*_followed.system, _followed.work.lineage.family, orbit, stored, stability,

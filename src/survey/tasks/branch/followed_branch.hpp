@@ -40,7 +40,6 @@ class FollowedBranch {
   continuation::FamilyCurve curve;                   ///< of its last orbits
   std::vector<bifurcation::TestFunction> functions;  ///< none where the scene asks for no multipliers
   std::optional<continuation::Orbit> last;
-  double before_first = 0.0;  ///< arclength from the crossing to the first orbit, in the scene's units
   BranchOutcome outcome;
 
  private:

@@ -83,6 +83,7 @@ struct BranchOutcome {
   static constexpr const char* payload_name = "branch outcome";
   std::string key;
   int orbits = 0;
+  double before_first = 0.0;  ///< arclength from the crossing to the first orbit
   /// Ranges and last values in the units of the scene.
   double period_from = 0.0;
   double period_to = 0.0;
@@ -103,12 +104,12 @@ struct BranchOutcome {
   std::string before_limit;
   std::vector<PassedStart> passed{};
 
-  static constexpr int wire_version = 6;
+  static constexpr int wire_version = 7;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, key, orbits, period_from, period_to, level_from, level_to, last_period, last_level,
-                            last_cutoff, end, arrival, equilibrium, remarks, unlocated, tolerance_met, moved_out,
-                            limited_by, before_limit, passed);
+    core::serialize_members(archive, key, orbits, before_first, period_from, period_to, level_from, level_to,
+                            last_period, last_level, last_cutoff, end, arrival, equilibrium, remarks, unlocated,
+                            tolerance_met, moved_out, limited_by, before_limit, passed);
     if constexpr (Archive::is_loading::value) check_limits(limited_by);
   }
 };

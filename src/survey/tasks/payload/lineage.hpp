@@ -23,7 +23,8 @@ struct Lineage {
   }
 };
 
-/// Arclength along the family of a position along one branch of it: the other side of the crossing counts backwards.
+/// Arclength along the family of a position along one branch of it: from the first orbit, or, of the other side, which
+/// counts backwards, from the crossing, `before_first` from the side's first orbit.
 [[nodiscard]] double signed_arclength(const Lineage& lineage, double before_first, double position);
 
 }  // namespace orbweaver::survey

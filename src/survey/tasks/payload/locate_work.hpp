@@ -65,7 +65,7 @@ struct LocateOutcome {
   static constexpr const char* payload_name = "locate outcome";
   std::string key;
   Lineage lineage;
-  double arclength = 0.0;       ///< in the units of the scene, as the archive's
+  double arclength = 0.0;       ///< on its branch (signed_arclength), in the units of the scene
   double arclength_unit = 1.0;  ///< how long a length of 1 in the survey's scales is there in it
   double period = 0.0;
   double energy = 0.0;

@@ -108,13 +108,10 @@ class IndexChanges final : public Check {
     constexpr double far = std::numeric_limits<double>::infinity();
     const auto& steps = evidence.tree.atlas.orbits().integers("step");
     const std::size_t last = first + count - 1;
-    if (steps[family.first_orbit + first] < 0) {
-      const bool is_only = last + 1 == family.orbits();
-      const double birth = is_only ? far : 0.5 * (family.arclengths[last] + family.arclengths[last + 1]);
-      return {last, first, family.arclengths[last], birth};
-    }
-    const double birth = first == 0 ? -far : 0.5 * (family.arclengths[first - 1] + family.arclengths[first]);
-    return {first, last, birth, family.arclengths[first]};
+    const double birth = family.birth_arclength;
+    if (steps[family.first_orbit + first] < 0)
+      return {last, first, family.arclengths[last], std::isnan(birth) ? far : birth};
+    return {first, last, std::isnan(birth) ? -far : birth, family.arclengths[first]};
   }
 
   /// Where a family is born, and where it joins another, its index is 2: the orbits next to these places have it on
