@@ -62,6 +62,8 @@ constexpr double longest_piece = 0.125;
 /// Of the length that a piece has for its part of the chord: by less the two halves of a smooth piece differ.
 constexpr double uneven = 0.2;
 
+constexpr TestFunction index_two() { return {TestFunction::Kind::sector, {1, 0}}; }
+
 /// Whether the curve between the orbits is there, and the index comes to 2 on it.
 bool has_index_two_between(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
                            const continuation::Options& options, const KnownStability& from, const KnownStability& to) {
@@ -69,7 +71,7 @@ bool has_index_two_between(const std::shared_ptr<const systems::System>& system,
   step.add(0.0, from.orbit.loop);
   step.add(1.0, to.orbit.loop);
   const auto value_of = [&](const spectrum::Stability& s) {
-    return evaluate({TestFunction::Kind::sector, {1, 0}}, system->structure(), s).value;
+    return evaluate(index_two(), system->structure(), s).value;
   };
   const numerics::Place before{0.0, value_of(from.stability)};
   const numerics::Place after{1.0, value_of(to.stability)};
@@ -93,6 +95,15 @@ double distance_of(const spectrum::Stability& s) {
   double distance = std::numeric_limits<double>::infinity();
   for (const std::complex<double>& k : s.fundamental) distance = std::min(distance, std::abs(k - 2.0));
   return distance;
+}
+
+/// So many times the step that is asked: the function comes to zero faster than a line.
+constexpr double looked_ahead = 1.5;
+
+/// Whether an index should have passed 2 on a step of this length, as it has gone before.
+bool is_to_pass_two(const systems::Structure& system, const KnownStability& from, double length) {
+  const double value = evaluate(index_two(), system, from.stability).value;
+  return value * (value + looked_ahead * length * from.slope) < 0.0;
 }
 
 /// By which neighbours of an elliptic orbit go around, in the sense of its twist.
@@ -166,6 +177,11 @@ bool passes_one_without_gap(const std::shared_ptr<const systems::System>& system
 constexpr double rotating_steps = 1e-3;
 
 }  // namespace
+
+double slope_to_two(const systems::Structure& system, const spectrum::Stability& before,
+                    const spectrum::Stability& after, double length) {
+  return (evaluate(index_two(), system, after).value - evaluate(index_two(), system, before).value) / length;
+}
 
 bool passes_two_only_at_folds(const systems::Structure& system, const loop::Isotropy& isotropy) {
   return system.symplectic &&
@@ -246,15 +262,17 @@ bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop
   if (has_turned &&
       loop::mean_distance(from.orbit.loop, to.orbit.loop) > rotating_steps * loop::rms_amplitude(to.orbit.loop))
     return true;
-  const TestFunction two{TestFunction::Kind::sector, {1, 0}};
-  const int before = evaluate(two, system->structure(), from.stability).sign();
-  const int after = evaluate(two, system->structure(), to.stability).sign();
-  if (before * after >= 0) return false;
-  if (!passes_two_only_at_folds(system->structure(), isotropy))
-    return !has_index_two_between(system, isotropy, options, from, to);
+  const int before = evaluate(index_two(), system->structure(), from.stability).sign();
+  const int after = evaluate(index_two(), system->structure(), to.stability).sign();
+  if (before * after == 0) return false;
   continuation::FamilyCurve step(system, isotropy, options);
   step.add(0.0, from.orbit.loop);
   step.add(1.0, to.orbit.loop);
+  // Where a family turns aside before it, another one begins on the other side, whose index is as it was.
+  if (before == after)
+    return length >= options.smallest_jump && is_to_pass_two(system->structure(), from, length) && !is_one_curve(step);
+  if (!passes_two_only_at_folds(system->structure(), isotropy))
+    return !has_index_two_between(system, isotropy, options, from, to);
   const std::optional<continuation::CurvePoint> start = step.at(0.0, true);
   const std::optional<continuation::CurvePoint> end = step.at(1.0, true);
   if (!start || !end) return true;

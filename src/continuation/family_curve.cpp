@@ -64,7 +64,11 @@ std::optional<CurvePoint> FamilyCurve::at(double position, bool with_tangent) {
   if (_before_each) _before_each();
   std::unique_ptr<CurveInterval>& interval = _intervals[last];
   if (!interval) interval = std::make_unique<CurveInterval>(*_system, _isotropy, _options, _known, last);
-  return interval->at(position, with_tangent);
+  std::optional<CurvePoint> found = interval->at(position, with_tangent);
+  if (found || _known.size() == 2) return found;
+  // Where a family turns sharply within the interval, orbits beyond lead away from it.
+  const std::vector<Known> ends{_known[last - 1], _known[last]};
+  return CurveInterval(*_system, _isotropy, _options, ends, 1).at(position, with_tangent);
 }
 
 }  // namespace orbweaver::continuation

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 
 #include "orbweaver/continuation/branch.hpp"
@@ -20,7 +21,13 @@ namespace orbweaver::bifurcation {
 struct KnownStability {
   const continuation::Orbit& orbit;
   const spectrum::Stability& stability;
+  /// By how much the test function of an index of 2 has changed over the step that led there, in its length.
+  double slope = std::numeric_limits<double>::quiet_NaN();
 };
+
+/// That slope.
+[[nodiscard]] double slope_to_two(const systems::Structure& system, const spectrum::Stability& before,
+                                  const spectrum::Stability& after, double length);
 
 /// True if the sense in which neighbours go around (`Stability::twist`, of several pairs that in one plane of
 /// `Stability::rotations`) differs between two orbits whose index is nearer to 2 than to -2. Along one family it would
@@ -46,7 +53,8 @@ struct KnownStability {
 /// cannot be told, which a shorter step may change: neighbours of the two orbits go around by angles too far apart
 /// (`rotates_too_far`), the directions of the family at the two orbits cannot be had, or one turns too far from the
 /// chord (`least_cosine` of the options). On other families of a symplectic system: an index has passed 2, and no orbit
-/// between the two has it.
+/// between the two has it. On all of them: an index was on its way through 2 (`slope` of `from`), has not passed it, and
+/// the orbits between are not one curve.
 [[nodiscard]] bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
                               const continuation::Options& options, const KnownStability& from,
                               const KnownStability& to);

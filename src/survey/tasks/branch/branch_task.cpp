@@ -240,7 +240,7 @@ bool BranchTask::take(const continuation::Orbit& orbit) {
   const bool is_other_sides = _followed.work.base_is_orbit && _followed.work.lineage.side < 0 && !_followed.last;
   if (!is_other_sides) store(orbit, stability);
   _followed.last = orbit;
-  _last_stability = stability;
+  _stability_before = std::exchange(_last_stability, stability);
   return !(stability && is_nearly_two(*stability) && arrives_ahead());
 }
 
@@ -258,14 +258,22 @@ bool BranchTask::arrives_ahead() {
 }
 
 bool BranchTask::jumped(const continuation::Orbit& from, const continuation::Orbit& to) {
-  if (!_last_stability)
-    _last_stability = stability_of(*_followed.system, _followed.last->loop, _followed.start.isotropy, _followed.team);
+  const auto known = [&](std::optional<spectrum::Stability>& stability, const loop::Loop& loop) {  // not after a break
+    if (!stability) stability = stability_of(*_followed.system, loop, _followed.start.isotropy, _followed.team);
+    return stability && bifurcation::are_decided(*stability);
+  };
+  if (!known(_last_stability, _followed.last->loop)) return false;
   const std::optional<spectrum::Stability>& after = _followed.stability_at(to);
+  if (!after || !bifurcation::are_decided(*after)) return false;
+  bifurcation::KnownStability last{from, *_last_stability};
+  const auto& orbits = _followed.curve.known();
+  if (orbits.size() > 1)
+    if (const auto& before = orbits[orbits.size() - 2]; known(_stability_before, before.loop))
+      last.slope = bifurcation::slope_to_two(_followed.system->structure(), *_stability_before, *_last_stability,
+                                             orbits.back().position - before.position);
   const core::LogEvent event(core::Event::validation);
-  return _last_stability && after && bifurcation::are_decided(*_last_stability) && bifurcation::are_decided(*after) &&
-         bifurcation::has_jumped(_followed.system, _followed.start.isotropy,
-                                 branch_options(_followed.scene, _followed.team), {from, *_last_stability},
-                                 {to, *after});
+  return bifurcation::has_jumped(_followed.system, _followed.start.isotropy,
+                                 branch_options(_followed.scene, _followed.team), last, {to, *after});
 }
 
 bool BranchTask::arrive(const continuation::Orbit& orbit) {

@@ -69,6 +69,7 @@ class BranchTask {
   std::optional<Arrival> _arrival;                                   // between the last orbit and the next
   bool _may_arrive_ahead = false;                                    // no reversor holds the direction
   std::optional<spectrum::Stability> _last_stability;                // of the last orbit
+  std::optional<spectrum::Stability> _stability_before;              // of the one before, where that is known
   bool _stopped = false;
 };
 
