@@ -63,7 +63,6 @@ bifurcation::TestPoint BranchEvents::test_point(double position,
     if (!is_of_one(_followed.functions[f])) continue;
     double& error = point.readings[f].error;
     if (is_first || position > _last) error *= error_margin;
-    if (is_first) error = std::max(error, bifurcation::zero_at_birth);  // of the birth, not an event
   }
   return point;
 }
