@@ -142,11 +142,13 @@ std::vector<TestPoint> Detector::subdivided(const TestPoint& next, const Probe& 
   const auto known = static_cast<std::ptrdiff_t>(grid.size());
   grid.push_back(next);
   bool halved = known > 0;
-  for (int level = 0; halved && level < _options.halvings; ++level) {
+  for (int level = 0; halved && level < std::max(_options.halvings, next.halvings); ++level) {
     halved = false;
+    const bool in_any_case = level < next.halvings;
     std::vector<TestPoint> finer(grid.begin(), grid.begin() + known);
     for (auto n = static_cast<std::size_t>(known); n < grid.size(); ++n) {
-      if (badly_extrapolated(grid, n - 1) || badly_extrapolated(grid, n) || pass_several(grid[n - 1], grid[n])) {
+      if (in_any_case || badly_extrapolated(grid, n - 1) || badly_extrapolated(grid, n) ||
+          pass_several(grid[n - 1], grid[n])) {
         if (auto middle = probed(probe, 0.5 * (grid[n - 1].position + grid[n].position))) {
           finer.push_back(*std::move(middle));
           halved = true;

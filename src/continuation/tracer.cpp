@@ -269,6 +269,7 @@ std::optional<Orbit> Tracer::next_orbit(double at_most) {
     if (trial.is_orbit && !jumped && !needs_more) {
       _frontier.next_length =
           std::min(next_step_length(length, trial.prediction_error, wanted, trial.order), _options.largest_step);
+      _halvings = halvings_of_step(trial.prediction_error, wanted, trial.order);
       Ending refused;
       if (std::optional<Orbit> orbit = accept_within_limits(trial, length, refused)) return orbit;
       // The step may have gone over to another family, on which there is no such orbit.
@@ -443,6 +444,7 @@ Orbit Tracer::accept(const Trial& trial) {
   orbit.tolerance_met = trial.tolerance_met;
   orbit.tail = loop::tail(orbit.loop);
   orbit.iterations = trial.iterations;
+  orbit.halvings = std::exchange(_halvings, 0);
   const std::vector<double>& before = _stepper.last();
   _frontier.threshold = trial.threshold;
   keep(orbit, begun() ? _problem->distance(trial.values, before) : 0.0, trial.amplitude);

@@ -71,6 +71,7 @@ class Tracer {
   std::optional<Ending> _ending;
   bool _met_limit = false;
   std::unique_ptr<PointProblem> _problem;
+  int _halvings = 0;  // Orbit::halvings of the step that is being accepted
   Stepper _stepper;
 };
 

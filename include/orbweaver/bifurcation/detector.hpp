@@ -19,11 +19,12 @@ struct TestPoint {
   /// known. Empty: of none.
   std::vector<double> passed{};
   double turns = std::numeric_limits<double>::quiet_NaN();  ///< spectrum::Stability::turns, of an elliptic orbit only
+  int halvings = 0;  ///< the way to it from the point before is halved so often in any case
 
-  static constexpr int wire_version = 2;
+  static constexpr int wire_version = 3;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, position, readings, passed, turns);
+    core::serialize_members(archive, position, readings, passed, turns, halvings);
   }
 };
 
@@ -64,7 +65,7 @@ struct DetectorOptions {
   double turning_error = 0.02;
   /// Where points are so many turns apart, at least: below, functions tell more of what is new along the family.
   double turning_step = 0.1;
-  int halvings = 3;  ///< of one step, at most
+  int halvings = 3;  ///< of one step, at most, where readings ask for it
   /// A minimum of |value| below this, or below its error bound, touches zero. Located to 1e-6 of a bracket, a true
   /// touch is far below; what is taken for one wrongly costs a location that finds nothing.
   double tangency_tolerance = 1e-6;

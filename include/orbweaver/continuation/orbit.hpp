@@ -23,13 +23,15 @@ struct Orbit {
   /// it was taken; else 0.
   double moved_out = 0.0;
   int iterations = 0;
+  /// Of the step that led here: how often it has to be halved for pieces as long as steps that the branch chooses.
+  int halvings = 0;
   double off_branch_eigenvalue = std::numeric_limits<double>::quiet_NaN();
 
-  static constexpr int wire_version = 3;
+  static constexpr int wire_version = 4;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, loop, step, arclength, energy, action, loss_rms, tail, tolerance_met, moved_out,
-                            iterations, off_branch_eigenvalue);
+                            iterations, halvings, off_branch_eigenvalue);
   }
 };
 

@@ -104,22 +104,33 @@ void BranchEvents::detect_meetings(const bifurcation::StabilityAt& from, const b
 }
 
 void BranchEvents::detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability) {
-  detect_zeros(test_point(orbit.arclength, stability));
+  bifurcation::TestPoint point = test_point(orbit.arclength, stability);
+  point.halvings = orbit.halvings;
+  detect_zeros(point);
+  const std::vector<continuation::FamilyCurve::Known>& known = _followed.curve.known();
+  for (int n = 1, pieces = 1 << orbit.halvings; n < pieces && known.size() > 1; ++n) {
+    const double from = known[known.size() - 2].position;
+    const double position = from + n * (orbit.arclength - from) / pieces;
+    if (const auto between = _followed.curve.at(position)) watch_folds(position, between->loop);
+  }
+  watch_folds(orbit.arclength, orbit.loop);
+  if (known.size() > 2) add_paired_folds(known.size() == 3 ? 0 : known.size() - 3);
+}
+
+void BranchEvents::watch_folds(double position, const loop::Loop& loop) {
   // Where a parameter moves only it folds; T and the energy have extrema that say nothing.
-  const bool moves = !orbit.loop.parameters.empty();
+  const bool moves = !loop.parameters.empty();
   const auto watched = [&](bifurcation::Fold::Quantity quantity, const bifurcation::FoldWatch::Turn& turn) {
-    return is_rounding(*_followed.system, _followed.start.isotropy, quantity, turn, orbit.loop, _followed.curve.known())
+    return is_rounding(*_followed.system, _followed.start.isotropy, quantity, turn, loop, _followed.curve.known())
                ? archive::not_computed
-               : value_of(*_followed.system, quantity, orbit.loop);
+               : value_of(*_followed.system, quantity, loop);
   };
   using Quantity = bifurcation::Fold::Quantity;
-  for (const bifurcation::Fold& fold :
-       moves ? _folds.advance(orbit.arclength, archive::not_computed, archive::not_computed,
-                              watched(Quantity::parameter, _folds.parameter))
-             : _folds.advance(orbit.arclength, watched(Quantity::period, _folds.period),
-                              watched(Quantity::energy, _folds.energy)))
+  for (const bifurcation::Fold& fold : moves ? _folds.advance(position, archive::not_computed, archive::not_computed,
+                                                              watched(Quantity::parameter, _folds.parameter))
+                                             : _folds.advance(position, watched(Quantity::period, _folds.period),
+                                                              watched(Quantity::energy, _folds.energy)))
     add_watched(fold);
-  if (const std::size_t known = _followed.curve.known().size(); known > 2) add_paired_folds(known == 3 ? 0 : known - 3);
 }
 
 void BranchEvents::add_watched(const bifurcation::Fold& fold) {

@@ -66,6 +66,7 @@ class BranchEvents {
 
  private:
   void add_zeros(const std::vector<bifurcation::Bracket>& brackets);
+  void watch_folds(double position, const loop::Loop& loop);
   [[nodiscard]] bool is_in_known(const bifurcation::Fold& fold) const;
   [[nodiscard]] std::optional<spectrum::Stability> stability_between(double position);
   [[nodiscard]] std::optional<bifurcation::TestPoint> probe(double position);
