@@ -11,6 +11,7 @@
 #include "least_guard.hpp"
 #include "limit_orbit.hpp"
 #include "orbweaver/continuation/off_branch.hpp"
+#include "orbweaver/continuation/way_from_start.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
 #include "step_control.hpp"
@@ -33,11 +34,7 @@ constexpr double above_least_known = 2.0;
 constexpr double still_at_start = 1e-16;
 /// Of the angle between a branch's direction at its crossing and the way to its first orbit, which bends with the
 /// distance: those of the shipped scenes have 0.88 or more, one that had gone over to another family 0.62.
-constexpr double first_cosine = 0.85;
-/// Unless it is the same at half the distance: the cosine of the angle between the two ways, and how far the nearer
-/// one's share of the farther one's length is from a half. To a family that passes beside the crossing it is as long.
-constexpr double straight_cosine = 0.98;
-constexpr double straight_share = 0.1;
+constexpr double first_share = 0.85;
 /// Of a step's length where the step went over to another family: the next attempt.
 constexpr double shortened_after_jump = 0.3;
 /// The same of the length allowed to the attempt before, once an attempt has come out no shorter.
@@ -97,7 +94,7 @@ std::optional<Orbit> Tracer::first_orbit() {
   _frontier.problem.held_energy = energy_of(*_system, _start.base);
   _problem->resolve(_problem->resolution_for(std::max(_start.base.cutoff, _options.cutoff_from), _start.base.time_map,
                                              _options.cutoff_to));
-  std::vector<double> farther;  // an orbit aside, at twice the amplitude
+  const bool has_direction = !is_at_rest && _start.base.time_map.is_identity();
   while (true) {
     // Beside an orbit everything is measured by the orbit, however near the first one of the family lies.
     _frontier.problem.amplitude = extent_of(_start.base.winding, std::max(amplitude, loop::rms_amplitude(_start.base)));
@@ -107,7 +104,6 @@ std::optional<Orbit> Tracer::first_orbit() {
       prediction.tangent[_problem->scalars_at() + n] += direction.scalars[n];
     for (std::size_t n = 0; n < base.size(); ++n) prediction.values[n] += amplitude * prediction.tangent[n];
     const std::vector<double> conditions = _problem->conditions_at(prediction);
-    const std::vector<double> predicted = prediction.values;
     Trial trial = _problem->correct(std::move(prediction), conditions);
     if (_stepper.needs_more_harmonics(trial)) {
       const std::optional<Resolution> finer = _problem->next_resolution(_options.cutoff_to);
@@ -116,9 +112,9 @@ std::optional<Orbit> Tracer::first_orbit() {
       _problem->resolve(*finer);
       continue;
     }
-    if (trial.is_orbit && !is_at_rest && 0.5 * amplitude >= nearest && is_aside(trial.values, predicted, base) &&
-        !is_half_way(trial.values, farther, base)) {
-      farther = trial.values;
+    // Where the way has left the branch's direction it may have gone over to another family.
+    if (trial.is_orbit && has_direction && 0.5 * amplitude >= nearest &&
+        way_from(_start, trial.loop).share < first_share) {
       amplitude *= 0.5;
       continue;
     }
@@ -147,27 +143,6 @@ std::optional<Orbit> Tracer::first_orbit() {
     amplitude *= 0.5;
     if (amplitude < nearest) return end(EndReason::failure, fmt::format("no orbit near the start: {}", trial.reason));
   }
-}
-
-/// Whether the way from the crossing to a first orbit has left the branch's direction there: on such a way it may have
-/// gone over to another family.
-bool Tracer::is_aside(const std::vector<double>& first, const std::vector<double>& predicted,
-                      const std::vector<double>& base) {
-  const double way = _problem->product(first, base, first, base);
-  const double foreseen = _problem->product(predicted, base, predicted, base);
-  const double along = _problem->product(first, base, predicted, base);
-  return along < first_cosine * std::sqrt(way * foreseen);
-}
-
-/// Whether a way from the crossing leads to an orbit as straight as to another, twice as far. A family that goes
-/// through a crossing of order 3 has a part of the base's own direction, which the branch's may lack.
-bool Tracer::is_half_way(const std::vector<double>& orbit, const std::vector<double>& farther,
-                         const std::vector<double>& base) {
-  if (farther.size() != orbit.size()) return false;
-  const double way = _problem->product(orbit, base, orbit, base);
-  const double both = _problem->product(orbit, base, farther, base);
-  const double longer = _problem->product(farther, base, farther, base);
-  return both > straight_cosine * std::sqrt(way * longer) && std::abs(std::sqrt(way / longer) - 0.5) < straight_share;
 }
 
 std::optional<Orbit> Tracer::base_orbit() {

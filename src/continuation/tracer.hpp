@@ -43,10 +43,6 @@ class Tracer {
 
   std::optional<Orbit> first_orbit();
   /// The start's base itself, corrected with one scalar held.
-  [[nodiscard]] bool is_aside(const std::vector<double>& first, const std::vector<double>& predicted,
-                              const std::vector<double>& base);
-  [[nodiscard]] bool is_half_way(const std::vector<double>& orbit, const std::vector<double>& farther,
-                                 const std::vector<double>& base);
   std::optional<Orbit> base_orbit();
   [[nodiscard]] loop::Tangent start_direction() const;
   std::optional<Orbit> next_on_family();

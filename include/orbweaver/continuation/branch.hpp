@@ -79,6 +79,7 @@ struct Start {
   /// `base` is (nearly) an orbit of the family and its first one, with the scalar held along which `direction` points:
   /// its modes are 0.
   bool base_is_orbit = false;
+  int times = 1;  ///< the base goes so often around the orbit at which the family is born
 };
 
 class Tracer;

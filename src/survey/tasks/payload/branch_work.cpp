@@ -19,6 +19,7 @@ continuation::Start start_of(const BranchWork& work, const systems::Structure& s
   start.direction = work.direction;
   start.isotropy = loop::with_declared_matrices(work.isotropy, system);
   start.base_is_orbit = work.base_is_orbit;
+  start.times = work.lineage.multiplicity;
   return start;
 }
 

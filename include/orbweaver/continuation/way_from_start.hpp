@@ -1,0 +1,44 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "orbweaver/continuation/branch.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
+
+namespace orbweaver::continuation {
+
+/// The way from a start to an orbit of the family, in time: cosines of the angle between it and the direction in which
+/// the branch was to leave.
+struct WayFromStart {
+  /// Of what does not repeat as the base does, which a family that goes through a crossing of order 3 may leave along
+  /// the base itself as far as it likes.
+  double share = 0.0;
+  double share_of_whole = 0.0;  ///< what lies on the base's own family has next to none
+};
+
+/// From `start.base`, which has the identity as its time map.
+[[nodiscard]] inline WayFromStart way_from(const Start& start, const loop::Loop& orbit) {
+  const int cutoff = std::min(start.base.cutoff, orbit.cutoff);
+  const loop::Loop even = orbit.time_map.is_identity() ? orbit : loop::evenly_in_time(orbit);
+  const loop::Loop there = loop::with_cutoff(even, cutoff);
+  const loop::Loop base = loop::with_cutoff(start.base, cutoff);
+  const auto width = static_cast<std::size_t>(base.dimension);
+  double along = 0.0;
+  double direction = 0.0;
+  double whole = 0.0;
+  double alone = 0.0;
+  for (std::size_t n = 0; n < there.modes.size(); ++n) {
+    const double step = there.modes[n] - base.modes[n];
+    whole += step * step;
+    const std::size_t harmonic = (n / width + 1) / 2;  // a_0, a_1, b_1, a_2, ...
+    if (start.times > 1 && harmonic % static_cast<std::size_t>(start.times) == 0) continue;
+    along += step * start.direction.modes[n];
+    direction += start.direction.modes[n] * start.direction.modes[n];
+    alone += step * step;
+  }
+  const auto cosine = [&](double square) { return along != 0.0 ? along / std::sqrt(direction * square) : 0.0; };
+  return {cosine(alone), cosine(whole)};
+}
+
+}  // namespace orbweaver::continuation
