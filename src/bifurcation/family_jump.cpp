@@ -268,9 +268,12 @@ bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop
   continuation::FamilyCurve step(system, isotropy, options);
   step.add(0.0, from.orbit.loop);
   step.add(1.0, to.orbit.loop);
-  // Where a family turns aside before it, another one begins on the other side, whose index is as it was.
-  if (before == after)
-    return length >= options.smallest_jump && is_to_pass_two(system->structure(), from, length) && !is_one_curve(step);
+  // A prediction that is far off may have met another family. And where a family turns aside before an index is 2,
+  // another one begins on the other side, whose index is as it was.
+  if (before == after) {
+    const bool is_doubtful = to.orbit.halvings > 0 || is_to_pass_two(system->structure(), from, length);
+    return is_doubtful && length >= options.smallest_jump && !is_one_curve(step);
+  }
   if (!passes_two_only_at_folds(system->structure(), isotropy))
     return !has_index_two_between(system, isotropy, options, from, to);
   const std::optional<continuation::CurvePoint> start = step.at(0.0, true);
