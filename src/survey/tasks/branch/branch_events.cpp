@@ -105,7 +105,7 @@ void BranchEvents::detect_meetings(const bifurcation::StabilityAt& from, const b
 
 void BranchEvents::detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability) {
   bifurcation::TestPoint point = test_point(orbit.arclength, stability);
-  point.halvings = orbit.halvings;
+  point.halvings = (orbit.halvings + 1) / 2;  // what these show asks for more
   detect_zeros(point);
   const std::vector<continuation::FamilyCurve::Known>& known = _followed.curve.known();
   for (int n = 1, pieces = 1 << orbit.halvings; n < pieces && known.size() > 1; ++n) {
