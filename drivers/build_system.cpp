@@ -42,8 +42,8 @@ void require_headers(const InstalledFiles& at) {
   const fs::path header = at.headers / "orbweaver/systems/plugin.hpp";
   if (!fs::exists(header))
     throw core::EnvironmentError(
-        fmt::format("'{}' is not there, which every plugin is compiled with: run the program from where it was built or "
-                    "installed, not a copy of it (docs/packaging.md)",
+        fmt::format("'{}' is not there, which every plugin is compiled with: run the program from where it was built "
+                    "or installed, not a copy of it (docs/packaging.md)",
                     header.string()));
 }
 

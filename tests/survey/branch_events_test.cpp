@@ -34,7 +34,7 @@ TEST(BranchEvents, OnTheWayToAMeetingRoundingMakesNoSign) {
   FollowedBranch followed(scene, system, work, nullptr);
   BranchEvents events(followed, nullptr);
   const auto sign_of = [&](int q, double position, const spectrum::Stability& stability) {
-    const bifurcation::TestPoint point = events.test_point(position, stability);
+    const bifurcation::TestPoint point = events.test_point(position, work.base, stability);
     for (std::size_t f = 0; f < point.readings.size(); ++f)
       if (followed.functions[f].kind == bifurcation::TestFunction::Kind::sector && followed.functions[f].sector.q == q)
         return point.readings[f].sign();

@@ -241,8 +241,8 @@ TEST_F(VerifyOf, PointsOfTheSectionThatWereMovedOrLeftOutAreFound) {
   EXPECT_TRUE(named(found).contains(fmt::format("orbits {}", orbit - records.orbits.begin()))) << text_of(found);
 }
 
-/// Where a family's crossings are not found from orbits beside them. An archive that does not say where the birth is has
-/// it up to three steps before the first orbit.
+/// Where a family's crossings are not found from orbits beside them. An archive that does not say where the birth is
+/// has it up to three steps before the first orbit.
 TEST_F(VerifyOf, CrossingsBetweenABirthAndItsFirstOrbitAreTakenAsTheyAre) {
   std::size_t row = 0;
   const test::Atlas atlas(whole);

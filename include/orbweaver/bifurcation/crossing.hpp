@@ -71,9 +71,10 @@ struct NotLocated {
                                              const Event& event, double from, double to, NotLocated& why,
                                              double tolerance = 1e-11);
 
-/// Test functions of a family's birth that are smaller vanish there, the family's own for one, and at the first orbit
-/// beside it say nothing: that goes away from zero like a power of the distance. Their error bounds do not tell: they
-/// take a Newton step, and the orbits of two families lie side by side. The crossing is located to 1e-9.
+/// Test functions of a family's birth that are smaller vanish there, the family's own for one, and at orbits beside it
+/// say nothing where rounding leaves those open: that goes away from zero like a power of the distance. Their error
+/// bounds do not tell: they take a Newton step, and the orbits of two families lie side by side. The crossing is located
+/// to 1e-9.
 inline constexpr double zero_at_birth = 1e-6;
 
 /// Of the orbit on which a family is born, in the family's symmetries: an index is 2, which computed it may miss by any

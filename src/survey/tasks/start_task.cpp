@@ -18,8 +18,8 @@ constexpr double amplitude_factors[] = {1.0, 0.3, 3.0, 0.1, 10.0, 0.03};
 /// Least cosine between the first orbit's way and the direction in which it was to leave (60 degrees): an orbit of
 /// another direction lies beside it. Not measured.
 constexpr double least_share = 0.5;
-/// Of the whole way, 84 degrees: what lies farther aside is told from the base family by rounding and curvature no more.
-/// Not measured.
+/// Of the whole way, 84 degrees: what lies farther aside is told from the base family by rounding and curvature no
+/// more. Not measured.
 constexpr double least_share_of_whole = 0.1;
 
 }  // namespace

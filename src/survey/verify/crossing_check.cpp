@@ -485,7 +485,8 @@ class CrossingCheck {
     const std::vector<double>& orbits = family.arclengths;
     const double birth = family.birth_arclength;
     if (std::isnan(birth)) return;
-    const auto behind = static_cast<std::size_t>(std::lower_bound(orbits.begin(), orbits.end(), birth) - orbits.begin());
+    const auto next = std::lower_bound(orbits.begin(), orbits.end(), birth) - orbits.begin();
+    const auto behind = static_cast<std::size_t>(next);
     for (std::size_t n = behind > 0 ? behind - 1 : 0; n <= behind && n < orbits.size(); ++n) {
       const loop::Loop own = _atlas.loop(family.first_orbit + n);
       const loop::Loop there = loop::aligned(crossing, loop::align(_system.structure(), crossing, own));

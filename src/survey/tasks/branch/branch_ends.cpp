@@ -51,8 +51,9 @@ void BranchEnds::indices_from_birth(continuation::FamilyCurve& curve) {
   const auto probe = [&](double position) -> std::optional<bifurcation::TestPoint> {
     const auto point = curve.at(position);
     if (!point) return std::nullopt;
-    return _events.test_point(position, stability_of(*_followed.system, point->loop, _followed.start.isotropy,
-                                                     _followed.team));
+    return _events.test_point(
+        position, point->loop,
+        stability_of(*_followed.system, point->loop, _followed.start.isotropy, _followed.team));
   };
   std::optional<spectrum::Stability> birth =
       stability_of(*_followed.system, _followed.start.base, _followed.start.isotropy, _followed.team);
@@ -70,7 +71,7 @@ void BranchEnds::indices_from_birth(continuation::FamilyCurve& curve) {
     if (auto place = probe(known[0].position + share * (known[1].position - known[0].position)))
       places.push_back(*std::move(place));
   places.push_back(_events.test_point(
-      known[1].position, stability_of(*_followed.system, known[1].loop, _followed.start.isotropy, _followed.team)));
+      known[1].position, known[1].loop, stability_of(*_followed.system, known[1].loop, _followed.start.isotropy, _followed.team)));
   for (const bifurcation::TestPoint& place : places)
     for (const bifurcation::Bracket& bracket : detector.advance(place, probe)) found.push_back(bracket);
   _events.add_zeros_from_birth(found, known);
@@ -172,7 +173,8 @@ std::vector<continuation::Orbit> BranchEnds::orbits_to_zeros(const std::vector<c
   std::vector<continuation::Orbit> orbits;
   for (std::size_t n = 1; n < places.size(); ++n) {
     const int known = _events.count();
-    _events.detect_zeros(_events.test_point(places[n].position, _followed.asked_stability(places[n].loop)));
+    _events.detect_zeros(
+        _events.test_point(places[n].position, places[n].loop, _followed.asked_stability(places[n].loop)));
     if (_events.count() > known) add_orbits(places, places[n].position, orbits);
   }
   return orbits;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/archive/schema/records.hpp"
+#include "orbweaver/continuation/left_open.hpp"
 #include "orbweaver/survey/tasks/branch_options.hpp"
 #include "tasks/branch/fold_pairs.hpp"
 #include "tasks/branch/foldable.hpp"
@@ -21,6 +22,9 @@ namespace {
 /// Of its bound, the error that a function of the multiplier 1 may have on the way to a meeting, where rounding is all
 /// that is left of it: the bound is an estimate, good to a factor (as in `bifurcation::is_isolated`).
 constexpr double error_margin = 10.0;
+/// Of the way from a birth: an orbit that rounding leaves open by more across its family says nothing of an index there.
+/// Not measured.
+constexpr double open_at_birth = 0.1;
 
 bool is_of_one(const bifurcation::TestFunction& function) {
   return bifurcation::has_sector(function.kind) && function.sector.q == 1;
@@ -52,10 +56,18 @@ std::optional<bifurcation::TestPoint> BranchEvents::probe(double position) {
   if (position < _followed.curve.known().front().position) return std::nullopt;  // so far back no orbits are kept
   const std::optional<continuation::CurvePoint> point = _followed.curve.at(position);
   if (!point) return std::nullopt;
-  return test_point(position, stability_of(*_followed.system, point->loop, _followed.start.isotropy, _followed.team));
+  return test_point(position, point->loop,
+                    stability_of(*_followed.system, point->loop, _followed.start.isotropy, _followed.team));
 }
 
-bifurcation::TestPoint BranchEvents::test_point(double position,
+/// An index leaves 2 there like a power of the way, within what rounding makes of it first, and its bound does not tell.
+bool BranchEvents::is_hidden_by_birth(const loop::Loop& loop) const {
+  const double across =
+      continuation::left_open_by_rounding(*_followed.system, loop, _followed.start.isotropy).across;
+  return !(across > 0.0 && across < open_at_birth * continuation::arclength_between(_followed.start.base, loop));
+}
+
+bifurcation::TestPoint BranchEvents::test_point(double position, const loop::Loop& loop,
                                                 const std::optional<spectrum::Stability>& stability) const {
   bifurcation::TestPoint point = _followed.test_point(position, stability);
   const bool is_first = _followed.work.lineage.depth > 0 && position <= 0.0;
@@ -63,6 +75,9 @@ bifurcation::TestPoint BranchEvents::test_point(double position,
     if (!is_of_one(_followed.functions[f])) continue;
     double& error = point.readings[f].error;
     if (is_first || position > _last) error *= error_margin;
+    const double size = std::abs(point.readings[f].value);
+    if (is_first && size > error && size <= bifurcation::zero_at_birth && is_hidden_by_birth(loop))
+      error = bifurcation::zero_at_birth;
   }
   return point;
 }
@@ -100,11 +115,11 @@ void BranchEvents::add_zeros_from_birth(const std::vector<bifurcation::Bracket>&
 void BranchEvents::detect_meetings(const bifurcation::StabilityAt& from, const bifurcation::StabilityAt& to) {
   const auto between = [this](double position) { return stability_between(position); };
   for (const bifurcation::StabilityAt& met : bifurcation::meetings_between(from, to, between))
-    detect_zeros(test_point(met.position, met.stability));
+    detect_zeros(_followed.test_point(met.position, met.stability));
 }
 
 void BranchEvents::detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability) {
-  bifurcation::TestPoint point = test_point(orbit.arclength, stability);
+  bifurcation::TestPoint point = test_point(orbit.arclength, orbit.loop, stability);
   point.halvings = (orbit.halvings + 1) / 2;  // what these show asks for more
   detect_zeros(point);
   const std::vector<continuation::FamilyCurve::Known>& known = _followed.curve.known();

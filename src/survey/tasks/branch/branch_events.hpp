@@ -43,7 +43,7 @@ class BranchEvents {
   /// a function of that goes to zero like a power of the distance, and counts only where rounding cannot have made it.
   void go_to_meeting(double last) { _last = last; }
   /// The test functions of the branch at an orbit, as they count there.
-  [[nodiscard]] bifurcation::TestPoint test_point(double position,
+  [[nodiscard]] bifurcation::TestPoint test_point(double position, const loop::Loop& loop,
                                                   const std::optional<spectrum::Stability>& stability) const;
   /// What only the family's end shows of test functions, from the stored orbits alone, whatever was probed before.
   void finish_zeros();
@@ -66,6 +66,7 @@ class BranchEvents {
 
  private:
   void add_zeros(const std::vector<bifurcation::Bracket>& brackets);
+  [[nodiscard]] bool is_hidden_by_birth(const loop::Loop& loop) const;
   void watch_folds(double position, const loop::Loop& loop);
   [[nodiscard]] bool is_in_known(const bifurcation::Fold& fold) const;
   [[nodiscard]] std::optional<spectrum::Stability> stability_between(double position);

@@ -81,7 +81,9 @@ class IndexChanges final : public Check {
       for (std::size_t f = 0; f < functions.size(); ++f) {
         if (!bifurcation::has_sector(functions[f].kind)) continue;
         const bifurcation::Reading reading = bifurcation::evaluate(functions[f], structure, stability);
-        const int sign = reading.sign();
+        // The index leaves 2 at a birth like a power of the distance, first within its error.
+        const bool is_birth = family.parent >= 0 && functions[f].sector.q == 1 && n == side.nearest;
+        const int sign = is_birth && std::abs(reading.value) <= bifurcation::zero_at_birth ? 0 : reading.sign();
         if (sign == 0) continue;
         const std::optional<Signed> before = std::exchange(last[f], Signed{n, sign});
         if (!before || before->sign == sign) continue;
