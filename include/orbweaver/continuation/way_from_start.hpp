@@ -14,7 +14,11 @@ struct WayFromStart {
   /// Of what does not repeat as the base does, which a family that goes through a crossing of order 3 may leave along
   /// the base itself as far as it likes.
   double share = 0.0;
-  double share_of_whole = 0.0;  ///< what lies on the base's own family has next to none
+  double share_of_whole = 0.0;
+
+  /// What lies on the base's own family has next to none of the direction: from 84 degrees on it is told from that by
+  /// rounding and curvature no more. Not measured.
+  [[nodiscard]] bool is_along_base() const { return share_of_whole < 0.1; }
 };
 
 /// From `start.base`, which has the identity as its time map.

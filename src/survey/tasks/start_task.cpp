@@ -18,9 +18,6 @@ constexpr double amplitude_factors[] = {1.0, 0.3, 3.0, 0.1, 10.0, 0.03};
 /// Least cosine between the first orbit's way and the direction in which it was to leave (60 degrees): an orbit of
 /// another direction lies beside it. Not measured.
 constexpr double least_share = 0.5;
-/// Of the whole way, 84 degrees: what lies farther aside is told from the base family by rounding and curvature no
-/// more. Not measured.
-constexpr double least_share_of_whole = 0.1;
 
 }  // namespace
 
@@ -48,7 +45,7 @@ queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const 
       continue;
     }
     const continuation::WayFromStart way = continuation::way_from(begin, orbit->loop);
-    if (way.share < least_share || way.share_of_whole < least_share_of_whole) {
+    if (way.share < least_share || way.is_along_base()) {
       why = fmt::format(
           "at amplitude {:.2g} the orbit found lies beside the direction (cosine {:.2f}, of the whole way {:.2f})",
           options.start_amplitude, way.share, way.share_of_whole);

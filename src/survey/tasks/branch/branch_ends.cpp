@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "orbweaver/continuation/way_from_start.hpp"
 #include "orbweaver/survey/tasks/branch_options.hpp"
 #include "tasks/branch/end_folds.hpp"
 #include "tasks/branch/requested.hpp"
@@ -50,7 +51,7 @@ void BranchEnds::indices_from_birth(continuation::FamilyCurve& curve) {
   const std::vector<continuation::FamilyCurve::Known>& known = curve.known();
   const auto probe = [&](double position) -> std::optional<bifurcation::TestPoint> {
     const auto point = curve.at(position);
-    if (!point) return std::nullopt;
+    if (!point || continuation::way_from(_followed.start, point->loop).is_along_base()) return std::nullopt;
     return _events.test_point(
         position, point->loop,
         stability_of(*_followed.system, point->loop, _followed.start.isotropy, _followed.team));
@@ -102,7 +103,7 @@ void BranchEnds::folds_from_birth(continuation::FamilyCurve& curve) {
   double place = known[1].position;
   for (std::size_t n = 0; n < places_from_birth; ++n, place = birth + nearer_to_birth * (place - birth)) {
     auto point = curve.at(place, true);
-    if (!point || point->tangent.empty()) break;
+    if (!point || point->tangent.empty() || continuation::way_from(_followed.start, point->loop).is_along_base()) break;
     way.points.push_back(std::move(*point));
   }
   _events.add_folds(folds_on(*_followed.system, _followed.start.isotropy, way), known);
