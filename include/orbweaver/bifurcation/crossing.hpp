@@ -73,8 +73,8 @@ struct NotLocated {
 
 /// Test functions of a family's birth that are smaller vanish there, the family's own for one, and at orbits beside it
 /// say nothing where rounding leaves those open: that goes away from zero like a power of the distance. Their error
-/// bounds do not tell: they take a Newton step, and the orbits of two families lie side by side. The crossing is located
-/// to 1e-9.
+/// bounds do not tell: they take a Newton step, and the orbits of two families lie side by side. The crossing is
+/// located to 1e-9.
 inline constexpr double zero_at_birth = 1e-6;
 
 /// Of the orbit on which a family is born, in the family's symmetries: an index is 2, which computed it may miss by any
