@@ -71,8 +71,9 @@ void BranchEnds::indices_from_birth(continuation::FamilyCurve& curve) {
   for (double share = nearest_for_indices; share < 1.0; share /= nearer_to_birth)
     if (auto place = probe(known[0].position + share * (known[1].position - known[0].position)))
       places.push_back(*std::move(place));
+  const loop::Loop& first = known[1].loop;
   places.push_back(_events.test_point(
-      known[1].position, known[1].loop, stability_of(*_followed.system, known[1].loop, _followed.start.isotropy, _followed.team)));
+      known[1].position, first, stability_of(*_followed.system, first, _followed.start.isotropy, _followed.team)));
   for (const bifurcation::TestPoint& place : places)
     for (const bifurcation::Bracket& bracket : detector.advance(place, probe)) found.push_back(bracket);
   _events.add_zeros_from_birth(found, known);

@@ -22,8 +22,8 @@ namespace {
 /// Of its bound, the error that a function of the multiplier 1 may have on the way to a meeting, where rounding is all
 /// that is left of it: the bound is an estimate, good to a factor (as in `bifurcation::is_isolated`).
 constexpr double error_margin = 10.0;
-/// Of the way from a birth: an orbit that rounding leaves open by more across its family says nothing of an index there.
-/// Not measured.
+/// Of the way from a birth: an orbit that rounding leaves open by more across its family tells no index of 2 there. Not
+/// measured.
 constexpr double open_at_birth = 0.1;
 
 bool is_of_one(const bifurcation::TestFunction& function) {
@@ -60,7 +60,7 @@ std::optional<bifurcation::TestPoint> BranchEvents::probe(double position) {
                     stability_of(*_followed.system, point->loop, _followed.start.isotropy, _followed.team));
 }
 
-/// An index leaves 2 there like a power of the way, within what rounding makes of it first, and its bound does not tell.
+/// An index leaves 2 there like a power of the way, within what rounding makes of it first: its bound does not tell.
 bool BranchEvents::is_hidden_by_birth(const loop::Loop& loop) const {
   const double across =
       continuation::left_open_by_rounding(*_followed.system, loop, _followed.start.isotropy).across;
