@@ -214,6 +214,32 @@ TEST(Detector, LargeIndexThatDipsWithinAStepIsSeen) {
   EXPECT_LE(family.probes, 12);
 }
 
+// What readings do not let expect, the length of the step does.
+TEST(Detector, AStepIsHalvedAsOftenAsItSays) {
+  const auto dip = [](double x) { return TestPoint{x, {{0.5 - 0.9 * std::exp(-100.0 * (x - 1.5) * (x - 1.5)), 0.0}}}; };
+  for (const int halvings : {0, 1, 3}) {
+    Detector detector;
+    int probes = 0;
+    std::vector<Bracket> found;
+    for (const double x : {0.0, 1.0, 2.0}) {
+      TestPoint point = dip(x);
+      point.halvings = x > 1.0 ? halvings : 0;
+      for (const Bracket& bracket : detector.advance(point, [&](double at) {
+             ++probes;
+             return std::optional(dip(at));
+           }))
+        found.push_back(bracket);
+    }
+    if (halvings == 0) {
+      EXPECT_EQ(probes, 0);
+      EXPECT_TRUE(found.empty());
+    } else {
+      EXPECT_GE(probes, halvings == 1 ? 1 : 7);
+      EXPECT_EQ(found.size(), 2U) << halvings;
+    }
+  }
+}
+
 TEST(Detector, ZerosOfSeveralFunctionsInOneStep) {
   const auto step_like = [](double at) { return exact([at](double x) { return std::tanh(2.0 * (x - at)); }); };
   Family family{{step_like(4.1), step_like(4.5), step_like(4.55), exact([](double x) { return 0.1 * (x - 4.52); })}};

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -51,6 +52,21 @@ TEST(FixedStep, PredictsHalfADegree) {
     }
     EXPECT_EQ(branch.ending()->reason, EndReason::step_limit);
   }
+}
+
+// What is looked for between orbits hangs on how long the step was beside one that the branch would choose.
+TEST(FixedStep, SaysHowOftenItIsToBeHalved) {
+  const auto most_halvings = [](std::optional<double> fixed_step) {
+    int most = 0;
+    Branch branch(test::pendulum(), test::start_of(test::in_phase()),
+                  {.fixed_step = fixed_step, .largest_step = 2.0, .step_limit = 12});
+    while (const std::optional<Orbit> orbit = branch.advance())
+      if (orbit->step > 3) most = std::max(most, orbit->halvings);
+    return most;
+  };
+  EXPECT_EQ(most_halvings(half_degree), 0);
+  EXPECT_EQ(most_halvings(std::nullopt), 0);
+  EXPECT_GE(most_halvings(0.6), 1);
 }
 
 // By collocation the prediction is a polynomial; the orbits themselves lie half a degree apart.

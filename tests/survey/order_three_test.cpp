@@ -6,37 +6,21 @@
 
 #include <gtest/gtest.h>
 
-#include "support/uneven_well.hpp"
-#include "survey/atlas.hpp"
 #include "survey/same_tree.hpp"
-#include "survey/scenes.hpp"
+#include "survey/surveyed_well.hpp"
 
 namespace order_three_test {
 namespace {
 
 using namespace orbweaver;
-
-test::Atlas survey_of(const std::map<std::string, double>& parameters, const std::vector<std::string>& overrides) {
-  const core::Communicator comm;
-  std::vector<std::string> all{"starts.fixed_points.names={}", "starts.fixed_points.letters={}",
-                               "starts.fixed_points.grid=[[0], [0], [0], [0]]", "starts.sweep.period=auto",
-                               "survey.subharmonics=4", "survey.depth=2"};
-  all.insert(all.end(), overrides.begin(), overrides.end());
-  const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/henon_heiles.yaml", all);
-  const auto folder = test::fresh_folder("uneven_well", comm.get());
-  const survey::Summary summary = survey::run_survey(comm, scene, test::uneven_well(parameters), folder, {});
-  EXPECT_EQ(summary.failures, 0U) << testing::PrintToString(summary.failed_tasks);
-  for (const survey::FindingSummary& line : summary.findings)
-    EXPECT_EQ(line.severity, survey::Severity::cut) << line.text;
-  return test::Atlas(summary.atlas);
-}
+using test::survey_of;
+using test::well;
 
 // The way from the crossing at T = 3.95599 to orbits of the family makes an angle of 75 degrees with the kernel.
 TEST(OrderThree, FamiliesThatLeaveFarAsideOfTheKernelAreFollowed) {
-  const std::map<std::string, double> well{{"w1", 1.0},   {"w2", 0.773}, {"a", 0.075}, {"b", -0.196}, {"c", 0.556},
-                                           {"d", 0.152}, {"e", 0.452},  {"f", 3.593}, {"g", 0.984}};
+  const std::map<std::string, double> uneven = well({0.773, 0.075, -0.196, 0.556, 0.152, 0.452, 3.593, 0.984});
   const auto with = [&](const std::string& key) {
-    return survey_of(well, {"limits.energy=[-.inf, 1.6]", "limits.period=26", "continuation." + key});
+    return survey_of(uneven, {"limits.energy=[-.inf, 1.6]", "limits.period=26", "continuation." + key});
   };
   const test::Atlas usual = with("start=0.0087");
   EXPECT_EQ(usual.families().texts("name").size(), 9U);
@@ -48,32 +32,78 @@ TEST(OrderThree, FamiliesThatLeaveFarAsideOfTheKernelAreFollowed) {
 
 // From one crossing of order 3 to another, each of which is met far aside of its kernel.
 TEST(OrderThree, FamiliesFromCrossingToCrossingAreToldOnce) {
-  const test::Atlas atlas = survey_of({{"w1", 1.0},
-                                       {"w2", 0.798},
-                                       {"a", -0.397},
-                                       {"b", -0.104},
-                                       {"c", -0.414},
-                                       {"d", -0.433},
-                                       {"e", 0.602},
-                                       {"f", 4.606},
-                                       {"g", 1.241}},
-                                      {"limits.energy=[-.inf, 1.5]", "limits.period=12", "survey.subharmonics=3",
-                                       "survey.depth=1"});
+  const test::Atlas atlas =
+      survey_of(well({0.798, -0.397, -0.104, -0.414, -0.433, 0.602, 4.606, 1.241}),
+                {"limits.energy=[-.inf, 1.5]", "limits.period=12", "survey.subharmonics=3", "survey.depth=1"});
   EXPECT_TRUE(atlas.crossing("Equilibrium 1, mode 2", "subharmonic", 3.7054178845).has_value());
   EXPECT_TRUE(atlas.crossing("Equilibrium 1, mode 2", "subharmonic", 3.6081558102).has_value());
 }
 
 // Of a family born at E = 0.21868 the first orbit has an index of 2.02 where it is far out; nearer, 1.996.
 TEST(OrderThree, WhatPassesBetweenBirthAndFirstOrbitIsFound) {
-  const std::map<std::string, double> well{{"w1", 1.0},     {"w2", 0.773}, {"a", -0.236}, {"b", 0.265}, {"c", -0.025},
-                                           {"d", -0.492}, {"e", 0.422},  {"f", 3.747},  {"g", 0.718}};
+  const std::map<std::string, double> uneven = well({0.773, -0.236, 0.265, -0.025, -0.492, 0.422, 3.747, 0.718});
   const auto from = [&](const std::string& start) {
-    return survey_of(well, {"limits.energy=[-.inf, 0.8]", "limits.period=31", "continuation.start=" + start});
+    return survey_of(uneven, {"limits.energy=[-.inf, 0.8]", "limits.period=31", "continuation.start=" + start});
   };
   const test::Atlas usual = from("0.0087");
   EXPECT_TRUE(usual.crossing("Equilibrium 1, mode 1 DD1", "branch-point", 26.49981049).has_value());
   EXPECT_TRUE(usual.crossing("Equilibrium 1, mode 2 T3D", "branch-point", 26.7274).has_value());
   test::expect_same_tree(usual, from("0.0436"));
+}
+
+// Behind the crossing where T3 is born its index is above 2, by 5e-6 at most, and comes back to it at T = 16.0826.
+TEST(OrderThree, AnIndexThatHardlyLeavesTwoAtABirthIsFollowed) {
+  const auto with = [](const std::string& key) {
+    return survey_of(well({1.366, 0.02826, -0.3534, 0.04317, -0.473, 0.5641, 4.957, 1.15}),
+                     {"limits.energy=[-.inf, 0.9]", "limits.period=17", "survey.depth=1", "continuation." + key});
+  };
+  const test::Atlas usual = with("start=0.0087");
+  EXPECT_TRUE(usual.crossing("Equilibrium 1, mode 1 T3", "branch-point", 16.08263894).has_value());
+  for (const std::string key : {"start=0.0017", "start=0.0436", "step=0.25"}) {
+    SCOPED_TRACE(key);
+    test::expect_same_tree(usual, with(key));
+  }
+}
+
+// The first orbit of T3-2 lies 66 degrees aside of the kernel, beside a fold: with a start of 0.0436 it was refused, or
+// the step behind it led on to another family. Of T3-2D1 the way to the first orbit passes its base's own family.
+TEST(OrderThree, FirstOrbitsFarOutAreOnTheirFamily) {
+  const auto with = [](const std::string& key) {
+    return survey_of(well({0.7196, -0.2206, -0.2408, 0.1925, 0.4565, 0.5236, 4.874, 1.287}),
+                     {"limits.energy=[-.inf, 1.95]", "limits.period=26", "continuation." + key});
+  };
+  const test::Atlas usual = with("start=0.0087");
+  EXPECT_EQ(usual.families().texts("name").size(), 15U);
+  for (const std::string key : {"start=0.0436", "step=0.25"}) {
+    SCOPED_TRACE(key);
+    test::expect_same_tree(usual, with(key));
+  }
+}
+
+// An index of 1.998 on mode 2 at T = 5.476: another family begins on the other side. With a start of 0.02 a step led
+// there.
+TEST(OrderThree, AFamilyThatTurnsAsideBeforeAnIndexOfTwoIsFollowed) {
+  const auto with = [](const std::string& key) {
+    return survey_of(well({1.13999, -0.314169, -0.136285, -0.185383, 0.194493, 0.502516, 4.63217, 0.303496}),
+                     {"limits.energy=[-.inf, 2]", "limits.period=26", "survey.depth=0", "continuation." + key});
+  };
+  const test::Atlas usual = with("start=0.0087");
+  EXPECT_NEAR(usual.orbits().reals("period").back(), 3.3728832608, 1e-8);
+  for (const std::string key : {"start=0.02", "start=0.0436", "step=0.25"}) {
+    SCOPED_TRACE(key);
+    test::expect_same_tree(usual, with(key));
+  }
+}
+
+// With steps of 0.25 the second orbit of T3D lies beyond two branch points, between which its index rises to 50.
+TEST(OrderThree, PairsWithinALongStepAreFound) {
+  const auto with = [](const std::string& key) {
+    return survey_of(well({0.9585, 0.06634, 0.4531, 0.1905, 0.01549, 0.6088, 4.352, 0.2594}),
+                     {"limits.energy=[-.inf, 1.88]", "limits.period=26", "continuation." + key});
+  };
+  const test::Atlas usual = with("start=0.0087");
+  EXPECT_TRUE(usual.crossing("Equilibrium 1, mode 2 T3D", "branch-point", 22.5273).has_value());
+  test::expect_same_tree(usual, with("step=0.25"));
 }
 
 }  // namespace
