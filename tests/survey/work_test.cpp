@@ -75,6 +75,7 @@ BranchWork sample_branch_work() {
 BranchOutcome sample_branch_outcome() {
   return {"0001.0000",
           35,
+          0.0625,
           3.4,
           30.0,
           -2.9,
