@@ -220,9 +220,9 @@ TEST(WorkTasks, BranchesThenCrossingsThenStartsThenDeeperBranches) {
   EXPECT_LT(task_of(StartWork{sample_branch_work()}).priority, deeper.priority);
 }
 
-TEST(WorkTasks, TheOtherSideCountsBackwardsFromTheFirstOrbit) {
+TEST(WorkTasks, TheOtherSideCountsBackwardsFromTheBirth) {
   EXPECT_EQ(signed_arclength({"", "", 1, 3, 1}, 0.25, 2.0), 2.0);
-  EXPECT_EQ(signed_arclength({"", "", 1, 3, -1}, 0.25, 2.0), -2.5);
+  EXPECT_EQ(signed_arclength({"", "", 1, 3, -1}, 0.25, 2.0), -2.25);
 }
 
 TEST(Work, WhatCrossesWithoutASectorHasAKindInTheArchive) {
