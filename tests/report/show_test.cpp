@@ -45,8 +45,8 @@ TEST(Show, FamiliesAsCsv) {
   EXPECT_EQ(lines[0],
             "name,parent,crossing,multiplicity,isotropy,first_orbit,orbit_count,end_reason,end_family,end_crossing,"
             "birth_arclength");
-  EXPECT_EQ(lines[2], "ID1,0,1,1,S@1/2 R@0,12,3,the period reached the scene's limit,-1,-1,");
-  EXPECT_EQ(lines[5], "\"Ästhetik \"\"B\"\", 1\",3,2,2,S@1/2 R@0,24,5,the period reached the scene's limit,1,0,");
+  EXPECT_EQ(lines[2], "ID1,0,1,1,S@1/2 R@0,12,3,the period reached the scene's limit,-1,-1,nan");
+  EXPECT_EQ(lines[5], "\"Ästhetik \"\"B\"\", 1\",3,2,2,S@1/2 R@0,24,5,the period reached the scene's limit,1,0,nan");
 }
 
 std::string selected(const Archive& atlas, const std::string& name, TextFormat format, const Selection& selection) {
