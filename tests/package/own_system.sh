@@ -75,8 +75,10 @@ expect_refusal "forgetful.so): structure.conserved does not name conserved<0>, w
 expect_refusal "forgetful.so): structure.conserved does not name conserved<0>, which the field keeps" mpirun -n 2 orbweaver survey forgetful.yaml -o forgetful
 # A copy of the program alone has no headers to compile with: that is not the model's fault.
 status=0
-mkdir -p bare/bin && cp "$prefix/bin/orbweaver" bare/bin/
-bare/bin/orbweaver build-system two_masses.cpp -o bare.so >refused.txt 2>&1 || status=$?
+bare=$(mktemp -d)  # outside the folder that the program was built in, where it knows its own headers
+mkdir "$bare/bin" && cp "$prefix/bin/orbweaver" "$bare/bin/"
+"$bare/bin/orbweaver" build-system two_masses.cpp -o bare.so >refused.txt 2>&1 || status=$?
+rm -r "$bare"
 ((status == 3)) && grep -qF "run the program from where it was built or installed" refused.txt || fail "a bare copy: $(cat refused.txt)"
 echo 'int nothing;' >nothing.cpp
 expect_refusal "has no symbol \`orbweaver_plugin\`" orbweaver build-system nothing.cpp -o nothing.so
