@@ -11,8 +11,8 @@ namespace orbweaver::continuation {
 /// The way from a start to an orbit of the family, in time: cosines of the angle between it and the direction in which
 /// the branch was to leave.
 struct WayFromStart {
-  /// Three times around the base, of what does not repeat as that does: a family goes through a crossing of order 3, and
-  /// may leave it along the base itself as far as it likes. At others it leaves along its direction.
+  /// Three times around the base, of what does not repeat as that does: a family goes through a crossing of order 3,
+  /// and may leave it along the base itself as far as it likes. At others it leaves along its direction.
   double share = 0.0;
   double share_of_whole = 0.0;
 
