@@ -55,7 +55,8 @@ TEST(OrderThree, WhatPassesBetweenBirthAndFirstOrbitIsFound) {
 TEST(OrderThree, AnIndexThatHardlyLeavesTwoAtABirthIsFollowed) {
   const auto with = [](const std::string& key) {
     return survey_of(well({1.366, 0.02826, -0.3534, 0.04317, -0.473, 0.5641, 4.957, 1.15}),
-                     {"limits.energy=[-.inf, 0.9]", "limits.period=17", "survey.depth=1", "continuation." + key});
+                     {"limits.energy=[-.inf, 0.9]", "limits.period=17", "survey.depth=1", "continuation." + key},
+                     true);  // where its energy turns, within 1e-3 of the birth
   };
   const test::Atlas usual = with("start=0.0087");
   EXPECT_TRUE(usual.crossing("Equilibrium 1, mode 1 T3", "branch-point", 16.08263894).has_value());

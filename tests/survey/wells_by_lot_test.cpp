@@ -37,7 +37,7 @@ TEST(WellsByLot, HaveOneTreeWhereverFirstOrbitsLieAndHoweverLongStepsAre) {
     coefficients.push_back(lot.between(0.2, 1.3));  // g
     const std::string energy = fmt::format("limits.energy=[-.inf, {}]", lot.between(0.8, 2.0));
     const auto with = [&](const std::string& key) {
-      return test::survey_of(test::well(coefficients), {energy, "limits.period=26", "continuation." + key});
+      return test::survey_of(test::well(coefficients), {energy, "limits.period=26", "continuation." + key}, true);
     };
     const test::Atlas usual = with("start=0.0087");
     EXPECT_GT(usual.crossings().rows(), 0U);

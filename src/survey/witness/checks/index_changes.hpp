@@ -26,9 +26,11 @@ class IndexChanges final : public Check {
                                               std::span<const Answered> /*answered*/) const override {
     std::vector<Finding> found;
     if (archive::stability_width(evidence.tree.atlas.header()) == 0) return found;
-    for (std::size_t row = 0; row < evidence.tree.families.size(); ++row)
+    for (std::size_t row = 0; row < evidence.tree.families.size(); ++row) {
       for (const auto& [first, count] : sides_of(evidence, evidence.tree.families[row]))
         judge(evidence, static_cast<int>(row), first, count, found);
+      judge_birth(evidence, static_cast<int>(row), found);
+    }
     return found;
   }
 
@@ -138,6 +140,33 @@ class IndexChanges final : public Check {
                                    is_birth ? evidence.severity_about(row) : Severity::undecided));
       }
     }
+  }
+
+  /// Where a family goes through a crossing of order 3, k - 2 goes to zero there like the square of the way. If it has
+  /// two signs at the first orbits on both sides, the energy turns between them, however near to the crossing.
+  static void judge_birth(const Evidence& evidence, int row, std::vector<Finding>& found) {
+    const TreeFamily& family = evidence.family(row);
+    const systems::Structure& structure = evidence.system->structure();
+    const auto [before, behind] = std::pair(sides_of(evidence, family)[0], sides_of(evidence, family)[1]);
+    if (!structure.symplectic || evidence.tree.atlas.header().pairs != 1 || family.crossing < 0) return;
+    if (before.second == 0 || behind.second == 0 || evidence.crossing(family.crossing).sector_q != 3) return;
+    const int order = loop::SymmetryGroup(structure, loop::isotropy_of(structure, family.isotropy)).order();
+    const bifurcation::TestFunction two{bifurcation::TestFunction::Kind::sector, {1, 0}};
+    const std::size_t sides[] = {behind.first - 1, behind.first};
+    int product = 1;
+    for (const std::size_t orbit : sides) {
+      const spectrum::Stability stability = stability_at(evidence, family.first_orbit + orbit, order);
+      product *= bifurcation::are_decided(stability) ? bifurcation::evaluate(two, structure, stability).sign() : 0;
+    }
+    const auto [from, to] = std::pair(family.arclengths[sides[0]], family.arclengths[sides[1]]);
+    if (product >= 0 || is_listed(evidence, family, two.sector, from, to)) return;
+    const spectrum::Stability stability = stability_at(evidence, family.first_orbit + sides[1], order);
+    found.push_back(finding_at(evidence, row, two.sector, sides[1], stability, Severity::undecided));
+    Finding& finding = found.back();
+    finding.kind = FindingKind::undecided_event;
+    finding.detail =
+        "its energy turns between its first orbits on both sides of its birth, as an index that passes 2 tells, nearer "
+        "to it than is resolved";
   }
 
   // Where rounding hides what an index passes, the branch has looked for nothing. Where it is known worst.
