@@ -4,9 +4,11 @@
 #include <cmath>
 #include <utility>
 
+#include "orbweaver/continuation/left_open.hpp"
 #include "orbweaver/continuation/way_from_start.hpp"
 #include "orbweaver/survey/tasks/branch_options.hpp"
 #include "tasks/branch/end_folds.hpp"
+#include "tasks/branch/foldable.hpp"
 #include "tasks/branch/requested.hpp"
 #include "tasks/orbit_row.hpp"
 
@@ -18,6 +20,10 @@ namespace {
 /// nearer to the birth than the one before: the last is a thousandth of the first orbit's way from it.
 constexpr std::size_t places_from_birth = 7;
 constexpr double nearer_to_birth = 0.25;
+/// Of the last place's way from the birth: a slope that is zero nearer to that than this is zero at the birth, but for
+/// how it bends. And of a place's own way, by which rounding may leave the orbit open there. Not measured.
+constexpr double least_left = 0.01;
+constexpr double open_beside_birth = 0.1;
 /// The share of the first orbit's way at which indices are looked at first: an index leaves 2 like a power of the way,
 /// and may have come back to it at the first orbit.
 constexpr double nearest_for_indices = 1.0 / 64.0;
@@ -107,7 +113,32 @@ void BranchEnds::folds_from_birth(continuation::FamilyCurve& curve) {
     if (!point || point->tangent.empty() || continuation::way_from(_followed.start, point->loop).is_along_base()) break;
     way.points.push_back(std::move(*point));
   }
+  add_beyond_zeros(curve, birth, way.points);
   _events.add_folds(folds_on(*_followed.system, _followed.start.isotropy, way), known);
+}
+
+/// Where slopes, continued from the last two places, are zero before the birth, a place between that and the birth.
+void BranchEnds::add_beyond_zeros(continuation::FamilyCurve& curve, double birth,
+                                  std::vector<continuation::CurvePoint>& places) const {
+  if (places.size() < 2) return;
+  const continuation::CurvePoint& a = places[places.size() - 2];
+  const continuation::CurvePoint& b = places.back();
+  std::vector<double> zeros;
+  for (const bifurcation::Fold::Quantity quantity : foldable(*_followed.system)) {
+    const double from = slope_of(*_followed.system, quantity, a);
+    const double to = slope_of(*_followed.system, quantity, b);
+    const double left = (b.position - to * (b.position - a.position) / (to - from) - birth) / (b.position - birth);
+    if (left > least_left && left < 1.0) zeros.push_back(birth + left * (b.position - birth));
+  }
+  std::sort(zeros.begin(), zeros.end(), [&](double x, double y) { return std::abs(x - birth) > std::abs(y - birth); });
+  for (const double zero : zeros) {
+    auto point = curve.at(0.5 * (zero + birth), true);
+    if (!point || point->tangent.empty()) return;
+    const double open =
+        continuation::left_open_by_rounding(*_followed.system, point->loop, _followed.start.isotropy).across;
+    if (!(open > 0.0 && open < open_beside_birth * std::abs(point->position - birth))) return;
+    places.push_back(std::move(*point));
+  }
 }
 
 /// Of a family that goes on behind its first orbit, to the other side: a fold beside it shows on one of the two only.

@@ -33,6 +33,8 @@ class BranchEnds {
   /// `curve`: of the birth and the first orbits.
   void indices_from_birth(continuation::FamilyCurve& curve);
   void folds_from_birth(continuation::FamilyCurve& curve);
+  void add_beyond_zeros(continuation::FamilyCurve& curve, double birth,
+                        std::vector<continuation::CurvePoint>& places) const;
   void folds_at_start();
   void add_behind(std::vector<continuation::CurvePoint>& places);
   void add_orbits(const std::vector<continuation::CurvePoint>& places, double to,

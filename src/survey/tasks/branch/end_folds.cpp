@@ -12,6 +12,10 @@ namespace {
 
 using bifurcation::Fold;
 
+/// Of the smaller of two slopes of unlike signs: how far the second may be from the line through the first and the one
+/// before. Not measured.
+constexpr double evenly = 0.1;
+
 class Way {
  public:
   Way(const systems::System& system, const loop::Isotropy& isotropy, const WayToEnd& way, Fold::Quantity quantity)
@@ -23,6 +27,7 @@ class Way {
 
   void add_folds(std::vector<Fold>& folds) const {
     int before = 0;  // the sign of the slope at the place before, towards larger positions
+    std::vector<Place> places;
     const loop::Loop* beside = nullptr;
     double position = 0.0;
     if (_way.inner) {
@@ -34,11 +39,17 @@ class Way {
     for (std::size_t n = 0; n < _way.points.size(); ++n) {
       const continuation::CurvePoint& here = _way.points[n];
       const double slope = slope_of(_system, _quantity, here);
-      if (beside != nullptr && !(std::abs(slope * (here.position - position)) > _visible)) continue;
+      const bool is_told = beside == nullptr || std::abs(slope * (here.position - position)) > _visible;
+      places.push_back({here.position, slope});
+      if (!is_told && !are_on_a_line(places)) {
+        places.pop_back();
+        continue;
+      }
       const int sign = slope > 0.0 ? 1 : -1;
       if (before * sign < 0) {
-        if (!is_shown(n, sign, position > here.position, _visible) ||
-            is_open(n, sign, position > here.position, here.loop, *beside))
+        const bool falls = position > here.position;
+        if (!are_on_a_line(places) &&
+            (!is_shown(n, sign, falls, _visible) || is_open(n, sign, falls, here.loop, *beside)))
           return;
         folds.push_back({_quantity, std::min(position, here.position), std::max(position, here.position)});
       }
@@ -60,6 +71,21 @@ class Way {
   }
 
  private:
+  struct Place {
+    double position;
+    double slope;
+  };
+
+  /// Whether the last three slopes change evenly: one that holds a part of another family's does not.
+  [[nodiscard]] static bool are_on_a_line(const std::vector<Place>& places) {
+    if (places.size() < 3) return false;
+    const Place& a = places[places.size() - 3];
+    const Place& b = places[places.size() - 2];
+    const Place& c = places.back();
+    const double expected = b.slope + (b.slope - a.slope) * (c.position - b.position) / (b.position - a.position);
+    return std::abs(c.slope - expected) < evenly * std::min(std::abs(b.slope), std::abs(c.slope));
+  }
+
   [[nodiscard]] double value(const loop::Loop& loop) const { return value_of(_system, _quantity, loop); }
 
   /// Beside a crossing a tangent may hold a part of the other family's: the way from a place nearer to the end must say
