@@ -55,14 +55,28 @@ TEST(OrderThree, WhatPassesBetweenBirthAndFirstOrbitIsFound) {
 TEST(OrderThree, AnIndexThatHardlyLeavesTwoAtABirthIsFollowed) {
   const auto with = [](const std::string& key) {
     return survey_of(well({1.366, 0.02826, -0.3534, 0.04317, -0.473, 0.5641, 4.957, 1.15}),
-                     {"limits.energy=[-.inf, 0.9]", "limits.period=17", "survey.depth=1", "continuation." + key},
-                     true);  // where its energy turns, within 1e-3 of the birth
+                     {"limits.energy=[-.inf, 0.9]", "limits.period=17", "survey.depth=1", "continuation." + key});
   };
   const test::Atlas usual = with("start=0.0087");
   EXPECT_TRUE(usual.crossing("Equilibrium 1, mode 1 T3", "branch-point", 16.08263894).has_value());
   for (const std::string key : {"start=0.0017", "start=0.0436", "step=0.25"}) {
     SCOPED_TRACE(key);
     test::expect_same_tree(usual, with(key));
+  }
+}
+
+// T and E turn beside the birth of T3, E by 1.8e-8 of itself: slopes tell it, from first orbits near and far.
+TEST(OrderThree, FoldsBesideABirthAreFoundWhereverTheFirstOrbitLies) {
+  const auto from = [](const std::string& start) {
+    return survey_of(well({1.092, 0.4433, 0.34, -0.3629, -0.3784, 0.5211, 3.145, 0.4647}),
+                     {"limits.energy=[-.inf, 0.5]", "limits.period=19", "survey.subharmonics=3", "survey.depth=1",
+                      "continuation.start=" + start});
+  };
+  for (const std::string start : {"0.0017", "0.0087", "0.0436", "0.06"}) {
+    SCOPED_TRACE(start);
+    const test::Atlas atlas = from(start);
+    EXPECT_TRUE(atlas.crossing("Equilibrium 1, mode 1 T3", "fold-energy", 17.8682061).has_value());
+    EXPECT_TRUE(atlas.crossing("Equilibrium 1, mode 1 T3", "fold-period", 17.8682061).has_value());
   }
 }
 

@@ -8,12 +8,14 @@
 
 namespace orbweaver::continuation {
 
+/// Whether the family goes through the crossing where it is born: three times around the base, at one of order 3. It may
+/// leave it along the base itself, and with any slope of T and E. At others it leaves along its direction.
+[[nodiscard]] inline bool goes_through(const Start& start) { return start.times == 3; }
+
 /// The way from a start to an orbit of the family, in time: cosines of the angle between it and the direction in which
 /// the branch was to leave.
 struct WayFromStart {
-  /// Three times around the base, of what does not repeat as that does: a family goes through a crossing of order 3,
-  /// and may leave it along the base itself as far as it likes. At others it leaves along its direction.
-  double share = 0.0;
+  double share = 0.0;  ///< of a family that goes through: of what does not repeat as the base does
   double share_of_whole = 0.0;
 
   /// What lies on the base's own family has next to none of the direction: from 84 degrees on it is told from that by
@@ -28,7 +30,6 @@ struct WayFromStart {
   const loop::Loop there = loop::with_cutoff(even, cutoff);
   const loop::Loop base = loop::with_cutoff(start.base, cutoff);
   const auto width = static_cast<std::size_t>(base.dimension);
-  constexpr int through = 3;
   double along = 0.0;
   double direction = 0.0;
   double whole = 0.0;
@@ -37,7 +38,7 @@ struct WayFromStart {
     const double step = there.modes[n] - base.modes[n];
     whole += step * step;
     const std::size_t harmonic = (n / width + 1) / 2;  // a_0, a_1, b_1, a_2, ...
-    if (start.times == through && harmonic % through == 0) continue;
+    if (goes_through(start) && harmonic % static_cast<std::size_t>(start.times) == 0) continue;
     along += step * start.direction.modes[n];
     direction += start.direction.modes[n] * start.direction.modes[n];
     alone += step * step;

@@ -106,6 +106,7 @@ void BranchEnds::folds_from_birth(continuation::FamilyCurve& curve) {
   const double birth = known[0].position;
   WayToEnd way;
   way.crossing = _followed.start.base;
+  way.goes_through = continuation::goes_through(_followed.start);
   if (known.size() > 2) way.inner = known[2];
   double place = known[1].position;
   for (std::size_t n = 0; n < places_from_birth; ++n, place = birth + nearer_to_birth * (place - birth)) {
@@ -113,7 +114,7 @@ void BranchEnds::folds_from_birth(continuation::FamilyCurve& curve) {
     if (!point || point->tangent.empty() || continuation::way_from(_followed.start, point->loop).is_along_base()) break;
     way.points.push_back(std::move(*point));
   }
-  add_beyond_zeros(curve, birth, way.points);
+  if (way.goes_through) add_beyond_zeros(curve, birth, way.points);
   _events.add_folds(folds_on(*_followed.system, _followed.start.isotropy, way), known);
 }
 

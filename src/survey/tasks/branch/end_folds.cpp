@@ -77,8 +77,8 @@ class Way {
   };
 
   /// Whether the last three slopes change evenly: one that holds a part of another family's does not.
-  [[nodiscard]] static bool are_on_a_line(const std::vector<Place>& places) {
-    if (places.size() < 3) return false;
+  [[nodiscard]] bool are_on_a_line(const std::vector<Place>& places) const {
+    if (!_way.goes_through || places.size() < 3) return false;
     const Place& a = places[places.size() - 3];
     const Place& b = places[places.size() - 2];
     const Place& c = places.back();

@@ -14,6 +14,7 @@ struct WayToEnd {
   std::optional<continuation::FamilyCurve::Known> inner;  ///< the stored orbit before the first of `points`
   std::vector<continuation::CurvePoint> points;           ///< with tangents, nearer to the end one after the other
   std::optional<loop::Loop> crossing;                     ///< the orbit there, or the nearest to it; none where none is
+  bool goes_through = false;  ///< the crossing, at any slope: slopes on a line tell what values leave open
 };
 
 /// The folds on the way that differences of stored orbits do not show: where the slopes of T and E (or of the parameter
