@@ -15,6 +15,8 @@ using bifurcation::Fold;
 /// Of the smaller of two slopes of unlike signs: how far the second may be from the line through the first and the one
 /// before. Not measured.
 constexpr double evenly = 0.1;
+/// And of what rounding leaves of the family's slope at a place: how much steeper it has to be. Not measured.
+constexpr double surely = 100.0;
 
 class Way {
  public:
@@ -48,7 +50,8 @@ class Way {
       const int sign = slope > 0.0 ? 1 : -1;
       if (before * sign < 0) {
         const bool falls = position > here.position;
-        if (!are_on_a_line(places) &&
+        const bool is_sure = std::abs(slope) > surely * slope_left_open(_system, _isotropy, _quantity, here.loop);
+        if (!(is_sure && are_on_a_line(places)) &&
             (!is_shown(n, sign, falls, _visible) || is_open(n, sign, falls, here.loop, *beside)))
           return;
         folds.push_back({_quantity, std::min(position, here.position), std::max(position, here.position)});
