@@ -1,5 +1,5 @@
-// Wells without symmetry but time reversal: families that go through a crossing of order 3, and what lies between a
-// crossing and the first orbit. Where that is and how long steps are decides nothing.
+// Wells without symmetry but time reversal: families that go through a crossing of order 3. Where their first orbit
+// lies and how long steps are decides nothing.
 #include <map>
 #include <string>
 #include <vector>
@@ -39,47 +39,6 @@ TEST(OrderThree, FamiliesFromCrossingToCrossingAreToldOnce) {
   EXPECT_TRUE(atlas.crossing("Equilibrium 1, mode 2", "subharmonic", 3.6081558102).has_value());
 }
 
-// Of a family born at E = 0.21868 the first orbit has an index of 2.02 where it is far out; nearer, 1.996.
-TEST(OrderThree, WhatPassesBetweenBirthAndFirstOrbitIsFound) {
-  const std::map<std::string, double> uneven = well({0.773, -0.236, 0.265, -0.025, -0.492, 0.422, 3.747, 0.718});
-  const auto from = [&](const std::string& start) {
-    return survey_of(uneven, {"limits.energy=[-.inf, 0.8]", "limits.period=31", "continuation.start=" + start});
-  };
-  const test::Atlas usual = from("0.0087");
-  EXPECT_TRUE(usual.crossing("Equilibrium 1, mode 1 DD1", "branch-point", 26.49981049).has_value());
-  EXPECT_TRUE(usual.crossing("Equilibrium 1, mode 2 T3D", "branch-point", 26.7274).has_value());
-  test::expect_same_tree(usual, from("0.0436"));
-}
-
-// Behind the crossing where T3 is born its index is above 2, by 5e-6 at most, and comes back to it at T = 16.0826.
-TEST(OrderThree, AnIndexThatHardlyLeavesTwoAtABirthIsFollowed) {
-  const auto with = [](const std::string& key) {
-    return survey_of(well({1.366, 0.02826, -0.3534, 0.04317, -0.473, 0.5641, 4.957, 1.15}),
-                     {"limits.energy=[-.inf, 0.9]", "limits.period=17", "survey.depth=1", "continuation." + key});
-  };
-  const test::Atlas usual = with("start=0.0087");
-  EXPECT_TRUE(usual.crossing("Equilibrium 1, mode 1 T3", "branch-point", 16.08263894).has_value());
-  for (const std::string key : {"start=0.0017", "start=0.0436", "step=0.25"}) {
-    SCOPED_TRACE(key);
-    test::expect_same_tree(usual, with(key));
-  }
-}
-
-// T and E turn beside the birth of T3, E by 1.8e-8 of itself: slopes tell it, from first orbits near and far.
-TEST(OrderThree, FoldsBesideABirthAreFoundWhereverTheFirstOrbitLies) {
-  const auto from = [](const std::string& start) {
-    return survey_of(well({1.092, 0.4433, 0.34, -0.3629, -0.3784, 0.5211, 3.145, 0.4647}),
-                     {"limits.energy=[-.inf, 0.5]", "limits.period=19", "survey.subharmonics=3", "survey.depth=1",
-                      "continuation.start=" + start});
-  };
-  for (const std::string start : {"0.0017", "0.0087", "0.0436", "0.06"}) {
-    SCOPED_TRACE(start);
-    const test::Atlas atlas = from(start);
-    EXPECT_TRUE(atlas.crossing("Equilibrium 1, mode 1 T3", "fold-energy", 17.8682061).has_value());
-    EXPECT_TRUE(atlas.crossing("Equilibrium 1, mode 1 T3", "fold-period", 17.8682061).has_value());
-  }
-}
-
 // The first orbit of T3-2 lies 66 degrees aside of the kernel, beside a fold: with a start of 0.0436 it was refused, or
 // the step behind it led on to another family. Of T3-2D1 the way to the first orbit passes its base's own family.
 TEST(OrderThree, FirstOrbitsFarOutAreOnTheirFamily) {
@@ -108,17 +67,6 @@ TEST(OrderThree, AFamilyThatTurnsAsideBeforeAnIndexOfTwoIsFollowed) {
     SCOPED_TRACE(key);
     test::expect_same_tree(usual, with(key));
   }
-}
-
-// With steps of 0.25 the second orbit of T3D lies beyond two branch points, between which its index rises to 50.
-TEST(OrderThree, PairsWithinALongStepAreFound) {
-  const auto with = [](const std::string& key) {
-    return survey_of(well({0.9585, 0.06634, 0.4531, 0.1905, 0.01549, 0.6088, 4.352, 0.2594}),
-                     {"limits.energy=[-.inf, 1.88]", "limits.period=26", "continuation." + key});
-  };
-  const test::Atlas usual = with("start=0.0087");
-  EXPECT_TRUE(usual.crossing("Equilibrium 1, mode 2 T3D", "branch-point", 22.5273).has_value());
-  test::expect_same_tree(usual, with("step=0.25"));
 }
 
 }  // namespace
