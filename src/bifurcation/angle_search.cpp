@@ -203,6 +203,24 @@ std::optional<Circle> completed(const Plane& plane, const Circle& circle, double
   return out;
 }
 
+/// The circle that tells the angles: the last one, or, where the push has gone over to something else there, as of q = 2
+/// whose push does not grow, the one of the largest push that does.
+std::optional<Circle> telling(const Plane& plane, const std::vector<Circle>& circles, double turn, double scale, int q) {
+  // Of q = 2 terms of second and of fourth order may weigh alike: four lines then.
+  const int most = q == 2 ? 4 : 2;
+  std::vector<const Circle*> tried{&circles.back()};
+  const auto largest = std::max_element(circles.begin(), circles.end() - 1, [](const Circle& a, const Circle& b) {
+    return (a.is_clear() ? a.force() : 0.0) < (b.is_clear() ? b.force() : 0.0);
+  });
+  if (largest != circles.end() - 1) tried.push_back(&*largest);
+  for (const Circle* circle : tried) {
+    if (!circle->is_clear()) continue;
+    std::optional<Circle> all = completed(plane, *circle, turn, scale);
+    if (all && all->is_clear() && all->sign_changes() >= 2 && all->sign_changes() <= most) return all;
+  }
+  return std::nullopt;
+}
+
 /// The orbit with the time shift that brings its part in the kernel opposite to that of `to`.
 loop::Loop shifted_opposite(const loop::Loop& base, const KernelActions& group, const FoundOrbit& to,
                             const loop::Loop& orbit, int q) {
@@ -222,7 +240,7 @@ loop::Loop shifted_opposite(const loop::Loop& base, const KernelActions& group, 
 
 AnglesFound search_angles(const systems::System& system, const loop::Loop& base, const KernelActions& group,
                           const loop::Isotropy& isotropy, int q, double scale, const DirectionOptions& options) {
-  core::require(group.dimension() == 2 && q >= 3, "angles are searched in a plane, from q = 3 on");
+  core::require(group.dimension() == 2 && q >= 2, "angles are searched in a plane, from q = 2 on");
   const Plane plane(system, base, group, isotropy, options);
   const double turn = 2.0 * std::numbers::pi / q;
   const std::vector<Circle> circles = grown(plane, scale, {0.0, 0.25 * turn, turn}, [](const Circle& circle) {
@@ -230,10 +248,9 @@ AnglesFound search_angles(const systems::System& system, const loop::Loop& base,
   });
   if (circles.empty()) return {};
   AnglesFound out = circles.back().summary();
-  if (!circles.back().is_clear()) return out;
-  const std::optional<Circle> all = completed(plane, circles.back(), turn, scale);
-  if (!all || !all->is_clear() || all->sign_changes() != 2) return out;
-  const Circle& circle = *all;
+  const std::optional<Circle> told = telling(plane, circles, turn, scale, q);
+  if (!told) return out;
+  const Circle& circle = *told;
   out = circle.summary();
   // Zeros through which the push rises with time, and those through which it falls.
   std::vector<FoundOrbit> rising;

@@ -15,10 +15,12 @@ struct AnglesFound {
   [[nodiscard]] bool decided() const { return !found.empty(); }
   /// The push is so large that any solver sees it: a thousand times the tolerance on sqrt(loss).
   [[nodiscard]] bool is_plain() const { return force > 1e-7; }
+  /// A solver sees it once orbits are found: a hundred times that tolerance.
+  [[nodiscard]] bool is_visible() const { return force > 1e-8; }
 };
 
 /// The angles at which orbits leave `base` in a plane kernel of a conservative system that q rotations map to itself, q
-/// >= 3.
+/// >= 2.
 ///
 /// At an amplitude r and any angle there is an orbit of the PushedSystem whose part in the kernel lies there; its push
 /// is an odd function of the reduced action's derivative by the angle, r^(q - 2) sin(q (angle - a)) to lowest order,

@@ -39,6 +39,13 @@ constexpr double error_margin = 10.0;
 /// finds no orbit if it is asked for exactly that one.
 constexpr double beside_singular[] = {1e-4, 1e-3, 1e-2};
 
+/// A slope that is zero by its signs alone, and at the zero more than this share of those at the ends, is rounding's.
+constexpr double left_of_slope = 1e-2;
+/// What a period or an energy rises to both ends from where it is least must be so many times what it scatters there:
+/// within this share of the interval, over which it would rise by its square.
+constexpr double clear_rise = 10.0;
+constexpr double scattering[] = {-2e-6, -1e-6, 1e-6, 2e-6};
+
 struct Interval {
   double from;
   double to;
@@ -146,21 +153,36 @@ class EventFunction {
   std::optional<NotLocated> _without_value;
 };
 
-/// The least or largest period or energy between two positions, if it lies within.
+/// The least or largest period or energy between two positions, if it lies within; none where it stands out of what
+/// the quantity scatters by rounding so little that it may be none: `why` then says so.
 std::optional<numerics::Located> extremum(const systems::System& system, continuation::FamilyCurve& family,
-                                          const Event& event, double from, double to, double tolerance) {
+                                          const Event& event, double from, double to, double tolerance,
+                                          NotLocated& why) {
   const auto of = [&](const loop::Loop& loop) { return turning(system, event.kind, loop); };
   const auto quantity = [&](double position) {
     if (const std::optional<continuation::CurvePoint> point = family.at(position)) return of(point->loop);
     const auto sides = both_sides(family, position, {from, to}, false);
     return sides ? 0.5 * (of(sides->front().loop) + of(sides->back().loop)) : nan;
   };
-  const double ends = 0.5 * (quantity(from) + quantity(to));
+  const double at_from = quantity(from);
+  const double at_to = quantity(to);
+  const double ends = 0.5 * (at_from + at_to);
   for (const double sign : {1.0, -1.0}) {
     std::optional<numerics::Located> found = numerics::locate_minimum(
         [&](double position) { return sign * (quantity(position) - ends); }, from, to, tolerance);
     const double margin = off_ends * (to - from);
-    if (found && found->position > from + margin && found->position < to - margin) return found;
+    if (!found || !(found->position > from + margin && found->position < to - margin)) continue;
+    const double least = quantity(found->position);
+    double scatter = std::numeric_limits<double>::epsilon() * std::abs(least);
+    for (const double share : scattering) {
+      const double there = quantity(found->position + share * (to - from));
+      if (!std::isnan(there)) scatter = std::max(scatter, std::abs(there - least));
+    }
+    // Below 0 where it turns again on the way to an end.
+    const double rise = std::min(sign * (at_from - least), sign * (at_to - least));
+    if (std::abs(rise) > clear_rise * scatter) return found;
+    why = {.reason = NotLocated::Reason::unclear_fold, .at_from = rise, .at_to = scatter, .position = found->position};
+    if (const auto point = family.at(found->position)) why.period = point->loop.period;
   }
   return std::nullopt;
 }
@@ -262,6 +284,11 @@ std::string to_text(const NotLocated& why) {
           "at position {:.12g} (T = {:.12g}) two multipliers are each other's inverse, and so nearly equal that their "
           "error bounds hide whether they are on the unit circle",
           why.position, why.period);
+    case NotLocated::Reason::unclear_fold:
+      return fmt::format(
+          "at position {:.12g} (T = {:.12g}) what would turn there turns by {:.2g}, and neighbouring orbits scatter by "
+          "{:.2g}: rounding hides whether it does",
+          why.position, why.period, why.at_from, why.at_to);
   }
   return "unknown";
 }
@@ -280,8 +307,14 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
                                                         from, to, absolute)
                              : numerics::locate_root(along, from, to, absolute);
   // Where directions along the family are uncertain, the extremum itself is looked for.
-  if (!located && event.kind != Event::Kind::test_function)
-    located = extremum(system, family, event, from, to, absolute);
+  if (event.kind != Event::Kind::test_function) {
+    if (located && std::abs(function(located->position)) >
+                       left_of_slope * std::min(std::abs(function(from)), std::abs(function(to))))
+      located.reset();
+    why = {};
+    if (!located) located = extremum(system, family, event, from, to, absolute, why);
+    if (!located && why.reason == NotLocated::Reason::unclear_fold) return std::nullopt;
+  }
   if (!located) {
     const double at_from = function(from);
     const double at_to = function(to);

@@ -312,7 +312,7 @@ std::vector<Direction> by_angles(const systems::System& system, const KernelActi
     direction.isotropy =
         loop::find_isotropy(system.structure(), orbit.loop, found_tolerance * angles.amplitude, group.denominator());
     direction.both_sides = has_other_sides(group, orbit.coordinates);
-    direction.is_hidden = !angles.is_plain();
+    direction.is_hidden = !angles.is_visible();
     out.push_back(std::move(direction));
   }
   return out;
@@ -340,7 +340,7 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   const Eigen::VectorXd generic = Eigen::VectorXd::LinSpaced(group.dimension(), 1.0, std::sqrt(2.0)).array().sin();
   const loop::Isotropy kept =
       isotropy_along(system.structure(), group, base, group.vector_at(generic.normalized()), options);
-  const bool by_angle = plane && q >= 3 && lines.empty() && !group.constant() && system.structure().conservative();
+  const bool by_angle = plane && q >= 2 && lines.empty() && !group.constant() && system.structure().conservative();
   if (by_angle && q >= least_weak_resonance) return by_angles(system, group, base, kept, q, options);
   const double nudge = plane ? nudge_in_plane * std::numbers::pi / q : nudge_in_space;
   const int expected = plane && q > 2 ? (q % 2 == 0 ? 2 : 1) : 0;
@@ -364,9 +364,11 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
     std::erase_if(best.found, [&](const FoundOrbit& orbit) {
       return is_born_beyond(system, base, group, kept, orbit.loop, options.amplitude, lines, options);
     });
-  if (by_angle && static_cast<int>(best.found.size()) < expected) {
+  // Of q = 2 what decides has as many maxima as minima: an even number of lines.
+  const bool is_odd = q == 2 && best.found.size() % 2 != 0;
+  if (by_angle && (static_cast<int>(best.found.size()) < std::max(expected, 1) || is_odd)) {
     std::vector<Direction> out = by_angles(system, group, base, kept, q, options);
-    if (static_cast<int>(out.size()) == expected) return out;
+    if (q == 2 || static_cast<int>(out.size()) == expected) return out;
   }
   const std::string seen = fmt::format(
       "a kernel of dimension {} (q = {}): {} directions found at amplitude {:.2g}, {} where orbits are not isolated",

@@ -32,6 +32,8 @@ constexpr double repeated = 1e-3;
 /// A smooth family leaves the chord by about this share of it times position (1 - position); further off Newton's
 /// method has gone over to a neighbouring family.
 constexpr double bulge = 0.8;
+/// An orbit further off the chord than so many bulges is no orbit of the family, whatever Newton's method says there.
+constexpr double far_off = 2.0;
 /// Roundings of the coordinates by which two computations of one orbit may differ. Not measured.
 constexpr double roundings = 1e3;
 
@@ -194,6 +196,9 @@ Comparison compare(const systems::System& system, Chord chord, const loop::Loop&
       return undecided(alignment.distance, position,
                        "orbits between those of a family that holds the energy are not found");
     const corrector::Result result = chord.correct(nearest, step);
+    const double widest = bulge * std::abs(position * (1.0 - position)) * length + off_at_ends * tolerance;
+    if (!result.converged() && chord.off_chord(moved_x, position) * length > far_off * widest)
+      return apart(alignment.distance, position, "far from the chord");
     if (!result.converged())
       return undecided(alignment.distance, position,
                        fmt::format("no orbit beside it: {} {}", corrector::name_of(result.outcome), result.detail));
@@ -203,7 +208,7 @@ Comparison compare(const systems::System& system, Chord chord, const loop::Loop&
     distance = distance_between(x, nearest, alignment.distance);
     if (distance <= tolerance) {
       const double off = chord.off_chord(nearest, position) * length;
-      if (off <= bulge * std::abs(position * (1.0 - position)) * length + off_at_ends * tolerance)
+      if (off <= widest)
         return {true, distance, position, "the same orbit", true};
       return undecided(off, position, "the correction leaves the family");
     }

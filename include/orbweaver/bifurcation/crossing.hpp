@@ -51,6 +51,7 @@ struct NotLocated {
     no_crossing,     ///< the sign changes by a jump: the function is `at_from` at `position`, its error bound `at_to`
     no_event,        ///< the function vanishes at `position` for another reason than the event that it stands for
     unclear_event,   ///< whether it does so is within the error bounds of the multipliers at `position`
+    unclear_fold,    ///< what turns does so by `at_from` at `position`, where rounding scatters it by `at_to`
   };
   Reason reason = Reason::no_zero;
   double from = 0.0;

@@ -152,10 +152,11 @@ class Location {
     return kind == CrossingKind::fold_energy ? Event::Kind::fold_energy : Event::Kind::fold_parameter;
   }
 
-  /// Whether a zero was found, which is no event or may be none.
+  /// Whether a zero or a turn was found, which is no event or may be none.
   [[nodiscard]] static bool is_zero(const bifurcation::NotLocated& why) {
     return why.reason == bifurcation::NotLocated::Reason::no_event ||
-           why.reason == bifurcation::NotLocated::Reason::unclear_event;
+           why.reason == bifurcation::NotLocated::Reason::unclear_event ||
+           why.reason == bifurcation::NotLocated::Reason::unclear_fold;
   }
 
   queue::TaskOutcome without_crossing(bifurcation::NotLocated why, const continuation::FamilyCurve& family) {

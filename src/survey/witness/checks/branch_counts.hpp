@@ -32,6 +32,13 @@ class BranchCounts final : public Check {
     return crossing.q % 2 != 0 && mirrors == 0 ? 1 : 2;
   }
 
+  /// Where a pair of multipliers is -1 twice over, what decides the directions is an even function on the kernel's
+  /// circle: it has a line of maxima and one of minima.
+  static int least_directions(const Evidence& evidence, const CrossingEvidence& crossing) {
+    const bool is_pair = crossing.q == 2 && crossing.kernel_dimension == 2;
+    return is_pair && evidence.system->structure().conservative() ? 2 : 0;
+  }
+
   /// Symmetries that keep every point of the family's orbits. A single one turns the plane transverse to the orbit by
   /// half a turn, and with it the kernel.
   static int pointwise_symmetries(const Evidence& evidence, int row) {
@@ -59,12 +66,14 @@ class BranchCounts final : public Check {
     if ((crossing.limited_by & order_limited) != 0) return add(FindingKind::beyond_order, Severity::cut);
     if (crossing.kernel_dimension <= 0 && !crossing.undecided) return;
     if ((crossing.limited_by & depth_limited) != 0) return add(FindingKind::beyond_depth, Severity::cut);
-    const int expected = expected_directions(evidence, crossing);
+    const int least = least_directions(evidence, crossing);
+    const int expected = std::max(expected_directions(evidence, crossing), crossing.directions < least ? least : 0);
     finding.number = crossing.directions;
     finding.other_number = expected;
     finding.deviation = expected - crossing.directions;
+    const bool is_open = crossing.undecided || expected == least;
     if (expected > 0 && crossing.directions != expected)
-      add(FindingKind::missing_directions, crossing.undecided ? Severity::undecided : Severity::contradiction);
+      add(FindingKind::missing_directions, is_open ? Severity::undecided : Severity::contradiction);
     else if (crossing.directions == 0)
       add(FindingKind::missing_directions, Severity::undecided);
     finding.deviation = archive::not_computed;

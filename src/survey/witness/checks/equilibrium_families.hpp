@@ -16,6 +16,7 @@
 #include "tasks/payload/keys.hpp"
 #include "tasks/payload/sweep_work.hpp"
 #include "witness/check.hpp"
+#include "witness/stored_stability.hpp"
 
 namespace orbweaver::survey {
 
@@ -114,7 +115,7 @@ class EquilibriumFamilies final : public Check {
                                            int dimension) {
     const auto pairs = kernel_pairs(evidence, orbit, repetitions, dimension);
     if (!pairs) return std::nullopt;
-    const double error = error_margin * evidence.tree.atlas.orbits().reals("stability_error")[orbit];
+    const double error = stored_error_margin * evidence.tree.atlas.orbits().reals("stability_error")[orbit];
     int sum = 0;
     for (int shift = 0; shift < repetitions; ++shift) {
       int sign = 1;
@@ -172,8 +173,6 @@ class EquilibriumFamilies final : public Check {
     found.push_back(finding);
   }
 
-  /// Of the stored bound.
-  static constexpr double error_margin = 10.0;
   /// Pairs that do not come from the kernel are so many times further from its roots of unity. Not measured.
   static constexpr double beside_kernel = 30.0;
 };

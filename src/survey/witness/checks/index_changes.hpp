@@ -8,12 +8,10 @@
 #include <vector>
 
 #include "orbweaver/archive/schema/crossing_kind.hpp"
-#include "orbweaver/archive/schema/schema.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/bifurcation/test_functions.hpp"
-#include "orbweaver/loop/symmetry/isotropy_text.hpp"
-#include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "witness/check.hpp"
+#include "witness/stored_stability.hpp"
 
 namespace orbweaver::survey {
 
@@ -48,34 +46,19 @@ class IndexChanges final : public Check {
     return {{0, before}, {before, family.orbits() - before}};
   }
 
-  static spectrum::Stability stability_at(const Evidence& evidence, std::size_t row, int order) {
-    const archive::Archive& atlas = evidence.tree.atlas;
-    const std::size_t width = archive::stability_width(atlas.header());
-    const std::size_t parts = archive::has_complex_stability(atlas.header()) ? 2 : 1;
-    const auto& values = atlas.orbits().reals("fundamental_stability");
-    spectrum::Stability stability;
-    stability.fundamental_order = order;
-    for (std::size_t i = 0; i < width; i += parts)
-      stability.fundamental.emplace_back(values[row * width + i], parts == 2 ? values[row * width + i + 1] : 0.0);
-    // Of the full period's, which is no smaller but where d(mu^p + mu^-p)/d(mu + 1/mu) is below 1.
-    stability.fundamental_error.assign(stability.fundamental.size(),
-                                       atlas.orbits().reals("stability_error")[row] * error_margin);
-    return stability;
-  }
-
   static void judge(const Evidence& evidence, int row, std::size_t first, std::size_t count,
                     std::vector<Finding>& found) {
     if (count == 0) return;
     const TreeFamily& family = evidence.family(row);
     const systems::Structure& structure = evidence.system->structure();
-    const int order = loop::SymmetryGroup(structure, loop::isotropy_of(structure, family.isotropy)).order();
+    const int order = fundamental_order_of(evidence, family);
     const auto functions = bifurcation::test_functions(structure, order, evidence.scene.survey.subharmonics);
     std::vector<std::optional<Signed>> last(functions.size());
     const Side side = side_of(evidence, family, first, count);
     if (const std::optional<Finding> undecided = undecided_at(evidence, row, first, count, order))
       found.push_back(*undecided);
     for (std::size_t n = first; n < first + count; ++n) {
-      const spectrum::Stability stability = stability_at(evidence, family.first_orbit + n, order);
+      const spectrum::Stability stability = stored_stability(evidence, family.first_orbit + n, order);
       if (!bifurcation::are_decided(stability)) {  // what is passed here is not known
         std::fill(last.begin(), last.end(), std::nullopt);
         continue;
@@ -130,7 +113,7 @@ class IndexChanges final : public Check {
     for (const bool is_birth : {true, false}) {
       if (is_birth ? family.parent < 0 : !has_joined) continue;
       const std::size_t orbit = is_birth ? side.nearest : side.farthest;
-      const spectrum::Stability stability = stability_at(evidence, family.first_orbit + orbit, order);
+      const spectrum::Stability stability = stored_stability(evidence, family.first_orbit + orbit, order);
       if (!bifurcation::are_decided(stability)) continue;
       for (const bifurcation::TestFunction& function : functions) {
         if (!bifurcation::has_sector(function.kind) || function.sector.q == 1) continue;
@@ -147,21 +130,17 @@ class IndexChanges final : public Check {
   static void judge_birth(const Evidence& evidence, int row, std::vector<Finding>& found) {
     const TreeFamily& family = evidence.family(row);
     const systems::Structure& structure = evidence.system->structure();
-    const auto [before, behind] = std::pair(sides_of(evidence, family)[0], sides_of(evidence, family)[1]);
+    const auto sides = sides_of(evidence, family);
+    const std::size_t begin = sides[1].first;
     if (!structure.symplectic || evidence.tree.atlas.header().pairs != 1 || family.crossing < 0) return;
-    if (before.second == 0 || behind.second == 0 || evidence.crossing(family.crossing).sector_q != 3) return;
-    const int order = loop::SymmetryGroup(structure, loop::isotropy_of(structure, family.isotropy)).order();
-    const bifurcation::TestFunction two{bifurcation::TestFunction::Kind::sector, {1, 0}};
-    const std::size_t sides[] = {behind.first - 1, behind.first};
-    int product = 1;
-    for (const std::size_t orbit : sides) {
-      const spectrum::Stability stability = stability_at(evidence, family.first_orbit + orbit, order);
-      product *= bifurcation::are_decided(stability) ? bifurcation::evaluate(two, structure, stability).sign() : 0;
-    }
-    const auto [from, to] = std::pair(family.arclengths[sides[0]], family.arclengths[sides[1]]);
-    if (product >= 0 || is_listed(evidence, family, two.sector, from, to)) return;
-    const spectrum::Stability stability = stability_at(evidence, family.first_orbit + sides[1], order);
-    found.push_back(finding_at(evidence, row, two.sector, sides[1], stability, Severity::undecided));
+    if (sides[0].second == 0 || sides[1].second == 0 || evidence.crossing(family.crossing).sector_q != 3) return;
+    const int order = fundamental_order_of(evidence, family);
+    const bifurcation::Sector one{1, 0};
+    const int product = stored_side_of_one(evidence, family, begin - 1) * stored_side_of_one(evidence, family, begin);
+    const auto [from, to] = std::pair(family.arclengths[begin - 1], family.arclengths[begin]);
+    if (product >= 0 || is_listed(evidence, family, one, from, to)) return;
+    const spectrum::Stability stability = stored_stability(evidence, family.first_orbit + begin, order);
+    found.push_back(finding_at(evidence, row, one, begin, stability, Severity::undecided));
     Finding& finding = found.back();
     finding.kind = FindingKind::undecided_event;
     finding.detail =
@@ -174,9 +153,9 @@ class IndexChanges final : public Check {
                                              int order) {
     std::optional<Finding> worst;
     for (std::size_t n = first; n < first + count; ++n) {
-      spectrum::Stability stability = stability_at(evidence, evidence.family(row).first_orbit + n, order);
+      spectrum::Stability stability = stored_stability(evidence, evidence.family(row).first_orbit + n, order);
       double& error = stability.fundamental_error.front();
-      error /= error_margin;
+      error /= stored_error_margin;
       if (bifurcation::are_decided(stability) || (worst && worst->deviation >= error)) continue;
       worst = finding_at(evidence, row, {}, n, stability, Severity::undecided);
       worst->kind = FindingKind::undecided_indices;
@@ -213,8 +192,6 @@ class IndexChanges final : public Check {
     return finding;
   }
 
-  /// Of the stored bound, which is that of the full period's index.
-  static constexpr double error_margin = 10.0;
   /// Of the interval: a crossing at an orbit is located to 1e-10.
   static constexpr double arclength_margin = 1e-6;
 };

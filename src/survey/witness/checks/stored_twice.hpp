@@ -10,6 +10,7 @@
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "orbweaver/survey/tree/family_end.hpp"
 #include "witness/check.hpp"
+#include "witness/stored_stability.hpp"
 
 namespace orbweaver::survey {
 
@@ -136,12 +137,26 @@ class StoredTwice final : public Check {
     return false;
   }
 
+  /// Whether the multipliers of an orbit are on another side of 1 than those of the orbits that it lies between, as far
+  /// as rounding tells those: along a family they pass 1 at a crossing or a fold, and not without a word.
+  static bool is_told_apart(const Evidence& evidence, const LoopQuestion& question) {
+    const TreeFamily& family = evidence.family(question.family);
+    const TreeFamily& beside = evidence.family(question.beside);
+    if (question.family == question.beside || family.isotropy != beside.isotropy) return false;
+    const auto segment = static_cast<std::size_t>(question.segment);
+    const int side = stored_side_of_one(evidence, family, static_cast<std::size_t>(question.orbit));
+    const int before = side * stored_side_of_one(evidence, beside, segment);
+    const int behind = side * stored_side_of_one(evidence, beside, segment + 1);
+    return before <= 0 && behind <= 0 && before + behind < 0;
+  }
+
   static void judge(const Evidence& evidence, const Pair& pair, std::span<const Answered> answered,
                     std::vector<Finding>& found) {
     const auto is_same = [](const Answered& a) { return a.reply.same; };
     const auto same = std::count_if(answered.begin(), answered.end(), is_same);
-    const bool any_decided =
-        std::any_of(answered.begin(), answered.end(), [](const Answered& a) { return a.reply.decided; });
+    const bool any_decided = std::any_of(answered.begin(), answered.end(), [&](const Answered& a) {
+      return a.reply.decided || is_told_apart(evidence, a.question);
+    });
     if (same == 0 && any_decided) return;
     const auto first = std::find_if(answered.begin(), answered.end(), is_same);
     const Answered& shown = first == answered.end() ? answered.front() : *first;

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+
+#include "evidence.hpp"
+#include "orbweaver/archive/schema/schema.hpp"
+#include "orbweaver/bifurcation/test_functions.hpp"
+#include "orbweaver/loop/symmetry/isotropy_text.hpp"
+#include "orbweaver/loop/symmetry/symmetry_group.hpp"
+#include "orbweaver/spectrum/floquet.hpp"
+
+namespace orbweaver::survey {
+
+/// Of the stored bound of indices, which is that of the full period's.
+inline constexpr double stored_error_margin = 10.0;
+
+/// What the archive says of the fundamental map of the orbit in a row, whose order is `order`.
+[[nodiscard]] inline spectrum::Stability stored_stability(const Evidence& evidence, std::size_t row, int order) {
+  const archive::Archive& atlas = evidence.tree.atlas;
+  const std::size_t width = archive::stability_width(atlas.header());
+  const std::size_t parts = archive::has_complex_stability(atlas.header()) ? 2 : 1;
+  const auto& values = atlas.orbits().reals("fundamental_stability");
+  spectrum::Stability stability;
+  stability.fundamental_order = order;
+  for (std::size_t i = 0; i < width; i += parts)
+    stability.fundamental.emplace_back(values[row * width + i], parts == 2 ? values[row * width + i + 1] : 0.0);
+  // Of the full period's, which is no smaller but where d(mu^p + mu^-p)/d(mu + 1/mu) is below 1.
+  stability.fundamental_error.assign(stability.fundamental.size(),
+                                     atlas.orbits().reals("stability_error")[row] * stored_error_margin);
+  return stability;
+}
+
+/// The order of the fundamental map of a family's orbits.
+[[nodiscard]] inline int fundamental_order_of(const Evidence& evidence, const TreeFamily& family) {
+  const systems::Structure& structure = evidence.system->structure();
+  return loop::SymmetryGroup(structure, loop::isotropy_of(structure, family.isotropy)).order();
+}
+
+/// On which side of 1 the multipliers of a family's orbit are: the sign of the product of all k - 2. 0 where it is not
+/// known.
+[[nodiscard]] inline int stored_side_of_one(const Evidence& evidence, const TreeFamily& family, std::size_t orbit) {
+  if (archive::stability_width(evidence.tree.atlas.header()) == 0) return 0;
+  const int order = fundamental_order_of(evidence, family);
+  const spectrum::Stability stability = stored_stability(evidence, family.first_orbit + orbit, order);
+  if (!bifurcation::are_decided(stability)) return 0;
+  const bifurcation::TestFunction at_one{bifurcation::TestFunction::Kind::sector, {1, 0}};
+  return bifurcation::evaluate(at_one, evidence.system->structure(), stability).sign();
+}
+
+}  // namespace orbweaver::survey
