@@ -13,6 +13,7 @@
 
 #include "explained.hpp"
 #include "newton.hpp"
+#include "orbweaver/ad/rounded.hpp"
 #include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
@@ -84,7 +85,8 @@ class Certifier::Parts {
     if (const auto* formulas = dynamic_cast<const systems::FormulaSystem*>(&system)) {
       taylor::FlowOptions flow;
       flow.digits = taylor_digits;
-      _taylor.emplace(formulas->formulas(), flow);
+      _formulas = formulas->formulas();
+      _taylor.emplace(*_formulas, flow);
     }
   }
 
@@ -295,6 +297,21 @@ class Certifier::Parts {
       found.steepness = std::max(found.steepness, norm(gradient));
       found.energy_size = std::max(found.energy_size, std::abs(_system.conserved(0, state)));
     }
+    if (_options.level == Level::full || found.energy_drift > energy_roundings * found.energy_size)
+      found.energy_rounding = energy_rounding();
+  }
+
+  [[nodiscard]] double energy_rounding() const {
+    if (!_formulas) return 0.0;
+    const std::vector<ad::Rounded> parameters(_formulas->values.begin(), _formulas->values.end());
+    double largest = 0.0;
+    for (const State& state : _states) {
+      const std::vector<ad::Rounded> z(state.begin(), state.end());
+      const auto energy =
+          ad::evaluate<ad::Rounded>(_formulas->tape, std::span(_formulas->conserved).first(1), z, parameters);
+      largest = std::max(largest, energy.front().error());
+    }
+    return largest;
   }
 
   /// |a - b|, angles modulo whole turns.
@@ -440,6 +457,7 @@ class Certifier::Parts {
   Options _options;
   int _segments = 1;
   std::vector<Source> _sources;
+  std::optional<systems::Formulas> _formulas;
   std::optional<taylor::ManyFlows> _taylor;
   const loop::Loop* _loop = nullptr;
   States _states;                        // M + 1

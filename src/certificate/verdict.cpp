@@ -10,8 +10,8 @@ namespace orbweaver::certificate {
 
 namespace {
 
-/// Of |H|: what summing its terms leaves, however small the orbit is. Measured: up to 2 eps at amplitudes of 1e-7.
-constexpr double energy_roundings = 32.0 * std::numeric_limits<double>::epsilon();
+/// Of the bounds on the roundings of H at two places: their difference.
+constexpr double of_both = 2.0;
 /// Of the amplitude: fewer digits than four confirm no orbit.
 constexpr double informative = 1e-4;
 /// Of the product of the multipliers, and of an index relative to 1 + |k| beside its bound: transition matrices are
@@ -56,7 +56,8 @@ Judgement judge(const Certificate& c, const Evidence& evidence) {
   const double closure = std::fmax(c.closure, c.taylor_closure);
   if (closure > grown)
     return {c.beside_flow <= grown ? Verdict::wrong_period : Verdict::closure_contradicts, closure, grown};
-  const double drift_allowed = std::max(c.steepness * explained, energy_roundings * c.energy_size);
+  const double drift_allowed =
+      std::max({c.steepness * explained, energy_roundings * c.energy_size, of_both * c.energy_rounding});
   if (c.energy_drift > drift_allowed) return {Verdict::drift_contradicts, c.energy_drift, drift_allowed};
   if (c.other_drift > explained) return {Verdict::drift_contradicts, c.other_drift, explained};
 

@@ -38,8 +38,8 @@ using archive::CrossingKind;
 
 /// From which a crossing's is found: as a location has them (survey/tasks/branch/followed_branch.hpp).
 constexpr std::size_t orbits_given = 5;
-/// Relative, of period and energy, and of the state relative to the orbit's size; of 1 + the arclength. At most a
-/// hundredth of it was seen.
+/// Relative, of period and energy, and of the state relative to the orbit's size; of the arclength and its unit. At most
+/// a hundredth of it was seen.
 constexpr double same_place = 1e-10;
 /// Crossings beneath the end of a branch get their arclength by comparison of orbits (witness/placement).
 constexpr double same_placement = 1e-6;
@@ -180,8 +180,9 @@ class CrossingCheck {
                                           real("period"), level(), real(level())));
       return std::nullopt;
     }
+    const double unit = std::abs((b.arclength - a.arclength) / length);
     double way = _atlas.has_reversor(static_cast<std::size_t>(_crossing.family)) && !is_placed()
-                     ? same_place * (1.0 + std::abs(arclength))
+                     ? same_place * (unit + std::abs(arclength))
                      : same_chord * std::abs(b.arclength - a.arclength);
     // A slope that is one part of those beside it lies as far away.
     if (both) way = std::max(way, vanishing_slope * std::abs(b.arclength - a.arclength));

@@ -82,7 +82,7 @@ class OrbitCheck {
     _size = loop::rms_size(_loop);
     equation();
     const certificate::Certificate found = _certifier(_loop);
-    constants(found.steepness);
+    constants(found);
     shape();
     std::optional<spectrum::Stability> stability;
     if (_atlas.scene().compute.stability) stability = stability_of(_system, _loop, _atlas.isotropy(_family));
@@ -126,12 +126,13 @@ class OrbitCheck {
     return std::sqrt(sum / there.nodes());
   }
 
-  /// `steepness`: the largest |dH/dz| along the loop.
-  void constants(double steepness) {
+  void constants(const certificate::Certificate& found) {
+    const double steepness = found.steepness;
     const systems::Scales& units = _system.scales();
     const double error = _loop.period * (_residual + _rounding);
     const double energy = continuation::energy_of(_system, _loop);
-    const double energy_rounding = sum_rounding * epsilon * (std::abs(energy) + steepness * _size) + steepness * error;
+    const double energy_rounding = sum_rounding * epsilon * (std::abs(energy) + steepness * _size) +
+                                   2.0 * found.energy_rounding + steepness * error;
     _claims.agree("energy", real("energy"), energy * units.energy(), energy_rounding * units.energy());
     const double action = continuation::action_of(_system, _loop);
     const double momentum = std::abs(action) + _loop.period * steepness * _size;
@@ -228,7 +229,8 @@ class OrbitCheck {
       if (!(real("single_shot") > found.reach && !(found.single_shot <= found.reach)))
         within("single_shot", record.single_shot, integration * growth);
       within("energy_drift", record.energy_drift,
-             std::max(found.steepness * integration, sum_rounding * epsilon * found.steepness * found.reach));
+             std::max({found.steepness * integration, sum_rounding * epsilon * found.steepness * found.reach,
+                       2.0 * found.energy_rounding}));
     }
     if (verdict >= 0) {
       within("taylor_closure", record.taylor_closure, integration);

@@ -63,7 +63,9 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
                          f.number);
     case FindingKind::unlisted_crossing:
       return fmt::format("ends on {} gone around {} times, which has no crossing there", names.other_family, f.number);
-    case FindingKind::unknown_family: return "ends on a family of more symmetry that this survey does not have";
+    case FindingKind::unknown_family:
+      return f.severity == Severity::cut ? "ends on a family of more symmetry beyond the scene's limits"
+                                         : "ends on a family of more symmetry that this survey does not have";
     case FindingKind::unknown_equilibrium: return "ends at an equilibrium that this survey does not have";
     case FindingKind::limited_end: return fmt::format("ends by the scene's limits: {}", f.detail);
     case FindingKind::mirror_crossings:

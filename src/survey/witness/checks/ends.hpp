@@ -204,7 +204,15 @@ class Ends final : public Check {
       finding.severity = is_higher ? Severity::cut : Severity::undecided;
       return finding;
     }
+    if (is_beyond_limits(evidence.scene.limits, evidence.tree.in_parameter(), end.level))
+      finding.severity = Severity::cut;
     return finding;
+  }
+
+  // What is met there has been cut before it.
+  static bool is_beyond_limits(const scene::Limits& limits, bool in_parameter, double level) {
+    return in_parameter ? level < limits.parameter_from || level > limits.parameter_to
+                        : level < limits.energy_from || level > limits.energy_to;
   }
 };
 
