@@ -203,8 +203,8 @@ std::optional<Circle> completed(const Plane& plane, const Circle& circle, double
   return out;
 }
 
-/// The circle that tells the angles: the last one, or, where the push has gone over to something else there, as of q = 2
-/// whose push does not grow, the one of the largest push that does.
+/// The circle that tells the angles: the last one, or, where orbits have gone over to another family there, the one of
+/// the largest push that does.
 std::optional<Circle> telling(const Plane& plane, const std::vector<Circle>& circles, double turn, double scale, int q) {
   // Of q = 2 terms of second and of fourth order may weigh alike: four lines then.
   const int most = q == 2 ? 4 : 2;
@@ -243,8 +243,9 @@ AnglesFound search_angles(const systems::System& system, const loop::Loop& base,
   core::require(group.dimension() == 2 && q >= 2, "angles are searched in a plane, from q = 2 on");
   const Plane plane(system, base, group, isotropy, options);
   const double turn = 2.0 * std::numbers::pi / q;
-  const std::vector<Circle> circles = grown(plane, scale, {0.0, 0.25 * turn, turn}, [](const Circle& circle) {
-    return circle.is_clear() && circle.summary().is_plain();
+  // Of q = 2 the push does not grow with the amplitude.
+  const std::vector<Circle> circles = grown(plane, scale, {0.0, 0.25 * turn, turn}, [q](const Circle& circle) {
+    return circle.is_clear() && (q == 2 || circle.summary().is_plain());
   });
   if (circles.empty()) return {};
   AnglesFound out = circles.back().summary();

@@ -36,7 +36,7 @@ class SharedPoints final : public Check {
       for (const auto& [family, place] : nearest) {
         const auto& [away, segment] = place;
         if (!std::isfinite(away) || is_known(evidence, known, family, x)) continue;
-        if (segment == 0 && is_before_birth(evidence, family, x)) continue;
+        if (segment == 0 && is_by_birth(evidence, family, crossing, x)) continue;
         asked.push_back({crossing.family, 0, static_cast<int>(row), family, static_cast<int>(segment)});
       }
     }
@@ -130,20 +130,26 @@ class SharedPoints final : public Check {
   }
 
   // Beyond the place where the family is born, seen from its first orbit: nothing of it is there, and what loops are
-  // corrected to is the family that it was born on.
-  static bool is_before_birth(const Evidence& evidence, int family, const Invariants& x) {
+  // corrected to is the family that it was born on. That one's other crossings do not lie on the way from the birth to
+  // the first orbit either: on it no orbit repeats as the base does (continuation/way_from_start.hpp).
+  static bool is_by_birth(const Evidence& evidence, int family, const TreeCrossing& crossing, const Invariants& x) {
     const int row = evidence.tree.families[static_cast<std::size_t>(family)].crossing;
     const std::vector<Invariants>& points = evidence.family(family).curve.points();
     if (row < 0 || points.empty()) return false;
+    if (evidence.family(family).birth_arclength > evidence.family(family).arclengths.front()) return false;
     const TreeCrossing& birth = evidence.crossing(row);
     double along = 0.0;
+    double way = 0.0;
     for (const auto& [i, at_birth] :
          {std::pair{Invariant::period, birth.multiplicity * birth.period}, std::pair{Invariant::level, birth.level}}) {
-      const double part =
-          (x.value(i) - at_birth) * (points.front().value(i) - at_birth) / (x.scale_of(i) * x.scale_of(i));
-      if (!std::isnan(part)) along += part;
+      const double first = (points.front().value(i) - at_birth) / x.scale_of(i);
+      const double part = (x.value(i) - at_birth) / x.scale_of(i) * first;
+      if (std::isnan(part)) continue;
+      along += part;
+      way += first * first;
     }
-    return along < 0.0;
+    const bool is_on_base = crossing.family == birth.family && crossing.multiplicity == birth.multiplicity;
+    return along < (is_on_base ? way : 0.0);
   }
 
   // Crossings where a family is born, ends, or that lie on it.

@@ -142,7 +142,7 @@ class StoredTwice final : public Check {
   static bool is_told_apart(const Evidence& evidence, const LoopQuestion& question) {
     const TreeFamily& family = evidence.family(question.family);
     const TreeFamily& beside = evidence.family(question.beside);
-    if (question.family == question.beside || family.isotropy != beside.isotropy) return false;
+    if (family.isotropy != beside.isotropy) return false;
     const auto segment = static_cast<std::size_t>(question.segment);
     const int side = stored_side_of_one(evidence, family, static_cast<std::size_t>(question.orbit));
     const int before = side * stored_side_of_one(evidence, beside, segment);
