@@ -14,6 +14,7 @@
 #include "failure.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/text.hpp"
+#include "orbweaver/scene/in_scales.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/survey/run/expected_work.hpp"
 #include "orbweaver/survey/run/scaled_scene.hpp"
@@ -209,12 +210,21 @@ void print_starts(const scene::Scene& scene, const systems::System& system, cons
   print_group("Starts", lines);
 }
 
-void print_continuation(const scene::Scene& scene, const systems::System& system) {
+/// A length that the scene gives; where its unit is not the scales', what it is in them too.
+std::string given_length(const systems::System& system, const systems::Scales& scales, double length) {
+  const double unit = scene::scale_of_lengths(system, scales);
+  const std::string in_scales = unit == 1.0 ? "" : fmt::format(" ({:.3g} of the scales)", length / unit);
+  return length_text(system, length) + in_scales;
+}
+
+void print_continuation(const scene::Scene& scene, const systems::System& system, const systems::Scales& scales) {
   const scene::Continuation& c = scene.continuation;
   const bool is_in_scales = !c.start_is_given && !system.structure().has_angles();
-  print_group("Continuation", {{"first orbit", length_text(system, c.start_amplitude) +
-                                                   (is_in_scales ? " of the scales" : "") + " from its equilibrium"},
-                               {"step", c.fixed_step ? "fixed, " + length_text(system, *c.fixed_step) : "adaptive"},
+  const std::string start = is_in_scales ? length_text(system, c.start_amplitude) + " of the scales"
+                                         : given_length(system, scales, c.start_amplitude);
+  const std::string step = c.fixed_step ? "fixed, " + given_length(system, scales, *c.fixed_step) : "adaptive";
+  print_group("Continuation", {{"first orbit", start + " from its equilibrium"},
+                               {"step", step},
                                {"tolerance", fmt::format("sqrt(loss) < {:g} * min(1, rms |dz/dt|)", c.tolerance)},
                                {"harmonics", fmt::format("K from {} to {}", c.cutoff_from, c.cutoff_to)},
                                {"corrector", c.corrector}});
@@ -378,7 +388,7 @@ int check(const SceneOptions& options, const Invocation& invocation) {
   print_system(scene, system, scaled.system()->scales());
   print_simulated(scene, system, points);
   print_starts(scene, system, expected);
-  print_continuation(scene, system);
+  print_continuation(scene, system, scaled.system()->scales());
   print_survey(scene);
   print_limits(scene, system);
   print_events(scene);

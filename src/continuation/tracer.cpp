@@ -30,6 +30,8 @@ constexpr double growth_after_first = 4.0;
 constexpr double least_start = 1e-6;
 /// Of the least amplitude at which a speed is known, by the linear motion: the first orbit's speed differs from that.
 constexpr double above_least_known = 2.0;
+/// Of an equilibrium without an orbit as near as the scene says: where a first orbit lies unless it says anything.
+constexpr double usual_at_rest = 8.7e-3;
 /// A direction of which z(s = 0) has less than this share (of squared lengths) is scaled by its length instead.
 constexpr double still_at_start = 1e-16;
 /// Of the angle between a branch's direction at its crossing and the way to its first orbit, which bends with the
@@ -92,9 +94,16 @@ std::optional<Orbit> Tracer::first_orbit() {
   const double nearest = std::max(least, least_start * _options.start_amplitude);
   double amplitude = std::max(_options.start_amplitude, least);
   _frontier.problem.held_energy = energy_of(*_system, _start.base);
-  _problem->resolve(_problem->resolution_for(std::max(_start.base.cutoff, _options.cutoff_from), _start.base.time_map,
-                                             _options.cutoff_to));
-  const bool has_direction = !is_at_rest && _start.base.time_map.is_identity();
+  const bool has_direction = !is_at_rest && _start.base.time_map.is_identity() && !_start.direction.modes.empty();
+  // Where a field loses digits that its coordinates do not tell, as exp(y) - 1 does, rounding hides what is too near.
+  bool may_move_out = is_at_rest && amplitude < usual_at_rest;
+  const auto is_moved_out = [&] {
+    if (may_move_out) amplitude = usual_at_rest;
+    return std::exchange(may_move_out, false);
+  };
+  const Resolution coarsest = _problem->resolution_for(std::max(_start.base.cutoff, _options.cutoff_from),
+                                                       _start.base.time_map, _options.cutoff_to);
+  _problem->resolve(coarsest);
   while (true) {
     // Beside an orbit everything is measured by the orbit, however near the first one of the family lies.
     _frontier.problem.amplitude = extent_of(_start.base.winding, std::max(amplitude, loop::rms_amplitude(_start.base)));
@@ -107,9 +116,9 @@ std::optional<Orbit> Tracer::first_orbit() {
     Trial trial = _problem->correct(std::move(prediction), conditions);
     if (_stepper.needs_more_harmonics(trial)) {
       const std::optional<Resolution> finer = _problem->next_resolution(_options.cutoff_to);
-      if (!finer)
+      if (!finer && !is_moved_out())
         return end(EndReason::cutoff_limit, fmt::format("the first orbit needs more than K = {}", _options.cutoff_to));
-      _problem->resolve(*finer);
+      _problem->resolve(finer ? *finer : coarsest);
       continue;
     }
     // Where the way has left the branch's direction it may have gone over to another family.
@@ -141,7 +150,9 @@ std::optional<Orbit> Tracer::first_orbit() {
     cells = both_tried ? Preconditioner::box : Preconditioner::fitted_box;
     if (!both_tried) continue;
     amplitude *= 0.5;
-    if (amplitude < nearest) return end(EndReason::failure, fmt::format("no orbit near the start: {}", trial.reason));
+    if (amplitude >= nearest) continue;
+    if (!is_moved_out()) return end(EndReason::failure, fmt::format("no orbit near the start: {}", trial.reason));
+    _problem->resolve(coarsest);
   }
 }
 

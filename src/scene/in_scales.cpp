@@ -23,6 +23,11 @@ systems::Scales scales_of(const Scene& scene, const systems::System& system, con
   return scales;
 }
 
+double scale_of_lengths(const systems::System& system, const systems::Scales& scales) {
+  if (system.structure().has_angles() || scales.coordinates.empty()) return 1.0;
+  return *std::max_element(scales.coordinates.begin(), scales.coordinates.end());
+}
+
 Scene in_scales(Scene scene, const systems::System& system, const systems::Scales& scales) {
   if (scales.are_one()) return scene;
   for (std::size_t i = 0; i < scene.fixed_points.grid.size(); ++i)
@@ -35,12 +40,9 @@ Scene in_scales(Scene scene, const systems::System& system, const systems::Scale
     if (!scene.sweep.step) scene.sweep.step = Sweep::standard_step;
   }
   if (scene.sweep.step) *scene.sweep.step /= scales.time;
-  if (!system.structure().has_angles()) {  // with angles a length is one of angles, whose scale is 1
-    const double largest =
-        scales.coordinates.empty() ? 1.0 : *std::max_element(scales.coordinates.begin(), scales.coordinates.end());
-    if (scene.continuation.fixed_step) *scene.continuation.fixed_step /= largest;
-    if (scene.continuation.start_is_given) scene.continuation.start_amplitude /= largest;
-  }
+  const double largest = scale_of_lengths(system, scales);
+  if (scene.continuation.fixed_step) *scene.continuation.fixed_step /= largest;
+  if (scene.continuation.start_is_given) scene.continuation.start_amplitude /= largest;
   scene.limits.period /= scales.time;
   scene.limits.parameter_from /= scales.parameter(0);
   scene.limits.parameter_to /= scales.parameter(0);

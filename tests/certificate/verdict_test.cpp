@@ -54,6 +54,18 @@ TEST(Verdict, OfASmallOrbitAllowsForRoundingOfItsEnergy) {
   EXPECT_EQ(judge(small, evidence).verdict, Verdict::drift_contradicts);
 }
 
+// An energy exp(q) - q - 1 + p^2/2 at amplitudes of 1e-5: of its terms of order 1 rounding leaves 1e-16.
+TEST(Verdict, AllowsForRoundingOfTermsThatCancel) {
+  Certificate cancelling = {
+      .closure = 2e-19, .energy_drift = 3e-16, .reach = 1e-5, .steepness = 1e-5, .energy_size = 5e-11};
+  const Evidence evidence{6.3, 2e-18, 1e-5, 1.0};
+  EXPECT_EQ(judge(cancelling, evidence).verdict, Verdict::drift_contradicts);
+  cancelling.energy_rounding = 3.3e-16;
+  EXPECT_EQ(judge(cancelling, evidence).verdict, Verdict::holds);
+  cancelling.energy_drift = 1e-15;
+  EXPECT_EQ(judge(cancelling, evidence).verdict, Verdict::drift_contradicts);
+}
+
 // Duffing's equilibrium with the drive at zero, of which only the phase of the drive moves.
 TEST(Verdict, OfARestWhilePhasesWindHolds) {
   const Certificate rest{.closure = 9e-16, .recurrence = 1.0, .tail = 2e-18, .reach = 6.3};

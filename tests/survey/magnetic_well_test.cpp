@@ -18,6 +18,7 @@ using namespace orbweaver;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::UnorderedElementsAre;
 
 using Parameters = std::map<std::string, double>;
 
@@ -77,6 +78,36 @@ TEST(MagneticWell, AFamilyEndsOnAnOrbitFourTimesAround) {
   const test::Atlas atlas(summary.atlas);
   EXPECT_THAT(atlas.families().texts("end_reason"),
               Contains(HasSubstr("joined Equilibrium 1, mode 2 at T = 29.28057465")));
+}
+
+// The pair of multipliers of the fast family passes -1 where a resonance of high order holds it there on less than 1e-8
+// of the family: two doublings that rounding does not tell apart, with a kernel of two dimensions. Two families are born,
+// one with multipliers on the unit circle and one without, and neither turns beside its birth.
+TEST(MagneticWell, OfDoublingsSideBySideBothFamiliesAreFound) {
+  const core::Communicator comm;
+  const std::vector<Parameters> wells{
+      {{"k1", -0.5397}, {"k2", -0.7794}, {"b", 1.9326}, {"e", 0.0}, {"a1", -0.0993}, {"a2", 0.0356}, {"a3", -0.0324},
+       {"a4", -0.038}, {"q", 0.6365}, {"c", 0.7846}},
+      {{"k1", -0.4027}, {"k2", -0.7933}, {"b", 1.9243}, {"e", 0.0}, {"a1", -0.0188}, {"a2", -0.0525}, {"a3", 0.0188},
+       {"a4", 0.0653}, {"q", 0.5095}, {"c", 0.7374}}};
+  for (std::size_t n = 0; n < wells.size(); ++n)
+    for (const std::string start : {"0.0017", "0.0087", "0.0436"}) {
+      SCOPED_TRACE(std::to_string(n) + " " + start);
+      const survey::Summary summary = survey_of(
+          comm, wells[n], "side_by_side",
+          {"survey.depth=1", "survey.subharmonics=2", "limits.energy=[-.inf, 0.1]",
+           "starts.fixed_points.grid=[[0], [0], [0], [0]]", "continuation.start=" + start});
+      if (!comm.is_root()) continue;
+      EXPECT_EQ(summary.failures, 0U);
+      const test::Atlas atlas(summary.atlas);
+      EXPECT_THAT(atlas.families().texts("name"),
+                  UnorderedElementsAre("Equilibrium 1, mode 1", "Equilibrium 1, mode 2", "Equilibrium 1, mode 1 Da",
+                                       "Equilibrium 1, mode 1 Db"));
+      EXPECT_THAT(atlas.crossings().texts("kind"),
+                  UnorderedElementsAre("period-doubling", "fold-energy", "subharmonic", "subharmonic"));
+      for (const survey::FindingSummary& line : summary.findings)
+        EXPECT_EQ(line.severity, survey::Severity::cut) << line.text;
+    }
 }
 
 }  // namespace

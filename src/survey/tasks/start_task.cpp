@@ -1,5 +1,6 @@
 #include "start_task.hpp"
 
+#include <algorithm>
 #include <optional>
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 #include "executor.hpp"
 #include "orbweaver/continuation/branch.hpp"
 #include "orbweaver/continuation/way_from_start.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 
 namespace orbweaver::survey {
 
@@ -15,6 +17,9 @@ namespace {
 /// Amplitudes to try, in parts of the first. Too large a one may find another family, too small a one is lost in
 /// rounding. Not measured; a factor decides only where the ones before it found no orbit.
 constexpr double amplitude_factors[] = {1.0, 0.3, 3.0, 0.1, 10.0, 0.03};
+/// Of the size of the orbit at the crossing: what a nearer one differs by in energy and index, the square of this, is not
+/// much more than rounding.
+constexpr double nearest = 1e-4;
 /// Least cosine between the first orbit's way and the direction in which it was to leave (60 degrees): an orbit of
 /// another direction lies beside it. Not measured.
 constexpr double least_share = 0.5;
@@ -25,7 +30,8 @@ queue::TaskOutcome start(const scene::Scene& scene, const std::shared_ptr<const 
                          const StartWork& work, core::Team* team) {
   const continuation::Start begin = start_of(work.branch, system->structure());
   continuation::Options options = branch_options(scene, team);
-  const double first = work.branch.amplitude > 0.0 ? work.branch.amplitude : options.start_amplitude;
+  const double least = nearest * loop::rms_amplitude(begin.base);
+  const double first = std::max(least, work.branch.amplitude > 0.0 ? work.branch.amplitude : options.start_amplitude);
   std::optional<std::string> why;
   StartOutcome outcome;
   bool is_beyond_limits = false;  // the first of these amplitudes that leads to an orbit

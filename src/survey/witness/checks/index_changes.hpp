@@ -126,7 +126,7 @@ class IndexChanges final : public Check {
   }
 
   /// Where a family goes through a crossing of order 3, k - 2 goes to zero there like the square of the way. If it has
-  /// two signs at the first orbits on both sides, the energy turns between them, however near to the crossing.
+  /// two signs at the nearest orbits on both sides, the energy turns between them, however near to the crossing.
   static void judge_birth(const Evidence& evidence, int row, std::vector<Finding>& found) {
     const TreeFamily& family = evidence.family(row);
     const systems::Structure& structure = evidence.system->structure();
@@ -136,11 +136,15 @@ class IndexChanges final : public Check {
     if (sides[0].second == 0 || sides[1].second == 0 || evidence.crossing(family.crossing).sector_q != 3) return;
     const int order = fundamental_order_of(evidence, family);
     const bifurcation::Sector one{1, 0};
-    const int product = stored_side_of_one(evidence, family, begin - 1) * stored_side_of_one(evidence, family, begin);
-    const auto [from, to] = std::pair(family.arclengths[begin - 1], family.arclengths[begin]);
-    if (product >= 0 || is_listed(evidence, family, one, from, to)) return;
-    const spectrum::Stability stability = stored_stability(evidence, family.first_orbit + begin, order);
-    found.push_back(finding_at(evidence, row, one, begin, stability, Severity::undecided));
+    // The nearest whose sign is known.
+    std::size_t before = begin - 1;
+    std::size_t behind = begin;
+    while (before > 0 && stored_side_of_one(evidence, family, before) == 0) --before;
+    while (behind + 1 < family.orbits() && stored_side_of_one(evidence, family, behind) == 0) ++behind;
+    const int product = stored_side_of_one(evidence, family, before) * stored_side_of_one(evidence, family, behind);
+    if (product >= 0 || is_listed(evidence, family, one, family.arclengths[before], family.arclengths[behind])) return;
+    const spectrum::Stability stability = stored_stability(evidence, family.first_orbit + behind, order);
+    found.push_back(finding_at(evidence, row, one, behind, stability, Severity::undecided));
     Finding& finding = found.back();
     finding.kind = FindingKind::undecided_event;
     finding.detail =
