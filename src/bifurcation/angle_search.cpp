@@ -205,7 +205,8 @@ std::optional<Circle> completed(const Plane& plane, const Circle& circle, double
 
 /// The circle that tells the angles: the last one, or, where orbits have gone over to another family there, the one of
 /// the largest push that does.
-std::optional<Circle> telling(const Plane& plane, const std::vector<Circle>& circles, double turn, double scale, int q) {
+std::optional<Circle> telling(const Plane& plane, const std::vector<Circle>& circles, double turn, double scale,
+                              int q) {
   // Of q = 2 terms of second and of fourth order may weigh alike: four lines then.
   const int most = q == 2 ? 4 : 2;
   std::vector<const Circle*> tried{&circles.back()};

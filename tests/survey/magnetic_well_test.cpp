@@ -80,9 +80,9 @@ TEST(MagneticWell, AFamilyEndsOnAnOrbitFourTimesAround) {
               Contains(HasSubstr("joined Equilibrium 1, mode 2 at T = 29.28057465")));
 }
 
-// The pair of multipliers of the fast family passes -1 where a resonance of high order holds it there on less than 1e-8
-// of the family: two doublings that rounding does not tell apart, with a kernel of two dimensions. Two families are born,
-// one with multipliers on the unit circle and one without, and neither turns beside its birth.
+// The pair of multipliers of the slow family passes -1 where a resonance of high order holds it there on less than 1e-8
+// of the family: two doublings that rounding does not tell apart, with a kernel of two dimensions. Two families are
+// born, one with multipliers on the unit circle and one without, and neither turns beside its birth.
 TEST(MagneticWell, OfDoublingsSideBySideBothFamiliesAreFound) {
   const core::Communicator comm;
   const std::vector<Parameters> wells{

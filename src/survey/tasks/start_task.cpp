@@ -17,8 +17,8 @@ namespace {
 /// Amplitudes to try, in parts of the first. Too large a one may find another family, too small a one is lost in
 /// rounding. Not measured; a factor decides only where the ones before it found no orbit.
 constexpr double amplitude_factors[] = {1.0, 0.3, 3.0, 0.1, 10.0, 0.03};
-/// Of the size of the orbit at the crossing: what a nearer one differs by in energy and index, the square of this, is not
-/// much more than rounding.
+/// Of the size of the orbit at the crossing: what a nearer one differs by in energy and index, the square of this, is
+/// not much more than rounding.
 constexpr double nearest = 1e-4;
 /// Least cosine between the first orbit's way and the direction in which it was to leave (60 degrees): an orbit of
 /// another direction lies beside it. Not measured.

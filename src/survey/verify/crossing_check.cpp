@@ -38,8 +38,8 @@ using archive::CrossingKind;
 
 /// From which a crossing's is found: as a location has them (survey/tasks/branch/followed_branch.hpp).
 constexpr std::size_t orbits_given = 5;
-/// Relative, of period and energy, and of the state relative to the orbit's size; of the arclength and its unit. At most
-/// a hundredth of it was seen.
+/// Relative, of period and energy, and of the state relative to the orbit's size; of the arclength and its unit. At
+/// most a hundredth of it was seen.
 constexpr double same_place = 1e-10;
 /// Crossings beneath the end of a branch get their arclength by comparison of orbits (witness/placement).
 constexpr double same_placement = 1e-6;
