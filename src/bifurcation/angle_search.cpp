@@ -61,10 +61,12 @@ struct Circle {
   }
   [[nodiscard]] bool is_clear() const { return force() > clear * noise(); }
   [[nodiscard]] AnglesFound summary() const { return {{}, amplitude, force(), noise()}; }
+  /// The last one's is the first one's: a zero at the seam is one zero.
+  [[nodiscard]] double push(std::size_t n) const { return orbits[n + 1 < orbits.size() ? n : 0].push; }
   [[nodiscard]] int sign_changes() const {
     int changes = 0;
     for (std::size_t n = 0; n + 1 < orbits.size(); ++n)
-      if (orbits[n].push * orbits[n + 1].push < 0.0) ++changes;
+      if (push(n) * push(n + 1) < 0.0) ++changes;
     return changes;
   }
 };
@@ -259,8 +261,8 @@ AnglesFound search_angles(const systems::System& system, const loop::Loop& base,
   std::vector<FoundOrbit> falling;
   const int sense = sense_of_time(group);
   for (std::size_t n = 0; n + 1 < circle.orbits.size(); ++n) {
-    const numerics::Place from{circle.angles[n], circle.orbits[n].push};
-    const numerics::Place to{circle.angles[n + 1], circle.orbits[n + 1].push};
+    const numerics::Place from{circle.angles[n], circle.push(n)};
+    const numerics::Place to{circle.angles[n + 1], circle.push(n + 1)};
     if (!(from.value * to.value < 0.0)) continue;
     Held last = circle.orbits[n];
     const auto push_at = [&](double angle) {

@@ -94,6 +94,9 @@ LoopAnswer LoopCheck::ask(const OrbitBeside& x) const {
   }
   const bifurcation::Comparison found =
       bifurcation::same_family(*_system, a, b, loop::isotropy_of(system, x.beside.isotropy), orbit, options);
+  // Where a family turns sharply it crosses the planes across its own chords beyond their ends.
+  if (found.same && &x.family == &x.beside && !(found.position >= 0.0 && found.position <= 1.0))
+    return {false, found.distance, allowed, "beyond the two orbits of its own family", true};
   return {found.same, found.distance, allowed, found.detail, found.decided};
 }
 

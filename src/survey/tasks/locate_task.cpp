@@ -42,6 +42,9 @@ constexpr double at_limit = 1e-9;
 /// locations to 1e-10 on a stretch of 1e-6 or more.
 constexpr double turning_slope = 1e-3;
 
+/// Of what the first orbit has that its base has not: an orbit with less is the base's to rounding.
+constexpr double at_birth = 1e-2;
+
 /// Values of indices on the unit circle are no further apart.
 constexpr double apart_indices = 4.0;
 
@@ -64,6 +67,10 @@ class Location {
     continuation::FamilyCurve fast(_system, isotropy, options);
     add_known(fast);
     auto crossing = bifurcation::locate(*_system, fast, _event, _work.from, _work.to, why);
+    if (is_birth_itself(fast, crossing ? crossing->point.position : why.position)) {
+      crossing.reset();
+      why.reason = bifurcation::NotLocated::Reason::no_event;
+    }
     // A zero that was found and is no event is none another way either.
     const bool is_settled = _event.tangency || is_zero(why);
     if (crossing || is_settled) return crossing ? located(*crossing, fast) : without_crossing(why, fast);
@@ -72,12 +79,7 @@ class Location {
     options.corrector.method = corrector::Method::newton_krylov;
     continuation::FamilyCurve any(_system, isotropy, options);
     add_known(any);
-    double from = any.known().front().position;
-    double to = any.known().back().position;
-    for (const continuation::FamilyCurve::Known& known : any.known()) {
-      if (known.position <= _work.from) from = std::max(from, known.position);
-      if (known.position >= _work.to) to = std::min(to, known.position);
-    }
+    const auto [from, to] = between_known(any);
     const bifurcation::NotLocated at_first = why;
     bifurcation::Event event = _event;
     event.from_birth = event.from_birth || from < 0.0;  // the family's first orbit is at 0
@@ -86,10 +88,58 @@ class Location {
     } catch (const core::InputError&) {  // it does not apply, as to driven orbits that a reversor fixes
       return without_crossing(at_first, fast);
     }
-    return crossing ? located(*crossing, any) : without_crossing(why, any);
+    if (crossing) return located(*crossing, any);
+    // Where a family turns sharply its index passes 2 and no orbit converges beside its chord: the turn tells the place.
+    if (is_in_sector(_event) && _event.function.sector.q == 1 && can_fold()) {
+      bifurcation::NotLocated no_turn;
+      const Event fold{fold_event(fold_kind()), {}, false};
+      const auto [before, behind] = between_known(fast);
+      crossing = bifurcation::locate(*_system, fast, fold, before, behind, no_turn);
+      if (crossing && crossing->point.position >= _work.from && crossing->point.position <= _work.to) {
+        _event = fold;
+        return located(*crossing, fast);
+      }
+    }
+    return without_crossing(why, any);
   }
 
  private:
+  /// What an orbit has that does not repeat as the orbit does on which its family is born.
+  [[nodiscard]] double own_of(const loop::Loop& orbit) const {
+    const loop::Loop even = orbit.time_map.is_identity() ? orbit : loop::evenly_in_time(orbit);
+    const auto times = static_cast<std::size_t>(_work.lineage.multiplicity);
+    double square = 0.0;
+    for (std::size_t n = 0; n < even.modes.size(); ++n) {
+      const std::size_t harmonic = (n / static_cast<std::size_t>(even.dimension) + 1) / 2;  // a_0, a_1, b_1, a_2, ...
+      if (harmonic % times != 0) square += even.modes[n] * even.modes[n];
+    }
+    return std::sqrt(square);
+  }
+
+  /// From the last known orbit before the event to the first behind it.
+  [[nodiscard]] std::pair<double, double> between_known(const continuation::FamilyCurve& family) const {
+    double from = family.known().front().position;
+    double to = family.known().back().position;
+    for (const continuation::FamilyCurve::Known& known : family.known()) {
+      if (known.position <= _work.from) from = std::max(from, known.position);
+      if (known.position >= _work.to) to = std::min(to, known.position);
+    }
+    return {from, to};
+  }
+
+  /// Whether T or the energy turns where the family is born and nowhere else: its orbits are even in their distance from
+  /// the birth (not those of one that goes through it), and of two births side by side the crossing lies between.
+  [[nodiscard]] bool is_birth_itself(continuation::FamilyCurve& family, double position) const {
+    const int times = _work.lineage.multiplicity;
+    const auto first = std::find_if(_work.known.begin(), _work.known.end(),
+                                    [](const continuation::FamilyCurve::Known& k) { return k.position >= 0.0; });
+    if (_event.kind == Event::Kind::test_function || times < 2 || times == 3 || first == _work.known.end() ||
+        first == _work.known.begin() || !(position < first->position))
+      return false;
+    const std::optional<continuation::CurvePoint> there = family.at(position);
+    return there && own_of(there->loop) < at_birth * own_of(first->loop);
+  }
+
   /// So that flushes need not wait for the end; a location that is stopped begins again.
   void report() const {
     if (!_context.report({})) throw Interrupted();
@@ -359,6 +409,8 @@ class Location {
   }
 
   [[nodiscard]] bool moves() const { return !_system->family_scalars().free.empty(); }
+
+  [[nodiscard]] bool can_fold() const { return moves() || _system->structure().conservative(); }
 
   [[nodiscard]] CrossingKind fold_kind() const {
     return moves() ? CrossingKind::fold_parameter : CrossingKind::fold_energy;
