@@ -10,7 +10,8 @@ namespace orbweaver::continuation {
 
 /// Whether the family goes through the crossing where it is born: three times around the base, at one of order 3. It
 /// may leave it along the base itself, and with any slope of T and E. At others it leaves along its direction.
-[[nodiscard]] inline bool goes_through(const Start& start) { return start.times == 3; }
+[[nodiscard]] constexpr bool goes_through(int times) { return times == 3; }
+[[nodiscard]] inline bool goes_through(const Start& start) { return goes_through(start.times); }
 
 /// The way from a start to an orbit of the family, in time: cosines of the angle between it and the direction in which
 /// the branch was to leave.

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "arrival.hpp"
+#include "birth_itself.hpp"
 #include "crossing_outcome.hpp"
 #include "executor.hpp"
 #include "interrupted.hpp"
@@ -42,9 +43,6 @@ constexpr double at_limit = 1e-9;
 /// locations to 1e-10 on a stretch of 1e-6 or more.
 constexpr double turning_slope = 1e-3;
 
-/// Of what the first orbit has that its base has not: an orbit with less is the base's to rounding.
-constexpr double at_birth = 1e-2;
-
 /// Values of indices on the unit circle are no further apart.
 constexpr double apart_indices = 4.0;
 
@@ -67,7 +65,7 @@ class Location {
     continuation::FamilyCurve fast(_system, isotropy, options);
     add_known(fast);
     auto crossing = bifurcation::locate(*_system, fast, _event, _work.from, _work.to, why);
-    if (is_birth_itself(fast, crossing ? crossing->point.position : why.position)) {
+    if (is_birth_itself(_work, fast, crossing ? crossing->point.position : why.position)) {
       crossing.reset();
       why.reason = bifurcation::NotLocated::Reason::no_event;
     }
@@ -89,7 +87,7 @@ class Location {
       return without_crossing(at_first, fast);
     }
     if (crossing) return located(*crossing, any);
-    // Where a family turns sharply its index passes 2 and no orbit converges beside its chord: the turn tells the place.
+    // Where a family turns sharply its index passes 2, and no orbit converges beside its chord: the turn tells where.
     if (is_in_sector(_event) && _event.function.sector.q == 1 && can_fold()) {
       bifurcation::NotLocated no_turn;
       const Event fold{fold_event(fold_kind()), {}, false};
@@ -104,18 +102,6 @@ class Location {
   }
 
  private:
-  /// What an orbit has that does not repeat as the orbit does on which its family is born.
-  [[nodiscard]] double own_of(const loop::Loop& orbit) const {
-    const loop::Loop even = orbit.time_map.is_identity() ? orbit : loop::evenly_in_time(orbit);
-    const auto times = static_cast<std::size_t>(_work.lineage.multiplicity);
-    double square = 0.0;
-    for (std::size_t n = 0; n < even.modes.size(); ++n) {
-      const std::size_t harmonic = (n / static_cast<std::size_t>(even.dimension) + 1) / 2;  // a_0, a_1, b_1, a_2, ...
-      if (harmonic % times != 0) square += even.modes[n] * even.modes[n];
-    }
-    return std::sqrt(square);
-  }
-
   /// From the last known orbit before the event to the first behind it.
   [[nodiscard]] std::pair<double, double> between_known(const continuation::FamilyCurve& family) const {
     double from = family.known().front().position;
@@ -125,19 +111,6 @@ class Location {
       if (known.position >= _work.to) to = std::min(to, known.position);
     }
     return {from, to};
-  }
-
-  /// Whether T or the energy turns where the family is born and nowhere else: its orbits are even in their distance from
-  /// the birth (not those of one that goes through it), and of two births side by side the crossing lies between.
-  [[nodiscard]] bool is_birth_itself(continuation::FamilyCurve& family, double position) const {
-    const int times = _work.lineage.multiplicity;
-    const auto first = std::find_if(_work.known.begin(), _work.known.end(),
-                                    [](const continuation::FamilyCurve::Known& k) { return k.position >= 0.0; });
-    if (_event.kind == Event::Kind::test_function || times < 2 || times == 3 || first == _work.known.end() ||
-        first == _work.known.begin() || !(position < first->position))
-      return false;
-    const std::optional<continuation::CurvePoint> there = family.at(position);
-    return there && own_of(there->loop) < at_birth * own_of(first->loop);
   }
 
   /// So that flushes need not wait for the end; a location that is stopped begins again.

@@ -1,0 +1,44 @@
+#include "birth_itself.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "orbweaver/bifurcation/crossing.hpp"
+#include "orbweaver/continuation/way_from_start.hpp"
+#include "orbweaver/loop/curve/loop.hpp"
+
+namespace orbweaver::survey {
+
+namespace {
+
+/// Of what the first orbit has that its base has not: an orbit with less is the base's to rounding. Seen: 1e-3 and
+/// less.
+constexpr double at_birth = 1e-2;
+
+/// What an orbit has that does not repeat as one that is gone around so many times.
+double own_of(const loop::Loop& orbit, int times) {
+  const loop::Loop even = orbit.time_map.is_identity() ? orbit : loop::evenly_in_time(orbit);
+  double square = 0.0;
+  for (std::size_t n = 0; n < even.modes.size(); ++n) {
+    const std::size_t harmonic = (n / static_cast<std::size_t>(even.dimension) + 1) / 2;  // a_0, a_1, b_1, a_2, ...
+    if (harmonic % static_cast<std::size_t>(times) != 0) square += even.modes[n] * even.modes[n];
+  }
+  return std::sqrt(square);
+}
+
+}  // namespace
+
+bool is_birth_itself(const LocateWork& work, continuation::FamilyCurve& family, double position) {
+  const int times = work.lineage.multiplicity;
+  const bool is_fold = work.event.kind != bifurcation::Event::Kind::test_function;
+  if (!is_fold || times < 2 || continuation::goes_through(times)) return false;
+  const auto first = std::find_if(work.known.begin(), work.known.end(),
+                                  [](const continuation::FamilyCurve::Known& known) { return known.position >= 0.0; });
+  const bool is_beside_birth = first != work.known.begin() && first != work.known.end() && position < first->position;
+  if (!is_beside_birth) return false;
+  const std::optional<continuation::CurvePoint> there = family.at(position);
+  return there && own_of(there->loop, times) < at_birth * own_of(first->loop, times);
+}
+
+}  // namespace orbweaver::survey
