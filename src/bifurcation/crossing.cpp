@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -84,8 +85,10 @@ class EventFunction {
       : _system(system), _family(family), _event(event), _within(within) {}
 
   double operator()(double position) {
+    const auto known = _values.find(position);
+    if (known != _values.end()) return known->second;
     const std::optional<Crossing> there = at(position, false, _event.from_birth && position == _within.from);
-    return there ? there->reading.value : nan;
+    return _values[position] = there ? there->reading.value : nan;
   }
 
   double twist_at(double position) {
@@ -150,6 +153,7 @@ class EventFunction {
   continuation::FamilyCurve& _family;
   const Event& _event;
   Interval _within;
+  std::map<double, double> _values;  // by position
   std::optional<NotLocated> _without_value;
 };
 

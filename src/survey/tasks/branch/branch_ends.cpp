@@ -71,6 +71,7 @@ void BranchEnds::indices_from_birth(continuation::FamilyCurve& curve) {
     const bool is_zero = std::abs(reading.value) <= bifurcation::zero_at_birth;
     reading.error = is_zero ? bifurcation::zero_at_birth : 0.0;  // orbits are not isolated there, and have no bounds
   }
+  _events.forget_hidden();
   bifurcation::Detector detector;
   std::vector<bifurcation::Bracket> found = detector.advance(at_birth, probe);
   std::vector<bifurcation::TestPoint> places;

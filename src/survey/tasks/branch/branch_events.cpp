@@ -61,10 +61,20 @@ std::optional<bifurcation::TestPoint> BranchEvents::probe(double position) {
 }
 
 /// An index leaves 2 there like a power of the way, within what rounding makes of it first: its bound does not tell.
-bool BranchEvents::is_hidden_by_birth(const loop::Loop& loop) const {
+bool BranchEvents::is_hidden_by_birth(double position, const loop::Loop& loop) const {
+  if (position <= _hidden_to) return true;
+  if (position >= _told_from) return false;
   const double across =
       continuation::left_open_by_rounding(*_followed.system, loop, _followed.start.isotropy).across;
-  return !(across > 0.0 && across < open_at_birth * continuation::arclength_between(_followed.start.base, loop));
+  const bool is_told =
+      across > 0.0 && across < open_at_birth * continuation::arclength_between(_followed.start.base, loop);
+  (is_told ? _told_from : _hidden_to) = position;
+  return !is_told;
+}
+
+void BranchEvents::forget_hidden() {
+  _hidden_to = -std::numeric_limits<double>::infinity();
+  _told_from = std::numeric_limits<double>::infinity();
 }
 
 bifurcation::TestPoint BranchEvents::test_point(double position, const loop::Loop& loop,
@@ -76,7 +86,7 @@ bifurcation::TestPoint BranchEvents::test_point(double position, const loop::Loo
     double& error = point.readings[f].error;
     if (is_first || position > _last) error *= error_margin;
     const double size = std::abs(point.readings[f].value);
-    if (is_first && size > error && size <= bifurcation::zero_at_birth && is_hidden_by_birth(loop))
+    if (is_first && size > error && size <= bifurcation::zero_at_birth && is_hidden_by_birth(position, loop))
       error = bifurcation::zero_at_birth;
   }
   return point;

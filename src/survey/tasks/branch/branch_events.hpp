@@ -45,6 +45,8 @@ class BranchEvents {
   /// The test functions of the branch at an orbit, as they count there.
   [[nodiscard]] bifurcation::TestPoint test_point(double position, const loop::Loop& loop,
                                                   const std::optional<spectrum::Stability>& stability) const;
+  /// What rounding hides beside the birth is asked anew: a branch that goes on from a checkpoint does not know it.
+  void forget_hidden();
   /// What only the family's end shows of test functions, from the stored orbits alone, whatever was probed before.
   void finish_zeros();
 
@@ -66,7 +68,7 @@ class BranchEvents {
 
  private:
   void add_zeros(const std::vector<bifurcation::Bracket>& brackets);
-  [[nodiscard]] bool is_hidden_by_birth(const loop::Loop& loop) const;
+  [[nodiscard]] bool is_hidden_by_birth(double position, const loop::Loop& loop) const;
   void watch_folds(double position, const loop::Loop& loop);
   [[nodiscard]] bool is_in_known(const bifurcation::Fold& fold) const;
   [[nodiscard]] std::optional<spectrum::Stability> stability_between(double position);
@@ -80,6 +82,9 @@ class BranchEvents {
   double _passed_one = std::numeric_limits<double>::quiet_NaN();
   double _last = std::numeric_limits<double>::infinity();
   std::vector<queue::Task> _tasks;
+  // Rounding leaves orbits the more open the nearer they are to the birth: up to and from which positions it is known.
+  mutable double _hidden_to = -std::numeric_limits<double>::infinity();
+  mutable double _told_from = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace orbweaver::survey

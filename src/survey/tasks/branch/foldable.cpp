@@ -16,6 +16,8 @@ namespace {
 
 /// Relative to their size, of changes of T and E: ten times what the watch sees, for what differences of them are off.
 constexpr double visible_part = 10.0 * bifurcation::FoldWatch::visible_change;
+/// Relative to their size: a change that no rounding makes of an orbit that is told from its neighbours at all.
+constexpr double evident_part = 1e-4;
 /// What roundings move is known from one set of them: others may move a quantity by so much more. Not measured.
 constexpr double of_one_rounding = 10.0;
 
@@ -77,6 +79,7 @@ bool is_rounding(const systems::System& system, const loop::Isotropy& isotropy, 
   if (std::isnan(change) || std::isnan(turn.position) || turn.direction * change > 0.0) return false;
   if (std::abs(change) <= bifurcation::FoldWatch::visible_change * turn.scale)
     return false;  // which the watch passes over
+  if (std::abs(change) > evident_part * turn.scale) return false;
   if (std::abs(change) <= moved_by_rounding(system, isotropy, quantity, orbit)) return true;
   const auto before =
       std::find_if(known.begin(), known.end(), [&](const auto& one) { return one.position == turn.position; });
