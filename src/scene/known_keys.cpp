@@ -86,9 +86,10 @@ constexpr std::array table_of_keys{
              "orbits kept, those with the shortest periods"},
 
     KnownKey{"continuation", "a map", "none", "", "how one family is followed"},
-    KnownKey{"continuation.step", "`adaptive` or an angle with its unit, > 0 and at most 90deg", "`adaptive`",
-             unit_of_lengths, "or a fixed step, the distance in phase space at s = 0"},
-    KnownKey{"continuation.start", "an angle with its unit, > 0 and at most 90deg",
+    KnownKey{"continuation.step",
+             "`adaptive` or an angle with its unit, > 0 and at most 90deg; without angles `adaptive` or a number > 0",
+             "`adaptive`", unit_of_lengths, "or a fixed step, the distance in phase space at s = 0"},
+    KnownKey{"continuation.start", "an angle with its unit, > 0 and at most 90deg; without angles a number > 0",
              "`0.5deg`; without angles 0.0087 of the scales", unit_of_lengths,
              "distance of the first orbit from its equilibrium, at s = 0"},
     KnownKey{"continuation.tolerance", "a number from 1e-14 to 0.001", "`1e-10`", "",
