@@ -24,6 +24,8 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 /// function has none within.
 constexpr double off_ends = 1e-3;
 
+/// A value is zero that moves the place by this share of what it may be off, by the function's mean slope.
+constexpr double negligible = 1e-2;
 /// How far beside a located zero the function is looked at, in parts of the interval, and what of its value there may
 /// be left at the zero: of a smooth function it is about the share of the two distances, 1e-4 or less.
 constexpr double beside_zero = 1e-4;
@@ -87,8 +89,15 @@ class EventFunction {
   double operator()(double position) {
     const auto known = _values.find(position);
     if (known != _values.end()) return known->second;
-    const std::optional<Crossing> there = at(position, false, _event.from_birth && position == _within.from);
-    return _values[position] = there ? there->reading.value : nan;
+    const bool is_birth = _event.from_birth && position == _within.from;
+    const std::optional<Crossing> there = at(position, false, is_birth);
+    const double value = there ? there->reading.value : nan;
+    if (!is_birth && !(std::abs(value) >= std::abs(_nearest_value))) {
+      _nearest_value = value;
+      _nearest_position = position;
+      _nearest_stability = there ? std::optional(there->stability) : std::nullopt;
+    }
+    return _values[position] = value;
   }
 
   double twist_at(double position) {
@@ -117,7 +126,9 @@ class EventFunction {
     if (!point) return without_value(NotLocated::Reason::no_orbit, position, period_before(position));
     Crossing out;
     out.point = std::move(*point);
-    if (whole || !fold) try {
+    const bool is_known = !fold && !is_birth && position == _nearest_position && _nearest_stability.has_value();
+    if (is_known) out.stability = *_nearest_stability;
+    if (!is_known && (whole || !fold)) try {
         spectrum::FloquetOptions options;
         options.team = _family.options().corrector.team;
         out.stability = spectrum::floquet(_system, out.point.loop, _family.isotropy(), options);
@@ -154,6 +165,10 @@ class EventFunction {
   const Event& _event;
   Interval _within;
   std::map<double, double> _values;  // by position
+  // Where it was nearest to zero: in the end, at the zero.
+  double _nearest_value = std::numeric_limits<double>::infinity();
+  double _nearest_position = nan;
+  std::optional<spectrum::Stability> _nearest_stability;
   std::optional<NotLocated> _without_value;
 };
 
@@ -302,14 +317,19 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
   EventFunction function(system, family, event, {from, to});
   constexpr double widest = 1e-10;  // what |index - value| <= |dk/ds| 1e-10 allows
   const double absolute = std::min(tolerance * (1.0 + std::max(std::abs(from), std::abs(to))), widest);
-  const auto along = [&](double position) { return function(position); };
   std::optional<numerics::Located> located;
-  if (event.passed)
+  if (event.passed) {
     located = numerics::locate_root([&](double position) { return function.twist_at(position); }, from, to, absolute);
-  else
-    located = event.tangency ? numerics::locate_minimum([&](double position) { return std::abs(function(position)); },
-                                                        from, to, absolute)
-                             : numerics::locate_root(along, from, to, absolute);
+  } else if (event.tangency) {
+    located = numerics::locate_minimum([&](double position) { return std::abs(function(position)); }, from, to, absolute);
+  } else {
+    const double no_more = negligible * absolute * std::abs(function(to) - function(from)) / (to - from);
+    const auto along = [&](double position) {
+      const double value = function(position);
+      return std::abs(value) <= no_more ? 0.0 : value;
+    };
+    located = numerics::locate_root(along, from, to, absolute);
+  }
   // Where directions along the family are uncertain, the extremum itself is looked for.
   if (event.kind != Event::Kind::test_function) {
     if (located && std::abs(function(located->position)) >
