@@ -1,11 +1,16 @@
 #include "show_stability.hpp"
 
 #include <optional>
+#include <sstream>
+#include <string>
+#include <tuple>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "archive/sample.hpp"
+#include "orbweaver/report/show.hpp"
 
 namespace show_stability_test {
 namespace {
@@ -13,6 +18,7 @@ namespace {
 using namespace orbweaver;
 using namespace orbweaver::archive;
 using namespace orbweaver::report;
+using ::testing::HasSubstr;
 
 // Intervals run along the family: where T turns in one, the turn stands between its ends.
 TEST(ShowStability, IntervalsNameTheTurnsOfThePeriod) {
@@ -77,6 +83,78 @@ TEST(ShowStability, ASingleMultiplierOutOfRangeIsToldByTheVolume) {
   EXPECT_EQ(text(2500.0), "unstable");
   EXPECT_EQ(text(-1e-9), "");
   EXPECT_EQ(text(not_computed), "");
+}
+
+std::string families_of(const Archive& atlas) {
+  std::ostringstream out;
+  print_table(out, atlas, "families", TextFormat::readable);
+  return out.str();
+}
+
+// The one family of five orbits with T = 1 ... 5, these stabilities, and this error bound.
+std::string stability_of(const Header& header, const std::vector<std::vector<double>>& values, double error) {
+  Records records = test::sample_records(header);
+  records.crossings.clear();
+  records.families = {records.families[1]};
+  records.orbits.resize(values.size());
+  records.sections.clear();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    records.orbits[i].period = static_cast<double>(i + 1);
+    records.orbits[i].stability = values[i];
+    records.orbits[i].stability_error = error;
+  }
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("stability"), header, records));
+  std::istringstream lines(families_of(atlas));
+  std::string line;
+  for (int n = 0; n < 3; ++n) std::getline(lines, line);
+  const std::size_t begin = line.find("; ") + 2;
+  return line.substr(begin, line.find("ended:") - begin);
+}
+
+TEST(ShowStability, OfOnePairInIntervalsOfThePeriod) {
+  const Header one = test::sample_header();
+  const double nan = not_computed;
+  EXPECT_EQ(stability_of(one, {{1}, {-1.5}, {2.5}, {0}, {-3}}, 1e-9), "stable T 1 .. 2, 4; ");
+  EXPECT_EQ(stability_of(one, {{3}, {1}, {nan}, {1}, {1.9}}, 1e-9), "stable T 2, 4 .. 5; ");
+  EXPECT_EQ(stability_of(one, {{1}, {-1.9}, {1.9}, {0}, {1}}, 1e-9), "stable; ");
+  EXPECT_EQ(stability_of(one, {{1}, {-2}, {2}, {0}, {1}}, 1e-9), "stable T 1, 4 .. 5; ") << "open on the border";
+  EXPECT_EQ(stability_of(one, {{3}, {-9}, {4}, {nan}, {7}}, nan), "unstable; ");
+  EXPECT_EQ(stability_of(one, {{2 + 1e-7}, {-2 - 1e-7}, {2 - 1e-7}, {1}, {4}}, 1e-6), "stable T 4; ");
+  EXPECT_EQ(stability_of(one, {{2 + 1e-7}, {-2 - 1e-7}, {2.1}, {3}, {4}}, 1e-8), "unstable; ");
+  EXPECT_EQ(stability_of(one, {{1}, {1}, {1}, {1}, {1}}, 1), "") << "errors too large to tell";
+}
+
+TEST(ShowStability, ChangesAtLocatedCrossings) {
+  const Header header = test::sample_header();
+  Records records = test::sample_records(header);
+  const CrossingRecord some = records.crossings[1];  // of Out-Phase, whose steps are a quarter in arclength
+  records.crossings.clear();
+  for (const auto& [arclength, period, kind] :
+       {std::tuple(-0.45, 2.26, CrossingKind::subharmonic), std::tuple(-0.4, 2.27, CrossingKind::branch_point),
+        std::tuple(0.9, 2.9, CrossingKind::krein)}) {
+    records.crossings.push_back(some);
+    records.crossings.back().arclength = arclength;
+    records.crossings.back().period = period;
+    records.crossings.back().kind = kind;
+  }
+  records.crossings.push_back(records.crossings.back());
+  records.crossings.back().family_key = "0001";
+  records.crossings.back().period = 9;
+  for (FamilyRecord& family : records.families) family.crossing = family.end_crossing = -1;
+  records.orbits[8].stability = {0.5};  // the last of Out-Phase, T = 3
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("located"), header, records));
+  EXPECT_THAT(families_of(atlas), HasSubstr("; stable T 2 .. 2.27, 2.9 .. 3; "));
+}
+
+TEST(ShowStability, OfTwoPairsNeedsBoth) {
+  const Header two = test::sample_header(2);
+  EXPECT_EQ(stability_of(two, {{1, 0, 1, 0}, {1, 0, 3, 0}, {3, 0, 1, 0}, {1, 0.5, 1, -0.5}, {0, 0, -1, 0}}, 1e-9),
+            "stable T 1, 5; ");
+}
+
+TEST(ShowStability, ByMultipliersWhereTheFlowIsNotSymplectic) {
+  const Header damped = test::sample_header(1, false);
+  EXPECT_EQ(stability_of(damped, {{0.5, 0.5}, {-1.1, 0}, {0.8, 0.8}, {0, -0.9}, {1.5, 0}}, 1e-9), "stable T 1, 4; ");
 }
 
 }  // namespace

@@ -25,6 +25,26 @@ TEST_F(WitnessOf, DirectionsThatAKernelHasAndNobodyFound) {
   EXPECT_THAT(rows[1].text, HasSubstr("the kernel has 2 directions, 1 were found"));
 }
 
+// What decides the directions at a double multiplier -1 has as many maxima as minima on the kernel's circle.
+TEST_F(WitnessOf, OneDirectionWhereTwoDoublingsLieSideBySide) {
+  if (world->is_root()) {
+    CrossingEvidence& one = add_crossing(0);
+    one.q = 2;
+    one.kernel_dimension = 2;
+    one.directions = 1;
+    one.sides = {DirectionFate::followed};
+    CrossingEvidence& both = add_crossing(1);
+    both.q = 2;
+    both.kernel_dimension = 2;
+    both.directions = 2;
+    both.sides = {DirectionFate::followed, DirectionFate::followed};
+  }
+  const std::vector<Found> rows = found();
+  if (!world->is_root()) return;
+  ASSERT_THAT(rows, ElementsAre(finding("undecided", "missing-directions")));
+  EXPECT_THAT(rows[0].text, HasSubstr("the kernel has 2 directions, 1 were found"));
+}
+
 TEST_F(WitnessOf, DirectionsThatNobodyFollowed) {
   if (world->is_root()) {
     CrossingEvidence& crossing = add_crossing(0);
@@ -126,6 +146,26 @@ TEST_F(WitnessOf, EndsWhereNoCrossingIsKnown) {
                                 finding("cut", "higher-order")));
   EXPECT_EQ(rows[0].other_family, row_named("Straight"));
   EXPECT_THAT(rows[2].text, HasSubstr("Comes: ends on Straight gone around 4 times"));
+}
+
+// What is met beyond the scene's energies has been cut before it.
+TEST_F(WitnessOf, EndsOnFamiliesBeyondTheLimits) {
+  const scene::Limits limits = scene.limits;
+  for (const double energy_to : {limits.energy_to, 0.5}) {
+    input = {};
+    scene.limits.energy_to = energy_to;
+    if (world->is_root()) {
+      EndEvidence& end = add_end("Straight");
+      end.period = 99.0;
+      end.level = 0.6;
+    }
+    const std::vector<Found> rows = found();
+    scene.limits = limits;
+    if (!world->is_root()) continue;
+    const bool is_beyond = energy_to < 0.6;
+    ASSERT_THAT(rows, ElementsAre(finding(is_beyond ? "cut" : "undecided", "unknown-family")));
+    EXPECT_THAT(rows[0].text, HasSubstr(is_beyond ? "beyond the scene's limits" : "that this survey does not have"));
+  }
 }
 
 TEST_F(WitnessOf, EndsByLimits) {
