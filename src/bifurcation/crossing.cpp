@@ -321,7 +321,8 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
   if (event.passed) {
     located = numerics::locate_root([&](double position) { return function.twist_at(position); }, from, to, absolute);
   } else if (event.tangency) {
-    located = numerics::locate_minimum([&](double position) { return std::abs(function(position)); }, from, to, absolute);
+    const auto size = [&](double position) { return std::abs(function(position)); };
+    located = numerics::locate_minimum(size, from, to, absolute);
   } else {
     const double no_more = negligible * absolute * std::abs(function(to) - function(from)) / (to - from);
     const auto along = [&](double position) {

@@ -32,7 +32,9 @@ double own_of(const loop::Loop& orbit, int times) {
 bool is_birth_itself(const LocateWork& work, continuation::FamilyCurve& family, double position) {
   const int times = work.lineage.multiplicity;
   const bool is_fold = work.event.kind != bifurcation::Event::Kind::test_function;
-  if (!is_fold || times < 2 || continuation::goes_through(times)) return false;
+  const bool is_of_one =
+      !is_fold && bifurcation::has_sector(work.event.function.kind) && work.event.function.sector.q == 1;
+  if ((!is_fold && !is_of_one) || times < 2 || continuation::goes_through(times)) return false;
   const auto first = std::find_if(work.known.begin(), work.known.end(),
                                   [](const continuation::FamilyCurve::Known& known) { return known.position >= 0.0; });
   const bool is_beside_birth = first != work.known.begin() && first != work.known.end() && position < first->position;

@@ -65,13 +65,12 @@ class Location {
     continuation::FamilyCurve fast(_system, isotropy, options);
     add_known(fast);
     auto crossing = bifurcation::locate(*_system, fast, _event, _work.from, _work.to, why);
-    if (is_birth_itself(_work, fast, crossing ? crossing->point.position : why.position)) {
-      crossing.reset();
-      why.reason = bifurcation::NotLocated::Reason::no_event;
-    }
     // A zero that was found and is no event is none another way either.
     const bool is_settled = _event.tangency || is_zero(why);
-    if (crossing || is_settled) return crossing ? located(*crossing, fast) : without_crossing(why, fast);
+    if (crossing) return located(*crossing, fast);
+    if (why.reason == bifurcation::NotLocated::Reason::unclear_fold && is_birth_itself(_work, fast, why.position))
+      return at_birth(why.position, fast);
+    if (is_settled) return without_crossing(why, fast);
     // Newton's method on whole loops is slower, and finds orbits that the fast way misses. Its positions between known
     // orbits are a little different ones.
     options.corrector.method = corrector::Method::newton_krylov;
@@ -124,6 +123,7 @@ class Location {
   }
 
   queue::TaskOutcome located(const bifurcation::Crossing& crossing, continuation::FamilyCurve& family) {
+    if (is_birth_itself(_work, family, crossing.point.position)) return at_birth(crossing.point.position, family);
     describe(crossing, family);
     if (is_in_sector(_event)) try {
         leave(crossing, family);
@@ -182,6 +182,10 @@ class Location {
            why.reason == bifurcation::NotLocated::Reason::unclear_fold;
   }
 
+  queue::TaskOutcome at_birth(double position, const continuation::FamilyCurve& family) {
+    return without_crossing({.reason = bifurcation::NotLocated::Reason::no_event, .position = position}, family);
+  }
+
   queue::TaskOutcome without_crossing(bifurcation::NotLocated why, const continuation::FamilyCurve& family) {
     queue::TaskOutcome done;
     why.period *= Units(*_system).time;
@@ -210,8 +214,9 @@ class Location {
     if (reason == bifurcation::NotLocated::Reason::no_zero && is_cut(family))
       return "on all orbits that are known between both signs of the function it is within its error bound";
     std::vector<const loop::Loop*> ends;
+    const auto [from, to] = between_known(family);
     for (const continuation::FamilyCurve::Known& known : family.known())
-      if (known.position == _work.from || known.position == _work.to) ends.push_back(&known.loop);
+      if (known.position == from || known.position == to) ends.push_back(&known.loop);
     for (std::size_t n = 0; n < ends.size(); ++n) {
       const loop::Loop* beside = ends.size() > 1 ? ends[n == 0 ? 1 : n - 1] : nullptr;
       std::string why = not_told_apart(*_system, *ends[n], beside, family.isotropy(), _team);
