@@ -366,10 +366,12 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
     });
   // Of q = 2 what decides has as many maxima as minima: an even number of lines.
   const bool is_odd = q == 2 && best.found.size() % 2 != 0;
-  if (by_angle && (static_cast<int>(best.found.size()) < std::max(expected, 1) || is_odd)) {
-    std::vector<Direction> out = by_angles(system, group, base, kept, q, options);
-    if (q == 2 || static_cast<int>(out.size()) == expected) return out;
-  }
+  if (by_angle && (static_cast<int>(best.found.size()) < std::max(expected, 1) || is_odd)) try {
+      std::vector<Direction> out = by_angles(system, group, base, kept, q, options);
+      if (q == 2 || static_cast<int>(out.size()) == expected) return out;
+    } catch (const UndecidedError&) {
+      if (best.found.empty()) throw;  // else some of the directions are known
+    }
   const std::string seen = fmt::format(
       "a kernel of dimension {} (q = {}): {} directions found at amplitude {:.2g}, {} where orbits are not isolated",
       group.dimension(), q, best.found.size(), amplitude, best.not_isolated);
