@@ -39,6 +39,10 @@ constexpr int few_steps = 4;
 constexpr double least_cosine = 0.9;
 /// Zeros are located to this, in parts of a step.
 constexpr double located_to = 1e-12;
+/// Hopf points nearer than this, relative, are at one place.
+constexpr double same_place = 1e-9;
+/// A step over which eigenvalues become real, or real ones complex, is halved so often.
+constexpr int most_halvings = 6;
 /// Steps after which a curve may have come back.
 constexpr std::size_t least_round = 8;
 /// Of the largest eigenvalue: a pair whose sum is smaller than this cancels, and its real part is none.
@@ -131,7 +135,9 @@ class Curve {
     return product.real();
   }
 
-  [[nodiscard]] std::optional<HopfPoint> hopf_at(const VectorXd& x) const;
+  /// Of the eigenvalues on the imaginary axis there the one nearest to `near`; none where only real ones cancel. Of a
+  /// double one the vectors in their order, `taken` being passed over.
+  [[nodiscard]] std::optional<HopfPoint> hopf_at(const VectorXd& x, Complex near, std::size_t taken) const;
   [[nodiscard]] Equilibrium equilibrium(const VectorXd& x) const { return {{x.data(), x.data() + _d}, x(_d)}; }
   [[nodiscard]] bool is_within(double parameter) const {
     return parameter >= _options.parameter_from && parameter <= _options.parameter_to;
@@ -149,16 +155,17 @@ class Curve {
   Index _d;
 };
 
-std::optional<HopfPoint> Curve::hopf_at(const VectorXd& x) const {
+std::optional<HopfPoint> Curve::hopf_at(const VectorXd& x, Complex near, std::size_t taken) const {
   const numerics::Eigensystem system = eigensystem(x, true);
   const Eigen::VectorXcd& values = system.values;
   const double largest = values.cwiseAbs().maxCoeff();
-  Index found = -1;
+  std::vector<Index> on_axis;
   for (Index i = 0; i < values.size(); ++i)
-    if (values(i).imag() > cancels * largest && std::abs(values(i).real()) < cancels * largest &&
-        (found < 0 || std::abs(values(i).real()) < std::abs(values(found).real())))
-      found = i;
-  if (found < 0) return std::nullopt;  // two real eigenvalues cancel: a neutral saddle
+    if (values(i).imag() > cancels * largest && std::abs(values(i).real()) < cancels * largest) on_axis.push_back(i);
+  std::stable_sort(on_axis.begin(), on_axis.end(),
+                   [&](Index i, Index l) { return std::abs(values(i) - near) < std::abs(values(l) - near); });
+  if (on_axis.size() <= taken) return std::nullopt;  // two real eigenvalues cancel: a neutral saddle
+  const Index found = on_axis[taken];
   HopfPoint out;
   out.at = equilibrium(x);
   out.period = 2.0 * std::numbers::pi / values(found).imag();
@@ -250,6 +257,46 @@ class Side {
   std::string _end;
 };
 
+bool are_one_place(const VectorXd& x, const VectorXd& y) { return (x - y).norm() <= same_place * (1.0 + y.norm()); }
+
+/// The eigenvalues above the real axis.
+std::vector<Complex> oscillating(const Eigen::VectorXcd& values) {
+  std::vector<Complex> out;
+  for (Index i = 0; i < values.size(); ++i)
+    if (values(i).imag() > 0.0) out.push_back(values(i));
+  return out;
+}
+
+/// The one of `values` nearest to another; their number where there is none.
+std::size_t nearest_of(const std::vector<Complex>& values, Complex to) {
+  const auto found = std::min_element(values.begin(), values.end(),
+                                      [&](Complex a, Complex b) { return std::abs(a - to) < std::abs(b - to); });
+  return static_cast<std::size_t>(found - values.begin());
+}
+
+/// An eigenvalue above the real axis and what it becomes.
+struct Path {
+  Complex from;
+  Complex to;
+  [[nodiscard]] bool crosses() const { return (from.real() >= 0.0) != (to.real() >= 0.0); }
+};
+
+/// Each eigenvalue of one place with the nearest of those of the other that are left, the nearest first.
+std::vector<Path> paths_between(std::vector<Complex> from, std::vector<Complex> to) {
+  std::vector<Path> paths;
+  while (!from.empty() && !to.empty()) {
+    std::size_t best = 0;
+    for (std::size_t n = 1; n < from.size(); ++n)
+      if (std::abs(from[n] - to[nearest_of(to, from[n])]) < std::abs(from[best] - to[nearest_of(to, from[best])]))
+        best = n;
+    const std::size_t end = nearest_of(to, from[best]);
+    paths.push_back({from[best], to[end]});
+    from.erase(from.begin() + static_cast<std::ptrdiff_t>(best));
+    to.erase(to.begin() + static_cast<std::ptrdiff_t>(end));
+  }
+  return paths;
+}
+
 /// The zero of a function of places between two nodes: the corrected place on the chord, share of the way.
 template <class F>
 std::optional<VectorXd> zero_between(const Curve& curve, const Node& a, const Node& b, const F& function) {
@@ -264,6 +311,80 @@ std::optional<VectorXd> zero_between(const Curve& curve, const Node& a, const No
   if (!found) return std::nullopt;
   static_cast<void>(there(found->position));
   return place;
+}
+
+/// Hopf points between two nodes, each where one eigenvalue crosses the imaginary axis; where eigenvalues have become
+/// real, or real ones complex, the two halves are looked at, and at last the product of all sums.
+std::vector<std::pair<VectorXd, HopfPoint>> hopf_between(const Curve& curve, const Node& a, const Node& b,
+                                                         int halvings = 0) {
+  const Eigen::VectorXcd at_a = curve.eigenvalues(a.x);
+  const Eigen::VectorXcd at_b = curve.eigenvalues(b.x);
+  const std::vector<Complex> from = oscillating(at_a);
+  const std::vector<Complex> to = oscillating(at_b);
+  std::vector<std::pair<VectorXd, HopfPoint>> found;
+  const VectorXd chord = b.x - a.x;
+  if (from.size() != to.size() && halvings < most_halvings) {
+    int steps = 0;
+    if (const auto middle = curve.corrected(a.x + 0.5 * chord, chord.normalized(), steps)) {
+      const Node between{*middle, curve.direction(*middle, a.direction)};
+      found = hopf_between(curve, a, between, halvings + 1);
+      for (auto& other : hopf_between(curve, between, b, halvings + 1)) found.push_back(std::move(other));
+      return found;
+    }
+  }
+  const auto add = [&](const std::optional<VectorXd>& place, const auto& near) {
+    if (!place) return;
+    const auto taken = std::count_if(found.begin(), found.end(),
+                                     [&](const auto& known) { return are_one_place(known.first, *place); });
+    if (auto point = curve.hopf_at(*place, near(*place), 0)) {
+      const bool is_known = std::any_of(found.begin(), found.end(), [&](const auto& known) {
+        return are_one_place(known.first, *place) &&
+               std::abs(known.second.period - point->period) <= same_place * point->period;
+      });
+      if (is_known) point = curve.hopf_at(*place, near(*place), static_cast<std::size_t>(taken));
+      if (point) found.emplace_back(*place, std::move(*point));
+    }
+  };
+  for (const Path& path : paths_between(from, to)) {
+    if (!path.crosses()) continue;
+    const auto near = [&](const VectorXd& at) {
+      const double share = chord.dot(at - a.x) / chord.squaredNorm();
+      const std::vector<Complex> here = oscillating(curve.eigenvalues(at));
+      const Complex expected = path.from + share * (path.to - path.from);
+      const std::size_t n = nearest_of(here, expected);
+      return n < here.size() ? here[n] : expected;
+    };
+    add(zero_between(curve, a, b, [&](const VectorXd& at) { return near(at).real(); }), near);
+  }
+  if (from.size() == to.size()) return found;
+  const auto product = [&](const VectorXd& at) { return curve.hopf_function(at); };
+  const auto on_axis = [&](const VectorXd& at) {
+    const std::vector<Complex> here = oscillating(curve.eigenvalues(at));
+    const auto least = std::min_element(here.begin(), here.end(), [](Complex x, Complex y) {
+      return std::abs(x.real()) < std::abs(y.real());
+    });
+    return least == here.end() ? Complex{} : *least;
+  };
+  if (found.size() % 2 == 0 && (product(a.x) >= 0.0) != (product(b.x) >= 0.0))
+    add(zero_between(curve, a, b, product), on_axis);
+  return found;
+}
+
+/// Along the step; those at one place by their periods, the longest first, where the first of them lies.
+std::vector<std::pair<VectorXd, HopfPoint>> in_order(std::vector<std::pair<VectorXd, HopfPoint>> found, const Node& a,
+                                                     const Node& b) {
+  const VectorXd chord = b.x - a.x;
+  std::sort(found.begin(), found.end(),
+            [&](const auto& x, const auto& y) { return chord.dot(x.first) < chord.dot(y.first); });
+  for (std::size_t n = 0; n < found.size();) {
+    std::size_t end = n + 1;
+    while (end < found.size() && are_one_place(found[end].first, found[n].first)) ++end;
+    for (std::size_t m = n + 1; m < end; ++m) found[m].first = found[n].first;
+    std::stable_sort(found.begin() + static_cast<std::ptrdiff_t>(n), found.begin() + static_cast<std::ptrdiff_t>(end),
+                     [](const auto& x, const auto& y) { return x.second.period > y.second.period; });
+    n = end;
+  }
+  return found;
 }
 
 }  // namespace
@@ -313,15 +434,11 @@ EquilibriumCurve follow_equilibrium(const systems::System& system, std::span<con
     if ((a.x(d) - started) * (b.x(d) - started) < 0.0)
       if (const auto again = zero_between(curve, a, b, [&](const VectorXd& at) { return at(d) - started; }))
         between.push_back({*again, EquilibriumKind::came_back});
-    const auto hopf = [&](const VectorXd& at) { return curve.hopf_function(at); };
-    if (hopf(a.x) * hopf(b.x) <= 0.0)
-      if (const auto place = zero_between(curve, a, b, hopf))
-        if (auto point = curve.hopf_at(*place)) {
-          point->distance =
-              n > begin ? length(begin, n - 1) + (*place - a.x).norm() : length(n, begin) + (b.x - *place).norm();
-          between.push_back({*place, EquilibriumKind::hopf, point->period});
-          out.hopf.push_back(std::move(*point));
-        }
+    for (auto& [place, point] : in_order(hopf_between(curve, a, b), a, b)) {
+      point.distance = n > begin ? length(begin, n - 1) + (place - a.x).norm() : length(n, begin) + (b.x - place).norm();
+      between.push_back({place, EquilibriumKind::hopf, point.period});
+      out.hopf.push_back(std::move(point));
+    }
     const VectorXd chord = b.x - a.x;
     std::stable_sort(between.begin(), between.end(),
                      [&](const Between& one, const Between& other) { return chord.dot(one.x) < chord.dot(other.x); });

@@ -1,11 +1,15 @@
 #include "orbweaver/starts/equilibrium_curve.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/systems/model/model_system.hpp"
 #include "support/lorenz_equations.hpp"
 #include "support/van_der_pol.hpp"
 
@@ -50,6 +54,66 @@ TEST(EquilibriumCurve, OfVanDerPolHasItsHopfPointAtZero) {
   ASSERT_EQ(curve.hopf.size(), 1U);
   EXPECT_NEAR(curve.hopf[0].at.parameter, 0.0, 1e-12);
   EXPECT_NEAR(curve.hopf[0].period, 2.0 * std::numbers::pi, 1e-12);
+}
+
+/// Two oscillators with eigenvalues m - m_n +- i w_n, the second of which pushes the first.
+class TwoOscillators {
+ public:
+  static constexpr int dimension = 4;
+  static constexpr int quantities = 0;
+  static systems::ModelInfo info() {
+    systems::ModelInfo info;
+    info.name = "two_oscillators";
+    info.title = "Two oscillators";
+    info.meaning = "two oscillators, the first pushed by the second";
+    info.state_names = {"x", "u", "y", "v"};
+    info.winding_names = {"", "", "", ""};
+    constexpr double any = std::numeric_limits<double>::infinity();
+    for (const char* name : {"m", "m1", "m2", "w1", "w2"})
+      info.parameters.push_back({name, 0.0, -any, any, false, "1", "coefficient"});
+    return info;
+  }
+  static systems::Structure structure(const systems::Bound&) {
+    systems::Structure structure;
+    structure.dimension = dimension;
+    structure.dissipative = true;
+    return structure;
+  }
+  template <class P>
+  class With {
+   public:
+    explicit With(const systems::BoundTo<P>& bound)
+        : _m(bound["m"]), _m1(bound["m1"]), _m2(bound["m2"]), _w1(bound["w1"]), _w2(bound["w2"]) {}
+    template <class S>
+    void field(const S* z, S* f) const {
+      f[0] = z[0] * (_m - _m1) - z[1] * _w1 + z[2] * z[2];
+      f[1] = z[0] * _w1 + z[1] * (_m - _m1) + z[2] * 0.1;
+      f[2] = z[2] * (_m - _m2) - z[3] * _w2;
+      f[3] = z[2] * _w2 + z[3] * (_m - _m2) - z[3] * z[3] * z[3];
+    }
+
+   private:
+    P _m, _m1, _m2, _w1, _w2;
+  };
+};
+
+// Both within one step of the curve, or at one place: two changes of the product of all sums of eigenvalues cancel.
+TEST(EquilibriumCurve, TwoHopfPointsWithinOneStepAreFound) {
+  for (const double start : {-0.37, -0.43, -0.5, -0.05})
+    for (const auto& [m1, m2] : {std::pair(3.5e-5, 0.04997), std::pair(0.0, 0.0), std::pair(0.01, 0.01 + 1e-7)}) {
+      SCOPED_TRACE(fmt::format("{} {}", start, m2));
+      systems::Bound bound = systems::bound_to(
+          TwoOscillators::info(), {{"m", start}, {"m1", m1}, {"m2", m2}, {"w1", 1.0}, {"w2", 1.7}}, {});
+      bound.scalars.free = {"m"};
+      const auto system = systems::Registered<TwoOscillators>::make(bound);
+      const EquilibriumCurve curve =
+          follow_equilibrium(*system, std::vector<double>(4, 0.0), {.parameter_from = -1.0, .parameter_to = 1.0});
+      ASSERT_EQ(curve.hopf.size(), 2U);
+      EXPECT_NEAR(curve.hopf[0].at.parameter, m1, 1e-12);
+      EXPECT_NEAR(curve.hopf[1].at.parameter, m2, 1e-12);
+      EXPECT_NEAR(curve.hopf[0].period, 2.0 * std::numbers::pi, 1e-11);
+      EXPECT_NEAR(curve.hopf[1].period, 2.0 * std::numbers::pi / 1.7, 1e-11);
+    }
 }
 
 TEST(EquilibriumCurve, NeedsAParameterThatMovesAndAnEquilibrium) {
