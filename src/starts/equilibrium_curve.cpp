@@ -41,6 +41,8 @@ constexpr double least_cosine = 0.9;
 constexpr double located_to = 1e-12;
 /// Hopf points nearer than this, relative, are at one place.
 constexpr double same_place = 1e-9;
+/// Of an eigenvalue: a real part of the curve's first or last equilibrium that may be rounding's.
+constexpr double at_end = 1e-12;
 /// A step over which eigenvalues become real, or real ones complex, is halved so often.
 constexpr int most_halvings = 6;
 /// Steps after which a curve may have come back.
@@ -370,6 +372,18 @@ std::vector<std::pair<VectorXd, HopfPoint>> hopf_between(const Curve& curve, con
   return found;
 }
 
+/// Hopf points at an end of the curve, where rounding has the eigenvalue on either side.
+void add_at_end(const Curve& curve, const VectorXd& end, std::vector<std::pair<VectorXd, HopfPoint>>& found) {
+  for (const Complex value : oscillating(curve.eigenvalues(end))) {
+    const bool is_known = std::any_of(found.begin(), found.end(), [&](const auto& known) {
+      return are_one_place(known.first, end) &&
+             std::abs(known.second.period - 2.0 * std::numbers::pi / value.imag()) <= same_place * known.second.period;
+    });
+    if (is_known || !(std::abs(value.real()) <= at_end * std::abs(value))) continue;
+    if (auto point = curve.hopf_at(end, value, 0)) found.emplace_back(end, std::move(*point));
+  }
+}
+
 /// Along the step; those at one place by their periods, the longest first, where the first of them lies.
 std::vector<std::pair<VectorXd, HopfPoint>> in_order(std::vector<std::pair<VectorXd, HopfPoint>> found, const Node& a,
                                                      const Node& b) {
@@ -434,8 +448,12 @@ EquilibriumCurve follow_equilibrium(const systems::System& system, std::span<con
     if ((a.x(d) - started) * (b.x(d) - started) < 0.0)
       if (const auto again = zero_between(curve, a, b, [&](const VectorXd& at) { return at(d) - started; }))
         between.push_back({*again, EquilibriumKind::came_back});
-    for (auto& [place, point] : in_order(hopf_between(curve, a, b), a, b)) {
-      point.distance = n > begin ? length(begin, n - 1) + (place - a.x).norm() : length(n, begin) + (b.x - place).norm();
+    auto hopf = hopf_between(curve, a, b);
+    if (n == 1) add_at_end(curve, a.x, hopf);
+    if (n + 1 == nodes.size()) add_at_end(curve, b.x, hopf);
+    for (auto& [place, point] : in_order(std::move(hopf), a, b)) {
+      const double within = n > begin ? (place - a.x).norm() : (b.x - place).norm();
+      point.distance = within + (n > begin ? length(begin, n - 1) : length(n, begin));
       between.push_back({place, EquilibriumKind::hopf, point.period});
       out.hopf.push_back(std::move(point));
     }
