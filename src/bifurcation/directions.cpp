@@ -54,6 +54,8 @@ constexpr double largest_amplitude = 0.3;
 /// About an equilibrium a search goes so many times further out than the amplitude at which families must be there: one
 /// that was born just below has left the family that it was born on.
 constexpr double beyond_births = 2.0;
+/// About an equilibrium, where orbits are found and some starts lead nowhere: amplitudes that are looked at besides.
+constexpr int most_further = 2;
 /// How far beside a direction its neighbours are sought: in a plane a tenth of the way to the next image (in parts of
 /// half that way), elsewhere so many radians. Not measured.
 constexpr double nudge_in_plane = 0.2;
@@ -345,6 +347,7 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   const double nudge = plane ? nudge_in_plane * std::numbers::pi / q : nudge_in_space;
   const int expected = plane && q > 2 ? (q % 2 == 0 ? 2 : 1) : 0;
   SearchResult best;
+  int further = 0;
   double amplitude = 0.0;
   const bool constant = group.constant();
   for (const double r : constant ? amplitudes_from(beyond_births * options.amplitude) : search_amplitudes(q, base)) {
@@ -352,13 +355,17 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
         search_directions(system, base, group, kept, start_directions(group.dimension(), q, options.seeds),
                           expected == 2 ? std::numbers::pi / q : 0.0, r, nudge, lines, options);
     const auto count = static_cast<int>(result.found.size());
+    const int lost = result.lost;
     const bool possible = expected == 0 || count <= expected;
     if (amplitude == 0.0 || (possible && result.found.size() > best.found.size()) ||
         (constant && result.found.size() == best.found.size() && result.not_isolated < best.not_isolated)) {
       best = possible ? std::move(result) : SearchResult{{}, result.not_isolated + count};
       amplitude = r;
     }
-    if (constant ? best.not_isolated == 0 : expected == 0 || static_cast<int>(best.found.size()) == expected) break;
+    // Where starts stall, what tells directions apart may be too weak there.
+    further = lost > 0 && !best.found.empty() ? further + 1 : 0;
+    const bool is_told = best.not_isolated == 0 && (lost == 0 || further > most_further);
+    if (constant ? is_told : expected == 0 || static_cast<int>(best.found.size()) == expected) break;
   }
   if (constant)
     std::erase_if(best.found, [&](const FoundOrbit& orbit) {

@@ -55,7 +55,8 @@ struct Search {
   // Newton's method turns away from the direction that it is pinned to, or stalls on the way: it is pinned again to the
   // one it came to, until that stays. Then the part in the kernel has the amplitude itself.
   template <class Unwanted>
-  [[nodiscard]] std::optional<FoundOrbit> settle(Eigen::VectorXd pinned, const Unwanted& unwanted) const {
+  [[nodiscard]] std::optional<FoundOrbit> settle(Eigen::VectorXd pinned, const Unwanted& unwanted,
+                                                 bool* is_unwanted = nullptr) const {
     for (int pins = 0; pins < most_pins; ++pins) {
       const corrector::Result result =
           born_orbit(system, base, group.vector_at(pinned), isotropy, amplitude, options.corrector);
@@ -64,7 +65,10 @@ struct Search {
       const double length = gap->inside.norm();
       const double tilt = (gap->inside / length - pinned).norm();
       pinned = gap->inside / length;
-      if (result.converged() && unwanted(pinned)) return std::nullopt;
+      if (result.converged() && unwanted(pinned)) {
+        if (is_unwanted != nullptr) *is_unwanted = true;
+        return std::nullopt;
+      }
       if (tilt > settled) continue;
       if (!result.converged()) return std::nullopt;
       return FoundOrbit{pinned, gap->along / length, result.loop};
@@ -124,7 +128,9 @@ SearchResult search_directions(const systems::System& system, const loop::Loop& 
                        [&](const Eigen::VectorXd& other) { return group.image(v, other, same_direction) != 0; });
   };
   for (std::size_t n = 0; n < starts.size(); ++n) {
-    auto orbit = search.settle(Eigen::VectorXd(starts[n]), is_taken);
+    bool is_known = false;
+    auto orbit = search.settle(Eigen::VectorXd(starts[n]), is_taken, &is_known);
+    if (!orbit && !is_known) ++out.lost;
     if (!orbit) continue;
     if (!search.is_isolated(orbit->coordinates, nudge, is_taken)) {
       ++out.not_isolated;

@@ -29,6 +29,7 @@ struct Gap {
 struct SearchResult {
   std::vector<FoundOrbit> found;
   int not_isolated = 0;  ///< orbits whose direction may be changed a little and then stays: not among `found`
+  int lost = 0;          ///< starts that led to none of these, nor to one known
 };
 
 /// Orbits near `base`, or near the family that it lies on, whose part in the kernel has the length `amplitude`, one for
