@@ -10,8 +10,9 @@
 
 namespace orbweaver::test {
 
-/// A charge in a well with the symmetry of a triangle, in a magnetic field B r^2 across the plane: r^2/2 + a k + b r^4/4
-/// + c k^2 with k = x^2 y - y^3/3. Both small oscillations have the period 2 pi. All its symmetries are declared.
+/// A charge in a well with the symmetry of a triangle, in a magnetic field B r^2 across the plane: r^2/2 + a k
+/// + b r^4/4 + c k^2 with k = x^2 y - y^3/3. Both small oscillations have the period 2 pi. All its symmetries are
+/// declared.
 class TrefoilWell {
  public:
   static constexpr int dimension = 4;
