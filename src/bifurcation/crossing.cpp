@@ -97,7 +97,8 @@ class EventFunction {
       _nearest_position = position;
       _nearest_stability = there ? std::optional(there->stability) : std::nullopt;
     }
-    return _values[position] = value;
+    if (!std::isnan(value)) _values[position] = value;  // without one it says why each time that it is asked
+    return value;
   }
 
   double twist_at(double position) {
@@ -324,7 +325,8 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
     const auto size = [&](double position) { return std::abs(function(position)); };
     located = numerics::locate_minimum(size, from, to, absolute);
   } else {
-    const double no_more = negligible * absolute * std::abs(function(to) - function(from)) / (to - from);
+    const double at_from = function(from);
+    const double no_more = negligible * absolute * std::abs(function(to) - at_from) / (to - from);
     const auto along = [&](double position) {
       const double value = function(position);
       return std::abs(value) <= no_more ? 0.0 : value;
