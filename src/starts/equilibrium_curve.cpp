@@ -325,15 +325,19 @@ std::vector<std::pair<VectorXd, HopfPoint>> hopf_between(const Curve& curve, con
   const std::vector<Complex> to = oscillating(at_b);
   std::vector<std::pair<VectorXd, HopfPoint>> found;
   const VectorXd chord = b.x - a.x;
-  if (from.size() != to.size() && halvings < most_halvings) {
+  const auto in_halves = [&]() -> std::optional<std::vector<std::pair<VectorXd, HopfPoint>>> {
     int steps = 0;
-    if (const auto middle = curve.corrected(a.x + 0.5 * chord, chord.normalized(), steps)) {
-      const Node between{*middle, curve.direction(*middle, a.direction)};
-      found = hopf_between(curve, a, between, halvings + 1);
-      for (auto& other : hopf_between(curve, between, b, halvings + 1)) found.push_back(std::move(other));
-      return found;
-    }
-  }
+    const auto middle = halvings < most_halvings
+                            ? curve.corrected(a.x + 0.5 * chord, chord.normalized(), steps)
+                            : std::nullopt;
+    if (!middle) return std::nullopt;
+    const Node between{*middle, curve.direction(*middle, a.direction)};
+    std::vector<std::pair<VectorXd, HopfPoint>> all = hopf_between(curve, a, between, halvings + 1);
+    for (auto& other : hopf_between(curve, between, b, halvings + 1)) all.push_back(std::move(other));
+    return all;
+  };
+  if (from.size() != to.size())
+    if (auto all = in_halves()) return *std::move(all);
   const auto add = [&](const std::optional<VectorXd>& place, const auto& near) {
     if (!place) return;
     const auto taken = std::count_if(found.begin(), found.end(),
@@ -347,8 +351,10 @@ std::vector<std::pair<VectorXd, HopfPoint>> hopf_between(const Curve& curve, con
       if (point) found.emplace_back(*place, std::move(*point));
     }
   };
+  std::size_t crossings = 0;
   for (const Path& path : paths_between(from, to)) {
     if (!path.crosses()) continue;
+    ++crossings;
     const auto near = [&](const VectorXd& at) {
       const double share = chord.dot(at - a.x) / chord.squaredNorm();
       const std::vector<Complex> here = oscillating(curve.eigenvalues(at));
@@ -358,7 +364,11 @@ std::vector<std::pair<VectorXd, HopfPoint>> hopf_between(const Curve& curve, con
     };
     add(zero_between(curve, a, b, [&](const VectorXd& at) { return near(at).real(); }), near);
   }
-  if (from.size() == to.size()) return found;
+  if (from.size() == to.size()) {  // where eigenvalues come near one another they may be taken for one another
+    std::optional<std::vector<std::pair<VectorXd, HopfPoint>>> all;
+    if (found.size() < crossings) all = in_halves();
+    return all ? *std::move(all) : found;
+  }
   const auto product = [&](const VectorXd& at) { return curve.hopf_function(at); };
   const auto on_axis = [&](const VectorXd& at) {
     const std::vector<Complex> here = oscillating(curve.eigenvalues(at));
