@@ -19,6 +19,7 @@
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loss/unknowns.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
+#include "reduced_field.hpp"
 #include "search.hpp"
 #include "standard_image.hpp"
 #include "twin_order.hpp"
@@ -56,6 +57,8 @@ constexpr double largest_amplitude = 0.3;
 constexpr double beyond_births = 2.0;
 /// About an equilibrium, where orbits are found and some starts lead nowhere: amplitudes that are looked at besides.
 constexpr int most_further = 2;
+/// About an equilibrium, radians between a direction that the reduced field predicts and the orbit found from it.
+constexpr double near_predicted = 0.05;
 /// How far beside a direction its neighbours are sought: in a plane a tenth of the way to the next image (in parts of
 /// half that way), elsewhere so many radians. Not measured.
 constexpr double nudge_in_plane = 0.2;
@@ -332,6 +335,17 @@ bool leads_to_second(const systems::System& system, const KernelActions& group, 
   return sides.front().coordinates == opposite;
 }
 
+/// Whether orbits were found near all these, or lines of symmetry lie there.
+bool all_are_found(const KernelActions& group, const std::vector<Eigen::VectorXd>& vectors, const SearchResult& result,
+                   const std::vector<Eigen::VectorXd>& lines) {
+  return std::all_of(vectors.begin(), vectors.end(), [&](const Eigen::VectorXd& v) {
+    const auto is_near = [&](const Eigen::VectorXd& other) { return group.image(v, other, near_predicted) != 0; };
+    return std::any_of(lines.begin(), lines.end(), is_near) ||
+           std::any_of(result.found.begin(), result.found.end(),
+                       [&](const FoundOrbit& orbit) { return is_near(orbit.coordinates); });
+  });
+}
+
 // `not_isolated`, if given, takes how many of the search's orbits are not.
 std::vector<Direction> searched(const systems::System& system, const KernelActions& group, const loop::Loop& base,
                                 const std::vector<Eigen::VectorXd>& lines, const DirectionOptions& options,
@@ -351,20 +365,32 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   double amplitude = 0.0;
   const bool constant = group.constant();
   for (const double r : constant ? amplitudes_from(beyond_births * options.amplitude) : search_amplitudes(q, base)) {
-    SearchResult result =
-        search_directions(system, base, group, kept, start_directions(group.dimension(), q, options.seeds),
-                          expected == 2 ? std::numbers::pi / q : 0.0, r, nudge, lines, options);
+    const auto search = [&](std::vector<Eigen::VectorXd> starts) {
+      return search_directions(system, base, group, kept, std::move(starts), expected == 2 ? std::numbers::pi / q : 0.0,
+                               r, nudge, lines, options);
+    };
+    std::vector<Eigen::VectorXd> starts = start_directions(group.dimension(), q, options.seeds);
+    SearchResult result;
+    bool is_complete = false;
+    if (constant) {
+      const ReducedZeros likely = reduced_zeros(system, base, group, r);
+      result = search(likely.vectors);
+      is_complete =
+          likely.is_complete && result.not_isolated == 0 && all_are_found(group, likely.vectors, result, lines);
+      starts.insert(starts.begin(), likely.vectors.begin(), likely.vectors.end());
+    }
+    if (!is_complete) result = search(std::move(starts));
     const auto count = static_cast<int>(result.found.size());
     const int lost = result.lost;
     const bool possible = expected == 0 || count <= expected;
-    if (amplitude == 0.0 || (possible && result.found.size() > best.found.size()) ||
+    if (amplitude == 0.0 || is_complete || (possible && result.found.size() > best.found.size()) ||
         (constant && result.found.size() == best.found.size() && result.not_isolated < best.not_isolated)) {
       best = possible ? std::move(result) : SearchResult{{}, result.not_isolated + count};
       amplitude = r;
     }
     // Where starts stall, what tells directions apart may be too weak there.
     further = lost > 0 && !best.found.empty() ? further + 1 : 0;
-    const bool is_told = best.not_isolated == 0 && (lost == 0 || further > most_further);
+    const bool is_told = is_complete || (best.not_isolated == 0 && (lost == 0 || further > most_further));
     if (constant ? is_told : expected == 0 || static_cast<int>(best.found.size()) == expected) break;
   }
   if (constant)

@@ -1,5 +1,10 @@
 // Directions at equilibria where several oscillations share a period.
+#include <cmath>
+#include <complex>
+#include <map>
 #include <numbers>
+#include <random>
+#include <string>
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <boost/math/tools/roots.hpp>
@@ -9,6 +14,7 @@
 #include "orbweaver/certificate/certificate.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "spectrum/point_systems.hpp"
+#include "support/even_well.hpp"
 
 namespace orbweaver::bifurcation::equilibrium_test {
 namespace {
@@ -44,6 +50,51 @@ double straight_line_period(double energy) {
     return 2.0 / std::sqrt(2.0 / 3.0 * (third - y));
   };
   return boost::math::quadrature::gauss_kronrod<double, 31>::integrate(density, -two_pi / 4, two_pi / 4, 8, 1e-14);
+}
+
+/// The energy of even_well averaged over the oscillation Re(A e^{it}), Re(B e^{it}), to fourth order: of the quartic
+/// terms, and of how the cubic ones displace it, by a mean force and one of twice the frequency.
+double averaged_energy(std::map<std::string, double>& well, std::complex<double> A, std::complex<double> B) {
+  const double a = well["a"], b = well["b"];
+  const double mean_x = a * (A * std::conj(B)).real();
+  const double mean_y = (a * std::norm(A) + 3.0 * b * std::norm(B)) / 2.0;
+  const double twice = std::norm(a * A * B) + std::norm((a * A * A + 3.0 * b * B * B) / 2.0);
+  const double quartic = 0.375 * (well["c"] * std::norm(A * A) + well["e"] * std::norm(B * B)) +
+                         well["d"] * (std::norm(A * B) / 4.0 + (A * A * std::conj(B * B)).real() / 8.0);
+  return quartic - (mean_x * mean_x + mean_y * mean_y - twice / 6.0) / 2.0;
+}
+
+/// Where on the circle from A = 1 to B = 1 the averaged energy has an extremum, in |A|^2 - |B|^2, `between` being its
+/// value half way: one is there if that is in (-1, 1).
+double extremum_between(double at_x, double at_y, double between) {
+  return (at_x - at_y) / 4.0 / (between - (at_x + at_y) / 2.0);
+}
+
+TEST(Equilibrium, AsManyFamiliesLeaveAnEvenWellAsItsAveragedEnergyHasExtrema) {
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> coefficient(-0.4, 0.4);
+  const double half = std::sqrt(0.5);
+  std::map<int, int> wells;
+  for (int n = 0; n < 80; ++n) {
+    std::map<std::string, double> well{{"k1", 1.0}, {"k2", 1.0}};
+    for (const char* name : {"a", "b", "c", "d", "e"}) well[name] = coefficient(random);
+    const double at_x = averaged_energy(well, 1.0, 0.0);
+    const double at_y = averaged_energy(well, 0.0, 1.0);
+    int expected = 2;  // along x, nearly, and along y
+    bool is_clear = true;
+    for (const std::complex<double> phase : {std::complex<double>(1.0, 0.0), std::complex<double>(0.0, 1.0)}) {
+      const double place = std::abs(extremum_between(at_x, at_y, averaged_energy(well, half, half * phase)));
+      if (place < 1.0) ++expected;
+      is_clear = is_clear && (place < 0.98 || place > 1.02);
+    }
+    if (!is_clear) continue;
+    SCOPED_TRACE(testing::PrintToString(well));
+    EXPECT_EQ(directions_at_origin(*test::even_well(well)).size(), static_cast<std::size_t>(expected));
+    ++wells[expected];
+  }
+  EXPECT_GT(wells[2], 0);
+  EXPECT_GT(wells[3], 0);
+  EXPECT_GT(wells[4], 0);
 }
 
 TEST(Equilibrium, ThreeFamiliesUpToSymmetryLeaveHenonHeiles) {
