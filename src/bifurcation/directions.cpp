@@ -63,8 +63,6 @@ constexpr double near_predicted = 0.05;
 /// half that way), elsewhere so many radians. Not measured.
 constexpr double nudge_in_plane = 0.2;
 constexpr double nudge_in_space = 0.03;
-/// What a symmetry of an orbit found may be off, in parts of its amplitude: a broken one is off by all of it.
-constexpr double found_tolerance = 1e-2;
 /// Relative to the equilibrium's: periods of orbits of amplitude 0.01 differ by that or its square, or not at all.
 constexpr double same_period = 1e-7;
 
@@ -365,16 +363,16 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   double amplitude = 0.0;
   const bool constant = group.constant();
   for (const double r : constant ? amplitudes_from(beyond_births * options.amplitude) : search_amplitudes(q, base)) {
-    const auto search = [&](std::vector<Eigen::VectorXd> starts) {
+    const auto search = [&](std::vector<Eigen::VectorXd> starts, bool are_isolated = false) {
       return search_directions(system, base, group, kept, std::move(starts), expected == 2 ? std::numbers::pi / q : 0.0,
-                               r, nudge, lines, options);
+                               r, nudge, lines, options, are_isolated);
     };
     std::vector<Eigen::VectorXd> starts = start_directions(group.dimension(), q, options.seeds);
     SearchResult result;
     bool is_complete = false;
     if (constant) {
       const ReducedZeros likely = reduced_zeros(system, base, group, r);
-      result = search(likely.vectors);
+      result = search(likely.vectors, likely.is_complete);
       is_complete =
           likely.is_complete && result.not_isolated == 0 && all_are_found(group, likely.vectors, result, lines);
       starts.insert(starts.begin(), likely.vectors.begin(), likely.vectors.end());

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -42,9 +43,9 @@ LyapunovSchmidt::LyapunovSchmidt(const systems::System& system, const loop::Loop
   _basis.resize(_d, 0);
   for (const auto& [k, columns] : of_harmonic) {
     const auto count = static_cast<Eigen::Index>(columns.size()) / 2;
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXcd> factor(Eigen::MatrixXcd(_vectors(Eigen::all, columns)));
+    const Eigen::JacobiSVD<Eigen::MatrixXcd> factor(_vectors(Eigen::all, columns), Eigen::ComputeThinU);
     _basis.conservativeResize(Eigen::NoChange, _basis.cols() + count);
-    _basis.rightCols(count) = Eigen::MatrixXcd(factor.householderQ()).leftCols(count);
+    _basis.rightCols(count) = factor.matrixU().leftCols(count);
     _around.conservativeResize(_basis.cols());
     _around.tail(count).setConstant(k);
   }
@@ -116,7 +117,7 @@ void LyapunovSchmidt::linearize(int order) {
     bordered.topRightCorner(_d, borders) = _basis(Eigen::all, solver.members);
     bordered.bottomLeftCorner(borders, _d) = bordered.topRightCorner(_d, borders).adjoint();
     solver.factor.setThreshold(singular);
-    solver.factor.compute(bordered);
+    solver.factor.compute(bordered, Eigen::ComputeThinU | Eigen::ComputeThinV);
   }
   const int nodes = nodes_a_harmonic * highest;
   _waves.resize(nodes, highest + 1);

@@ -35,7 +35,7 @@ class LyapunovSchmidt {
   struct Solver {
     Eigen::MatrixXcd matrix;
     std::vector<Eigen::Index> members;
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXcd> factor{};
+    Eigen::JacobiSVD<Eigen::MatrixXcd> factor{};
   };
 
   void linearize(int order);

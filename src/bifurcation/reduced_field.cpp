@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lyapunov_schmidt.hpp"
+#include "orbweaver/numerics/decompositions.hpp"
 #include "search.hpp"
 
 namespace orbweaver::bifurcation {
@@ -30,6 +31,8 @@ constexpr double left_over = 1e-2;
 constexpr double same_zero = 0.02;
 /// Of a unit vector: a harmonic that is smaller does not count when its period is asked for.
 constexpr double seen_harmonic = 1e-3;
+/// At each zero the force must change by so many times what the fit leaves, per radian. Not measured.
+constexpr double well_known = 100.0;
 constexpr double of_sum = 1e-6;
 
 constexpr Complex imaginary{0.0, 1.0};
@@ -79,7 +82,8 @@ class Polynomial {
     for (Eigen::Index m = 0; m < _around.size(); ++m) {
       const std::vector<Eigen::Index> terms = terms_of(m);
       const Eigen::VectorXcd fitted =
-          Eigen::MatrixXcd(rows(Eigen::all, terms)).completeOrthogonalDecomposition().solve(right.col(m));
+          Eigen::JacobiSVD<Eigen::MatrixXcd>(rows(Eigen::all, terms), Eigen::ComputeThinU | Eigen::ComputeThinV)
+              .solve(right.col(m));
       _coefficients(m, terms) = fitted.transpose();
     }
   }
@@ -174,14 +178,17 @@ Eigen::MatrixXd derivative_at(const Polynomial& force, const Eigen::VectorXcd& a
 
 struct Zero {
   Eigen::VectorXcd a;
-  int index = 0;  ///< of the field on the space of unit vectors, time shifts aside
+  int index = 0;         ///< of the field on the space of unit vectors, time shifts aside
+  double weakest = 0.0;  ///< the least that it changes by there, per radian
 };
 
-int index_at(const Polynomial& force, const Eigen::VectorXcd& a, double nu) {
+Zero zero_at(const Polynomial& force, const Eigen::VectorXcd& a, double nu) {
   Eigen::MatrixXd taken(2 * a.size(), 2);
   taken << parts(a), parts(force.turn(a));
   const Eigen::MatrixXd axes = Eigen::MatrixXd(taken.householderQr().householderQ()).rightCols(2 * a.size() - 2);
-  return (axes.transpose() * derivative_at(force, a, nu) * axes).determinant() > 0.0 ? 1 : -1;
+  const Eigen::MatrixXd across = axes.transpose() * derivative_at(force, a, nu) * axes;
+  return {a, across.determinant() > 0.0 ? 1 : -1,
+          Eigen::JacobiSVD<Eigen::MatrixXd>(across).singularValues().minCoeff()};
 }
 
 /// What of a force does not only turn a unit vector, and the rate at which the rest does.
@@ -207,7 +214,7 @@ std::optional<Zero> zero_from(const Polynomial& force, Eigen::VectorXcd a, doubl
     a = (a + from_parts(change)).normalized();
     if (!a.allFinite()) return std::nullopt;
     if (change.norm() < settled_step)
-      return gap.norm() < left_over * scale ? std::optional(Zero{a, index_at(force, a, nu)}) : std::nullopt;
+      return gap.norm() < left_over * scale ? std::optional(zero_at(force, a, nu)) : std::nullopt;
   }
   return std::nullopt;
 }
@@ -236,15 +243,15 @@ ReducedZeros reduced_zeros(const systems::System& system, const loop::Loop& base
   }
   if (at.size() < wanted) return {};
   field.fit(at, forces);
+  double misfit = 0.0;
+  for (std::size_t s = 0; s < at.size(); ++s) misfit = std::max(misfit, (field(at[s]) - forces[s]).norm());
   ReducedZeros out;
   double indices = 0.0;
-  int stalled = 0;
+  bool is_clear = true;
   for (const Eigen::VectorXd& direction : starts) {
     const std::optional<Zero> zero = zero_from(field, reduction.amplitudes(direction), scale);
-    if (!zero) {
-      ++stalled;
-      continue;
-    }
+    is_clear = is_clear && zero && zero->weakest > well_known * misfit;
+    if (!zero) continue;
     const Eigen::VectorXd v = reduction.coordinates(zero->a).normalized();
     if (std::any_of(out.vectors.begin(), out.vectors.end(),
                     [&](const Eigen::VectorXd& other) { return group.image(v, other, same_zero) != 0; }))
@@ -252,7 +259,7 @@ ReducedZeros reduced_zeros(const systems::System& system, const loop::Loop& base
     out.vectors.push_back(v);
     indices += static_cast<double>(zero->index) * group.images(v, same_zero) / group.times_around(v, seen_harmonic);
   }
-  out.is_complete = stalled == 0 && std::abs(indices - around.cwiseInverse().sum()) < of_sum;
+  out.is_complete = is_clear && std::abs(indices - around.cwiseInverse().sum()) < of_sum;
   return out;
 }
 

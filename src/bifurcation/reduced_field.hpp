@@ -10,9 +10,10 @@ namespace orbweaver::bifurcation {
 
 struct ReducedZeros {
   std::vector<Eigen::VectorXd> vectors;  ///< of unit length, one for each that no symmetry maps to another
-  /// Every start leads to one of them, and their indices, those of images counted and each divided by the times that it goes around its own period, add up to
-  /// the sum of 1/k over the oscillations: the Euler characteristic of the space of unit vectors, time shifts aside (an
-  /// orbifold). None is missing, then. Where the force hardly depends on a phase, starts stall.
+  /// None is missing, and each is isolated: every start leads to one of them, the force changes beside each by more
+  /// than the fit leaves, and their indices, those of images counted and each divided by the times that it goes around
+  /// its own period, add up to the sum of 1/k over the oscillations, the Euler characteristic of the space of unit
+  /// vectors, time shifts aside (an orbifold).
   bool is_complete = false;
 };
 

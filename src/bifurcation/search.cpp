@@ -9,7 +9,9 @@
 #include <boost/math/distributions/normal.hpp>
 
 #include "born_orbit.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
+#include "standard_image.hpp"
 
 namespace orbweaver::bifurcation {
 
@@ -94,6 +96,21 @@ struct Search {
     }
     return true;
   }
+
+  // Among the orbits with its symmetries: the loss may hardly see the phase that these fix.
+  template <class Taken>
+  [[nodiscard]] std::optional<FoundOrbit> isolated_by_symmetry(const FoundOrbit& orbit, double nudge,
+                                                               const Taken& taken) const {
+    const double tolerance = found_tolerance * amplitude;
+    const loop::Loop standard = standard_image(system.structure(), group, orbit.loop, tolerance);
+    const loop::Isotropy own = loop::find_isotropy(system.structure(), standard, tolerance, group.denominator());
+    if (own.size() <= isotropy.size()) return std::nullopt;
+    const Search among{system, base, group, own, amplitude, options};
+    const auto none = [](const Eigen::VectorXd&) { return false; };
+    std::optional<FoundOrbit> found = among.settle(gap_between(base, standard, group, {}).inside.normalized(), none);
+    if (!found || !among.is_isolated(found->coordinates, nudge, taken)) return std::nullopt;
+    return found;
+  }
 };
 
 }  // namespace
@@ -119,7 +136,7 @@ Gap gap_between(const loop::Loop& base, const loop::Loop& orbit, const KernelAct
 SearchResult search_directions(const systems::System& system, const loop::Loop& base, const KernelActions& group,
                                const loop::Isotropy& isotropy, std::vector<Eigen::VectorXd> starts, double partner,
                                double amplitude, double nudge, const std::vector<Eigen::VectorXd>& known,
-                               const DirectionOptions& options) {
+                               const DirectionOptions& options, bool are_isolated) {
   const Search search{system, base, group, isotropy, amplitude, options};
   SearchResult out;
   std::vector<Eigen::VectorXd> taken = known;
@@ -133,8 +150,9 @@ SearchResult search_directions(const systems::System& system, const loop::Loop& 
     if (!orbit && !is_known) ++out.lost;
     if (!orbit) continue;
     if (!search.is_isolated(orbit->coordinates, nudge, is_taken)) {
-      ++out.not_isolated;
-      continue;
+      orbit = are_isolated ? search.isolated_by_symmetry(*orbit, nudge, is_taken) : std::nullopt;
+      if (!orbit) ++out.not_isolated;
+      if (!orbit) continue;
     }
     taken.push_back(orbit->coordinates);
     // Where terms of third order decide they change their sign with it: the opposite direction is one too, along which

@@ -9,6 +9,9 @@
 
 namespace orbweaver::bifurcation {
 
+/// What a symmetry of an orbit found may be off, in parts of its amplitude: a broken one is off by all of it.
+inline constexpr double found_tolerance = 1e-2;
+
 /// An orbit off the base loop and the unit kernel coordinates in which it leaves.
 struct FoundOrbit {
   Eigen::VectorXd coordinates;
@@ -36,12 +39,13 @@ struct SearchResult {
 /// each that no symmetry of `group` maps to another or to one of `known` (to its negative neither): Newton's method
 /// from the kernel directions `starts` and, in a plane and if `partner` is not 0, from that angle beside each one
 /// found: extrema of the reduced action alternate, and one kind of them may be reached from very near only. Each is
-/// sought once more from `nudge` radians beside it.
+/// sought once more from `nudge` radians beside it, and, if `are_isolated` says that they are, where that leads away,
+/// among those with its symmetries.
 [[nodiscard]] SearchResult search_directions(const systems::System& system, const loop::Loop& base,
                                              const KernelActions& group, const loop::Isotropy& isotropy,
                                              std::vector<Eigen::VectorXd> starts, double partner, double amplitude,
                                              double nudge, const std::vector<Eigen::VectorXd>& known,
-                                             const DirectionOptions& options);
+                                             const DirectionOptions& options, bool are_isolated = false);
 
 /// Whether an orbit found about an equilibrium is of a family that is born on one of the directions `known` further out
 /// than the given amplitude: followed towards them, its part in the kernel keeps a greater length. Also false where it
