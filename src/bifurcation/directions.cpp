@@ -35,6 +35,10 @@ constexpr double same_line = 3e-3;  // radians; distinct lines of a finite group
 constexpr double same_image = 0.02;
 constexpr double visible_harmonic = 1e-3;
 constexpr int largest_kernel = 8;
+/// How far from a crossing, in parts of the orbit where that is below 1, it is asked how families go through it, and how
+/// far these may lie along the base's own family, in parts of their way in the kernel. Not measured.
+constexpr double tilt_amplitude = 3e-3;
+constexpr double steepest = 10.0;
 /// Entries of unit directions and coordinates of orbits that are less apart do not decide signs and phases: kernel
 /// vectors are good to that. Either choice starts the same family.
 constexpr double visible = 1e-6;
@@ -123,6 +127,46 @@ Direction counted(const KernelActions& group, const Eigen::VectorXd& v, Directio
   return direction;
 }
 
+// A unit vector of the kernel, and `along` times as far along the base's own family; of length 1.
+loop::Tangent leaving_along(loop::Tangent in_kernel, double along, const loop::Tangent& family) {
+  if (family.modes.empty() || along == 0.0) return in_kernel;
+  double square = 0.0;
+  for (const double v : family.modes) square += v * v;
+  const double share = along / std::sqrt(square);
+  for (std::size_t n = 0; n < in_kernel.modes.size(); ++n) in_kernel.modes[n] += share * family.modes[n];
+  in_kernel.normalize();
+  return in_kernel;
+}
+
+/// The way in which a family goes through a crossing, both its sides being other orbits: it leaves along the base's own
+/// family too, by so much as orbits to both sides say. The direction alone where they are not found.
+loop::Tangent tilted(const systems::System& system, const Direction& direction, const std::vector<double>& family,
+                     const DirectionOptions& options) {
+  const Eigen::Map<const Eigen::VectorXd> inside(direction.tangent.modes.data(),
+                                                 static_cast<Eigen::Index>(direction.tangent.modes.size()));
+  Eigen::VectorXd aside = Eigen::Map<const Eigen::VectorXd>(family.data(), static_cast<Eigen::Index>(family.size()));
+  aside -= inside.dot(aside) * inside;
+  if (!(aside.norm() > outside)) return direction.tangent;
+  aside.normalize();
+  const double amplitude = tilt_amplitude * std::min(1.0, loop::rms_amplitude(direction.base));
+  double along = 0.0;
+  for (const double side : {1.0, -1.0}) {
+    loop::Tangent way = direction.tangent;
+    way *= side;
+    const corrector::Result result =
+        born_orbit(system, direction.base, way, direction.isotropy, amplitude, options.corrector);
+    if (!result.converged()) return direction.tangent;
+    const std::vector<double> there = loop::with_cutoff(result.loop, direction.base.cutoff).modes;
+    const Eigen::VectorXd gap = Eigen::Map<const Eigen::VectorXd>(there.data(), aside.size()) -
+                                Eigen::Map<const Eigen::VectorXd>(direction.base.modes.data(), aside.size());
+    along += side * aside.dot(gap) / (2.0 * amplitude);
+  }
+  if (!(std::abs(along) < steepest)) return direction.tangent;
+  loop::Tangent family_way;
+  family_way.modes.assign(aside.data(), aside.data() + aside.size());
+  return leaving_along(direction.tangent, along, family_way);
+}
+
 // The direction of a fixed line: made exactly symmetric, started where the reversor has phase 0.
 Direction direction_along(const systems::System& of, const KernelActions& group, const loop::Loop& base,
                           const Eigen::VectorXd& v, const DirectionOptions& options) {
@@ -153,6 +197,9 @@ Direction direction_along(const systems::System& of, const KernelActions& group,
   const int rising = out.both_sides ? rising_side(of, out.base, out.tangent, is_reversible) : 0;
   out.tangent *= rising != 0 ? rising : upward(mean);
   out.isotropy = isotropy_along(system, group, out.base, out.tangent, options);
+  // At a crossing of the third order families may leave along the base itself.
+  if (out.both_sides && !group.constant() && !options.family.empty() && group.times() != 3)
+    out.tangent = tilted(of, out, loop::time_shifted(loop::perturbation(base, options.family), start).modes, options);
   return counted(group, v, std::move(out));
 }
 
@@ -171,17 +218,6 @@ loop::Tangent across_time(const loop::Loop& base, loop::Tangent direction) {
   if (square == 0.0) return direction;
   for (std::size_t n = 0; n < shift.size(); ++n) direction.modes[n] -= along / square * shift[n];
   return direction;
-}
-
-// A unit vector of the kernel, and `along` times as far along the base's own family; of length 1.
-loop::Tangent leaving_along(loop::Tangent in_kernel, double along, const loop::Tangent& family) {
-  if (family.modes.empty() || along == 0.0) return in_kernel;
-  double square = 0.0;
-  for (const double v : family.modes) square += v * v;
-  const double share = along / std::sqrt(square);
-  for (std::size_t n = 0; n < in_kernel.modes.size(); ++n) in_kernel.modes[n] += share * family.modes[n];
-  in_kernel.normalize();
-  return in_kernel;
 }
 
 // The lines that a symmetry group fixes; about an equilibrium also the oscillations (planes that time shifts turn) that

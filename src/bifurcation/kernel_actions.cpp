@@ -119,10 +119,10 @@ KernelActions::KernelActions(const systems::Structure& system, const loop::Loop&
   }
   core::require((_kernel.transpose() * _kernel - Eigen::MatrixXd::Identity(n, n)).norm() < orthonormal,
                 "kernel vectors must be orthonormal");
-  const int times = divisor_of_harmonics(base, options.symmetry_tolerance);
-  _constant = times == 0;
+  _times = divisor_of_harmonics(base, options.symmetry_tolerance);
+  _constant = _times == 0;
   const loop::Isotropy spatial = loop::SymmetryGroup::of_space(system).elements();
-  _denominator = shared_order(spatial, system.angles) * std::max(times, 1);
+  _denominator = shared_order(spatial, system.angles) * std::max(_times, 1);
   if (_constant) {
     Eigen::MatrixXd turned(_kernel.rows(), n);
     int shared_harmonics = 1;

@@ -28,6 +28,8 @@ class KernelActions {
   [[nodiscard]] const std::vector<Action>& actions() const { return _actions; }
   [[nodiscard]] bool constant() const { return _constant; }
   [[nodiscard]] int dimension() const { return static_cast<int>(_kernel.cols()); }
+  /// How many times the loop goes around its orbit.
+  [[nodiscard]] int times() const { return _times; }
   /// The denominator that all shifts share.
   [[nodiscard]] int denominator() const { return _denominator; }
   /// How the coordinates change with a time shift, per radian of s, for constant loops: skew.
@@ -51,6 +53,7 @@ class KernelActions {
   std::vector<int> _harmonics;  // of the kernel's vectors, for constant loops
   Eigen::MatrixXd _turn;
   bool _constant = false;
+  int _times = 1;
   int _denominator = 1;
 };
 
