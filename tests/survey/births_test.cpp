@@ -57,6 +57,24 @@ TEST(Births, FoldsBesideABirthAreFoundWhereverTheFirstOrbitLies) {
   }
 }
 
+// x = 0 is invariant, but no symmetry keeps it so: at the branch point of its family another goes through, three times
+// as far along that as aside. First orbits along the kernel were drawn into the crossing, and taken for the base's own.
+TEST(Births, AFamilyThatGoesThroughABranchPointStartsAlongItsSlope) {
+  const auto from = [](const std::string& start) {
+    return survey_of(
+        {{"w1", 1.1}, {"w2", 1.0}, {"a", 0.3}, {"b", 0.6}, {"c", 0.0}, {"d", 0.0}, {"e", 0.0}, {"f", 0.3}, {"g", 0.2}},
+        {"limits.energy=[-.inf, 0.4]", "limits.period=15", "survey.subharmonics=2", "survey.depth=1",
+         "continuation.start=" + start});
+  };
+  const test::Atlas usual = from("0.0087");
+  EXPECT_TRUE(usual.crossing("Equilibrium 1, mode 1", "branch-point", 6.03415141).has_value());
+  EXPECT_EQ(usual.families().texts("name").size(), 4U);
+  for (const std::string start : {"0.0017", "0.0436"}) {
+    SCOPED_TRACE(start);
+    test::expect_same_tree(usual, from(start));
+  }
+}
+
 // With steps of 0.25 the second orbit of T3D lies beyond two branch points, between which its index rises to 50.
 TEST(Births, PairsWithinALongStepAreFound) {
   const auto with = [](const std::string& key) {
