@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
 #include "step_control.hpp"
+#include "turning.hpp"
 #include "under_map.hpp"
 
 namespace orbweaver::continuation {
@@ -353,6 +355,45 @@ std::optional<Trial> Tracer::closing_orbit(const Trial& trial, double length) {
       .trial;
 }
 
+bool Tracer::is_beyond_limits(const Trial& trial) {
+  return scalar(trial, 0) > _options.period_limit || is_beyond_energies(energy_of(*_system, trial.loop)) ||
+         is_beyond_parameters(trial);
+}
+
+/// Where a step whose ends lie within the scene's limits, in parts of it, has turned back beyond one.
+std::optional<double> Tracer::turning_beyond_limit(const Trial& trial) {
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  std::vector<TracePoint> points = _frontier.points;
+  const double last = points.back().parameter;
+  const double step =
+      std::sqrt(_problem->product(trial.values, points.back().values, trial.values, points.back().values));
+  points.push_back({trial.values, last + step});
+  const std::vector<double> leaving = extrapolate(points, _options.predictor_order, last).tangent;
+  const std::vector<double> arriving = extrapolate(points, _options.predictor_order, last + step).tangent;
+  const auto of_scalar = [&](std::size_t number) {
+    const std::size_t at = _problem->scalars_at() + number;
+    return CourseOverStep{_frontier.points.back().values[at], trial.values[at], step * leaving[at],
+                          step * arriving[at]};
+  };
+  if (const auto turning = turning_outside(of_scalar(0), -unlimited, _options.period_limit)) return turning;
+  if (!_system->family_scalars().free.empty())
+    if (const auto turning = turning_outside(of_scalar(1), _options.parameter_from, _options.parameter_to))
+      return turning;
+  if (!_system->structure().conservative() ||
+      !(std::isfinite(_options.energy_from) || std::isfinite(_options.energy_to)))
+    return std::nullopt;
+  const auto slope = [&](const loop::Loop& at, const std::vector<double>& direction) {
+    const std::vector<double> start = loop::state_at(at, 0.0);
+    const std::vector<double> moves = loop::state_at(loop::perturbation(at, _problem->change_of(direction, at)), 0.0);
+    std::vector<double> gradient(start.size());
+    _system->conserved_gradient(0, start, gradient);
+    return step * std::inner_product(gradient.begin(), gradient.end(), moves.begin(), 0.0);
+  };
+  return turning_outside(
+      {_frontier.orbit.energy, energy_of(*_system, trial.loop), slope(here(), leaving), slope(trial.loop, arriving)},
+      _options.energy_from, _options.energy_to);
+}
+
 /// The last orbit of a branch lies on the scene's limit, not beyond it; where a step passes two, on the first.
 /// None with the reason in `refused` where there is no such orbit.
 std::optional<Orbit> Tracer::accept_within_limits(const Trial& passed, double length, Ending& refused) {
@@ -363,7 +404,14 @@ std::optional<Orbit> Tracer::accept_within_limits(const Trial& passed, double le
   const bool is_late = scalar(trial, period) > _options.period_limit;
   const bool is_outside = is_beyond_energies(value);
   const bool is_beside = is_beyond_parameters(trial);
-  if (!is_late && !is_outside && !is_beside) return accept_within_guards(trial, length, refused);
+  if (!is_late && !is_outside && !is_beside) {
+    const std::optional<double> turning = turning_beyond_limit(trial);
+    if (!turning) return accept_within_guards(trial, length, refused);
+    Trial turned = _stepper.step(*turning * length);
+    if (_stepper.needs_more_harmonics(turned) || !turned.is_orbit || !is_beyond_limits(turned))
+      return accept_within_guards(trial, length, refused);
+    return accept_within_limits(turned, *turning * length, refused);
+  }
   _met_limit = true;
   OnLimit on_limit;
   if (is_late) {

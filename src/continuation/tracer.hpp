@@ -52,6 +52,8 @@ class Tracer {
   [[nodiscard]] bool resolve_twice();
   [[nodiscard]] double length_to_try();
   std::optional<Trial> closing_orbit(const Trial& trial, double length);
+  [[nodiscard]] bool is_beyond_limits(const Trial& trial);
+  [[nodiscard]] std::optional<double> turning_beyond_limit(const Trial& trial);
   std::optional<Orbit> accept_within_limits(const Trial& passed, double length, Ending& refused);
   std::optional<Orbit> accept_within_guards(Trial trial, double length, Ending& refused);
   Orbit accept(const Trial& trial);
