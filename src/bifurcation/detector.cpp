@@ -25,6 +25,9 @@ constexpr double small_ends = 10.0;
 constexpr double at_end = 0.01;
 /// A parabola's minimum is examined where it lies below this share of its neighbours (a parabola is a poor model).
 constexpr double deep_enough = 0.5;
+/// How far beyond zero a line must come out, in parts of the function, which has not passed it. A function that comes
+/// to rest at zero like a square is at 1. Not measured.
+constexpr double past_zero = 2.0;
 
 using Node = DetectorState::Node;
 
@@ -65,6 +68,14 @@ bool is_large(const Reading& reading) { return std::abs(reading.value) > 0.8; }
 double interpolation_error(const Reading& before, const Reading& here, const Reading& after, double share) {
   const double expected = before.value + share * (after.value - before.value);
   return std::abs(here.value - expected) - (before.error + here.error + after.error);
+}
+
+/// Whether a line through the first two passes zero far before the third, which has their sign: between two zeros a
+/// function that is small altogether may turn, and surprise by no more than others do all the time.
+bool turns_before(const Reading& before, const Reading& here, const Reading& after, double share) {
+  if (here.sign() == 0 || before.sign() != here.sign() || after.sign() != here.sign()) return false;
+  const double expected = here.value + (here.value - before.value) * (1.0 - share) / share;
+  return expected * here.sign() < -(past_zero * std::abs(after.value) + before.error + here.error + after.error);
 }
 
 double passed_at(const TestPoint& point, std::size_t function) {
@@ -130,6 +141,7 @@ bool Detector::badly_extrapolated(const std::vector<TestPoint>& grid, std::size_
     const Reading& before = grid[n - 1].readings[f];
     const double share = (grid[n].position - grid[n - 1].position) / (grid[n + 1].position - grid[n - 1].position);
     if (interpolation_error(before, here, after, share) > 0.5 * allowed) return true;
+    if (turns_before(before, here, after, share)) return true;
     if (is_large(here) && interpolation_error(stretched(before), stretched(here), stretched(after), share) >
                               0.5 * _options.logarithm_error)
       return true;

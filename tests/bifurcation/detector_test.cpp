@@ -97,6 +97,19 @@ void expect_events(std::vector<Bracket> found, const std::vector<Event>& events)
   }
 }
 
+// (2 - s1)(2 - s2) of the vertical family of a trap, small altogether: s2 passes 2 and comes back before both meet.
+TEST(Detector, TwoZerosBehindASteepDescentAreSeenByWhereItLeads) {
+  Family family{{exact([](double x) { return 530.0 * (0.6586 - x) * (x - 0.66) * (x - 0.682); })}};
+  expect_events(family.run({0.6, 0.62, 0.6368, 0.6469, 0.678, 0.69}), {{0, 0.6586}, {0, 0.66}, {0, 0.682}});
+}
+
+// As at a crossing where a branch ends.
+TEST(Detector, AFunctionThatComesToRestAtZeroCostsNoProbes) {
+  Family family{{exact([](double x) { return 1e-3 * x * x; })}};
+  for (const double x : {-5.0, -4.0, -3.0, -2.0, -1.0}) EXPECT_TRUE(family.advance(x).empty());
+  EXPECT_EQ(family.probes, 0);
+}
+
 TEST(Detector, SignChangeIsBracketedByItsStationsAtNoCost) {
   Family family{{exact([](double x) { return 0.4 - 0.1 * x; })}};
   std::vector<Bracket> found;

@@ -75,6 +75,21 @@ TEST(Births, AFamilyThatGoesThroughABranchPointStartsAlongItsSlope) {
   }
 }
 
+// T of D rises to 8.45034 and falls: which steps see an orbit beyond a limit just below decides nothing.
+TEST(Births, AStepOverAFoldBeyondALimitEndsAtTheLimit) {
+  const auto with = [](const std::string& key) {
+    return survey_of(well({0.9585, 0.06634, 0.4531, 0.1905, 0.01549, 0.6088, 4.352, 0.2594}),
+                     {"limits.energy=[-.inf, 1]", "limits.period=8.4503", "survey.subharmonics=3", "survey.depth=1",
+                      "continuation." + key});
+  };
+  for (const std::string key : {"start=0.0017", "start=0.0087", "start=0.0436", "step=0.25"}) {
+    SCOPED_TRACE(key);
+    const test::Atlas atlas = with(key);
+    EXPECT_EQ(atlas.crossings().rows(), 7U);
+    EXPECT_EQ(atlas.family("Equilibrium 1, mode 2 D").ended_by, "period limit (T = 8.4503)");
+  }
+}
+
 // With steps of 0.25 the second orbit of T3D lies beyond two branch points, between which its index rises to 50.
 TEST(Births, PairsWithinALongStepAreFound) {
   const auto with = [](const std::string& key) {
