@@ -63,16 +63,18 @@ QuadMatrix jacobian_at(const systems::System& system, std::span<const double> po
 }
 
 /// D^-1 A D with powers of two on D's diagonal, so that the sums of the moduli in each row and column, the diagonal
-/// left out, are near one another.
+/// left out, are near one another. Where one of them is rounding it says nothing: made as large as the other it would
+/// scale the rounding of the vectors to any size.
 QuadMatrix balanced(QuadMatrix a, QuadVector& scale) {
   const Eigen::Index d = a.rows();
+  const Quad least = entry_rounding * a.norm();
   scale = QuadVector::Ones(d);
   for (bool settled = false; !settled;) {
     settled = true;
     for (Eigen::Index i = 0; i < d; ++i) {
       const Quad column = a.col(i).cwiseAbs().sum() - abs(a(i, i));
       const Quad row = a.row(i).cwiseAbs().sum() - abs(a(i, i));
-      if (column == 0 || row == 0) continue;
+      if (column <= least || row <= least) continue;
       Quad factor = 1;
       Quad scaled = column;
       for (; scaled < row / 2; scaled *= 4) factor *= 2;

@@ -270,6 +270,18 @@ TEST(LinearModes, TranslationsAreNeutral) {
   EXPECT_EQ(modes.rest, (std::vector<std::complex<double>>(2, 0.0)));
 }
 
+// A coordinate along a curve of equilibria, in whose equation only rounding is left.
+TEST(LinearModes, RoundingInAnEquationMovesNoVectors) {
+  for (const double rest : {1e-17, 1e-34, 1e-60}) {
+    SCOPED_TRACE(rest);
+    const LinearModes modes = of_stiffness(Eigen::Vector2d(1.8, rest).asDiagonal());
+    ASSERT_FALSE(modes.oscillations.empty());
+    EXPECT_NEAR(modes.oscillations.back().period, 2 * pi / std::sqrt(1.8), 1e-14);
+    const Eigen::VectorXcd vector = modes.oscillations.back().kernel.col(0);
+    EXPECT_LT(std::abs(vector(1)) + std::abs(vector(3)), 1e-14 * vector.norm());
+  }
+}
+
 TEST(LinearModes, Misuse) {
   const auto system = systems::make_system("double_pendulum");
   EXPECT_THROW(static_cast<void>(linear_modes(*system, std::vector<double>(3, 0.0))), core::MisuseError);

@@ -86,7 +86,7 @@ TEST(Births, AStepOverAFoldBeyondALimitEndsAtTheLimit) {
     SCOPED_TRACE(key);
     const test::Atlas atlas = with(key);
     EXPECT_EQ(atlas.crossings().rows(), 7U);
-    EXPECT_EQ(atlas.family("Equilibrium 1, mode 2 D").ended_by, "period limit (T = 8.4503)");
+    EXPECT_EQ(atlas.end_of("Equilibrium 1, mode 2 D"), "period limit (T = 8.4503)");
   }
 }
 
