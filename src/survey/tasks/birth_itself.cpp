@@ -7,6 +7,7 @@
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/continuation/way_from_start.hpp"
 #include "orbweaver/loop/curve/loop.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 
 namespace orbweaver::survey {
 
@@ -16,8 +17,10 @@ namespace {
 /// less.
 constexpr double at_birth = 1e-2;
 
-/// What an orbit has that does not repeat as one that is gone around so many times.
-double own_of(const loop::Loop& orbit, int times) {
+/// What an orbit has that its base, of which `birth` is the crossing's orbit, has not: what does not repeat as one that
+/// is gone around so many times, or, of once, what it is aside of the birth.
+double own_of(const loop::Loop& orbit, const loop::Loop& birth, int times) {
+  if (times == 1) return loop::mean_distance(orbit, birth);
   const loop::Loop even = orbit.time_map.is_identity() ? orbit : loop::evenly_in_time(orbit);
   double square = 0.0;
   for (std::size_t n = 0; n < even.modes.size(); ++n) {
@@ -34,13 +37,14 @@ bool is_birth_itself(const LocateWork& work, continuation::FamilyCurve& family, 
   const bool is_fold = work.event.kind != bifurcation::Event::Kind::test_function;
   const bool is_of_one =
       !is_fold && bifurcation::has_sector(work.event.function.kind) && work.event.function.sector.q == 1;
-  if ((!is_fold && !is_of_one) || times < 2 || continuation::goes_through(times)) return false;
+  if ((!is_fold && !is_of_one) || continuation::goes_through(times)) return false;
   const auto first = std::find_if(work.known.begin(), work.known.end(),
                                   [](const continuation::FamilyCurve::Known& known) { return known.position >= 0.0; });
   const bool is_beside_birth = first != work.known.begin() && first != work.known.end() && position < first->position;
   if (!is_beside_birth) return false;
   const std::optional<continuation::CurvePoint> there = family.at(position);
-  return there && own_of(there->loop, times) < at_birth * own_of(first->loop, times);
+  const loop::Loop& birth = work.known.front().loop;
+  return there && own_of(there->loop, birth, times) < at_birth * own_of(first->loop, birth, times);
 }
 
 }  // namespace orbweaver::survey
