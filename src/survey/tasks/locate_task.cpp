@@ -276,8 +276,15 @@ class Location {
     settings.most_harmonics = _scene.continuation.cutoff_to;
     settings.team = _team;
     const int expected = expected_dimension(_system->structure(), crossing.stability, sector, _event.tangency);
-    const bifurcation::Kernel kernel =
-        bifurcation::kernel_of(*_system, crossing.point, isotropy, sector, expected, settings);
+    bifurcation::Kernel kernel;
+    try {
+      kernel = bifurcation::kernel_of(*_system, crossing.point, isotropy, sector, expected, settings);
+    } catch (const bifurcation::UndecidedError&) {
+      throw;
+    } catch (const core::NumericalError&) {  // at a fold nothing but the family itself is flat
+      if (sector.q != 1 || !turns_at(crossing, family)) throw;
+      return as_fold(kernel);
+    }
     _outcome.kernel_dimension = kernel.dimension();
     _outcome.kernel_singular_value = kernel.largest();
     _outcome.next_singular_value = kernel.next();
@@ -382,8 +389,9 @@ class Location {
     _outcome.kernel_dimension = 0;
     _outcome.kernel_singular_value = archive::not_computed;
     _outcome.next_singular_value = kernel.largest();
-    _outcome.remark = fmt::format("the {} turns there (smallest singular value {:.2g})",
-                                  moves() ? "parameter" : "energy", kernel.largest());
+    _outcome.remark = fmt::format("the {} turns there", moves() ? "parameter" : "energy");
+    if (!kernel.vectors.empty())
+      _outcome.remark += fmt::format(" (smallest singular value {:.2g})", kernel.largest());
   }
 
   [[nodiscard]] bool moves() const { return !_system->family_scalars().free.empty(); }
