@@ -28,8 +28,13 @@ constexpr double believed = 0.8;
 /// Angles of sectors are 0 or 2 pi/q and more, up to roundings.
 constexpr double same_angle = 1e-9;
 
-/// Vectors y_0 .. y_(n-1) in the transverse bases, one a column, with y_(m+1) = F_m y_m and y_n = `multiplier` y_0: as
-/// nearly as any, `count` of them, nearest first.
+/// Singular values of the closing equations, of size 1, from which on a vector does not close, beside the largest: no
+/// solution, and no smooth function. Not measured.
+constexpr double left_open = 1e-7;
+constexpr double left_open_of_largest = 1e-4;
+
+/// Vectors y_0 .. y_(n-1) in the transverse bases, one a column, with y_(m+1) = F_m y_m and y_n = `multiplier` y_0: the
+/// one that does so most nearly, and of the others up to `count` that do.
 std::vector<Eigen::MatrixXcd> closing_vectors(const TransverseFlow& flow, Complex multiplier, int count) {
   const Eigen::Index d = flow.dimension();
   const Eigen::Index segments = flow.factors.cols();
@@ -57,6 +62,8 @@ std::vector<Eigen::MatrixXcd> closing_vectors(const TransverseFlow& flow, Comple
   const Eigen::JacobiSVD<Eigen::MatrixXcd> svd(closing, Eigen::ComputeFullV);
   std::vector<Eigen::MatrixXcd> all;
   for (Eigen::Index n = d; n-- > std::max<Eigen::Index>(0, d - count);) {
+    const auto& values = svd.singularValues();
+    if (!all.empty() && values(n) > std::max(left_open, left_open_of_largest * values(0))) break;
     Eigen::MatrixXcd y(d, segments);
     y.col(0) = svd.matrixV().col(n);
     Eigen::VectorXcd next = multiplier * y.col(0);
