@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -9,6 +10,7 @@
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "pendulum_loops.hpp"
+#include "point_systems.hpp"
 
 namespace floquet_vector_test {
 namespace {
@@ -61,6 +63,40 @@ TEST(FloquetVector, IsContinuedByTheSymmetry) {
   for (const double m : {30.0, 1000.0}) {
     const Modes modes = modes_of(m);
     EXPECT_NEAR(needed(m, 1e-3, 4096, true), modes.fast / modes.slow, 2.5) << m;
+  }
+}
+
+/// A free particle beside a clock: one of its two solutions of multiplier 1 grows with time.
+class FreeParticle final : public test::PointSystem {
+ public:
+  FreeParticle() : PointSystem(structure()) {}
+  [[nodiscard]] Eigen::VectorXd field_at(const Eigen::VectorXd& z) const override {
+    return Eigen::Vector3d(z[1], 0.0, 1.0);
+  }
+  [[nodiscard]] Eigen::MatrixXd jacobian_at(const Eigen::VectorXd&) const override {
+    Eigen::Matrix3d out = Eigen::Matrix3d::Zero();
+    out(0, 1) = 1.0;
+    return out;
+  }
+
+ private:
+  static systems::Structure structure() {
+    systems::Structure structure = test::structure_of(3);
+    structure.angles = {2};
+    structure.driven = true;
+    return structure;
+  }
+};
+
+TEST(FloquetVector, WhatDoesNotCloseIsNoSolution) {
+  loop::Loop loop = loop::constant_loop(std::vector<double>{0.5, 0.0, 0.0}, 2.0 * std::numbers::pi, 2);
+  loop.winding[2] = 1.0;
+  spectrum::FloquetVectorOptions options;
+  options.order = 1;
+  options.angle = 0.0;
+  for (const int count : {1, 2}) {
+    options.count = count;
+    EXPECT_LE(spectrum::floquet_vector_cutoff(FreeParticle(), loop, {}, options), 2) << count;
   }
 }
 

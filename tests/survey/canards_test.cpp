@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "orbweaver/survey/verify/verify.hpp"
 #include "orbweaver/systems/model/model_system.hpp"
 #include "registry_lines.hpp"
 #include "survey/atlas.hpp"
@@ -95,6 +96,8 @@ TEST(Canards, FoldsThatTheParameterHidesAreToldByTheMultiplier) {
   for (const std::string tolerance : {"1e-10", "1e-11"}) {
     const survey::Summary summary = test::run(comm, scene_of({"continuation.tolerance=" + tolerance}), "canards");
     EXPECT_EQ(summary.failures, 0U) << tolerance;
+    for (const survey::Objection& o : survey::verify(comm, summary.atlas).objections)
+      ADD_FAILURE() << tolerance << ": " << o.table << " " << o.row << ": " << o.text;
     if (!comm.is_root()) continue;
     for (const survey::FindingSummary& line : summary.findings)
       EXPECT_NE(line.severity, survey::Severity::contradiction) << tolerance << ": " << line.text;

@@ -209,8 +209,9 @@ class CrossingCheck {
     // Not by the one that turns; false where there is no level.
     const bool turns_in_level = _kind == CrossingKind::fold_energy || _kind == CrossingKind::fold_parameter;
     const bool by_level = _kind == CrossingKind::fold_period || (!turns_in_level && in_level > in_period);
-    // A drive ties the period to its frequency: both turn there, or the period does not change at all.
-    const bool by_slope = _kind == CrossingKind::fold_parameter || both_turn;
+    // A drive ties the period to its frequency: both turn there, or the period does not change at all. Where it changes
+    // more than the parameter, as along a canard, it says better where the fold is than a slope that is small all over.
+    const bool by_slope = both_turn || (_kind == CrossingKind::fold_parameter && !(in_period > in_level));
     const double wanted = by_level ? real(level()) / units.level() : real("period") / units.time;
     const auto off = [&](double position) {
       const auto point = curve.at(position, by_slope);
