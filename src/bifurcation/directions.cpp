@@ -35,8 +35,8 @@ constexpr double same_line = 3e-3;  // radians; distinct lines of a finite group
 constexpr double same_image = 0.02;
 constexpr double visible_harmonic = 1e-3;
 constexpr int largest_kernel = 8;
-/// How far from a crossing, in parts of the orbit where that is below 1, it is asked how families go through it, and how
-/// far these may lie along the base's own family, in parts of their way in the kernel. Not measured.
+/// How far from a crossing, in parts of the orbit where that is below 1, it is asked how families go through it, and
+/// how far these may lie along the base's own family, in parts of their way in the kernel. Not measured.
 constexpr double tilt_amplitude = 3e-3;
 constexpr double steepest = 10.0;
 /// Entries of unit directions and coordinates of orbits that are less apart do not decide signs and phases: kernel

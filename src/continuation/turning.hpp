@@ -12,8 +12,8 @@ struct CourseOverStep {
   double slope_to = 0.0;
 };
 
-/// Where within the step (0 to 1) the quantity turns outside [low, high], its ends lying inside, by the cubic with these
-/// values and slopes. None where it does not.
+/// Where within the step (0 to 1) the quantity turns outside [low, high], its ends lying inside, by the cubic with
+/// these values and slopes. None where it does not.
 [[nodiscard]] std::optional<double> turning_outside(const CourseOverStep& course, double low, double high);
 
 }  // namespace orbweaver::continuation
