@@ -173,6 +173,22 @@ bool passes_one_without_gap(const std::shared_ptr<const systems::System>& system
   return continuation::arclength_between(before.loop, after.loop) <= most_apart * options.smallest_jump;
 }
 
+/// Whether multipliers pass 1 on a step where none do along the family: it turns neither in the parameter, nor is there
+/// a curve with an orbit of that multiplier. Without pairs nothing else tells.
+bool passes_one_across_gap(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
+                           const continuation::Options& options, const KnownStability& from, const KnownStability& to) {
+  const int before = evaluate(index_two(), system->structure(), from.stability).sign();
+  const int after = evaluate(index_two(), system->structure(), to.stability).sign();
+  if (before * after >= 0) return false;
+  continuation::FamilyCurve step(system, isotropy, options);
+  step.add(0.0, from.orbit.loop);
+  step.add(1.0, to.orbit.loop);
+  const std::optional<continuation::CurvePoint> start = step.at(0.0, true);
+  const std::optional<continuation::CurvePoint> end = step.at(1.0, true);
+  if (!start || !end || level_slope(*system, *start) * level_slope(*system, *end) < 0.0) return false;
+  return !has_index_two_between(system, isotropy, options, from, to);
+}
+
 /// Of the amplitude: over shorter steps the sense of rotation changes by rounding, or where an index passes 2.
 constexpr double rotating_steps = 1e-3;
 
@@ -250,6 +266,7 @@ bool is_one_curve(continuation::FamilyCurve& step) {
 
 bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
                 const continuation::Options& options, const KnownStability& from, const KnownStability& to) {
+  if (!system->structure().symplectic) return passes_one_across_gap(system, isotropy, options, from, to);
   const double length = continuation::arclength_between(from.orbit.loop, to.orbit.loop);
   const bool has_turned = are_turns_asked(from.stability, to.stability, length, options.smallest_jump) &&
                           rotates_too_far(from.stability, to.stability);

@@ -22,7 +22,8 @@ struct ReducedZeros {
 ///
 /// In complex amplitudes a the force of LyapunovSchmidt commutes with shifts of time, a_m -> e^{i k_m t} a_m: it is a
 /// sum of products of a and conj(a) that do. The coefficients of those up to some order are fitted. Where the force
-/// only turns a, a family leaves, with another period. These zeros cost so little that they are sought from many starts.
+/// only turns a, a family leaves, with another period. These zeros cost so little that they are sought from many
+/// starts.
 [[nodiscard]] ReducedZeros reduced_zeros(const systems::System& system, const loop::Loop& base,
                                          const KernelActions& group, double amplitude);
 

@@ -56,7 +56,9 @@ BranchTask::BranchTask(const scene::Scene& scene, std::shared_ptr<const systems:
                                    [](const loop::SymmetryElement& e) { return e.reversing; });
   if (_followed.work.lineage.crossing.empty() && scene.compute.stability)
     _options.too_far = [this](const auto& first) { return _first_orbit.is_too_far(first); };
-  if (_followed.system->structure().symplectic && scene.compute.stability)
+  const bool is_without_pairs =
+      !_followed.system->structure().conservative() && !_followed.system->family_scalars().free.empty();
+  if ((_followed.system->structure().symplectic || is_without_pairs) && scene.compute.stability)
     _options.jumped = [this](const auto& from, const auto& to) { return jumped(from, to); };
   begin(state);
 }
