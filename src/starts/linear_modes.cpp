@@ -63,18 +63,16 @@ QuadMatrix jacobian_at(const systems::System& system, std::span<const double> po
 }
 
 /// D^-1 A D with powers of two on D's diagonal, so that the sums of the moduli in each row and column, the diagonal
-/// left out, are near one another. Where one of them is rounding it says nothing: made as large as the other it would
-/// scale the rounding of the vectors to any size.
+/// left out, are near one another.
 QuadMatrix balanced(QuadMatrix a, QuadVector& scale) {
   const Eigen::Index d = a.rows();
-  const Quad least = entry_rounding * a.norm();
   scale = QuadVector::Ones(d);
   for (bool settled = false; !settled;) {
     settled = true;
     for (Eigen::Index i = 0; i < d; ++i) {
       const Quad column = a.col(i).cwiseAbs().sum() - abs(a(i, i));
       const Quad row = a.row(i).cwiseAbs().sum() - abs(a(i, i));
-      if (column <= least || row <= least) continue;
+      if (column == 0 || row == 0) continue;
       Quad factor = 1;
       Quad scaled = column;
       for (; scaled < row / 2; scaled *= 4) factor *= 2;
@@ -228,11 +226,20 @@ class Spectrum {
     return out;
   }
 
-  /// Orthonormal columns that span the largest `rank` directions of others.
-  static Eigen::MatrixXcd span_of(const Eigen::MatrixXcd& vectors, Eigen::Index rank) {
-    return Eigen::JacobiSVD<Eigen::MatrixXcd>(vectors, Eigen::ComputeThinU | Eigen::ComputeThinV)
-        .matrixU()
-        .leftCols(rank);
+  /// Orthonormal columns that span `rank` directions of others, which have no more: by Gram and Schmidt's method, the
+  /// longest first, twice. Rows are not mixed: where balancing has made a coordinate small it may be 1e-17 of the others
+  /// and mean something.
+  static Eigen::MatrixXcd span_of(Eigen::MatrixXcd vectors, Eigen::Index rank) {
+    Eigen::MatrixXcd out(vectors.rows(), rank);
+    for (Eigen::Index n = 0; n < rank; ++n) {
+      Eigen::Index longest = 0;
+      vectors.colwise().norm().maxCoeff(&longest);
+      Eigen::VectorXcd next = vectors.col(longest).normalized();
+      for (Eigen::Index m = 0; m < n; ++m) next -= out.col(m) * out.col(m).dot(next);
+      out.col(n) = next.normalized();
+      for (Eigen::Index m = 0; m < vectors.cols(); ++m) vectors.col(m) -= out.col(n) * out.col(n).dot(vectors.col(m));
+    }
+    return out;
   }
 
   /// The kernel of matrix - value, `count` columns; `defect` is the largest of the pivots that should vanish.
