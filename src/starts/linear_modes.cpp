@@ -31,6 +31,7 @@ constexpr int polishing_steps = 2;
 constexpr double longest_polishing = 1e-6;
 /// Parlett and Reinsch 1969 (doi:10.1007/BF02165404): a scaling is worth it if it shortens row and column by 5 %.
 constexpr double worth_scaling = 0.95;
+constexpr double quad_rounding = 1e-30;
 /// Rounding of the coordinates of a fixed point, where it is asked whether a reversor leaves it alone.
 constexpr double kept_point = 1e-9;
 /// Largest whole ratio of two frequencies that is a resonance: harmonics beyond it carry nothing that double sees.
@@ -63,16 +64,17 @@ QuadMatrix jacobian_at(const systems::System& system, std::span<const double> po
 }
 
 /// D^-1 A D with powers of two on D's diagonal, so that the sums of the moduli in each row and column, the diagonal
-/// left out, are near one another.
+/// left out, are near one another. What is rounding in quadruple precision says nothing.
 QuadMatrix balanced(QuadMatrix a, QuadVector& scale) {
   const Eigen::Index d = a.rows();
+  const Quad least = quad_rounding * a.norm();
   scale = QuadVector::Ones(d);
   for (bool settled = false; !settled;) {
     settled = true;
     for (Eigen::Index i = 0; i < d; ++i) {
       const Quad column = a.col(i).cwiseAbs().sum() - abs(a(i, i));
       const Quad row = a.row(i).cwiseAbs().sum() - abs(a(i, i));
-      if (column == 0 || row == 0) continue;
+      if (column <= least || row <= least) continue;
       Quad factor = 1;
       Quad scaled = column;
       for (; scaled < row / 2; scaled *= 4) factor *= 2;
@@ -227,8 +229,8 @@ class Spectrum {
   }
 
   /// Orthonormal columns that span `rank` directions of others, which have no more: by Gram and Schmidt's method, the
-  /// longest first, twice. Rows are not mixed: where balancing has made a coordinate small it may be 1e-17 of the others
-  /// and mean something.
+  /// longest first. Rows are not mixed: where balancing has made a coordinate small it may be 1e-17 of the others and
+  /// mean something.
   static Eigen::MatrixXcd span_of(Eigen::MatrixXcd vectors, Eigen::Index rank) {
     Eigen::MatrixXcd out(vectors.rows(), rank);
     for (Eigen::Index n = 0; n < rank; ++n) {

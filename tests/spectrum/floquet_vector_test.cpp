@@ -69,7 +69,7 @@ TEST(FloquetVector, IsContinuedByTheSymmetry) {
 /// A free particle beside a clock: one of its two solutions of multiplier 1 grows with time.
 class FreeParticle final : public test::PointSystem {
  public:
-  FreeParticle() : PointSystem(structure()) {}
+  FreeParticle() : PointSystem(driven()) {}
   [[nodiscard]] Eigen::VectorXd field_at(const Eigen::VectorXd& z) const override {
     return Eigen::Vector3d(z[1], 0.0, 1.0);
   }
@@ -80,7 +80,7 @@ class FreeParticle final : public test::PointSystem {
   }
 
  private:
-  static systems::Structure structure() {
+  static systems::Structure driven() {
     systems::Structure structure = test::structure_of(3);
     structure.angles = {2};
     structure.driven = true;

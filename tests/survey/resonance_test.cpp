@@ -94,8 +94,8 @@ TEST(Resonance, DetunedSpringsHaveTheSameThreeFamilies) {
   }
 }
 
-// At 1:3 the mirror leaves the phase between swing and bounce to terms of eighth order, which the loss does not see. The
-// force of seventh order, and that each phase belongs to a reversor of its own, tell both families.
+// At 1:3 the mirror leaves the phase between swing and bounce to terms of eighth order, which the loss does not see.
+// The force of seventh order, and that each phase belongs to a reversor of its own, tell both families.
 TEST(Resonance, FamiliesWhosePhaseTheLossDoesNotSeeAreFound) {
   const core::Communicator comm;
   const scene::Scene scene = spring(3, 0.0, {"survey.depth=0", "limits.energy=[-.inf, -1.0]"});
