@@ -22,7 +22,7 @@ constexpr double same_crossing = 1e-10;
 struct ListedCrossing {
   std::string what;  // kind and sector
   double period = 0.0;
-  double energy = 0.0;
+  double energy = 0.0;  // of families along a parameter, that
 };
 
 /// What a tree says of a family, but for orbits.
@@ -57,13 +57,17 @@ inline std::map<std::string, ListedFamily> listed(const Atlas& atlas, double tim
     const auto joined = atlas.families().integers("end_family")[row];
     if (joined >= 0) family.ends.insert("at " + names[static_cast<std::size_t>(joined)]);
   }
+  const auto level = [&](std::size_t row) {
+    const double value = atlas.crossings().reals("energy")[row] / energy;
+    return std::isnan(value) ? atlas.crossings().reals("parameter")[row] : value;
+  };
   for (std::size_t row = 0; row < atlas.crossings().rows(); ++row)
     out[names[static_cast<std::size_t>(atlas.crossings().integers("family")[row])]].crossings.push_back(
         {fmt::format("{} {}/{} m {} kernel {}", atlas.crossings().texts("kind")[row],
                      atlas.crossings().integers("sector_j")[row], atlas.crossings().integers("sector_q")[row],
                      atlas.crossings().integers("multiplicity")[row],
                      atlas.crossings().integers("kernel_dimension")[row]),
-         atlas.crossings().reals("period")[row] / time, atlas.crossings().reals("energy")[row] / energy});
+         atlas.crossings().reals("period")[row] / time, level(row)});
   for (auto& [name, family] : out)
     std::sort(family.crossings.begin(), family.crossings.end(), [](const ListedCrossing& a, const ListedCrossing& b) {
       return std::tie(a.what, a.period, a.energy) < std::tie(b.what, b.period, b.energy);
