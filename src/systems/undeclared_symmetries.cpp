@@ -56,6 +56,17 @@ VectorXd signs_of(unsigned changed, int dimension) {
   return signs;
 }
 
+/// The field and its derivatives by the parameters that move: a symmetry of the families is one at all their values.
+std::vector<VectorXd> fields_at(const System& system, const VectorXd& z) {
+  std::vector<VectorXd> out{VectorXd(z.size())};
+  system.field(1, z.data(), out[0].data());
+  for (const std::string& name : system.family_scalars().free) {
+    out.emplace_back(z.size());
+    system.parameter_derivatives(name, 1, z.data(), out.back().data());
+  }
+  return out;
+}
+
 /// False also where nothing can be compared.
 bool holds(const System& system, const VectorXd& point, const VectorXd& signs, bool reversing) {
   const std::vector<double> centre(point.data(), point.data() + point.size());
@@ -63,15 +74,17 @@ bool holds(const System& system, const VectorXd& point, const VectorXd& signs, b
   for (const std::vector<double>& state : states_around(system.structure(), {centre}, states_tried, 1.0)) {
     const VectorXd z = Eigen::Map<const VectorXd>(state.data(), point.size());
     const VectorXd image = point + signs.cwiseProduct(z - point);
-    VectorXd f(z.size());
-    VectorXd f_of_image(z.size());
-    system.field(1, z.data(), f.data());
-    system.field(1, image.data(), f_of_image.data());
-    if (!f.allFinite() || !f_of_image.allFinite()) continue;
-    const VectorXd expected = (reversing ? -1.0 : 1.0) * signs.cwiseProduct(f);
-    if (((f_of_image - expected).array().abs() > same * f.array().abs().max(f_of_image.array().abs())).any())
-      return false;
-    compared = true;
+    const std::vector<VectorXd> fields = fields_at(system, z);
+    const std::vector<VectorXd> of_image = fields_at(system, image);
+    for (std::size_t n = 0; n < fields.size(); ++n) {
+      const VectorXd& f = fields[n];
+      const VectorXd& f_of_image = of_image[n];
+      if (!f.allFinite() || !f_of_image.allFinite()) continue;
+      const VectorXd expected = (reversing ? -1.0 : 1.0) * signs.cwiseProduct(f);
+      if (((f_of_image - expected).array().abs() > same * f.array().abs().max(f_of_image.array().abs())).any())
+        return false;
+      compared = true;
+    }
   }
   return compared;
 }

@@ -37,6 +37,16 @@ TEST(UndeclaredSymmetries, AreFoundAboutOtherPoints) {
               ElementsAre("the reversor (x, y, px, py) -> (x, y, -2 - px, 1 - py)"));
 }
 
+TEST(UndeclaredSymmetries, AreThoseAtAllValuesOfAParameterThatMoves) {
+  const std::map<std::string, double> well{{"b", 0.0}, {"k2", 3.0}};
+  const auto moving = [&](const std::string& name) {
+    return systems::Registered<test::MagneticWell>::make(systems::bound_to(test::MagneticWell::info(), well, {name}));
+  };
+  EXPECT_THAT(undeclared_symmetries(*moving("b"), origin), IsEmpty());
+  EXPECT_THAT(undeclared_symmetries(*moving("k2"), origin),
+              ElementsAre("the reversor (x, y, px, py) -> (x, y, -px, -py)"));
+}
+
 TEST(UndeclaredSymmetries, AreNotWhatIsDeclared) {
   for (const char* name : {"double_pendulum", "henon_heiles", "pcr3bp", "swinging_spring"})
     EXPECT_THAT(undeclared_symmetries(*make_system(name), origin), IsEmpty()) << name;
