@@ -40,7 +40,8 @@ TEST(UndeclaredSymmetries, AreFoundAboutOtherPoints) {
 TEST(UndeclaredSymmetries, AreThoseAtAllValuesOfAParameterThatMoves) {
   const std::map<std::string, double> well{{"b", 0.0}, {"k2", 3.0}};
   const auto moving = [&](const std::string& name) {
-    return systems::Registered<test::MagneticWell>::make(systems::bound_to(test::MagneticWell::info(), well, {}, {.free = {name}}));
+    return systems::Registered<test::MagneticWell>::make(
+        systems::bound_to(test::MagneticWell::info(), well, {}, {.free = {name}}));
   };
   EXPECT_THAT(undeclared_symmetries(*moving("b"), origin), IsEmpty());
   EXPECT_THAT(undeclared_symmetries(*moving("k2"), origin),
