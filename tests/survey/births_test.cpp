@@ -57,8 +57,8 @@ TEST(Births, FoldsBesideABirthAreFoundWhereverTheFirstOrbitLies) {
   }
 }
 
-// x = 0 is invariant, but no symmetry keeps it so: at the branch point of its family another goes through, along that
-// more than aside. First orbits along the kernel were drawn into the crossing, and taken for the base's own.
+// x = 0 is invariant, but no symmetry keeps it so: at the branch point of its family another goes through, along it
+// too. First orbits along the kernel alone were drawn into the crossing, and taken for the base's own.
 TEST(Births, AFamilyThatGoesThroughABranchPointStartsAlongItsSlope) {
   const auto from = [](const std::string& start) {
     return survey_of(
