@@ -66,9 +66,10 @@ function(orbweaver_precompiled_headers target)
 endfunction()
 
 # Several sources of a target in one translation unit (docs/building.md): what they share is read and instantiated once.
-function(orbweaver_unity_build target)
+# Sources without a namespace of their own meet in a batch: more of them have names that are the same.
+function(orbweaver_unity_build target batch)
   if(ORBWEAVER_UNITY_BUILD)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
   endif()
 endfunction()
 
@@ -87,7 +88,7 @@ function(orbweaver_layer name)
     set(scope PUBLIC)
     target_link_libraries(orbweaver_${name} PRIVATE $<BUILD_INTERFACE:orbweaver_build_flags>)
     orbweaver_precompiled_headers(orbweaver_${name})
-    orbweaver_unity_build(orbweaver_${name})
+    orbweaver_unity_build(orbweaver_${name} 8)
     target_include_directories(orbweaver_${name} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}")
   else()
     add_library(orbweaver_${name} INTERFACE)

@@ -288,7 +288,7 @@ bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop
   // A prediction that is far off may have met another family. And where a family turns aside before an index is 2,
   // another one begins on the other side, whose index is as it was.
   if (before == after) {
-    const bool is_doubtful = to.orbit.halvings > 1 || is_to_pass_two(system->structure(), from, length);
+    const bool is_doubtful = to.orbit.halvings > 0 || is_to_pass_two(system->structure(), from, length);
     return is_doubtful && length >= options.smallest_jump && !is_one_curve(step);
   }
   if (!passes_two_only_at_folds(system->structure(), isotropy))

@@ -45,7 +45,7 @@ std::optional<Eigensystem> eigensystem(const Eigen::MatrixXd& matrix, bool with_
   const Eigen::EigenSolver<Eigen::MatrixXd> real(matrix, with_vectors);
   if (real.info() == Eigen::Success)
     return Eigensystem{real.eigenvalues(), with_vectors ? real.eigenvectors() : Eigen::MatrixXcd()};
-  const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> complex(matrix.cast<Complex>(), with_vectors);
+  const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> complex(Eigen::MatrixXcd(matrix.cast<Complex>()), with_vectors);
   if (complex.info() != Eigen::Success) return std::nullopt;
   Eigensystem system{complex.eigenvalues(), with_vectors ? complex.eigenvectors() : Eigen::MatrixXcd()};
   make_conjugate(system.values);

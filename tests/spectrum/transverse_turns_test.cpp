@@ -77,7 +77,7 @@ struct Oscillation {
     Eigen::Vector4d field;
     Eigen::Matrix<double, 4, 4, Eigen::RowMajor> jacobian;
     system.field_jacobian(1, point.data(), field.data(), jacobian.data());
-    const Eigen::EigenSolver<Eigen::Matrix4d> solver{Eigen::Matrix4d(jacobian)};
+    const Eigen::EigenSolver<Eigen::MatrixXd> solver{Eigen::MatrixXd(jacobian)};
     std::map<double, Eigen::Vector4cd> modes;
     for (Eigen::Index n = 0; n < 4; ++n)
       if (solver.eigenvalues()[n].imag() > 0.0)

@@ -1,7 +1,6 @@
 #include "orbweaver/starts/equilibrium_curve.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -10,6 +9,7 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/model/model_system.hpp"
+#include "support/described.hpp"
 #include "support/lorenz_equations.hpp"
 #include "support/van_der_pol.hpp"
 
@@ -62,16 +62,8 @@ class TwoOscillators {
   static constexpr int dimension = 4;
   static constexpr int quantities = 0;
   static systems::ModelInfo info() {
-    systems::ModelInfo info;
-    info.name = "two_oscillators";
-    info.title = "Two oscillators";
-    info.meaning = "two oscillators, the first pushed by the second";
-    info.state_names = {"x", "u", "y", "v"};
-    info.winding_names = {"", "", "", ""};
-    constexpr double any = std::numeric_limits<double>::infinity();
-    for (const char* name : {"m", "m1", "m2", "w1", "w2"})
-      info.parameters.push_back({name, 0.0, -any, any, false, "1", "coefficient"});
-    return info;
+    return test::described("two_oscillators", "two oscillators, the first pushed by the second", {"x", "u", "y", "v"},
+                           {"m", "m1", "m2", "w1", "w2"}, 0.0);
   }
   static systems::Structure structure(const systems::Bound&) {
     systems::Structure structure;

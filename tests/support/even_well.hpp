@@ -1,11 +1,11 @@
 #pragma once
 
-#include <limits>
 #include <map>
 #include <memory>
 #include <string>
 
 #include "orbweaver/systems/model/model_system.hpp"
+#include "support/described.hpp"
 
 namespace orbweaver::test {
 
@@ -16,16 +16,8 @@ class EvenWell {
   static constexpr int quantities = 1;
 
   static systems::ModelInfo info() {
-    systems::ModelInfo info;
-    info.name = "even_well";
-    info.title = "A particle in a well";
-    info.meaning = "a particle in a well that is even in x";
-    info.state_names = {"x", "y", "px", "py"};
-    info.winding_names = {"", "", "", ""};
-    constexpr double any = std::numeric_limits<double>::infinity();
-    for (const char* name : {"k1", "k2", "a", "b", "c", "d", "e"})
-      info.parameters.push_back({name, 1.0, -any, any, false, "1", "coefficient"});
-    return info;
+    return test::described("even_well", "a particle in a well that is even in x", {"x", "y", "px", "py"},
+                           {"k1", "k2", "a", "b", "c", "d", "e"});
   }
 
   static systems::Structure structure(const systems::Bound&) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include "orbweaver/systems/model/model_system.hpp"
+#include "support/described.hpp"
 
 namespace orbweaver::test {
 
@@ -20,16 +20,8 @@ class MagneticWell {
   static constexpr int quantities = 1;
 
   static systems::ModelInfo info() {
-    systems::ModelInfo info;
-    info.name = "magnetic_well";
-    info.title = "A particle in a magnetic field and a well";
-    info.meaning = "a particle in a magnetic field and a well";
-    info.state_names = {"x", "y", "px", "py"};
-    info.winding_names = {"", "", "", ""};
-    constexpr double any = std::numeric_limits<double>::infinity();
-    for (const char* name : {"k1", "k2", "b", "e", "a1", "a2", "a3", "a4", "q", "c"})
-      info.parameters.push_back({name, 1.0, -any, any, false, "1", "coefficient"});
-    return info;
+    return test::described("magnetic_well", "a particle in a magnetic field and a well", {"x", "y", "px", "py"},
+                           {"k1", "k2", "b", "e", "a1", "a2", "a3", "a4", "q", "c"});
   }
 
   static systems::Structure structure(const systems::Bound&) {

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <limits>
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "orbweaver/systems/model/model_system.hpp"
+#include "support/described.hpp"
 
 namespace orbweaver::test {
 
@@ -19,15 +19,8 @@ class OscillatorsInFields {
   static constexpr int quantities = 1;
 
   static systems::ModelInfo info() {
-    systems::ModelInfo info;
-    info.name = "oscillators_in_fields";
-    info.title = "Three oscillators in magnetic fields";
-    info.meaning = "three oscillators in magnetic fields";
-    info.state_names = {"q1", "q2", "q3", "p1", "p2", "p3"};
-    info.winding_names = std::vector<std::string>(6);
-    constexpr double any = std::numeric_limits<double>::infinity();
-    for (const char* name : {"a", "b", "c"}) info.parameters.push_back({name, 0.0, -any, any, false, "1", "strength"});
-    return info;
+    return test::described("oscillators_in_fields", "three oscillators in magnetic fields", {"q1", "q2", "q3", "p1", "p2", "p3"},
+                           {"a", "b", "c"}, 0.0);
   }
 
   static systems::Structure structure(const systems::Bound&) {

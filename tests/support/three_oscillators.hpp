@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 
 #include "orbweaver/systems/model/model_system.hpp"
+#include "support/described.hpp"
 
 namespace orbweaver::test {
 
@@ -17,13 +18,7 @@ class ThreeOscillators {
   static constexpr int quantities = 1;
 
   static systems::ModelInfo info() {
-    systems::ModelInfo info;
-    info.name = "three_oscillators";
-    info.title = "Three oscillators";
-    info.meaning = "three oscillators at 1 : 2 : 3";
-    info.state_names = {"q1", "q2", "q3", "p1", "p2", "p3"};
-    info.winding_names = std::vector<std::string>(6);
-    return info;
+    return test::described("three_oscillators", "three oscillators at 1 : 2 : 3", {"q1", "q2", "q3", "p1", "p2", "p3"});
   }
 
   static systems::Structure structure(const systems::Bound&) {

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 #include <map>
 #include <memory>
 #include <string>
 
 #include "orbweaver/systems/model/model_system.hpp"
+#include "support/described.hpp"
 
 namespace orbweaver::test {
 
@@ -18,16 +18,8 @@ class TodaSprings {
   static constexpr int quantities = 1;
 
   static systems::ModelInfo info() {
-    systems::ModelInfo info;
-    info.name = "toda_springs";
-    info.title = "Two springs";
-    info.meaning = "a Morse and a Toda spring, coupled";
-    info.state_names = {"q", "y", "pq", "py"};
-    info.winding_names = {"", "", "", ""};
-    constexpr double any = std::numeric_limits<double>::infinity();
-    for (const char* name : {"w1", "w2", "c", "f", "unit"})
-      info.parameters.push_back({name, 1.0, -any, any, false, "1", "coefficient"});
-    return info;
+    return test::described("toda_springs", "a Morse and a Toda spring, coupled", {"q", "y", "pq", "py"},
+                           {"w1", "w2", "c", "f", "unit"});
   }
 
   static systems::Structure structure(const systems::Bound&) {

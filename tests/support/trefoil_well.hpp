@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 #include <map>
 #include <memory>
 #include <string>
 
 #include "orbweaver/systems/model/model_system.hpp"
+#include "support/described.hpp"
 
 namespace orbweaver::test {
 
@@ -19,16 +19,8 @@ class TrefoilWell {
   static constexpr int quantities = 1;
 
   static systems::ModelInfo info() {
-    systems::ModelInfo info;
-    info.name = "trefoil_well";
-    info.title = "A charge in a well";
-    info.meaning = "a charge in a well with three arms";
-    info.state_names = {"x", "y", "vx", "vy"};
-    info.winding_names = {"", "", "", ""};
-    constexpr double any = std::numeric_limits<double>::infinity();
-    for (const char* name : {"B", "a", "b", "c"})
-      info.parameters.push_back({name, 1.0, -any, any, false, "1", "coefficient"});
-    return info;
+    return test::described("trefoil_well", "a charge in a well with three arms", {"x", "y", "vx", "vy"},
+                           {"B", "a", "b", "c"});
   }
 
   static systems::Structure structure(const systems::Bound&) {

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <limits>
 #include <map>
 #include <memory>
 #include <string>
 
 #include "orbweaver/systems/model/model_system.hpp"
+#include "support/described.hpp"
 
 namespace orbweaver::test {
 
@@ -17,16 +17,8 @@ class UnevenWell {
   static constexpr int quantities = 1;
 
   static systems::ModelInfo info() {
-    systems::ModelInfo info;
-    info.name = "uneven_well";
-    info.title = "A particle in a well";
-    info.meaning = "a particle in a well without symmetry";
-    info.state_names = {"x", "y", "px", "py"};
-    info.winding_names = {"", "", "", ""};
-    constexpr double any = std::numeric_limits<double>::infinity();
-    for (const char* name : {"w1", "w2", "a", "b", "c", "d", "e", "f", "g"})
-      info.parameters.push_back({name, 1.0, -any, any, false, "1", "coefficient"});
-    return info;
+    return test::described("uneven_well", "a particle in a well without symmetry", {"x", "y", "px", "py"},
+                           {"w1", "w2", "a", "b", "c", "d", "e", "f", "g"});
   }
 
   static systems::Structure structure(const systems::Bound&) {

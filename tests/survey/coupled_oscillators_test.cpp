@@ -9,6 +9,7 @@
 
 #include "orbweaver/systems/model/model_system.hpp"
 #include "registry_lines.hpp"
+#include "support/described.hpp"
 #include "survey/atlas.hpp"
 #include "survey/same_tree.hpp"
 #include "survey/scenes.hpp"
@@ -23,16 +24,8 @@ class CoupledOscillators {
   static constexpr int quantities = 0;
 
   static systems::ModelInfo info() {
-    systems::ModelInfo info;
-    info.name = "coupled_oscillators";
-    info.title = "Two oscillators";
-    info.meaning = "two self-excited oscillators";
-    info.state_names = {"x", "y", "vx", "vy"};
-    info.winding_names = {"", "", "", ""};
-    constexpr double any = std::numeric_limits<double>::infinity();
-    for (const char* name : {"m", "n", "w", "k", "q", "g"})
-      info.parameters.push_back({name, 1.0, -any, any, false, "1", "coefficient"});
-    return info;
+    return test::described("coupled_oscillators", "two self-excited oscillators", {"x", "y", "vx", "vy"},
+                           {"m", "n", "w", "k", "q", "g"});
   }
 
   static systems::Structure structure(const systems::Bound&) {

@@ -102,7 +102,7 @@ TEST(Lorenz, HasItsKnownHopfPoint) {
     const Eigen::Matrix3d square = jacobian * jacobian;
     EXPECT_NEAR(0.5 * (std::pow(jacobian.trace(), 2) - square.trace()), beta * (sigma + rho), 1e-11);
     EXPECT_NEAR(jacobian.determinant(), -2.0 * sigma * beta * (rho - 1.0), 1e-10);
-    const Eigen::Vector3cd values = jacobian.eigenvalues();
+    const Eigen::VectorXcd values = Eigen::MatrixXd(jacobian).eigenvalues();
     double nearest = 1.0;
     for (const std::complex<double>& value : values)
       if (std::abs(value.imag()) > 1.0) nearest = std::min(nearest, std::abs(value.real()));

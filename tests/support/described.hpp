@@ -1,0 +1,27 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "orbweaver/systems/model_info.hpp"
+
+namespace orbweaver::test {
+
+/// What a system of the tests says of itself: no coordinate is an angle that winds, all coefficients are any numbers.
+inline systems::ModelInfo described(std::string name, std::string meaning, std::vector<std::string> states,
+                                    const std::vector<std::string>& coefficients = {}, double each = 1.0) {
+  constexpr double any = std::numeric_limits<double>::infinity();
+  systems::ModelInfo info;
+  info.name = std::move(name);
+  info.title = meaning;
+  info.meaning = std::move(meaning);
+  info.winding_names.resize(states.size());
+  info.state_names = std::move(states);
+  for (const std::string& coefficient : coefficients)
+    info.parameters.push_back({coefficient, each, -any, any, false, "1", "coefficient"});
+  return info;
+}
+
+}  // namespace orbweaver::test
