@@ -64,12 +64,20 @@ constexpr double uneven = 0.2;
 
 constexpr TestFunction index_two() { return {TestFunction::Kind::sector, {1, 0}}; }
 
+/// The curve between two orbits.
+struct Step : continuation::FamilyCurve {
+  Step(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
+       const continuation::Options& options, const KnownStability& from, const KnownStability& to)
+      : FamilyCurve(system, isotropy, options) {
+    add(0.0, from.orbit.loop);
+    add(1.0, to.orbit.loop);
+  }
+};
+
 /// Whether the curve between the orbits is there, and the index comes to 2 on it.
 bool has_index_two_between(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
                            const continuation::Options& options, const KnownStability& from, const KnownStability& to) {
-  continuation::FamilyCurve step(system, isotropy, options);
-  step.add(0.0, from.orbit.loop);
-  step.add(1.0, to.orbit.loop);
+  Step step(system, isotropy, options, from, to);
   const auto value_of = [&](const spectrum::Stability& s) {
     return evaluate(index_two(), system->structure(), s).value;
   };
@@ -177,12 +185,7 @@ bool passes_one_without_gap(const std::shared_ptr<const systems::System>& system
 /// a curve with an orbit of that multiplier. Without pairs nothing else tells.
 bool passes_one_across_gap(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
                            const continuation::Options& options, const KnownStability& from, const KnownStability& to) {
-  const int before = evaluate(index_two(), system->structure(), from.stability).sign();
-  const int after = evaluate(index_two(), system->structure(), to.stability).sign();
-  if (before * after >= 0) return false;
-  continuation::FamilyCurve step(system, isotropy, options);
-  step.add(0.0, from.orbit.loop);
-  step.add(1.0, to.orbit.loop);
+  Step step(system, isotropy, options, from, to);
   const std::optional<continuation::CurvePoint> start = step.at(0.0, true);
   const std::optional<continuation::CurvePoint> end = step.at(1.0, true);
   if (!start || !end || level_slope(*system, *start) * level_slope(*system, *end) < 0.0) return false;
@@ -191,6 +194,22 @@ bool passes_one_across_gap(const std::shared_ptr<const systems::System>& system,
 
 /// Of the amplitude: over shorter steps the sense of rotation changes by rounding, or where an index passes 2.
 constexpr double rotating_steps = 1e-3;
+
+/// A prediction that is far off may have met another family. And where a family turns aside before an index is 2,
+/// another one begins on the other side, whose index is as it was.
+bool is_doubtful(const systems::Structure& system, const continuation::Options& options, const KnownStability& from,
+                 const KnownStability& to) {
+  const double length = continuation::arclength_between(from.orbit.loop, to.orbit.loop);
+  return length >= options.smallest_jump && (to.orbit.halvings > 0 || is_to_pass_two(system, from, length));
+}
+
+/// Of a step on which no index passes 2.
+bool has_jumped_unseen(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
+                       const continuation::Options& options, const KnownStability& from, const KnownStability& to) {
+  if (!is_doubtful(system->structure(), options, from, to)) return false;
+  Step step(system, isotropy, options, from, to);
+  return !is_one_curve(step);
+}
 
 }  // namespace
 
@@ -266,8 +285,12 @@ bool is_one_curve(continuation::FamilyCurve& step) {
 
 bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
                 const continuation::Options& options, const KnownStability& from, const KnownStability& to) {
-  if (!system->structure().symplectic) return passes_one_across_gap(system, isotropy, options, from, to);
   const double length = continuation::arclength_between(from.orbit.loop, to.orbit.loop);
+  const int before = evaluate(index_two(), system->structure(), from.stability).sign();
+  const int after = evaluate(index_two(), system->structure(), to.stability).sign();
+  if (!system->structure().symplectic)
+    return before * after < 0 ? passes_one_across_gap(system, isotropy, options, from, to)
+                              : has_jumped_unseen(system, isotropy, options, from, to);
   const bool has_turned = are_turns_asked(from.stability, to.stability, length, options.smallest_jump) &&
                           rotates_too_far(from.stability, to.stability);
   if (has_turned && are_counted(from.stability, to.stability)) return true;
@@ -279,20 +302,11 @@ bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop
   if (has_turned &&
       loop::mean_distance(from.orbit.loop, to.orbit.loop) > rotating_steps * loop::rms_amplitude(to.orbit.loop))
     return true;
-  const int before = evaluate(index_two(), system->structure(), from.stability).sign();
-  const int after = evaluate(index_two(), system->structure(), to.stability).sign();
   if (before * after == 0) return false;
-  continuation::FamilyCurve step(system, isotropy, options);
-  step.add(0.0, from.orbit.loop);
-  step.add(1.0, to.orbit.loop);
-  // A prediction that is far off may have met another family. And where a family turns aside before an index is 2,
-  // another one begins on the other side, whose index is as it was.
-  if (before == after) {
-    const bool is_doubtful = to.orbit.halvings > 0 || is_to_pass_two(system->structure(), from, length);
-    return is_doubtful && length >= options.smallest_jump && !is_one_curve(step);
-  }
+  if (before == after) return has_jumped_unseen(system, isotropy, options, from, to);
   if (!passes_two_only_at_folds(system->structure(), isotropy))
     return !has_index_two_between(system, isotropy, options, from, to);
+  Step step(system, isotropy, options, from, to);
   const std::optional<continuation::CurvePoint> start = step.at(0.0, true);
   const std::optional<continuation::CurvePoint> end = step.at(1.0, true);
   if (!start || !end) return true;

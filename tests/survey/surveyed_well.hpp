@@ -26,7 +26,7 @@ inline Atlas survey_of(std::shared_ptr<const systems::System> system, const std:
       "starts.sweep.period=auto",     "survey.subharmonics=4",          "survey.depth=2"};
   all.insert(all.end(), overrides.begin(), overrides.end());
   const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/henon_heiles.yaml", all);
-  const auto folder = fresh_folder(system->name(), comm.get());
+  const auto folder = fresh_folder(system->info().name, comm.get());
   const survey::Summary summary = survey::run_survey(comm, scene, std::move(system), folder, {});
   EXPECT_EQ(summary.failures, 0U) << testing::PrintToString(summary.failed_tasks);
   for (const survey::FindingSummary& line : summary.findings)
