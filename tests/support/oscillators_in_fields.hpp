@@ -19,8 +19,8 @@ class OscillatorsInFields {
   static constexpr int quantities = 1;
 
   static systems::ModelInfo info() {
-    return test::described("oscillators_in_fields", "three oscillators in magnetic fields", {"q1", "q2", "q3", "p1", "p2", "p3"},
-                           {"a", "b", "c"}, 0.0);
+    return test::described("oscillators_in_fields", "three oscillators in magnetic fields",
+                           {"q1", "q2", "q3", "p1", "p2", "p3"}, {"a", "b", "c"}, 0.0);
   }
 
   static systems::Structure structure(const systems::Bound&) {

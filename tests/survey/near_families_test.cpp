@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "support/double_well.hpp"
@@ -28,7 +29,7 @@ TEST(NearFamilies, ATurnBesideAnotherFamilyIsFollowedWhateverTheStep) {
   const std::vector<double> periods = usual.column("period", name);
   EXPECT_LT(*std::max_element(periods.begin(), periods.end()), 15.3771824);
   EXPECT_TRUE(usual.crossing(name, "fold-period", 15.3771823865).has_value());
-  EXPECT_EQ(usual.end_of(name), "energy limit");
+  EXPECT_THAT(usual.end_of(name), testing::StartsWith("energy limit"));
   for (const std::string step : {"0.02", "0.1"}) {
     SCOPED_TRACE(step);
     test::expect_same_tree(usual, with(step));
