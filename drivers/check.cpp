@@ -137,6 +137,10 @@ void print_simulated(const scene::Scene& scene, const systems::System& system,
     lines.emplace_back(
         "not declared",
         fmt::format("perhaps a momentum: the field stays the same along translations of {}", fmt::join(moved, ", ")));
+  if (const std::vector<std::string> turned = systems::undeclared_turns(system, points); !turned.empty())
+    lines.emplace_back("not declared",
+                       fmt::format("perhaps an angular momentum: the field stays the same under turns of {}",
+                                   fmt::join(turned, ", ")));
   if (systems::may_be_symplectic(system, points))
     lines.emplace_back(
         "not declared",

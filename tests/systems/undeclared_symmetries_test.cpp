@@ -48,6 +48,25 @@ TEST(UndeclaredSymmetries, AreThoseAtAllValuesOfAParameterThatMoves) {
               ElementsAre("the reversor (x, y, px, py) -> (x, y, -px, -py)"));
 }
 
+TEST(UndeclaredSymmetries, AreTurnsAboutAnAxis) {
+  std::map<std::string, double> well{{"k1", 3.0}, {"k2", 3.0}, {"e", 0.0}, {"c", 1.0}};
+  for (const char* cubic : {"a1", "a2", "a3", "a4"}) well[cubic] = 0.0;
+  EXPECT_THAT(undeclared_turns(*test::magnetic_well(well), origin), ElementsAre("x", "y", "px", "py"));
+  const Eigen::Vector4d offset(2.0, 0.0, -1.0, 0.5);
+  const test::TranslatedSystem moved(test::magnetic_well(well), offset);
+  EXPECT_THAT(undeclared_turns(moved, origin), IsEmpty());
+  EXPECT_THAT(undeclared_turns(moved, {{2.0, 0.0, -1.0, 0.5}}), ElementsAre("x", "y", "px", "py"));
+  for (const char* name : {"k1", "a1", "c", "e"}) {
+    std::map<std::string, double> uneven = well;
+    uneven[name] += 1e-6;
+    EXPECT_THAT(undeclared_turns(*test::magnetic_well(uneven), origin), IsEmpty()) << name;
+  }
+  well["q"] = 0.0;
+  EXPECT_THAT(undeclared_turns(*test::magnetic_well(well), origin), IsEmpty()) << "linear: all orbits close or none";
+  for (const char* name : {"double_pendulum", "henon_heiles", "pcr3bp", "swinging_spring"})
+    EXPECT_THAT(undeclared_turns(*make_system(name), origin), IsEmpty()) << name;
+}
+
 TEST(UndeclaredSymmetries, AreNotWhatIsDeclared) {
   for (const char* name : {"double_pendulum", "henon_heiles", "pcr3bp", "swinging_spring"})
     EXPECT_THAT(undeclared_symmetries(*make_system(name), origin), IsEmpty()) << name;
