@@ -24,6 +24,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "orbweaver/systems/undeclared_symmetries.hpp"
+#include "orbweaver/systems/undeclared_turns.hpp"
 #include "structure_text.hpp"
 
 namespace orbweaver::drivers {

@@ -1,3 +1,5 @@
+#include "orbweaver/systems/undeclared_turns.hpp"
+
 #include <algorithm>
 #include <cstddef>
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "orbweaver/systems/registry.hpp"
+#include "orbweaver/systems/undeclared_turns.hpp"
 #include "support/magnetic_well.hpp"
 #include "support/translated_system.hpp"
 

@@ -19,6 +19,7 @@
 #include "orbweaver/survey/tree/naming.hpp"
 #include "orbweaver/systems/identities.hpp"
 #include "orbweaver/systems/undeclared_symmetries.hpp"
+#include "orbweaver/systems/undeclared_turns.hpp"
 #include "tasks/payload/keys.hpp"
 #include "tasks/payload/work.hpp"
 
@@ -94,8 +95,8 @@ void remark_undeclared(const systems::System& system, const std::vector<SweepOut
                     fmt::join(moved, ", ")));
   if (const std::vector<std::string> turned = systems::undeclared_turns(system, points); !turned.empty())
     summary.remarks.push_back(
-        fmt::format("the field stays the same under turns of {}: with them an angular momentum is conserved, and orbits "
-                    "and crossings are not isolated: take coordinates in which it is one (docs/your_own_system.md, "
+        fmt::format("the field stays the same under turns of {}: with them an angular momentum is conserved, and "
+                    "orbits and crossings are not isolated: take coordinates in which it is one (docs/your_own_system.md, "
                     "\"More conserved quantities\")",
                     fmt::join(turned, ", ")));
   if (systems::may_be_symplectic(system, points))
