@@ -94,11 +94,11 @@ void remark_undeclared(const systems::System& system, const std::vector<SweepOut
                     "conserved quantities\")",
                     fmt::join(moved, ", ")));
   if (const std::vector<std::string> turned = systems::undeclared_turns(system, points); !turned.empty())
-    summary.remarks.push_back(
-        fmt::format("the field stays the same under turns of {}: with them an angular momentum is conserved, and "
-                    "orbits and crossings are not isolated: take coordinates in which it is one (docs/your_own_system.md, "
-                    "\"More conserved quantities\")",
-                    fmt::join(turned, ", ")));
+    summary.remarks.push_back(fmt::format(
+        "the field stays the same under turns of {}: with them an angular momentum is conserved, and "
+        "orbits and crossings are not isolated: take coordinates in which it is one (docs/your_own_system.md, "
+        "\"More conserved quantities\")",
+        fmt::join(turned, ", ")));
   if (systems::may_be_symplectic(system, points))
     summary.remarks.push_back(fmt::format(
         "the eigenvalues at every equilibrium come in pairs +-lambda, as those of Hamiltonian systems do: if this is "
