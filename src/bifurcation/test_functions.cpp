@@ -125,9 +125,29 @@ Reading evaluate(const TestFunction& function, const systems::Structure& system,
   return reading;
 }
 
-double zeros_passed(const TestFunction& function, const spectrum::Stability& stability) {
+namespace {
+
+/// How many of several indices are above the function's place: none passes it unseen while all are real.
+double indices_above(const TestFunction& function, const systems::Structure& system,
+                     const spectrum::Stability& stability) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  if (!has_sector(function.kind) || std::isnan(stability.turns)) return unknown;
+  const std::vector<Bounded> indices = indices_of(system, stability);
+  if (!system.symplectic || indices.size() < 2) return unknown;
+  int above = 0;
+  for (const Bounded& factor : checked_rule(function, system).factors(system, function.sector, indices)) {
+    if (factor.value.imag() != 0.0 || !(std::abs(factor.value.real()) > factor.error)) return unknown;
+    if (factor.value.real() > 0.0) ++above;
+  }
+  return above;
+}
+
+}  // namespace
+
+double zeros_passed(const TestFunction& function, const systems::Structure& system,
+                    const spectrum::Stability& stability) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  if (!has_sector(function.kind)) return unknown;
+  if (std::isnan(stability.turns)) return indices_above(function, system, stability);
   const double place = static_cast<double>(function.sector.j) / function.sector.q;
   if (function.sector.q > 2) return std::floor(stability.turns - place) + std::floor(stability.turns + place);
   const double index = stability.fundamental.front().real();

@@ -42,7 +42,7 @@ struct TurningFamily {
     TestPoint out{position, {}};
     for (const TestFunction& function : functions) {
       out.readings.push_back(evaluate(function, structure(), stability));
-      if (counted) out.passed.push_back(zeros_passed(function, stability));
+      if (counted) out.passed.push_back(zeros_passed(function, structure(), stability));
     }
     if (counted) out.turns = stability.turns;
     return out;
@@ -137,6 +137,61 @@ TEST(DetectorCounts, ATorusPointBesideANeutralSaddleIsBracketed) {
       EXPECT_TRUE(std::any_of(brackets.begin(), brackets.end(),
                               [](const Bracket& b) { return !b.tangency && b.from < torus && torus < b.to; }));
     }
+}
+
+// Of two pairs each index passes 2 within one step: the product of their functions has one sign at both ends, and hardly
+// changes. (Three oscillators with reflections, beside a given orbit: two of three branch points were lost.)
+TEST(DetectorCounts, IndicesThatPassTheirPlaceWithinOneStepAreFound) {
+  systems::Structure structure;
+  structure.dimension = 6;
+  structure.conserved = {"energy"};
+  structure.symplectic = true;
+  const std::vector<TestFunction> functions = test_functions(structure, 1, 2);
+  const auto point = [&](double x, bool counted) {
+    spectrum::Stability stability;
+    stability.fundamental = {2.0 + 1e-3 * (x - 2.3), 2.0 + 1e-3 * (x - 2.6)};
+    stability.fundamental_error = {1e-12, 1e-12};
+    TestPoint out{x, {}};
+    for (const TestFunction& function : functions) {
+      out.readings.push_back(evaluate(function, structure, stability));
+      if (counted) out.passed.push_back(zeros_passed(function, structure, stability));
+    }
+    return out;
+  };
+  const auto found = [&](bool counted) {
+    Detector detector;
+    std::vector<Bracket> brackets;
+    for (double x = 0.0; x < 4.5; x += 1.0)
+      for (const Bracket& bracket :
+           detector.advance(point(x, counted), [&](double at) { return std::optional(point(at, counted)); }))
+        if (functions[bracket.function].kind == TestFunction::Kind::sector) brackets.push_back(bracket);
+    EXPECT_TRUE(detector.missed().empty());
+    return brackets;
+  };
+  const std::vector<Bracket> brackets = found(true);
+  ASSERT_EQ(brackets.size(), 2U);
+  EXPECT_TRUE(brackets[0].from < 2.3 && 2.3 < brackets[0].to);
+  EXPECT_TRUE(brackets[1].from < 2.6 && 2.6 < brackets[1].to);
+  EXPECT_LT(found(false).size(), 2U) << "if signs and minima show them, this is no test of counts";
+}
+
+// A pair that leaves the real axis as a quadruplet may come back elsewhere: nothing is counted.
+TEST(DetectorCounts, NothingIsCountedOfIndicesThatAreNotRealOrNotTold) {
+  systems::Structure structure;
+  structure.dimension = 6;
+  structure.conserved = {"energy"};
+  structure.symplectic = true;
+  const TestFunction two{TestFunction::Kind::sector, {1, 0}};
+  spectrum::Stability stability;
+  stability.fundamental_error = {1e-9, 1e-9};
+  stability.fundamental = {2.5, 3.0};
+  EXPECT_EQ(zeros_passed(two, structure, stability), 2.0);
+  stability.fundamental = {1.5, 3.0};
+  EXPECT_EQ(zeros_passed(two, structure, stability), 1.0);
+  stability.fundamental = {2.0 + 1e-10, 3.0};
+  EXPECT_TRUE(std::isnan(zeros_passed(two, structure, stability)));
+  stability.fundamental = {{2.5, 0.1}, {2.5, -0.1}};
+  EXPECT_TRUE(std::isnan(zeros_passed(two, structure, stability)));
 }
 
 TEST(DetectorCounts, CountedZerosThatCannotBeBracketedAreTold) {

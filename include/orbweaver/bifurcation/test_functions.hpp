@@ -69,9 +69,12 @@ struct TestFunction {
                                const spectrum::Stability& stability);
 
 /// How many zeros of the function a family has passed whose multiplier has turned so far (`Stability::turns`), but for
-/// a constant. NaN where that is not known: of functions without a sector, and for q = 1 and 2 at orbits that have
-/// opened there (an index beyond 2, or -2), where the sign tells.
-[[nodiscard]] double zeros_passed(const TestFunction& function, const spectrum::Stability& stability);
+/// a constant. Of several pairs that are no complex quadruplet: how many indices are above the place, which changes by
+/// as many as pass it upwards more than downwards. NaN where that is not known: of functions without a sector, for
+/// q = 1 and 2 at orbits that have opened there (an index beyond 2, or -2), where the sign tells, and where an index is
+/// at the place within its error.
+[[nodiscard]] double zeros_passed(const TestFunction& function, const systems::Structure& system,
+                                  const spectrum::Stability& stability);
 
 /// Whether double precision tells at the orbit what its indices pass: false where one of a pair that is on the unit
 /// circle, or near it (|k| <= 3), is known to worse than 1e-4. Beside a motion a thousand times as fast the phase that

@@ -56,7 +56,8 @@ bifurcation::TestPoint FollowedBranch::test_point(double position,
   for (const bifurcation::TestFunction& function : functions) {
     out.readings.push_back(decided ? bifurcation::evaluate(function, system->structure(), *stability)
                                    : bifurcation::Reading{archive::not_computed, archive::not_computed});
-    out.passed.push_back(decided ? bifurcation::zeros_passed(function, *stability) : archive::not_computed);
+    out.passed.push_back(decided ? bifurcation::zeros_passed(function, system->structure(), *stability)
+                                 : archive::not_computed);
   }
   if (decided && bifurcation::is_elliptic(*stability)) out.turns = stability->turns;
   return out;
