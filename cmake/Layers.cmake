@@ -66,7 +66,7 @@ function(orbweaver_precompiled_headers target)
 endfunction()
 
 # Several sources of a target in one translation unit (docs/building.md): what they share is read and instantiated once.
-# Sources without a namespace of their own meet in a batch: more of them have names that are the same.
+# `batch` sources at a time. Tests have a namespace each; in larger batches of the layers names would meet.
 function(orbweaver_unity_build target batch)
   if(ORBWEAVER_UNITY_BUILD)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})

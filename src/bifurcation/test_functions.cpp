@@ -75,6 +75,20 @@ constexpr double near_circle = 3.0;
 /// Of its bound, the error that an index may have: the bound is an estimate, good to a factor.
 constexpr double error_margin = 10.0;
 
+/// How many of several indices are above the function's place: none passes it unseen while all are real.
+double indices_above(const TestFunction& function, const systems::Structure& system,
+                     const spectrum::Stability& stability) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Bounded> indices = indices_of(system, stability);
+  if (!system.symplectic || indices.size() < 2) return unknown;
+  int above = 0;
+  for (const Bounded& factor : checked_rule(function, system).factors(system, function.sector, indices)) {
+    if (factor.value.imag() != 0.0 || !(std::abs(factor.value.real()) > factor.error)) return unknown;
+    if (factor.value.real() > 0.0) ++above;
+  }
+  return above;
+}
+
 }  // namespace
 
 bool are_decided(const spectrum::Stability& stability) {
@@ -124,24 +138,6 @@ Reading evaluate(const TestFunction& function, const systems::Structure& system,
   reading.error += roundings_a_factor * static_cast<double>(factors.size());
   return reading;
 }
-
-namespace {
-
-/// How many of several indices are above the function's place: none passes it unseen while all are real.
-double indices_above(const TestFunction& function, const systems::Structure& system,
-                     const spectrum::Stability& stability) {
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<Bounded> indices = indices_of(system, stability);
-  if (!system.symplectic || indices.size() < 2) return unknown;
-  int above = 0;
-  for (const Bounded& factor : checked_rule(function, system).factors(system, function.sector, indices)) {
-    if (factor.value.imag() != 0.0 || !(std::abs(factor.value.real()) > factor.error)) return unknown;
-    if (factor.value.real() > 0.0) ++above;
-  }
-  return above;
-}
-
-}  // namespace
 
 double zeros_passed(const TestFunction& function, const systems::Structure& system,
                     const spectrum::Stability& stability) {

@@ -1,6 +1,5 @@
 #include "orbweaver/systems/undeclared_turns.hpp"
 
-#include <algorithm>
 #include <cstddef>
 
 #include "orbweaver/numerics/decompositions.hpp"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "orbweaver/systems/model_info.hpp"
+#include "orbweaver/systems/structure.hpp"
 
 namespace orbweaver::test {
 
@@ -22,6 +23,17 @@ inline systems::ModelInfo described(std::string name, std::string meaning, std::
   for (const std::string& coefficient : coefficients)
     info.parameters.push_back({coefficient, each, -any, any, false, "1", "coefficient"});
   return info;
+}
+
+/// Of a particle in the plane, by its two coordinates and their momenta: an energy, and the same motions backwards.
+inline systems::Structure structure_in_plane() {
+  const Eigen::Matrix4d back = Eigen::Vector4d(1, 1, -1, -1).asDiagonal();
+  systems::Structure structure;
+  structure.dimension = 4;
+  structure.conserved = {"energy"};
+  structure.symplectic = true;
+  structure.reversors = {{"R", back}};
+  return structure;
 }
 
 }  // namespace orbweaver::test

@@ -19,15 +19,7 @@ class DoubleWell {
     return test::described("double_well", "a particle in two wells", {"x", "y", "px", "py"}, {"t", "w", "k", "c"});
   }
 
-  static systems::Structure structure(const systems::Bound&) {
-    const Eigen::Matrix4d back = Eigen::Vector4d(1, 1, -1, -1).asDiagonal();
-    systems::Structure structure;
-    structure.dimension = dimension;
-    structure.conserved = {"energy"};
-    structure.symplectic = true;
-    structure.reversors = {{"R", back}};
-    return structure;
-  }
+  static systems::Structure structure(const systems::Bound&) { return test::structure_in_plane(); }
 
   template <class P>
   class With {

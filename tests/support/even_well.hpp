@@ -22,13 +22,9 @@ class EvenWell {
 
   static systems::Structure structure(const systems::Bound&) {
     const Eigen::Matrix4d mirror = Eigen::Vector4d(-1, 1, -1, 1).asDiagonal();
-    const Eigen::Matrix4d back = Eigen::Vector4d(1, 1, -1, -1).asDiagonal();
-    systems::Structure structure;
-    structure.dimension = dimension;
-    structure.conserved = {"energy"};
-    structure.symplectic = true;
+    systems::Structure structure = test::structure_in_plane();
     structure.equivariances = {{"S", mirror}};
-    structure.reversors = {{"R", back}, {"RS", back * mirror}};
+    structure.reversors.push_back({"RS", structure.reversors.front().map.matrix * mirror});
     return structure;
   }
 

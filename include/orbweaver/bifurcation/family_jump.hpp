@@ -53,9 +53,10 @@ struct KnownStability {
 /// cannot be told, which a shorter step may change: neighbours of the two orbits go around by angles too far apart
 /// (`rotates_too_far`), the directions of the family at the two orbits cannot be had, or one turns too far from the
 /// chord (`least_cosine` of the options). On other families of a symplectic system: an index has passed 2, and no orbit
-/// between the two has it. On all of them: the prediction was far off, or an index was on its way through 2 (`slope` of
-/// `from`) and has not passed it, and the orbits between are not one curve. Along a parameter, of systems without pairs
-/// of multipliers: an odd number of them has passed 1 where the parameter does not turn, and no orbit between has one.
+/// between the two has it. Along a parameter, of systems without pairs of multipliers: an odd number of them has passed
+/// 1 where the parameter does not turn, and no orbit between has one. On all of them: the prediction was far off
+/// (`Orbit::halvings`), or an index was on its way through 2 (`slope` of `from`) and has not passed it, and the orbits
+/// between are not one curve.
 [[nodiscard]] bool has_jumped(const std::shared_ptr<const systems::System>& system, const loop::Isotropy& isotropy,
                               const continuation::Options& options, const KnownStability& from,
                               const KnownStability& to);
