@@ -1,11 +1,15 @@
 // What lies between a family's last orbit and the orbit of another one that it meets gone around several times.
 #include <algorithm>
+#include <map>
 #include <string>
+#include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "orbweaver/scene/scene.hpp"
 #include "orbweaver/survey/run/survey.hpp"
+#include "support/driven_oscillator.hpp"
 #include "support/oscillators_in_fields.hpp"
 #include "survey/atlas.hpp"
 
@@ -13,6 +17,72 @@ namespace way_to_meeting_test {
 namespace {
 
 using namespace orbweaver;
+
+/// Families of a driven oscillator along its drive's amplitude, from equilibria at these places, with their doublings.
+struct Driven {
+  survey::Summary summary;
+  std::string wrong;      // contradictions
+  std::string undecided;  // without those on multipliers that are large
+};
+
+Driven driven(const std::map<std::string, double>& parameters, const std::string& places, const std::string& most,
+              const std::string& longest) {
+  const core::Communicator comm;
+  const scene::Scene scene =
+      scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/duffing.yaml",
+                  {"starts={fixed_points: {grid: [" + places + ", [0], [0]]}}", "continuation.free=F", "survey.depth=2",
+                   "survey.subharmonics=2", "limits.parameter=[0, " + most + "]", "limits.period=" + longest});
+  Driven out;
+  const auto folder = test::fresh_folder("driven" + std::to_string(comm.size()), comm.get());
+  out.summary = survey::run_survey(comm, scene, test::driven_oscillator(parameters), folder, {});
+  for (const survey::FindingSummary& line : out.summary.findings) {
+    if (line.severity == survey::Severity::contradiction) out.wrong += line.text + "\n";
+    if (line.severity == survey::Severity::undecided &&
+        line.text.find("a stability index is known") == std::string::npos)
+      out.undecided += line.text + "\n";
+  }
+  return out;
+}
+
+// Its multiplier is -19862 at the last orbit, 1 at the meeting and -1 on the way; shooting has it at F = 0.476561877.
+TEST(WayToMeeting, ADoublingBehindTheLastOrbitIsFound) {
+  const Driven found =
+      driven({{"w", 0.9942}, {"d", 0.1518}, {"a1", -1}, {"a3", 1}, {"a2", 0.00946}}, "[-1]", "0.6", "45");
+  if (!core::Communicator().is_root()) return;
+  EXPECT_EQ(found.summary.failures, 0U);
+  EXPECT_EQ(found.wrong, "");
+  const test::Atlas atlas(found.summary.atlas);
+  double nearest = 1.0;
+  for (std::size_t row = 0; row < atlas.crossings().rows(); ++row) {
+    const auto family = static_cast<std::size_t>(atlas.crossings().integers("family")[row]);
+    if (atlas.families().texts("name")[family] == "Equilibrium 1 DD1" &&
+        atlas.crossings().texts("kind")[row] == "period-doubling")
+      nearest = std::min(nearest, std::abs(atlas.crossings().reals("parameter")[row] - 0.476561877));
+  }
+  EXPECT_LT(nearest, 1e-8);
+}
+
+// A pendulum with a torque. D comes back to the first family at F = 1.305711946, and is doubled at 1.305711696: what is
+// born there goes four times around an orbit of the first family, nearly. It meets D, and is one family, not two.
+TEST(WayToMeeting, AFamilyThatComesNearTwoMeetsTheOneThatItComesFrom) {
+  const Driven found = driven({{"w", 0.5735}, {"d", 0.1853}, {"s", 1}, {"c", 0.3024}}, "[0.3]", "1.6", "50");
+  if (!core::Communicator().is_root()) return;
+  EXPECT_EQ(found.summary.failures, 0U);
+  EXPECT_EQ(found.wrong, "");
+  EXPECT_EQ(found.undecided, "");
+  const test::Atlas atlas(found.summary.atlas);
+  EXPECT_EQ(atlas.families().rows(), 4U);
+  EXPECT_THAT(atlas.end_of("Equilibrium 1 DD2"), testing::StartsWith("joined Equilibrium 1 D at T = 43.82343"));
+}
+
+// Another such pendulum: where no orbit so near to the meeting is found that it shows the multiplier 1, that is said.
+TEST(WayToMeeting, AWayThatIsNotSeenIsUndecided) {
+  const Driven found = driven({{"w", 0.5377}, {"d", 0.3976}, {"s", 1}, {"c", 0.4048}}, "[0.3]", "1.6", "50");
+  if (!core::Communicator().is_root()) return;
+  EXPECT_EQ(found.summary.failures, 0U);
+  EXPECT_EQ(found.wrong, "");
+  EXPECT_THAT(found.undecided, testing::HasSubstr("where no multiplier is near 1"));
+}
 
 // A branch that three turns of another end turns in T at E = 0.309758, between its last step and the meeting. Another
 // model of it by shooting has the fold at T = 9.403024 too.

@@ -57,10 +57,12 @@ constexpr double settled = 1e-4;
 constexpr int most_on_the_way = 6;
 /// Where the corrector has slipped or failed, so much of that way is left to look on. Not measured.
 constexpr double nearer = 0.5;
-/// Places at which slopes tell folds on the way to the meeting: each leaves so much less of the way before it, the last
-/// about 6e-5 of the way from the last orbit.
-constexpr int most_places_before = 7;
+/// Places at which slopes tell folds, and functions their zeros, on the way to the meeting: each leaves so much less of
+/// the way before it, and there are no more where so little of the part is left.
 constexpr double of_what_is_left = 0.75;
+constexpr double least_before = 1e-4;
+/// The seventh lies there where the part falls evenly. Others lie where the corrector slips. Not measured.
+constexpr int most_places_before = 12;
 /// The part is proportional to its signed part where it vanishes: its size may be so many times that, and so much more.
 /// A part that turns instead of vanishing keeps a size of about 1.
 constexpr double proportional = 2.0;
@@ -87,6 +89,11 @@ double vanishes_at(const Place& one, const Place& other) {
   const double from = one.part * one.part;
   const double to = other.part * other.part;
   return other.position + to / (from - to) * (other.position - one.position);
+}
+
+/// Where the part itself does, falling evenly.
+double falls_to_zero_at(const Place& one, const Place& other) {
+  return other.position + other.part / (one.part - other.part) * (other.position - one.position);
 }
 
 int multiplicity_of(const bifurcation::SymmetryGain& gain) {
@@ -207,6 +214,42 @@ std::vector<bifurcation::SymmetryGain> vanishing(std::vector<bifurcation::Symmet
   return kept;
 }
 
+/// From the orbit at `from` on. False where the part turns on the way: orbits beyond are another family's, of less
+/// symmetry, beside which the one that is met branches off (a cascade of period doublings within 3e-7 of a parameter:
+/// what goes four times around the first orbit comes near to that, and meets the second).
+bool add_places(Arrival& arrival, continuation::FamilyCurve& family, const bifurcation::SymmetryWatch& watch,
+                double from) {
+  auto last = family.at(from, true);
+  if (!last || last->tangent.empty()) return true;
+  std::vector<continuation::CurvePoint>& places = arrival.places;
+  places.push_back(*std::move(last));
+  Place before{from, 1.0};
+  double meeting = arrival.position;
+  double beyond = std::numeric_limits<double>::infinity();
+  bool is_all_the_way = true;
+  for (int n = 0; n < most_places_before && before.part > least_before; ++n) {
+    const double place = before.position + of_what_is_left * (meeting - before.position);
+    auto point = family.at(place, true);
+    const auto part_from = [&](const continuation::CurvePoint& one) {
+      return point && !point->tangent.empty() ? watch.signed_part(arrival.gain, one.loop, point->loop) : 0.0;
+    };
+    const double part = part_from(places.front());
+    const continuation::CurvePoint& first = places[places.size() > 1 ? 1 : 0];
+    const bool turns =
+        part > slipped && watch.relative_size(arrival.gain, first.loop, point->loop) > beside * part_from(first);
+    if (turns) is_all_the_way = false;
+    if (turns || !(part > slipped)) {  // beyond the meeting, or the corrector has slipped onto the family that is met
+      meeting = beyond = place;
+      continue;
+    }
+    const Place here{place, part};
+    if (part < before.part) meeting = std::min(falls_to_zero_at(before, here), beyond);
+    before = here;
+    places.push_back(*std::move(point));
+  }
+  return is_all_the_way;
+}
+
 /// What harmonics may leave out of a sketch: far below the distances that directions are told by.
 constexpr double of_sketches = 1e-8;
 
@@ -231,26 +274,18 @@ std::optional<Arrival> arrival_between(const systems::System& system, continuati
                                        const bifurcation::SymmetryWatch::SampledOrbit& from_sampled,
                                        const continuation::Orbit& to,
                                        const bifurcation::SymmetryWatch::SampledOrbit& to_sampled) {
+  std::optional<Arrival> first;
   for (const bifurcation::SymmetryGain& gain :
-       vanishing(watch.all_passed(from_sampled, to_sampled), family, watch, from, to))
-    if (auto arrival = arrival_by(system, family, watch, gain, from, to)) return arrival;
-  return std::nullopt;
-}
-
-std::vector<continuation::CurvePoint> places_before(const Arrival& arrival, continuation::FamilyCurve& family,
-                                                    const bifurcation::SymmetryWatch& watch,
-                                                    const continuation::CurvePoint& last) {
-  std::vector<continuation::CurvePoint> points{last};
-  double meeting = arrival.position;
-  for (int n = 0; n < most_places_before; ++n) {
-    const double place = points.back().position + of_what_is_left * (meeting - points.back().position);
-    auto point = family.at(place, true);
-    if (point && !point->tangent.empty() && watch.signed_part(arrival.gain, last.loop, point->loop) > slipped)
-      points.push_back(std::move(*point));
-    else  // beyond the meeting, or the corrector has slipped onto the family that is met
-      meeting = place;
+       vanishing(watch.all_passed(from_sampled, to_sampled), family, watch, from, to)) {
+    if (first && !watch.generates(first->gain, gain)) continue;
+    std::optional<Arrival> arrival = arrival_by(system, family, watch, gain, from, to);
+    if (!arrival) continue;
+    const bool is_all_the_way = add_places(*arrival, family, watch, from.arclength);
+    if (arrival->places.size() > 1) arrival->record.nearest = sketch_of(arrival->places.back().loop);
+    if (is_all_the_way) return arrival;
+    if (!first) first = std::move(arrival);
   }
-  return points;
+  return first;
 }
 
 bool locate_beneath(const std::shared_ptr<const systems::System>& system, const continuation::Options& options,

@@ -17,7 +17,10 @@ struct Arrival {
   ArrivalRecord record;
   bifurcation::SymmetryGain gain;  ///< what is gained there
   double position = 0.0;           ///< of the meeting along the branch, nearly
-  loop::Loop near;                 ///< the orbit before it that was found nearest to it
+  loop::Loop near;                 ///< the orbit before it that its period and energy were extrapolated from
+  /// Orbits of the branch, with its directions, from its last one before the meeting, ever nearer to that. Empty where
+  /// the last one has no direction.
+  std::vector<continuation::CurvePoint> places;
 };
 
 /// Where the branch meets a family with more symmetry between two of its orbits, if it does. Beyond that point lie the
@@ -29,13 +32,6 @@ struct Arrival {
                                                      const bifurcation::SymmetryWatch::SampledOrbit& from_sampled,
                                                      const continuation::Orbit& to,
                                                      const bifurcation::SymmetryWatch::SampledOrbit& to_sampled);
-
-/// Orbits of the branch, with its directions, from `last`, its last one before the meeting, ever nearer to the meeting;
-/// `last` is the first of them.
-[[nodiscard]] std::vector<continuation::CurvePoint> places_before(const Arrival& arrival,
-                                                                  continuation::FamilyCurve& family,
-                                                                  const bifurcation::SymmetryWatch& watch,
-                                                                  const continuation::CurvePoint& last);
 
 /// Locates the crossing that the branch meets, as often around as it goes, near `last`, the branch's last orbit, and
 /// takes period and energy from there. False, and nothing changes, where `last` does not lie beside such a crossing.

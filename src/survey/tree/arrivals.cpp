@@ -55,7 +55,11 @@ bool within_window(const ArrivalRecord& arrival, const LocateOutcome& crossing) 
 
 std::optional<Meeting> Arrivals::meeting(const ArrivalRecord& arrival, const LocateOutcome& crossing) const {
   if (!within_window(arrival, crossing)) return std::nullopt;
-  const loop::Loop& near = arrival.near;
+  std::optional<Meeting> met = met_by(arrival.near, crossing);
+  return met || arrival.nearest.modes.empty() ? met : met_by(arrival.nearest, crossing);
+}
+
+std::optional<Meeting> Arrivals::met_by(const loop::Loop& near, const LocateOutcome& crossing) const {
   const bool is_third = crossing.q == 3 && crossing.multiplicity == 3;
   const auto size = [&](const loop::Loop& gap) { return not_repeated(gap, crossing.multiplicity); };
   std::optional<Meeting> best;
@@ -70,8 +74,7 @@ std::optional<Meeting> Arrivals::meeting(const ArrivalRecord& arrival, const Loc
       const double unit = is_third ? size(along) : loop::mean_distance(base, along);
       const loop::Loop expected = loop::moved(base, way, distance / unit);
       const loop::Alignment alignment = loop::align(_system, near, expected);
-      const double apart =
-          is_third ? size(gap_between(loop::aligned(near, alignment), expected)) : alignment.distance;
+      const double apart = is_third ? size(gap_between(loop::aligned(near, alignment), expected)) : alignment.distance;
       double away = apart / distance;
       if (alignment.reversing || alignment.name != "1") away = (1.0 + image_further) * away + least_further;
       if (away < nearest) {

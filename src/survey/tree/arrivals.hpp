@@ -40,13 +40,15 @@ class Arrivals {
   };
   /// The nearest direction of the crossing, if any is near.
   [[nodiscard]] std::optional<Meeting> meeting(const ArrivalRecord& arrival, const LocateOutcome& crossing) const;
+  /// Of the directions at a crossing the nearest to that in which an orbit of the branch lies, if it is near enough.
+  [[nodiscard]] std::optional<Meeting> met_by(const loop::Loop& near, const LocateOutcome& crossing) const;
 
   void compare(const std::string& branch, const ArrivalRecord& arrival, const LocateOutcome& crossing);
 
   const systems::Structure& _system;
   std::set<std::pair<std::string, std::string>> _apart;  // a branch, a crossing
-  std::multimap<double, Arrived> _arrived;          // by the period where they meet
-  std::multimap<double, LocateOutcome> _crossings;  // by the period of the born orbits
+  std::multimap<double, Arrived> _arrived;               // by the period where they meet
+  std::multimap<double, LocateOutcome> _crossings;       // by the period of the born orbits
 };
 
 }  // namespace orbweaver::survey

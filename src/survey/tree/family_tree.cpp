@@ -103,6 +103,7 @@ void FamilyTree::add_branch(const std::string& key, EndedBranch branch) {
     for (ArrivalRecord& arrival : branch.outcome->arrival) {
       meetings = _arrivals.add_branch(key, arrival);
       arrival.near = {};
+      arrival.nearest = {};
     }
   }
   const auto [place, is_new] = _branches.try_emplace(key, std::move(branch));

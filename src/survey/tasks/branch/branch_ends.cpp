@@ -58,9 +58,8 @@ void BranchEnds::indices_from_birth(continuation::FamilyCurve& curve) {
   const auto probe = [&](double position) -> std::optional<bifurcation::TestPoint> {
     const auto point = curve.at(position);
     if (!point || continuation::way_from(_followed.start, point->loop).is_along_base()) return std::nullopt;
-    return _events.test_point(
-        position, point->loop,
-        stability_of(*_followed.system, point->loop, _followed.start.isotropy, _followed.team));
+    return _events.test_point(position, point->loop,
+                              stability_of(*_followed.system, point->loop, _followed.start.isotropy, _followed.team));
   };
   std::optional<spectrum::Stability> birth =
       stability_of(*_followed.system, _followed.start.base, _followed.start.isotropy, _followed.team);
@@ -96,8 +95,8 @@ void BranchEnds::indices_from_birth(continuation::FamilyCurve& curve) {
       return b.function == f && b.to <= place->position;
     });
     if (passed > 1.0 && passed > static_cast<double>(bracketed))
-      _events.add_missed({f, known[0].position, place->position,
-                          static_cast<int>(passed) - static_cast<int>(bracketed)});
+      _events.add_missed(
+          {f, known[0].position, place->position, static_cast<int>(passed) - static_cast<int>(bracketed)});
   }
 }
 
@@ -161,7 +160,7 @@ std::vector<continuation::Orbit> BranchEnds::look_behind_last(const std::optiona
   WayToEnd way;
   way.points = {*last};
   if (arrival) {
-    way.points = places_before(*arrival, _followed.curve, _symmetry, *last);
+    if (!arrival->places.empty()) way.points = arrival->places;
     if (way.points.size() > 1) way.crossing = way.points.back().loop;
   }
   for (const bifurcation::Fold& fold : borne_out(*_followed.system, _followed.start.isotropy, before_last, way))
@@ -206,12 +205,15 @@ void BranchEnds::add_orbits(const std::vector<continuation::CurvePoint>& places,
 
 std::vector<continuation::Orbit> BranchEnds::orbits_to_zeros(const std::vector<continuation::CurvePoint>& places) {
   std::vector<continuation::Orbit> orbits;
+  const auto point_at = [&](const continuation::CurvePoint& place) {
+    return _events.test_point(place.position, place.loop, _followed.asked_stability(place.loop));
+  };
   for (std::size_t n = 1; n < places.size(); ++n) {
     const int known = _events.count();
-    _events.detect_zeros(
-        _events.test_point(places[n].position, places[n].loop, _followed.asked_stability(places[n].loop)));
+    _events.detect_zeros(point_at(places[n]));
     if (_events.count() > known) add_orbits(places, places[n].position, orbits);
   }
+  _events.add_short_of_meeting(point_at(places.back()));
   return orbits;
 }
 

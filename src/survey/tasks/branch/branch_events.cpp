@@ -25,6 +25,9 @@ constexpr double error_margin = 10.0;
 /// Of the way from a birth: an orbit that rounding leaves open by more across its family tells no index of 2 there. Not
 /// measured.
 constexpr double open_at_birth = 0.1;
+/// Of the function of the multiplier 1, which is zero at a meeting: at the nearest orbit before it that is found. Not
+/// measured.
+constexpr double short_of_meeting = 0.5;
 
 bool is_of_one(const bifurcation::TestFunction& function) {
   return bifurcation::has_sector(function.kind) && function.sector.q == 1;
@@ -64,8 +67,7 @@ std::optional<bifurcation::TestPoint> BranchEvents::probe(double position) {
 bool BranchEvents::is_hidden_by_birth(double position, const loop::Loop& loop) const {
   if (position <= _hidden_to) return true;
   if (position >= _told_from) return false;
-  const double across =
-      continuation::left_open_by_rounding(*_followed.system, loop, _followed.start.isotropy).across;
+  const double across = continuation::left_open_by_rounding(*_followed.system, loop, _followed.start.isotropy).across;
   const bool is_told =
       across > 0.0 && across < open_at_birth * continuation::arclength_between(_followed.start.base, loop);
   (is_told ? _told_from : _hidden_to) = position;
@@ -233,6 +235,16 @@ void BranchEvents::add_missed(const bifurcation::MissedZeros& missed) {
       "a multiplier passes exp(2 pi i {}/{}), or its inverse, {} times more than was found, {} to {} of the "
       "survey's lengths along the family",
       sector.j, sector.q, missed.count, missed.from, missed.to));
+}
+
+void BranchEvents::add_short_of_meeting(const bifurcation::TestPoint& nearest) {
+  for (std::size_t f = 0; f < nearest.readings.size(); ++f)
+    if (is_of_one(_followed.functions[f]) && std::abs(nearest.readings[f].value) > short_of_meeting)
+      _followed.outcome.unlocated.push_back(
+          fmt::format("of the way from its last orbit to where it meets another family orbits are found up to {:.6g} "
+                      "of the survey's "
+                      "lengths along the family only, where no multiplier is near 1: crossings beyond are not seen",
+                      _followed.curve.arclength_at(nearest.position)));
 }
 
 void BranchEvents::finish_zeros() {
