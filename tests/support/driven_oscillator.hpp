@@ -10,15 +10,16 @@
 
 namespace orbweaver::test {
 
-/// x'' + d x' + a1 x + a2 x^2 + a3 x^3 + s sin x = c + F cos phi, phi' = w: a damped well or a pendulum with a torque.
+/// x'' + d x' + a1 x + a2 x^2 + a3 x^3 + s sin x = c + drive_amplitude cos phi, phi' = drive_frequency: a damped well or a pendulum with a torque.
 class DrivenOscillator {
  public:
   static constexpr int dimension = 3;
   static constexpr int quantities = 0;
 
   static systems::ModelInfo info() {
-    systems::ModelInfo info = test::described("driven_oscillator", "a damped oscillator that is driven",
-                                              {"x", "v", "phi"}, {"d", "a1", "a2", "a3", "s", "c", "F", "w"}, 0.0);
+    systems::ModelInfo info =
+        test::described("driven_oscillator", "a damped oscillator that is driven", {"x", "v", "phi"},
+                        {"d", "a1", "a2", "a3", "s", "c", "drive_amplitude", "drive_frequency"}, 0.0);
     info.winding_names = {"", "", "wphi"};
     return info;
   }
@@ -42,8 +43,8 @@ class DrivenOscillator {
           _a3(bound["a3"]),
           _s(bound["s"]),
           _c(bound["c"]),
-          _F(bound["F"]),
-          _w(bound["w"]) {}
+          _drive(bound["drive_amplitude"]),
+          _w(bound["drive_frequency"]) {}
 
     template <class S>
     void field(const S* z, S* f) const {
@@ -51,12 +52,12 @@ class DrivenOscillator {
       using std::sin;
       const S x = z[0];
       f[0] = z[1];
-      f[1] = _c + cos(z[2]) * _F - z[1] * _d - x * _a1 - x * x * _a2 - x * x * x * _a3 - sin(x) * _s;
+      f[1] = _c + cos(z[2]) * _drive - z[1] * _d - x * _a1 - x * x * _a2 - x * x * x * _a3 - sin(x) * _s;
       f[2] = S(1.0) * _w;
     }
 
    private:
-    P _d, _a1, _a2, _a3, _s, _c, _F, _w;
+    P _d, _a1, _a2, _a3, _s, _c, _drive, _w;
   };
 };
 

@@ -28,10 +28,10 @@ struct Driven {
 Driven driven(const std::map<std::string, double>& parameters, const std::string& places, const std::string& most,
               const std::string& longest) {
   const core::Communicator comm;
-  const scene::Scene scene =
-      scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/duffing.yaml",
-                  {"starts={fixed_points: {grid: [" + places + ", [0], [0]]}}", "continuation.free=F", "survey.depth=2",
-                   "survey.subharmonics=2", "limits.parameter=[0, " + most + "]", "limits.period=" + longest});
+  const scene::Scene scene = scene::load(
+      ORBWEAVER_SOURCE_DIR "/drivers/scenes/duffing.yaml",
+      {"starts={fixed_points: {grid: [" + places + ", [0], [0]]}}", "continuation.free=drive_amplitude",
+       "survey.depth=2", "survey.subharmonics=2", "limits.parameter=[0, " + most + "]", "limits.period=" + longest});
   Driven out;
   const auto folder = test::fresh_folder("driven" + std::to_string(comm.size()), comm.get());
   out.summary = survey::run_survey(comm, scene, test::driven_oscillator(parameters), folder, {});
@@ -47,7 +47,7 @@ Driven driven(const std::map<std::string, double>& parameters, const std::string
 // Its multiplier is -19862 at the last orbit, 1 at the meeting and -1 on the way; shooting has it at F = 0.476561877.
 TEST(WayToMeeting, ADoublingBehindTheLastOrbitIsFound) {
   const Driven found =
-      driven({{"w", 0.9942}, {"d", 0.1518}, {"a1", -1}, {"a3", 1}, {"a2", 0.00946}}, "[-1]", "0.6", "45");
+      driven({{"drive_frequency", 0.9942}, {"d", 0.1518}, {"a1", -1}, {"a3", 1}, {"a2", 0.00946}}, "[-1]", "0.6", "45");
   if (!core::Communicator().is_root()) return;
   EXPECT_EQ(found.summary.failures, 0U);
   EXPECT_EQ(found.wrong, "");
@@ -65,7 +65,8 @@ TEST(WayToMeeting, ADoublingBehindTheLastOrbitIsFound) {
 // A pendulum with a torque. D comes back to the first family at F = 1.305711946, and is doubled at 1.305711696: what is
 // born there goes four times around an orbit of the first family, nearly. It meets D, and is one family, not two.
 TEST(WayToMeeting, AFamilyThatComesNearTwoMeetsTheOneThatItComesFrom) {
-  const Driven found = driven({{"w", 0.5735}, {"d", 0.1853}, {"s", 1}, {"c", 0.3024}}, "[0.3]", "1.6", "50");
+  const Driven found =
+      driven({{"drive_frequency", 0.5735}, {"d", 0.1853}, {"s", 1}, {"c", 0.3024}}, "[0.3]", "1.6", "50");
   if (!core::Communicator().is_root()) return;
   EXPECT_EQ(found.summary.failures, 0U);
   EXPECT_EQ(found.wrong, "");
@@ -77,7 +78,8 @@ TEST(WayToMeeting, AFamilyThatComesNearTwoMeetsTheOneThatItComesFrom) {
 
 // Another such pendulum: where no orbit so near to the meeting is found that it shows the multiplier 1, that is said.
 TEST(WayToMeeting, AWayThatIsNotSeenIsUndecided) {
-  const Driven found = driven({{"w", 0.5377}, {"d", 0.3976}, {"s", 1}, {"c", 0.4048}}, "[0.3]", "1.6", "50");
+  const Driven found =
+      driven({{"drive_frequency", 0.5377}, {"d", 0.3976}, {"s", 1}, {"c", 0.4048}}, "[0.3]", "1.6", "50");
   if (!core::Communicator().is_root()) return;
   EXPECT_EQ(found.summary.failures, 0U);
   EXPECT_EQ(found.wrong, "");
