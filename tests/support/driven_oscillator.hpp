@@ -1,25 +1,24 @@
 #pragma once
 
+#include <array>
 #include <cmath>
-#include <map>
-#include <memory>
 #include <string>
 
 #include "orbweaver/systems/model/model_system.hpp"
+#include "registry_lines.hpp"
 #include "support/described.hpp"
 
 namespace orbweaver::test {
 
-/// x'' + d x' + a1 x + a2 x^2 + a3 x^3 + s sin x = c + drive_amplitude cos phi, phi' = drive_frequency: a damped well or a pendulum with a torque.
+/// x'' + d x' + a1 x + a2 x^2 + a3 x^3 + s sin x = c + F cos phi, phi' = w: a damped well or a pendulum with a torque.
 class DrivenOscillator {
  public:
   static constexpr int dimension = 3;
   static constexpr int quantities = 0;
 
   static systems::ModelInfo info() {
-    systems::ModelInfo info =
-        test::described("driven_oscillator", "a damped oscillator that is driven", {"x", "v", "phi"},
-                        {"d", "a1", "a2", "a3", "s", "c", "drive_amplitude", "drive_frequency"}, 0.0);
+    systems::ModelInfo info = test::described("driven_oscillator", "a damped oscillator that is driven",
+                                              {"x", "v", "phi"}, {"d", "a1", "a2", "a3", "s", "c", "F", "w"}, 0.0);
     info.winding_names = {"", "", "wphi"};
     return info;
   }
@@ -43,8 +42,8 @@ class DrivenOscillator {
           _a3(bound["a3"]),
           _s(bound["s"]),
           _c(bound["c"]),
-          _drive(bound["drive_amplitude"]),
-          _w(bound["drive_frequency"]) {}
+          _drive(bound["F"]),
+          _w(bound["w"]) {}
 
     template <class S>
     void field(const S* z, S* f) const {
@@ -61,8 +60,13 @@ class DrivenOscillator {
   };
 };
 
-inline std::shared_ptr<const systems::System> driven_oscillator(const std::map<std::string, double>& parameters) {
-  return systems::Registered<DrivenOscillator>::make(systems::bound_to(DrivenOscillator::info(), parameters, {}));
+/// Makes it a system that scenes name.
+inline void add_driven_oscillator() {
+  static const bool is_added = [] {
+    systems::add_registry_lines(std::array{systems::registry_line<DrivenOscillator>});
+    return true;
+  }();
+  static_cast<void>(is_added);
 }
 
 }  // namespace orbweaver::test

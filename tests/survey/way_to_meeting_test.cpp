@@ -1,8 +1,6 @@
 // What lies between a family's last orbit and the orbit of another one that it meets gone around several times.
 #include <algorithm>
-#include <map>
 #include <string>
-#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,36 +16,35 @@ namespace {
 
 using namespace orbweaver;
 
-/// Families of a driven oscillator along its drive's amplitude, from equilibria at these places, with their doublings.
+/// Families of a driven oscillator along its drive's amplitude, from an equilibrium, with their doublings.
 struct Driven {
   survey::Summary summary;
   std::string wrong;      // contradictions
   std::string undecided;  // without those on multipliers that are large
 };
 
-Driven driven(const std::map<std::string, double>& parameters, const std::string& places, const std::string& most,
+Driven driven(const std::string& parameters, const std::string& place, const std::string& most,
               const std::string& longest) {
+  test::add_driven_oscillator();
   const core::Communicator comm;
   const scene::Scene scene = scene::load(
       ORBWEAVER_SOURCE_DIR "/drivers/scenes/duffing.yaml",
-      {"starts={fixed_points: {grid: [" + places + ", [0], [0]]}}", "continuation.free=drive_amplitude",
-       "survey.depth=2", "survey.subharmonics=2", "limits.parameter=[0, " + most + "]", "limits.period=" + longest});
+      {"system={name: driven_oscillator, parameters: {" + parameters + "}}",
+       "starts={fixed_points: {grid: [[" + place + "], [0], [0]]}}", "continuation.free=F", "survey.depth=2",
+       "survey.subharmonics=2", "limits.parameter=[0, " + most + "]", "limits.period=" + longest});
   Driven out;
-  const auto folder = test::fresh_folder("driven" + std::to_string(comm.size()), comm.get());
-  out.summary = survey::run_survey(comm, scene, test::driven_oscillator(parameters), folder, {});
+  out.summary = test::run(comm, scene, "driven");
   for (const survey::FindingSummary& line : out.summary.findings) {
-    if (line.severity == survey::Severity::contradiction) out.wrong += line.text + "\n";
-    if (line.severity == survey::Severity::undecided &&
-        line.text.find("a stability index is known") == std::string::npos)
-      out.undecided += line.text + "\n";
+    if (line.severity == survey::Severity::contradiction) out.wrong += line.text + "; ";
+    const bool is_on_indices = line.text.find("a stability index is known") != std::string::npos;
+    if (line.severity == survey::Severity::undecided && !is_on_indices) out.undecided += line.text + "; ";
   }
   return out;
 }
 
 // Its multiplier is -19862 at the last orbit, 1 at the meeting and -1 on the way; shooting has it at F = 0.476561877.
 TEST(WayToMeeting, ADoublingBehindTheLastOrbitIsFound) {
-  const Driven found =
-      driven({{"drive_frequency", 0.9942}, {"d", 0.1518}, {"a1", -1}, {"a3", 1}, {"a2", 0.00946}}, "[-1]", "0.6", "45");
+  const Driven found = driven("w: 0.9942, d: 0.1518, a1: -1, a3: 1, a2: 0.00946", "-1", "0.6", "45");
   if (!core::Communicator().is_root()) return;
   EXPECT_EQ(found.summary.failures, 0U);
   EXPECT_EQ(found.wrong, "");
@@ -65,8 +62,7 @@ TEST(WayToMeeting, ADoublingBehindTheLastOrbitIsFound) {
 // A pendulum with a torque. D comes back to the first family at F = 1.305711946, and is doubled at 1.305711696: what is
 // born there goes four times around an orbit of the first family, nearly. It meets D, and is one family, not two.
 TEST(WayToMeeting, AFamilyThatComesNearTwoMeetsTheOneThatItComesFrom) {
-  const Driven found =
-      driven({{"drive_frequency", 0.5735}, {"d", 0.1853}, {"s", 1}, {"c", 0.3024}}, "[0.3]", "1.6", "50");
+  const Driven found = driven("w: 0.5735, d: 0.1853, s: 1, c: 0.3024", "0.3", "1.6", "50");
   if (!core::Communicator().is_root()) return;
   EXPECT_EQ(found.summary.failures, 0U);
   EXPECT_EQ(found.wrong, "");
@@ -78,8 +74,7 @@ TEST(WayToMeeting, AFamilyThatComesNearTwoMeetsTheOneThatItComesFrom) {
 
 // Another such pendulum: where no orbit so near to the meeting is found that it shows the multiplier 1, that is said.
 TEST(WayToMeeting, AWayThatIsNotSeenIsUndecided) {
-  const Driven found =
-      driven({{"drive_frequency", 0.5377}, {"d", 0.3976}, {"s", 1}, {"c", 0.4048}}, "[0.3]", "1.6", "50");
+  const Driven found = driven("w: 0.5377, d: 0.3976, s: 1, c: 0.4048", "0.3", "1.6", "50");
   if (!core::Communicator().is_root()) return;
   EXPECT_EQ(found.summary.failures, 0U);
   EXPECT_EQ(found.wrong, "");
