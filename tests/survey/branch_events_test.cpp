@@ -1,6 +1,7 @@
 #include "tasks/branch/branch_events.hpp"
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -21,6 +22,26 @@ spectrum::Stability beside_two(double distance, double bound) {
   stability.fundamental = {2.0 + distance};
   stability.fundamental_error = {bound};
   return stability;
+}
+
+// A driven pendulum: the multiplier was still -1500 at the nearest orbit before its meeting that was found.
+TEST(BranchEvents, AWayToAMeetingOnWhichNoMultiplierComesToOneIsTold) {
+  const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/henon_heiles.yaml", {});
+  const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
+  BranchWork work;
+  work.base = loop::constant_loop(std::vector<double>(4, 0.0), 6.0, 8);
+  work.direction = {std::vector<double>(work.base.modes.size(), 1.0), {}};
+  FollowedBranch followed(scene, system, work, nullptr);
+  BranchEvents events(followed, nullptr);
+  followed.curve.add(0.0, work.base, kept_orbits);
+  followed.curve.add(1.0, loop::moved(work.base, work.direction, 0.1), kept_orbits);
+  const auto told = [&](double distance) {
+    events.add_short_of_meeting(events.test_point(1.0, work.base, beside_two(distance, 1e-14)));
+    return followed.outcome.unlocated.size();
+  };
+  EXPECT_EQ(told(1e-3), 0U);
+  EXPECT_EQ(told(-1500.0), 1U);
+  EXPECT_NE(followed.outcome.unlocated.front().find("where no multiplier is near 1"), std::string::npos);
 }
 
 // Three oscillators without a symmetry: along a family that ends on one four times around k - 2 was 1.3e-9, 4e-12 and

@@ -72,15 +72,6 @@ TEST(WayToMeeting, AFamilyThatComesNearTwoMeetsTheOneThatItComesFrom) {
   EXPECT_THAT(atlas.end_of("Equilibrium 1 DD2"), testing::StartsWith("joined Equilibrium 1 D at T = 43.82343"));
 }
 
-// Another such pendulum: where no orbit so near to the meeting is found that it shows the multiplier 1, that is said.
-TEST(WayToMeeting, AWayThatIsNotSeenIsUndecided) {
-  const Driven found = driven("w: 0.5377, d: 0.3976, s: 1, c: 0.4048", "0.3", "1.6", "50");
-  if (!core::Communicator().is_root()) return;
-  EXPECT_EQ(found.summary.failures, 0U);
-  EXPECT_EQ(found.wrong, "");
-  EXPECT_THAT(found.undecided, testing::HasSubstr("where no multiplier is near 1"));
-}
-
 // A branch that three turns of another end turns in T at E = 0.309758, between its last step and the meeting. Another
 // model of it by shooting has the fold at T = 9.403024 too.
 TEST(WayToMeeting, AFoldBehindTheLastStepLiesWithinItsFamily) {
