@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "orbweaver/bifurcation/parted_crossings.hpp"
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/system_at.hpp"
@@ -142,7 +143,8 @@ class EventFunction {
       }
     if (is_birth) tell_birth(_system.structure(), out.stability);
     if (_event.kind == Event::Kind::test_function)
-      out.reading = evaluate(_event.function, _system.structure(), out.stability);
+      out.reading = _event.is_parted ? determinant_deviation(_system.structure(), out.stability, _event.function.sector)
+                                     : evaluate(_event.function, _system.structure(), out.stability);
     else
       out.reading = slope_between ? *slope_between : Reading{slope(_system, _event.kind, out.point), 0.0};
     if (std::isnan(out.reading.value))

@@ -357,8 +357,8 @@ Stability floquet(const systems::System& family, const loop::Loop& loop, const l
   }
   if (is_single_pair(structure, flow) && flow.bases.cols() > 0)
     stability.turns = transverse_turns(chain, flow, group, stability.fundamental[0].real(), stability.twist);
-  if (structure.symplectic && std::isnan(stability.twist))
-    stability.rotations = rotations(system, chain, flow, stability);
+  if (structure.symplectic) stability.map = transverse_map(flow);
+  if (structure.symplectic && std::isnan(stability.twist)) stability.rotations = rotations(system, chain, stability);
   mark_beyond_range(stability.full, stability.full_error);
   mark_beyond_range(stability.fundamental, stability.fundamental_error);
   if (structure.conservative() && !structure.symplectic) {

@@ -23,14 +23,6 @@ constexpr double product_roundings = 1e3;
 /// By which the index of the vector that is taken may differ from the known one.
 constexpr double same_index = 1e-4;
 
-Eigen::MatrixXd product_of(const TransverseFlow& flow) {
-  const Eigen::Index size = flow.dimension();
-  Eigen::MatrixXd product = matrix_in<Eigen::Dynamic>(flow.factors, 0, size);
-  for (Eigen::Index m = 1; m < flow.factors.cols(); ++m)
-    product = (matrix_in<Eigen::Dynamic>(flow.factors, m, size) * product).eval();
-  return product;
-}
-
 /// P v = mu v, v = a + i b: P a = a cos - b sin, so that a goes towards -b where mu's imaginary part is positive.
 Plane plane_of(const Eigen::VectorXcd& vector) {
   Plane plane(vector.size(), 2);
@@ -43,12 +35,19 @@ Plane plane_of(const Eigen::VectorXcd& vector) {
 
 }  // namespace
 
-std::vector<Rotation> rotations(const systems::System& system, const Chain& chain, const TransverseFlow& flow,
-                                const Stability& known) {
-  const Eigen::MatrixXd product = product_of(flow);
+Eigen::MatrixXd transverse_map(const TransverseFlow& flow) {
+  const Eigen::Index size = flow.dimension();
+  Eigen::MatrixXd product = matrix_in<Eigen::Dynamic>(flow.factors, 0, size);
+  for (Eigen::Index m = 1; m < flow.factors.cols(); ++m)
+    product = (matrix_in<Eigen::Dynamic>(flow.factors, m, size) * product).eval();
   const double rounding = product_roundings * std::numeric_limits<double>::epsilon() * product.norm();
   if (!(rounding < same_index)) return {};
-  const std::optional<numerics::Eigensystem> eigen = numerics::eigensystem(product, true);
+  return product;
+}
+
+std::vector<Rotation> rotations(const systems::System& system, const Chain& chain, const Stability& known) {
+  if (known.map.size() == 0) return {};
+  const std::optional<numerics::Eigensystem> eigen = numerics::eigensystem(known.map, true);
   if (!eigen) return {};
   const Eigen::MatrixXd basis = transverse_basis(system, chain, 0);
   std::vector<Rotation> result;

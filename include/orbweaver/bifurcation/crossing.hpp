@@ -25,11 +25,13 @@ struct Event {
   bool passed = false;
   /// It is looked for from the orbit on which the family is born (`tell_birth`).
   bool from_birth = false;
+  /// One of two crossings (`parted_crossings`), whose function is `determinant_deviation`.
+  bool is_parted = false;
 
-  static constexpr int wire_version = 3;
+  static constexpr int wire_version = 4;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, kind, function, tangency, passed, from_birth);
+    core::serialize_members(archive, kind, function, tangency, passed, from_birth, is_parted);
   }
 };
 

@@ -21,7 +21,7 @@ struct CrossingFound {
 /// None where no such orbit is found, for instance where the family's amplitude has an extremum, and for systems that
 /// are not symplectic or have more than one pair of multipliers.
 [[nodiscard]] std::optional<CrossingFound> crossing_beneath(const std::shared_ptr<const systems::System>& system,
-                                                       const loop::Loop& near, int multiplicity,
-                                                       const continuation::Options& options);
+                                                            const loop::Loop& near, int multiplicity,
+                                                            const continuation::Options& options);
 
 }  // namespace orbweaver::bifurcation

@@ -59,6 +59,9 @@ struct Stability {
   /// family planes are continuous, and the sense in which neighbours go around in one changes only where its index
   /// passes 2 or -2.
   std::vector<Rotation> rotations;
+  /// Symplectic: P of the transverse flow in an orthonormal basis, where no multiplier is so large that rounding hides
+  /// the others in it; empty otherwise.
+  Eigen::MatrixXd map;
 };
 
 /// Stability of an accepted orbit, at a cost proportional to the number of its harmonics.

@@ -18,6 +18,7 @@
 #include "orbweaver/bifurcation/directions.hpp"
 #include "orbweaver/bifurcation/family_jump.hpp"
 #include "orbweaver/bifurcation/kernel.hpp"
+#include "orbweaver/bifurcation/parted_crossings.hpp"
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/symmetry/subspace.hpp"
@@ -291,6 +292,7 @@ class Location {
     if (kernel.dimension() == 0 && !_event.tangency) return without_kernel(crossing, kernel, family);
     if (sector.q == 1 && kernel.dimension() == 1 && turns_at(crossing, family)) return as_fold(kernel);
     if (_event.tangency && kernel.dimension() < expected) return touching(crossing, kernel, expected);
+    if (_event.tangency && sector.q <= 2 && part(family)) return;
     _breaks_symmetry = sector.q > 1 || breaks_symmetry(kernel, isotropy);
     if (!starts) return;
     report();
@@ -314,6 +316,24 @@ class Location {
         add_starts(direction, leaving);
       _outcome.leaving.push_back(std::move(leaving));
     }
+  }
+
+  /// Where what passes for a touching zero is two crossings side by side, each is located by a task of its own.
+  [[nodiscard]] bool part(continuation::FamilyCurve& family) {
+    const auto two = bifurcation::parted_crossings(*_system, family, _event.function.sector, _work.from, _work.to);
+    if (!two) return false;
+    for (const bifurcation::Parted& one : *two) {
+      LocateWork work = _work;
+      work.key += &one == two->data() ? "a" : "b";
+      work.event.tangency = work.event.passed = false;
+      work.event.is_parted = true;
+      work.from = one.from;
+      work.to = one.to;
+      _starts.push_back(task_of(work));
+    }
+    _outcome.kind.reset();
+    _outcome.remark = "two crossings lie side by side there, each located by itself";
+    return true;
   }
 
   /// Whether the kernel leaves the space of loops with the family's symmetries.
@@ -390,8 +410,7 @@ class Location {
     _outcome.kernel_singular_value = archive::not_computed;
     _outcome.next_singular_value = kernel.largest();
     _outcome.remark = fmt::format("the {} turns there", moves() ? "parameter" : "energy");
-    if (!kernel.vectors.empty())
-      _outcome.remark += fmt::format(" (smallest singular value {:.2g})", kernel.largest());
+    if (!kernel.vectors.empty()) _outcome.remark += fmt::format(" (smallest singular value {:.2g})", kernel.largest());
   }
 
   [[nodiscard]] bool moves() const { return !_system->family_scalars().free.empty(); }
