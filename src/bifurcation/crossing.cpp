@@ -35,6 +35,9 @@ constexpr double left_at_zero = 0.1;
 /// hundredth of that distance, whether it falls towards it. Of a smooth function a tenth is left.
 constexpr double smooth_at_zero = 1e-3;
 constexpr double falls = 0.5;
+/// Of its error, what a value must be to tell a slope, and how much wider each bracket around an uncertain zero is.
+constexpr double told = 100.0;
+constexpr double wider = 4.0;
 /// What is left in error bounds, which are estimates.
 constexpr double error_margin = 10.0;
 
@@ -103,6 +106,20 @@ class EventFunction {
     }
     if (!std::isnan(value)) _values[position] = value;  // without one it says why each time that it is asked
     return value;
+  }
+
+  /// How far the function's error at a zero may move it: the slope is taken to the nearest value that is told.
+  double uncertainty_at(double position) {
+    const std::optional<Crossing> zero = at(position);
+    if (!zero || !(zero->reading.error > 0.0)) return 0.0;
+    double away = std::numeric_limits<double>::infinity();
+    double slope = 0.0;
+    for (const auto& [other, value] : _values)
+      if (std::abs(value) > told * zero->reading.error && std::abs(other - position) < away) {
+        away = std::abs(other - position);
+        slope = std::abs(value) / away;
+      }
+    return zero->reading.error / slope;
   }
 
   double twist_at(double position) {
@@ -256,6 +273,27 @@ std::optional<numerics::Located> root_of(EventFunction& function, const Interval
   return numerics::locate_root(along, from, to, tolerance);
 }
 
+/// A zero of an index less 2 or -2 that its error moves by more than `tolerance`, as beside another one: that of the
+/// determinant, if it has one there.
+numerics::Located sharpened(const systems::System& system, continuation::FamilyCurve& family, const Event& event,
+                            EventFunction& function, const Interval& within, const numerics::Located& zero,
+                            double tolerance) {
+  const TestFunction& test = event.function;
+  if (event.is_parted || test.kind != TestFunction::Kind::sector || test.sector.q > 2 || !system.structure().symplectic)
+    return zero;
+  const double uncertain = function.uncertainty_at(zero.position);
+  if (!(uncertain > tolerance)) return zero;
+  Event parted = event;
+  parted.is_parted = true;
+  EventFunction exact(system, family, parted, within);
+  for (double width = wider * uncertain; std::isfinite(width); width *= wider) {
+    const Interval around{std::max(within.from, zero.position - width), std::min(within.to, zero.position + width)};
+    if (exact(around.from) * exact(around.to) < 0.0) return root_of(exact, around, tolerance).value_or(zero);
+    if (around.from == within.from && around.to == within.to) break;
+  }
+  return zero;
+}
+
 /// Of a slope: only where it is less than at the ends, and no more than rounding.
 std::optional<numerics::Located> root_of_slope(EventFunction& slope_at, const Interval& within, double tolerance) {
   std::optional<numerics::Located> located = root_of(slope_at, within, tolerance);
@@ -406,6 +444,7 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
     located = numerics::locate_minimum(size, from, to, absolute);
   } else if (event.kind == Event::Kind::test_function) {
     located = root_of(function, {from, to}, absolute);
+    if (located) located = sharpened(system, family, event, function, {from, to}, *located, absolute);
   } else {
     located = turn(system, family, event, function, {from, to}, absolute, why);
     if (!located && why.reason == NotLocated::Reason::unclear_fold) return std::nullopt;
