@@ -92,6 +92,7 @@ class Gatherer {
     evidence.met = true;
     evidence.period = arrival.period * _tree.units.time;
     evidence.level = arrival.level * _tree.units.level();
+    evidence.is_short = arrival.is_short;
     if (const Meeting* meeting = _tree.pruning.arrival(key)) {
       evidence.joined = true;
       const auto row = _tree.crossing_rows.find(meeting->crossing);

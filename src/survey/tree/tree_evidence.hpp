@@ -47,6 +47,7 @@ struct EndEvidence {
   double level = 0.0;
   bool joined = false;      ///< it is known along which direction of which crossing it came
   int crossing = -1;        ///< that crossing, if the tables have it
+  bool is_short = false;    ///< no orbit was found so near to there that its multipliers show the meeting
   std::vector<int> nearby;  ///< where it is not known: crossings that agree in period and energy, of orbits as near
 };
 

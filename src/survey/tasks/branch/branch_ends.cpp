@@ -213,7 +213,7 @@ std::vector<continuation::Orbit> BranchEnds::orbits_to_zeros(const std::vector<c
     _events.detect_zeros(point_at(places[n]));
     if (_events.count() > known) add_orbits(places, places[n].position, orbits);
   }
-  _events.add_short_of_meeting(point_at(places.back()));
+  _followed.outcome.arrival.front().is_short = _events.add_short_of_meeting(point_at(places.back()));
   return orbits;
 }
 

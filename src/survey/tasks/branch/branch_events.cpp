@@ -237,14 +237,16 @@ void BranchEvents::add_missed(const bifurcation::MissedZeros& missed) {
       sector.j, sector.q, missed.count, missed.from, missed.to));
 }
 
-void BranchEvents::add_short_of_meeting(const bifurcation::TestPoint& nearest) {
-  for (std::size_t f = 0; f < nearest.readings.size(); ++f)
-    if (is_of_one(_followed.functions[f]) && std::abs(nearest.readings[f].value) > short_of_meeting)
-      _followed.outcome.unlocated.push_back(
-          fmt::format("of the way from its last orbit to where it meets another family orbits are found up to {:.6g} "
-                      "of the survey's "
-                      "lengths along the family only, where no multiplier is near 1: crossings beyond are not seen",
-                      _followed.curve.arclength_at(nearest.position)));
+bool BranchEvents::add_short_of_meeting(const bifurcation::TestPoint& nearest) {
+  for (std::size_t f = 0; f < nearest.readings.size(); ++f) {
+    if (!is_of_one(_followed.functions[f]) || !(std::abs(nearest.readings[f].value) > short_of_meeting)) continue;
+    _followed.outcome.unlocated.push_back(fmt::format(
+        "of the way from its last orbit to where it meets another family orbits are found up to {:.6g} of the survey's "
+        "lengths along the family only, where no multiplier is near 1: crossings beyond are not seen",
+        _followed.curve.arclength_at(nearest.position)));
+    return true;
+  }
+  return false;
 }
 
 void BranchEvents::finish_zeros() {

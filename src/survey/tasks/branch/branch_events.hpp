@@ -65,8 +65,8 @@ class BranchEvents {
   void add_event(const bifurcation::Event& event, double from, double to,
                  std::vector<continuation::FamilyCurve::Known> known);
   void add_missed(const bifurcation::MissedZeros& missed);
-  /// Tells where the orbit found nearest before a meeting does not show the multiplier 1 that is there.
-  void add_short_of_meeting(const bifurcation::TestPoint& nearest);
+  /// Whether the orbit found nearest before a meeting does not show the multiplier 1 that is there; tells it.
+  bool add_short_of_meeting(const bifurcation::TestPoint& nearest);
 
  private:
   void add_zeros(const std::vector<bifurcation::Bracket>& brackets);

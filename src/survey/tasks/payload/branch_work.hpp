@@ -54,6 +54,7 @@ struct ArrivalRecord {
   double level = 0.0;                      ///< continuation::level_of
   loop::Loop near;                         ///< an orbit of the branch shortly before
   loop::Loop nearest{};                    ///< another, as near as one was found; without modes where none was
+  bool is_short = false;                   ///< that is not so near that its multipliers show the meeting
   int multiplicity = 1;                    ///< times that it goes around the orbit it meets, where that is all it gains
   std::vector<CrossingBeneath> beneath{};  ///< one, where the crossing that is met was located
   double ahead = std::numeric_limits<double>::infinity();  ///< rms distance from `near` to the orbit met, if known
@@ -61,7 +62,7 @@ struct ArrivalRecord {
   static constexpr int wire_version = 4;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, period, level, near, nearest, multiplicity, beneath, ahead);
+    core::serialize_members(archive, period, level, near, nearest, is_short, multiplicity, beneath, ahead);
   }
 };
 

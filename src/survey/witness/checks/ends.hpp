@@ -145,7 +145,7 @@ class Ends final : public Check {
   static Finding met_crossing(const Evidence& evidence, const EndEvidence& end, Finding finding) {
     finding.crossing = end.nearby.front();
     finding.kind = FindingKind::unknown_direction;
-    finding.severity = Severity::contradiction;
+    finding.severity = end.is_short ? Severity::undecided : Severity::contradiction;
     for (const int nearby : end.nearby) {
       const TreeCrossing& place = evidence.crossing(nearby);
       if (place.multiplicity <= evidence.scene.survey.subharmonics) continue;
