@@ -13,9 +13,10 @@ namespace orbweaver::bifurcation {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-/// A minimum is found to 1e-8 of the interval at best: then it is looked for again within so much of that, a few times.
-constexpr double within_found = 1e-6;
-constexpr int most_rounds = 3;
+/// Two crossings that their index does not tell apart lie within so much of the interval in which it comes and goes, or
+/// within the second number. The minimum between them is found to 1e-8 of that.
+constexpr double beside = 1e-3;
+constexpr double least_beside = 1e-5;
 constexpr double least_width = 1e-9;
 /// From there brackets begin so wide, in parts of 1 + |position|, and widen so much at a time.
 constexpr double first_width = 1e-10;
@@ -44,7 +45,10 @@ Reading determinant_deviation(const systems::Structure& system, const spectrum::
 }
 
 std::optional<std::array<Parted, 2>> parted_crossings(const systems::System& system, continuation::FamilyCurve& family,
-                                                      const Sector& sector, double from, double to) {
+                                                      const Sector& sector, double place, double from, double to) {
+  const double half = std::max(beside * (to - from), least_beside);
+  from = std::max(from, place - half);
+  to = std::min(to, place + half);
   const auto reading = [&](double position) -> Reading {
     const auto point = family.at(position);
     if (!point) return {unknown, unknown};
@@ -69,23 +73,20 @@ std::optional<std::array<Parted, 2>> parted_crossings(const systems::System& sys
     }
     return value;
   };
-  for (double half = 0.5 * (to - from), middle = 0.5 * (from + to), round = 0; round < most_rounds; ++round) {
-    const double before = std::max(from, middle - half);
-    const double behind = std::min(to, middle + half);
-    (void)numerics::locate_minimum(towards, before, behind, least_width * (behind - before));
-    if (std::isnan(between) || least < 0.0) break;
-    middle = between;
-    half *= within_found;
+  (void)numerics::locate_minimum(towards, from, to, least_width * (to - from));
+  if (std::isnan(between) || least < 0.0) break;
+  middle = between;
+  half *= within_found;
+}
+if (std::isnan(between) || reading(between).sign() != -side) return std::nullopt;
+const auto bracket = [&](double direction, double end) {
+  for (double width = first_width * (1.0 + std::abs(between));; width *= wider) {
+    const double position = between + direction * width;
+    if (direction * (end - position) <= 0.0) return end;
+    if (reading(position).sign() == side) return position;
   }
-  if (std::isnan(between) || reading(between).sign() != -side) return std::nullopt;
-  const auto bracket = [&](double direction, double end) {
-    for (double width = first_width * (1.0 + std::abs(between));; width *= wider) {
-      const double position = between + direction * width;
-      if (direction * (end - position) <= 0.0) return end;
-      if (reading(position).sign() == side) return position;
-    }
-  };
-  return std::array{Parted{bracket(-1.0, from), between}, Parted{between, bracket(1.0, to)}};
+};
+return std::array{Parted{bracket(-1.0, from), between}, Parted{between, bracket(1.0, to)}};
 }
 
 }  // namespace orbweaver::bifurcation

@@ -23,11 +23,12 @@ struct Parted {
   double to = 0.0;
 };
 
-/// Of a sector with q <= 2: the two crossings between two positions of a family on both sides of which the index is on
-/// one side of the sector's value, where it has passed that in between, and come back, by less than its error bound.
-/// None where the determinant does not tell that it has.
+/// Of a sector with q <= 2, near `place` between two positions of a family: where the index touches the sector's value
+/// to rounding, the two crossings at which it passes that and comes back. None where the determinant does not tell that
+/// it does.
 [[nodiscard]] std::optional<std::array<Parted, 2>> parted_crossings(const systems::System& system,
                                                                     continuation::FamilyCurve& family,
-                                                                    const Sector& sector, double from, double to);
+                                                                    const Sector& sector, double place, double from,
+                                                                    double to);
 
 }  // namespace orbweaver::bifurcation

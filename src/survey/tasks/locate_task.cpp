@@ -263,12 +263,13 @@ class Location {
 
   void leave(const bifurcation::Crossing& crossing, continuation::FamilyCurve& family) {
     const loop::Isotropy& isotropy = family.isotropy();
+    const bifurcation::Sector& sector = _event.function.sector;
+    if (_event.tangency && sector.q <= 2 && part(crossing, family)) return;
     if (_outcome.multiplicity * _outcome.period > _scene.limits.period * (1.0 + at_limit)) {
       _outcome.remark = "orbits born here lie beyond the period limit";
       _outcome.limited_by = period_limited;
       return;
     }
-    const bifurcation::Sector& sector = _event.function.sector;
     const bool starts = _work.lineage.depth < _scene.survey.depth;
     if (!starts) _outcome.limited_by = depth_limited;
     report();
@@ -292,7 +293,6 @@ class Location {
     if (kernel.dimension() == 0 && !_event.tangency) return without_kernel(crossing, kernel, family);
     if (sector.q == 1 && kernel.dimension() == 1 && turns_at(crossing, family)) return as_fold(kernel);
     if (_event.tangency && kernel.dimension() < expected) return touching(crossing, kernel, expected);
-    if (_event.tangency && sector.q <= 2 && part(family)) return;
     _breaks_symmetry = sector.q > 1 || breaks_symmetry(kernel, isotropy);
     if (!starts) return;
     report();
@@ -319,8 +319,9 @@ class Location {
   }
 
   /// Where what passes for a touching zero is two crossings side by side, each is located by a task of its own.
-  [[nodiscard]] bool part(continuation::FamilyCurve& family) {
-    const auto two = bifurcation::parted_crossings(*_system, family, _event.function.sector, _work.from, _work.to);
+  [[nodiscard]] bool part(const bifurcation::Crossing& crossing, continuation::FamilyCurve& family) {
+    const auto two = bifurcation::parted_crossings(*_system, family, _event.function.sector, crossing.point.position,
+                                                   _work.from, _work.to);
     if (!two) return false;
     for (const bifurcation::Parted& one : *two) {
       LocateWork work = _work;
