@@ -15,12 +15,12 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 /// Two crossings that their index does not tell apart lie within so much of the interval in which it comes and goes, or
 /// within the second number. The minimum between them is found to 1e-8 of that.
-constexpr double beside = 1e-3;
+constexpr double share_beside = 1e-3;
 constexpr double least_beside = 1e-5;
 constexpr double least_width = 1e-9;
 /// From there brackets begin so wide, in parts of 1 + |position|, and widen so much at a time.
 constexpr double first_width = 1e-10;
-constexpr double wider = 4.0;
+constexpr double widening = 4.0;
 
 }  // namespace
 
@@ -46,7 +46,7 @@ Reading determinant_deviation(const systems::Structure& system, const spectrum::
 
 std::optional<std::array<Parted, 2>> parted_crossings(const systems::System& system, continuation::FamilyCurve& family,
                                                       const Sector& sector, double place, double from, double to) {
-  const double half = std::max(beside * (to - from), least_beside);
+  const double half = std::max(share_beside * (to - from), least_beside);
   from = std::max(from, place - half);
   to = std::min(to, place + half);
   const auto reading = [&](double position) -> Reading {
@@ -74,19 +74,15 @@ std::optional<std::array<Parted, 2>> parted_crossings(const systems::System& sys
     return value;
   };
   (void)numerics::locate_minimum(towards, from, to, least_width * (to - from));
-  if (std::isnan(between) || least < 0.0) break;
-  middle = between;
-  half *= within_found;
-}
-if (std::isnan(between) || reading(between).sign() != -side) return std::nullopt;
-const auto bracket = [&](double direction, double end) {
-  for (double width = first_width * (1.0 + std::abs(between));; width *= wider) {
-    const double position = between + direction * width;
-    if (direction * (end - position) <= 0.0) return end;
-    if (reading(position).sign() == side) return position;
-  }
-};
-return std::array{Parted{bracket(-1.0, from), between}, Parted{between, bracket(1.0, to)}};
+  if (std::isnan(between) || reading(between).sign() != -side) return std::nullopt;
+  const auto bracket = [&](double direction, double end) {
+    for (double width = first_width * (1.0 + std::abs(between));; width *= widening) {
+      const double position = between + direction * width;
+      if (direction * (end - position) <= 0.0) return end;
+      if (reading(position).sign() == side) return position;
+    }
+  };
+  return std::array{Parted{bracket(-1.0, from), between}, Parted{between, bracket(1.0, to)}};
 }
 
 }  // namespace orbweaver::bifurcation
