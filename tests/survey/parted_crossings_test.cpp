@@ -16,7 +16,7 @@ using namespace orbweaver;
 /// The energies at which mode 2, along y = 0, is doubled: across it y'' = -(w2^2 + 2 c x + f x^2) y.
 std::vector<double> doublings(double c, const std::string& start) {
   const test::Atlas atlas =
-      test::survey_of({{"w1", 1.0}, {"w2", 0.45}, {"c", c}, {"e", 0.1}, {"f", 0.5}},
+      test::survey_of(test::well({0.45, 0.0, 0.0, c, 0.0, 0.1, 0.5, 0.1}),
                       {"limits.energy=[0, 0.2]", "limits.period=8", "continuation.start=" + start});
   std::vector<double> energies;
   for (std::size_t row = 0; row < atlas.crossings().rows(); ++row)
