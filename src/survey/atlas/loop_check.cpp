@@ -8,7 +8,9 @@
 #include "orbweaver/continuation/family_curve.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
+#include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/loop/symmetry/isotropy_text.hpp"
+#include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "orbweaver/survey/atlas/stored_orbits.hpp"
 
 namespace orbweaver::survey {
@@ -44,6 +46,10 @@ continuation::Orbit orbit_of(const AtlasTree& tree, const TreeFamily& family, st
 loop::Loop born_loop(const AtlasTree& tree, std::size_t crossing, const loop::Loop& orbit) {
   const int times = tree.crossings[crossing].multiplicity;
   return times == 1 ? orbit : loop::repeated(loop::evenly_in_time(orbit), times);
+}
+
+std::size_t symmetries_of(const systems::Structure& system, const loop::Loop& orbit) {
+  return loop::SymmetryGroup(system, loop::find_isotropy(system, orbit, loop::symmetry_tolerance)).elements().size();
 }
 
 /// Moves two orbits of a family towards the place between them where it may pass through a crossing of another one;
@@ -105,8 +111,10 @@ bool LoopCheck::is_on_curve(const OrbitBeside& x) const {
   const loop::Isotropy isotropy = loop::isotropy_of(system, x.beside.isotropy);
   const loop::Loop orbit = orbit_of(x.own, x.family, x.orbit, *_system).loop;
   const double allowed = bifurcation::same_within(orbit);
+  const std::size_t symmetries = symmetries_of(system, orbit);
   for (const std::size_t node : {x.segment, x.segment + 1}) {
     const loop::Loop known = orbit_of(x.other, x.beside, node, *_system).loop;
+    if (symmetries_of(system, known) < symmetries) continue;  // what lies between such has more at a crossing only
     const loop::Loop beside = loop::aligned(orbit, loop::align(system, orbit, known));
     if (continuation::arclength_between(known, beside) <= allowed) return true;
     continuation::FamilyCurve curve(_system, isotropy, {});

@@ -62,7 +62,8 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
       return fmt::format("ends on {} gone around {} times, more than survey.subharmonics", names.other_family,
                          f.number);
     case FindingKind::unlisted_crossing:
-      return fmt::format("ends on {} gone around {} times, which has no crossing there", names.other_family, f.number);
+      return fmt::format("ends near {} gone around {} times, and no crossing is listed there", names.other_family,
+                         f.number);
     case FindingKind::unknown_family:
       return f.severity == Severity::cut ? "ends on a family of more symmetry beyond the scene's limits"
                                          : "ends on a family of more symmetry that this survey does not have";

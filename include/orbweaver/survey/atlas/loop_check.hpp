@@ -45,8 +45,8 @@ class LoopCheck {
   [[nodiscard]] LoopAnswer ask(const OrbitBeside& x) const;
 
   /// Of an orbit that is the other family's (`ask`): whether the orbits from it to one of the neighbours are one curve.
-  /// Planes across a chord meet all families there, and beside a narrow gap the other one may be the nearer. False too
-  /// where that cannot be told.
+  /// Planes across a chord meet all families there, and beside a narrow gap the other one may be the nearer; beside a
+  /// crossing it may have symmetries that the neighbours lack. False too where that cannot be told.
   [[nodiscard]] bool is_on_curve(const OrbitBeside& x) const;
 
   /// Whether the orbit at a crossing of the atlas, gone around as what is born there, lies on `beside` between its
