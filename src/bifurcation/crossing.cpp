@@ -288,7 +288,12 @@ numerics::Located sharpened(const systems::System& system, continuation::FamilyC
   EventFunction exact(system, family, parted, within);
   for (double width = wider * uncertain; std::isfinite(width); width *= wider) {
     const Interval around{std::max(within.from, zero.position - width), std::min(within.to, zero.position + width)};
-    if (exact(around.from) * exact(around.to) < 0.0) return root_of(exact, around, tolerance).value_or(zero);
+    const double ends = std::min(std::abs(exact(around.from)), std::abs(exact(around.to)));
+    if (exact(around.from) * exact(around.to) < 0.0) {
+      const auto sharp = root_of(exact, around, tolerance);
+      const bool is_zero = sharp && std::abs(exact(sharp->position)) <= left_at_zero * ends;
+      return is_zero ? *sharp : zero;  // orbits of two families may meet there
+    }
     if (around.from == within.from && around.to == within.to) break;
   }
   return zero;

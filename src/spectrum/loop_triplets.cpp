@@ -318,6 +318,23 @@ void search(Inverse& inverse, std::vector<Triplet>& found, int count, double tol
                     before, failure));
 }
 
+/// A + B C' from here on, with the vectors that are found: it has the others' triplets, and solves with it keep their
+/// digits where A is singular to rounding.
+void raise_found(Inverse& inverse, const std::vector<Triplet>& found) {
+  const equations::LoopEquations& equations = inverse.equations;
+  const auto count = static_cast<Eigen::Index>(found.size());
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(equations.size(), count);
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(equations.size(), count);
+  for (Eigen::Index n = 0; n < count; ++n) {
+    const Triplet& t = found[static_cast<std::size_t>(n)];
+    Eigen::VectorXd image(equations.image().size());
+    equations.project_rows(t.left, image);
+    columns.col(n).head(image.size()) = equations.linearization().rate() * image;
+    rows.col(n).head(t.right.size()) = t.right;
+  }
+  inverse.solver.raise({columns, rows});
+}
+
 std::vector<std::size_t> order_of(const std::vector<Triplet>& found) {
   std::vector<double> values;
   for (const Triplet& t : found) values.push_back(t.value);
@@ -346,9 +363,17 @@ SingularTriplets smallest_singular_triplets(const equations::LoopEquations& equa
   // A search finds the smallest values of what is left, multiple ones once: nothing smaller is missing where the last
   // value that it found is no smaller than those that are wanted.
   bool complete = false;
+  bool is_raised = false;
   while (found.size() < wanted || (!complete && static_cast<int>(found.size()) < free)) {
     const int missing = found.size() < wanted ? static_cast<int>(wanted - found.size()) : 1;
-    search(inverse, found, missing, options.tolerance);
+    try {
+      search(inverse, found, missing, options.tolerance);
+    } catch (const core::NumericalError&) {
+      if (is_raised || found.empty()) throw;
+      raise_found(inverse, found);
+      is_raised = true;
+      continue;
+    }
     complete = (!options.multiple || missing == 1) && found.size() >= wanted &&
                found.back().value >= found[order_of(found)[wanted - 1]].value;
   }

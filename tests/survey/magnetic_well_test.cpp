@@ -81,8 +81,8 @@ TEST(MagneticWell, AFamilyEndsOnAnOrbitFourTimesAround) {
 }
 
 // The pair of multipliers of the slow family passes -1 where a resonance of high order holds it there on less than 1e-8
-// of the family: two doublings that rounding does not tell apart, with a kernel of two dimensions. Two families are
-// born, one with multipliers on the unit circle and one without, and neither turns beside its birth.
+// of the family: two doublings that their index does not tell apart. Two families are born, one with multipliers on the
+// unit circle and one without, and neither turns beside its birth.
 TEST(MagneticWell, OfDoublingsSideBySideBothFamiliesAreFound) {
   const core::Communicator comm;
   const std::vector<Parameters> wells{
@@ -101,10 +101,11 @@ TEST(MagneticWell, OfDoublingsSideBySideBothFamiliesAreFound) {
       EXPECT_EQ(summary.failures, 0U);
       const test::Atlas atlas(summary.atlas);
       EXPECT_THAT(atlas.families().texts("name"),
-                  UnorderedElementsAre("Equilibrium 1, mode 1", "Equilibrium 1, mode 2", "Equilibrium 1, mode 1 Da",
-                                       "Equilibrium 1, mode 1 Db"));
+                  UnorderedElementsAre("Equilibrium 1, mode 1", "Equilibrium 1, mode 2", "Equilibrium 1, mode 1 D1",
+                                       "Equilibrium 1, mode 1 D2"));
       EXPECT_THAT(atlas.crossings().texts("kind"),
-                  UnorderedElementsAre("period-doubling", "fold-energy", "subharmonic", "subharmonic"));
+                  UnorderedElementsAre("period-doubling", "period-doubling", "fold-energy", "subharmonic",
+                                       "subharmonic"));
       for (const survey::FindingSummary& line : summary.findings)
         EXPECT_EQ(line.severity, survey::Severity::cut) << line.text;
     }
