@@ -265,7 +265,8 @@ std::optional<numerics::Located> extremum(const systems::System& system, continu
 /// Values that move the place by less than a share of `tolerance` are zero.
 std::optional<numerics::Located> root_of(EventFunction& function, const Interval& within, double tolerance) {
   const auto [from, to] = within;
-  const double no_more = negligible * tolerance * std::abs(function(to) - function(from)) / (to - from);
+  const double at_from = function(from);
+  const double no_more = negligible * tolerance * std::abs(function(to) - at_from) / (to - from);
   const auto along = [&](double position) {
     const double value = function(position);
     return std::abs(value) <= no_more ? 0.0 : value;
