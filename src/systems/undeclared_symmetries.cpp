@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstddef>
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -67,13 +68,32 @@ std::vector<VectorXd> fields_at(const System& system, const VectorXd& z) {
   return out;
 }
 
+/// z -> p + S (z - p) + h, h half a turn of one angle or zero.
+struct Candidate {
+  VectorXd point;
+  VectorXd signs;
+  VectorXd shift;
+  bool reversing = false;
+};
+
+/// Zero first.
+std::vector<VectorXd> shifts_of(const Structure& structure) {
+  std::vector<VectorXd> shifts{VectorXd::Zero(structure.dimension)};
+  for (const int angle : structure.angles) {
+    shifts.emplace_back(VectorXd::Zero(structure.dimension));
+    shifts.back()(angle) = std::numbers::pi;
+  }
+  return shifts;
+}
+
 /// False also where nothing can be compared.
-bool holds(const System& system, const VectorXd& point, const VectorXd& signs, bool reversing) {
+bool holds(const System& system, const Candidate& candidate) {
+  const auto& [point, signs, shift, reversing] = candidate;
   const std::vector<double> centre(point.data(), point.data() + point.size());
   bool compared = false;
   for (const std::vector<double>& state : states_around(system.structure(), {centre}, states_tried, 1.0)) {
     const VectorXd z = Eigen::Map<const VectorXd>(state.data(), point.size());
-    const VectorXd image = point + signs.cwiseProduct(z - point);
+    const VectorXd image = point + signs.cwiseProduct(z - point) + shift;
     const std::vector<VectorXd> fields = fields_at(system, z);
     const std::vector<VectorXd> of_image = fields_at(system, image);
     for (std::size_t n = 0; n < fields.size(); ++n) {
@@ -89,7 +109,8 @@ bool holds(const System& system, const VectorXd& point, const VectorXd& signs, b
   return compared;
 }
 
-std::string text_of(const System& system, const VectorXd& point, const VectorXd& signs, bool reversing) {
+std::string text_of(const System& system, const Candidate& candidate) {
+  const auto& [point, signs, shift, reversing] = candidate;
   const std::vector<std::string>& names = system.info().state_names;
   std::vector<std::string> images;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -98,6 +119,7 @@ std::string text_of(const System& system, const VectorXd& point, const VectorXd&
     images.push_back(signs(at) > 0.0 ? names[i]
                      : twice == 0.0  ? "-" + names[i]
                                      : fmt::format("{:.6g} - {}", twice, names[i]));
+    if (shift(at) != 0.0) images.back() += " + pi";
   }
   return fmt::format("the {} ({}) -> ({})", reversing ? "reversor" : "symmetry", fmt::join(names, ", "),
                      fmt::join(images, ", "));
@@ -113,6 +135,7 @@ std::vector<std::string> undeclared_symmetries(const System& system, const std::
   for (unsigned changed = (1U << d) - 1; changed > 0; --changed) changes.push_back(changed);
   std::stable_sort(changes.begin(), changes.end(),
                    [](unsigned a, unsigned b) { return std::popcount(a) < std::popcount(b); });
+  const std::vector<VectorXd> shifts = shifts_of(system.structure());
   std::vector<Element> known = declared_by(system.structure());
   for (const bool reversing : {true, false})
     for (const unsigned changed : changes) {
@@ -121,8 +144,11 @@ std::vector<std::string> undeclared_symmetries(const System& system, const std::
       if (known.size() >= most_elements || std::find(known.begin(), known.end(), element) != known.end()) continue;
       for (const std::vector<double>& state : points) {
         const VectorXd point = Eigen::Map<const VectorXd>(state.data(), d);
-        if (!holds(system, point, signs, reversing)) continue;
-        found.push_back(text_of(system, point, signs, reversing));
+        const auto shift = std::find_if(shifts.begin(), shifts.end(), [&](const VectorXd& one) {
+          return holds(system, {point, signs, one, reversing});
+        });
+        if (shift == shifts.end()) continue;
+        found.push_back(text_of(system, {point, signs, *shift, reversing}));
         known.push_back(element);
         known = closed(std::move(known));
         break;

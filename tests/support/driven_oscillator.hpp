@@ -1,11 +1,8 @@
 #pragma once
 
-#include <array>
 #include <cmath>
-#include <string>
 
 #include "orbweaver/systems/model/model_system.hpp"
-#include "registry_lines.hpp"
 #include "support/described.hpp"
 
 namespace orbweaver::test {
@@ -59,14 +56,5 @@ class DrivenOscillator {
     P _d, _a1, _a2, _a3, _s, _c, _drive, _w;
   };
 };
-
-/// Makes it a system that scenes name.
-inline void add_driven_oscillator() {
-  static const bool is_added = [] {
-    systems::add_registry_lines(std::array{systems::registry_line<DrivenOscillator>});
-    return true;
-  }();
-  static_cast<void>(is_added);
-}
 
 }  // namespace orbweaver::test

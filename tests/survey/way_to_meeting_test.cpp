@@ -1,5 +1,7 @@
 // What lies between a family's last orbit and the orbit of another one that it meets gone around several times.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -7,6 +9,7 @@
 
 #include "orbweaver/scene/scene.hpp"
 #include "orbweaver/survey/run/survey.hpp"
+#include "registry_lines.hpp"
 #include "support/driven_oscillator.hpp"
 #include "support/oscillators_in_fields.hpp"
 #include "survey/atlas.hpp"
@@ -25,7 +28,11 @@ struct Driven {
 
 Driven driven(const std::string& parameters, const std::string& place, const std::string& most,
               const std::string& longest) {
-  test::add_driven_oscillator();
+  static const bool is_added = [] {
+    systems::add_registry_lines(std::array{systems::registry_line<test::DrivenOscillator>});
+    return true;
+  }();
+  static_cast<void>(is_added);
   const core::Communicator comm;
   const scene::Scene scene = scene::load(
       ORBWEAVER_SOURCE_DIR "/drivers/scenes/duffing.yaml",

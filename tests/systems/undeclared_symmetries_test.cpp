@@ -5,6 +5,7 @@
 
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/undeclared_turns.hpp"
+#include "support/driven_oscillator.hpp"
 #include "support/magnetic_well.hpp"
 #include "support/translated_system.hpp"
 
@@ -36,6 +37,18 @@ TEST(UndeclaredSymmetries, AreFoundAboutOtherPoints) {
   const test::TranslatedSystem moved(test::magnetic_well({{"b", 0.0}}), offset);
   EXPECT_THAT(undeclared_symmetries(moved, {{5.0, 5.0, 5.0, 5.0}, {2.0, 0.0, -1.0, 0.5}}),
               ElementsAre("the reversor (x, y, px, py) -> (x, y, -2 - px, 1 - py)"));
+}
+
+// A pendulum that is pushed to both sides alike: half a period later it swings to the other one.
+TEST(UndeclaredSymmetries, HaveHalfATurnOfADrivesPhase) {
+  const auto pushed = [](double torque) {
+    return systems::Registered<test::DrivenOscillator>::make(
+        systems::bound_to(test::DrivenOscillator::info(),
+                          {{"d", 0.1}, {"s", 1.0}, {"c", torque}, {"F", 0.3}, {"w", 0.6}}, {}, {.free = {"F"}}));
+  };
+  const std::vector<std::vector<double>> rest{{0.0, 0.0, 0.0}};
+  EXPECT_THAT(undeclared_symmetries(*pushed(0.0), rest), ElementsAre("the symmetry (x, v, phi) -> (-x, -v, phi + pi)"));
+  EXPECT_THAT(undeclared_symmetries(*pushed(1e-6), rest), IsEmpty());
 }
 
 TEST(UndeclaredSymmetries, AreThoseAtAllValuesOfAParameterThatMoves) {
