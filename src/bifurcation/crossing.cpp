@@ -38,6 +38,9 @@ constexpr double falls = 0.5;
 /// Of its error, what a value must be to tell a slope, and how much wider each bracket around an uncertain zero is.
 constexpr double told = 100.0;
 constexpr double wider = 4.0;
+/// A place where an index touches is known so well, in parts of the interval, or to the second number.
+constexpr double share_beside_touch = 1e-3;
+constexpr double least_beside_touch = 1e-5;
 /// What is left in error bounds, which are estimates.
 constexpr double error_margin = 10.0;
 
@@ -274,14 +277,17 @@ std::optional<numerics::Located> root_of(EventFunction& function, const Interval
   return numerics::locate_root(along, from, to, tolerance);
 }
 
+bool has_determinant(const systems::System& system, const Event& event) {
+  return event.function.kind == TestFunction::Kind::sector && event.function.sector.q <= 2 &&
+         system.structure().symplectic;
+}
+
 /// A zero of an index less 2 or -2 that its error moves by more than `tolerance`, as beside another one: that of the
 /// determinant, if it has one there.
 numerics::Located sharpened(const systems::System& system, continuation::FamilyCurve& family, const Event& event,
                             EventFunction& function, const Interval& within, const numerics::Located& zero,
                             double tolerance) {
-  const TestFunction& test = event.function;
-  if (event.is_parted || test.kind != TestFunction::Kind::sector || test.sector.q > 2 || !system.structure().symplectic)
-    return zero;
+  if (event.is_parted || !has_determinant(system, event)) return zero;
   const double uncertain = function.uncertainty_at(zero.position);
   if (!(uncertain > tolerance)) return zero;
   Event parted = event;
@@ -298,6 +304,20 @@ numerics::Located sharpened(const systems::System& system, continuation::FamilyC
     if (around.from == within.from && around.to == within.to) break;
   }
   return zero;
+}
+
+/// The same of a place where an index touches 2 or -2: its square there is known to half the digits of the place.
+numerics::Located sharpened_touch(const systems::System& system, continuation::FamilyCurve& family, const Event& event,
+                                  const Interval& within, const numerics::Located& touch, double tolerance) {
+  if (!has_determinant(system, event)) return touch;
+  Event parted = event;
+  parted.is_parted = true;
+  EventFunction exact(system, family, parted, within);
+  const double half = std::max(share_beside_touch * (within.to - within.from), least_beside_touch);
+  return numerics::locate_minimum([&](double position) { return std::abs(exact(position)); },
+                                  std::max(within.from, touch.position - half),
+                                  std::min(within.to, touch.position + half), tolerance)
+      .value_or(touch);
 }
 
 /// Of a slope: only where it is less than at the ends, and no more than rounding.
@@ -448,6 +468,7 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
   } else if (event.tangency) {
     const auto size = [&](double position) { return std::abs(function(position)); };
     located = numerics::locate_minimum(size, from, to, absolute);
+    if (located) located = sharpened_touch(system, family, event, {from, to}, *located, absolute);
   } else if (event.kind == Event::Kind::test_function) {
     located = root_of(function, {from, to}, absolute);
     if (located) located = sharpened(system, family, event, function, {from, to}, *located, absolute);
