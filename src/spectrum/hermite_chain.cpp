@@ -103,8 +103,8 @@ void HermiteChain::take_nodes(const systems::System& system, const double* state
   const auto d = static_cast<Eigen::Index>(_dimension);
   const auto nodes = static_cast<Eigen::Index>(_loop.segments) + 1;
   const auto points = static_cast<Eigen::Index>(_loop.points);
-  using Rows =
-      Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>, 0, Eigen::OuterStride<>>;
+  using Rows = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>, 0,
+                          Eigen::OuterStride<>>;
   chain.states = Rows(states + guards, d, nodes, Eigen::OuterStride<>(points));
   chain.fields = Rows(fields + guards, d, nodes, Eigen::OuterStride<>(points));
   chain.jacobians.resize(d * d, nodes);
@@ -124,8 +124,8 @@ void HermiteChain::take_node(std::size_t first, double* ends) {
   const std::size_t dd = of.size();
   thread_local std::vector<Lanes> storage;
   storage.resize((2 * terms + 4) * dd);
-  Lanes* a = storage.data();  // Taylor coefficients of t' A
-  Lanes* y = a + terms * dd;  // and of Y
+  Lanes* a = storage.data();      // Taylor coefficients of t' A
+  Lanes* y = a + terms * dd;      // and of Y
   Lanes* flow = y + (terms + 1) * dd;
   double* change = ends + 2 * levels * dd * wide;
   for (std::size_t n = 0; n < dd; ++n) {
@@ -177,7 +177,8 @@ void HermiteChain::take_node(std::size_t first, double* ends) {
     for (std::size_t n = 0; n < dd; ++n) {
       Lanes even = y[n];
       Lanes odd = y[dd + n] * rule.ends[level][1];
-      for (std::size_t k = 2; k <= terms - level; ++k) (k % 2 == 0 ? even : odd) += y[k * dd + n] * rule.ends[level][k];
+      for (std::size_t k = 2; k <= terms - level; ++k)
+        (k % 2 == 0 ? even : odd) += y[k * dd + n] * rule.ends[level][k];
       (even + odd).store(ends + (2 * level * dd + n) * wide);
       (even - odd).store(ends + ((2 * level + 1) * dd + n) * wide);
     }
@@ -249,7 +250,8 @@ void HermiteChain::take_segments(std::size_t first, const double* ends) {
     for (std::size_t i = 0; i < d; ++i)
       for (std::size_t n = 0; n < d; ++n) {
         transition[n * d + i] = result[i * d + n].packed[l];
-        truncation[n * d + i] = ratio.packed[l] * std::abs(last[i * d + n].packed[l]) + end[i * d + n].packed[l];
+        truncation[n * d + i] =
+            ratio.packed[l] * std::abs(last[i * d + n].packed[l]) + end[i * d + n].packed[l];
       }
   }
 }

@@ -58,7 +58,8 @@ HermiteRule::HermiteRule() {
   Long factorial = 1.0L;
   for (std::size_t j = 0; j < terms; ++j) {
     if (j > 0) factorial *= static_cast<Long>(j);
-    for (std::size_t k = 0; k <= reach; ++k) stencil[j][k] = static_cast<double>(weights[j][reach + k] / factorial);
+    for (std::size_t k = 0; k <= reach; ++k)
+      stencil[j][k] = static_cast<double>(weights[j][reach + k] / factorial);
     // In the integral of A, coefficient j counts beta_(j+1) j!.
     const Long counted = static_cast<Long>(ends[0][j + 1].packed[0]) / static_cast<Long>(j + 1);
     (j % 2 == 0 ? even_size : odd_size) += std::abs(weights[j][2 * reach] / factorial) * counted;

@@ -97,7 +97,8 @@ SampledLoop::SampledLoop(const systems::System& system, const loop::Loop& loop, 
   for (std::size_t l = 0; l < wide; ++l) require_finite_field(sum.packed[l]);
   for (std::size_t entry = 0; entry < d * d; ++entry)
     for (std::size_t n = 0; n < points; n += wide)
-      (Lanes::load(&rates[n]) * Lanes::load(&jacobians[entry * points + n])).store(&jacobians[entry * points + n]);
+      (Lanes::load(&rates[n]) * Lanes::load(&jacobians[entry * points + n]))
+          .store(&jacobians[entry * points + n]);
   vanishes.assign(d * d, 1);
   for (std::size_t entry = 0; entry < d * d; ++entry) {
     const double* all = &jacobians[entry * points];

@@ -24,15 +24,26 @@ spectrum::Stability beside_two(double distance, double bound) {
   return stability;
 }
 
+/// A branch of which nothing is known but where it begins.
+struct Beginning {
+  scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/henon_heiles.yaml", {});
+  BranchWork work = [] {
+    BranchWork out;
+    out.base = loop::constant_loop(std::vector<double>(4, 0.0), 6.0, 8);
+    out.direction = {std::vector<double>(out.base.modes.size(), 1.0), {}};
+    return out;
+  }();
+  FollowedBranch followed{scene, systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects),
+                          work, nullptr};
+  BranchEvents events{followed, nullptr};
+};
+
 // A driven pendulum: the multiplier was still -1500 at the nearest orbit before its meeting that was found.
 TEST(BranchEvents, AWayToAMeetingOnWhichNoMultiplierComesToOneIsTold) {
-  const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/henon_heiles.yaml", {});
-  const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
-  BranchWork work;
-  work.base = loop::constant_loop(std::vector<double>(4, 0.0), 6.0, 8);
-  work.direction = {std::vector<double>(work.base.modes.size(), 1.0), {}};
-  FollowedBranch followed(scene, system, work, nullptr);
-  BranchEvents events(followed, nullptr);
+  Beginning branch;
+  const BranchWork& work = branch.work;
+  FollowedBranch& followed = branch.followed;
+  BranchEvents& events = branch.events;
   followed.curve.add(0.0, work.base, kept_orbits);
   followed.curve.add(1.0, loop::moved(work.base, work.direction, 0.1), kept_orbits);
   const auto told = [&](double distance) {
@@ -47,13 +58,10 @@ TEST(BranchEvents, AWayToAMeetingOnWhichNoMultiplierComesToOneIsTold) {
 // Three oscillators without a symmetry: along a family that ends on one four times around k - 2 was 1.3e-9, 4e-12 and
 // -1.8e-14 at the last places before it, the last by more than its bound. Two branch points were stored there.
 TEST(BranchEvents, OnTheWayToAMeetingRoundingMakesNoSign) {
-  const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/henon_heiles.yaml", {});
-  const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
-  BranchWork work;
-  work.base = loop::constant_loop(std::vector<double>(4, 0.0), 6.0, 8);
-  work.direction = {std::vector<double>(work.base.modes.size(), 1.0), {}};
-  FollowedBranch followed(scene, system, work, nullptr);
-  BranchEvents events(followed, nullptr);
+  Beginning branch;
+  const BranchWork& work = branch.work;
+  FollowedBranch& followed = branch.followed;
+  BranchEvents& events = branch.events;
   const auto sign_of = [&](int q, double position, const spectrum::Stability& stability) {
     const bifurcation::TestPoint point = events.test_point(position, work.base, stability);
     for (std::size_t f = 0; f < point.readings.size(); ++f)

@@ -78,8 +78,15 @@ void BranchTask::begin(const std::string& bytes) {
 }
 
 BranchState BranchTask::state_at(const continuation::Frontier& frontier) const {
-  return {frontier,        _followed.curve.known(), _events.detector_state(), _events.folds(), _followed.last.value(),
-          _events.count(), _events.passed_one(),    _followed.outcome,        _events.tasks()};
+  return {frontier,
+          _followed.curve.known(),
+          _events.detector_state(),
+          _events.folds(),
+          _followed.last.value(),
+          _events.count(),
+          _events.passed_one(),
+          _followed.outcome,
+          _events.tasks()};
 }
 
 queue::TaskOutcome BranchTask::run() {
