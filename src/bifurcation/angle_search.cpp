@@ -246,8 +246,10 @@ AnglesFound search_angles(const systems::System& system, const loop::Loop& base,
   core::require(group.dimension() == 2 && q >= 2, "angles are searched in a plane, from q = 2 on");
   const Plane plane(system, base, group, isotropy, options);
   const double turn = 2.0 * std::numbers::pi / q;
-  // Of q = 2 the push does not grow with the amplitude.
-  const std::vector<Circle> circles = grown(plane, scale, {0.0, 0.25 * turn, turn}, [q](const Circle& circle) {
+  // Of q = 2 there may be four lines, some of them at these angles; and the push does not grow with the amplitude.
+  const std::vector<double> few =
+      q == 2 ? std::vector{0.0, 0.125 * turn, 0.25 * turn, turn} : std::vector{0.0, 0.25 * turn, turn};
+  const std::vector<Circle> circles = grown(plane, scale, few, [q](const Circle& circle) {
     return circle.is_clear() && (q == 2 || circle.summary().is_plain());
   });
   if (circles.empty()) return {};

@@ -41,8 +41,6 @@ constexpr double wider = 4.0;
 /// A place where an index touches is known so well, in parts of the interval, or to the second number.
 constexpr double share_beside_touch = 1e-3;
 constexpr double least_beside_touch = 1e-5;
-/// What is left in error bounds, which are estimates.
-constexpr double error_margin = 10.0;
 
 /// How far beside a place without an orbit a fold's neighbours are taken, in parts of the interval in which it is
 /// looked for, the first two that there are: a family may turn where it crosses another one, and there Newton's method

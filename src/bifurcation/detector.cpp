@@ -228,6 +228,7 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
   while (from != nodes.begin() && zero(*from)) --from;
   while (to + 1 != nodes.end() && zero(*to)) ++to;
   found.push_back({function, from->position, to->position, true});
+  examined_to = right.position;
 }
 
 /// Brackets the zeros that the function has passed between two nodes, as their counts tell, and signs do not show.

@@ -333,10 +333,17 @@ std::vector<Direction> about_equilibrium(const systems::Structure& system, const
   return out;
 }
 
-/// Directions at which orbits were found, as the whole way from the base to each: the smaller the term that fixes the
-/// angle, the nearer a first orbit must be guessed.
+/// Whether an image of the direction is one of these.
+bool is_near_any(const KernelActions& group, const Eigen::VectorXd& v, const std::vector<Eigen::VectorXd>& others) {
+  return std::any_of(others.begin(), others.end(),
+                     [&](const Eigen::VectorXd& other) { return group.image(v, other, near_predicted) != 0; });
+}
+
+/// Directions at which orbits were found, less those along `lines` and images of others, as the whole way from the base
+/// to each: the smaller the term that fixes the angle, the nearer a first orbit must be guessed.
 std::vector<Direction> by_angles(const systems::System& system, const KernelActions& group, const loop::Loop& base,
-                                 const loop::Isotropy& kept, int q, const DirectionOptions& options) {
+                                 const loop::Isotropy& kept, int q, const std::vector<Eigen::VectorXd>& lines,
+                                 const DirectionOptions& options) {
   const double scale = std::min(1.0, loop::rms_amplitude(base));
   const AnglesFound angles = search_angles(system, base, group, kept, q, scale, options);
   if (!angles.decided())
@@ -346,7 +353,10 @@ std::vector<Direction> by_angles(const systems::System& system, const KernelActi
                     "and rounding {:.1e}",
                     q, angles.amplitude, angles.force, angles.noise));
   std::vector<Direction> out;
+  std::vector<Eigen::VectorXd> taken = lines;
   for (const FoundOrbit& orbit : angles.found) {
+    if (is_near_any(group, orbit.coordinates, taken)) continue;
+    taken.push_back(orbit.coordinates);
     Direction direction = whole_way(base, orbit.loop, orbit.opposite);
     direction.isotropy =
         loop::find_isotropy(system.structure(), orbit.loop, found_tolerance * angles.amplitude, group.denominator());
@@ -373,10 +383,9 @@ bool leads_to_second(const systems::System& system, const KernelActions& group, 
 bool all_are_found(const KernelActions& group, const std::vector<Eigen::VectorXd>& vectors, const SearchResult& result,
                    const std::vector<Eigen::VectorXd>& lines) {
   return std::all_of(vectors.begin(), vectors.end(), [&](const Eigen::VectorXd& v) {
-    const auto is_near = [&](const Eigen::VectorXd& other) { return group.image(v, other, near_predicted) != 0; };
-    return std::any_of(lines.begin(), lines.end(), is_near) ||
+    return is_near_any(group, v, lines) ||
            std::any_of(result.found.begin(), result.found.end(),
-                       [&](const FoundOrbit& orbit) { return is_near(orbit.coordinates); });
+                       [&](const auto& orbit) { return group.image(v, orbit.coordinates, near_predicted) != 0; });
   });
 }
 
@@ -390,8 +399,9 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   const Eigen::VectorXd generic = Eigen::VectorXd::LinSpaced(group.dimension(), 1.0, std::sqrt(2.0)).array().sin();
   const loop::Isotropy kept =
       isotropy_along(system.structure(), group, base, group.vector_at(generic.normalized()), options);
-  const bool by_angle = plane && q >= 2 && lines.empty() && !group.constant() && system.structure().conservative();
-  if (by_angle && q >= least_weak_resonance) return by_angles(system, group, base, kept, q, options);
+  const bool by_angle =
+      plane && q >= 2 && (lines.empty() || q == 2) && !group.constant() && system.structure().conservative();
+  if (by_angle && q >= least_weak_resonance) return by_angles(system, group, base, kept, q, lines, options);
   const double nudge = plane ? nudge_in_plane * std::numbers::pi / q : nudge_in_space;
   const int expected = plane && q > 2 ? (q % 2 == 0 ? 2 : 1) : 0;
   SearchResult best;
@@ -431,13 +441,14 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
     std::erase_if(best.found, [&](const FoundOrbit& orbit) {
       return is_born_beyond(system, base, group, kept, orbit.loop, options.amplitude, lines, options);
     });
-  // Of q = 2 what decides has as many maxima as minima: an even number of lines.
-  const bool is_odd = q == 2 && best.found.size() % 2 != 0;
-  if (by_angle && (static_cast<int>(best.found.size()) < std::max(expected, 1) || is_odd)) try {
-      std::vector<Direction> out = by_angles(system, group, base, kept, q, options);
+  // Of q = 2 what decides has as many maxima as minima: an even number of lines. Those that symmetry singles out may be
+  // of one kind, with others between them.
+  const bool is_open = q == 2 && (best.found.size() % 2 != 0 || !lines.empty());
+  if (by_angle && (static_cast<int>(best.found.size()) < std::max(expected, 1) || is_open)) try {
+      std::vector<Direction> out = by_angles(system, group, base, kept, q, lines, options);
       if (q == 2 || static_cast<int>(out.size()) == expected) return out;
     } catch (const UndecidedError&) {
-      if (best.found.empty()) throw;  // else some of the directions are known
+      if (best.found.empty() && lines.empty()) throw;  // else some of the directions are known
     }
   const std::string seen = fmt::format(
       "a kernel of dimension {} (q = {}): {} directions found at amplitude {:.2g}, {} where orbits are not isolated",

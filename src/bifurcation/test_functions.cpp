@@ -72,8 +72,6 @@ const Rule& checked_rule(const TestFunction& function, const systems::Structure&
 /// fast motions 6 times apart has (m2 = 1e-6), a tenth of the best with 2000 times (m2 = 1e6).
 constexpr double told_to = 1e-4;
 constexpr double near_circle = 3.0;
-/// Of its bound, the error that an index may have: the bound is an estimate, good to a factor.
-constexpr double error_margin = 10.0;
 
 /// How many of several indices are above the function's place: none passes it unseen while all are real.
 double indices_above(const TestFunction& function, const systems::Structure& system,
@@ -112,6 +110,8 @@ int Reading::sign() const {
   if (!(std::abs(value) > error)) return 0;
   return value > 0.0 ? 1 : -1;
 }
+
+int Reading::clear_sign() const { return Reading{value, error_margin * error}.sign(); }
 
 std::string_view name_of(TestFunction::Kind kind) { return rule_of(kind).name(); }
 bool has_sector(TestFunction::Kind kind) { return rule_of(kind).has_sector(); }

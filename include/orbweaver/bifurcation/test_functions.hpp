@@ -11,6 +11,10 @@
 
 namespace orbweaver::bifurcation {
 
+/// Of its bound, the error that a multiplier, an index or a function of them may have: bounds are estimates, good to a
+/// factor.
+inline constexpr double error_margin = 10.0;
+
 /// A number and a bound on its absolute error.
 struct Reading {
   double value;
@@ -18,6 +22,8 @@ struct Reading {
 
   /// -1 or 1, or 0 where the value does not exceed its error bound or either is not a number.
   [[nodiscard]] int sign() const;
+  /// As `sign`, and 0 too within `error_margin` of the bound.
+  [[nodiscard]] int clear_sign() const;
 
   static constexpr int wire_version = 1;
   template <class Archive>

@@ -34,10 +34,9 @@ namespace {
 using archive::CrossingKind;
 using bifurcation::Event;
 
-/// Pairs of multipliers count as in the sector within this or so many of their error bounds. A location leaves 1e-9
+/// Pairs of multipliers count as in the sector within this or the margin of their error bounds. A location leaves 1e-9
 /// (docs/mathematics.md, "Location"); one pair is counted in any case, so this matters to multiple crossings only.
 constexpr double in_sector = 1e-6;
-constexpr double error_bounds = 10.0;
 /// Rounding of a period at the limit, relative to it: such a family still begins on the limit.
 constexpr double at_limit = 1e-9;
 /// The slope of the energy at a fold that is located as a zero of the index, in parts of the slopes beside it: two
@@ -383,7 +382,7 @@ class Location {
     const bifurcation::Sector& sector = _event.function.sector;
     const double away = bifurcation::index_deviation(_system->structure(), crossing.stability, sector).value;
     const double error = stability_error(crossing.stability);
-    if (!_outcome.undecided && !(std::abs(away) > error_bounds * error)) return;
+    if (!_outcome.undecided && !(std::abs(away) > bifurcation::error_margin * error)) return;
     const Units units(*_system);
     _outcome.kind.reset();
     _outcome.remark = fmt::format(
@@ -490,7 +489,7 @@ int expected_dimension(const systems::Structure& system, const spectrum::Stabili
   for (std::size_t n = 0; n < count; ++n) {
     const double away = std::abs(stability.fundamental[n] - sector.value(system.symplectic));
     // Where a parameter folds the bounds of all multipliers grow: orbits of its value are not isolated there.
-    const double bound = system.symplectic ? error_bounds * stability.fundamental_error[n] : 0.0;
+    const double bound = system.symplectic ? bifurcation::error_margin * stability.fundamental_error[n] : 0.0;
     if (away < std::max(in_sector, bound)) ++pairs;
   }
   return std::max(1, pairs) * (sector.q <= 2 && !touches ? 1 : 2);

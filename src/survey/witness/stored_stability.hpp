@@ -11,9 +11,6 @@
 
 namespace orbweaver::survey {
 
-/// Of the stored bound of indices, which is that of the full period's.
-inline constexpr double stored_error_margin = 10.0;
-
 /// What the archive says of the fundamental map of the orbit in a row, whose order is `order`.
 [[nodiscard]] inline spectrum::Stability stored_stability(const Evidence& evidence, std::size_t row, int order) {
   const archive::Archive& atlas = evidence.tree.atlas;
@@ -26,7 +23,7 @@ inline constexpr double stored_error_margin = 10.0;
     stability.fundamental.emplace_back(values[row * width + i], parts == 2 ? values[row * width + i + 1] : 0.0);
   // Of the full period's, which is no smaller but where d(mu^p + mu^-p)/d(mu + 1/mu) is below 1.
   stability.fundamental_error.assign(stability.fundamental.size(),
-                                     atlas.orbits().reals("stability_error")[row] * stored_error_margin);
+                                     atlas.orbits().reals("stability_error")[row] * bifurcation::error_margin);
   return stability;
 }
 

@@ -19,9 +19,6 @@ namespace orbweaver::survey {
 
 namespace {
 
-/// Of its bound, the error that a function of the multiplier 1 may have on the way to a meeting, where rounding is all
-/// that is left of it: the bound is an estimate, good to a factor (as in `bifurcation::is_isolated`).
-constexpr double error_margin = 10.0;
 /// Of the way from a birth: an orbit that rounding leaves open by more across its family tells no index of 2 there. Not
 /// measured.
 constexpr double open_at_birth = 0.1;
@@ -86,7 +83,7 @@ bifurcation::TestPoint BranchEvents::test_point(double position, const loop::Loo
   for (std::size_t f = 0; f < point.readings.size(); ++f) {
     if (!is_of_one(_followed.functions[f])) continue;
     double& error = point.readings[f].error;
-    if (is_first || position > _last) error *= error_margin;
+    if (is_first || position > _last) error *= bifurcation::error_margin;
     const double size = std::abs(point.readings[f].value);
     if (is_first && size > error && size <= bifurcation::zero_at_birth && is_hidden_by_birth(position, loop))
       error = bifurcation::zero_at_birth;

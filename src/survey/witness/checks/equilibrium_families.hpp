@@ -115,7 +115,7 @@ class EquilibriumFamilies final : public Check {
                                            int dimension) {
     const auto pairs = kernel_pairs(evidence, orbit, repetitions, dimension);
     if (!pairs) return std::nullopt;
-    const double error = stored_error_margin * evidence.tree.atlas.orbits().reals("stability_error")[orbit];
+    const double error = bifurcation::error_margin * evidence.tree.atlas.orbits().reals("stability_error")[orbit];
     int sum = 0;
     for (int shift = 0; shift < repetitions; ++shift) {
       int sign = 1;

@@ -159,7 +159,7 @@ class IndexChanges final : public Check {
     for (std::size_t n = first; n < first + count; ++n) {
       spectrum::Stability stability = stored_stability(evidence, evidence.family(row).first_orbit + n, order);
       double& error = stability.fundamental_error.front();
-      error /= stored_error_margin;
+      error /= bifurcation::error_margin;
       if (bifurcation::are_decided(stability) || (worst && worst->deviation >= error)) continue;
       worst = finding_at(evidence, row, {}, n, stability, Severity::undecided);
       worst->kind = FindingKind::undecided_indices;

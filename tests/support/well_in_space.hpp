@@ -1,0 +1,119 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "orbweaver/systems/model/model_system.hpp"
+#include "support/described.hpp"
+
+namespace orbweaver::test {
+
+/// A particle of mass 1 in space, in a well of the terms c<ijk> x^i y^j z^k of second to fourth order that are even in
+/// z, and in y too where `EvenInY`. Its structure declares that it goes the same ways backwards, and the mirror images
+/// in z where `DeclaresZ`.
+template <bool EvenInY, bool DeclaresZ>
+class WellInSpace {
+ public:
+  static constexpr int dimension = 6;
+  static constexpr int quantities = 1;
+
+  struct Term {
+    std::array<int, 3> powers;
+    [[nodiscard]] std::string name() const { return fmt::format("c{}", fmt::join(powers, "")); }
+  };
+
+  static const std::vector<Term>& terms() {
+    static const std::vector<Term> all = [] {
+      std::vector<Term> out;
+      for (int i = 0; i <= 4; ++i)
+        for (int j = 0; i + j <= 4; j += EvenInY ? 2 : 1)
+          for (int k = 0; i + j + k <= 4; k += 2)
+            if (i + j + k >= 2) out.push_back({{i, j, k}});
+      return out;
+    }();
+    return all;
+  }
+
+  static systems::ModelInfo info() {
+    std::vector<std::string> coefficients;
+    for (const Term& term : terms()) coefficients.push_back(term.name());
+    return test::described("well_in_space", "a particle in a well in space", {"x", "y", "z", "px", "py", "pz"},
+                           coefficients, 0.0);
+  }
+
+  static systems::Structure structure(const systems::Bound&) {
+    const auto diagonal = [](double x, double y, double z, double px, double py, double pz) {
+      return Eigen::MatrixXd(Eigen::Matrix<double, 6, 1>{x, y, z, px, py, pz}.asDiagonal());
+    };
+    systems::Structure structure;
+    structure.dimension = dimension;
+    structure.conserved = {"energy"};
+    structure.symplectic = true;
+    structure.reversors = {{"R", diagonal(1, 1, 1, -1, -1, -1)}};
+    if (DeclaresZ) {
+      structure.equivariances = {{"Z", diagonal(1, 1, -1, 1, 1, -1)}};
+      structure.reversors.push_back({"RZ", diagonal(1, 1, -1, -1, -1, 1)});
+    }
+    return structure;
+  }
+
+  template <class P>
+  class With {
+   public:
+    explicit With(const systems::BoundTo<P>& bound) {
+      for (const Term& term : terms()) _coefficients.push_back(bound[term.name()]);
+    }
+
+    template <class S>
+    void field(const S* s, S* f) const {
+      for (int i = 0; i < 3; ++i) {
+        f[i] = s[3 + i];
+        f[3 + i] = S(0.0);
+      }
+      for (std::size_t n = 0; n < _coefficients.size(); ++n)
+        for (std::size_t i = 0; i < 3; ++i) {
+          std::array<int, 3> powers = terms()[n].powers;
+          const int power = powers[i]--;
+          if (power > 0) f[3 + i] = f[3 + i] - monomial(s, powers) * _coefficients[n] * static_cast<double>(power);
+        }
+    }
+
+    template <int, class S>
+    S conserved(const S* s) const {
+      S sum = action_density(s) * 0.5;
+      for (std::size_t n = 0; n < _coefficients.size(); ++n)
+        sum = sum + monomial(s, terms()[n].powers) * _coefficients[n];
+      return sum;
+    }
+
+    template <class S>
+    S action_density(const S* s) const {
+      return s[3] * s[3] + s[4] * s[4] + s[5] * s[5];
+    }
+
+   private:
+    template <class S>
+    static S monomial(const S* s, const std::array<int, 3>& powers) {
+      S product(1.0);
+      for (std::size_t i = 0; i < 3; ++i)
+        for (int n = 0; n < powers[i]; ++n) product = product * s[i];
+      return product;
+    }
+
+    std::vector<P> _coefficients;
+  };
+};
+
+/// Coefficients that are not given are 0.
+template <class Well>
+std::shared_ptr<const systems::System> well_in_space(const std::map<std::string, double>& coefficients) {
+  return systems::Registered<Well>::make(systems::bound_to(Well::info(), coefficients, {}));
+}
+
+}  // namespace orbweaver::test
