@@ -188,17 +188,13 @@ loop::Loop once_around(const loop::Loop& orbit) {
 struct Correction {
   std::optional<continuation::Orbit> orbit;
   std::string why;
-  bool is_beyond_limits = false;  ///< there is one, which the scene's limits leave out
 };
 
 /// The first orbit of a branch; an equilibrium, which is an orbit of every period, is none.
 Correction first_of(continuation::Branch branch) {
-  Correction found{branch.advance(), {}, false};
+  Correction found{branch.advance(), {}};
   if (!found.orbit) {
-    const continuation::Ending ending = branch.ending().value();
-    using continuation::EndReason;
-    found.why = ending.text();
-    found.is_beyond_limits = !ending.failed() && ending.reason != EndReason::cutoff_limit;
+    found.why = branch.ending().value().text();
     return found;
   }
   const loop::Loop& orbit = found.orbit->loop;
@@ -216,7 +212,7 @@ Correction return_at_energy(const std::shared_ptr<const systems::System>& system
     if (by_energy) found = first_of(beside_energy(system, guess, options));
     if (!found.orbit) continue;
     if (std::optional<continuation::Orbit> there = at_energy(system, *found.orbit, energy, options))
-      return {std::move(there), {}, false};
+      return {std::move(there), {}};
     found.why =
         fmt::format("the orbit with T = {:.9g} has another energy, {:.9g}, and none with the trajectory's lies near",
                     found.orbit->loop.period * system->scales().time, found.orbit->energy * system->scales().energy());
@@ -232,17 +228,23 @@ Correction corrected(const scene::Scene& scene, const std::shared_ptr<const syst
   const loop::Loop guess = guess_of(*system, work);
   continuation::Options options = branch_options(scene, team);
   const bool is_return = work.given.front().is_return();
-  if (is_return) {  // a return's orbit is within the limits when it has the energy
-    options.energy_from = -std::numeric_limits<double>::infinity();
-    options.energy_to = std::numeric_limits<double>::infinity();
+  // A return's orbit is within the limits when it has the energy; a family that begins beyond them is left out.
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  options.energy_from = -unlimited;
+  options.energy_to = unlimited;
+  if (!is_return) {
+    options.period_limit = unlimited;
+    options.parameter_from = -unlimited;
+    options.parameter_to = unlimited;
+    options.guard_limits.clear();
   }
   options.base_is_far = !is_return;  // of returns there are many, most near no orbit
   Correction found = first_of(continuation::Branch(system, start_at(guess, 1.0), options));
   if (!system->structure().conservative() || !system->family_scalars().free.empty()) return found;
   if (is_return) return return_at_energy(system, guess, system->conserved(0, work.point), std::move(found), options);
-  if (found.orbit || found.is_beyond_limits) return found;
+  if (found.orbit) return found;
   Correction with_energy = first_of(beside_energy(system, guess, options));
-  if (!with_energy.orbit && !with_energy.is_beyond_limits)
+  if (!with_energy.orbit)
     with_energy.why = fmt::format("{}; with the energy held instead: {}", found.why, with_energy.why);
   return with_energy;
 }
@@ -301,7 +303,7 @@ SweepOutcome given_start(const scene::Scene& scene, const std::shared_ptr<const 
   const Correction correction = corrected(scene, system, work, team);
   if (!correction.orbit) {
     if (!work.given.front().is_return())
-      throw core::NumericalError(correction.why + (correction.is_beyond_limits ? "" : advice_for(*system, work)));
+      throw core::NumericalError(correction.why + advice_for(*system, work));
     outcome.rejected.push_back(correction.why);
     return outcome;
   }
