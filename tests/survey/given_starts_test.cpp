@@ -16,6 +16,7 @@
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/survey/tree/expected_starts.hpp"
 #include "survey/atlas.hpp"
+#include "survey/widened.hpp"
 
 namespace given_starts_test {
 namespace {
@@ -158,6 +159,24 @@ TEST(StartsOfStates, AreNumberedByWhatTheyAre) {
   if (comm.is_root()) {
     ASSERT_EQ(bytes.size(), 2U);
     EXPECT_EQ(bytes[0], bytes[1]);
+  }
+}
+
+TEST(StartsOfStates, BeyondTheLimitsAreLeftOutAndBegunByWiderOnes) {
+  const core::Communicator comm;
+  const fs::path folder = test::fresh_folder(fmt::format("left_out{}", comm.size()), comm.get());
+  core::on_root(comm.get(), [&] {
+    write(folder / "scene.yaml",
+          "system: {name: double_pendulum}\nstarts: {states: [{state: [0, 0, -5.0444829, 9.5780458], period: "
+          "0.8211037}]}\n"
+          "limits: {energy: [19, 21]}\nsurvey: {depth: 0, subharmonics: 1}\n");
+  });
+  const auto scene_with = [&](const std::vector<std::string>& limits) {
+    return scene::load(folder / "scene.yaml", limits);
+  };
+  for (const std::string limit : {"limits.energy=[20.5, 21]", "limits.period=0.8"}) {
+    SCOPED_TRACE(limit);
+    test::expect_same_when_widened(comm, scene_with, {limit});
   }
 }
 

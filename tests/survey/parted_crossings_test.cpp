@@ -7,17 +7,19 @@
 #include <gtest/gtest.h>
 
 #include "survey/surveyed_well.hpp"
+#include "survey/widened.hpp"
 
 namespace parted_crossings_test {
 namespace {
 
 using namespace orbweaver;
 
+std::map<std::string, double> well(double c) { return test::well({0.45, 0.0, 0.0, c, 0.0, 0.1, 0.5, 0.1}); }
+
 /// The energies at which mode 2, along y = 0, is doubled: across it y'' = -(w2^2 + 2 c x + f x^2) y.
 std::vector<double> doublings(double c, const std::string& start) {
   const test::Atlas atlas =
-      test::survey_of(test::well({0.45, 0.0, 0.0, c, 0.0, 0.1, 0.5, 0.1}),
-                      {"limits.energy=[0, 0.2]", "limits.period=8", "continuation.start=" + start});
+      test::survey_of(well(c), {"limits.energy=[0, 0.2]", "limits.period=8", "continuation.start=" + start});
   std::vector<double> energies;
   for (std::size_t row = 0; row < atlas.crossings().rows(); ++row)
     if (atlas.crossings().texts("kind")[row] == "period-doubling")
@@ -39,6 +41,20 @@ TEST(PartedCrossings, LieApartInProportionToWhatPartsThem) {
       const double expected = (wide[1] - wide[0]) * c / 1e-4;
       EXPECT_NEAR(near[1] - near[0], expected, 1e-3 * expected + 1e-11);
     }
+}
+
+TEST(PartedCrossings, AreTheSameAfterNarrowerLimits) {
+  const auto scene_with = [](std::vector<std::string> overrides) {
+    overrides.insert(overrides.begin(),
+                     {"starts.fixed_points.names={}", "starts.fixed_points.letters={}",
+                      "starts.fixed_points.grid=[[0], [0], [0], [0]]", "starts.sweep.period=auto", "survey.depth=1",
+                      "survey.subharmonics=2", "limits.energy=[0, 0.2]", "limits.period=16"});
+    return scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/henon_heiles.yaml", overrides);
+  };
+  for (const std::string limit : {"survey.depth=0", "limits.period=8"}) {
+    SCOPED_TRACE(limit);
+    test::expect_same_when_widened(core::Communicator(), scene_with, {limit}, test::uneven_well(well(1e-6)));
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "survey/atlas.hpp"
+#include "survey/widened.hpp"
 
 namespace tree_limits_test {
 namespace {
@@ -113,22 +114,11 @@ TEST(HenonHeiles, HasThreeFamiliesAtTheOrigin) {
 // The third family from Straight's crossing at T = 7.521 goes over to another one at its second step, which passes
 // E = 0.13804: the step is taken back, and how much shorter the next one is depends on the limit.
 TEST(HenonHeiles, WiderLimitsBehindAStepThatMetOneAndWasTakenBack) {
-  const core::Communicator comm;
-  const auto survey_in = [&](const std::filesystem::path& folder, const std::vector<std::string>& limits, bool resume) {
-    std::vector<std::string> overrides{"starts.sweep.step=0.05", "continuation.start=0.03"};
-    overrides.insert(overrides.end(), limits.begin(), limits.end());
-    const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/henon_heiles.yaml", overrides);
-    survey::RunOptions options;
-    options.resume = resume;
-    return survey::run_survey(comm, scene, scene::bound_system(scene.system), folder, options).atlas;
+  const auto scene_with = [](std::vector<std::string> overrides) {
+    overrides.insert(overrides.begin(), {"starts.sweep.step=0.05", "continuation.start=0.03"});
+    return scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/henon_heiles.yaml", overrides);
   };
-  const std::string ranks = std::to_string(comm.size());
-  const auto whole = survey_in(test::fresh_folder("whole" + ranks, comm.get()), {}, false);
-  const auto folder = test::fresh_folder("widened" + ranks, comm.get());
-  static_cast<void>(survey_in(folder, {"limits.energy=[-.inf, 0.138038453]"}, false));
-  const auto widened = survey_in(folder, {}, true);
-  if (!comm.is_root()) return;
-  EXPECT_TRUE(test::dataset_bytes(widened) == test::dataset_bytes(whole));
+  test::expect_same_when_widened(core::Communicator(), scene_with, {"limits.energy=[-.inf, 0.138038453]"});
 }
 
 }  // namespace
