@@ -34,6 +34,8 @@ constexpr double repeated = 1e-3;
 constexpr double bulge = 0.8;
 /// An orbit further off the chord than so many bulges is no orbit of the family, whatever Newton's method says there.
 constexpr double far_off = 2.0;
+/// In parts of the distance between two orbits, by how much a parameter may leave the range between theirs. Not measured.
+constexpr double turned = 0.5;
 /// Roundings of the coordinates by which two computations of one orbit may differ. Not measured.
 constexpr double roundings = 1e3;
 
@@ -208,8 +210,7 @@ Comparison compare(const systems::System& system, Chord chord, const loop::Loop&
     distance = distance_between(x, nearest, alignment.distance);
     if (distance <= tolerance) {
       const double off = chord.off_chord(nearest, position) * length;
-      if (off <= widest)
-        return {true, distance, position, "the same orbit", true};
+      if (off <= widest) return {true, distance, position, "the same orbit", true};
       return undecided(off, position, "the correction leaves the family");
     }
     if (distance > away * length + tolerance) return apart(distance, position, "far from the family");
@@ -220,6 +221,7 @@ Comparison compare(const systems::System& system, Chord chord, const loop::Loop&
 
 }  // namespace
 
+// A parameter that turns between the two goes on by less than their distance.
 bool may_lie_between(const Orbit& a, const Orbit& b, const Orbit& x, double widening) {
   const double period = x.loop.period;
   const auto parameter = [](const Orbit& orbit) {
@@ -230,7 +232,8 @@ bool may_lie_between(const Orbit& a, const Orbit& b, const Orbit& x, double wide
   };
   return between(a.loop.period, b.loop.period, period, widening * period) &&
          between(a.energy, b.energy, x.energy, widening * std::abs(x.action) / period) &&
-         between(parameter(a), parameter(b), parameter(x), widening * std::abs(parameter(x))) &&
+         between(parameter(a), parameter(b), parameter(x),
+                 std::max(widening * std::abs(parameter(x)), turned * loop::mean_distance(a.loop, b.loop))) &&
          between(a.action, b.action, x.action, widening * std::abs(x.action));
 }
 

@@ -22,8 +22,8 @@ constexpr double reach_at_birth = 10.0;
 
 /// Orbits of a family whose loops are asked where the curve does not tell.
 constexpr std::size_t most_asked = 8;
-/// Segments of the other family that are tried for one of them.
-constexpr std::size_t most_segments = 4;
+/// Segments of the other family that are tried for one of them: the other steps may be shorter there by as much.
+constexpr std::size_t most_segments = 12;
 constexpr double loop_tolerance = bifurcation::IdentityOptions{}.tolerance;
 
 std::string orbit_text(const TreeFamily& family, std::size_t orbit) {
@@ -73,7 +73,9 @@ std::vector<std::size_t> segments_beside(const std::vector<CurveFit>& fits, std:
   if (!fits[before].fits()) before = after;
   if (!fits[after].fits()) after = before;
   const auto [from, to] = std::minmax(fits[before].segment, fits[after].segment);
-  for (std::size_t segment = from; segment <= to && out.size() < most_segments; ++segment) out.push_back(segment);
+  // The neighbours themselves may lie on the ends of their segments.
+  for (std::size_t segment = from > 0 ? from - 1 : 0; segment <= to + 1 && out.size() < most_segments; ++segment)
+    out.push_back(segment);
   return out;
 }
 
@@ -232,11 +234,16 @@ void FamilyDifferences::decide_by_loops(const AtlasTree& own, const TreeFamily& 
   for (const std::size_t n : asked) {
     for (const std::size_t segment : segments_beside(fits, n)) {
       if (segment + 1 >= beside.orbits()) continue;
-      const LoopAnswer answer = _loops.ask({own, family, n, other, beside, segment});
+      const survey::OrbitBeside orbit{own, family, n, other, beside, segment};
+      const LoopAnswer answer = _loops.ask(orbit);
       ++_result.loops;
       // Two computations of one place that do not agree to the tolerance differ, though they are the same family.
+      const bool is_measured = fits[n].measured && segment == fits[n].segment;
+      // Beside a sharp turn no hyperplane tells; whether steps lead there from one of the two does.
+      const bool is_led_to = !answer.same && !answer.decided && !is_measured && _loops.is_on_curve(orbit);
       const bool overrules =
-          answer.same && (!fits[n].measured || answer.distance <= _options.tolerance * answer.allowed / loop_tolerance);
+          is_led_to ||
+          (answer.same && (!is_measured || answer.distance <= _options.tolerance * answer.allowed / loop_tolerance));
       if (!overrules) continue;
       fits[n] = on_curve(segment);
       ++confirmed;

@@ -38,14 +38,21 @@ Window window_around(std::size_t segment, std::size_t count, std::size_t points)
   return {std::min(first, points - count), count};
 }
 
+/// `of`: what is interpolated, as a function of the invariant.
+template <class Of>
 double interpolated(const std::vector<Invariants>& points, const Window& window, Invariant variable, Invariant value,
-                    double at) {
+                    double at, const Of& of) {
   std::vector<double> nodes;
   for (std::size_t n = 0; n < window.count; ++n) nodes.push_back(points[window.first + n].value(variable));
   const std::vector<double> weights = numerics::lagrange_weights(nodes, at).value;
   double sum = 0.0;
-  for (std::size_t n = 0; n < window.count; ++n) sum += weights[n] * points[window.first + n].value(value);
+  for (std::size_t n = 0; n < window.count; ++n) sum += weights[n] * of(points[window.first + n].value(value));
   return sum;
+}
+
+double interpolated(const std::vector<Invariants>& points, const Window& window, Invariant variable, Invariant value,
+                    double at) {
+  return interpolated(points, window, variable, value, at, [](double x) { return x; });
 }
 
 bool is_monotone(const std::vector<Invariants>& points, const Window& window, Invariant variable) {
@@ -80,6 +87,15 @@ double error_of(const std::vector<Invariants>& points, const Window& window, std
                                 Window{window.first, window.count - 1}, Window{window.first + 1, window.count - 1}})
     error = std::fmax(error, std::abs(best - interpolated(points, smaller, variable, value, at)));
   return safety * error;
+}
+
+/// What the interpolated trace is off by that of the stability values themselves: where these are large and change their
+/// sign between two orbits, neither is known.
+double error_of_trace(const std::vector<Invariants>& points, const Window& window, Invariant variable, double at,
+                      double trace) {
+  const double values =
+      interpolated(points, window, variable, Invariant::trace, at, [](double x) { return std::sinh(x); });
+  return std::abs(std::asinh(values) - trace);
 }
 
 // A parabola's, that leaves the straight line by `straight` of the change.
@@ -129,8 +145,10 @@ CurveFit InvariantCurve::fit_beside(const Invariants& x, std::size_t segment) co
     for (const Invariant invariant : all_invariants) {
       if (invariant == *variable) continue;
       const double value = interpolated(_points, window, *variable, invariant, at);
-      const double error = window.count > 2 ? error_of(_points, window, segment, *variable, invariant, at, value)
-                                            : error_of_chord(a, b, *variable, invariant, at);
+      double error = window.count > 2 ? error_of(_points, window, segment, *variable, invariant, at, value)
+                                      : error_of_chord(a, b, *variable, invariant, at);
+      if (invariant == Invariant::trace)
+        error = std::fmax(error, error_of_trace(_points, window, *variable, at, value));
       if (!std::isnan(error)) fit.measured = fit.measured && error <= x.floor_of(invariant);
       add_deviation(fit, invariant, std::abs(value - x.value(invariant)), error, x);
     }
