@@ -128,6 +128,11 @@ class EventFunction {
     return there ? there->stability.twist : nan;
   }
 
+  double deviation_at(double position) {
+    const std::optional<Crossing> there = at(position);
+    return there ? index_deviation(_system.structure(), there->stability, _event.function.sector).value : nan;
+  }
+
   /// Why the function had no value where it was asked for last without one.
   [[nodiscard]] const std::optional<NotLocated>& without_value() const { return _without_value; }
 
@@ -463,6 +468,8 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
   std::optional<numerics::Located> located;
   if (event.passed) {
     located = numerics::locate_root([&](double position) { return function.twist_at(position); }, from, to, absolute);
+  } else if (event.is_double) {
+    located = numerics::locate_root([&](double position) { return function.deviation_at(position); }, from, to, absolute);
   } else if (event.tangency) {
     const auto size = [&](double position) { return std::abs(function(position)); };
     located = numerics::locate_minimum(size, from, to, absolute);

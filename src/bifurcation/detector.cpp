@@ -105,6 +105,21 @@ void add_sign_changes(std::size_t function, const std::vector<Node>& nodes, std:
   }
 }
 
+/// Where two zeros are passed that no sign shows.
+void add_double_zeros(std::size_t function, const std::vector<Node>& nodes, std::vector<Bracket>& found) {
+  const Node* before = nullptr;
+  for (const Node& node : nodes) {
+    if (std::isnan(node.passed)) continue;
+    if (before != nullptr && passed_between(before->passed, node.passed) == 2)
+      found.push_back({.function = function,
+                       .from = before->position,
+                       .to = node.position,
+                       .tangency = false,
+                       .is_double = true});
+    before = &node;
+  }
+}
+
 }  // namespace
 
 std::optional<TestPoint> Detector::probed(const Probe& probe, double position) const {
@@ -189,7 +204,7 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
       return std::nan("");
     }
     const Reading& reading = point->readings[function];
-    nodes.push_back({position, reading});
+    nodes.push_back({position, reading, passed_at(*point, function)});
     crossed = reading.sign() == -sign;
     return sign * reading.value;
   };
@@ -197,8 +212,12 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
   (void)numerics::locate_minimum(size, left.position, right.position, minimum_width * length, _options.probes);
   std::sort(nodes.begin(), nodes.end(), [](const Node& a, const Node& b) { return a.position < b.position; });
   double& examined_to = _state.watches[function].examined_to;
-  if (crossed) {
+  const std::size_t before = found.size();
+  if (crossed)
     add_sign_changes(function, nodes, found);
+  else
+    add_double_zeros(function, nodes, found);
+  if (found.size() > before) {
     examined_to = right.position;
     return;
   }
@@ -244,7 +263,8 @@ void Detector::count(std::size_t function, const Node& left, const Node& right, 
               found.end());
   for (std::size_t n = before; n < found.size(); ++n) found[n].passed = found[n].tangency && passed == 1;
   if (found.size() > before) _state.watches[function].examined_to = right.position;
-  const auto bracketed = static_cast<int>(found.size() - before) + (is_shown ? 1 : 0);
+  int bracketed = is_shown ? 1 : 0;
+  for (std::size_t n = before; n < found.size(); ++n) bracketed += found[n].is_double ? 2 : 1;
   if (passed > bracketed) _state.missed.push_back({function, left.position, right.position, passed - bracketed});
 }
 

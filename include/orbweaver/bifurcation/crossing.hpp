@@ -27,11 +27,14 @@ struct Event {
   bool from_birth = false;
   /// One of two crossings (`parted_crossings`), whose function is `determinant_deviation`.
   bool is_parted = false;
+  /// Two indices that a symmetry makes equal pass together, so that the function touches zero only: the root of
+  /// `index_deviation` is located.
+  bool is_double = false;
 
-  static constexpr int wire_version = 4;
+  static constexpr int wire_version = 5;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, kind, function, tangency, passed, from_birth, is_parted);
+    core::serialize_members(archive, kind, function, tangency, passed, from_birth, is_parted, is_double);
   }
 };
 

@@ -224,8 +224,8 @@ bool add_places(Arrival& arrival, continuation::FamilyCurve& family, const bifur
   std::vector<continuation::CurvePoint>& places = arrival.places;
   places.push_back(*std::move(last));
   Place before{from, 1.0};
-  double meeting = arrival.position;
-  double beyond = std::numeric_limits<double>::infinity();
+  double beyond = family.known().back().position;
+  double meeting = std::min(arrival.position, beyond);
   bool is_all_the_way = true;
   for (int n = 0; n < most_places_before && before.part > least_before; ++n) {
     const double place = before.position + of_what_is_left * (meeting - before.position);

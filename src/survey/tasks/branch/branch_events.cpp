@@ -103,7 +103,7 @@ void BranchEvents::add_zeros(const std::vector<bifurcation::Bracket>& brackets) 
       if (b.tangency && b.to > _last) continue;  // it goes to zero there at the meeting
       if (!b.tangency) _passed_one = b.to;
     }
-    add_event({bifurcation::Event::Kind::test_function, function, b.tangency, b.passed}, b.from, b.to,
+    add_event({.function = function, .tangency = b.tangency, .passed = b.passed, .is_double = b.is_double}, b.from, b.to,
               _followed.curve.known());
   }
 }
@@ -116,7 +116,8 @@ void BranchEvents::add_zeros_from_birth(const std::vector<bifurcation::Bracket>&
     add_event({.function = function,
                .tangency = b.tangency,
                .passed = b.passed,
-               .from_birth = b.from == known.front().position},
+               .from_birth = b.from == known.front().position,
+               .is_double = b.is_double},
               b.from, b.to, known);
   }
 }
