@@ -31,9 +31,12 @@ constexpr double known_place = 0.1;
 constexpr double near_enough = 10.0;
 constexpr double beside = 4.0;
 
+// Two indices that are equal by symmetry are a complex pair to rounding.
 std::ptrdiff_t pairs_off_circle(const Stability& s) {
-  return std::count_if(s.fundamental.begin(), s.fundamental.end(),
-                       [](const std::complex<double>& k) { return k.imag() != 0.0; });
+  std::ptrdiff_t count = 0;
+  for (std::size_t n = 0; n < s.fundamental.size(); ++n)
+    if (std::abs(s.fundamental[n].imag()) > s.fundamental_error[n]) ++count;
+  return count;
 }
 
 /// The rotations of two pairs at an orbit: by their angles they are told to have passed one another.

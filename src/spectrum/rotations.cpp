@@ -22,6 +22,15 @@ using Plane = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 constexpr double product_roundings = 1e3;
 /// By which the index of the vector that is taken may differ from the known one.
 constexpr double same_index = 1e-4;
+/// Two indices that are no further apart have one space of four dimensions, and no planes of their own: those of a
+/// double one, which symmetry forces, are rounding's.
+constexpr double double_index = 1e-9;
+
+bool is_double(const Stability& known, std::size_t n) {
+  for (std::size_t m = 0; m < known.fundamental.size(); ++m)
+    if (m != n && std::abs(known.fundamental[m] - known.fundamental[n]) <= double_index) return true;
+  return false;
+}
 
 /// P v = mu v, v = a + i b: P a = a cos - b sin, so that a goes towards -b where mu's imaginary part is positive.
 Plane plane_of(const Eigen::VectorXcd& vector) {
@@ -54,6 +63,7 @@ std::vector<Rotation> rotations(const systems::System& system, const Chain& chai
   for (std::size_t n = 0; n < known.fundamental.size(); ++n) {
     const Complex index = known.fundamental[n];
     if (index.imag() != 0.0 || !(std::abs(index.real()) + known.fundamental_error[n] < 2.0)) continue;
+    if (is_double(known, n)) continue;
     const double angle = std::acos(0.5 * index.real());
     const Complex multiplier = std::polar(1.0, angle);
     Eigen::Index nearest = 0;
