@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -26,14 +27,17 @@ constexpr std::size_t most_asked = 8;
 constexpr std::size_t most_segments = 12;
 constexpr double loop_tolerance = bifurcation::IdentityOptions{}.tolerance;
 
-std::string orbit_text(const TreeFamily& family, std::size_t orbit) {
+std::string level_name(const AtlasTree& tree) { return tree.in_parameter() ? tree.parameter : "E"; }
+
+std::string orbit_text(const AtlasTree& tree, const TreeFamily& family, std::size_t orbit) {
   const Invariants& x = family.curve.points()[orbit];
   if (std::isnan(x.value(Invariant::level))) return fmt::format("T = {:.12g}", x.value(Invariant::period));
-  return fmt::format("T = {:.12g}, E = {:.12g}", x.value(Invariant::period), x.value(Invariant::level));
+  return fmt::format("T = {:.12g}, {} = {:.12g}", x.value(Invariant::period), level_name(tree),
+                     x.value(Invariant::level));
 }
 
 std::string level_text(const AtlasTree& tree, double level) {
-  return std::isnan(level) ? "" : fmt::format(" ({} = {:.9g})", tree.in_parameter() ? tree.parameter : "E", level);
+  return std::isnan(level) ? "" : fmt::format(" ({} = {:.9g})", level_name(tree), level);
 }
 
 // Orbits at the beginning and at the end of a family that have no place on the other's curve.
@@ -83,6 +87,14 @@ double step_at(const TreeFamily& family, bool at_its_end) {
   const std::size_t n = family.orbits();
   if (n < 2) return 0.0;
   return at_its_end ? family.arclengths[n - 1] - family.arclengths[n - 2] : family.arclengths[1] - family.arclengths[0];
+}
+
+/// Of a family that leaves its crossing to both sides.
+std::optional<std::size_t> last_before_birth(const TreeFamily& family) {
+  if (family.crossing < 0) return std::nullopt;
+  const auto after = std::lower_bound(family.arclengths.begin(), family.arclengths.end(), 0.0);
+  if (after == family.arclengths.begin() || after == family.arclengths.end()) return std::nullopt;
+  return static_cast<std::size_t>(after - family.arclengths.begin()) - 1;
 }
 
 bool has_end_at(const TreeFamily& family, std::size_t orbit) {
@@ -209,6 +221,8 @@ void FamilyDifferences::compare_orbits(const Pair& pair) {
     if (one_in_b) report_orbits(pair, "B", pair.b, fits_b);
     return;
   }
+  leave_out_nearer_to_birth(pair.a, pair.b, fits_a);
+  leave_out_nearer_to_birth(pair.b, pair.a, fits_b);
   decide_by_loops(_a, pair.a, _b, pair.b, fits_a);
   decide_by_loops(_b, pair.b, _a, pair.a, fits_b);
   report_orbits(pair, "A", pair.a, fits_a);
@@ -256,6 +270,27 @@ void FamilyDifferences::decide_by_loops(const AtlasTree& own, const TreeFamily& 
     if (!fits[n].measured && !fits[n].fits()) fits[n] = on_curve(fits[n].segment);
 }
 
+/// Of a family that leaves its crossing to both sides: the orbits between the other's two first ones, which lie as far
+/// from the crossing as the scene says.
+void FamilyDifferences::leave_out_nearer_to_birth(const TreeFamily& family, const TreeFamily& beside,
+                                                  std::vector<CurveFit>& fits) {
+  const std::optional<std::size_t> own = last_before_birth(family);
+  const std::optional<std::size_t> other = last_before_birth(beside);
+  if (!own || !other) return;
+  std::size_t first = *own + 1;
+  while (first > 0 && !fits[first - 1].fits()) --first;
+  std::size_t end = *own + 1;
+  while (end < fits.size() && !fits[end].fits()) ++end;
+  if (first == end || first == 0 || end == fits.size()) return;
+  const auto is_beside = [&](std::size_t segment) { return segment + 1 >= *other && segment <= *other + 1; };
+  if (!is_beside(fits[first - 1].segment) || !is_beside(fits[end].segment)) return;
+  for (std::size_t n = first; n < end; ++n) fits[n] = on_curve(*other);
+  _result.notes.push_back(
+      fmt::format("{} of {} orbits of {} are nearer to its birth than the other's first ones and "
+                  "were not compared",
+                  end - first, fits.size(), family.name));
+}
+
 /// Period and energy have their extrema in one place: no curve goes by there, and Newton's method is at a loss (a
 /// crossing lies beside it). With both neighbours in their places nothing says that the orbit is not.
 void FamilyDifferences::leave_out_undecided(const TreeFamily& family, std::vector<CurveFit>& fits) {
@@ -264,8 +299,8 @@ void FamilyDifferences::leave_out_undecided(const TreeFamily& family, std::vecto
     const auto [from, to] = std::minmax(fits[n - 1].segment, fits[n + 1].segment);
     if (to - from > 1) continue;
     fits[n] = on_curve(from);
-    _result.notes.push_back(
-        fmt::format("{} at {} is between two that both have and was not compared", family.name, orbit_text(family, n)));
+    _result.notes.push_back(fmt::format("{} at {} is between two that both have and was not compared", family.name,
+                                        orbit_text(_a, family, n)));
   }
 }
 
@@ -284,14 +319,15 @@ void FamilyDifferences::report_orbits(const Pair& pair, const char* which, const
     }
     ++_result.orbits;
     note_deviation(fmt::format("{} of orbits", name_of(fits[n].worst)), fits[n].deviation, fits[n].allowed,
-                   fmt::format("{}, {}", family.name, orbit_text(family, n)));
+                   fmt::format("{}, {}", family.name, orbit_text(_a, family, n)));
   }
   if (off == 0) return;
   const CurveFit& fit = fits[worst];
-  const std::string how = std::isinf(fit.excess)
-                              ? fmt::format("nothing of it is beside {}", orbit_text(family, worst))
-                              : fmt::format("{} at {} is off by {:.2e} relative, where {:.1e} is allowed",
-                                            name_of(fit.worst), orbit_text(family, worst), fit.deviation, fit.allowed);
+  const std::string how =
+      std::isinf(fit.excess)
+          ? fmt::format("nothing of it is beside {}", orbit_text(_a, family, worst))
+          : fmt::format("{} at {} is off by {:.2e} relative, where {:.1e} is allowed", name_of(fit.worst),
+                        orbit_text(_a, family, worst), fit.deviation, fit.allowed);
   add(DifferenceKind::orbits, pair,
       fmt::format("{} of {} orbits of {} lie off the curve of the other: {}", off, fits.size(), which, how),
       fit.deviation, fit.allowed);
@@ -317,7 +353,7 @@ void FamilyDifferences::compare_reach(const Pair& pair, const std::vector<CurveF
       const std::size_t place = at_end_of_a ? pair.a.orbits() - more_a : more_a - 1;
       add(DifferenceKind::orbits, pair,
           fmt::format("A and B part at {}: {} orbits of A and {} of B lie off the curve of the other",
-                      orbit_text(pair.a, place), more_a, more_b));
+                      orbit_text(_a, pair.a, place), more_a, more_b));
       return;
     }
     if (more_a == 0 && more_b == 0) return;
@@ -335,8 +371,8 @@ void FamilyDifferences::compare_reach(const Pair& pair, const std::vector<CurveF
     if (beyond <= allowed) return;
     const std::string text =
         fmt::format("goes {} orbits further in {}, to {}, than in {}, which {} at {}", more, a_goes_on ? "A" : "B",
-                    orbit_text(longer, a_goes_on ? last_a : last_b), a_goes_on ? "B" : "A", is_end ? "ends" : "begins",
-                    orbit_text(shorter, a_goes_on ? last_b : last_a));
+                    orbit_text(_a, longer, a_goes_on ? last_a : last_b), a_goes_on ? "B" : "A",
+                    is_end ? "ends" : "begins", orbit_text(_a, shorter, a_goes_on ? last_b : last_a));
     if (is_open_end(pair.a, last_a) && is_open_end(pair.b, last_b))
       _result.notes.push_back(fmt::format("{} {}", pair.a.name, text));
     else
@@ -350,7 +386,7 @@ void FamilyDifferences::compare_loops(const Pair& pair, const std::vector<CurveF
   const auto samples = _loops.sample(_a, pair.a, _b, pair.b, fits, _options.loops);
   _result.loops += samples.size();
   for (const LoopCheck::Sample& sample : samples) {
-    const std::string where = orbit_text(pair.a, sample.orbit);
+    const std::string where = orbit_text(_a, pair.a, sample.orbit);
     if (sample.answer.same) {
       note_deviation("loops", sample.answer.distance, sample.answer.allowed, fmt::format("{}, {}", pair.a.name, where));
       continue;
@@ -487,7 +523,7 @@ void FamilyDifferences::add_missing(const AtlasTree& tree, const std::vector<int
     difference.kind = is_in_a ? DifferenceKind::only_in_a : DifferenceKind::only_in_b;
     (is_in_a ? difference.family_a : difference.family_b) = family.name;
     difference.text = fmt::format("is in {} only: {}, {} orbits{}", is_in_a ? "A" : "B", born, family.orbits(),
-                                  family.orbits() > 0 ? ", from " + orbit_text(family, 0) : "");
+                                  family.orbits() > 0 ? ", from " + orbit_text(_a, family, 0) : "");
     _result.differences.push_back(std::move(difference));
   }
 }
