@@ -469,7 +469,8 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
   if (event.passed) {
     located = numerics::locate_root([&](double position) { return function.twist_at(position); }, from, to, absolute);
   } else if (event.is_double) {
-    located = numerics::locate_root([&](double position) { return function.deviation_at(position); }, from, to, absolute);
+    located =
+        numerics::locate_root([&](double position) { return function.deviation_at(position); }, from, to, absolute);
   } else if (event.tangency) {
     const auto size = [&](double position) { return std::abs(function(position)); };
     located = numerics::locate_minimum(size, from, to, absolute);

@@ -111,11 +111,8 @@ void add_double_zeros(std::size_t function, const std::vector<Node>& nodes, std:
   for (const Node& node : nodes) {
     if (std::isnan(node.passed)) continue;
     if (before != nullptr && passed_between(before->passed, node.passed) == 2)
-      found.push_back({.function = function,
-                       .from = before->position,
-                       .to = node.position,
-                       .tangency = false,
-                       .is_double = true});
+      found.push_back(
+          {.function = function, .from = before->position, .to = node.position, .tangency = false, .is_double = true});
     before = &node;
   }
 }
@@ -204,7 +201,9 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
       return std::nan("");
     }
     const Reading& reading = point->readings[function];
-    nodes.push_back({position, reading, passed_at(*point, function)});
+    // Turns of a single pair count zeros one by one.
+    const bool are_of_pairs = std::isnan(point->turns);
+    nodes.push_back({position, reading, are_of_pairs ? passed_at(*point, function) : std::nan("")});
     crossed = reading.sign() == -sign;
     return sign * reading.value;
   };
@@ -225,7 +224,11 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
   if (without_point) {
     const auto after =
         std::find_if(nodes.begin(), nodes.end(), [&](const Node& node) { return node.position > *without_point; });
-    found.push_back({function, std::prev(after)->position, after->position, true, false, true});
+    found.push_back({.function = function,
+                     .from = std::prev(after)->position,
+                     .to = after->position,
+                     .tangency = true,
+                     .lost = true});
     examined_to = right.position;
     return;
   }

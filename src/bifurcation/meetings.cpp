@@ -115,9 +115,7 @@ class MeetingSearch {
     _is_found = pairs_off_circle(*here) > _off_at_ends;
     return !_is_found;
   }
-  [[nodiscard]] std::optional<StabilityAt> found() const {
-    return _is_found ? std::optional(_here) : std::nullopt;
-  }
+  [[nodiscard]] std::optional<StabilityAt> found() const { return _is_found ? std::optional(_here) : std::nullopt; }
 
   /// Goes to the least square of how far they are apart by parabolas: below 0, or as far as pairs that repel come.
   std::optional<StabilityAt> least(const Two& two, Sample a, Sample b, Sample c) {

@@ -176,6 +176,45 @@ TEST(DetectorCounts, IndicesThatPassTheirPlaceWithinOneStepAreFound) {
   EXPECT_LT(found(false).size(), 2U) << "if signs and minima show them, this is no test of counts";
 }
 
+// Two indices that a symmetry makes equal pass 2 and come back within one step: their product has one sign. They are a
+// complex pair to rounding, here and there.
+TEST(DetectorCounts, DoubleIndicesPassTogether) {
+  systems::Structure structure;
+  structure.dimension = 6;
+  structure.conserved = {"energy"};
+  structure.symplectic = true;
+  const std::vector<TestFunction> functions = test_functions(structure, 1, 2);
+  for (const double shift : {0.0, 0.3, 0.49}) {
+    const auto point = [&](double x) {
+      const double off = x - 2.5 - shift;
+      const double index = 2.0 + 1e-2 * (0.02 - off * off);
+      const double split = std::fmod(1e3 * x, 2.0) < 1.0 ? 1e-15 : 0.0;
+      spectrum::Stability stability;
+      stability.fundamental = {{index, split}, {index, -split}};
+      stability.fundamental_error = {1e-13, 1e-13};
+      TestPoint out{x, {}};
+      for (const TestFunction& function : functions) {
+        out.readings.push_back(evaluate(function, structure, stability));
+        out.passed.push_back(zeros_passed(function, structure, stability));
+      }
+      return out;
+    };
+    Detector detector;
+    std::vector<Bracket> brackets;
+    for (double x = 0.0; x < 6.5; x += 1.0)
+      for (const Bracket& bracket : detector.advance(point(x), [&](double at) { return std::optional(point(at)); }))
+        if (functions[bracket.function].kind == TestFunction::Kind::sector) brackets.push_back(bracket);
+    EXPECT_TRUE(detector.missed().empty());
+    ASSERT_EQ(brackets.size(), 2U) << shift;
+    for (const double side : {-1.0, 1.0}) {
+      const Bracket& bracket = brackets[side < 0.0 ? 0 : 1];
+      const double place = 2.5 + shift + side * std::sqrt(0.02);
+      EXPECT_TRUE(bracket.is_double && !bracket.tangency) << place;
+      EXPECT_TRUE(bracket.from < place && place < bracket.to) << bracket.from << " " << place << " " << bracket.to;
+    }
+  }
+}
+
 // A pair that leaves the real axis as a quadruplet may come back elsewhere: nothing is counted.
 TEST(DetectorCounts, NothingIsCountedOfIndicesThatAreNotRealOrNotTold) {
   systems::Structure structure;

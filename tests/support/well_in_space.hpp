@@ -4,20 +4,28 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include "orbweaver/systems/model/model_system.hpp"
 #include "support/described.hpp"
 
 namespace orbweaver::test {
 
+/// What the structure of a WellInSpace declares besides that it goes the same ways backwards.
+enum class InSpace {
+  nothing,
+  mirror,    ///< images in z
+  triangle,  ///< images in z, and turns by a third about x
+};
+
 /// A particle of mass 1 in space, in a well of the terms c<ijk> x^i y^j z^k of second to fourth order that are even in
-/// z, and in y too where `EvenInY`. Its structure declares that it goes the same ways backwards, and the mirror images
-/// in z where `DeclaresZ`.
-template <bool EvenInY, bool DeclaresZ>
+/// z, and in y too where `EvenInY`.
+template <bool EvenInY, InSpace Declared>
 class WellInSpace {
  public:
   static constexpr int dimension = 6;
@@ -55,10 +63,21 @@ class WellInSpace {
     structure.dimension = dimension;
     structure.conserved = {"energy"};
     structure.symplectic = true;
-    structure.reversors = {{"R", diagonal(1, 1, 1, -1, -1, -1)}};
-    if (DeclaresZ) {
-      structure.equivariances = {{"Z", diagonal(1, 1, -1, 1, 1, -1)}};
-      structure.reversors.push_back({"RZ", diagonal(1, 1, -1, -1, -1, 1)});
+    const Eigen::MatrixXd back = diagonal(1, 1, 1, -1, -1, -1);
+    const Eigen::MatrixXd mirror = diagonal(1, 1, -1, 1, 1, -1);
+    structure.reversors = {{"R", back}};
+    if (Declared == InSpace::mirror) {
+      structure.equivariances = {{"Z", mirror}};
+      structure.reversors.push_back({"RZ", back * mirror});
+    } else if (Declared == InSpace::triangle) {
+      Eigen::MatrixXd turn = Eigen::MatrixXd::Identity(dimension, dimension);
+      turn.block<2, 2>(1, 1) = Eigen::Rotation2Dd(2.0 * std::numbers::pi / 3.0).toRotationMatrix();
+      turn.block<2, 2>(4, 4) = turn.block<2, 2>(1, 1);
+      const Eigen::MatrixXd twice = turn * turn;
+      structure.equivariances = {
+          {"C", turn}, {"CC", twice}, {"Z", mirror}, {"ZC", mirror * turn}, {"ZCC", mirror * twice}};
+      for (const systems::Symmetry& one : std::vector(structure.equivariances))
+        structure.reversors.push_back({"R" + one.name, back * one.map.matrix});
     }
     return structure;
   }

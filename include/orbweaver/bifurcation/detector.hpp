@@ -34,9 +34,9 @@ struct Bracket {
   double from;
   double to;
   bool tangency;
-  bool passed = false;  ///< a tangency that is one: counts say that a zero is passed there
+  bool passed = false;     ///< a tangency that is one: counts say that a zero is passed there
   bool is_double = false;  ///< counts say that two zeros are passed, which no sign shows: no tangency
-  bool lost = false;    ///< a tangency that may be one: where the minimum was looked for there was no orbit
+  bool lost = false;       ///< a tangency that may be one: where the minimum was looked for there was no orbit
 };
 
 /// Between `from` and `to` a function has more zeros than were bracketed, by so many.

@@ -103,8 +103,8 @@ void BranchEvents::add_zeros(const std::vector<bifurcation::Bracket>& brackets) 
       if (b.tangency && b.to > _last) continue;  // it goes to zero there at the meeting
       if (!b.tangency) _passed_one = b.to;
     }
-    add_event({.function = function, .tangency = b.tangency, .passed = b.passed, .is_double = b.is_double}, b.from, b.to,
-              _followed.curve.known());
+    add_event({.function = function, .tangency = b.tangency, .passed = b.passed, .is_double = b.is_double}, b.from,
+              b.to, _followed.curve.known());
   }
 }
 
