@@ -22,7 +22,7 @@ std::vector<std::string> with(std::vector<std::string> settings, const std::stri
 }
 
 test::Atlas survey_of(const std::map<std::string, double>& coefficients, const std::vector<std::string>& settings) {
-  std::vector<std::string> all{"starts.fixed_points.grid=[[0], [0], [0], [0], [0], [0]]", "survey.subharmonics=2"};
+  std::vector<std::string> all{"survey.subharmonics=2"};
   all.insert(all.end(), settings.begin(), settings.end());
   return test::survey_of(test::well_in_space<test::WellInSpace<false, test::InSpace::triangle>>(coefficients), all);
 }
