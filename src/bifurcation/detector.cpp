@@ -191,6 +191,7 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
   const int sign = left.reading.sign();
   std::vector<Node> nodes{left, right};
   bool crossed = false;
+  bool are_of_pairs = false;  // turns count the zeros of a single pair one by one
   std::optional<double> without_point;
   const auto size = [&](double position) {
     if (position == right.position) return std::abs(right.reading.value);
@@ -201,9 +202,8 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
       return std::nan("");
     }
     const Reading& reading = point->readings[function];
-    // Turns of a single pair count zeros one by one.
-    const bool are_of_pairs = std::isnan(point->turns);
-    nodes.push_back({position, reading, are_of_pairs ? passed_at(*point, function) : std::nan("")});
+    nodes.push_back({position, reading, passed_at(*point, function)});
+    are_of_pairs = std::isnan(point->turns);
     crossed = reading.sign() == -sign;
     return sign * reading.value;
   };
@@ -214,7 +214,7 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
   const std::size_t before = found.size();
   if (crossed)
     add_sign_changes(function, nodes, found);
-  else
+  else if (are_of_pairs)
     add_double_zeros(function, nodes, found);
   if (found.size() > before) {
     examined_to = right.position;

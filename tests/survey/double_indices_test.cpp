@@ -35,7 +35,7 @@ TEST(DoubleIndices, PassTogether) {
   const double g = 0.05;
   const std::map<std::string, double> well{{"c200", 0.245}, {"c020", 0.5}, {"c002", 0.5}, {"c012", a}, {"c030", -a / 3},
                                            {"c120", b},     {"c102", b},   {"c220", g},   {"c202", g}, {"c400", 0.25}};
-  const std::vector<std::string> settings{"survey.depth=1", "limits.period=12", "limits.energy=[0, 0.5]"};
+  const std::vector<std::string> settings{"survey.depth=0", "limits.period=12", "limits.energy=[0, 0.5]"};
   const test::Atlas atlas = survey_of(well, settings);
   std::vector<double> energies;
   for (std::size_t row = 0; row < atlas.crossings().rows(); ++row) {
@@ -74,7 +74,8 @@ TEST(DoubleIndices, HoldNoFamilyUp) {
     SCOPED_TRACE(start);
     const test::Atlas atlas =
         survey_of(ring, with({"survey.depth=0", "limits.period=16", "limits.energy=[0, 1]", "limits.steps=60"}, start));
-    for (const std::string& end : atlas.families().texts("end_reason")) EXPECT_EQ(end, "energy limit (E = 1)");
+    for (const std::string& end : atlas.families().texts("end_reason"))
+      EXPECT_TRUE(end.starts_with("energy limit")) << end;
   }
 }
 
