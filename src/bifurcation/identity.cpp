@@ -34,7 +34,8 @@ constexpr double repeated = 1e-3;
 constexpr double bulge = 0.8;
 /// An orbit further off the chord than so many bulges is no orbit of the family, whatever Newton's method says there.
 constexpr double far_off = 2.0;
-/// In parts of the distance between two orbits, by how much a parameter may leave the range between theirs. Not measured.
+/// In parts of the distance between two orbits, by how much a parameter may leave the range between theirs. Not
+/// measured.
 constexpr double turned = 0.5;
 /// Roundings of the coordinates by which two computations of one orbit may differ. Not measured.
 constexpr double roundings = 1e3;

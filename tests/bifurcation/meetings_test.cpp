@@ -27,6 +27,7 @@ void add_pair(double angle, double mixed, Stability& out) {
     rotation.plane(column + 2, column) = std::sin(mixed);
   }
   out.fundamental.emplace_back(2.0 * std::cos(angle));
+  out.fundamental_error.push_back(1e-15);
   out.rotations.push_back(rotation);
 }
 
@@ -43,6 +44,7 @@ struct Family {
     if (square < 0.0) {
       const std::complex<double> angle(mean_angle, std::sqrt(-square));
       out.fundamental = {2.0 * std::cos(angle), std::conj(2.0 * std::cos(angle))};
+      out.fundamental_error = {1e-15, 1e-15};
       return out;
     }
     const double mixed = 0.5 * std::atan2(gap, s);

@@ -12,8 +12,8 @@
 
 namespace orbweaver::test {
 
-/// A survey with narrower limits that goes on with the scene's own stores what one with those does at once, to the byte.
-/// `scene_with`: the scene with overrides of its keys.
+/// A survey with narrower limits that goes on with the scene's own stores what one with those does at once, to the
+/// byte. `scene_with`: the scene with overrides of its keys.
 inline void expect_same_when_widened(const core::Communicator& comm,
                                      const std::function<scene::Scene(std::vector<std::string>)>& scene_with,
                                      const std::vector<std::string>& narrower,

@@ -30,10 +30,6 @@ class FamilyDifferences {
   void compare_birth(const Pair& pair);
   void compare_known(const Pair& pair);
   void compare_orbits(const Pair& pair);
-  void decide_by_loops(const AtlasTree& own, const TreeFamily& family, const AtlasTree& other, const TreeFamily& beside,
-                       std::vector<CurveFit>& fits);
-  void leave_out_nearer_to_birth(const TreeFamily& family, const TreeFamily& beside, std::vector<CurveFit>& fits);
-  void leave_out_undecided(const TreeFamily& family, std::vector<CurveFit>& fits);
   void report_orbits(const Pair& pair, const char* which, const TreeFamily& family, const std::vector<CurveFit>& fits);
   void compare_reach(const Pair& pair, const std::vector<CurveFit>& fits_a, const std::vector<CurveFit>& fits_b);
   void compare_loops(const Pair& pair, const std::vector<CurveFit>& fits);

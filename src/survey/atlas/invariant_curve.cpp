@@ -89,8 +89,8 @@ double error_of(const std::vector<Invariants>& points, const Window& window, std
   return safety * error;
 }
 
-/// What the interpolated trace is off by that of the stability values themselves: where these are large and change their
-/// sign between two orbits, neither is known.
+/// What the interpolated trace is off by that of the stability values themselves: where these are large and change
+/// their sign between two orbits, neither is known.
 double error_of_trace(const std::vector<Invariants>& points, const Window& window, Invariant variable, double at,
                       double trace) {
   const double values =

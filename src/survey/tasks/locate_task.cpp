@@ -291,7 +291,8 @@ class Location {
     _outcome.next_singular_value = kernel.next();
     if (kernel.dimension() == 0 && !_event.tangency) return without_kernel(crossing, kernel, family);
     if (sector.q == 1 && kernel.dimension() == 1 && turns_at(crossing, family)) return as_fold(kernel);
-    if ((_event.tangency || _event.is_double) && kernel.dimension() < expected) return touching(crossing, kernel, expected);
+    if ((_event.tangency || _event.is_double) && kernel.dimension() < expected)
+      return touching(crossing, kernel, expected);
     _breaks_symmetry = sector.q > 1 || breaks_symmetry(kernel, isotropy);
     if (!starts) return;
     report();
