@@ -15,8 +15,7 @@ namespace orbweaver::report {
 /// "T = 8.2, E = 1.5".
 [[nodiscard]] std::string orbit_text(const AtlasTree& tree, const TreeFamily& family, std::size_t orbit);
 
-/// Where the orbits of a family lie on the curve of the one that it was matched with, where the numbers of orbits do not
-/// tell.
+/// Where the orbits of a family lie on the curve of the one that it was matched with, where their numbers do not tell.
 class OrbitPlaces {
  public:
   struct Of {
