@@ -19,6 +19,14 @@ namespace {
 using namespace orbweaver;
 using namespace orbweaver::bifurcation;
 
+systems::Structure of_two_pairs() {
+  systems::Structure structure;
+  structure.dimension = 6;
+  structure.conserved = {"energy"};
+  structure.symplectic = true;
+  return structure;
+}
+
 /// A family along which one multiplier turns, `turns(position)` times, with the functions of the sectors up to q = 8.
 struct TurningFamily {
   std::function<double(double)> turns;
@@ -143,10 +151,7 @@ TEST(DetectorCounts, ATorusPointBesideANeutralSaddleIsBracketed) {
 // ends, and hardly changes. (Three oscillators with reflections, beside a given orbit: two of three branch points were
 // lost.)
 TEST(DetectorCounts, IndicesThatPassTheirPlaceWithinOneStepAreFound) {
-  systems::Structure structure;
-  structure.dimension = 6;
-  structure.conserved = {"energy"};
-  structure.symplectic = true;
+  const systems::Structure structure = of_two_pairs();
   const std::vector<TestFunction> functions = test_functions(structure, 1, 2);
   const auto point = [&](double x, bool counted) {
     spectrum::Stability stability;
@@ -179,10 +184,7 @@ TEST(DetectorCounts, IndicesThatPassTheirPlaceWithinOneStepAreFound) {
 // Two indices that a symmetry makes equal pass 2 and come back within one step: their product has one sign. They are a
 // complex pair to rounding, here and there.
 TEST(DetectorCounts, DoubleIndicesPassTogether) {
-  systems::Structure structure;
-  structure.dimension = 6;
-  structure.conserved = {"energy"};
-  structure.symplectic = true;
+  const systems::Structure structure = of_two_pairs();
   const std::vector<TestFunction> functions = test_functions(structure, 1, 2);
   for (const double shift : {0.0, 0.3, 0.49}) {
     const auto point = [&](double x) {
@@ -217,10 +219,7 @@ TEST(DetectorCounts, DoubleIndicesPassTogether) {
 
 // A pair that leaves the real axis as a quadruplet may come back elsewhere: nothing is counted.
 TEST(DetectorCounts, NothingIsCountedOfIndicesThatAreNotRealOrNotTold) {
-  systems::Structure structure;
-  structure.dimension = 6;
-  structure.conserved = {"energy"};
-  structure.symplectic = true;
+  const systems::Structure structure = of_two_pairs();
   const TestFunction two{TestFunction::Kind::sector, {1, 0}};
   spectrum::Stability stability;
   stability.fundamental_error = {1e-9, 1e-9};
