@@ -39,6 +39,8 @@ constexpr std::size_t most_circles = 40;
 constexpr int halvings = 2;
 /// The push must exceed its noise so many times for its zeros to be where the family's are. Not measured.
 constexpr double clear = 30.0;
+/// What pushes at q = 2 grows with the square of the amplitude, at least twofold a circle, or is the same on all.
+constexpr double least_growth = 1.3;
 /// Accuracy of an angle, in parts of a turn by 2 pi/q.
 constexpr double of_angle = 1e-7;
 
@@ -246,11 +248,14 @@ AnglesFound search_angles(const systems::System& system, const loop::Loop& base,
   core::require(group.dimension() == 2 && q >= 2, "angles are searched in a plane, from q = 2 on");
   const Plane plane(system, base, group, isotropy, options);
   const double turn = 2.0 * std::numbers::pi / q;
-  // Of q = 2 there may be four lines, some of them at these angles; and the push does not grow with the amplitude.
+  // Of q = 2 there may be four lines, some of them at these angles; and the push may not grow with the amplitude.
   const std::vector<double> few =
       q == 2 ? std::vector{0.0, 0.125 * turn, 0.25 * turn, turn} : std::vector{0.0, 0.25 * turn, turn};
-  const std::vector<Circle> circles = grown(plane, scale, few, [q](const Circle& circle) {
-    return circle.is_clear() && (q == 2 || circle.summary().is_plain());
+  double before = 0.0;
+  const std::vector<Circle> circles = grown(plane, scale, few, [&](const Circle& circle) {
+    if (!circle.is_clear()) return false;
+    const bool grows = circle.force() > least_growth * std::exchange(before, circle.force());
+    return circle.summary().is_plain() || (q == 2 && !grows);
   });
   if (circles.empty()) return {};
   AnglesFound out = circles.back().summary();

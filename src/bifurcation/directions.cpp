@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -389,10 +390,8 @@ bool all_are_found(const KernelActions& group, const std::vector<Eigen::VectorXd
   });
 }
 
-// `not_isolated`, if given, takes how many of the search's orbits are not.
-std::vector<Direction> searched(const systems::System& system, const KernelActions& group, const loop::Loop& base,
-                                const std::vector<Eigen::VectorXd>& lines, const DirectionOptions& options,
-                                int* not_isolated) {
+Directions searched(const systems::System& system, const KernelActions& group, const loop::Loop& base,
+                    const std::vector<Eigen::VectorXd>& lines, const DirectionOptions& options) {
   const bool plane = group.dimension() == 2;
   const int q = plane ? rotations(group) : 1;
   // What every vector of the kernel keeps: that of one without symmetry.
@@ -401,7 +400,8 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
       isotropy_along(system.structure(), group, base, group.vector_at(generic.normalized()), options);
   const bool by_angle =
       plane && q >= 2 && (lines.empty() || q == 2) && !group.constant() && system.structure().conservative();
-  if (by_angle && q >= least_weak_resonance) return by_angles(system, group, base, kept, q, lines, options);
+  if (by_angle && q >= least_weak_resonance) return {by_angles(system, group, base, kept, q, lines, options)};
+  Directions out;
   const double nudge = plane ? nudge_in_plane * std::numbers::pi / q : nudge_in_space;
   const int expected = plane && q > 2 ? (q % 2 == 0 ? 2 : 1) : 0;
   SearchResult best;
@@ -445,36 +445,48 @@ std::vector<Direction> searched(const systems::System& system, const KernelActio
   // of one kind, with others between them.
   const bool is_open = q == 2 && (best.found.size() % 2 != 0 || !lines.empty());
   if (by_angle && (static_cast<int>(best.found.size()) < std::max(expected, 1) || is_open)) try {
-      std::vector<Direction> out = by_angles(system, group, base, kept, q, lines, options);
-      if (q == 2 || static_cast<int>(out.size()) == expected) return out;
-    } catch (const UndecidedError&) {
-      if (best.found.empty() && lines.empty()) throw;  // else some of the directions are known
+      out.found = by_angles(system, group, base, kept, q, lines, options);
+      if (q == 2 || static_cast<int>(out.found.size()) == expected) return out;
+      out.found.clear();
+    } catch (const UndecidedError& error) {
+      if (best.found.empty() && lines.empty()) throw;
+      out.doubt = error.what();
     }
   const std::string seen = fmt::format(
       "a kernel of dimension {} (q = {}): {} directions found at amplitude {:.2g}, {} where orbits are not isolated",
       group.dimension(), q, best.found.size(), amplitude, best.not_isolated);
-  if (not_isolated != nullptr) *not_isolated = best.not_isolated;
+  out.not_isolated = best.not_isolated;
   if (lines.empty() && best.found.empty())
     throw core::NumericalError(seen + "; they form a continuum, or the loss does not tell them apart");
-  if ((best.not_isolated > 0 && not_isolated == nullptr) || static_cast<int>(best.found.size()) < expected)
-    core::log_warning(seen);
-  if (group.constant()) return about_equilibrium(system.structure(), group, base, best, amplitude);
+  if ((best.not_isolated > 0 && !constant) || static_cast<int>(best.found.size()) < expected) core::log_warning(seen);
+  if (best.not_isolated > 0 && out.doubt.empty()) out.doubt = seen;
+  if (constant) {
+    out.found = about_equilibrium(system.structure(), group, base, best, amplitude);
+    return out;
+  }
   put_in_order(system, best.found);
-  std::vector<Direction> out;
   for (const FoundOrbit& orbit : best.found) {
-    out.push_back(
-        {base, leaving_along(group.vector_at(orbit.coordinates), orbit.along, options.family),
-         loop::find_isotropy(system.structure(), orbit.loop, found_tolerance * amplitude, group.denominator()),
-         has_other_sides(group, orbit.coordinates), amplitude});
-    if (out.back().both_sides && leads_to_second(system, group, base, kept, orbit, amplitude, options))
-      out.back().tangent *= -1.0;
+    Direction& direction = out.found.emplace_back(
+        Direction{base, leaving_along(group.vector_at(orbit.coordinates), orbit.along, options.family),
+                  loop::find_isotropy(system.structure(), orbit.loop, found_tolerance * amplitude, group.denominator()),
+                  has_other_sides(group, orbit.coordinates), amplitude});
+    if (direction.both_sides && leads_to_second(system, group, base, kept, orbit, amplitude, options))
+      direction.tangent *= -1.0;
   }
   return out;
 }
 
-std::vector<Direction> all_directions(const systems::System& system, const loop::Loop& base,
-                                      const loop::Isotropy& isotropy, const std::vector<loop::Tangent>& kernel,
-                                      const DirectionOptions& given, int* not_isolated) {
+}  // namespace
+
+loop::Tangent way_to_side(const loop::Tangent& tangent, const loop::Tangent& opposite, int side) {
+  if (side > 0) return tangent;
+  loop::Tangent out = opposite.empty() ? tangent : opposite;
+  if (opposite.empty()) out *= -1.0;
+  return out;
+}
+
+Directions directions(const systems::System& system, const loop::Loop& base, const loop::Isotropy& isotropy,
+                      const std::vector<loop::Tangent>& kernel, const DirectionOptions& given) {
   loop::validate(base);
   core::require(base.time_map.is_identity(), "directions need a base loop that runs evenly in time");
   core::require(!kernel.empty() && kernel.size() <= largest_kernel, "directions need a kernel of dimension 1 to 8");
@@ -490,34 +502,21 @@ std::vector<Direction> all_directions(const systems::System& system, const loop:
                       "{:.2g}, with any phase that its other symmetries allow",
                       g.name, options.symmetry_tolerance));
   const std::vector<Line> lines = representatives(group, structure, fixed_lines(group));
-  std::vector<Direction> out = along_lines(system, group, base, lines, options);
+  Directions out{along_lines(system, group, base, lines, options)};
   // A single oscillation, a single vector, and a plane with rotations and reflections have no others.
   const bool complete = kernel.size() == 1 || (kernel.size() == 2 && group.constant()) ||
                         (kernel.size() == 2 && !lines.empty() && rotations(group) > 2);
   if (complete) return out;
   std::vector<Eigen::VectorXd> known;
   for (const Line& line : lines) known.push_back(line.vector);
-  for (Direction& d : searched(system, group, base, known, options, not_isolated)) out.push_back(std::move(d));
-  return out;
+  Directions others = searched(system, group, base, known, options);
+  others.found.insert(others.found.begin(), std::make_move_iterator(out.found.begin()),
+                      std::make_move_iterator(out.found.end()));
+  return others;
 }
 
-}  // namespace
-
-loop::Tangent way_to_side(const loop::Tangent& tangent, const loop::Tangent& opposite, int side) {
-  if (side > 0) return tangent;
-  loop::Tangent out = opposite.empty() ? tangent : opposite;
-  if (opposite.empty()) out *= -1.0;
-  return out;
-}
-
-std::vector<Direction> directions(const systems::System& system, const loop::Loop& base, const loop::Isotropy& isotropy,
-                                  const std::vector<loop::Tangent>& kernel, const DirectionOptions& options) {
-  return all_directions(system, base, isotropy, kernel, options, nullptr);
-}
-
-EquilibriumDirections equilibrium_directions(const systems::System& system, std::span<const double> point,
-                                             const starts::SharedPeriod& shared, int cutoff,
-                                             const DirectionOptions& options) {
+Directions equilibrium_directions(const systems::System& system, std::span<const double> point,
+                                  const starts::SharedPeriod& shared, int cutoff, const DirectionOptions& options) {
   const loop::Loop base = loop::constant_loop(point, shared.period, cutoff);
   core::require(shared.kernel.rows() == base.dimension, "oscillations need the dimension of the equilibrium");
   core::require(
@@ -536,9 +535,7 @@ EquilibriumDirections equilibrium_directions(const systems::System& system, std:
       }
       vectors.push_back({v.modes, {}});
     }
-  EquilibriumDirections out;
-  out.found = all_directions(system, base, {}, vectors, options, &out.not_isolated);
-  return out;
+  return directions(system, base, {}, vectors, options);
 }
 
 }  // namespace orbweaver::bifurcation

@@ -76,10 +76,10 @@ class Gatherer {
     return std::min(std::max(wanted, shared.together_from), shared.apart_below);
   }
 
-  [[nodiscard]] EquilibriumDirections directions_of(const starts::SharedPeriod& shared) const {
+  [[nodiscard]] Directions directions_of(const starts::SharedPeriod& shared) const {
     DirectionOptions options;
     options.amplitude = amplitude_in(shared);
-    EquilibriumDirections all = equilibrium_directions(_system, _sweep.fixed_point, shared, _cutoff, options);
+    Directions all = equilibrium_directions(_system, _sweep.fixed_point, shared, _cutoff, options);
     std::erase_if(all.found, [](const Direction& direction) { return direction.repetitions > 1; });
     return all;
   }
@@ -119,7 +119,7 @@ class Gatherer {
   }
 
   void add(const starts::DegenerateMode& mode) {
-    const EquilibriumDirections directions = directions_of(mode);
+    const Directions directions = directions_of(mode);
     _not_isolated.push_back(directions.not_isolated);
     if (directions.found.empty()) add_without_family(mode);
     for (const Direction& direction : directions.found) {

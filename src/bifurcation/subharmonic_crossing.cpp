@@ -46,7 +46,8 @@ std::optional<loop::Loop> orbit_of_amplitude(const systems::System& system, loop
     conditions.col(1) = Eigen::Map<const Eigen::VectorXd>(shift.data(), unknowns.size()).normalized();
     const loss::Slice slice(unknowns.size(), conditions);
     corrector::Result result = corrector::correct(system, guess, unknowns, slice, options.corrector);
-    if (kind == Guess::rest_of_a_loop && result.outcome == corrector::Outcome::stalled) {
+    if (kind == Guess::rest_of_a_loop && result.outcome == corrector::Outcome::stalled &&
+        unknowns.size() <= corrector::largest_dense) {
       corrector::Options careful = options.corrector;
       careful.method = corrector::Method::brgn;
       result = corrector::correct(system, guess, unknowns, slice, careful);

@@ -90,13 +90,13 @@ class Certifier::Parts {
     }
   }
 
-  Certificate at_its_parameters(const loop::Loop& loop) {
+  Certificate at_its_parameters(const loop::Loop& loop, double known_growth) {
     const std::shared_ptr<const systems::System> here = loop::system_at(_system, loop);
-    if (here.get() == &_system) return certify(loop);
-    return Parts(*here, _isotropy, _options).certify(loop);
+    if (here.get() == &_system) return certify(loop, known_growth);
+    return Parts(*here, _isotropy, _options).certify(loop, known_growth);
   }
 
-  Certificate certify(const loop::Loop& loop) {
+  Certificate certify(const loop::Loop& loop, double known_growth) {
     const core::LogStage stage(core::Stage::certificate);
     loop::validate(loop);
     core::require(loop.dimension == _system.dimension(), "the loop and the system must have the same dimension");
@@ -108,7 +108,7 @@ class Certifier::Parts {
     closures(found);
     conserved(found);
     for (const State& state : _states) found.reach = std::max(found.reach, norm(state));
-    once_around(found);
+    once_around(found, known_growth);
     found.symmetry_defect = symmetry_defect();
     found.recurrence = recurrence();
     found.tail = loop::tail(loop);
@@ -221,7 +221,7 @@ class Certifier::Parts {
   // Closure once around, and how much an error grows on the way where that is far off. NaN where the orbit is so
   // unstable that the integration leaves the region where the system is defined. The growth is that of integrations
   // with steps of their own: what rounding grows to on the way counts too.
-  void once_around(Certificate& found) const {
+  void once_around(Certificate& found, double known_growth) const {
     try {
       const State end = integrate(_system, _states.front(), _loop->period, _options.tolerance);
       found.single_shot = distance(end, _states.back());
@@ -237,8 +237,8 @@ class Certifier::Parts {
       }
       found.displaced_growth = largest;
       // Where what is known explains the return the way costs half a certificate for nothing.
-      const double explained = far_return * found.reach * (1.0 + largest);
-      if (_system.structure().conserved.empty() && found.single_shot > explained)
+      const double explained = far_return * found.reach * (1.0 + std::fmax(largest, known_growth));
+      if (found.single_shot > explained)
         found.displaced_growth = std::fmax(largest, growth_on_the_way(displaced * found.reach));
     } catch (const core::NumericalError&) {
     }
@@ -472,7 +472,9 @@ Certifier::Certifier(const systems::System& system, const loop::Isotropy& isotro
 Certifier::~Certifier() = default;
 Certifier::Certifier(Certifier&&) noexcept = default;
 
-Certificate Certifier::operator()(const loop::Loop& loop) { return _parts->at_its_parameters(loop); }
+Certificate Certifier::operator()(const loop::Loop& loop, double known_growth) {
+  return _parts->at_its_parameters(loop, known_growth);
+}
 
 Certificate certify(const systems::System& system, const loop::Loop& loop, const loop::Isotropy& isotropy,
                     const Options& options) {

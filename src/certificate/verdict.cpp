@@ -14,6 +14,8 @@ namespace {
 constexpr double of_both = 2.0;
 /// Of the amplitude: fewer digits than four confirm no orbit.
 constexpr double informative = 1e-4;
+/// Of the largest state: an error that has grown to more goes anywhere, and a return says nothing.
+constexpr double nearby = 0.1;
 /// Of the product of the multipliers, and of an index relative to 1 + |k| beside its bound: transition matrices are
 /// integrated to 1e-10 of 1 + their entries.
 constexpr double unpaired_by = 1e-6;
@@ -66,7 +68,8 @@ Judgement judge(const Certificate& c, const Evidence& evidence) {
   // the multipliers, once around, do not show.
   const double shear = std::fmax(evidence.period * c.steepness * c.steepness, c.displaced_growth);
   const double returned = explained * (growth + shear);
-  if (c.single_shot > returned) return {Verdict::return_contradicts, c.single_shot, returned};
+  if (c.single_shot > returned && returned < nearby * c.reach)
+    return {Verdict::return_contradicts, c.single_shot, returned};
 
   if (c.symmetry_defect > explained) return {Verdict::not_symmetric, c.symmetry_defect, explained};
   // An orbit that is all error has no period at all.

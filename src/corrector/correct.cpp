@@ -270,9 +270,6 @@ Result correct_by_newton_krylov(const systems::System& system, const loop::Loop&
   return result;
 }
 
-// Above this an assembled Hessian takes more than 128 MiB.
-constexpr int largest_dense = 4000;
-
 Result dispatch(const systems::System& system, const loop::Loop& guess, const loss::Unknowns& unknowns,
                 const loss::Slice& slice, const Options& options, const std::optional<Eigen::VectorXd>& normal) {
   const bool large = unknowns.size() >= options.krylov_from;

@@ -1,6 +1,7 @@
 #include "drive_averaged.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "orbweaver/core/error.hpp"
@@ -12,9 +13,14 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Of a drive with a few harmonics. A power of two, so that the mean of equal values is exact.
 constexpr int drive_phases = 8;
+
+/// An entry of the Jacobian whose mean is less than this share of what it is over the phases tells no rate: what is left
+/// of it may be rounding, or a high harmonic of the drive.
+constexpr double cancelled = 0.1;
 
 /// Of the values at first, first + step, ... below `drive_phases`: opposite phases are added first, so that what goes
 /// with the cosine cancels.
@@ -75,6 +81,25 @@ void DriveAveraged::second_derivatives(std::size_t nodes, const double* z, const
     std::fill_n(contracted + (l * d + d - 1) * nodes, nodes, 0.0);
     std::fill_n(contracted + ((d - 1) * d + l) * nodes, nodes, 0.0);
   }
+}
+
+Eigen::MatrixXd DriveAveraged::strength(const VectorXd& z) const {
+  const Index d = z.size();
+  VectorXd state = z;
+  VectorXd values(d);
+  RowMajor jacobian(d, d);
+  RowMajor squares = RowMajor::Zero(d, d);
+  for (int n = 0; n < drive_phases; ++n) {
+    state(d - 1) = numerics::two_pi * n / drive_phases;
+    _base.field_jacobian(1, state.data(), values.data(), jacobian.data());
+    squares += jacobian.cwiseAbs2();
+  }
+  field_jacobian(1, z.data(), values.data(), jacobian.data());
+  for (Index i = 0; i < d; ++i)
+    for (Index l = 0; l + 1 < d; ++l)
+      if (const double strong = std::sqrt(squares(i, l) / drive_phases); std::abs(jacobian(i, l)) < cancelled * strong)
+        jacobian(i, l) = std::copysign(strong, jacobian(i, l));
+  return jacobian;
 }
 
 VectorXd DriveAveraged::departure(const VectorXd& z) const {

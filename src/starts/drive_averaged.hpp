@@ -34,6 +34,10 @@ class DriveAveraged final : public systems::System {
   [[nodiscard]] double guard(int k, std::span<const double> z) const override { return _base.guard(k, z); }
   [[nodiscard]] double action_density(std::span<const double> z) const override { return _base.action_density(z); }
 
+  /// The Jacobian there for scales: its mean, or, where that is little of an entry since what it does turns with the
+  /// drive, the root of the mean square of that.
+  [[nodiscard]] Eigen::MatrixXd strength(const Eigen::VectorXd& z) const;
+
   /// How far the field there departs from its mean at most, over the phases; one a coordinate.
   [[nodiscard]] Eigen::VectorXd departure(const Eigen::VectorXd& z) const;
 

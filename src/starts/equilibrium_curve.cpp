@@ -45,8 +45,14 @@ constexpr double same_place = 1e-9;
 constexpr double at_end = 1e-12;
 /// A step over which eigenvalues become real, or real ones complex, is halved so often.
 constexpr int most_halvings = 6;
+/// A branch point is located to this, relative, and then by a chord, which is good to the square of it. There rounding
+/// is 1e5 times as large across the curve.
+constexpr double near_singular = 1e-5;
+constexpr double converged_beside = 1e-10;
 /// Steps after which a curve may have come back.
 constexpr std::size_t least_round = 8;
+/// A determinant of rows of at most length 1 that is smaller is rounding's.
+constexpr double dependent = 1e-13;
 /// Of the largest eigenvalue: a pair whose sum is smaller than this cancels, and its real part is none.
 constexpr double cancels = 1e-6;
 
@@ -89,7 +95,8 @@ class Curve {
   }
 
   /// On the hyperplane through `guess` across `row`.
-  [[nodiscard]] std::optional<VectorXd> corrected(VectorXd x, const VectorXd& row, int& steps) const {
+  [[nodiscard]] std::optional<VectorXd> corrected(VectorXd x, const VectorXd& row, int& steps,
+                                                  double to = converged) const {
     const VectorXd guess = x;
     for (steps = 0; steps < newton_steps; ++steps) {
       const Linear linear = at(x);
@@ -101,7 +108,7 @@ class Curve {
       const VectorXd step = Eigen::PartialPivLU<MatrixXd>(matrix).solve(right);
       if (!step.allFinite()) return std::nullopt;
       x += step;
-      if (step.norm() <= converged * (1.0 + x.norm())) return x;
+      if (step.norm() <= to * (1.0 + x.norm())) return x;
     }
     return std::nullopt;
   }
@@ -135,6 +142,22 @@ class Curve {
       for (Index l = i + 1; l < values.size(); ++l)
         product *= (values(i) + values(l)) / (std::abs(values(i)) + std::abs(values(l)));
     return product.real();
+  }
+
+  /// Derivatives of the equation by state and parameter, then the curve's direction.
+  [[nodiscard]] MatrixXd bordered(const VectorXd& x, const VectorXd& near) const {
+    const Linear linear = at(x);
+    MatrixXd matrix(_d + 1, _d + 1);
+    matrix << linear.jacobian, linear.by_parameter, direction(x, near).transpose();
+    return matrix;
+  }
+
+  /// The real eigenvalue of least modulus; NaN without one.
+  [[nodiscard]] double least_real_eigenvalue(const VectorXd& x) const {
+    double least = std::numeric_limits<double>::quiet_NaN();
+    for (const Complex value : eigenvalues(x))
+      if (value.imag() == 0.0 && !(std::abs(value.real()) >= std::abs(least))) least = value.real();
+    return least;
   }
 
   /// Of the eigenvalues on the imaginary axis there the one nearest to `near`; none where only real ones cancel. Of a
@@ -315,6 +338,29 @@ std::optional<VectorXd> zero_between(const Curve& curve, const Node& a, const No
   return place;
 }
 
+/// The same beside another curve, which passes through the zero: by halves, each from the cubic through the places and
+/// directions of its ends, which comes nearer to this curve than the other one is; the last of them by a chord.
+template <class F>
+std::optional<VectorXd> zero_beside_curve(const Curve& curve, Node a, Node b, const F& function) {
+  double at_a = function(a.x);
+  double at_b = function(b.x);
+  if (!(at_a * at_b < 0.0)) return std::nullopt;
+  while ((b.x - a.x).norm() > near_singular * (1.0 + a.x.norm())) {
+    const VectorXd chord = b.x - a.x;
+    const VectorXd guess = 0.5 * (a.x + b.x) + 0.125 * chord.norm() * (a.direction - b.direction);
+    int steps = 0;
+    const auto x = curve.corrected(guess, chord.normalized(), steps, converged_beside);
+    if (!x) return std::nullopt;
+    Node middle{*x, curve.direction(*x, a.direction)};
+    const double value = function(*x);
+    if (!(std::abs(value) > 0.0)) return x;
+    const bool is_before = value * at_a < 0.0;
+    (is_before ? at_b : at_a) = value;
+    (is_before ? b : a) = std::move(middle);
+  }
+  return VectorXd(a.x + at_a / (at_a - at_b) * (b.x - a.x));
+}
+
 /// Hopf points between two nodes, each where one eigenvalue crosses the imaginary axis; where eigenvalues have become
 /// real, or real ones complex, the two halves are looked at, and at last the product of all sums.
 std::vector<std::pair<VectorXd, HopfPoint>> hopf_between(const Curve& curve, const Node& a, const Node& b,
@@ -327,9 +373,8 @@ std::vector<std::pair<VectorXd, HopfPoint>> hopf_between(const Curve& curve, con
   const VectorXd chord = b.x - a.x;
   const auto in_halves = [&]() -> std::optional<std::vector<std::pair<VectorXd, HopfPoint>>> {
     int steps = 0;
-    const auto middle = halvings < most_halvings
-                            ? curve.corrected(a.x + 0.5 * chord, chord.normalized(), steps)
-                            : std::nullopt;
+    const auto middle =
+        halvings < most_halvings ? curve.corrected(a.x + 0.5 * chord, chord.normalized(), steps) : std::nullopt;
     if (!middle) return std::nullopt;
     const Node between{*middle, curve.direction(*middle, a.direction)};
     std::vector<std::pair<VectorXd, HopfPoint>> all = hopf_between(curve, a, between, halvings + 1);
@@ -372,14 +417,37 @@ std::vector<std::pair<VectorXd, HopfPoint>> hopf_between(const Curve& curve, con
   const auto product = [&](const VectorXd& at) { return curve.hopf_function(at); };
   const auto on_axis = [&](const VectorXd& at) {
     const std::vector<Complex> here = oscillating(curve.eigenvalues(at));
-    const auto least = std::min_element(here.begin(), here.end(), [](Complex x, Complex y) {
-      return std::abs(x.real()) < std::abs(y.real());
-    });
+    const auto least = std::min_element(here.begin(), here.end(),
+                                        [](Complex x, Complex y) { return std::abs(x.real()) < std::abs(y.real()); });
     return least == here.end() ? Complex{} : *least;
   };
   if (found.size() % 2 == 0 && (product(a.x) >= 0.0) != (product(b.x) >= 0.0))
     add(zero_between(curve, a, b, product), on_axis);
   return found;
+}
+
+int positive_real(const Eigen::VectorXcd& values) {
+  return static_cast<int>(std::count_if(
+      values.begin(), values.end(), [](const Complex& value) { return value.imag() == 0.0 && value.real() > 0.0; }));
+}
+
+/// Where another curve passes through, between two nodes; `folds`: the parameter turns there too.
+std::optional<VectorXd> branch_point_between(const Curve& curve, const Node& a, const Node& b, bool folds) {
+  const VectorXd lengths =
+      curve.bordered(a.x, a.direction).rowwise().norm().cwiseMax(curve.bordered(b.x, a.direction).rowwise().norm());
+  const auto determinant = [&](const VectorXd& at) {
+    const MatrixXd scaled = lengths.cwiseInverse().asDiagonal() * curve.bordered(at, a.direction);
+    return Eigen::PartialPivLU<MatrixXd>(scaled).determinant();
+  };
+  const double at_a = determinant(a.x);
+  const double at_b = determinant(b.x);
+  if (std::min(std::abs(at_a), std::abs(at_b)) > dependent && at_a * at_b < 0.0)
+    return zero_beside_curve(curve, a, b, determinant);
+  const int change = positive_real(curve.eigenvalues(b.x)) - positive_real(curve.eigenvalues(a.x));
+  if (folds || change == 0 || change % 2 != 0) return std::nullopt;
+  const auto least = [&](const VectorXd& at) { return curve.least_real_eigenvalue(at); };
+  if (!(least(a.x) * least(b.x) < 0.0)) return std::nullopt;  // two have met and left the axis, or come to it
+  return zero_beside_curve(curve, a, b, least);
 }
 
 /// Hopf points at an end of the curve, where rounding has the eigenvalue on either side.
@@ -447,9 +515,14 @@ EquilibriumCurve follow_equilibrium(const systems::System& system, std::span<con
     const Node& a = nodes[n - 1];
     const Node& b = nodes[n];
     std::vector<Between> between;
-    if (a.direction(d) * b.direction(d) < 0.0) {
+    const bool folds = a.direction(d) * b.direction(d) < 0.0;
+    const auto branch = branch_point_between(curve, a, b, folds);
+    if (branch) between.push_back({*branch, EquilibriumKind::branch_point});
+    if (folds) {
       const auto slope = [&](const VectorXd& at) { return curve.direction(at, a.direction)(d); };
-      if (const auto fold = zero_between(curve, a, b, slope)) {
+      auto fold = zero_between(curve, a, b, slope);
+      if (branch || !fold) fold = zero_beside_curve(curve, a, b, slope);
+      if (fold) {
         out.folds.push_back(curve.equilibrium(*fold));
         between.push_back({*fold, EquilibriumKind::fold});
       }

@@ -1,5 +1,6 @@
 #include "orbweaver/starts/loop_guess.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -21,6 +22,9 @@ using numerics::two_pi;
 constexpr std::size_t samples_of_spline = 4 * static_cast<std::size_t>(loop::time_sample_count);
 /// Of a guess's harmonics, relative to its size: smaller ones are left out.
 constexpr double left_out = 1e-9;
+/// And those that are this part of what the trajectory misses itself by: its kink has harmonics without end, which no
+/// orbit near it has. Kept, they take many steps of a branch to go (K from 787 to 157 in six).
+constexpr double left_out_of_gap = 1e-2;
 /// Of the period: a state so near to a whole one after the first closes the loop (decimal digits of a table).
 constexpr double same_time = 1e-6;
 /// Neighbours that a spline's slopes are made from, to each side.
@@ -38,14 +42,16 @@ loop::Loop loop_through(const systems::Structure& structure, std::vector<std::ve
   samples.period = period;
   samples.states.resize(d * count);
   samples.winding.assign(d, 0.0);
+  double missed = 0.0;
   for (std::size_t i = 0; i < d; ++i) {
     const double gap = states[count][i] - states[0][i];
     if (structure.is_angle(i)) samples.winding[i] = std::round(gap / two_pi);
+    missed = std::hypot(missed, gap - two_pi * samples.winding[i]);
     for (std::size_t j = 0; j < count; ++j)
       samples.states[i * count + j] = states[j][i] - static_cast<double>(j) / static_cast<double>(count) * gap;
   }
   loop::Loop out = loop::interpolant(samples);
-  const double allowed = left_out * loop::rms_amplitude(out);
+  const double allowed = std::max(left_out * loop::rms_amplitude(out), left_out_of_gap * missed);
   int cutoff = out.cutoff;
   while (loop::previous_cutoff(cutoff) < cutoff &&
          loop::mean_distance(out, loop::with_cutoff(out, loop::previous_cutoff(cutoff))) < allowed)

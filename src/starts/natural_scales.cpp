@@ -62,8 +62,10 @@ class LocalScales {
   /// None where the field is not finite.
   [[nodiscard]] std::optional<LogScales> find() {
     const Index d = _point.size();
-    const std::optional<MatrixXd> jacobian = jacobian_at(_point);
+    std::optional<MatrixXd> jacobian = jacobian_at(_point);
     if (!jacobian) return std::nullopt;
+    if (const auto* driven = dynamic_cast<const DriveAveraged*>(&_system)) jacobian = driven->strength(_point);
+    if (!jacobian->allFinite()) return std::nullopt;
     _log = VectorXd::Zero(d);
     balance(jacobian->cwiseAbs2(), false);
     const MatrixXd balanced = without_rounding(in_scales(*jacobian));

@@ -61,7 +61,7 @@ void expect_born(const Direction& direction, double amplitude, const std::string
 }
 
 TEST(Directions, TwoFamiliesLeaveADoublingPoint) {
-  const std::vector<Direction> found = directions(*test::pendulum(), doubling().base, both(), doubling().kernel);
+  const std::vector<Direction> found = directions(*test::pendulum(), doubling().base, both(), doubling().kernel).found;
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(loop::to_text(found[0].isotropy), "R@0");
   EXPECT_EQ(loop::to_text(found[1].isotropy), "RS@0");
@@ -87,7 +87,7 @@ TEST(Directions, TwoFamiliesLeaveADoublingPoint) {
 
 // Where the orbit starts does not matter: directions are shifted to the reversor's phase 0.
 TEST(Directions, DoNotDependOnWhereTheOrbitStartsNorOnTheBasisOfTheKernel) {
-  const std::vector<Direction> wanted = directions(*test::pendulum(), doubling().base, both(), doubling().kernel);
+  const std::vector<Direction> wanted = directions(*test::pendulum(), doubling().base, both(), doubling().kernel).found;
   test::Crossing shifted{loop::time_shifted(doubling().base, 3.0 / 8.0), {}};
   for (const double angle : {0.4, 0.4 + std::numbers::pi / 2}) {
     loop::Loop v = doubling().base;
@@ -95,7 +95,7 @@ TEST(Directions, DoNotDependOnWhereTheOrbitStartsNorOnTheBasisOfTheKernel) {
       v.modes[n] = std::cos(angle) * doubling().kernel[0].modes[n] + std::sin(angle) * doubling().kernel[1].modes[n];
     shifted.kernel.push_back({loop::time_shifted(v, 3.0 / 8.0).modes, {}});
   }
-  const std::vector<Direction> found = directions(*test::pendulum(), shifted.base, both(), shifted.kernel);
+  const std::vector<Direction> found = directions(*test::pendulum(), shifted.base, both(), shifted.kernel).found;
   ASSERT_EQ(found.size(), 2u);
   for (std::size_t n = 0; n < 2; ++n) {
     EXPECT_EQ(loop::to_text(found[n].isotropy), loop::to_text(wanted[n].isotropy));
@@ -114,7 +114,7 @@ TEST(Directions, AreExactlySymmetric) {
     rough[0].modes[n] += 1e-7 * std::sin(static_cast<double>(n));
     rough[1].modes[n] += 1e-7 * std::cos(static_cast<double>(n));
   }
-  for (const Direction& direction : directions(*test::pendulum(), doubling().base, both(), rough)) {
+  for (const Direction& direction : directions(*test::pendulum(), doubling().base, both(), rough).found) {
     const loop::Subspace kept(4, direction.base.cutoff, direction.isotropy);
     std::vector<double> part(static_cast<std::size_t>(kept.size()));
     kept.project(direction.tangent.modes, part);
@@ -130,7 +130,7 @@ TEST(Directions, AreExactlySymmetric) {
 TEST(Directions, OneFamilyOfTheSamePeriodLosesTheReversors) {
   const corrector::Result orbit = test::orbit_at(test::even_family_to_twelve(test::in_phase()), in_phase_branch_point);
   const test::Crossing crossing = test::crossing_at(*test::pendulum(), orbit.loop, both(), 1, 1);
-  const std::vector<Direction> found = directions(*test::pendulum(), crossing.base, both(), crossing.kernel);
+  const std::vector<Direction> found = directions(*test::pendulum(), crossing.base, both(), crossing.kernel).found;
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(loop::to_text(found[0].isotropy), "S@1/2");
   EXPECT_FALSE(found[0].both_sides);
@@ -143,7 +143,7 @@ TEST(Directions, OneFamilyOfTheSamePeriodLosesTheReversors) {
 TEST(Directions, RefuseWhatIsNoKernel) {
   const test::Crossing& d = doubling();
   const auto call = [&](const loop::Loop& base, std::vector<loop::Tangent> kernel) {
-    return directions(*test::pendulum(), base, both(), kernel);
+    return directions(*test::pendulum(), base, both(), kernel).found;
   };
   EXPECT_THROW(static_cast<void>(call(d.base, {})), core::MisuseError);
   EXPECT_THROW(static_cast<void>(call(d.base, {d.kernel[0], d.kernel[0]})), core::MisuseError);
@@ -176,7 +176,7 @@ TEST(Directions, TwinsOfOneReversorDoNotHangOnTheStart) {
       vector.modes = v.modes;
       later.kernel.push_back({loop::time_shifted(vector, start).modes, {}});
     }
-    const std::vector<Direction> found = directions(*system, later.base, family.isotropy, later.kernel);
+    const std::vector<Direction> found = directions(*system, later.base, family.isotropy, later.kernel).found;
     ASSERT_EQ(found.size(), 2u);
     EXPECT_EQ(loop::to_text(found[0].isotropy), loop::to_text(found[1].isotropy));
     std::vector<double> sizes;

@@ -78,9 +78,10 @@ std::vector<std::vector<double>> images(const Crossing& crossing, const std::vec
 /// A search without declared reversors finds the directions that the reversors give.
 void expect_same_by_search(const test::Family& family, const Crossing& crossing, int times, bool mirror,
                            std::size_t count, const std::string& isotropy) {
-  const std::vector<Direction> known = directions(*family.system, crossing.base, family.isotropy, crossing.kernel);
+  const std::vector<Direction> known =
+      directions(*family.system, crossing.base, family.isotropy, crossing.kernel).found;
   const auto fewer = declaring(family.system, mirror);
-  const std::vector<Direction> found = directions(*fewer, crossing.base, {}, crossing.kernel);
+  const std::vector<Direction> found = directions(*fewer, crossing.base, {}, crossing.kernel).found;
   ASSERT_EQ(found.size(), count);
   // Modes of vectors shifted by half a turn carry the mirror, which changes a sign only.
   const std::vector<std::vector<double>> lines = images(crossing, known, times);
@@ -140,7 +141,7 @@ TEST_P(SeenOtherwise, TwinsAndSidesAreTheSame) {
   const auto system = systems::make_system("double_pendulum", {{"m2", m2}});
   const test::Family family = family_of(system, 0, 10.3);
   const Crossing crossing = crossing_of(family, index, times);
-  const std::vector<Direction> known = directions(*system, crossing.base, family.isotropy, crossing.kernel);
+  const std::vector<Direction> known = directions(*system, crossing.base, family.isotropy, crossing.kernel).found;
   const auto fewer = declaring(system, true);
   std::vector<int> first;
   for (const auto& [angle, reflected, start] :
@@ -148,7 +149,7 @@ TEST_P(SeenOtherwise, TwinsAndSidesAreTheSame) {
         std::tuple(2.9, true, 0.3), std::tuple(4.4, false, 0.8)}) {
     SCOPED_TRACE(angle);
     const Crossing seen = seen_otherwise(crossing, angle, reflected, start);
-    const std::vector<Direction> found = directions(*fewer, seen.base, {}, seen.kernel);
+    const std::vector<Direction> found = directions(*fewer, seen.base, {}, seen.kernel).found;
     ASSERT_EQ(found.size(), known.size());
     loop::Loop back = found.front().base;
     back.modes = found.front().tangent.modes;
@@ -212,7 +213,7 @@ TEST(Search, FindsTheirImagesTooWhereTheHalfMapIsUnknown) {
 TEST(Search, FindsBothFamiliesOfOrderSix) {
   const Crossing crossing = crossing_of(in_phase(), 1.0, 3);
   const std::vector<Direction> known =
-      directions(*test::pendulum(), crossing.base, in_phase().isotropy, crossing.kernel);
+      directions(*test::pendulum(), crossing.base, in_phase().isotropy, crossing.kernel).found;
   ASSERT_EQ(known.size(), 2u);
   EXPECT_EQ(loop::to_text(known[0].isotropy), "R@0");
   EXPECT_EQ(loop::to_text(known[1].isotropy), "RS@0");
@@ -223,7 +224,7 @@ TEST(Search, FindsBothFamiliesOfOrderSix) {
 TEST(Search, FindsTheOneFamilyOfOrderFive) {
   const Crossing crossing = crossing_of(in_phase(), 2.0 * std::cos(2.0 * std::numbers::pi / 5.0), 5);
   const std::vector<Direction> known =
-      directions(*test::pendulum(), crossing.base, in_phase().isotropy, crossing.kernel);
+      directions(*test::pendulum(), crossing.base, in_phase().isotropy, crossing.kernel).found;
   ASSERT_EQ(known.size(), 1u);
   EXPECT_EQ(loop::to_text(known[0].isotropy), "S@1/2 R@0");
   EXPECT_TRUE(known[0].both_sides);
@@ -236,7 +237,7 @@ TEST(Search, FindsTheOneFamilyOfOrderThree) {
   const test::Family family = family_of(system, 0, 10.0);
   ASSERT_LT(family.index_of(family.orbits.front().loop), -1.0);
   const Crossing crossing = crossing_of(family, -1.0, 3);
-  const std::vector<Direction> known = directions(*system, crossing.base, family.isotropy, crossing.kernel);
+  const std::vector<Direction> known = directions(*system, crossing.base, family.isotropy, crossing.kernel).found;
   ASSERT_EQ(known.size(), 1u);
   EXPECT_EQ(loop::to_text(known[0].isotropy), "S@1/2 R@0");
   EXPECT_TRUE(known[0].both_sides);
@@ -249,7 +250,7 @@ TEST(Search, FindsTheOneFamilyOfOrderThree) {
     later.kernel.push_back({loop::time_shifted(vector, 0.5).modes, {}});
   }
   EXPECT_LT(loop::state_at(later.base, 0.0)[0], -0.1);
-  const std::vector<Direction> again = directions(*system, later.base, family.isotropy, later.kernel);
+  const std::vector<Direction> again = directions(*system, later.base, family.isotropy, later.kernel).found;
   ASSERT_EQ(again.size(), 1u);
   EXPECT_EQ(loop::to_text(again[0].isotropy), "S@1/2 R@0");
   EXPECT_LT(loop::mean_distance(again[0].base, known[0].base), 1e-9);
@@ -261,7 +262,7 @@ const test::Family& without_reversors() {
     const test::Family longer = family_of(test::pendulum(), 0, 10.6);
     const loop::Loop orbit = longer.at_period(longer.orbits.back().loop, 10.416773281973249);
     const Crossing crossing = test::crossing_at(*test::pendulum(), orbit, longer.isotropy, 1, 1);
-    const Direction start = directions(*test::pendulum(), crossing.base, longer.isotropy, crossing.kernel).at(0);
+    const Direction start = directions(*test::pendulum(), crossing.base, longer.isotropy, crossing.kernel).found.at(0);
     return test::family_from(test::pendulum(), {start.base, start.tangent, start.isotropy}, 10.6);
   }();
   return family;
@@ -292,7 +293,7 @@ TEST_P(WithoutReversors, TwoFamiliesOfEvenOrderLeaveHalfAnAngleApart) {
   const double angle = 2.0 * std::numbers::pi / q;
   const Crossing crossing = crossing_of(without_reversors(), 2.0 * std::cos(angle), times);
   const std::vector<Direction> found =
-      directions(*test::pendulum(), crossing.base, without_reversors().isotropy, crossing.kernel);
+      directions(*test::pendulum(), crossing.base, without_reversors().isotropy, crossing.kernel).found;
   ASSERT_EQ(found.size(), 2u);
   std::vector<corrector::Result> born;
   for (const Direction& direction : found) {
@@ -342,7 +343,7 @@ INSTANTIATE_TEST_SUITE_P(Search, WithoutReversors, testing::Values(6, 8));
 TEST(Search, KnowsTheWaysToBothSidesWhereTheOrderIsOdd) {
   const Crossing crossing = crossing_of(without_reversors(), 2.0 * std::cos(2.0 * std::numbers::pi / 5.0), 5);
   const std::vector<Direction> found =
-      directions(*test::pendulum(), crossing.base, without_reversors().isotropy, crossing.kernel);
+      directions(*test::pendulum(), crossing.base, without_reversors().isotropy, crossing.kernel).found;
   ASSERT_EQ(found.size(), 1u);
   const Direction& direction = found[0];
   EXPECT_TRUE(direction.both_sides);
@@ -375,11 +376,13 @@ TEST(Search, GoesFurtherOutWhereTheAngleIsHardlyFixed) {
   const test::Family family = family_of(test::pendulum(), 1, 6.3);
   const Crossing branch_point = test::crossing_at(*test::pendulum(), family.with_index(2.0), family.isotropy, 1, 1);
   EXPECT_NEAR(branch_point.base.period, 6.1475153497, 1e-8);
-  const Direction start = directions(*test::pendulum(), branch_point.base, family.isotropy, branch_point.kernel).at(0);
+  const Direction start =
+      directions(*test::pendulum(), branch_point.base, family.isotropy, branch_point.kernel).found.at(0);
   EXPECT_EQ(loop::to_text(start.isotropy), "S@1/2");
   const test::Family born = test::family_from(test::pendulum(), {start.base, start.tangent, start.isotropy}, 6.148);
   const Crossing crossing = crossing_of(born, 1.0, 3);
-  const std::vector<Direction> found = directions(*test::pendulum(), crossing.base, born.isotropy, crossing.kernel);
+  const std::vector<Direction> found =
+      directions(*test::pendulum(), crossing.base, born.isotropy, crossing.kernel).found;
   ASSERT_EQ(found.size(), 2u);
   for (const Direction& direction : found) {
     EXPECT_GT(direction.amplitude, 0.05);

@@ -89,6 +89,57 @@ TEST(Certificate, MeasuresHowAnErrorOfTheEnergyGrows) {
   EXPECT_TRUE(std::isnan(certify(ShearedRotator(0.0), loop).displaced_growth)) << "it returns to rounding";
 }
 
+/// x'' = -x + x^3: orbits between its two saddles are x = A sn(w t, k), w^2 (1 + k^2) = 1, A^2 = 2 k^2 w^2.
+class SofteningSpring final : public test::PointSystem {
+ public:
+  SofteningSpring() : PointSystem(test::structure_of(2, true)) {}
+  [[nodiscard]] Eigen::VectorXd field_at(const Eigen::VectorXd& z) const override {
+    return Eigen::Vector2d(z(1), -z(0) + z(0) * z(0) * z(0));
+  }
+  [[nodiscard]] Eigen::MatrixXd jacobian_at(const Eigen::VectorXd& z) const override {
+    return Eigen::Matrix2d{{0.0, 1.0}, {-1.0 + 3.0 * z(0) * z(0), 0.0}};
+  }
+  [[nodiscard]] Eigen::VectorXd gradient_at(const Eigen::VectorXd& z) const override {
+    return Eigen::Vector2d(z(0) - z(0) * z(0) * z(0), z(1));
+  }
+  [[nodiscard]] double conserved(int, std::span<const double> z) const override {
+    return 0.5 * (z[1] * z[1] + z[0] * z[0]) - 0.25 * z[0] * z[0] * z[0] * z[0];
+  }
+
+  /// From its turning point, with 1 - k^2 = `beside`: by the series of sn in the nome.
+  [[nodiscard]] static loop::Loop orbit(double beside) {
+    const double k = std::sqrt(1.0 - beside);
+    const double quarter = std::comp_ellint_1(k);
+    const double w = 1.0 / std::sqrt(1.0 + k * k);
+    const double nome = std::exp(-pi * std::comp_ellint_1(std::sqrt(beside)) / quarter);
+    loop::Loop loop = loop::constant_loop(std::vector<double>{0.0, 0.0}, 4.0 * quarter / w, 255);
+    for (int n = 0; 2 * n + 1 <= loop.cutoff; ++n) {
+      const int h = 2 * n + 1;
+      const double part = std::sqrt(2.0) * w * 2.0 * pi / quarter * std::pow(nome, n + 0.5) / (1.0 - std::pow(nome, h));
+      const double sign = n % 2 == 0 ? 1.0 : -1.0;  // a quarter later than sn
+      loop.cosine(h, 0) = sign * part;
+      loop.sine(h, 1) = -sign * part * h * 2.0 * pi / loop.period;
+    }
+    return loop;
+  }
+};
+
+// Where it begins, near a saddle, the energy hardly changes with the state: an error that is made halfway between the
+// saddles changes the period by far more.
+TEST(Certificate, AnErrorOnTheWayChangesThePeriodBesideASaddle) {
+  for (const double beside : {1e-4, 1e-5}) {
+    const loop::Loop loop = SofteningSpring::orbit(beside);
+    const Certificate found = certify(SofteningSpring(), loop);
+    EXPECT_LT(found.closure, 1e-12);
+    EXPECT_EQ(judge(found, {.period = loop.period, .residual = 1e-15, .amplitude = 1.0, .growth = 2.0}).verdict,
+              Verdict::holds)
+        << found.single_shot << ", a displacement grows by " << found.displaced_growth;
+    EXPECT_GT(found.displaced_growth, 1.0 / beside);
+    const Certificate known = Certifier(SofteningSpring(), {})(loop, 1e9);
+    EXPECT_LT(known.displaced_growth, found.displaced_growth) << "the growth that is known explains it";
+  }
+}
+
 /// r = cos(phase), an orbit beside which others part like exp(strength sin(phase)): not at all once around.
 class RepellingHalfWay final : public test::PointSystem {
  public:

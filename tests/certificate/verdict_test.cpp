@@ -83,6 +83,13 @@ TEST(Verdict, ReturnsAsFarOffAsADisplacementGrows) {
   EXPECT_NE(judge(certificate, evidence).verdict, Verdict::return_contradicts);
 }
 
+// An orbit with an index of 2.6e14: once around an integration is anywhere.
+TEST(Verdict, ReturnsSayNothingWhereErrorsGrowToTheSizeOfTheOrbit) {
+  const Certificate certificate = {.closure = 6e-14, .single_shot = 2.3e6, .reach = 1.7, .steepness = 1.0};
+  EXPECT_NE(judge(certificate, {34.8, 2e-15, 1.0, 2.6e14}).verdict, Verdict::return_contradicts);
+  EXPECT_EQ(judge(certificate, {34.8, 2e-15, 1.0, 1e6}).verdict, Verdict::return_contradicts);
+}
+
 /// Of an orbit that all is well with, at the level `full`.
 Certificate whole() {
   Certificate certificate;

@@ -47,11 +47,76 @@ TEST(EquilibriumCurve, ThroughThePitchforkTurnsOnTheOtherSide) {
   EXPECT_EQ(curve.hopf.size(), 2U);  // one on each side
 }
 
+std::vector<EquilibriumPoint> branch_points(const EquilibriumCurve& curve) {
+  std::vector<EquilibriumPoint> found;
+  for (const EquilibriumPoint& point : curve.points)
+    if (point.kind == EquilibriumKind::branch_point) found.push_back(point);
+  return found;
+}
+
+TEST(EquilibriumCurve, KnowsWhereTheOtherCurveOfAPitchforkPasses) {
+  const EquilibriumCurve origin = follow_equilibrium(test::LorenzEquations(0.5), std::vector<double>(3, 0.0),
+                                                     {.parameter_from = 0.0, .parameter_to = 25.0});
+  EXPECT_TRUE(origin.folds.empty());
+  const double x = std::sqrt(8.0 / 3.0 * 19.0);
+  const EquilibriumCurve beside = follow_equilibrium(test::LorenzEquations(20.0), std::vector<double>{x, x, 19.0},
+                                                     {.parameter_from = 0.0, .parameter_to = 25.0});
+  for (const EquilibriumCurve* curve : {&origin, &beside}) {
+    const std::vector<EquilibriumPoint> found = branch_points(*curve);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_NEAR(found[0].at.parameter, 1.0, 1e-9);
+    for (const double z : found[0].at.state) EXPECT_NEAR(z, 0.0, 1e-5);
+  }
+}
+
+/// x' = m x - x^3 and y' = m y - y^3: two eigenvalues pass zero at once, where the determinant keeps its sign.
+class TwoPitchforks {
+ public:
+  static constexpr int dimension = 2;
+  static constexpr int quantities = 0;
+  static systems::ModelInfo info() {
+    return test::described("two_pitchforks", "two pitchforks at once", {"x", "y"}, {"m"}, 0.0);
+  }
+  static systems::Structure structure(const systems::Bound&) {
+    systems::Structure structure;
+    structure.dimension = dimension;
+    structure.dissipative = true;
+    return structure;
+  }
+  template <class P>
+  class With {
+   public:
+    explicit With(const systems::BoundTo<P>& bound) : _m(bound["m"]) {}
+    template <class S>
+    void field(const S* z, S* f) const {
+      f[0] = z[0] * _m - z[0] * z[0] * z[0];
+      f[1] = z[1] * _m - z[1] * z[1] * z[1];
+    }
+
+   private:
+    P _m;
+  };
+};
+
+TEST(EquilibriumCurve, KnowsABranchPointAtWhichTwoEigenvaluesPassZero) {
+  for (const double start : {-0.37, -0.43, -0.05}) {
+    systems::Bound bound = systems::bound_to(TwoPitchforks::info(), {{"m", start}}, {});
+    bound.scalars.free = {"m"};
+    const EquilibriumCurve curve =
+        follow_equilibrium(*systems::Registered<TwoPitchforks>::make(bound), std::vector<double>(2, 0.0),
+                           {.parameter_from = -1.0, .parameter_to = 1.0});
+    const std::vector<EquilibriumPoint> found = branch_points(curve);
+    ASSERT_EQ(found.size(), 1U) << start;
+    EXPECT_NEAR(found[0].at.parameter, 0.0, 1e-12);
+  }
+}
+
 TEST(EquilibriumCurve, OfVanDerPolHasItsHopfPointAtZero) {
   const test::VanDerPol system(-0.5, {{"mu"}, {}});
   const EquilibriumCurve curve =
       follow_equilibrium(system, std::vector<double>{0.0, 0.0}, {.parameter_from = -1.0, .parameter_to = 1.0});
   ASSERT_EQ(curve.hopf.size(), 1U);
+  EXPECT_TRUE(branch_points(curve).empty());
   EXPECT_NEAR(curve.hopf[0].at.parameter, 0.0, 1e-12);
   EXPECT_NEAR(curve.hopf[0].period, 2.0 * std::numbers::pi, 1e-12);
 }
@@ -94,8 +159,8 @@ TEST(EquilibriumCurve, TwoHopfPointsWithinOneStepAreFound) {
   for (const double start : {-0.37, -0.43, -0.5, -0.05})
     for (const auto& [m1, m2] : {std::pair(3.5e-5, 0.04997), std::pair(0.0, 0.0), std::pair(0.01, 0.01 + 1e-7)}) {
       SCOPED_TRACE(fmt::format("{} {}", start, m2));
-      systems::Bound bound = systems::bound_to(
-          TwoOscillators::info(), {{"m", start}, {"m1", m1}, {"m2", m2}, {"w1", 1.0}, {"w2", 1.7}}, {});
+      systems::Bound bound = systems::bound_to(TwoOscillators::info(),
+                                               {{"m", start}, {"m1", m1}, {"m2", m2}, {"w1", 1.0}, {"w2", 1.7}}, {});
       bound.scalars.free = {"m"};
       const auto system = systems::Registered<TwoOscillators>::make(bound);
       const EquilibriumCurve curve =

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "orbweaver/systems/registry.hpp"
+#include "spectrum/point_systems.hpp"
 #include "support/magnetic_well.hpp"
 
 namespace orbweaver::starts::natural_scales_test {
@@ -120,6 +121,39 @@ TEST(NaturalScales, OfADrivenSystemWithoutRestAreThoseOfTheGrid) {
   EXPECT_TRUE(turned(1.0).are_one());
   EXPECT_EQ(turned(0x1p20).time, 0x1p-10);
   EXPECT_THAT(turned(0x1p20).coordinates, ElementsAre(1.0, 1.0, 0x1p10, 0x1p10, 1.0));
+}
+
+/// A rod on a turntable of the rate w, pulled to a line that rests: in the table's frame the torque turns once a half
+/// turn of the drive, and its mean over the drive is none.
+class TurningTorque final : public test::PointSystem {
+ public:
+  TurningTorque(double torque, double rate) : PointSystem(driven()), _torque(torque), _rate(rate) {}
+  [[nodiscard]] Eigen::VectorXd field_at(const Eigen::VectorXd& z) const override {
+    return Eigen::Vector3d(z(1), -_torque * std::sin(2.0 * (z(0) - z(2))), _rate);
+  }
+  [[nodiscard]] Eigen::MatrixXd jacobian_at(const Eigen::VectorXd& z) const override {
+    const double pull = 2.0 * _torque * std::cos(2.0 * (z(0) - z(2)));
+    return Eigen::Matrix3d{{0.0, 1.0, 0.0}, {-pull, 0.0, pull}, {0.0, 0.0, 0.0}};
+  }
+
+ private:
+  static systems::Structure driven() {
+    systems::Structure structure = test::structure_of(3);
+    structure.driven = true;
+    structure.angles = {0, 2};
+    return structure;
+  }
+  double _torque;
+  double _rate;
+};
+
+TEST(NaturalScales, OfAPullThatTurnsWithTheDriveAreThoseOfThePull) {
+  const systems::Scales slow = natural_scales(TurningTorque(0.5, 1.0), {{0.0}});
+  EXPECT_EQ(slow.time, 1.0);
+  EXPECT_THAT(slow.coordinates, ElementsAre(1.0, 1.0, 1.0));
+  const systems::Scales fast = natural_scales(TurningTorque(0.5 * 0x1p20, 0x1p10), {{0.0}});
+  EXPECT_EQ(fast.time, 0x1p-10);
+  EXPECT_THAT(fast.coordinates, ElementsAre(1.0, 0x1p10, 1.0));
 }
 
 // A term that departs from its linear part late, along the momenta only.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "orbweaver/survey/verify/verify.hpp"
@@ -38,6 +39,29 @@ std::vector<std::size_t> rows_of(const archive::Table& table, const std::string&
   return rows;
 }
 
+std::vector<std::string> unknown_branches(const test::Atlas& atlas) {
+  std::vector<std::string> found;
+  for (std::size_t row = 0; row < atlas.findings().rows(); ++row)
+    if (atlas.findings().texts("kind")[row] == "unknown-branch") {
+      found.push_back(atlas.findings().texts("text")[row]);
+      EXPECT_EQ(atlas.findings().texts("severity")[row], "undecided");
+    }
+  return found;
+}
+
+// The two equilibria that leave the origin at rho = 1 have the only Hopf points.
+TEST(Equilibria, WhatBranchesOffWithoutACurveOfItsOwnIsSaid) {
+  const core::Communicator comm;
+  const scene::Scene scene = scene_of(
+      "lorenz.yaml", {"limits.steps=3", "limits.parameter=[0.5, 30]", "starts.fixed_points.grid=[[0], [0], [0]]"});
+  const survey::Summary summary = test::run(comm, scene, "origin");
+  EXPECT_EQ(objections_to(comm, summary.atlas), "");
+  if (!comm.is_root()) return;
+  const test::Atlas atlas(summary.atlas);
+  ASSERT_EQ(rows_of(atlas.equilibria(), "branch-point").size(), 1U);
+  EXPECT_THAT(unknown_branches(atlas), testing::ElementsAre(testing::HasSubstr("Equilibrium 1 at rho = 1: other")));
+}
+
 TEST(Equilibria, OfLorenzLieOnTwoCurves) {
   // x = y = +-sqrt(beta (rho - 1)), whose rho turns at 1, with Hopf points at 470/19, of period
   // 2 pi/sqrt(2 sigma (sigma + 1) beta/(sigma - beta - 1)); and the origin, stable below rho = 1.
@@ -61,6 +85,8 @@ TEST(Equilibria, OfLorenzLieOnTwoCurves) {
   }
   const std::vector<std::size_t> folds = rows_of(table, "fold-parameter");
   ASSERT_EQ(folds.size(), 1U);
+  EXPECT_EQ(rows_of(table, "branch-point").size(), 2U) << "of either curve, where they meet";
+  EXPECT_THAT(unknown_branches(atlas), testing::IsEmpty());
   EXPECT_NEAR(table.reals("parameter")[folds[0]], 1.0, 1e-10);
   EXPECT_EQ(rows_of(table, "return").size(), 1U);
   std::set<std::int64_t> numbers;

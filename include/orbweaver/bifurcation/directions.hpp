@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include <Eigen/Dense>
@@ -60,6 +61,13 @@ struct DirectionOptions {
   corrector::Options corrector{};  ///< of a search
 };
 
+/// The directions in which families leave a crossing or an equilibrium.
+struct Directions {
+  std::vector<Direction> found;
+  int not_isolated = 0;  ///< orbits found of which neighbours along the kernel satisfy the loss too: not among `found`
+  std::string doubt{};   ///< why there may be others; empty: these are all
+};
+
 /// Rounding decides in which directions families leave: terms of high order that alone do are too small.
 class UndecidedError : public core::NumericalError {
  public:
@@ -75,21 +83,15 @@ class UndecidedError : public core::NumericalError {
 /// oscillation. Throws MisuseError for sizes that disagree or vectors that are not orthonormal, NumericalError where
 /// the symmetries do not map the kernel to itself isometrically, or where directions are not isolated (a continuum),
 /// UndecidedError where they are, but not to double precision.
-[[nodiscard]] std::vector<Direction> directions(const systems::System& system, const loop::Loop& base,
-                                                const loop::Isotropy& isotropy,
-                                                const std::vector<loop::Tangent>& kernel,
-                                                const DirectionOptions& options = {});
-
-struct EquilibriumDirections {
-  std::vector<Direction> found;
-  int not_isolated = 0;  ///< orbits found of which neighbours along the kernel satisfy the loss too: not among `found`
-};
+[[nodiscard]] Directions directions(const systems::System& system, const loop::Loop& base,
+                                    const loop::Isotropy& isotropy, const std::vector<loop::Tangent>& kernel,
+                                    const DirectionOptions& options = {});
 
 /// The same at an equilibrium where several oscillations Re(v e^{iks}) share one period, exactly or nearly: those that
 /// symmetries single out, which are exact, then those found by a search, by their periods, the longest first. In nearly
 /// shared periods they are those of orbits of the amplitude searched at.
-[[nodiscard]] EquilibriumDirections equilibrium_directions(const systems::System& system, std::span<const double> point,
-                                                           const starts::SharedPeriod& shared, int cutoff,
-                                                           const DirectionOptions& options = {});
+[[nodiscard]] Directions equilibrium_directions(const systems::System& system, std::span<const double> point,
+                                                const starts::SharedPeriod& shared, int cutoff,
+                                                const DirectionOptions& options = {});
 
 }  // namespace orbweaver::bifurcation

@@ -40,7 +40,7 @@ struct OscillationKernel {
   double period = 0.0;
   int dimension = 0;  ///< complex: oscillations
   bool is_definite = false;
-  int not_isolated = 0;  ///< as EquilibriumDirections
+  int not_isolated = 0;  ///< as Directions
   std::vector<KernelFamily> families;
   double detuning = 0.0;  ///< starts::SharedPeriod::detuning
 };

@@ -43,10 +43,10 @@ struct Certificate {
   double reach = 0.0;                ///< largest |z(t_m)|
   /// How many times farther than at its start a displacement is once around, where the orbit returns so far off that it
   /// matters: one along dH/dz, or, where nothing is conserved, that of the coordinates which grows most; where that
-  /// does not explain the return, from whichever of the instants t_m to the end.
+  /// and the known growth do not explain the return, from whichever of the instants t_m to the end.
   double displaced_growth = unknown;
-  double steepness = 0.0;            ///< largest |dH/dz(z(t_m))|; 0 for a system that conserves no energy
-  double energy_size = 0.0;          ///< largest |H(z(t_m))|, of which its rounding is a part
+  double steepness = 0.0;    ///< largest |dH/dz(z(t_m))|; 0 for a system that conserves no energy
+  double energy_size = 0.0;  ///< largest |H(z(t_m))|, of which its rounding is a part
   /// Largest bound on what rounding makes of H(z(t_m)), where terms that cancel too (ad/rounded.hpp). 0: not computed,
   /// as where the drift is within the rounding of its sum, or for a system that does not give its formulas.
   double energy_rounding = 0.0;
@@ -67,10 +67,11 @@ class Certifier {
   Certifier(Certifier&&) noexcept;
 
   /// Integrates the loop's own states and compares. Deterministic; knows no residual, loss or Hessian. A system that
-  /// does not give its formulas has no Taylor series.
+  /// does not give its formulas has no Taylor series. `known_growth`: the largest modulus of its multipliers or indices,
+  /// or NaN; where it explains how far off the orbit returns, no other explanation is looked for.
   /// Throws core::MisuseError if the loop is not valid or not of the system's dimension; core::NumericalError if an
   /// integration of a segment fails, saying in which and at what time.
-  [[nodiscard]] Certificate operator()(const loop::Loop& loop);
+  [[nodiscard]] Certificate operator()(const loop::Loop& loop, double known_growth = unknown);
 
  private:
   class Parts;

@@ -75,6 +75,11 @@ inline constexpr double least_explained = 1e-2;
 /// itself at most, and a tangent or multipliers likewise. Measured around (0, pi) of the double pendulum: T is off by
 /// an eightieth of the part.
 inline constexpr double largest_unknown = 1e-2;
+
+/// More unknowns than this are not left to a method with an assembled Hessian, which takes 128 MiB there, where
+/// Newton's fails.
+inline constexpr int largest_dense = 4000;
+
 /// The rms |dz/dt| at which rounding is just that part.
 [[nodiscard]] double least_known_speed(double size, double field_jacobian);
 

@@ -22,10 +22,11 @@ struct Equilibrium {
 enum class EquilibriumKind {
   regular,
   hopf,
-  fold,       ///< the parameter turns
-  came_back,  ///< the parameter has the value of the curve's start again
+  fold,          ///< the parameter turns
+  came_back,     ///< the parameter has the value of the curve's start again
+  branch_point,  ///< another curve passes through it
 };
-[[nodiscard]] constexpr EquilibriumKind last_of(EquilibriumKind) { return EquilibriumKind::came_back; }
+[[nodiscard]] constexpr EquilibriumKind last_of(EquilibriumKind) { return EquilibriumKind::branch_point; }
 
 /// An equilibrium of a curve.
 struct EquilibriumPoint {
@@ -65,7 +66,9 @@ struct EquilibriumCurveOptions {
 /// The curve of equilibria through the one that Newton's method reaches from `start` at the system's own parameter
 /// value, to both sides: Keller's pseudo-arclength continuation (doi:10.1016/B978-0-12-587350-4.50017-3). Hopf points
 /// are zeros of the product of the sums of two eigenvalues (the determinant of the bialternate product: Kuznetsov,
-/// Elements of Applied Bifurcation Theory, section 10.2.2) where the pair that cancels is imaginary. Throws MisuseError
+/// Elements of Applied Bifurcation Theory, section 10.2.2) where the pair that cancels is imaginary. Branch points are
+/// zeros of the determinant of the equation bordered by the curve's direction (Keller, the same), or, where two real
+/// eigenvalues pass zero together, of the lesser one; the other curves are not followed. Throws MisuseError
 /// for a system without a parameter that moves, NumericalError where no equilibrium is near the start.
 [[nodiscard]] EquilibriumCurve follow_equilibrium(const systems::System& system, std::span<const double> start,
                                                   const EquilibriumCurveOptions& options = {});

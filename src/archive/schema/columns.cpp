@@ -242,7 +242,7 @@ const ColumnDefinitions<EquilibriumRecord>& equilibrium_columns() {
        &EquilibriumRecord::step,
        {"", "0 at the scene's parameters, up to one side of its curve and down to the other"}},
       {"arclength", &EquilibriumRecord::arclength, {"", "from step 0, in the survey's scales"}},
-      {"kind", &EquilibriumRecord::kind, {"", "equilibrium, hopf, fold-parameter or return"}},
+      {"kind", &EquilibriumRecord::kind, {"", "equilibrium, hopf, fold-parameter, return or branch-point"}},
       {"parameter",
        &EquilibriumRecord::parameter,
        {"", "value of the parameter that moves along the families; NaN if none does"}},

@@ -59,7 +59,8 @@ class CertifyExecutor final : public queue::Executor {
     for (std::int64_t at = work.first; at < work.end; ++at) {
       const auto row = static_cast<std::size_t>(at);
       const loop::Loop loop = _atlas->loop(row);
-      done.rows.push_back(record_of(certifier(loop), stored_evidence(*_atlas, row, loop)));
+      const certificate::Evidence evidence = stored_evidence(*_atlas, row, loop);
+      done.rows.push_back(record_of(certifier(loop, evidence.growth), evidence));
     }
     queue::TaskOutcome outcome;
     outcome.payload = to_payload(done);

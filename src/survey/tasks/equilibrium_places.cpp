@@ -126,7 +126,7 @@ std::vector<EquilibriumPlace> places_on(const systems::System& system, const sta
     LinearModes modes = starts::linear_modes(*here, point.at.state);
     if (point.kind == EquilibriumKind::hopf)
       count_as_oscillation(modes, point.period, static_cast<Eigen::Index>(point.at.state.size()));
-    if (point.kind == EquilibriumKind::fold) count_as_zero(modes);
+    if (point.kind == EquilibriumKind::fold || point.kind == EquilibriumKind::branch_point) count_as_zero(modes);
     EquilibriumPlace& place = places.emplace_back(equilibrium_place(*here, point.at.state, std::move(modes)));
     place.step = static_cast<int>(places.size() - 1) - static_cast<int>(curve.start);
     place.kind = point.kind;

@@ -299,8 +299,13 @@ class Location {
     int number = 0;
     bifurcation::DirectionOptions options;
     options.family = kernel.family;
-    for (const bifurcation::Direction& direction :
-         bifurcation::directions(*_system, kernel.base, isotropy, kernel.vectors, options)) {
+    const bifurcation::Directions directions =
+        bifurcation::directions(*_system, kernel.base, isotropy, kernel.vectors, options);
+    if (!directions.doubt.empty()) {
+      _outcome.undecided = true;
+      _outcome.remark = directions.doubt;
+    }
+    for (const bifurcation::Direction& direction : directions.found) {
       LeavingRecord leaving;
       leaving.key = fmt::format("{}/{}", _work.key, number++);
       leaving.isotropy = direction.isotropy;

@@ -90,8 +90,9 @@ archive::OrbitRecord orbit_row(const systems::System& system, const std::string&
   set_stability(system.structure(), stability, row);
   if (certifier != nullptr) {
     const bool is_complex = stability && row.stability.size() != stability->full.size();
-    static_cast<archive::CertificateRecord&>(row) = record_of(
-        (*certifier)(stored), evidence_of(stored, row.loss_rms, row.stability, is_complex, row.stability_error));
+    const certificate::Evidence evidence =
+        evidence_of(stored, row.loss_rms, row.stability, is_complex, row.stability_error);
+    static_cast<archive::CertificateRecord&>(row) = record_of((*certifier)(stored, evidence.growth), evidence);
   }
   return row;
 }

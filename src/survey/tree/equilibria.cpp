@@ -27,6 +27,7 @@ const char* name_of(EquilibriumKind kind) {
     case EquilibriumKind::hopf: return "hopf";
     case EquilibriumKind::fold: return "fold-parameter";
     case EquilibriumKind::came_back: return "return";
+    case EquilibriumKind::branch_point: return "branch-point";
     case EquilibriumKind::regular: break;
   }
   return "equilibrium";

@@ -150,9 +150,9 @@ class Row {
     if (kind == "hopf")
       claims.expect(any([](const Complex& value) { return value.real() == 0.0 && value.imag() > 0.0; }), "kind",
                     "is hopf, where no eigenvalues pass the imaginary axis");
-    else if (kind == "fold-parameter")
+    else if (kind == "fold-parameter" || kind == "branch-point")
       claims.expect(any([](const Complex& value) { return value == Complex(); }), "kind",
-                    "is a fold, where the Jacobian is regular");
+                    fmt::format("is {}, where the Jacobian is regular", kind));
     else if (kind != "return")
       claims.expect(kind == "equilibrium", "kind", fmt::format("is '{}', which is not known here", kind));
   }

@@ -81,7 +81,7 @@ class OrbitCheck {
   void run() {
     _size = loop::rms_size(_loop);
     equation();
-    const certificate::Certificate found = _certifier(_loop);
+    const certificate::Certificate found = _certifier(_loop, stored_evidence(_atlas, _row, _loop).growth);
     constants(found);
     shape();
     std::optional<spectrum::Stability> stability;

@@ -4,6 +4,7 @@
 #include "witness/checks/branch_counts.hpp"
 #include "witness/checks/certificates.hpp"
 #include "witness/checks/ends.hpp"
+#include "witness/checks/equilibrium_branches.hpp"
 #include "witness/checks/equilibrium_families.hpp"
 #include "witness/checks/failed_tasks.hpp"
 #include "witness/checks/index_changes.hpp"
@@ -25,8 +26,8 @@ std::vector<std::unique_ptr<Check>> list() {
 }  // namespace
 
 std::vector<std::unique_ptr<Check>> all_checks() {
-  return list<FailedTasks, StoredTwice, SharedPoints, BranchCounts, EquilibriumFamilies, BaseBirths, Ends, MirrorImages,
-              IndexChanges, Certificates>();
+  return list<FailedTasks, StoredTwice, SharedPoints, BranchCounts, EquilibriumBranches, EquilibriumFamilies,
+              BaseBirths, Ends, MirrorImages, IndexChanges, Certificates>();
 }
 
 }  // namespace orbweaver::survey

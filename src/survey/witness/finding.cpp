@@ -19,6 +19,9 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
     case FindingKind::shared_point:
       return fmt::format("passes through the {} of {}, where neither says so", names.crossing, names.other_family);
     case FindingKind::missing_directions:
+      if (f.severity == Severity::undecided && f.number > 0 && f.number >= f.other_number)
+        return fmt::format("{}: directions found: {}; whether there are others is not decided", names.crossing,
+                           f.number);
       return fmt::format("{}: the kernel has {} directions, {} were found", names.crossing, f.other_number, f.number);
     case FindingKind::unfollowed_direction:
       return fmt::format("{}: along direction {} nothing has left or arrived", names.crossing, f.number);
@@ -67,6 +70,11 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
     case FindingKind::unknown_family:
       return f.severity == Severity::cut ? "ends on a family of more symmetry beyond the scene's limits"
                                          : "ends on a family of more symmetry that this survey does not have";
+    case FindingKind::unknown_branch:
+      return fmt::format(
+          "{}: other equilibria branch off, which no curve of this survey has: their families are found "
+          "where the scene begins with a parameter at which they exist, and its grid leads to them",
+          f.detail);
     case FindingKind::unknown_equilibrium: return "ends at an equilibrium that this survey does not have";
     case FindingKind::limited_end: return fmt::format("ends by the scene's limits: {}", f.detail);
     case FindingKind::mirror_crossings:
@@ -132,6 +140,7 @@ std::string_view name_of(FindingKind kind) {
     case FindingKind::higher_order: return "higher-order";
     case FindingKind::unlisted_crossing: return "unlisted-crossing";
     case FindingKind::unknown_family: return "unknown-family";
+    case FindingKind::unknown_branch: return "unknown-branch";
     case FindingKind::unknown_equilibrium: return "unknown-equilibrium";
     case FindingKind::limited_end: return "limited-end";
     case FindingKind::mirror_crossings: return "mirror-crossings";

@@ -132,7 +132,7 @@ struct EquilibriumRecord {
   int equilibrium = 0;
   int step = 0;            ///< 0 where the scene leads to it; points of the curve to its other side count backwards
   double arclength = 0.0;  ///< by chords, in the survey's scales
-  std::string kind;        ///< "equilibrium", "hopf", "fold-parameter", "return"
+  std::string kind;        ///< "equilibrium", "hopf", "fold-parameter", "return", "branch-point"
   double parameter = not_computed;
   std::vector<double> state;
   double energy = not_computed;

@@ -26,7 +26,7 @@ enum class FindingKind {
   duplicate_curve,       ///< two families hold the same orbits: number of other_number that were compared
   retraced_curve,        ///< a family runs over its own orbits, or their images, again: as duplicate_curve
   shared_point,          ///< a family passes through the crossing, of which nothing says so
-  missing_directions,    ///< the kernel has other_number directions, number were found
+  missing_directions,    ///< the kernel has other_number directions, number were found; or there may be others
   unfollowed_direction,  ///< a direction that nobody left or arrived along; number: which
   beyond_depth,          ///< nothing was looked for: survey.depth
   beyond_period,         ///< nothing was looked for: limits.period
@@ -42,6 +42,7 @@ enum class FindingKind {
   higher_order,          ///< ends on the other family gone around number times, more than survey.subharmonics
   unlisted_crossing,     ///< ends on the other family gone around number times, which has no crossing there
   unknown_family,        ///< ends on a family of more symmetry that the survey does not have
+  unknown_branch,        ///< another curve of equilibria, in `detail`, that the survey does not have
   unknown_equilibrium,   ///< ends at an equilibrium that the survey does not have
   limited_end,           ///< a limit of the scene
   mirror_crossings,      ///< its mirror image has other_number crossings, it number

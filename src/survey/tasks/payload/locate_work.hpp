@@ -83,7 +83,7 @@ struct LocateOutcome {
   int j = 0;
   int fundamental_order = 1;
   std::vector<LeavingRecord> leaving;
-  bool undecided = false;  ///< rounding decides in which directions families leave
+  bool undecided = false;  ///< rounding decides in which directions families leave, or in which others
   std::string remark;
   int limited_by = 0;  ///< Limit: with wider ones more would have been looked for
 

@@ -74,7 +74,7 @@ class BranchCounts final : public Check {
     const bool is_open = crossing.undecided || expected == least;
     if (expected > 0 && crossing.directions != expected)
       add(FindingKind::missing_directions, is_open ? Severity::undecided : Severity::contradiction);
-    else if (crossing.directions == 0)
+    else if (crossing.directions == 0 || crossing.undecided)
       add(FindingKind::missing_directions, Severity::undecided);
     finding.deviation = archive::not_computed;
     for (std::size_t n = 0; n < crossing.sides.size(); ++n) {
