@@ -48,7 +48,7 @@ constexpr int most_halvings = 6;
 /// A branch point is located to this, relative, and then by a chord, which is good to the square of it. There rounding
 /// is 1e5 times as large across the curve.
 constexpr double near_singular = 1e-5;
-constexpr double converged_beside = 1e-10;
+constexpr double converged_beside = 1e-8;
 /// Steps after which a curve may have come back.
 constexpr std::size_t least_round = 8;
 /// A determinant of rows of at most length 1 that is smaller is rounding's.
@@ -431,23 +431,41 @@ int positive_real(const Eigen::VectorXcd& values) {
       values.begin(), values.end(), [](const Complex& value) { return value.imag() == 0.0 && value.real() > 0.0; }));
 }
 
-/// Where another curve passes through, between two nodes; `folds`: the parameter turns there too.
-std::optional<VectorXd> branch_point_between(const Curve& curve, const Node& a, const Node& b, bool folds) {
+/// The sign of the determinant of the equation bordered by the curve's direction; 0 where rounding has it.
+int sign_of_determinant(const Curve& curve, const Node& node) {
+  const MatrixXd matrix = curve.bordered(node.x, node.direction);
+  const double value =
+      Eigen::PartialPivLU<MatrixXd>(matrix.rowwise().norm().cwiseInverse().asDiagonal() * matrix).determinant();
+  return std::abs(value) > dependent ? (value > 0.0 ? 1 : -1) : 0;
+}
+
+/// Where that determinant passes zero between two nodes.
+std::optional<VectorXd> branch_point_between(const Curve& curve, const Node& a, const Node& b) {
   const VectorXd lengths =
       curve.bordered(a.x, a.direction).rowwise().norm().cwiseMax(curve.bordered(b.x, a.direction).rowwise().norm());
-  const auto determinant = [&](const VectorXd& at) {
+  return zero_beside_curve(curve, a, b, [&](const VectorXd& at) {
     const MatrixXd scaled = lengths.cwiseInverse().asDiagonal() * curve.bordered(at, a.direction);
     return Eigen::PartialPivLU<MatrixXd>(scaled).determinant();
-  };
-  const double at_a = determinant(a.x);
-  const double at_b = determinant(b.x);
-  if (std::min(std::abs(at_a), std::abs(at_b)) > dependent && at_a * at_b < 0.0)
-    return zero_beside_curve(curve, a, b, determinant);
+  });
+}
+
+/// Where an even number of real eigenvalues pass zero together, and the determinant keeps its sign.
+std::optional<VectorXd> double_branch_point_between(const Curve& curve, const Node& a, const Node& b) {
   const int change = positive_real(curve.eigenvalues(b.x)) - positive_real(curve.eigenvalues(a.x));
-  if (folds || change == 0 || change % 2 != 0) return std::nullopt;
+  if (change == 0 || change % 2 != 0) return std::nullopt;
   const auto least = [&](const VectorXd& at) { return curve.least_real_eigenvalue(at); };
+  for (const Node* node : {&a, &b})
+    if (std::abs(least(node->x)) <= at_end * curve.eigenvalues(node->x).cwiseAbs().maxCoeff()) return node->x;
   if (!(least(a.x) * least(b.x) < 0.0)) return std::nullopt;  // two have met and left the axis, or come to it
   return zero_beside_curve(curve, a, b, least);
+}
+
+/// Where other curves pass through, between node n - 1 and node n, which may be such a place itself.
+std::optional<VectorXd> branch_point_before(const Curve& curve, const std::vector<Node>& nodes,
+                                            const std::vector<int>& signs, std::size_t n, bool folds) {
+  if (signs[n - 1] * signs[n] < 0) return branch_point_between(curve, nodes[n - 1], nodes[n]);
+  if (signs[n] == 0 && n + 1 < nodes.size() && signs[n - 1] * signs[n + 1] < 0) return nodes[n].x;
+  return folds ? std::nullopt : double_branch_point_between(curve, nodes[n - 1], nodes[n]);
 }
 
 /// Hopf points at an end of the curve, where rounding has the eigenvalue on either side.
@@ -511,12 +529,14 @@ EquilibriumCurve follow_equilibrium(const systems::System& system, std::span<con
     return sum;
   };
   out.points.push_back({curve.equilibrium(nodes.front().x)});
+  std::vector<int> signs;
+  for (const Node& node : nodes) signs.push_back(sign_of_determinant(curve, node));
   for (std::size_t n = 1; n < nodes.size(); ++n) {
     const Node& a = nodes[n - 1];
     const Node& b = nodes[n];
     std::vector<Between> between;
     const bool folds = a.direction(d) * b.direction(d) < 0.0;
-    const auto branch = branch_point_between(curve, a, b, folds);
+    const auto branch = branch_point_before(curve, nodes, signs, n, folds);
     if (branch) between.push_back({*branch, EquilibriumKind::branch_point});
     if (folds) {
       const auto slope = [&](const VectorXd& at) { return curve.direction(at, a.direction)(d); };

@@ -55,13 +55,17 @@ std::vector<EquilibriumPoint> branch_points(const EquilibriumCurve& curve) {
 }
 
 TEST(EquilibriumCurve, KnowsWhereTheOtherCurveOfAPitchforkPasses) {
-  const EquilibriumCurve origin = follow_equilibrium(test::LorenzEquations(0.5), std::vector<double>(3, 0.0),
-                                                     {.parameter_from = 0.0, .parameter_to = 25.0});
-  EXPECT_TRUE(origin.folds.empty());
+  const auto origin = [](double rho) {  // from 0.5 on a step ends at the branch point itself
+    return follow_equilibrium(test::LorenzEquations(rho), std::vector<double>(3, 0.0),
+                              {.parameter_from = 0.0, .parameter_to = 25.0});
+  };
+  const EquilibriumCurve through = origin(0.5);
+  const EquilibriumCurve past = origin(0.53);
+  EXPECT_TRUE(through.folds.empty());
   const double x = std::sqrt(8.0 / 3.0 * 19.0);
   const EquilibriumCurve beside = follow_equilibrium(test::LorenzEquations(20.0), std::vector<double>{x, x, 19.0},
                                                      {.parameter_from = 0.0, .parameter_to = 25.0});
-  for (const EquilibriumCurve* curve : {&origin, &beside}) {
+  for (const EquilibriumCurve* curve : {&through, &past, &beside}) {
     const std::vector<EquilibriumPoint> found = branch_points(*curve);
     ASSERT_EQ(found.size(), 1U);
     EXPECT_NEAR(found[0].at.parameter, 1.0, 1e-9);
@@ -99,7 +103,7 @@ class TwoPitchforks {
 };
 
 TEST(EquilibriumCurve, KnowsABranchPointAtWhichTwoEigenvaluesPassZero) {
-  for (const double start : {-0.37, -0.43, -0.05}) {
+  for (const double start : {-0.37, -0.43, -0.5}) {
     systems::Bound bound = systems::bound_to(TwoPitchforks::info(), {{"m", start}}, {});
     bound.scalars.free = {"m"};
     const EquilibriumCurve curve =
