@@ -28,7 +28,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 /// Of the largest entry or eigenvalue of a balanced matrix: what is smaller is rounding, or the square root of it at a
 /// Jordan block, and couples or scales nothing.
-constexpr double negligible_entry = 1e-10;
+constexpr double rounding_entry = 1e-10;
 constexpr double negligible_eigenvalue = 1e-7;
 /// Sweeps of the balancing: it converges within some ten, unless nothing couples one way, where no scale is best.
 constexpr int most_sweeps = 200;
@@ -104,7 +104,7 @@ class LocalScales {
   }
 
   static MatrixXd without_rounding(MatrixXd matrix) {
-    const double least = negligible_entry * matrix.cwiseAbs().maxCoeff();
+    const double least = rounding_entry * matrix.cwiseAbs().maxCoeff();
     return (matrix.cwiseAbs().array() < least).select(0.0, matrix);
   }
 

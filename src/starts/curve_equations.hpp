@@ -1,0 +1,115 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "orbweaver/numerics/eigenvalues.hpp"
+#include "orbweaver/numerics/locate.hpp"
+#include "orbweaver/starts/equilibrium_curve.hpp"
+
+namespace orbweaver::starts {
+
+/// A Newton step below this, in parts of 1 + |z|, is rounding's.
+inline constexpr double converged = 1e-13;
+/// Zeros are located to this, in parts of a step.
+inline constexpr double located_to = 1e-12;
+/// Of an eigenvalue: a real part of the curve's first or last equilibrium that may be rounding's.
+inline constexpr double at_end = 1e-12;
+/// A branch point is located to this, relative, and then by a chord, which is good to the square of it. There rounding
+/// is 1e5 times as large across the curve.
+inline constexpr double near_singular = 1e-5;
+inline constexpr double converged_beside = 1e-8;
+
+/// A place on the curve: the state, then the parameter.
+struct CurveNode {
+  Eigen::VectorXd x;
+  Eigen::VectorXd direction;
+};
+
+/// What holds at the places of a curve of equilibria in a parameter: the equation, its directions and eigenvalues.
+class CurveEquations {
+ public:
+  CurveEquations(const systems::System& system, const EquilibriumCurveOptions& options);
+
+  /// On the hyperplane through `guess` across `row`.
+  [[nodiscard]] std::optional<Eigen::VectorXd> corrected(Eigen::VectorXd guess, const Eigen::VectorXd& row, int& steps,
+                                                         double to = converged) const;
+  /// The unit null vector of (J, df/dp), on the side of `near`.
+  [[nodiscard]] Eigen::VectorXd direction(const Eigen::VectorXd& x, const Eigen::VectorXd& near) const;
+  /// Derivatives of the equation by state and parameter, then the curve's direction.
+  [[nodiscard]] Eigen::MatrixXd bordered(const Eigen::VectorXd& x, const Eigen::VectorXd& near) const;
+
+  [[nodiscard]] Eigen::VectorXcd eigenvalues(const Eigen::VectorXd& x) const { return eigensystem(x, false).values; }
+  /// Throws NumericalError where the QR iteration does not converge.
+  [[nodiscard]] numerics::Eigensystem eigensystem(const Eigen::VectorXd& x, bool with_vectors) const;
+
+  [[nodiscard]] Equilibrium equilibrium(const Eigen::VectorXd& x) const { return {{x.data(), x.data() + _d}, x(_d)}; }
+  [[nodiscard]] bool is_within(double parameter) const {
+    return parameter >= _options.parameter_from && parameter <= _options.parameter_to;
+  }
+  [[nodiscard]] const EquilibriumCurveOptions& options() const { return _options; }
+  [[nodiscard]] const systems::System& system() const { return _system; }
+  [[nodiscard]] Eigen::Index dimension() const { return _d; }
+  [[nodiscard]] const std::string& name() const { return _name; }
+  [[nodiscard]] double unit() const { return _unit; }
+
+ private:
+  struct Linear {
+    Eigen::VectorXd f;
+    Eigen::MatrixXd jacobian;  // d x d
+    Eigen::VectorXd by_parameter;
+  };
+  [[nodiscard]] Linear at(const Eigen::VectorXd& x) const;
+
+  const systems::System& _system;
+  const std::string& _name;
+  double _unit;
+  const EquilibriumCurveOptions& _options;
+  Eigen::Index _d;
+};
+
+/// The zero of a function of places between two nodes: the corrected place on the chord, share of the way.
+template <class F>
+std::optional<Eigen::VectorXd> zero_between(const CurveEquations& curve, const CurveNode& a, const CurveNode& b,
+                                            const F& function) {
+  const Eigen::VectorXd chord = b.x - a.x;
+  std::optional<Eigen::VectorXd> place;
+  const auto there = [&](double share) {
+    int steps = 0;
+    place = curve.corrected(a.x + share * chord, chord.normalized(), steps);
+    return place ? function(*place) : std::numeric_limits<double>::quiet_NaN();
+  };
+  const auto found = numerics::locate_root(there, 0.0, 1.0, located_to);
+  if (!found) return std::nullopt;
+  static_cast<void>(there(found->position));
+  return place;
+}
+
+/// The same beside another curve, which passes through the zero: by halves, each from the cubic through the places and
+/// directions of its ends, which comes nearer to this curve than the other one is; the last of them by a chord.
+template <class F>
+std::optional<Eigen::VectorXd> zero_beside_curve(const CurveEquations& curve, CurveNode a, CurveNode b,
+                                                 const F& function) {
+  double at_a = function(a.x);
+  double at_b = function(b.x);
+  if (!(at_a * at_b < 0.0)) return std::nullopt;
+  while ((b.x - a.x).norm() > near_singular * (1.0 + a.x.norm())) {
+    const Eigen::VectorXd chord = b.x - a.x;
+    const Eigen::VectorXd guess = 0.5 * (a.x + b.x) + 0.125 * chord.norm() * (a.direction - b.direction);
+    int steps = 0;
+    const auto x = curve.corrected(guess, chord.normalized(), steps, converged_beside);
+    if (!x) return std::nullopt;
+    CurveNode middle{*x, curve.direction(*x, a.direction)};
+    const double value = function(*x);
+    if (!(std::abs(value) > 0.0)) return x;
+    const bool is_before = value * at_a < 0.0;
+    (is_before ? at_b : at_a) = value;
+    (is_before ? b : a) = std::move(middle);
+  }
+  return Eigen::VectorXd(a.x + at_a / (at_a - at_b) * (b.x - a.x));
+}
+
+}  // namespace orbweaver::starts
