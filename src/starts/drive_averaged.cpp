@@ -18,8 +18,8 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 /// Of a drive with a few harmonics. A power of two, so that the mean of equal values is exact.
 constexpr int drive_phases = 8;
 
-/// An entry of the Jacobian whose mean is less than this share of what it is over the phases tells no rate: what is left
-/// of it may be rounding, or a high harmonic of the drive.
+/// An entry of the Jacobian whose mean is less than this share of what it is over the phases tells no rate: what is
+/// left of it may be rounding, or a high harmonic of the drive.
 constexpr double cancelled = 0.1;
 
 /// Of the values at first, first + step, ... below `drive_phases`: opposite phases are added first, so that what goes

@@ -153,16 +153,16 @@ TEST(PendulumChain, APairThatPassesOneToRoundingIsUndecided) {
   if (!comm.is_root()) return;
   const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/chain.yaml", {});
   const std::shared_ptr<const systems::System> system = systems::make_system("pendulum_chain", {{"links", 10.0}});
-  const std::vector<double> rest(20, 0.0);
-  const starts::Oscillation mode = starts::linear_modes(*system, rest).oscillations.front();
+  const std::vector<double> hanging(20, 0.0);
+  const starts::Oscillation mode = starts::linear_modes(*system, hanging).oscillations.front();
   continuation::Start start;
-  start.base = loop::constant_loop(rest, mode.period, 10);
+  start.base = loop::constant_loop(hanging, mode.period, 10);
   start.direction.modes.assign(start.base.modes.size(), 0.0);
   const std::complex<double> phase = mode.kernel(0, 0) / std::abs(mode.kernel(0, 0));
-  for (std::size_t i = 0; i < rest.size(); ++i) {
+  for (std::size_t i = 0; i < hanging.size(); ++i) {
     const std::complex<double> entry = mode.kernel(static_cast<Eigen::Index>(i), 0) / phase;
-    start.direction.modes[rest.size() + i] = entry.real();       // cos s
-    start.direction.modes[2 * rest.size() + i] = -entry.imag();  // sin s
+    start.direction.modes[hanging.size() + i] = entry.real();       // cos s
+    start.direction.modes[2 * hanging.size() + i] = -entry.imag();  // sin s
   }
   const systems::Structure& structure = system->structure();
   start.isotropy = {{"S", false, structure.equivariances[0].map, 1, 2}, {"R", true, structure.reversors[0].map, 0, 1}};

@@ -67,8 +67,8 @@ class Certifier {
   Certifier(Certifier&&) noexcept;
 
   /// Integrates the loop's own states and compares. Deterministic; knows no residual, loss or Hessian. A system that
-  /// does not give its formulas has no Taylor series. `known_growth`: the largest modulus of its multipliers or indices,
-  /// or NaN; where it explains how far off the orbit returns, no other explanation is looked for.
+  /// does not give its formulas has no Taylor series. `known_growth`: the largest modulus of its multipliers or
+  /// indices, or NaN; where it explains how far off the orbit returns, no other explanation is looked for.
   /// Throws core::MisuseError if the loop is not valid or not of the system's dimension; core::NumericalError if an
   /// integration of a segment fails, saying in which and at what time.
   [[nodiscard]] Certificate operator()(const loop::Loop& loop, double known_growth = unknown);
