@@ -79,4 +79,12 @@ numerics::Eigensystem CurveEquations::eigensystem(const VectorXd& x, bool with_v
   return std::move(*system);
 }
 
+VectorXd cubic_between(const CurveNode& a, const CurveNode& b, double share) {
+  const VectorXd chord = b.x - a.x;
+  const double rest = 1.0 - share;
+  const double length = chord.norm();
+  return a.x + share * share * (3.0 - 2.0 * share) * chord +
+         length * share * rest * (rest * a.direction - share * b.direction);
+}
+
 }  // namespace orbweaver::starts

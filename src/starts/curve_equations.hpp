@@ -1,8 +1,11 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <Eigen/Core>
 
@@ -18,8 +21,8 @@ inline constexpr double converged = 1e-13;
 inline constexpr double located_to = 1e-12;
 /// Of an eigenvalue: a real part of the curve's first or last equilibrium that may be rounding's.
 inline constexpr double at_end = 1e-12;
-/// A branch point is located to this, relative, and then by a chord, which is good to the square of it. There rounding
-/// is 1e5 times as large across the curve.
+/// A branch point is located to this, relative, and then by a parabola. There rounding is 1e5 times as large across the
+/// curve.
 inline constexpr double near_singular = 1e-5;
 inline constexpr double converged_beside = 1e-8;
 
@@ -71,6 +74,9 @@ class CurveEquations {
   Eigen::Index _d;
 };
 
+/// Between two nodes, by the cubic through both with their directions.
+[[nodiscard]] Eigen::VectorXd cubic_between(const CurveNode& a, const CurveNode& b, double share);
+
 /// The zero of a function of places between two nodes: the corrected place on the chord, share of the way.
 template <class F>
 std::optional<Eigen::VectorXd> zero_between(const CurveEquations& curve, const CurveNode& a, const CurveNode& b,
@@ -89,27 +95,37 @@ std::optional<Eigen::VectorXd> zero_between(const CurveEquations& curve, const C
 }
 
 /// The same beside another curve, which passes through the zero: by halves, each from the cubic through the places and
-/// directions of its ends, which comes nearer to this curve than the other one is; the last of them by a chord.
+/// directions of its ends, which comes nearer to this curve than the other one is; the last of them by the values at
+/// its ends and at the end before.
 template <class F>
 std::optional<Eigen::VectorXd> zero_beside_curve(const CurveEquations& curve, CurveNode a, CurveNode b,
                                                  const F& function) {
-  double at_a = function(a.x);
-  double at_b = function(b.x);
-  if (!(at_a * at_b < 0.0)) return std::nullopt;
+  struct Value {
+    double share;
+    double value;
+  };
+  Value at_a{0.0, function(a.x)};
+  Value at_b{1.0, function(b.x)};
+  Value beyond = at_b;
+  if (!(at_a.value * at_b.value < 0.0)) return std::nullopt;
   while ((b.x - a.x).norm() > near_singular * (1.0 + a.x.norm())) {
-    const Eigen::VectorXd chord = b.x - a.x;
-    const Eigen::VectorXd guess = 0.5 * (a.x + b.x) + 0.125 * chord.norm() * (a.direction - b.direction);
     int steps = 0;
-    const auto x = curve.corrected(guess, chord.normalized(), steps, converged_beside);
+    const auto x = curve.corrected(cubic_between(a, b, 0.5), (b.x - a.x).normalized(), steps, converged_beside);
     if (!x) return std::nullopt;
     CurveNode middle{*x, curve.direction(*x, a.direction)};
-    const double value = function(*x);
-    if (!(std::abs(value) > 0.0)) return x;
-    const bool is_before = value * at_a < 0.0;
-    (is_before ? at_b : at_a) = value;
+    const Value there{0.5 * (at_a.share + at_b.share), function(*x)};
+    if (!(std::abs(there.value) > 0.0)) return x;
+    const bool is_before = there.value * at_a.value < 0.0;
+    beyond = std::exchange(is_before ? at_b : at_a, there);
     (is_before ? b : a) = std::move(middle);
   }
-  return Eigen::VectorXd(a.x + at_a / (at_a - at_b) * (b.x - a.x));
+  // The share as a quadratic function of the value, at 0.
+  const auto weight = [](double own, double x, double y) { return x * y / ((x - own) * (y - own)); };
+  const double share = at_a.share * weight(at_a.value, at_b.value, beyond.value) +
+                       at_b.share * weight(at_b.value, at_a.value, beyond.value) +
+                       beyond.share * weight(beyond.value, at_a.value, at_b.value);
+  const double within = (share - at_a.share) / (at_b.share - at_a.share);
+  return cubic_between(a, b, std::clamp(within, 0.0, 1.0));
 }
 
 }  // namespace orbweaver::starts
